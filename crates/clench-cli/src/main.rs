@@ -1,0 +1,2 @@
+//! The `clench` program.
+fn main() {}

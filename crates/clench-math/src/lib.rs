@@ -1,0 +1,15 @@
+//! Numbers and small geometry that every kernel shares: [`Real`] (one environment or many side by side),
+//! vectors, rotations, and spatial motion and force vectors. Nothing here knows of bodies, joints or contacts.
+
+mod matrix;
+mod quaternion;
+mod real;
+mod scalar;
+mod spatial;
+mod vector;
+
+pub use matrix::Mat3;
+pub use quaternion::Quat;
+pub use real::{Mask, Real, Scalar};
+pub use spatial::{Force, Inertia, Motion};
+pub use vector::Vec3;

@@ -1,0 +1,90 @@
+//! Three-by-three matrices, row by row.
+
+use crate::{Real, Vec3};
+use std::ops::Mul;
+
+/// A 3 × 3 matrix; as a rotation it maps local coordinates to the outer frame, its columns the local axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mat3<T> {
+    /// Rows.
+    pub rows: [Vec3<T>; 3],
+}
+
+impl<T: Real> Mat3<T> {
+    /// The zero matrix.
+    pub const ZERO: Self = Mat3 {
+        rows: [Vec3::ZERO; 3],
+    };
+    /// The identity.
+    pub const IDENTITY: Self = Mat3 {
+        rows: [
+            Vec3::new(T::ONE, T::ZERO, T::ZERO),
+            Vec3::new(T::ZERO, T::ONE, T::ZERO),
+            Vec3::new(T::ZERO, T::ZERO, T::ONE),
+        ],
+    };
+
+    /// From three rows.
+    #[inline(always)]
+    pub const fn from_rows(a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) -> Self {
+        Mat3 { rows: [a, b, c] }
+    }
+    /// From three columns.
+    #[inline(always)]
+    pub fn from_columns(a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) -> Self {
+        Mat3::from_rows(a, b, c).transpose()
+    }
+    /// A diagonal matrix.
+    #[inline(always)]
+    pub fn diagonal(d: Vec3<T>) -> Self {
+        let o = T::ZERO;
+        Mat3::from_rows(
+            Vec3::new(d.x, o, o),
+            Vec3::new(o, d.y, o),
+            Vec3::new(o, o, d.z),
+        )
+    }
+    /// Column `j`.
+    #[inline(always)]
+    pub fn column(&self, j: usize) -> Vec3<T> {
+        Vec3::new(self.rows[0][j], self.rows[1][j], self.rows[2][j])
+    }
+    /// The transpose.
+    #[inline(always)]
+    pub fn transpose(&self) -> Self {
+        Mat3::from_rows(self.column(0), self.column(1), self.column(2))
+    }
+    /// `selfᵀ v` without forming the transpose.
+    #[inline(always)]
+    pub fn transpose_mul(&self, v: Vec3<T>) -> Vec3<T> {
+        self.rows[0] * v.x + self.rows[1] * v.y + self.rows[2] * v.z
+    }
+    /// Entry by entry choice.
+    #[inline(always)]
+    pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Mat3 {
+            rows: std::array::from_fn(|i| Vec3::select(mask, yes.rows[i], no.rows[i])),
+        }
+    }
+}
+
+impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
+    type Output = Vec3<T>;
+    #[inline(always)]
+    fn mul(self, v: Vec3<T>) -> Vec3<T> {
+        Vec3::new(
+            self.rows[0].dot(v),
+            self.rows[1].dot(v),
+            self.rows[2].dot(v),
+        )
+    }
+}
+impl<T: Real> Mul for Mat3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Mat3 {
+            rows: std::array::from_fn(|i| o.transpose_mul(self.rows[i])),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Unit quaternions as rotations, in MuJoCo's order (w, x, y, z).
+
+use crate::{Mat3, Real, Vec3};
+use std::ops::Mul;
+
+/// A quaternion; as a rotation it maps local coordinates to the outer frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quat<T> {
+    /// Real part.
+    pub w: T,
+    /// First imaginary part.
+    pub x: T,
+    /// Second imaginary part.
+    pub y: T,
+    /// Third imaginary part.
+    pub z: T,
+}
+
+impl<T: Real> Default for Quat<T> {
+    fn default() -> Self {
+        Quat::IDENTITY
+    }
+}
+
+impl<T: Real> Quat<T> {
+    /// No rotation.
+    pub const IDENTITY: Self = Quat::new(T::ONE, T::ZERO, T::ZERO, T::ZERO);
+
+    /// From its four parts.
+    #[inline(always)]
+    pub const fn new(w: T, x: T, y: T, z: T) -> Self {
+        Quat { w, x, y, z }
+    }
+    /// The same constant in every lane, (w, x, y, z).
+    #[inline(always)]
+    pub fn from_f64(q: [f64; 4]) -> Self {
+        Quat::new(T::new(q[0]), T::new(q[1]), T::new(q[2]), T::new(q[3]))
+    }
+    /// The first four numbers of a slice.
+    #[inline(always)]
+    pub fn from_slice(q: &[T]) -> Self {
+        Quat::new(q[0], q[1], q[2], q[3])
+    }
+    /// To an array (w, x, y, z).
+    #[inline(always)]
+    pub fn to_array(self) -> [T; 4] {
+        [self.w, self.x, self.y, self.z]
+    }
+    /// Writes the first four numbers of a slice.
+    #[inline(always)]
+    pub fn write(self, out: &mut [T]) {
+        out[..4].copy_from_slice(&self.to_array());
+    }
+    /// The imaginary part.
+    #[inline(always)]
+    pub fn imaginary(self) -> Vec3<T> {
+        Vec3::new(self.x, self.y, self.z)
+    }
+    /// Rotation by `angle` radians about a unit axis.
+    #[inline(always)]
+    pub fn from_axis_angle(axis: Vec3<T>, angle: T) -> Self {
+        let (s, c) = (angle * T::new(0.5)).sin_cos();
+        Quat::new(c, axis.x * s, axis.y * s, axis.z * s)
+    }
+    /// The inverse rotation.
+    #[inline(always)]
+    pub fn conjugate(self) -> Self {
+        Quat::new(self.w, -self.x, -self.y, -self.z)
+    }
+    /// Scaled to unit length; the identity where the length is below 1e-15.
+    #[inline(always)]
+    pub fn normalize(self) -> Self {
+        let norm = (self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z).sqrt();
+        let tiny = norm.lt(T::new(1e-15));
+        let inverse = T::ONE / T::select(tiny, T::ONE, norm);
+        let unit = Quat::new(
+            self.w * inverse,
+            self.x * inverse,
+            self.y * inverse,
+            self.z * inverse,
+        );
+        Quat::select(tiny, Quat::IDENTITY, unit)
+    }
+    /// Part by part choice.
+    #[inline(always)]
+    pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Quat::new(
+            T::select(mask, yes.w, no.w),
+            T::select(mask, yes.x, no.x),
+            T::select(mask, yes.y, no.y),
+            T::select(mask, yes.z, no.z),
+        )
+    }
+    /// Rotates a vector to the outer frame.
+    #[inline(always)]
+    pub fn rotate(self, v: Vec3<T>) -> Vec3<T> {
+        let u = self.imaginary();
+        let t = u.cross(v) * T::new(2.0);
+        v + t * self.w + u.cross(t)
+    }
+    /// The rotation matrix of a unit quaternion.
+    #[inline(always)]
+    pub fn to_matrix(self) -> Mat3<T> {
+        let two = T::new(2.0);
+        let (w, x, y, z) = (self.w, self.x, self.y, self.z);
+        let one = T::ONE;
+        Mat3::from_rows(
+            Vec3::new(
+                one - two * (y * y + z * z),
+                two * (x * y - w * z),
+                two * (x * z + w * y),
+            ),
+            Vec3::new(
+                two * (x * y + w * z),
+                one - two * (x * x + z * z),
+                two * (y * z - w * x),
+            ),
+            Vec3::new(
+                two * (x * z - w * y),
+                two * (y * z + w * x),
+                one - two * (x * x + y * y),
+            ),
+        )
+    }
+    /// The rotation vector: axis times angle, angle in (−π, π].
+    #[inline(always)]
+    pub fn to_rotation_vector(self) -> Vec3<T> {
+        let (axis, sine) = self.imaginary().normalize();
+        let mut angle = T::new(2.0) * sine.atan2(self.w);
+        let pi = T::new(std::f64::consts::PI);
+        angle = T::select(angle.gt(pi), angle - pi - pi, angle);
+        axis * angle
+    }
+    /// The orientation reached from `self` by turning at a constant local angular velocity (rad/s) for `time` seconds.
+    #[inline(always)]
+    pub fn integrate(self, angular_velocity: Vec3<T>, time: T) -> Self {
+        let (axis, speed) = angular_velocity.normalize();
+        (self * Quat::from_axis_angle(axis, speed * time)).normalize()
+    }
+}
+
+impl<T: Real> Mul for Quat<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Quat::new(
+            self.w * o.w - self.x * o.x - self.y * o.y - self.z * o.z,
+            self.w * o.x + self.x * o.w + self.y * o.z - self.z * o.y,
+            self.w * o.y - self.x * o.z + self.y * o.w + self.z * o.x,
+            self.w * o.z + self.x * o.y - self.y * o.x + self.z * o.w,
+        )
+    }
+}

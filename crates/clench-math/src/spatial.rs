@@ -1,0 +1,194 @@
+//! Spatial algebra: motion and force vectors and rigid-body inertia about one common point, in world axes.
+//!
+//! Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2. A motion pairs an angular velocity with the
+//! velocity of the body point at the reference point; a force pairs the moment about that point with a linear force.
+
+use crate::{Mat3, Real, Vec3};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+/// A spatial motion vector: velocity, acceleration or joint axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion<T> {
+    /// Angular part, rad/s.
+    pub angular: Vec3<T>,
+    /// Linear part at the reference point, m/s.
+    pub linear: Vec3<T>,
+}
+
+/// A spatial force vector.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Force<T> {
+    /// Moment about the reference point, N m.
+    pub angular: Vec3<T>,
+    /// Linear force, N.
+    pub linear: Vec3<T>,
+}
+
+macro_rules! spatial_vector {
+    ($name:ident) => {
+        impl<T: Real> $name<T> {
+            /// The zero vector.
+            pub const ZERO: Self = $name {
+                angular: Vec3::ZERO,
+                linear: Vec3::ZERO,
+            };
+            /// From the angular and the linear part.
+            #[inline(always)]
+            pub const fn new(angular: Vec3<T>, linear: Vec3<T>) -> Self {
+                $name { angular, linear }
+            }
+            /// (angular, linear) as six numbers.
+            #[inline(always)]
+            pub fn to_array(self) -> [T; 6] {
+                let (a, l) = (self.angular, self.linear);
+                [a.x, a.y, a.z, l.x, l.y, l.z]
+            }
+        }
+        impl<T: Real> Add for $name<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, o: Self) -> Self {
+                $name::new(self.angular + o.angular, self.linear + o.linear)
+            }
+        }
+        impl<T: Real> Sub for $name<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, o: Self) -> Self {
+                $name::new(self.angular - o.angular, self.linear - o.linear)
+            }
+        }
+        impl<T: Real> Mul<T> for $name<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, s: T) -> Self {
+                $name::new(self.angular * s, self.linear * s)
+            }
+        }
+        impl<T: Real> Neg for $name<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                $name::new(-self.angular, -self.linear)
+            }
+        }
+        impl<T: Real> AddAssign for $name<T> {
+            #[inline(always)]
+            fn add_assign(&mut self, o: Self) {
+                *self = *self + o;
+            }
+        }
+        impl<T: Real> SubAssign for $name<T> {
+            #[inline(always)]
+            fn sub_assign(&mut self, o: Self) {
+                *self = *self - o;
+            }
+        }
+    };
+}
+
+spatial_vector!(Motion);
+spatial_vector!(Force);
+
+impl<T: Real> Motion<T> {
+    /// Power of a force along this motion, W.
+    #[inline(always)]
+    pub fn dot(self, f: Force<T>) -> T {
+        self.angular.dot(f.angular) + self.linear.dot(f.linear)
+    }
+    /// Rate of change of the motion `m` when carried along by `self` (`self × m`).
+    #[inline(always)]
+    pub fn cross(self, m: Motion<T>) -> Motion<T> {
+        Motion::new(
+            self.angular.cross(m.angular),
+            self.angular.cross(m.linear) + self.linear.cross(m.angular),
+        )
+    }
+    /// Rate of change of the force `f` when carried along by `self` (`self ×* f`).
+    #[inline(always)]
+    pub fn cross_force(self, f: Force<T>) -> Force<T> {
+        Force::new(
+            self.angular.cross(f.angular) + self.linear.cross(f.linear),
+            self.angular.cross(f.linear),
+        )
+    }
+    /// The velocity of the point at `offset` from the reference point.
+    #[inline(always)]
+    pub fn velocity_at(self, offset: Vec3<T>) -> Vec3<T> {
+        self.linear + self.angular.cross(offset)
+    }
+}
+
+/// Rigid-body inertia about a reference point: rotational inertia (symmetric), first moment and mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inertia<T> {
+    /// Rotational inertia about the reference point: xx, yy, zz, xy, xz, yz, kg m².
+    pub rotational: [T; 6],
+    /// Mass times the offset of the centre of mass from the reference point, kg m.
+    pub moment: Vec3<T>,
+    /// Mass, kg.
+    pub mass: T,
+}
+
+impl<T: Real> Inertia<T> {
+    /// No body at all.
+    pub const ZERO: Self = Inertia {
+        rotational: [T::ZERO; 6],
+        moment: Vec3::ZERO,
+        mass: T::ZERO,
+    };
+
+    /// A body of principal moments `diagonal` along the columns of `axes`, its centre of mass at `offset` from the
+    /// reference point.
+    #[inline(always)]
+    pub fn from_principal(diagonal: Vec3<T>, axes: &Mat3<T>, offset: Vec3<T>, mass: T) -> Self {
+        let r = &axes.rows;
+        let d = diagonal;
+        let local = |i: usize, j: usize| r[i].scale_by(d).dot(r[j]);
+        let o = offset;
+        Inertia {
+            rotational: [
+                local(0, 0) + mass * (o.y * o.y + o.z * o.z),
+                local(1, 1) + mass * (o.x * o.x + o.z * o.z),
+                local(2, 2) + mass * (o.x * o.x + o.y * o.y),
+                local(0, 1) - mass * o.x * o.y,
+                local(0, 2) - mass * o.x * o.z,
+                local(1, 2) - mass * o.y * o.z,
+            ],
+            moment: o * mass,
+            mass,
+        }
+    }
+    /// The rotational inertia times a vector.
+    #[inline(always)]
+    pub fn rotate(&self, v: Vec3<T>) -> Vec3<T> {
+        let [xx, yy, zz, xy, xz, yz] = self.rotational;
+        Vec3::new(
+            xx * v.x + xy * v.y + xz * v.z,
+            xy * v.x + yy * v.y + yz * v.z,
+            xz * v.x + yz * v.y + zz * v.z,
+        )
+    }
+}
+
+impl<T: Real> Mul<Motion<T>> for Inertia<T> {
+    type Output = Force<T>;
+    /// Momentum of the body moving at `m` (or the force that accelerates it so).
+    #[inline(always)]
+    fn mul(self, m: Motion<T>) -> Force<T> {
+        Force::new(
+            self.rotate(m.angular) + self.moment.cross(m.linear),
+            m.linear * self.mass - self.moment.cross(m.angular),
+        )
+    }
+}
+impl<T: Real> AddAssign for Inertia<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        for (a, b) in self.rotational.iter_mut().zip(o.rotational) {
+            *a += b;
+        }
+        self.moment += o.moment;
+        self.mass += o.mass;
+    }
+}

@@ -1,0 +1,163 @@
+//! Three-vectors.
+
+use crate::Real;
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
+
+/// A vector in space, in metres, newtons or whatever the context says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec3<T> {
+    /// First coordinate.
+    pub x: T,
+    /// Second coordinate.
+    pub y: T,
+    /// Third coordinate.
+    pub z: T,
+}
+
+impl<T: Real> Vec3<T> {
+    /// The origin.
+    pub const ZERO: Self = Vec3::new(T::ZERO, T::ZERO, T::ZERO);
+
+    /// From coordinates.
+    #[inline(always)]
+    pub const fn new(x: T, y: T, z: T) -> Self {
+        Vec3 { x, y, z }
+    }
+    /// The same constant vector in every lane.
+    #[inline(always)]
+    pub fn from_f64(v: [f64; 3]) -> Self {
+        Vec3::new(T::new(v[0]), T::new(v[1]), T::new(v[2]))
+    }
+    /// From an array.
+    #[inline(always)]
+    pub fn from_array(v: [T; 3]) -> Self {
+        Vec3::new(v[0], v[1], v[2])
+    }
+    /// To an array.
+    #[inline(always)]
+    pub fn to_array(self) -> [T; 3] {
+        [self.x, self.y, self.z]
+    }
+    /// The first three numbers of a slice.
+    #[inline(always)]
+    pub fn from_slice(v: &[T]) -> Self {
+        Vec3::new(v[0], v[1], v[2])
+    }
+    /// Writes the first three numbers of a slice.
+    #[inline(always)]
+    pub fn write(self, out: &mut [T]) {
+        out[..3].copy_from_slice(&self.to_array());
+    }
+    /// Inner product.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> T {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+    /// Vector product.
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Vec3::new(
+            self.y * o.z - self.z * o.y,
+            self.z * o.x - self.x * o.z,
+            self.x * o.y - self.y * o.x,
+        )
+    }
+    /// Product coordinate by coordinate.
+    #[inline(always)]
+    pub fn scale_by(self, o: Self) -> Self {
+        Vec3::new(self.x * o.x, self.y * o.y, self.z * o.z)
+    }
+    /// Squared length.
+    #[inline(always)]
+    pub fn norm_squared(self) -> T {
+        self.dot(self)
+    }
+    /// Length.
+    #[inline(always)]
+    pub fn norm(self) -> T {
+        self.norm_squared().sqrt()
+    }
+    /// Coordinate-wise choice.
+    #[inline(always)]
+    pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Vec3::new(
+            T::select(mask, yes.x, no.x),
+            T::select(mask, yes.y, no.y),
+            T::select(mask, yes.z, no.z),
+        )
+    }
+    /// The unit vector along `self` and the length; the x axis where the length is below 1e-15
+    /// (MuJoCo's `mjMINVAL`).
+    #[inline(always)]
+    pub fn normalize(self) -> (Self, T) {
+        let norm = self.norm();
+        let tiny = norm.lt(T::new(1e-15));
+        let inverse = T::ONE / T::select(tiny, T::ONE, norm);
+        let unit = Vec3::new(T::ONE, T::ZERO, T::ZERO);
+        (Vec3::select(tiny, unit, self * inverse), norm)
+    }
+}
+
+impl<T: Real> Add for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Vec3::new(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+}
+impl<T: Real> Sub for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Vec3::new(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+}
+impl<T: Real> Mul<T> for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, s: T) -> Self {
+        Vec3::new(self.x * s, self.y * s, self.z * s)
+    }
+}
+impl<T: Real> Neg for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Vec3::new(-self.x, -self.y, -self.z)
+    }
+}
+impl<T: Real> AddAssign for Vec3<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+impl<T: Real> SubAssign for Vec3<T> {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}
+impl<T> Index<usize> for Vec3<T> {
+    type Output = T;
+    #[inline(always)]
+    fn index(&self, i: usize) -> &T {
+        match i {
+            0 => &self.x,
+            1 => &self.y,
+            2 => &self.z,
+            _ => panic!("a Vec3 has no coordinate {i}"),
+        }
+    }
+}
+impl<T> IndexMut<usize> for Vec3<T> {
+    #[inline(always)]
+    fn index_mut(&mut self, i: usize) -> &mut T {
+        match i {
+            0 => &mut self.x,
+            1 => &mut self.y,
+            2 => &mut self.z,
+            _ => panic!("a Vec3 has no coordinate {i}"),
+        }
+    }
+}
