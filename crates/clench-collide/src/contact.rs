@@ -1,0 +1,67 @@
+//! What collision finds: contact points, in a small buffer without heap.
+
+use clench_math::{Mask, Mat3, Real, Vec3};
+
+/// The most points that one pair yields: a face of a box on a face of another.
+pub const MAX_POINTS: usize = 8;
+
+/// One point where two shapes touch or are about to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint<T: Real> {
+    /// Midway between the two surfaces, in world coordinates, m.
+    pub position: Vec3<T>,
+    /// Rows: the unit normal from the first shape to the second, then two tangents.
+    pub frame: Mat3<T>,
+    /// Distance between the surfaces along the normal, m; negative where they penetrate.
+    pub distance: T,
+    /// In which environments the point exists. Elsewhere the other fields are finite (if poses and sizes are) and
+    /// mean nothing.
+    pub active: T::Mask,
+}
+
+/// The contact points of one pair, at most [`MAX_POINTS`].
+#[derive(Clone, Copy, Debug)]
+pub struct Contacts<T: Real> {
+    points: [ContactPoint<T>; MAX_POINTS],
+    len: usize,
+}
+
+impl<T: Real> Contacts<T> {
+    /// No points.
+    pub fn new() -> Self {
+        let none = ContactPoint {
+            position: Vec3::ZERO,
+            frame: Mat3::IDENTITY,
+            distance: T::ZERO,
+            active: T::Mask::splat(false),
+        };
+        Contacts {
+            points: [none; MAX_POINTS],
+            len: 0,
+        }
+    }
+    /// Forgets all points.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+    /// The points found.
+    #[inline(always)]
+    pub fn as_slice(&self) -> &[ContactPoint<T>] {
+        &self.points[..self.len]
+    }
+    /// Adds a point if any environment has it.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, point: ContactPoint<T>) {
+        if point.active.any() && self.len < MAX_POINTS {
+            self.points[self.len] = point;
+            self.len += 1;
+        }
+    }
+}
+
+impl<T: Real> Default for Contacts<T> {
+    fn default() -> Self {
+        Contacts::new()
+    }
+}
