@@ -1,2 +1,47 @@
-//! The project's own chores.
-fn main() {}
+//! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed.
+
+mod python;
+mod run;
+mod stages;
+
+use std::process::ExitCode;
+
+const HELP: &str = "\
+Clench's own chores.
+
+Usage: cargo xtask COMMAND
+
+Commands:
+  test [STAGE...]   Check everything, or only the named stages, in this order:
+                      fmt      rustfmt finds nothing to change
+                      clippy   no warnings in any crate, test or example
+                      unit     all Rust tests
+                      doc      rustdoc without warnings
+                      build    the release `clench` program
+                      python   .venv with MuJoCo, and the public models in .cache
+                      parity   `clench` against MuJoCo, with pytest
+  bench [ARG...]    Build the release `clench` and time it against MuJoCo.
+                    Arguments go to bench/speed.py; try `cargo xtask bench --help`.
+
+Needs Python 3.11 or later with venv, and a package index on the first run.";
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let outcome = match args.first().map(String::as_str) {
+        Some("test") => stages::test(&args[1..]),
+        Some("bench") => stages::bench(&args[1..]),
+        Some("help" | "-h" | "--help") => {
+            println!("{HELP}");
+            Ok(())
+        }
+        Some(other) => Err(format!("unknown command `{other}`\n\n{HELP}")),
+        None => Err(HELP.to_string()),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}

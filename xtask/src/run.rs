@@ -1,0 +1,57 @@
+//! Paths of the workspace, and running other programs from its root.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The workspace's root folder.
+pub fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here).to_path_buf()
+}
+
+/// The release `clench` program, where cargo puts it.
+pub fn clench() -> PathBuf {
+    let target =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+    let name = format!("clench{}", std::env::consts::EXE_SUFFIX);
+    root().join(target).join("release").join(name)
+}
+
+/// A command that will run in the workspace's root.
+pub fn command(program: impl AsRef<std::ffi::OsStr>, args: &[&str]) -> Command {
+    let mut command = Command::new(program);
+    command.args(args).current_dir(root());
+    command
+}
+
+/// The cargo that runs this program, so that a chosen toolchain stays chosen.
+pub fn cargo(args: &[&str]) -> Command {
+    command(
+        std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()),
+        args,
+    )
+}
+
+/// Runs a command to its end, its output passed through.
+///
+/// # Errors
+/// A line saying which command failed and how.
+pub fn run(mut command: Command) -> Result<(), String> {
+    let status = command
+        .status()
+        .map_err(|e| format!("cannot start {}: {e}", shown(&command)))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("{status}: {}", shown(&command)))
+    }
+}
+
+/// A command as one would type it.
+fn shown(command: &Command) -> String {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    words
+        .map(|w| w.to_string_lossy().into_owned())
+        .collect::<Vec<_>>()
+        .join(" ")
+}

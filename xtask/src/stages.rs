@@ -1,0 +1,144 @@
+//! The stages of `cargo xtask test`, in order, and `cargo xtask bench`.
+
+use crate::python;
+use crate::run::{cargo, clench, command, run};
+use std::time::Instant;
+
+/// One check: its name on the command line, what to do when it fails, and how to run it.
+struct Stage {
+    name: &'static str,
+    remedy: &'static str,
+    check: fn() -> Result<(), String>,
+}
+
+/// From cheap to dear, so that most mistakes show early.
+const STAGES: &[Stage] = &[
+    Stage {
+        name: "fmt",
+        remedy: "run `cargo fmt --all`",
+        check: fmt,
+    },
+    Stage {
+        name: "clippy",
+        remedy: "mend the warnings above",
+        check: clippy,
+    },
+    Stage {
+        name: "unit",
+        remedy: "run the failing crate alone with `cargo test -p CRATE`",
+        check: unit,
+    },
+    Stage {
+        name: "doc",
+        remedy: "mend the documentation comments named above",
+        check: doc,
+    },
+    Stage {
+        name: "build",
+        remedy: "mend the errors above",
+        check: build,
+    },
+    Stage {
+        name: "python",
+        remedy: "see the message above",
+        check: python::prepare,
+    },
+    Stage {
+        name: "parity",
+        remedy: "run one case alone with `.venv/bin/python -m pytest parity -k NAME`",
+        check: parity,
+    },
+];
+
+/// Runs all stages, or those named, up to the first that fails.
+///
+/// # Errors
+/// The failing stage with its remedy, or a name that is no stage.
+pub fn test(names: &[String]) -> Result<(), String> {
+    if let Some(name) = names.iter().find(|n| STAGES.iter().all(|s| s.name != **n)) {
+        return Err(format!("unknown stage `{name}`; see `cargo xtask --help`"));
+    }
+    let chosen: Vec<&Stage> = STAGES
+        .iter()
+        .filter(|s| names.is_empty() || names.iter().any(|n| n == s.name))
+        .collect();
+    let begin = Instant::now();
+    let mut summary = String::new();
+    for (k, stage) in chosen.iter().enumerate() {
+        println!("\n==> [{}/{}] {}", k + 1, chosen.len(), stage.name);
+        let start = Instant::now();
+        let outcome = (stage.check)();
+        let seconds = start.elapsed().as_secs_f64();
+        if let Err(message) = outcome {
+            let left = chosen.len() - k - 1;
+            return Err(format!(
+                "\n{summary}  {:<8}FAILED  {seconds:6.1} s\n\n{message}\nStage `{}` failed: {}. {left} stages not run.",
+                stage.name, stage.name, stage.remedy
+            ));
+        }
+        summary += &format!("  {:<8}ok      {seconds:6.1} s\n", stage.name);
+    }
+    println!(
+        "\n{summary}\nAll {} stages passed in {:.1} s.",
+        chosen.len(),
+        begin.elapsed().as_secs_f64()
+    );
+    Ok(())
+}
+
+/// Times `clench` against MuJoCo; `args` go to the script.
+///
+/// # Errors
+/// What could not be built, installed or run.
+pub fn bench(args: &[String]) -> Result<(), String> {
+    build()?;
+    python::prepare()?;
+    let mut script = command(python::interpreter(), &["bench/speed.py"]);
+    script.args(args).env("CLENCH", clench());
+    run(script)
+}
+
+fn fmt() -> Result<(), String> {
+    run(cargo(&["fmt", "--all", "--check"]))
+}
+
+fn clippy() -> Result<(), String> {
+    run(cargo(&[
+        "clippy",
+        "--quiet",
+        "--workspace",
+        "--all-targets",
+        "--",
+        "-D",
+        "warnings",
+    ]))
+}
+
+fn unit() -> Result<(), String> {
+    run(cargo(&["test", "--quiet", "--workspace"]))
+}
+
+fn doc() -> Result<(), String> {
+    let mut doc = cargo(&["doc", "--quiet", "--workspace", "--no-deps"]);
+    doc.env("RUSTDOCFLAGS", "-D warnings");
+    run(doc)
+}
+
+fn build() -> Result<(), String> {
+    run(cargo(&[
+        "build",
+        "--quiet",
+        "--release",
+        "--package",
+        "clench-cli",
+    ]))
+}
+
+fn parity() -> Result<(), String> {
+    let mut pytest = command(
+        python::interpreter(),
+        &["-m", "pytest", "--quiet", "parity"],
+    );
+    pytest.env("CLENCH", clench());
+    run(pytest)
+}
