@@ -1,6 +1,9 @@
 //! Numbers and small geometry that every kernel shares: [`Real`] (one environment or many side by side),
 //! vectors, rotations, and spatial motion and force vectors. Nothing here knows of bodies, joints or contacts.
 
+mod cast;
+mod eigen;
+mod lanes;
 mod matrix;
 mod quaternion;
 mod real;
@@ -8,6 +11,9 @@ mod scalar;
 mod spatial;
 mod vector;
 
+pub use cast::{broadcast, cast, read_lane, write_lane};
+pub use eigen::principal_axes;
+pub use lanes::{LaneMask, Lanes};
 pub use matrix::Mat3;
 pub use quaternion::Quat;
 pub use real::{Mask, Real, Scalar};

@@ -59,6 +59,17 @@ impl<T: Real> Mat3<T> {
     pub fn transpose_mul(&self, v: Vec3<T>) -> Vec3<T> {
         self.rows[0] * v.x + self.rows[1] * v.y + self.rows[2] * v.z
     }
+    /// The same constant matrix in every lane, by rows.
+    pub fn from_f64(m: [[f64; 3]; 3]) -> Self {
+        Mat3 {
+            rows: m.map(Vec3::from_f64),
+        }
+    }
+    /// The determinant.
+    #[inline(always)]
+    pub fn determinant(&self) -> T {
+        self.rows[0].dot(self.rows[1].cross(self.rows[2]))
+    }
     /// Entry by entry choice.
     #[inline(always)]
     pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {

@@ -62,6 +62,35 @@ impl<T: Real> Quat<T> {
         let (s, c) = (angle * T::new(0.5)).sin_cos();
         Quat::new(c, axis.x * s, axis.y * s, axis.z * s)
     }
+    /// The rotation of a rotation matrix (columns: the local axes), to unit length.
+    ///
+    /// Four rows of 4 q qᵀ can be read off the matrix, each a multiple of q; the row of `w` serves where the trace is
+    /// positive, else that of the largest imaginary part, whose sign is then positive (MuJoCo's `mju_mat2Quat`).
+    pub fn from_matrix(m: &Mat3<T>) -> Self {
+        let [a, b, c] = m.rows;
+        let one = T::ONE;
+        let (wx, wy, wz) = (c.y - b.z, a.z - c.x, b.x - a.y);
+        let (xy, xz, yz) = (a.y + b.x, a.z + c.x, b.z + c.y);
+        let trace = a.x + b.y + c.z;
+        let from_w = Quat::new(one + trace, wx, wy, wz);
+        let from_x = Quat::new(wx, one + a.x - b.y - c.z, xy, xz);
+        let from_y = Quat::new(wy, xy, one - a.x + b.y - c.z, yz);
+        let from_z = Quat::new(wz, xz, yz, one - a.x - b.y + c.z);
+        let y_or_z = Quat::select(b.y.gt(c.z), from_y, from_z);
+        let imaginary = Quat::select(a.x.gt(b.y) & a.x.gt(c.z), from_x, y_or_z);
+        Quat::select(trace.gt(T::ZERO), from_w, imaginary).normalize()
+    }
+    /// The shortest rotation that turns the unit vector `from` into the unit vector `to`.
+    ///
+    /// Opposite vectors leave the axis open: it is then the coordinate axis on which `from` is smallest, made
+    /// perpendicular to `from`; for `from` = z that is x.
+    pub fn from_two_vectors(from: Vec3<T>, to: Vec3<T>) -> Self {
+        let half = T::new(0.5);
+        let (cosine, sine) = ((from + to).norm() * half, (to - from).norm() * half);
+        let (axis, length) = from.cross(to).normalize();
+        let axis = Vec3::select(length.lt(T::new(1e-10)), from.any_perpendicular(), axis);
+        Quat::new(cosine, axis.x * sine, axis.y * sine, axis.z * sine).normalize()
+    }
     /// The inverse rotation.
     #[inline(always)]
     pub fn conjugate(self) -> Self {
@@ -130,6 +159,17 @@ impl<T: Real> Quat<T> {
         let pi = T::new(std::f64::consts::PI);
         angle = T::select(angle.gt(pi), angle - pi - pi, angle);
         axis * angle
+    }
+    /// The local rotation vector that takes `other` to `self`: `other · exp(difference) = self` (MuJoCo's `mju_subQuat`).
+    #[inline(always)]
+    pub fn difference(self, other: Self) -> Vec3<T> {
+        (other.conjugate() * self).to_rotation_vector()
+    }
+    /// The rotation of a rotation vector (axis times angle, rad).
+    #[inline(always)]
+    pub fn from_rotation_vector(v: Vec3<T>) -> Self {
+        let (axis, angle) = v.normalize();
+        Quat::from_axis_angle(axis, angle)
     }
     /// The orientation reached from `self` by turning at a constant local angular velocity (rad/s) for `time` seconds.
     #[inline(always)]

@@ -86,6 +86,19 @@ impl<T: Real> Vec3<T> {
             T::select(mask, yes.z, no.z),
         )
     }
+    /// A unit vector perpendicular to the unit vector `self`: the coordinate axis on which `self` is smallest (the
+    /// first of equals), less its part along `self`.
+    pub fn any_perpendicular(self) -> Self {
+        let (x, y, z) = (self.x.abs(), self.y.abs(), self.z.abs());
+        let unit = |i: usize| {
+            let mut e = Vec3::ZERO;
+            e[i] = T::ONE;
+            e
+        };
+        let y_or_z = Vec3::select(y.le(z), unit(1), unit(2));
+        let axis = Vec3::select(x.le(y) & x.le(z), unit(0), y_or_z);
+        (axis - self * self.dot(axis)).normalize().0
+    }
     /// The unit vector along `self` and the length; the x axis where the length is below 1e-15
     /// (MuJoCo's `mjMINVAL`).
     #[inline(always)]
