@@ -1,1 +1,21 @@
-//! clench-solver
+//! The convex problem of constrained rigid-body dynamics, and its solvers.
+//!
+//! ```text
+//! minimise over a:   ½ (a − a_unc)ᵀ M (a − a_unc)  +  Σ_k s_k( J_k a − aref_k )
+//! ```
+//!
+//! A [`Problem`] holds M in the sparsity of a kinematic [`Tree`], the unconstrained acceleration and the constraint
+//! blocks; a [`Solver`] finds the acceleration and the constraint forces. Nothing here knows of bodies, joints or
+//! contacts: what a constraint asks for arrives as J, aref, D and one of five [`Cost`]s.
+
+mod options;
+mod problem;
+mod solver;
+mod stats;
+mod tree;
+
+pub use options::{ConstraintSolver, FrictionCone, MaxContacts, RigidOptions, Settings, Switch};
+pub use problem::{Block, BlockMut, Cost, Problem, ProblemError};
+pub use solver::Solver;
+pub use stats::{LaneStats, SolveStats, Status};
+pub use tree::{Tree, TreeFactor, TreeMatrix};

@@ -1,0 +1,115 @@
+//! What a solve reports.
+
+use clench_math::{Real, Scalar};
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Status {
+    /// No constraint acts: the unconstrained acceleration is the answer.
+    #[default]
+    Unconstrained,
+    /// The starting point was proven good enough, by the duality gap, before any iteration.
+    Proven,
+    /// Gradient and last improvement are below the tolerance, or a full step over a purely quadratic stretch ended there.
+    Converged,
+    /// The working precision allows no further progress. With a tolerance of zero this is success.
+    NoProgress,
+    /// The iteration limit came first.
+    IterationLimit,
+    /// A number became infinite or undefined; the result of this lane is not usable.
+    NonFinite,
+}
+
+impl Status {
+    pub(crate) const ALL: [Status; 6] = [
+        Status::Unconstrained,
+        Status::Proven,
+        Status::Converged,
+        Status::NoProgress,
+        Status::IterationLimit,
+        Status::NonFinite,
+    ];
+
+    pub(crate) fn code<T: Real>(self) -> T {
+        T::new(f64::from(self as u8))
+    }
+}
+
+/// Statistics of a solve, one value a lane.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SolveStats<T> {
+    /// Iterations; over islands, the most.
+    pub iterations: T,
+    /// Gradient norm over mean inertia × nv; over islands, the largest.
+    pub gradient: T,
+    /// Last cost improvement over mean inertia × nv; over islands, the largest.
+    pub improvement: T,
+    /// Duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
+    pub gap: T,
+    /// How often a constraint changed its piece, in all iterations.
+    pub piece_changes: T,
+    /// Line-search evaluations.
+    pub ls_evaluations: T,
+    /// Hessians factored from scratch.
+    pub factorizations: T,
+    /// Rank-one updates of a factored Hessian.
+    pub updates: T,
+    /// Sweeps of noslip.
+    pub noslip_iterations: T,
+    /// Separately solved parts; 1 where islands are not used and constraints act.
+    pub islands: T,
+    pub(crate) status: T,
+}
+
+/// [`SolveStats`] of one lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaneStats {
+    /// How the solve ended; over islands, the worst.
+    pub status: Status,
+    /// See [`SolveStats`].
+    pub iterations: usize,
+    /// See [`SolveStats`].
+    pub gradient: f64,
+    /// See [`SolveStats`].
+    pub improvement: f64,
+    /// See [`SolveStats`].
+    pub gap: f64,
+    /// See [`SolveStats`].
+    pub piece_changes: usize,
+    /// See [`SolveStats`].
+    pub ls_evaluations: usize,
+    /// See [`SolveStats`].
+    pub factorizations: usize,
+    /// See [`SolveStats`].
+    pub updates: usize,
+    /// See [`SolveStats`].
+    pub noslip_iterations: usize,
+    /// See [`SolveStats`].
+    pub islands: usize,
+}
+
+impl<T: Real> SolveStats<T> {
+    /// How lane `lane` ended.
+    pub fn status(&self, lane: usize) -> Status {
+        Status::ALL[self.status.lane(lane).to_f64() as usize]
+    }
+
+    /// The statistics of lane `lane`.
+    pub fn lane(&self, lane: usize) -> LaneStats {
+        let count = |x: T| x.lane(lane).to_f64() as usize;
+        let value = |x: T| x.lane(lane).to_f64();
+        LaneStats {
+            status: self.status(lane),
+            iterations: count(self.iterations),
+            gradient: value(self.gradient),
+            improvement: value(self.improvement),
+            gap: value(self.gap),
+            piece_changes: count(self.piece_changes),
+            ls_evaluations: count(self.ls_evaluations),
+            factorizations: count(self.factorizations),
+            updates: count(self.updates),
+            noslip_iterations: count(self.noslip_iterations),
+            islands: count(self.islands),
+        }
+    }
+}
