@@ -1,1 +1,15 @@
-//! clench-rigid
+//! Articulated rigid bodies: an immutable [`Model`] and its builder, smooth dynamics, contact selection, and the
+//! constraints that turn a model and a state into the convex problem that `clench-solver` solves.
+//!
+//! Data lives in three kinds of struct: [`Model`] never changes while stepping, [`State`] is what a user saves and
+//! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.
+
+pub mod builder;
+pub mod contact;
+pub mod model;
+mod state;
+pub mod workspace;
+
+pub use model::{Model, Params};
+pub use state::State;
+pub use workspace::Workspace;

@@ -1,0 +1,491 @@
+//! The elements of a model, with MuJoCo's defaults.
+
+use super::Origin;
+use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind};
+use clench_collide::ShapeKind;
+use clench_math::{Quat, Vec3};
+
+/// MuJoCo's default reference dynamics: time constant 0.02 s, damping ratio 1.
+pub const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
+/// MuJoCo's default impedance.
+pub const DEFAULT_SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
+
+/// A body: a frame that moves by its joints relative to its parent.
+#[derive(Clone, Debug, Default)]
+pub struct BodySpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Index of the parent in `ModelBuilder::bodies` (the world is its own parent).
+    pub parent: usize,
+    /// Position in the parent's frame, m.
+    pub pos: Vec3<f64>,
+    /// Orientation in the parent's frame.
+    pub quat: Quat<f64>,
+    /// Mass properties, if the author gave them.
+    pub inertial: Option<InertialSpec>,
+    /// Moved by the user, not by forces; child of the world, without joints.
+    pub mocap: bool,
+    /// Share of the body's weight that is lifted.
+    pub gravcomp: f64,
+    /// Joints, in the order in which they act.
+    pub joints: Vec<JointSpec>,
+    /// Geoms.
+    pub geoms: Vec<GeomSpec>,
+    /// Sites.
+    pub sites: Vec<SiteSpec>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// Mass properties given by the author.
+#[derive(Clone, Debug)]
+pub struct InertialSpec {
+    /// Centre of mass in the body frame, m.
+    pub pos: Vec3<f64>,
+    /// Orientation of the inertial frame in the body frame (ignored with a full inertia).
+    pub quat: Quat<f64>,
+    /// kg.
+    pub mass: f64,
+    /// Moments.
+    pub inertia: InertiaSpec,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// Rotational inertia about the centre of mass, kg m².
+#[derive(Clone, Copy, Debug)]
+pub enum InertiaSpec {
+    /// Principal moments in the inertial frame.
+    Diagonal([f64; 3]),
+    /// xx, yy, zz, xy, xz, yz in the body frame.
+    Full([f64; 6]),
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub struct JointSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Kind of motion.
+    pub kind: JointKind,
+    /// Anchor in the body frame, m.
+    pub pos: Vec3<f64>,
+    /// Axis in the body frame (normalized by the builder).
+    pub axis: Vec3<f64>,
+    /// Allowed positions, rad or m; for a ball joint (0, largest angle).
+    pub range: [f64; 2],
+    /// Whether the range limits the joint; `None`: if `autolimits` and a range is given.
+    pub limited: Option<bool>,
+    /// Limits of the total actuator force, N or N m.
+    pub actuatorfrcrange: [f64; 2],
+    /// Whether that range applies; `None` as for `limited`.
+    pub actuatorfrclimited: Option<bool>,
+    /// Gravity compensation counts as actuation.
+    pub actuatorgravcomp: bool,
+    /// Distance at which the limit constraint appears.
+    pub margin: f64,
+    /// Position in the initial configuration.
+    pub reference: f64,
+    /// Position at which the spring rests.
+    pub springref: f64,
+    /// N/m or N m/rad.
+    pub stiffness: f64,
+    /// N s/m or N m s/rad.
+    pub damping: f64,
+    /// Time constant and damping ratio from which stiffness and damping are derived, where positive.
+    pub springdamper: [f64; 2],
+    /// Added inertia of the joint, kg or kg m².
+    pub armature: f64,
+    /// Dry friction, N or N m.
+    pub frictionloss: f64,
+    /// Limit reference dynamics.
+    pub solref_limit: [f64; 2],
+    /// Limit impedance.
+    pub solimp_limit: [f64; 5],
+    /// Dry-friction reference dynamics.
+    pub solref_friction: [f64; 2],
+    /// Dry-friction impedance.
+    pub solimp_friction: [f64; 5],
+    /// Group, only for selection by the user.
+    pub group: i32,
+    /// Whether the model's `alignfree` applies to this free joint; `None`: as the compiler says.
+    pub align: Option<bool>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+impl Default for JointSpec {
+    fn default() -> Self {
+        JointSpec {
+            name: String::new(),
+            kind: JointKind::Hinge,
+            pos: Vec3::ZERO,
+            axis: Vec3::new(0.0, 0.0, 1.0),
+            range: [0.0; 2],
+            limited: None,
+            actuatorfrcrange: [0.0; 2],
+            actuatorfrclimited: None,
+            actuatorgravcomp: false,
+            margin: 0.0,
+            reference: 0.0,
+            springref: 0.0,
+            stiffness: 0.0,
+            damping: 0.0,
+            springdamper: [0.0; 2],
+            armature: 0.0,
+            frictionloss: 0.0,
+            solref_limit: DEFAULT_SOLREF,
+            solimp_limit: DEFAULT_SOLIMP,
+            solref_friction: DEFAULT_SOLREF,
+            solimp_friction: DEFAULT_SOLIMP,
+            group: 0,
+            align: None,
+            origin: None,
+        }
+    }
+}
+
+/// How heavy a geom is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GeomMass {
+    /// kg.
+    Mass(f64),
+    /// kg/m³ (kg/m² for a shell).
+    Density(f64),
+}
+
+/// A shape fixed to a body.
+#[derive(Clone, Debug)]
+pub struct GeomSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Shape.
+    pub kind: ShapeKind,
+    /// MuJoCo's sizes of that shape, m.
+    pub size: Vec3<f64>,
+    /// Position in the body frame, m.
+    pub pos: Vec3<f64>,
+    /// Orientation in the body frame.
+    pub quat: Quat<f64>,
+    /// Contact type bits.
+    pub contype: u32,
+    /// Contact affinity bits.
+    pub conaffinity: u32,
+    /// Dimensions of the contact: 1, 3, 4 or 6.
+    pub condim: u32,
+    /// Slide, spin and roll friction.
+    pub friction: [f64; 3],
+    /// Whose parameters win in a contact.
+    pub priority: i32,
+    /// Weight in mixing parameters.
+    pub solmix: f64,
+    /// Reference dynamics.
+    pub solref: [f64; 2],
+    /// Impedance.
+    pub solimp: [f64; 5],
+    /// Distance at which contacts are detected, m.
+    pub margin: f64,
+    /// Part of the margin in which contacts carry no force, m.
+    pub gap: f64,
+    /// Mass or density.
+    pub mass: GeomMass,
+    /// Mass spread over the surface.
+    pub shellinertia: bool,
+    /// Group.
+    pub group: i32,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+impl Default for GeomSpec {
+    fn default() -> Self {
+        GeomSpec {
+            name: String::new(),
+            kind: ShapeKind::Sphere,
+            size: Vec3::ZERO,
+            pos: Vec3::ZERO,
+            quat: Quat::IDENTITY,
+            contype: 1,
+            conaffinity: 1,
+            condim: 3,
+            friction: [1.0, 0.005, 0.0001],
+            priority: 0,
+            solmix: 1.0,
+            solref: DEFAULT_SOLREF,
+            solimp: DEFAULT_SOLIMP,
+            margin: 0.0,
+            gap: 0.0,
+            mass: GeomMass::Density(1000.0),
+            shellinertia: false,
+            group: 0,
+            origin: None,
+        }
+    }
+}
+
+/// A named frame on a body.
+#[derive(Clone, Debug, Default)]
+pub struct SiteSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Position in the body frame, m.
+    pub pos: Vec3<f64>,
+    /// Orientation in the body frame.
+    pub quat: Quat<f64>,
+    /// Group.
+    pub group: i32,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// A fixed tendon: a weighted sum of joint positions.
+#[derive(Clone, Debug)]
+pub struct TendonSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Joint name and coefficient of each term.
+    pub terms: Vec<(String, f64)>,
+    /// Allowed lengths.
+    pub range: [f64; 2],
+    /// Whether the range limits the tendon; `None`: if `autolimits` and a range is given.
+    pub limited: Option<bool>,
+    /// Limits of the total actuator force.
+    pub actuatorfrcrange: [f64; 2],
+    /// Whether that range applies; `None` as for `limited`.
+    pub actuatorfrclimited: Option<bool>,
+    /// Distance at which the limit constraint appears.
+    pub margin: f64,
+    /// Spring stiffness.
+    pub stiffness: f64,
+    /// Damping.
+    pub damping: f64,
+    /// Dead band of the spring; `None`: the length in the initial configuration.
+    pub springlength: Option<[f64; 2]>,
+    /// Dry friction.
+    pub frictionloss: f64,
+    /// Limit reference dynamics.
+    pub solref_limit: [f64; 2],
+    /// Limit impedance.
+    pub solimp_limit: [f64; 5],
+    /// Dry-friction reference dynamics.
+    pub solref_friction: [f64; 2],
+    /// Dry-friction impedance.
+    pub solimp_friction: [f64; 5],
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+impl Default for TendonSpec {
+    fn default() -> Self {
+        TendonSpec {
+            name: String::new(),
+            terms: Vec::new(),
+            range: [0.0; 2],
+            limited: None,
+            actuatorfrcrange: [0.0; 2],
+            actuatorfrclimited: None,
+            margin: 0.0,
+            stiffness: 0.0,
+            damping: 0.0,
+            springlength: None,
+            frictionloss: 0.0,
+            solref_limit: DEFAULT_SOLREF,
+            solimp_limit: DEFAULT_SOLIMP,
+            solref_friction: DEFAULT_SOLREF,
+            solimp_friction: DEFAULT_SOLIMP,
+            origin: None,
+        }
+    }
+}
+
+/// What an actuator pulls on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TransmissionSpec {
+    /// A joint, its axes in the child frame for ball and free joints.
+    Joint(String),
+    /// A joint, its axes in the parent frame for ball and free joints.
+    JointInParent(String),
+    /// A fixed tendon.
+    Tendon(String),
+}
+
+/// An actuator: force = gain · (control or activation) + bias.
+#[derive(Clone, Debug)]
+pub struct ActuatorSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// What it pulls on.
+    pub transmission: TransmissionSpec,
+    /// How the control becomes an activation.
+    pub dynamics: DynamicsKind,
+    /// Parameters of the dynamics.
+    pub dynprm: [f64; 10],
+    /// Gain as a function of length and velocity.
+    pub gain: GainKind,
+    /// Parameters of the gain.
+    pub gainprm: [f64; 10],
+    /// Bias as a function of length and velocity.
+    pub bias: BiasKind,
+    /// Parameters of the bias.
+    pub biasprm: [f64; 10],
+    /// Damping ratio of a position servo, resolved by the builder into `biasprm[2]`.
+    pub dampratio: Option<f64>,
+    /// Share of the joint or tendon range that the control range takes; needs a limited target.
+    pub inheritrange: f64,
+    /// Scaling of the force onto the transmission's axes.
+    pub gear: [f64; 6],
+    /// Allowed controls.
+    pub ctrlrange: [f64; 2],
+    /// Whether it applies; `None`: if `autolimits` and a range is given.
+    pub ctrllimited: Option<bool>,
+    /// Allowed forces.
+    pub forcerange: [f64; 2],
+    /// Whether it applies; `None` as for `ctrllimited`.
+    pub forcelimited: Option<bool>,
+    /// Allowed activations.
+    pub actrange: [f64; 2],
+    /// Whether it applies; `None` as for `ctrllimited`.
+    pub actlimited: Option<bool>,
+    /// Use the activation as of the end of the step.
+    pub actearly: bool,
+    /// Group.
+    pub group: i32,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// Where a connect or weld holds its bodies together.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConnectAnchor {
+    /// Two bodies (the second may be the world, by the empty name) and the anchor in the first body's frame; the
+    /// builder computes the second anchor from the initial configuration.
+    Bodies {
+        /// First body.
+        body1: String,
+        /// Second body.
+        body2: String,
+        /// Anchor in the first body's frame for connect, in the second body's for weld, m.
+        anchor: Vec3<f64>,
+    },
+    /// Two sites whose frames are to coincide.
+    Sites {
+        /// First site.
+        site1: String,
+        /// Second site.
+        site2: String,
+    },
+}
+
+/// What an equality keeps equal.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EqualityKind {
+    /// Two points coincide.
+    Connect(ConnectAnchor),
+    /// Two frames coincide.
+    Weld {
+        /// The two bodies or sites.
+        anchor: ConnectAnchor,
+        /// Pose of the second body relative to the first; `None`: as in the initial configuration.
+        relpose: Option<(Vec3<f64>, Quat<f64>)>,
+        /// Length that scales rotations against translations.
+        torquescale: f64,
+    },
+    /// One joint follows a quartic of another (or a constant): y − y₀ = Σ coef_k (x − x₀)^k.
+    Joint {
+        /// The joint that follows.
+        joint1: String,
+        /// The joint that leads, if any.
+        joint2: Option<String>,
+        /// Coefficients, constant first.
+        polycoef: [f64; 5],
+    },
+    /// One tendon follows a quartic of another (or a constant).
+    Tendon {
+        /// The tendon that follows.
+        tendon1: String,
+        /// The tendon that leads, if any.
+        tendon2: Option<String>,
+        /// Coefficients, constant first.
+        polycoef: [f64; 5],
+    },
+}
+
+/// An equality constraint.
+#[derive(Clone, Debug)]
+pub struct EqualitySpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// What it keeps equal.
+    pub kind: EqualityKind,
+    /// On in the initial state.
+    pub active: bool,
+    /// Reference dynamics.
+    pub solref: [f64; 2],
+    /// Impedance.
+    pub solimp: [f64; 5],
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// A geom pair that always collides; what is `None` is mixed from its geoms.
+#[derive(Clone, Debug, Default)]
+pub struct PairSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// First geom.
+    pub geom1: String,
+    /// Second geom.
+    pub geom2: String,
+    /// Dimensions of the contact.
+    pub condim: Option<u32>,
+    /// Friction: two slides, spin, two rolls.
+    pub friction: Option<[f64; 5]>,
+    /// Reference dynamics.
+    pub solref: Option<[f64; 2]>,
+    /// Reference dynamics of the friction dimensions; `None`: as `solref`.
+    pub solreffriction: Option<[f64; 2]>,
+    /// Impedance.
+    pub solimp: Option<[f64; 5]>,
+    /// Margin, m.
+    pub margin: Option<f64>,
+    /// Gap, m.
+    pub gap: Option<f64>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// Two bodies that never collide.
+#[derive(Clone, Debug, Default)]
+pub struct ExcludeSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// First body.
+    pub body1: String,
+    /// Second body.
+    pub body2: String,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// A stored state; what is `None` is as in the initial state.
+#[derive(Clone, Debug, Default)]
+pub struct KeyframeSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// s.
+    pub time: f64,
+    /// Positions (nq).
+    pub qpos: Option<Vec<f64>>,
+    /// Velocities (nv).
+    pub qvel: Option<Vec<f64>>,
+    /// Activations (na).
+    pub act: Option<Vec<f64>>,
+    /// Controls (nu).
+    pub ctrl: Option<Vec<f64>>,
+    /// Mocap positions (3 nmocap).
+    pub mocap_pos: Option<Vec<f64>>,
+    /// Mocap orientations (4 nmocap).
+    pub mocap_quat: Option<Vec<f64>>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}

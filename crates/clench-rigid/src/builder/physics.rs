@@ -1,0 +1,103 @@
+//! Model-wide settings: how to derive what was not said, and the physics of the world.
+
+use crate::model::{Flags, Integrator};
+
+/// When a body's inertia comes from its geoms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InertiaFromGeom {
+    /// Where the body has no inertial of its own.
+    #[default]
+    Auto,
+    /// Always, ignoring inertials.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// MuJoCo's `<compiler>` settings that act on the model rather than on its notation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompilerSpec {
+    /// A range implies a limit where the author did not say.
+    pub autolimits: bool,
+    /// Least mass of a moving body, kg; 0 for none.
+    pub boundmass: f64,
+    /// Least principal moment of a moving body, kg m²; 0 for none.
+    pub boundinertia: f64,
+    /// Scale all masses and inertias to this total, kg.
+    pub settotalmass: Option<f64>,
+    /// Repair inertias that break the triangle inequality.
+    pub balanceinertia: bool,
+    /// When inertia comes from geoms.
+    pub inertiafromgeom: InertiaFromGeom,
+    /// Geom groups (first, last) that count towards inertia.
+    pub inertiagrouprange: [i32; 2],
+    /// Move the frame of free bodies to their inertial frame.
+    pub alignfree: bool,
+}
+
+impl Default for CompilerSpec {
+    fn default() -> Self {
+        CompilerSpec {
+            autolimits: true,
+            boundmass: 0.0,
+            boundinertia: 0.0,
+            settotalmass: None,
+            balanceinertia: false,
+            inertiafromgeom: InertiaFromGeom::Auto,
+            inertiagrouprange: [0, 5],
+            alignfree: false,
+        }
+    }
+}
+
+/// Time step, medium and feature flags, with MuJoCo's defaults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhysicsSpec {
+    /// Seconds a step.
+    pub timestep: f64,
+    /// m/s².
+    pub gravity: [f64; 3],
+    /// Velocity of the medium, m/s.
+    pub wind: [f64; 3],
+    /// Density of the medium, kg/m³.
+    pub density: f64,
+    /// Viscosity of the medium, Pa s.
+    pub viscosity: f64,
+    /// How velocity and position advance.
+    pub integrator: Integrator,
+    /// Feature switches.
+    pub flags: Flags,
+    /// Contact parameters that replace all others (MuJoCo's `override` flag): margin, solref, solimp, friction.
+    pub contact_override: Option<ContactOverride>,
+    /// Actuator groups that are switched off.
+    pub disabled_actuator_groups: Vec<u32>,
+}
+
+/// One set of contact parameters for every contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactOverride {
+    /// Detection margin, m.
+    pub margin: f64,
+    /// Reference dynamics.
+    pub solref: [f64; 2],
+    /// Impedance.
+    pub solimp: [f64; 5],
+    /// Friction: two slides, spin, two rolls.
+    pub friction: [f64; 5],
+}
+
+impl Default for PhysicsSpec {
+    fn default() -> Self {
+        PhysicsSpec {
+            timestep: 0.002,
+            gravity: [0.0, 0.0, -9.81],
+            wind: [0.0; 3],
+            density: 0.0,
+            viscosity: 0.0,
+            integrator: Integrator::Euler,
+            flags: Flags::default(),
+            contact_override: None,
+            disabled_actuator_groups: Vec::new(),
+        }
+    }
+}

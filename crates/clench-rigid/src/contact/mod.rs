@@ -1,0 +1,33 @@
+//! From geoms to contacts: which pairs may touch, where they do, and with what parameters. The constraint that a
+//! contact becomes is `constraint::contact`.
+
+use clench_math::{Mat3, Real, Vec3};
+
+/// A contact between two geoms, one for each lane where it is active.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact<T: Real> {
+    /// The geoms; the normal points from the first to the second.
+    pub geoms: [usize; 2],
+    /// Lanes that have this contact within its margin.
+    pub active: T::Mask,
+    /// Dimensions: 1, 3, 4 or 6.
+    pub dim: usize,
+    /// Signed distance, negative in penetration, m.
+    pub dist: T,
+    /// Midpoint between the surfaces, m.
+    pub pos: Vec3<T>,
+    /// Rows: normal, first tangent, second tangent.
+    pub frame: Mat3<T>,
+    /// The constraint exists where `dist < includemargin` (margin − gap), m.
+    pub includemargin: T,
+    /// Two slides, spin, two rolls.
+    pub friction: [T; 5],
+    /// Reference dynamics.
+    pub solref: [T; 2],
+    /// Reference dynamics of the friction dimensions; both zero: as `solref`.
+    pub solreffriction: [T; 2],
+    /// Impedance.
+    pub solimp: [T; 5],
+    /// First row of its block in the problem, if it became a constraint.
+    pub block: Option<usize>,
+}

@@ -1,0 +1,82 @@
+//! The immutable description of a model: structure here, numbers in [`Params`].
+//!
+//! Structure is what decides loops and branches and is the same for every environment: who is whose parent, which
+//! joint is a hinge, which geoms may collide. Numbers (masses, lengths, stiffnesses) live in [`Params`], so that a
+//! batch can give each environment its own.
+
+mod params;
+mod structure;
+
+pub use params::Params;
+pub use structure::{
+    Actuator, BiasKind, Body, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom,
+    Integrator, Joint, JointKind, Keyframe, Pair, Site, Tendon, Transmission,
+};
+
+use clench_solver::{RigidOptions, Tree};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// A model: never changes while stepping, shared by `Arc` between simulations.
+///
+/// Elements are numbered as in MuJoCo: bodies depth first, joints, dofs, geoms and sites in the order of their bodies.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Name.
+    pub name: String,
+    /// Bodies; the first is the world.
+    pub bodies: Vec<Body>,
+    /// Joints.
+    pub joints: Vec<Joint>,
+    /// Degrees of freedom.
+    pub dofs: Vec<Dof>,
+    /// Geoms.
+    pub geoms: Vec<Geom>,
+    /// Sites.
+    pub sites: Vec<Site>,
+    /// Fixed tendons.
+    pub tendons: Vec<Tendon>,
+    /// Actuators.
+    pub actuators: Vec<Actuator>,
+    /// Equality constraints.
+    pub equalities: Vec<Equality>,
+    /// Explicit geom pairs.
+    pub pairs: Vec<Pair>,
+    /// Body pairs (smaller index first) that never collide.
+    pub excludes: HashSet<(u32, u32)>,
+    /// Stored states.
+    pub keyframes: Vec<Keyframe>,
+    /// Position coordinates.
+    pub nq: usize,
+    /// Degrees of freedom.
+    pub nv: usize,
+    /// Activations.
+    pub na: usize,
+    /// Mocap bodies.
+    pub nmocap: usize,
+    /// Sparsity of the mass matrix.
+    pub tree: Arc<Tree>,
+    /// How time advances.
+    pub integrator: Integrator,
+    /// Feature switches.
+    pub flags: Flags,
+    /// Whether contacts take the parameters in `params.override_*`.
+    pub override_contacts: bool,
+    /// Solver options of the file, over its format's defaults.
+    pub options: RigidOptions,
+    /// Every number of the model.
+    pub params: Params<f64>,
+    /// Things worth telling the user once.
+    pub notes: Vec<String>,
+}
+
+impl Model {
+    /// Number of bodies, the world included.
+    pub fn nbody(&self) -> usize {
+        self.bodies.len()
+    }
+    /// Number of actuators, each with one control.
+    pub fn nu(&self) -> usize {
+        self.actuators.len()
+    }
+}

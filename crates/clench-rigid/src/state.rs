@@ -1,0 +1,58 @@
+//! What a user saves and restores.
+
+use crate::Model;
+use clench_math::{Force, Mask, Quat, Real, Vec3};
+
+/// The state of one environment (or of the lanes of a group): everything that the next step depends on.
+#[derive(Clone, Debug)]
+pub struct State<T: Real> {
+    /// s.
+    pub time: T,
+    /// Position coordinates (nq).
+    pub qpos: Vec<T>,
+    /// Velocities (nv).
+    pub qvel: Vec<T>,
+    /// Activations (na).
+    pub act: Vec<T>,
+    /// Controls (nu).
+    pub ctrl: Vec<T>,
+    /// Forces that the user applies along dofs (nv).
+    pub qfrc_applied: Vec<T>,
+    /// Forces that the user applies to bodies at their centres of mass, world axes (nbody).
+    pub xfrc_applied: Vec<Force<T>>,
+    /// Positions of mocap bodies (nmocap).
+    pub mocap_pos: Vec<Vec3<T>>,
+    /// Orientations of mocap bodies (nmocap).
+    pub mocap_quat: Vec<Quat<T>>,
+    /// Which equality constraints are on (neq).
+    pub eq_active: Vec<T::Mask>,
+    /// Acceleration of the previous step, where the solver starts (nv).
+    pub qacc_warmstart: Vec<T>,
+}
+
+impl<T: Real> State<T> {
+    /// The initial state of a model.
+    pub fn new(model: &Model) -> Self {
+        let cast = |v: &[f64]| v.iter().map(|&x| T::new(x)).collect::<Vec<_>>();
+        let mocap_bodies = || (0..model.nbody()).filter(|&b| model.bodies[b].mocap.is_some());
+        State {
+            time: T::ZERO,
+            qpos: cast(&model.params.qpos0),
+            qvel: vec![T::ZERO; model.nv],
+            act: vec![T::ZERO; model.na],
+            ctrl: vec![T::ZERO; model.nu()],
+            qfrc_applied: vec![T::ZERO; model.nv],
+            xfrc_applied: vec![Force::ZERO; model.nbody()],
+            mocap_pos: mocap_bodies()
+                .map(|b| Vec3::from_f64(model.params.body_pos[b].to_array()))
+                .collect(),
+            mocap_quat: mocap_bodies()
+                .map(|b| Quat::from_f64(model.params.body_quat[b].to_array()))
+                .collect(),
+            eq_active: (model.equalities.iter())
+                .map(|e| T::Mask::splat(e.active0))
+                .collect(),
+            qacc_warmstart: vec![T::ZERO; model.nv],
+        }
+    }
+}

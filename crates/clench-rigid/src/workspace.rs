@@ -1,0 +1,169 @@
+//! Everything derived from model and state: preallocated, reused, inspectable.
+
+use crate::Model;
+use crate::contact::Contact;
+use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
+use clench_solver::{Problem, Solver};
+
+/// Poses of everything, and what depends on positions alone.
+#[derive(Clone, Debug, Default)]
+pub struct Positions<T> {
+    /// Body positions (nbody).
+    pub xpos: Vec<Vec3<T>>,
+    /// Body orientations.
+    pub xquat: Vec<Quat<T>>,
+    /// The same as matrices.
+    pub xmat: Vec<Mat3<T>>,
+    /// Centres of mass.
+    pub xipos: Vec<Vec3<T>>,
+    /// Orientations of inertial frames.
+    pub ximat: Vec<Mat3<T>>,
+    /// Joint anchors (njnt).
+    pub xanchor: Vec<Vec3<T>>,
+    /// Joint axes.
+    pub xaxis: Vec<Vec3<T>>,
+    /// Geom positions (ngeom).
+    pub geom_xpos: Vec<Vec3<T>>,
+    /// Geom orientations.
+    pub geom_xmat: Vec<Mat3<T>>,
+    /// Site positions (nsite).
+    pub site_xpos: Vec<Vec3<T>>,
+    /// Site orientations.
+    pub site_xmat: Vec<Mat3<T>>,
+    /// Centre of mass of each body and all below it (nbody). That of a body's `root` is the reference point of all
+    /// spatial vectors of its tree.
+    pub subtree_com: Vec<Vec3<T>>,
+    /// Motion of each dof at unit velocity (nv).
+    pub cdof: Vec<Motion<T>>,
+    /// Inertia of each body (nbody).
+    pub cinert: Vec<Inertia<T>>,
+    /// Inertia of each body and all below it (nbody).
+    pub crb: Vec<Inertia<T>>,
+    /// Tendon lengths (ntendon).
+    pub ten_length: Vec<T>,
+    /// Actuator lengths (nu).
+    pub actuator_length: Vec<T>,
+    /// Moment arms of actuators, a row of nv each (nu × nv), zero outside the transmission's dofs.
+    pub actuator_moment: Vec<T>,
+}
+
+/// What depends on velocities.
+#[derive(Clone, Debug, Default)]
+pub struct Velocities<T> {
+    /// Body velocities (nbody).
+    pub cvel: Vec<Motion<T>>,
+    /// Rate of change of `cdof` (nv).
+    pub cdof_dot: Vec<Motion<T>>,
+    /// Tendon velocities (ntendon).
+    pub ten_velocity: Vec<T>,
+    /// Actuator velocities (nu).
+    pub actuator_velocity: Vec<T>,
+}
+
+/// Forces along dofs (nv each) and of actuators (nu).
+#[derive(Clone, Debug, Default)]
+pub struct Forces<T> {
+    /// Coriolis, centrifugal and gravity: on the left side of the equation of motion.
+    pub qfrc_bias: Vec<T>,
+    /// Springs.
+    pub qfrc_spring: Vec<T>,
+    /// Dampers.
+    pub qfrc_damper: Vec<T>,
+    /// Gravity compensation.
+    pub qfrc_gravcomp: Vec<T>,
+    /// Fluid.
+    pub qfrc_fluid: Vec<T>,
+    /// All passive forces together.
+    pub qfrc_passive: Vec<T>,
+    /// Actuators.
+    pub qfrc_actuator: Vec<T>,
+    /// Everything but constraints: passive + actuator + applied − bias.
+    pub qfrc_smooth: Vec<T>,
+    /// Scalar force of each actuator (nu).
+    pub actuator_force: Vec<T>,
+    /// Rate of change of each activation (na).
+    pub act_dot: Vec<T>,
+    /// Body accelerations, scratch of the bias forces (nbody).
+    pub cacc: Vec<Motion<T>>,
+    /// Body forces, likewise (nbody).
+    pub cfrc_body: Vec<Force<T>>,
+}
+
+/// Everything derived from model and state.
+#[derive(Debug)]
+pub struct Workspace<T: Real> {
+    /// Position stage.
+    pub position: Positions<T>,
+    /// Velocity stage.
+    pub velocity: Velocities<T>,
+    /// Force stage.
+    pub force: Forces<T>,
+    /// Contacts of the position stage, in canonical order.
+    pub contacts: Vec<Contact<T>>,
+    /// The convex problem: mass matrix and its factor, unconstrained acceleration, constraint blocks.
+    pub problem: Problem<T>,
+    /// Its solver, and the solution.
+    pub solver: Solver<T>,
+    /// Acceleration (nv).
+    pub qacc: Vec<T>,
+    /// Constraint forces along dofs (nv).
+    pub qfrc_constraint: Vec<T>,
+}
+
+impl<T: Real> Workspace<T> {
+    /// Room for everything that the model needs.
+    pub fn new(model: &Model) -> Self {
+        let (nbody, nv, nu) = (model.nbody(), model.nv, model.nu());
+        let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
+        let zeros = |n: usize| vec![T::ZERO; n];
+        let points = |n: usize| vec![Vec3::ZERO; n];
+        let frames = |n: usize| vec![Mat3::IDENTITY; n];
+        Workspace {
+            position: Positions {
+                xpos: points(nbody),
+                xquat: vec![Quat::IDENTITY; nbody],
+                xmat: frames(nbody),
+                xipos: points(nbody),
+                ximat: frames(nbody),
+                xanchor: points(nj),
+                xaxis: points(nj),
+                geom_xpos: points(ng),
+                geom_xmat: frames(ng),
+                site_xpos: points(ns),
+                site_xmat: frames(ns),
+                subtree_com: points(nbody),
+                cdof: vec![Motion::ZERO; nv],
+                cinert: vec![Inertia::ZERO; nbody],
+                crb: vec![Inertia::ZERO; nbody],
+                ten_length: zeros(model.tendons.len()),
+                actuator_length: zeros(nu),
+                actuator_moment: zeros(nu * nv),
+            },
+            velocity: Velocities {
+                cvel: vec![Motion::ZERO; nbody],
+                cdof_dot: vec![Motion::ZERO; nv],
+                ten_velocity: zeros(model.tendons.len()),
+                actuator_velocity: zeros(nu),
+            },
+            force: Forces {
+                qfrc_bias: zeros(nv),
+                qfrc_spring: zeros(nv),
+                qfrc_damper: zeros(nv),
+                qfrc_gravcomp: zeros(nv),
+                qfrc_fluid: zeros(nv),
+                qfrc_passive: zeros(nv),
+                qfrc_actuator: zeros(nv),
+                qfrc_smooth: zeros(nv),
+                actuator_force: zeros(nu),
+                act_dot: zeros(model.na),
+                cacc: vec![Motion::ZERO; nbody],
+                cfrc_body: vec![Force::ZERO; nbody],
+            },
+            contacts: Vec::new(),
+            problem: Problem::new(model.tree.clone()),
+            solver: Solver::new(&model.tree),
+            qacc: zeros(nv),
+            qfrc_constraint: zeros(nv),
+        }
+    }
+}
