@@ -6,6 +6,7 @@
 
 pub mod builder;
 pub mod contact;
+pub mod dynamics;
 pub mod model;
 mod state;
 pub mod workspace;
