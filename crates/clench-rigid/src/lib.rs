@@ -5,12 +5,15 @@
 //! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.
 
 pub mod builder;
+pub mod constraint;
 pub mod contact;
 pub mod dynamics;
 pub mod model;
+pub mod settings;
 mod state;
 pub mod workspace;
 
 pub use model::{Model, Params};
+pub use settings::StepSettings;
 pub use state::State;
 pub use workspace::Workspace;

@@ -1,7 +1,7 @@
 //! Everything derived from model and state: preallocated, reused, inspectable.
 
 use crate::Model;
-use crate::contact::Contact;
+use crate::contact::{Collision, Contact};
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
 use clench_solver::{Problem, Solver};
 
@@ -100,6 +100,8 @@ pub struct Workspace<T: Real> {
     pub force: Forces<T>,
     /// Contacts of the position stage, in canonical order.
     pub contacts: Vec<Contact<T>>,
+    /// How they are found.
+    pub collision: Collision<T>,
     /// The convex problem: mass matrix and its factor, unconstrained acceleration, constraint blocks.
     pub problem: Problem<T>,
     /// Its solver, and the solution.
@@ -160,6 +162,7 @@ impl<T: Real> Workspace<T> {
                 cfrc_body: vec![Force::ZERO; nbody],
             },
             contacts: Vec::new(),
+            collision: Collision::new(model),
             problem: Problem::new(model.tree.clone()),
             solver: Solver::new(&model.tree),
             qacc: zeros(nv),

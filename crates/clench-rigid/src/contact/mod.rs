@@ -1,6 +1,14 @@
 //! From geoms to contacts: which pairs may touch, where they do, and with what parameters. The constraint that a
 //! contact becomes is `constraint::contact`.
 
+mod detect;
+mod mix;
+mod select;
+
+pub use detect::{Collision, detect};
+pub use mix::{ContactParams, contact_params, contact_range};
+pub use select::{Candidate, UnsupportedPair, candidates, check_supported};
+
 use clench_math::{Mat3, Real, Vec3};
 
 /// A contact between two geoms, one for each lane where it is active.
@@ -8,7 +16,7 @@ use clench_math::{Mat3, Real, Vec3};
 pub struct Contact<T: Real> {
     /// The geoms; the normal points from the first to the second.
     pub geoms: [usize; 2],
-    /// Lanes that have this contact within its margin.
+    /// Lanes that have this contact.
     pub active: T::Mask,
     /// Dimensions: 1, 3, 4 or 6.
     pub dim: usize,
@@ -18,7 +26,7 @@ pub struct Contact<T: Real> {
     pub pos: Vec3<T>,
     /// Rows: normal, first tangent, second tangent.
     pub frame: Mat3<T>,
-    /// The constraint exists where `dist < includemargin` (margin − gap), m.
+    /// The constraint exists where `dist < includemargin` (the margins of both geoms), m.
     pub includemargin: T,
     /// Two slides, spin, two rolls.
     pub friction: [T; 5],
@@ -28,6 +36,6 @@ pub struct Contact<T: Real> {
     pub solreffriction: [T; 2],
     /// Impedance.
     pub solimp: [T; 5],
-    /// First row of its block in the problem, if it became a constraint.
+    /// Its block in the problem, if it became a constraint.
     pub block: Option<usize>,
 }

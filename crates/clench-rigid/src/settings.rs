@@ -1,0 +1,73 @@
+//! What a step is told besides model and state: the options of user and file, decided, and the feature switches.
+
+use crate::Model;
+use crate::model::Flags;
+use clench_math::Real;
+use clench_solver::{RigidOptions, Settings, Switch};
+
+/// Every choice that a step reads. What the user sets wins over the file, the file over the defaults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepSettings {
+    /// Solver settings, which also hold cone, impratio and the floor of time constants.
+    pub solver: Settings,
+    /// Feature switches of the model, less what the settings turn off.
+    pub flags: Flags,
+    /// Joint limits act (tendon limits do not depend on this).
+    pub joint_limits: bool,
+}
+
+/// An option outside its range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("option {name} is {value}, but must be {range}")]
+pub struct OptionError {
+    /// Which option.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// What it may be.
+    pub range: &'static str,
+}
+
+impl StepSettings {
+    /// Decides every option for a simulation of `model` in the number type `T`.
+    ///
+    /// # Errors
+    /// An option that is not finite or outside its range.
+    pub fn new<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, OptionError> {
+        let options = user.or(model.options);
+        let mut solver = options.resolve::<T>();
+        check(&solver)?;
+        let mut flags = model.flags;
+        flags.constraint &= !solver.disable_constraint;
+        solver.warmstart &= flags.warmstart || user.warmstart == Some(true);
+        if !flags.island && user.islands.is_none() {
+            solver.islands = Switch::Off;
+        }
+        Ok(StepSettings {
+            joint_limits: flags.limit && solver.enable_joint_limit,
+            solver,
+            flags,
+        })
+    }
+}
+
+fn check(s: &Settings) -> Result<(), OptionError> {
+    let at_least_zero = [
+        ("tolerance", s.tolerance),
+        ("ls_tolerance", s.ls_tolerance),
+        ("noslip_tolerance", s.noslip_tolerance),
+        ("constraint_timeconst", s.constraint_timeconst),
+    ];
+    for (name, value) in at_least_zero {
+        if !(value >= 0.0 && value.is_finite()) {
+            let range = "finite and not negative";
+            return Err(OptionError { name, value, range });
+        }
+    }
+    let (name, value) = ("impratio", s.impratio);
+    if !(value > 0.0 && value.is_finite()) {
+        let range = "finite and positive";
+        return Err(OptionError { name, value, range });
+    }
+    Ok(())
+}
