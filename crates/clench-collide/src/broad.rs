@@ -1,18 +1,30 @@
 //! Broad phase: which pairs of shapes are near enough to be worth asking about.
 
-use crate::Pose;
-use clench_math::{Mask, Real};
+use crate::{Pose, Shape, ShapeKind, bounding_radius};
+use clench_math::{Mask, Real, Scalar};
 
 /// What the broad phase knows of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound<T> {
-    /// Radius of a sphere about the shape's origin that holds it, m ([`bounding_radius`](crate::bounding_radius)).
+    /// Radius of a sphere about the shape's origin that holds it, m.
     pub radius: T,
     /// Whether it is a plane, which no sphere holds.
     pub plane: bool,
 }
 
-/// Two shapes that may collide, the first of no higher kind than the second.
+impl<T: Real> Bound<T> {
+    /// The bound of a shape, a hair larger than [`bounding_radius`], so that rounding never rejects a pair in which
+    /// the narrow phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
+    pub fn new(shape: &Shape<T>) -> Self {
+        let hair = T::new(1e-6).max(T::splat(T::Scalar::EPSILON) * T::new(64.0));
+        Bound {
+            radius: bounding_radius(shape) * (T::ONE + hair),
+            plane: shape.kind == ShapeKind::Plane,
+        }
+    }
+}
+
+/// Two shapes that may collide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair<T: Real> {
     /// Index of the first shape.
@@ -23,7 +35,8 @@ pub struct Pair<T: Real> {
     pub margin: T::Scalar,
 }
 
-/// In which environments two shapes are near enough that they may be within `margin` of each other.
+/// In which environments two shapes are near enough that they may be within `margin` metres of each other. Two planes
+/// never are.
 #[inline(always)]
 pub fn near<T: Real>(
     a: &Bound<T>,
@@ -44,7 +57,8 @@ pub fn near<T: Real>(
     }
 }
 
-/// Replaces `hits` by the indices, ascending, of those `pairs` that are [`near`] in any environment.
+/// Replaces `hits` by the indices, ascending, of those `pairs` that are [`near`] in any environment. For models of few
+/// shapes, whose allowed pairs are known beforehand.
 pub fn listed<T: Real>(
     bounds: &[Bound<T>],
     poses: &[Pose<T>],
@@ -61,19 +75,24 @@ pub fn listed<T: Real>(
     }
 }
 
-/// Sweep and prune for scenes of many shapes, where listing all pairs would be too many.
+/// Sweep and prune, for scenes of so many shapes that listing all pairs would be too much.
+///
+/// Each shape's bounding sphere covers an interval of a coordinate axis; sorted by where they begin, only shapes whose
+/// intervals overlap need be compared. The axis is the one along which the shapes spread most.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
-    order: Vec<(f64, u32)>,
+    /// Interval and index of each shape, sorted by where it begins. Planes are first: they reach everywhere.
+    intervals: Vec<(f64, f64, u32)>,
 }
 
 impl Sweep {
-    /// An empty sweep; its buffers grow to the largest scene seen.
+    /// An empty sweep. Its buffer grows to the largest scene seen.
     pub fn new() -> Self {
         Sweep::default()
     }
-    /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are within
-    /// `margins[i] + margins[j]` of being [`near`] in any environment.
+
+    /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
+    /// environment with the margin `margins[i] + margins[j]`.
     pub fn pairs<T: Real>(
         &mut self,
         bounds: &[Bound<T>],
@@ -82,18 +101,70 @@ impl Sweep {
         mut allowed: impl FnMut(u32, u32) -> bool,
         pairs: &mut Vec<(u32, u32)>,
     ) {
-        self.order.clear();
         pairs.clear();
-        for j in 0..bounds.len() {
-            for i in 0..j {
-                let margin = margins[i] + margins[j];
-                if allowed(i as u32, j as u32)
-                    && near(&bounds[i], &poses[i], &bounds[j], &poses[j], margin).any()
-                {
-                    pairs.push((i as u32, j as u32));
+        self.sort(bounds, poses, margins);
+        for (k, &(_, end, one)) in self.intervals.iter().enumerate() {
+            for &(begin, _, other) in &self.intervals[k + 1..] {
+                if begin > end {
+                    break;
+                }
+                let (i, j) = (one.min(other), one.max(other));
+                if !allowed(i, j) {
+                    continue;
+                }
+                let (a, b) = (i as usize, j as usize);
+                let margin = margins[a] + margins[b];
+                if near(&bounds[a], &poses[a], &bounds[b], &poses[b], margin).any() {
+                    pairs.push((i, j));
                 }
             }
         }
         pairs.sort_unstable();
     }
+
+    fn sort<T: Real>(&mut self, bounds: &[Bound<T>], poses: &[Pose<T>], margins: &[T]) {
+        let axis = widest_axis(bounds, poses);
+        self.intervals.clear();
+        for (index, bound) in bounds.iter().enumerate() {
+            let (mut begin, mut end) = (f64::NEG_INFINITY, f64::INFINITY);
+            if !bound.plane {
+                let center = poses[index].position[axis];
+                (begin, end) = (f64::INFINITY, f64::NEG_INFINITY);
+                for lane in 0..T::LANES {
+                    let number = |x: T| x.lane(lane).to_f64();
+                    let reach = number(bound.radius) + number(margins[index]);
+                    begin = begin.min(number(center) - reach);
+                    end = end.max(number(center) + reach);
+                }
+            }
+            self.intervals.push((begin, end, index as u32));
+        }
+        self.intervals
+            .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+    }
+}
+
+/// The coordinate axis along which the shapes' centres vary most in the first environment.
+fn widest_axis<T: Real>(bounds: &[Bound<T>], poses: &[Pose<T>]) -> usize {
+    let mut count = 0.0;
+    let (mut sum, mut squares) = ([0.0; 3], [0.0; 3]);
+    for (bound, pose) in bounds.iter().zip(poses) {
+        if bound.plane {
+            continue;
+        }
+        count += 1.0;
+        for axis in 0..3 {
+            let x = pose.position[axis].lane(0).to_f64();
+            sum[axis] += x;
+            squares[axis] += x * x;
+        }
+    }
+    let spread = |axis: usize| count * squares[axis] - sum[axis] * sum[axis];
+    (1..3).fold(0, |best, axis| {
+        if spread(axis) > spread(best) {
+            axis
+        } else {
+            best
+        }
+    })
 }

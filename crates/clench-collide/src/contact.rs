@@ -1,5 +1,6 @@
 //! What collision finds: contact points, in a small buffer without heap.
 
+use crate::frame_from_normal;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
 /// The most points that one pair yields: a face of a box on a face of another.
@@ -19,6 +20,28 @@ pub struct ContactPoint<T: Real> {
     pub active: T::Mask,
 }
 
+impl<T: Real> ContactPoint<T> {
+    /// A point that exists nowhere.
+    pub(crate) fn none() -> Self {
+        ContactPoint {
+            position: Vec3::ZERO,
+            frame: Mat3::IDENTITY,
+            distance: T::ZERO,
+            active: T::Mask::splat(false),
+        }
+    }
+    /// A point whose tangents follow from its normal.
+    #[inline(always)]
+    pub(crate) fn new(position: Vec3<T>, normal: Vec3<T>, distance: T, active: T::Mask) -> Self {
+        ContactPoint {
+            position,
+            frame: frame_from_normal(normal),
+            distance,
+            active,
+        }
+    }
+}
+
 /// The contact points of one pair, at most [`MAX_POINTS`].
 #[derive(Clone, Copy, Debug)]
 pub struct Contacts<T: Real> {
@@ -29,14 +52,8 @@ pub struct Contacts<T: Real> {
 impl<T: Real> Contacts<T> {
     /// No points.
     pub fn new() -> Self {
-        let none = ContactPoint {
-            position: Vec3::ZERO,
-            frame: Mat3::IDENTITY,
-            distance: T::ZERO,
-            active: T::Mask::splat(false),
-        };
         Contacts {
-            points: [none; MAX_POINTS],
+            points: [ContactPoint::none(); MAX_POINTS],
             len: 0,
         }
     }
@@ -45,14 +62,16 @@ impl<T: Real> Contacts<T> {
     pub fn clear(&mut self) {
         self.len = 0;
     }
-    /// The points found.
+    /// The points found, each active in at least one environment. In every environment its points come in the same
+    /// order as if it were alone.
     #[inline(always)]
     pub fn as_slice(&self) -> &[ContactPoint<T>] {
         &self.points[..self.len]
     }
-    /// Adds a point if any environment has it.
+    /// Adds a point if any environment has it. No pair has more points than there is room for.
     #[inline(always)]
     pub(crate) fn push(&mut self, point: ContactPoint<T>) {
+        debug_assert!(self.len < MAX_POINTS);
         if point.active.any() && self.len < MAX_POINTS {
             self.points[self.len] = point;
             self.len += 1;

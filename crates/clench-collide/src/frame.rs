@@ -2,21 +2,42 @@
 //!
 //! Which tangents matters: a friction pyramid has its edges along them. The choice is MuJoCo's (`mju_makeFrame`).
 
-use clench_math::{Mat3, Real, Vec3};
+use clench_math::{Mask, Mat3, Real, Scalar, Vec3};
 
 /// The frame of a contact whose first tangent is the y axis made orthogonal to the unit `normal`, or the z axis where
 /// the normal is within 60° of the y axis. Rows: normal, tangents.
-#[inline]
+#[inline(always)]
 pub fn frame_from_normal<T: Real>(normal: Vec3<T>) -> Mat3<T> {
-    let half = T::new(0.5);
-    let y = Vec3::new(T::ZERO, T::ONE, T::ZERO);
-    let z = Vec3::new(T::ZERO, T::ZERO, T::ONE);
-    frame_along(normal, Vec3::select(normal.y.abs().lt(half), y, z))
+    let (n, zero, one) = (normal, T::ZERO, T::ONE);
+    let use_y = n.y.abs().lt(T::new(0.5));
+    let start = Vec3::select(
+        use_y,
+        Vec3::new(zero, one, zero),
+        Vec3::new(zero, zero, one),
+    );
+    // The chosen axis is at least 30° away from the normal, so the division is safe.
+    let tangent = start - n * T::select(use_y, n.y, n.z);
+    let tangent = tangent * (one / tangent.norm());
+    Mat3::from_rows(n, tangent, n.cross(tangent))
 }
 
 /// The frame of a contact whose first tangent is the unit vector `direction` made orthogonal to the unit `normal`.
-#[inline]
+///
+/// Where the two are parallel the first tangent is the x axis made orthogonal to the normal, or the y axis where the
+/// normal is near the x axis. (MuJoCo takes the x axis as it is, which is the same for a horizontal floor.)
+#[inline(always)]
 pub fn frame_along<T: Real>(normal: Vec3<T>, direction: Vec3<T>) -> Mat3<T> {
-    let (tangent, _) = (direction - normal * normal.dot(direction)).normalize();
+    // Below this length what is left of the direction is mostly rounding error.
+    let least = T::splat(T::Scalar::EPSILON * T::Scalar::new(1e4));
+    let across = |v: Vec3<T>| v - normal * normal.dot(v);
+    let mut tangent = across(direction);
+    let parallel = tangent.norm_squared().lt(least * least);
+    if parallel.any() {
+        let near_x = normal.x.abs().gt(T::new(0.9));
+        let x = Vec3::new(T::ONE, T::ZERO, T::ZERO);
+        let y = Vec3::new(T::ZERO, T::ONE, T::ZERO);
+        tangent = Vec3::select(parallel, across(Vec3::select(near_x, y, x)), tangent);
+    }
+    let tangent = tangent * (T::ONE / tangent.norm());
     Mat3::from_rows(normal, tangent, normal.cross(tangent))
 }

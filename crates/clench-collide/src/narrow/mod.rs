@@ -1,23 +1,43 @@
 //! Narrow phase: the contact points of one pair of shapes.
+//!
+//! Every kernel takes the two shapes where they are, how far apart points may be, and where to put them.
 
-mod sphere;
+mod ball;
+mod box_box;
+mod box_manifold;
+mod box_round;
+mod capsule;
+mod cylinder;
+mod plane;
+mod way_out;
 
 use crate::{Contacts, Pose, Shape, ShapeKind};
 use clench_math::Real;
+
+/// A shape where it is.
+#[derive(Clone, Copy)]
+struct Placed<'a, T> {
+    shape: &'a Shape<T>,
+    pose: &'a Pose<T>,
+}
 
 /// Whether [`collide`] knows the pair, given in either order.
 pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     use ShapeKind::*;
     matches!(
         (a.min(b), a.max(b)),
-        (Plane, Sphere | Capsule) | (Sphere, Sphere | Capsule)
+        (Plane, Sphere | Capsule | Ellipsoid | Cylinder | Box)
+            | (Sphere, Sphere | Capsule | Cylinder | Box)
+            | (Capsule, Capsule | Cylinder | Box)
+            | (Box, Box)
     )
 }
 
-/// Replaces `out` by the points where shape `a` at `pose_a` and shape `b` at `pose_b` are within `margin` metres.
+/// Replaces `out` by the points where shape `a` at `pose_a` and shape `b` at `pose_b` are at most `margin` metres
+/// apart.
 ///
-/// The kinds must come in [`ShapeKind`]'s order (`a.kind <= b.kind`). A pair that is not [`supported`], or out of
-/// order, yields no points: callers refuse such pairs when they build their scene.
+/// The kinds must come in [`ShapeKind`]'s order (`a.kind <= b.kind`). A pair out of order or not [`supported`] yields
+/// no points: callers refuse such pairs when they build their scene.
 pub fn collide<T: Real>(
     a: &Shape<T>,
     pose_a: &Pose<T>,
@@ -28,11 +48,29 @@ pub fn collide<T: Real>(
 ) {
     use ShapeKind::*;
     out.clear();
-    match (a.kind, b.kind) {
-        (Plane, Sphere) => sphere::plane_sphere(pose_a, b, pose_b, margin, out),
-        (Plane, Capsule) => sphere::plane_capsule(pose_a, b, pose_b, margin, out),
-        (Sphere, Sphere) => sphere::sphere_sphere(a, pose_a, b, pose_b, margin, out),
-        (Sphere, Capsule) => sphere::sphere_capsule(a, pose_a, b, pose_b, margin, out),
+    let kinds = (a.kind, b.kind);
+    let a = Placed {
+        shape: a,
+        pose: pose_a,
+    };
+    let b = Placed {
+        shape: b,
+        pose: pose_b,
+    };
+    match kinds {
+        (Plane, Sphere) => plane::plane_sphere(a, b, margin, out),
+        (Plane, Capsule) => plane::plane_capsule(a, b, margin, out),
+        (Plane, Ellipsoid) => plane::plane_ellipsoid(a, b, margin, out),
+        (Plane, Cylinder) => plane::plane_cylinder(a, b, margin, out),
+        (Plane, Box) => plane::plane_box(a, b, margin, out),
+        (Sphere, Sphere) => ball::sphere_sphere(a, b, margin, out),
+        (Sphere, Capsule) => ball::sphere_capsule(a, b, margin, out),
+        (Sphere, Cylinder) => cylinder::sphere_cylinder(a, b, margin, out),
+        (Sphere, Box) => box_round::sphere_box(a, b, margin, out),
+        (Capsule, Capsule) => capsule::capsule_capsule(a, b, margin, out),
+        (Capsule, Cylinder) => cylinder::capsule_cylinder(a, b, margin, out),
+        (Capsule, Box) => box_round::capsule_box(a, b, margin, out),
+        (Box, Box) => box_box::box_box(a, b, margin, out),
         _ => {}
     }
 }

@@ -1,0 +1,82 @@
+//! Two balls, and the pairs that come down to two balls: sphere–sphere and sphere–capsule.
+
+use super::Placed;
+use crate::{ContactPoint, Contacts};
+use clench_math::{Mask, Real, Vec3};
+
+/// A point with a radius: a sphere, or one place on the axis of a capsule.
+#[derive(Clone, Copy)]
+pub(super) struct Ball<T> {
+    pub center: Vec3<T>,
+    pub radius: T,
+}
+
+/// Adds the contact of two balls in the environments of `wanted`. `across` gives the unit normal to use where the
+/// centres coincide.
+#[inline(always)]
+pub(super) fn ball_ball<T: Real>(
+    a: Ball<T>,
+    b: Ball<T>,
+    across: impl FnOnce() -> Vec3<T>,
+    margin: T,
+    wanted: T::Mask,
+    out: &mut Contacts<T>,
+) -> T::Mask {
+    let offset = b.center - a.center;
+    let squared = offset.norm_squared();
+    let reach = a.radius + b.radius + margin;
+    let near = squared.le(reach * reach) & wanted;
+    if !near.any() {
+        return near;
+    }
+    let length = squared.sqrt();
+    let distance = length - a.radius - b.radius;
+    let active = distance.le(margin) & near;
+    let coincident = length.lt(T::new(1e-15));
+    let inverse = T::ONE / T::select(coincident, T::ONE, length);
+    let mut normal = offset * inverse;
+    if coincident.any() {
+        normal = Vec3::select(coincident, across(), normal);
+    }
+    let position = a.center + normal * (a.radius + distance * T::new(0.5));
+    out.push(ContactPoint::new(position, normal, distance, active));
+    active
+}
+
+/// A unit vector across the axes of two shapes; x where they are parallel.
+#[inline(always)]
+pub(super) fn across_axes<T: Real>(a: Placed<T>, b: Placed<T>) -> Vec3<T> {
+    a.pose.axis().cross(b.pose.axis()).normalize().0
+}
+
+pub(super) fn sphere_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
+    let ball = |s: Placed<T>| Ball {
+        center: s.pose.position,
+        radius: s.shape.size.x,
+    };
+    let all = T::Mask::splat(true);
+    ball_ball(ball(a), ball(b), || across_axes(a, b), margin, all, out);
+}
+
+pub(super) fn sphere_capsule<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
+    let center = a.pose.position;
+    let axis = b.pose.axis();
+    let (radius, half_length) = (b.shape.size.x, b.shape.size.y);
+    let along = axis.dot(center - b.pose.position);
+    let along = along.clamp(-half_length, half_length);
+    let sphere = Ball {
+        center,
+        radius: a.shape.size.x,
+    };
+    let nearest = Ball {
+        center: b.pose.position + axis * along,
+        radius,
+    };
+    let all = T::Mask::splat(true);
+    ball_ball(sphere, nearest, || across_axes(a, b), margin, all, out);
+}

@@ -1,0 +1,227 @@
+//! Box–box: separating axes, then either the face of one box clipped to the face of the other, or two crossing edges.
+//!
+//! Two boxes are apart exactly if some face normal of either, or some cross product of their edges, separates them.
+//! The axis of largest separation decides the contact. A face yields up to eight points, an edge pair one. The rules
+//! that break ties, which decide how a stack rests, follow MuJoCo 4.0's collider, and so do their numbers.
+//!
+//! The decisions branch too much for lanes, so each environment is done on its own.
+
+use super::Placed;
+use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, Shape};
+use clench_math::{Mat3, Real, Scalar, Vec3};
+
+/// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
+const EDGE_BIAS: f64 = 1e-6;
+/// An edge axis within this cosine of the best face axis (8°) is the same contact, better seen as a face ...
+const ALIAS_COSINE: f64 = 0.99;
+/// ... unless it is better by this share of the face's separation.
+const ALIAS_SHARE: f64 = 0.05;
+
+/// Tolerances for rounding: MuJoCo's in double precision, not below a few units in the last place in any.
+#[inline]
+pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
+    S::new(double).max(S::EPSILON * S::new(units))
+}
+
+/// A contact before it has a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Point<S> {
+    pub position: Vec3<S>,
+    pub normal: Vec3<S>,
+    pub distance: S,
+}
+
+/// The points of one environment.
+pub(super) struct Points<S> {
+    list: [Point<S>; MAX_POINTS],
+    len: usize,
+}
+
+impl<S: Scalar> Points<S> {
+    pub fn push(&mut self, point: Point<S>) {
+        if self.len < MAX_POINTS {
+            self.list[self.len] = point;
+            self.len += 1;
+        }
+    }
+}
+
+pub(super) fn box_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
+    let mut slots: [ContactPoint<T>; MAX_POINTS] = [ContactPoint::none(); MAX_POINTS];
+    let mut most = 0;
+    for lane in 0..T::LANES {
+        let pair = BoxPair::new(lane_of(a, lane), lane_of(b, lane), margin.lane(lane));
+        let points = pair.collide();
+        most = most.max(points.len);
+        for (slot, point) in slots.iter_mut().zip(&points.list[..points.len]) {
+            let frame = crate::frame_from_normal(point.normal);
+            set_lane(&mut slot.position, lane, point.position);
+            for (row, value) in slot.frame.rows.iter_mut().zip(frame.rows) {
+                set_lane(row, lane, value);
+            }
+            slot.distance.set_lane(lane, point.distance);
+            clench_math::Mask::set_lane(&mut slot.active, lane, true);
+        }
+    }
+    for slot in &slots[..most] {
+        out.push(*slot);
+    }
+}
+
+fn lane_of<T: Real>(p: Placed<T>, lane: usize) -> (Shape<T::Scalar>, Pose<T::Scalar>) {
+    let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
+    let shape = Shape {
+        kind: p.shape.kind,
+        size: vector(p.shape.size),
+    };
+    let pose = Pose {
+        position: vector(p.pose.position),
+        rotation: Mat3 {
+            rows: p.pose.rotation.rows.map(vector),
+        },
+    };
+    (shape, pose)
+}
+
+fn set_lane<T: Real>(v: &mut Vec3<T>, lane: usize, value: Vec3<T::Scalar>) {
+    v.x.set_lane(lane, value.x);
+    v.y.set_lane(lane, value.y);
+    v.z.set_lane(lane, value.z);
+}
+
+/// What touches what.
+#[derive(Clone, Copy)]
+enum Feature {
+    /// A face across `axis` of box `owner` (0 or 1).
+    Face { owner: usize, axis: usize },
+    /// An edge along an axis of each box.
+    Edges(usize, usize),
+}
+
+/// One box seen from the other and the reverse.
+pub(super) struct BoxPair<S> {
+    pub pose: [Pose<S>; 2],
+    /// Half lengths.
+    pub size: [Vec3<S>; 2],
+    /// In the frame of each box, the centre of the other.
+    pub offset: [Vec3<S>; 2],
+    /// In the frame of each box, the axes of the other as columns.
+    pub rotation: [Mat3<S>; 2],
+    pub margin: S,
+    /// Separations up to this count as touching: the margin, and some rounding so that no pair slips through.
+    pub reach: S,
+}
+
+impl<S: Scalar> BoxPair<S> {
+    fn new(a: (Shape<S>, Pose<S>), b: (Shape<S>, Pose<S>), margin: S) -> Self {
+        let rotation = a.1.rotation.transpose() * b.1.rotation;
+        let extent = |v: Vec3<S>| v.x + v.y + v.z;
+        let slack = tolerance::<S>(1e-13, 8.0) * (extent(a.0.size) + extent(b.0.size));
+        BoxPair {
+            pose: [a.1, b.1],
+            size: [a.0.size, b.0.size],
+            offset: [a.1.local(b.1.position), b.1.local(a.1.position)],
+            rotation: [rotation, rotation.transpose()],
+            margin,
+            reach: margin + slack,
+        }
+    }
+
+    fn collide(&self) -> Points<S> {
+        let nothing = Point {
+            position: Vec3::ZERO,
+            normal: Vec3::ZERO,
+            distance: S::ZERO,
+        };
+        let mut points = Points {
+            list: [nothing; MAX_POINTS],
+            len: 0,
+        };
+        match self.touching_feature() {
+            None => {}
+            Some(Feature::Face { owner, axis }) => self.face_contact(owner, axis, &mut points),
+            Some(Feature::Edges(i, j)) => self.edge_contact(i, j, &mut points),
+        }
+        points
+    }
+
+    /// The feature of largest separation, or none if that is beyond reach.
+    fn touching_feature(&self) -> Option<Feature> {
+        let (face, face_separation) = self.best_face()?;
+        let (edges, separation) = self.best_edges(face_separation)?;
+        let Some((i, j)) = edges else {
+            return Some(face);
+        };
+        let Feature::Face { owner, axis } = face else {
+            return Some(face);
+        };
+        let direction = self.edge_axis(i, j);
+        let along_face = if owner == 0 {
+            direction[axis].abs()
+        } else {
+            self.rotation[0].column(axis).dot(direction).abs()
+        };
+        let share = S::new(ALIAS_SHARE) * face_separation.abs() + S::new(1e-15);
+        let alias = along_face > S::new(ALIAS_COSINE) && separation < face_separation + share;
+        Some(if alias { face } else { Feature::Edges(i, j) })
+    }
+
+    fn best_face(&self) -> Option<(Feature, S)> {
+        let mut best: Option<(Feature, S)> = None;
+        for owner in 0..2 {
+            let (size, other) = (self.size[owner], self.size[1 - owner]);
+            for axis in 0..3 {
+                let row = self.rotation[owner].rows[axis];
+                let extent = row.x.abs() * other.x + row.y.abs() * other.y + row.z.abs() * other.z;
+                let separation = self.offset[owner][axis].abs() - size[axis] - extent;
+                if separation > self.reach {
+                    return None;
+                }
+                if best.is_none_or(|(_, most)| separation > most) {
+                    best = Some((Feature::Face { owner, axis }, separation));
+                }
+            }
+        }
+        best
+    }
+
+    /// The best edge pair that beats the best face, if any does, and the largest separation; none if some edge pair
+    /// separates the boxes.
+    fn best_edges(&self, face: S) -> Option<(Option<(usize, usize)>, S)> {
+        let mut best = (None, face);
+        for i in 0..3 {
+            for j in 0..3 {
+                let across = self.edge_axis(i, j);
+                let sine_squared = across.norm_squared();
+                // Nearly parallel edges: their cross product is noise, and the faces cover the case.
+                if sine_squared < S::EPSILON * S::new(0.5) {
+                    continue;
+                }
+                let n = across * (S::ONE / sine_squared.sqrt());
+                let extents = self.extent(0, n) + self.extent(1, self.rotation[0].transpose_mul(n));
+                let separation = n.dot(self.offset[0]).abs() - extents;
+                if separation > self.reach {
+                    return None;
+                }
+                let biased = separation - S::new(EDGE_BIAS) * separation.abs();
+                if biased > best.1 && separation > face {
+                    best = (Some((i, j)), separation);
+                }
+            }
+        }
+        Some(best)
+    }
+
+    /// The cross product of axis `i` of the first box with axis `j` of the second, in the first box's frame.
+    pub(super) fn edge_axis(&self, i: usize, j: usize) -> Vec3<S> {
+        let mut unit = Vec3::ZERO;
+        unit[i] = S::ONE;
+        unit.cross(self.rotation[0].column(j))
+    }
+
+    /// Half the width of a box along a direction in its frame.
+    fn extent(&self, of: usize, n: Vec3<S>) -> S {
+        let size = self.size[of];
+        size.x * n.x.abs() + size.y * n.y.abs() + size.z * n.z.abs()
+    }
+}

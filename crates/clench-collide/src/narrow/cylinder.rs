@@ -1,0 +1,201 @@
+//! Sphere–cylinder and capsule–cylinder, from the signed distance of a point to a cylinder.
+
+use super::{
+    Placed,
+    way_out::{Segment, way_out},
+};
+use crate::{ContactPoint, Contacts};
+use clench_math::{Mask, Real, Scalar, Vec3};
+
+/// Halvings of a segment that leave less than a rounding error of it.
+const HALVINGS: usize = 54;
+
+/// A cylinder in its own frame.
+#[derive(Clone, Copy)]
+struct Cylinder<T> {
+    radius: T,
+    half_length: T,
+    /// The outward direction to use for points on the axis, across it.
+    spare: Vec3<T>,
+}
+
+impl<T: Real> Cylinder<T> {
+    /// The cylinder `b`, its spare direction across the axes of `a` and `b`, or its own x axis.
+    fn new(a: Placed<T>, b: Placed<T>) -> Self {
+        let axis = b.pose.rotation.transpose_mul(a.pose.axis());
+        // axis × z has no z component.
+        let (zero, across) = (T::ZERO, Vec3::new(axis.y, -axis.x, T::ZERO));
+        let length = across.norm();
+        let parallel = length.lt(T::new(1e-15));
+        let unit = across * (T::ONE / T::select(parallel, T::ONE, length));
+        Cylinder {
+            radius: b.shape.size.x,
+            half_length: b.shape.size.y,
+            // MuJoCo's normal is a × b and points inward.
+            spare: Vec3::select(parallel, Vec3::new(T::ONE, zero, zero), -unit),
+        }
+    }
+
+    /// Signed distance of a point to the surface, and its gradient: the unit outward direction.
+    #[inline(always)]
+    fn distance(&self, p: Vec3<T>) -> (T, Vec3<T>) {
+        let from_axis = (p.x * p.x + p.y * p.y).sqrt();
+        let above_cap = p.z.abs() - self.half_length;
+        let off_side = from_axis - self.radius;
+        let (up, out) = (above_cap.max(T::ZERO), off_side.max(T::ZERO));
+        let length = (up * up + out * out).sqrt();
+        // Within the cylinder the nearer of cap and side decides; beyond both, the rim.
+        let within = length.lt(T::new(1e-15));
+        let cap = T::select(above_cap.gt(off_side), T::ONE, T::ZERO);
+        let inverse = T::ONE / T::select(within, T::ONE, length);
+        let along = T::select(within, cap, up * inverse);
+        let across = T::select(within, T::ONE - cap, out * inverse);
+
+        let on_axis = from_axis.lt(T::new(1e-15));
+        let scale = across / T::select(on_axis, T::ONE, from_axis);
+        let radial = Vec3::new(p.x * scale, p.y * scale, T::ZERO);
+        let mut outward = Vec3::select(on_axis, self.spare * across, radial);
+        outward.z = T::select(p.z.gt(T::ZERO), along, -along);
+        let signed = T::select(within, above_cap.max(off_side), length);
+        (signed, outward)
+    }
+}
+
+/// Adds the contact of a ball with the cylinder `b`: centre, signed distance of the centre to the cylinder and outward
+/// direction in the cylinder's frame.
+#[inline(always)]
+fn add_ball<T: Real>(
+    center: Vec3<T>,
+    radius: T,
+    (signed, outward): (T, Vec3<T>),
+    b: Placed<T>,
+    active: T::Mask,
+    out: &mut Contacts<T>,
+) {
+    if active.any() {
+        let distance = signed - radius;
+        let position = center - outward * (radius + distance * T::new(0.5));
+        let normal = -(b.pose.rotation * outward);
+        out.push(ContactPoint::new(
+            b.pose.point(position),
+            normal,
+            distance,
+            active,
+        ));
+    }
+}
+
+pub(super) fn sphere_cylinder<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
+    let radius = a.shape.size.x;
+    let center = b.pose.local(a.pose.position);
+    let nearest = Cylinder::new(a, b).distance(center);
+    let active = (nearest.0 - radius).le(margin);
+    add_ball(center, radius, nearest, b, active, out);
+}
+
+/// The deepest point, and both ends of the stretch where the capsule lies along the cap or the side.
+///
+/// The signed distance is convex, so along the capsule's middle segment its slope changes sign once, and halving finds
+/// where. Once the segment itself enters the cylinder, that distance no longer tells how far the capsule must move to
+/// be free, and [`way_out`] does.
+pub(super) fn capsule_cylinder<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
+    let cylinder = Cylinder::new(a, b);
+    let radius = a.shape.size.x;
+    let segment = Segment {
+        center: b.pose.local(a.pose.position),
+        axis: b.pose.rotation.transpose_mul(a.pose.axis()),
+        half_length: a.shape.size.y,
+    };
+    let nearest = cylinder.nearest_on(&segment);
+    let least = cylinder.distance(segment.at(nearest)).0;
+    let active = (least - radius).le(margin);
+    if !active.any() {
+        return;
+    }
+    let entered = least.lt(T::ZERO);
+    let beside = active & !entered;
+    if beside.any() {
+        let ends = cylinder.overlap(&segment, nearest);
+        // Where the two are parallel an end is as deep as anything between.
+        let rounding = T::new(1e-9).max(T::splat(T::Scalar::EPSILON) * T::new(8.0));
+        let level = least + rounding * (radius + cylinder.radius);
+        let mut deepest = nearest;
+        for end in ends {
+            let as_deep = cylinder.distance(segment.at(end)).0.le(level);
+            deepest = T::select(as_deep, end, deepest);
+        }
+        let mut add = |t: T, wanted: T::Mask| {
+            let center = segment.at(t);
+            let surface = cylinder.distance(center);
+            let active = wanted & (surface.0 - radius).le(margin);
+            add_ball(center, radius, surface, b, active, out);
+        };
+        add(deepest, beside);
+        for end in ends {
+            add(end, beside & !end.eq(deepest));
+        }
+    }
+    let inside = active & entered;
+    if inside.any() {
+        let (depth, outward) = way_out(cylinder.radius, cylinder.half_length, &segment);
+        // The end that is deepest in that direction; where the capsule is across it, the point found above.
+        let slope = outward.dot(segment.axis);
+        let across = slope.abs().lt(T::new(1e-6));
+        let end = segment.half_length.copysign(-slope);
+        let center = segment.at(T::select(across, nearest, end));
+        add_ball(center, radius, (-depth, outward), b, inside, out);
+    }
+}
+
+impl<T: Real> Cylinder<T> {
+    /// The parameter of the point on a segment that has the least signed distance.
+    fn nearest_on(&self, segment: &Segment<T>) -> T {
+        let (mut low, mut high) = (-segment.half_length, segment.half_length);
+        for _ in 0..HALVINGS {
+            let middle = (low + high) * T::new(0.5);
+            let (_, outward) = self.distance(segment.at(middle));
+            let rising = outward.dot(segment.axis).gt(T::ZERO);
+            high = T::select(rising, middle, high);
+            low = T::select(rising, low, middle);
+        }
+        (low + high) * T::new(0.5)
+    }
+
+    /// The ends of the stretch of a segment above the cap, or beside the side, whichever the point at `nearest` faces
+    /// more; at least that point.
+    fn overlap(&self, segment: &Segment<T>, nearest: T) -> [T; 2] {
+        let (c, u) = (segment.center, segment.axis);
+        let tiny = T::new(1e-15);
+        // Above the cap: |c + u t|² ≤ radius² in the plane of the cap.
+        let square = (u.x * u.x + u.y * u.y).max(tiny);
+        let middle = -(c.x * u.x + c.y * u.y) / square;
+        let miss = c.x * u.y - c.y * u.x;
+        let reach = (self.radius.squared() * square - miss * miss)
+            .max(T::ZERO)
+            .sqrt()
+            / square;
+        // Beside the side: |c + u t| ≤ half length along the axis.
+        let slope = T::select(u.z.abs().lt(tiny), tiny, u.z);
+        let level = -c.z / slope;
+        let extent = self.half_length / slope.abs();
+
+        let (_, outward) = self.distance(segment.at(nearest));
+        let cap = outward.z.squared().gt(T::new(0.5));
+        let middle = T::select(cap, middle, level);
+        let reach = T::select(cap, reach, extent);
+        let whole = segment.half_length;
+        let low = (middle - reach).max(-whole).min(nearest);
+        let high = (middle + reach).min(whole).max(nearest);
+        [low, high]
+    }
+}

@@ -1,0 +1,127 @@
+//! How far a segment inside a cylinder must move to be free of it.
+//!
+//! Moving by g(n) along the unit direction n just separates a cylinder (radius r, half length h, axis z) from a segment
+//! (centre c, unit axis u, half length s), where
+//!
+//!     g(n) = r |n across z| + h |n·z| + s |n·u| − n·c.
+//!
+//! The depth is the least g. Where all terms are smooth the Hessian of g on the sphere has the eigenvalue −g < 0, so a
+//! least g > 0 lies on a crease: at n = ±z; among the horizontal n; or among the n across u. The second family is the
+//! distance from a point to a stadium's rim. In the third, with a = z × u, b = u × a (scaled to unit length),
+//! n = a cos θ + b sin θ, x = tan θ, k = r |u·z|, and a, b turned so that c·a, c·b ≥ 0, the slope of g has the sign of
+//!
+//!     F(x) = h |b·z| − c·b + (c·a) x − (r² − k²) x / √(r² + k² x²),
+//!
+//! which is convex, so an interior minimum of g is the larger root of F, between the minimum of F and infinity.
+
+use clench_math::{Real, Vec3};
+
+/// A straight line of points.
+#[derive(Clone, Copy)]
+pub(super) struct Segment<T> {
+    /// Its middle.
+    pub center: Vec3<T>,
+    /// Unit direction.
+    pub axis: Vec3<T>,
+    pub half_length: T,
+}
+
+impl<T: Real> Segment<T> {
+    /// The point at a signed length from the middle.
+    #[inline(always)]
+    pub fn at(&self, t: T) -> Vec3<T> {
+        self.center + self.axis * t
+    }
+}
+
+/// Halvings of a right angle that leave less than a rounding error of it.
+const HALVINGS: usize = 54;
+
+/// The depth of a segment in a cylinder about the origin along z, and the unit direction in which to move it out.
+pub(super) fn way_out<T: Real>(radius: T, half_length: T, segment: &Segment<T>) -> (T, Vec3<T>) {
+    let Segment {
+        center,
+        axis,
+        half_length: reach,
+    } = *segment;
+    let (zero, one) = (T::ZERO, T::ONE);
+    let z = Vec3::new(zero, zero, one);
+    let depth = |n: Vec3<T>| {
+        let across = (n.x * n.x + n.y * n.y).sqrt();
+        radius * across + half_length * n.z.abs() + reach * n.dot(axis).abs() - n.dot(center)
+    };
+    let towards = |n: Vec3<T>| Vec3::select(n.dot(center).lt(zero), -n, n);
+    let (a, _) = z.cross(axis).normalize();
+    let a = towards(a);
+    let b = towards(axis.cross(a).normalize().0);
+
+    let candidates = [
+        towards(z),
+        b,
+        off_the_side(segment, a),
+        over_the_rim(radius, half_length, segment, a, b),
+    ];
+    let mut best = (depth(a), a);
+    for n in candidates {
+        let g = depth(n);
+        let less = g.lt(best.0);
+        best = (T::select(less, g, best.0), Vec3::select(less, n, best.1));
+    }
+    best
+}
+
+/// The best horizontal direction: from the cylinder's axis to the nearest point of the segment, both seen from above.
+fn off_the_side<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
+    let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
+    let (c, u) = (flat(segment.center), flat(segment.axis));
+    let square = u.norm_squared().max(T::new(1e-15));
+    let t = (-(c.dot(u)) / square).clamp(-segment.half_length, segment.half_length);
+    let nearest = c + u * t;
+    let length = nearest.norm();
+    let on_axis = length.lt(T::new(1e-12));
+    let unit = nearest * (T::ONE / T::select(on_axis, T::ONE, length));
+    Vec3::select(on_axis, spare, unit)
+}
+
+/// The best direction across the segment, between `a` and `b`.
+fn over_the_rim<T: Real>(
+    radius: T,
+    half_length: T,
+    segment: &Segment<T>,
+    a: Vec3<T>,
+    b: Vec3<T>,
+) -> Vec3<T> {
+    let r2 = radius * radius;
+    let k2 = r2 * segment.axis.z.squared();
+    let level = half_length * b.z.abs() - segment.center.dot(b);
+    let aside = segment.center.dot(a).max(radius * T::new(1e-9));
+    // Bounds on θ as (cosine, sine): the minimum of F, where r² + k²x² = (r² (r² − k²) / c·a)^⅔, and a right angle.
+    let stationary = ((r2 - k2).max(T::ZERO) * r2 / aside).powf(T::new(2.0 / 3.0));
+    let rise = (stationary - r2).max(T::ZERO);
+    let total = (rise + k2).sqrt();
+    let flat = total.lt(T::new(1e-15));
+    let inverse = T::ONE / T::select(flat, T::ONE, total);
+    let mut low = (
+        T::select(flat, T::ONE, k2.sqrt() * inverse),
+        T::select(flat, T::ZERO, rise.sqrt() * inverse),
+    );
+    let mut high = (T::ZERO, T::ONE);
+    for _ in 0..HALVINGS {
+        let (cosine, sine) = (low.0 + high.0, low.1 + high.1);
+        let inverse = T::ONE / (cosine * cosine + sine * sine).sqrt();
+        let (cosine, sine) = (cosine * inverse, sine * inverse);
+        let round = (r2 * cosine * cosine + k2 * sine * sine).sqrt();
+        let slope = level * cosine + aside * sine - (r2 - k2) * sine * cosine / round;
+        let rising = slope.gt(T::ZERO);
+        high = (
+            T::select(rising, cosine, high.0),
+            T::select(rising, sine, high.1),
+        );
+        low = (
+            T::select(rising, low.0, cosine),
+            T::select(rising, low.1, sine),
+        );
+    }
+    let n = a * high.0 + b * high.1;
+    n * (T::ONE / n.norm())
+}
