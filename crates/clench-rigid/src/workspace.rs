@@ -1,6 +1,7 @@
 //! Everything derived from model and state: preallocated, reused, inspectable.
 
 use crate::Model;
+use crate::constraint::ConstraintRecord;
 use crate::contact::{Collision, Contact};
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
 use clench_solver::{Problem, Solver};
@@ -104,6 +105,8 @@ pub struct Workspace<T: Real> {
     pub collision: Collision<T>,
     /// The convex problem: mass matrix and its factor, unconstrained acceleration, constraint blocks.
     pub problem: Problem<T>,
+    /// What is known of its blocks and rows beside the problem.
+    pub record: ConstraintRecord<T>,
     /// Its solver, and the solution.
     pub solver: Solver<T>,
     /// Acceleration (nv).
@@ -164,6 +167,7 @@ impl<T: Real> Workspace<T> {
             contacts: Vec::new(),
             collision: Collision::new(model),
             problem: Problem::new(model.tree.clone()),
+            record: ConstraintRecord::default(),
             solver: Solver::new(&model.tree),
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),

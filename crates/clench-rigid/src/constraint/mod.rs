@@ -1,22 +1,147 @@
 //! The constraint stage: every active constraint becomes a block of the convex problem, which is solved once.
+//!
+//! One file a kind of constraint, each with its derivation; `softness` turns their parameters into R and aref. Blocks
+//! stand in MuJoCo's order: equalities, dry friction, limits, contacts.
 
-use crate::model::{Model, Params};
+mod assembly;
+mod chains;
+mod connect;
+mod contact;
+mod coordinate;
+mod coupling;
+mod friction;
+mod limit;
+pub mod softness;
+mod weld;
+
+pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
+pub use softness::Softness;
+
+use crate::contact::Contact;
+use crate::model::{EqualityTarget, Model, Params};
 use crate::settings::StepSettings;
 use crate::state::State;
-use crate::workspace::Workspace;
-use clench_math::Real;
+use crate::workspace::{Positions, Velocities, Workspace};
+use assembly::Assembly;
+use clench_math::{Mask, Real};
+use coordinate::Coordinate;
 
-/// Turns the constraints of a configuration into blocks, solves the problem, and leaves `ws.qacc` and
-/// `ws.qfrc_constraint`. Reads poses, velocities, `ws.contacts`, `ws.problem.mass` (factored) and
-/// `ws.problem.qacc_smooth`.
+/// All that constraints read.
+struct Scene<'a, T: Real> {
+    model: &'a Model,
+    params: &'a Params<T>,
+    settings: &'a StepSettings,
+    state: &'a State<T>,
+    position: &'a Positions<T>,
+    velocity: &'a Velocities<T>,
+    /// No constraint has a shorter time constant, s.
+    least_timeconst: T,
+    /// Ratio of friction to normal impedance.
+    impratio: T,
+}
+
+/// Turns the constraints of a configuration into blocks, solves the problem, and leaves the acceleration in `ws.qacc`
+/// and the constraint forces along dofs in `ws.qfrc_constraint`.
+///
+/// Reads poses and velocities of the workspace, its contacts, and the problem's factored mass and unconstrained
+/// acceleration.
 pub fn constraint_stage<T: Real>(
-    _model: &Model,
-    _params: &Params<T>,
-    _settings: &StepSettings,
-    _state: &State<T>,
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    assemble(model, params, settings, state, ws);
+    let warmstart = settings
+        .solver
+        .warmstart
+        .then_some(&state.qacc_warmstart[..]);
+    let solved = ws.solver.solve(&ws.problem, &settings.solver, warmstart);
+    debug_assert!(
+        solved.is_ok(),
+        "a state's warm start has the model's length"
+    );
+    ws.qacc.copy_from_slice(ws.solver.qacc());
+    ws.qfrc_constraint
+        .copy_from_slice(ws.solver.qfrc_constraint());
+}
+
+/// Replaces the problem's blocks by those of the configuration.
+pub fn assemble<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
     ws.problem.clear_constraints();
-    ws.qacc.copy_from_slice(&ws.problem.qacc_smooth);
-    ws.qfrc_constraint.fill(T::ZERO);
+    ws.record.clear();
+    if !settings.flags.constraint {
+        return;
+    }
+    let scene = Scene {
+        model,
+        params,
+        settings,
+        state,
+        position: &ws.position,
+        velocity: &ws.velocity,
+        least_timeconst: least_timeconst(params, settings),
+        impratio: T::new(settings.solver.impratio),
+    };
+    let mut out = Assembly {
+        problem: &mut ws.problem,
+        record: &mut ws.record,
+        qvel: &state.qvel,
+    };
+    if settings.flags.equality {
+        push_equalities(&scene, &mut out);
+    }
+    if settings.flags.frictionloss {
+        friction::push_all(&scene, &mut out);
+    }
+    if settings.flags.limit {
+        limit::push_all(&scene, &mut out);
+    }
+    if settings.flags.contact {
+        push_contacts(&scene, &mut out, &mut ws.contacts);
+    }
+}
+
+fn least_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
+    let floor = T::new(settings.solver.constraint_timeconst);
+    if settings.flags.refsafe {
+        floor.max(params.timestep * T::new(2.0))
+    } else {
+        floor
+    }
+}
+
+fn push_equalities<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
+    for (i, equality) in scene.model.equalities.iter().enumerate() {
+        if !scene.state.eq_active[i].any() {
+            continue;
+        }
+        let tendon = |i: usize| Coordinate::tendon(scene, i);
+        match equality.target {
+            EqualityTarget::Connect { body1, body2 } => {
+                connect::push(scene, out, i, [body1, body2])
+            }
+            EqualityTarget::Weld { body1, body2 } => weld::push(scene, out, i, [body1, body2]),
+            EqualityTarget::Joint { joint1, joint2 } => {
+                let leader = joint2.map(Coordinate::Joint);
+                coupling::push(scene, out, i, Coordinate::Joint(joint1), leader);
+            }
+            EqualityTarget::Tendon { tendon1, tendon2 } => {
+                coupling::push(scene, out, i, tendon(tendon1), tendon2.map(tendon));
+            }
+        }
+    }
+}
+
+fn push_contacts<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>, contacts: &mut [Contact<T>]) {
+    for (i, contact) in contacts.iter_mut().enumerate() {
+        contact::push(scene, out, i, contact);
+    }
 }

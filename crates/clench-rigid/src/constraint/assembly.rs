@@ -1,0 +1,139 @@
+//! Where constraints put their rows: the convex problem, and beside it what a reader wants to know of each row.
+
+use super::softness::Softness;
+use clench_math::{Mask, Real};
+use clench_solver::{Cost, Problem};
+
+/// What a constraint comes from; the number counts the sources of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConstraintSource {
+    /// An equality of the model.
+    Equality(usize),
+    /// Dry friction of a dof.
+    DofFriction(usize),
+    /// Dry friction of a tendon.
+    TendonFriction(usize),
+    /// A limit of a joint.
+    JointLimit(usize),
+    /// A limit of a tendon.
+    TendonLimit(usize),
+    /// A contact of the workspace.
+    Contact(usize),
+}
+
+/// What is known of a block beside the problem.
+#[derive(Clone, Copy, Debug)]
+pub struct BlockRecord<T: Real> {
+    /// Where it comes from.
+    pub source: ConstraintSource,
+    /// Lanes that have it.
+    pub active: T::Mask,
+    /// Distance at which it begins to act.
+    pub margin: T,
+    /// Impedance d, of the normal for contacts.
+    pub impedance: T,
+}
+
+/// What is known of all blocks and rows of the last constraint stage, in the order of the problem.
+#[derive(Clone, Debug, Default)]
+pub struct ConstraintRecord<T: Real> {
+    /// One a block.
+    pub blocks: Vec<BlockRecord<T>>,
+    /// Position of each row: violations, signed distances, angles.
+    pub pos: Vec<T>,
+    /// Its rate of change, J v.
+    pub vel: Vec<T>,
+    /// The dofs of the next block.
+    pub(super) dofs: Vec<u32>,
+}
+
+/// One row of a block to be: everything but its Jacobian.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row<T> {
+    /// Position.
+    pub pos: T,
+    /// Part of the reference acceleration that does not depend on the row's velocity.
+    pub aref: T,
+    /// Damping b: the rest of the reference acceleration is −b v.
+    pub damping: T,
+    /// Regularization.
+    pub r: T,
+    /// Shape of its cost, see `clench_solver::BlockMut::shape`.
+    pub shape: T,
+}
+
+impl<T: Real> Row<T> {
+    /// A row at `pos` that is violated by `r = pos − margin` and sees the inverse inertia `a0`.
+    #[inline(always)]
+    pub fn new(soft: &Softness<T>, pos: T, margin: T, a0: T) -> Self {
+        Row {
+            pos,
+            aref: -soft.stiffness * (pos - margin),
+            damping: soft.damping,
+            r: soft.regularization(a0),
+            shape: T::ZERO,
+        }
+    }
+}
+
+/// The problem under construction.
+pub(super) struct Assembly<'a, T: Real> {
+    pub problem: &'a mut Problem<T>,
+    pub record: &'a mut ConstraintRecord<T>,
+    pub qvel: &'a [T],
+}
+
+impl<T: Real> Assembly<'_, T> {
+    /// The dofs of the next block, to be filled in ascending order.
+    pub fn dofs(&mut self) -> &mut Vec<u32> {
+        &mut self.record.dofs
+    }
+
+    /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` gets them and
+    /// writes its Jacobian (rows × dofs, row-major, zeros before).
+    #[inline(always)]
+    pub fn push(
+        &mut self,
+        cost: Cost,
+        block: BlockRecord<T>,
+        rows: &[Row<T>],
+        fill: impl FnOnce(&[u32], &mut [T]),
+    ) {
+        let ConstraintRecord {
+            blocks,
+            pos,
+            vel,
+            dofs,
+        } = &mut *self.record;
+        let target = self.problem.push(cost, rows.len(), dofs);
+        fill(dofs, target.jacobian);
+        blocks.push(block);
+        for (i, row) in rows.iter().enumerate() {
+            let jacobian = &target.jacobian[i * dofs.len()..(i + 1) * dofs.len()];
+            let mut velocity = T::ZERO;
+            for (&j, &dof) in jacobian.iter().zip(&*dofs) {
+                velocity += j * self.qvel[dof as usize];
+            }
+            target.aref[i] = row.aref - row.damping * velocity;
+            target.r[i] = row.r;
+            target.d[i] = T::select(block.active, T::ONE / row.r, T::ZERO);
+            target.shape[i] = row.shape;
+            pos.push(row.pos);
+            vel.push(velocity);
+        }
+    }
+}
+
+impl<T: Real> ConstraintRecord<T> {
+    /// Forgets all rows and keeps their memory.
+    pub(super) fn clear(&mut self) {
+        self.blocks.clear();
+        self.pos.clear();
+        self.vel.clear();
+    }
+
+    /// How many blocks lane `lane` has.
+    pub fn active_blocks(&self, lane: usize) -> usize {
+        self.blocks.iter().filter(|b| b.active.lane(lane)).count()
+    }
+}

@@ -1,0 +1,67 @@
+//! Joint and tendon equality: one coordinate is a quartic of another, or constant.
+//!
+//! ```text
+//! r = (y − y₀) − P(x − x₀)      P(e) = c₀ + c₁ e + c₂ e² + c₃ e³ + c₄ e⁴      J = ∂y/∂q − P′(x − x₀) ∂x/∂q
+//! ```
+//!
+//! Zero subscripts are the initial configuration. As in MuJoCo the part of r̈ that is quadratic in velocity, −P″ ẋ², is
+//! left out of aref. A₀ is the sum of both coordinates' inverse weights.
+
+use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::coordinate::Coordinate;
+use super::{Scene, Softness};
+use clench_math::Real;
+use clench_solver::Cost;
+
+pub(super) fn push<T: Real>(
+    scene: &Scene<T>,
+    out: &mut Assembly<T>,
+    equality: usize,
+    follower: Coordinate,
+    leader: Option<Coordinate>,
+) {
+    let params = scene.params;
+    let polynomial = params.eq_polycoef[equality];
+    let error = |c: Coordinate| c.value(scene) - c.initial(scene);
+    let dofs = out.dofs();
+    dofs.clear();
+    follower.insert_dofs(scene, dofs);
+    let mut slope = T::ZERO;
+    let mut target = polynomial[0];
+    let mut a0 = follower.inverse_weight(scene);
+    if let Some(leader) = leader {
+        leader.insert_dofs(scene, dofs);
+        (target, slope) = evaluate(polynomial, error(leader));
+        a0 += leader.inverse_weight(scene);
+    }
+    let violation = error(follower) - target;
+    let soft = Softness::new(
+        params.eq_solref[equality],
+        params.eq_solimp[equality],
+        violation,
+        scene.least_timeconst,
+    );
+    let row = Row::new(&soft, violation, T::ZERO, a0);
+    let block = BlockRecord {
+        source: ConstraintSource::Equality(equality),
+        active: scene.state.eq_active[equality],
+        margin: T::ZERO,
+        impedance: soft.impedance,
+    };
+    out.push(Cost::Quadratic, block, &[row], |dofs, jacobian| {
+        follower.add_gradient(scene, dofs, T::ONE, jacobian);
+        if let Some(leader) = leader {
+            leader.add_gradient(scene, dofs, -slope, jacobian);
+        }
+    });
+}
+
+/// P(e) and P′(e).
+fn evaluate<T: Real>(polynomial: [T; 5], e: T) -> (T, T) {
+    let (mut value, mut slope) = (polynomial[4], T::ZERO);
+    for coefficient in polynomial[..4].iter().rev() {
+        slope = slope * e + value;
+        value = value * e + *coefficient;
+    }
+    (value, slope)
+}

@@ -1,0 +1,83 @@
+//! Dry friction of dofs and tendons: a force of at most η against the motion.
+//!
+//! ```text
+//! r = 0        J = ∂q_i/∂q  or  ∂length/∂q        aref = −b v        cost: Huber of loss η
+//! ```
+//!
+//! Its slope R holds at small accelerations: dry friction creeps, softly, where it should stick. The impedance is the one
+//! at zero violation; A₀ the inverse weight of the dof or tendon.
+
+use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::coordinate::Coordinate;
+use super::{Scene, Softness};
+use clench_math::{Mask, Real};
+use clench_solver::Cost;
+
+/// All dofs, then all tendons, that have a friction loss.
+pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
+    let (model, params) = (scene.model, scene.params);
+    for (i, dof) in model.dofs.iter().enumerate() {
+        if !dof.frictionloss {
+            continue;
+        }
+        let dofs = out.dofs();
+        dofs.clear();
+        dofs.push(i as u32);
+        let friction = Friction {
+            source: ConstraintSource::DofFriction(i),
+            loss: params.dof_frictionloss[i],
+            solref: params.dof_solref[i],
+            solimp: params.dof_solimp[i],
+            a0: params.dof_invweight0[i],
+        };
+        friction.push(scene, out, |_, jacobian| jacobian[0] = T::ONE);
+    }
+    for (i, tendon) in model.tendons.iter().enumerate() {
+        if !tendon.frictionloss {
+            continue;
+        }
+        let coordinate = Coordinate::tendon(scene, i);
+        let dofs = out.dofs();
+        dofs.clear();
+        coordinate.insert_dofs(scene, dofs);
+        let friction = Friction {
+            source: ConstraintSource::TendonFriction(i),
+            loss: params.tendon_frictionloss[i],
+            solref: params.tendon_solref_fri[i],
+            solimp: params.tendon_solimp_fri[i],
+            a0: params.tendon_invweight0[i],
+        };
+        friction.push(scene, out, |dofs, jacobian| {
+            coordinate.add_gradient(scene, dofs, T::ONE, jacobian);
+        });
+    }
+}
+
+struct Friction<T> {
+    source: ConstraintSource,
+    loss: T,
+    solref: [T; 2],
+    solimp: [T; 5],
+    a0: T,
+}
+
+impl<T: Real> Friction<T> {
+    fn push(self, scene: &Scene<T>, out: &mut Assembly<T>, fill: impl FnOnce(&[u32], &mut [T])) {
+        let active = self.loss.gt(T::ZERO);
+        if !active.any() {
+            return;
+        }
+        let soft = Softness::new(self.solref, self.solimp, T::ZERO, scene.least_timeconst);
+        let row = Row {
+            shape: self.loss,
+            ..Row::new(&soft, T::ZERO, T::ZERO, self.a0)
+        };
+        let block = BlockRecord {
+            source: self.source,
+            active,
+            margin: T::ZERO,
+            impedance: soft.impedance,
+        };
+        out.push(Cost::Huber, block, &[row], fill);
+    }
+}

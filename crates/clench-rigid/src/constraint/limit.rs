@@ -1,0 +1,127 @@
+//! Limits: a joint or tendon stays within its range.
+//!
+//! ```text
+//! hinge, slide, tendon:   lower  r = x − low,  J = ∂x/∂q        upper  r = high − x,  J = −∂x/∂q
+//! ball:                   r = largest angle − angle,  J = −axis of the rotation, in the body's frame
+//! ```
+//!
+//! A limit exists where r is below its margin, and only pushes: its cost is one-sided. A ball joint turned by a rotation
+//! vector θ has the angle |θ|, and d|θ|/dt is the angular velocity along θ whatever its other parts. A₀ is the inverse
+//! weight of the joint's first dof, or of the tendon.
+
+use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::coordinate::Coordinate;
+use super::{Scene, Softness};
+use crate::model::JointKind;
+use clench_math::{Mask, Quat, Real};
+use clench_solver::Cost;
+
+/// All limits of joints, then of tendons.
+pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
+    let (model, params) = (scene.model, scene.params);
+    if scene.settings.joint_limits {
+        for (i, joint) in model.joints.iter().enumerate() {
+            if !joint.limited {
+                continue;
+            }
+            let limit = Limit {
+                source: ConstraintSource::JointLimit(i),
+                margin: params.jnt_margin[i],
+                solref: params.jnt_solref[i],
+                solimp: params.jnt_solimp[i],
+                a0: params.dof_invweight0[joint.dof],
+            };
+            match joint.kind {
+                JointKind::Hinge | JointKind::Slide => {
+                    limit.push_range(scene, out, Coordinate::Joint(i), params.jnt_range[i]);
+                }
+                JointKind::Ball => limit.push_cone(scene, out, i),
+                JointKind::Free => {}
+            }
+        }
+    }
+    for (i, tendon) in model.tendons.iter().enumerate() {
+        if !tendon.limited {
+            continue;
+        }
+        let limit = Limit {
+            source: ConstraintSource::TendonLimit(i),
+            margin: params.tendon_margin[i],
+            solref: params.tendon_solref_lim[i],
+            solimp: params.tendon_solimp_lim[i],
+            a0: params.tendon_invweight0[i],
+        };
+        let coordinate = Coordinate::tendon(scene, i);
+        limit.push_range(scene, out, coordinate, params.tendon_range[i]);
+    }
+}
+
+struct Limit<T> {
+    source: ConstraintSource,
+    margin: T,
+    solref: [T; 2],
+    solimp: [T; 5],
+    a0: T,
+}
+
+impl<T: Real> Limit<T> {
+    /// Lower, then upper end of a coordinate's range.
+    fn push_range(
+        &self,
+        scene: &Scene<T>,
+        out: &mut Assembly<T>,
+        coordinate: Coordinate,
+        [low, high]: [T; 2],
+    ) {
+        let value = coordinate.value(scene);
+        for (dist, sign) in [(value - low, T::ONE), (high - value, -T::ONE)] {
+            if !dist.lt(self.margin).any() {
+                continue;
+            }
+            let dofs = out.dofs();
+            dofs.clear();
+            coordinate.insert_dofs(scene, dofs);
+            self.push(scene, out, dist, |dofs, jacobian| {
+                coordinate.add_gradient(scene, dofs, sign, jacobian);
+            });
+        }
+    }
+
+    /// The largest angle of a ball joint.
+    fn push_cone(&self, scene: &Scene<T>, out: &mut Assembly<T>, joint: usize) {
+        let (qpos, dof) = {
+            let joint = &scene.model.joints[joint];
+            (joint.qpos, joint.dof as u32)
+        };
+        let orientation = Quat::from_slice(&scene.state.qpos[qpos..]).normalize();
+        let (axis, angle) = orientation.to_rotation_vector().normalize();
+        let [low, high] = scene.params.jnt_range[joint];
+        let dist = low.max(high) - angle;
+        if !dist.lt(self.margin).any() {
+            return;
+        }
+        let dofs = out.dofs();
+        dofs.clear();
+        dofs.extend(dof..dof + 3);
+        self.push(scene, out, dist, |_, jacobian| (-axis).write(jacobian));
+    }
+
+    fn push(
+        &self,
+        scene: &Scene<T>,
+        out: &mut Assembly<T>,
+        dist: T,
+        fill: impl FnOnce(&[u32], &mut [T]),
+    ) {
+        let violation = dist - self.margin;
+        let soft = Softness::new(self.solref, self.solimp, violation, scene.least_timeconst);
+        let row = Row::new(&soft, dist, self.margin, self.a0);
+        let block = BlockRecord {
+            source: self.source,
+            active: dist.lt(self.margin),
+            margin: self.margin,
+            impedance: soft.impedance,
+        };
+        out.push(Cost::OneSided, block, &[row], fill);
+    }
+}

@@ -1,0 +1,148 @@
+//! How soft a constraint is: the one place where solref and solimp become numbers of the convex problem.
+//!
+//! A constraint of violation r and rate v asks for the acceleration of a damped spring, and yields as much as its
+//! impedance d ∈ (0, 1) allows:
+//!
+//! ```text
+//! aref = −b v − k d r            R = A₀ (1 − d) / d        D = 1 / R
+//! solref = (timeconst, dampratio) > 0:   b = 2 / (dmax timeconst)    k = 1 / (dmax timeconst dampratio)²
+//! solref = (−stiffness, −damping) ≤ 0:   b = damping / dmax          k = stiffness / dmax²
+//! solimp = (dmin, dmax, width, midpoint, power):   d = dmin + y(|r| / width) (dmax − dmin)
+//! ```
+//!
+//! y rises from 0 at 0 to 1 at 1, y = x^p / mid^(p−1) up to the midpoint and point-symmetric in shape above. A₀ is the
+//! inverse inertia that the constraint sees in the initial configuration, so a mass on one such constraint follows
+//! a = d (−b v − k d r) + (1 − d) a_unc whatever its size: at dmax, a spring-damper of the given time constant. The rules
+//! and limits are MuJoCo 4.0's (Computation, "Constraint model"), with one of our own: no time constant is shorter than
+//! `constraint_timeconst`.
+
+use clench_math::{Mask, Real};
+
+/// Least R, and least width of the impedance's rise (MuJoCo's `mjMINVAL`).
+const MIN_VALUE: f64 = 1e-15;
+/// Bounds of the impedance (MuJoCo's `mjMINIMP`, `mjMAXIMP`).
+const IMPEDANCE_RANGE: [f64; 2] = [0.0001, 0.9999];
+/// What replaces a solref whose numbers have mixed signs.
+const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
+
+/// The spring-damper that a constraint asks for.
+#[derive(Clone, Copy, Debug)]
+pub struct Softness<T> {
+    /// d, in (0, 1).
+    pub impedance: T,
+    /// k d, 1/s².
+    pub stiffness: T,
+    /// b, 1/s.
+    pub damping: T,
+}
+
+impl<T: Real> Softness<T> {
+    /// From the parameters of a constraint at violation `r`; no time constant is below `least_timeconst` (s).
+    #[inline(always)]
+    pub fn new(solref: [T; 2], solimp: [T; 5], r: T, least_timeconst: T) -> Self {
+        let mixed = is_mixed(solref);
+        let solref =
+            std::array::from_fn(|i| T::select(mixed, T::new(DEFAULT_SOLREF[i]), solref[i]));
+        let impedance = impedance(solimp, r);
+        let (k, damping) = spring_damper(solref, solimp[1], least_timeconst);
+        Softness {
+            impedance,
+            stiffness: k * impedance,
+            damping,
+        }
+    }
+
+    /// The damping of friction dimensions that have their own solref: as `self` where it is zero or mixed.
+    #[inline(always)]
+    pub fn friction_damping(&self, solref: [T; 2], solimp: [T; 5], least_timeconst: T) -> T {
+        let given = !(solref[0].eq(T::ZERO) & solref[1].eq(T::ZERO)) & !is_mixed(solref);
+        if !given.any() {
+            return self.damping;
+        }
+        let (_, damping) = spring_damper(solref, solimp[1], least_timeconst);
+        T::select(given, damping, self.damping)
+    }
+
+    /// R of a row that sees the inverse inertia `a0`.
+    #[inline(always)]
+    pub fn regularization(&self, a0: T) -> T {
+        let d = self.impedance;
+        ((T::ONE - d) * a0 / d).max(T::new(MIN_VALUE))
+    }
+
+    /// aref of a row at rate `v` and violation `r`.
+    #[inline(always)]
+    pub fn aref(&self, v: T, r: T) -> T {
+        -self.damping * v - self.stiffness * r
+    }
+}
+
+fn is_mixed<T: Real>(solref: [T; 2]) -> T::Mask {
+    let [a, b] = solref.map(|x| x.gt(T::ZERO));
+    (a & !b) | (!a & b)
+}
+
+/// (k, b) of a solref whose signs agree.
+#[inline(always)]
+fn spring_damper<T: Real>(solref: [T; 2], dmax: T, least_timeconst: T) -> (T, T) {
+    let least = T::new(MIN_VALUE);
+    let dmax = clamp_impedance(dmax);
+    let [first, second] = solref;
+    let standard = first.gt(T::ZERO);
+    let timeconst = first.max(least_timeconst);
+    let squares = dmax * dmax * timeconst * timeconst * second * second;
+    let k = T::ONE / squares.max(least);
+    let b = T::new(2.0) / (dmax * timeconst).max(least);
+    if standard.all() {
+        return (k, b);
+    }
+    let (direct_k, direct_b) = (-first / (dmax * dmax), -second / dmax);
+    (
+        T::select(standard, k, direct_k),
+        T::select(standard, b, direct_b),
+    )
+}
+
+#[inline(always)]
+fn clamp_impedance<T: Real>(d: T) -> T {
+    d.clamp(T::new(IMPEDANCE_RANGE[0]), T::new(IMPEDANCE_RANGE[1]))
+}
+
+/// The impedance at violation `r`.
+#[inline(always)]
+pub fn impedance<T: Real>(solimp: [T; 5], r: T) -> T {
+    let [dmin, dmax, width, midpoint, power] = solimp;
+    let (dmin, dmax) = (clamp_impedance(dmin), clamp_impedance(dmax));
+    let flat = dmin.eq(dmax) | width.le(T::new(MIN_VALUE));
+    let x = r.abs() / T::select(flat, T::ONE, width);
+    let end = T::select(x.ge(T::ONE), dmax, dmin);
+    let end = T::select(flat, T::new(0.5) * (dmin + dmax), end);
+    let at_end = flat | x.ge(T::ONE) | x.le(T::ZERO);
+    if at_end.all() {
+        return end;
+    }
+    let x = T::select(at_end, T::new(0.5), x);
+    let y = spline(x, clamp_impedance(midpoint), power.max(T::ONE));
+    T::select(at_end, end, dmin + y * (dmax - dmin))
+}
+
+/// y(x) for 0 < x < 1.
+fn spline<T: Real>(x: T, midpoint: T, power: T) -> T {
+    let below = x.le(midpoint);
+    let base = T::select(below, x, T::ONE - x);
+    let edge = T::select(below, midpoint, T::ONE - midpoint);
+    let y = raise(base, power) * (T::ONE / raise(edge, power - T::ONE));
+    let y = T::select(below, y, T::ONE - y);
+    T::select(power.eq(T::ONE), x, y)
+}
+
+/// base^exponent, exact for the usual exponents 1 and 2.
+fn raise<T: Real>(base: T, exponent: T) -> T {
+    let first = exponent.eq(T::ONE);
+    let usual = first | exponent.eq(T::new(2.0));
+    let power = T::select(first, base, base * base);
+    if usual.all() {
+        return power;
+    }
+    T::select(usual, power, base.powf(exponent))
+}

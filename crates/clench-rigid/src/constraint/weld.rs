@@ -1,0 +1,131 @@
+//! Weld: two frames, one on each body, coincide.
+//!
+//! The first three rows are those of connect. The other three are the imaginary part of the relative orientation
+//! ρ = q₂⁻¹ q₁ (a unit quaternion, half the rotation vector for small errors), scaled by the torque scale s, a length:
+//!
+//! ```text
+//! ρ̇ = ½ (0, u) ρ,   u = R₂ᵀ (ω₁ − ω₂)
+//! r = s Im ρ        ṙ = s B u,   B u = ½ (w u + u × Im ρ),   w = Re ρ        J = s B R₂ᵀ (∂ω₁ − ∂ω₂)
+//! r̈ = s (B u̇ + Ḃ u),   u̇ = R₂ᵀ (ω̇₁ − ω̇₂ − ω₂ × (ω₁ − ω₂))
+//! ```
+//!
+//! J̇ v is r̈ with ω̇ the bias accelerations. The impedance is that of the length of all six rows; A₀ the sums of the
+//! bodies' inverse weights, translational and rotational.
+
+use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::chains::{BodyPoint, Chains, Side};
+use super::connect::{anchors, fill_translation, separation};
+use super::{Scene, Softness};
+use clench_math::{Quat, Real, Vec3};
+use clench_solver::Cost;
+
+pub(super) fn push<T: Real>(
+    scene: &Scene<T>,
+    out: &mut Assembly<T>,
+    equality: usize,
+    bodies: [usize; 2],
+) {
+    let chains = Chains::new(scene, bodies);
+    chains.collect(out.dofs());
+    if out.dofs().is_empty() {
+        return;
+    }
+    let params = scene.params;
+    let points = anchors(scene, equality, bodies);
+    let (translation, offsets, bias_translation) = separation(scene, bodies, points);
+    let relative = Relative::new(scene, equality, bodies);
+    let rotation = relative.rho.imaginary() * relative.scale;
+    let bias_rotation = relative.bias(scene, bodies, points);
+    let length = (translation.norm_squared() + rotation.norm_squared()).sqrt();
+    let soft = Softness::new(
+        params.eq_solref[equality],
+        params.eq_solimp[equality],
+        length,
+        scene.least_timeconst,
+    );
+    let rows: [Row<T>; 6] = std::array::from_fn(|i| {
+        let (pos, bias, part) = match i {
+            0..3 => (translation[i], bias_translation[i], 0),
+            _ => (rotation[i - 3], bias_rotation[i - 3], 1),
+        };
+        let a0 = bodies.map(|b| params.body_invweight0[b][part]);
+        let row = Row::new(&soft, pos, T::ZERO, a0[0] + a0[1]);
+        Row {
+            aref: row.aref - bias,
+            ..row
+        }
+    });
+    let block = BlockRecord {
+        source: ConstraintSource::Equality(equality),
+        active: scene.state.eq_active[equality],
+        margin: T::ZERO,
+        impedance: soft.impedance,
+    };
+    out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
+        let (upper, lower) = jacobian.split_at_mut(jacobian.len() / 2);
+        fill_translation(scene, &chains, offsets, upper);
+        relative.fill(scene, &chains, lower);
+    });
+}
+
+/// The relative orientation and what turns with it.
+struct Relative<T> {
+    rho: Quat<T>,
+    /// To the second frame.
+    to_second: Quat<T>,
+    scale: T,
+}
+
+impl<T: Real> Relative<T> {
+    fn new(scene: &Scene<T>, equality: usize, [body1, body2]: [usize; 2]) -> Self {
+        let (params, xquat) = (scene.params, &scene.position.xquat);
+        let first = xquat[body1] * params.eq_quat1[equality];
+        let to_second = (xquat[body2] * params.eq_quat2[equality]).conjugate();
+        Relative {
+            rho: to_second * first,
+            to_second,
+            scale: params.eq_torquescale[equality],
+        }
+    }
+
+    /// B u.
+    fn rate(&self, u: Vec3<T>) -> Vec3<T> {
+        half_product(u, self.rho)
+    }
+
+    fn bias(&self, scene: &Scene<T>, bodies: [usize; 2], points: [Vec3<T>; 2]) -> Vec3<T> {
+        let cvel = &scene.velocity.cvel;
+        let [omega1, omega2] = bodies.map(|b| cvel[b].angular);
+        let [alpha1, alpha2] = [0, 1].map(|i| {
+            let point = BodyPoint::new(scene, bodies[i], points[i]);
+            point.bias_acceleration(scene).angular
+        });
+        let omega = omega1 - omega2;
+        let u = self.to_second.rotate(omega);
+        let u_dot = self.to_second.rotate(alpha1 - alpha2 - omega2.cross(omega));
+        let rho_dot = Quat::new(T::ZERO, u.x, u.y, u.z) * self.rho;
+        let half = T::new(0.5);
+        (self.rate(u_dot) + half_product(u, rho_dot) * half) * self.scale
+    }
+
+    fn fill(&self, scene: &Scene<T>, chains: &Chains, jacobian: &mut [T]) {
+        let ndof = chains.iter().count();
+        for (column, (dof, side)) in chains.iter().enumerate() {
+            let axis = scene.position.cdof[dof].angular;
+            let turn = match side {
+                Side::Both => continue,
+                Side::First => axis,
+                Side::Second => -axis,
+            };
+            let rate = self.rate(self.to_second.rotate(turn)) * self.scale;
+            for i in 0..3 {
+                jacobian[i * ndof + column] = rate[i];
+            }
+        }
+    }
+}
+
+/// Imaginary part of ½ (0, u) q.
+fn half_product<T: Real>(u: Vec3<T>, q: Quat<T>) -> Vec3<T> {
+    (u * q.w + u.cross(q.imaginary())) * T::new(0.5)
+}
