@@ -9,6 +9,7 @@ pub mod constraint;
 pub mod contact;
 pub mod dynamics;
 pub mod model;
+pub mod pipeline;
 pub mod settings;
 mod state;
 pub mod workspace;

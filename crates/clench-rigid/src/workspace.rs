@@ -3,7 +3,8 @@
 use crate::Model;
 use crate::constraint::ConstraintRecord;
 use crate::contact::{Collision, Contact};
-use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
+use crate::dynamics::integrate::Integration;
+use clench_math::{Force, Inertia, Mask, Mat3, Motion, Quat, Real, Vec3};
 use clench_solver::{Problem, Solver};
 
 /// Poses of everything, and what depends on positions alone.
@@ -82,6 +83,8 @@ pub struct Forces<T> {
     pub qfrc_smooth: Vec<T>,
     /// Scalar force of each actuator (nu).
     pub actuator_force: Vec<T>,
+    /// Total force of the actuators of each tendon with a limit on it, before that limit (ntendon).
+    pub ten_actuator_force: Vec<T>,
     /// Rate of change of each activation (na).
     pub act_dot: Vec<T>,
     /// Body accelerations, scratch of the bias forces (nbody).
@@ -113,6 +116,11 @@ pub struct Workspace<T: Real> {
     pub qacc: Vec<T>,
     /// Constraint forces along dofs (nv).
     pub qfrc_constraint: Vec<T>,
+    /// What integrators need besides.
+    pub integration: Integration<T>,
+    /// Lanes in which a matrix that had to be positive definite (the mass matrix, or that of an implicit integrator) was
+    /// not: their accelerations mean nothing.
+    pub singular: T::Mask,
 }
 
 impl<T: Real> Workspace<T> {
@@ -160,6 +168,7 @@ impl<T: Real> Workspace<T> {
                 qfrc_actuator: zeros(nv),
                 qfrc_smooth: zeros(nv),
                 actuator_force: zeros(nu),
+                ten_actuator_force: zeros(model.tendons.len()),
                 act_dot: zeros(model.na),
                 cacc: vec![Motion::ZERO; nbody],
                 cfrc_body: vec![Force::ZERO; nbody],
@@ -171,6 +180,8 @@ impl<T: Real> Workspace<T> {
             solver: Solver::new(&model.tree),
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
+            integration: Integration::new(model),
+            singular: T::Mask::splat(false),
         }
     }
 }

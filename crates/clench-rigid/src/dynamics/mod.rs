@@ -7,6 +7,24 @@
 //! Spatial vectors of a kinematic tree are about the tree's centre of mass (`subtree_com` of its root), in world axes, as
 //! in MuJoCo: the numbers stay small wherever the tree is.
 
+pub mod activation;
+pub mod actuation;
+pub mod bias;
 pub mod com;
+pub mod energy;
+pub mod euler;
+pub mod fluid;
+pub mod implicit;
 pub mod inertia;
+pub mod integrate;
 pub mod kinematics;
+pub mod lone_body;
+pub mod passive;
+pub mod project;
+pub mod rk4;
+pub mod slopes;
+pub mod smooth;
+pub mod spring;
+pub mod tendon;
+pub mod transmission;
+pub mod velocity;

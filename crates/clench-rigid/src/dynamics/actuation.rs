@@ -1,0 +1,105 @@
+//! Actuator forces, force = gain · input + bias, and the dof forces they make.
+
+use crate::dynamics::activation::{activation_rates, input};
+use crate::dynamics::transmission::transmission_dofs;
+use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::state::State;
+use crate::workspace::{Forces, Positions, Velocities};
+use clench_math::Real;
+
+/// `act_dot`, `actuator_force` and `qfrc_actuator`, within the limits of tendons, actuators and joints, in this order. Gravity
+/// compensation of joints with `actgravcomp` is part of the joint's actuation, if the model has any actuator.
+pub fn actuation<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    force: &mut Forces<T>,
+) {
+    force.actuator_force.fill(T::ZERO);
+    force.qfrc_actuator.fill(T::ZERO);
+    force.ten_actuator_force.fill(T::ZERO);
+    force.act_dot.fill(T::ZERO);
+    if !model.flags.actuation || model.actuators.is_empty() {
+        return;
+    }
+    activation_rates(model, params, state, &mut force.act_dot);
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        if !actuator.disabled {
+            let input = input(model, params, state, pos, &force.act_dot, u);
+            let (length, velocity) = (pos.actuator_length[u], vel.actuator_velocity[u]);
+            force.actuator_force[u] = scalar_force(model, params, u, input, length, velocity);
+        }
+    }
+    limit_tendon_forces(model, params, force);
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        if actuator.forcelimited {
+            let [low, high] = params.actuator_forcerange[u];
+            force.actuator_force[u] = force.actuator_force[u].clamp(low, high);
+        }
+        let moment = &pos.actuator_moment[u * model.nv..(u + 1) * model.nv];
+        for dof in transmission_dofs(model, actuator.transmission) {
+            force.qfrc_actuator[dof] += moment[dof] * force.actuator_force[u];
+        }
+    }
+    finish_joints(model, params, force);
+}
+
+fn scalar_force<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    u: usize,
+    input: T,
+    length: T,
+    velocity: T,
+) -> T {
+    let actuator = &model.actuators[u];
+    let affine = |prm: &[T; 10]| prm[0] + prm[1] * length + prm[2] * velocity;
+    let gain = match actuator.gain {
+        GainKind::Fixed => params.actuator_gainprm[u][0],
+        GainKind::Affine => affine(&params.actuator_gainprm[u]),
+    };
+    match actuator.bias {
+        BiasKind::None => gain * input,
+        BiasKind::Affine => gain * input + affine(&params.actuator_biasprm[u]),
+    }
+}
+
+/// Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
+fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut Forces<T>) {
+    let limited = |transmission| match transmission {
+        Transmission::Tendon(t) if model.tendons[t].actfrclimited => Some(t),
+        _ => None,
+    };
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        if let Some(t) = limited(actuator.transmission) {
+            force.ten_actuator_force[t] += force.actuator_force[u];
+        }
+    }
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        if let Some(t) = limited(actuator.transmission) {
+            let total = force.ten_actuator_force[t];
+            let [low, high] = params.tendon_actfrcrange[t];
+            let zero = total.eq(T::ZERO);
+            let share = total.clamp(low, high) / T::select(zero, T::ONE, total);
+            let within = zero | (total.ge(low) & total.le(high));
+            let scale = T::select(within, T::ONE, share);
+            force.actuator_force[u] *= scale;
+        }
+    }
+}
+
+fn finish_joints<T: Real>(model: &Model, params: &Params<T>, force: &mut Forces<T>) {
+    for (j, joint) in model.joints.iter().enumerate() {
+        if joint.actgravcomp {
+            for i in joint.dof..joint.dof + joint.kind.nv() {
+                force.qfrc_actuator[i] += force.qfrc_gravcomp[i];
+            }
+        }
+        if joint.actfrclimited {
+            let [low, high] = params.jnt_actfrcrange[j];
+            force.qfrc_actuator[joint.dof] = force.qfrc_actuator[joint.dof].clamp(low, high);
+        }
+    }
+}

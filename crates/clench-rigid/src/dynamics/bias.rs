@@ -1,0 +1,38 @@
+//! Coriolis, centrifugal and gravity forces by recursive Newton–Euler (Featherstone 2008, §5.3).
+//!
+//! Without joint acceleration a body still accelerates, a = Σ ċdof q̇ along its chain; gravity is an upward acceleration of
+//! the world. The force that this takes, I a + v ×* I v, is summed down the tree and measured along each dof.
+
+use crate::dynamics::project::project_forces;
+use crate::model::{Model, Params};
+use crate::workspace::{Forces, Positions, Velocities};
+use clench_math::{Force, Motion, Real, Vec3};
+
+/// `qfrc_bias`, on the left side of the equation of motion.
+pub fn bias_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    qvel: &[T],
+    force: &mut Forces<T>,
+) {
+    let gravity = if model.flags.gravity {
+        params.gravity
+    } else {
+        Vec3::ZERO
+    };
+    force.cacc[0] = Motion::new(Vec3::ZERO, -gravity);
+    force.cfrc_body[0] = Force::ZERO;
+    for (b, body) in model.bodies.iter().enumerate().skip(1) {
+        let mut cacc = force.cacc[body.parent];
+        for i in body.dofs.clone() {
+            cacc += vel.cdof_dot[i] * qvel[i];
+        }
+        let (inertia, cvel) = (pos.cinert[b], vel.cvel[b]);
+        force.cacc[b] = cacc;
+        force.cfrc_body[b] = inertia * cacc + cvel.cross_force(inertia * cvel);
+    }
+    force.qfrc_bias.fill(T::ZERO);
+    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_bias);
+}

@@ -1,0 +1,74 @@
+//! Mechanical energy, J.
+
+use crate::dynamics::spring::{JointStretch, joint_stretch, tendon_stretch};
+use crate::model::{Model, Params};
+use crate::workspace::Positions;
+use clench_math::Real;
+use clench_solver::TreeMatrix;
+
+/// Energy of a state, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy<T> {
+    /// Of gravity (zero at the height of the world's origin) and of springs.
+    pub potential: T,
+    /// ½ q̇ᵀ M q̇, the armature's included.
+    pub kinetic: T,
+}
+
+/// The energy at the positions of `pos` and `qpos`, with velocities `qvel` and the mass matrix at those positions.
+pub fn energy<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    mass: &TreeMatrix<T>,
+    qpos: &[T],
+    qvel: &[T],
+) -> Energy<T> {
+    let mut potential = T::ZERO;
+    if model.flags.gravity {
+        for (&mass, &xipos) in params.body_mass.iter().zip(&pos.xipos).skip(1) {
+            potential -= mass * params.gravity.dot(xipos);
+        }
+    }
+    if model.flags.spring {
+        potential += spring_energy(model, params, pos, qpos);
+    }
+    Energy {
+        potential,
+        kinetic: kinetic_energy(model, mass, qvel),
+    }
+}
+
+/// ½ k x² of every spring.
+fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>, qpos: &[T]) -> T {
+    let half = T::new(0.5);
+    let mut energy = T::ZERO;
+    for (j, &stiffness) in params.jnt_stiffness.iter().enumerate() {
+        let squared = match joint_stretch(model, params, qpos, j) {
+            None => T::ZERO,
+            Some(JointStretch::Scalar(x)) => x.squared(),
+            Some(JointStretch::Rotation(turn)) => turn.norm_squared(),
+            Some(JointStretch::Pose(shift, turn)) => shift.norm_squared() + turn.norm_squared(),
+        };
+        energy += half * stiffness * squared;
+    }
+    for (t, &stiffness) in params.tendon_stiffness.iter().enumerate() {
+        energy += half * stiffness * tendon_stretch(params, t, pos.ten_length[t]).squared();
+    }
+    energy
+}
+
+/// ½ vᵀ M v, each pair of the lower triangle once.
+fn kinetic_energy<T: Real>(model: &Model, mass: &TreeMatrix<T>, qvel: &[T]) -> T {
+    let half = T::new(0.5);
+    let mut energy = T::ZERO;
+    for (i, &v) in qvel.iter().enumerate() {
+        let mut momentum = T::ZERO;
+        for (&j, &entry) in model.tree.row(i).iter().zip(mass.row(&model.tree, i)) {
+            let share = if j as usize == i { half } else { T::ONE };
+            momentum += share * entry * qvel[j as usize];
+        }
+        energy += momentum * v;
+    }
+    energy
+}

@@ -1,0 +1,63 @@
+//! Semi-implicit Euler, implicit in joint damping.
+//!
+//! The damping force −B v is taken at the end of the step, −B (v + h a): the acceleration that advances the velocity solves
+//! (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second factorization.
+
+use crate::dynamics::integrate::{advance_activations, advance_semi_implicit};
+use crate::model::{Model, Params};
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Mask, Real};
+
+/// Advances the state by a time step, from the accelerations and forces of `ws`.
+pub fn euler<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    ws.integration.qacc.copy_from_slice(&ws.qacc);
+    let mut damped = T::Mask::splat(false);
+    if model.flags.eulerdamp && model.flags.damper {
+        for damping in &params.dof_damping {
+            damped |= damping.gt(T::ZERO);
+        }
+    }
+    if damped.any() {
+        damped_acceleration(model, params, damped, ws);
+    }
+    advance_activations(
+        model,
+        params,
+        &ws.position,
+        &ws.force.act_dot,
+        &mut state.act,
+    );
+    advance_semi_implicit(model, params, &ws.integration.qacc, state);
+}
+
+/// Solves with M + h B in the lanes that are `damped`.
+fn damped_acceleration<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    damped: T::Mask,
+    ws: &mut Workspace<T>,
+) {
+    let tree = &model.tree;
+    let integration = &mut ws.integration;
+    let (matrix, qacc) = (&mut integration.matrix, &mut integration.qacc);
+    matrix.values.copy_from_slice(&ws.problem.mass.values);
+    for (i, &damping) in params.dof_damping.iter().enumerate() {
+        if let Some(diagonal) = matrix.row_mut(tree, i).last_mut() {
+            *diagonal += params.timestep * damping;
+        }
+    }
+    ws.singular |= damped & !integration.factor.factor(tree, matrix);
+    for (i, qacc) in qacc.iter_mut().enumerate() {
+        *qacc = ws.force.qfrc_smooth[i] + ws.qfrc_constraint[i];
+    }
+    integration.factor.solve(tree, qacc);
+    for (solved, &explicit) in qacc.iter_mut().zip(&ws.qacc) {
+        *solved = T::select(damped, *solved, explicit);
+    }
+}

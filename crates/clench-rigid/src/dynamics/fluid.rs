@@ -1,0 +1,178 @@
+//! Forces of a surrounding medium, on the box that has the body's mass and inertia.
+//!
+//! MuJoCo's default model ("inertia box", *Computation*, fluid forces): in the inertial frame of a body with box sides s and
+//! mean side d, velocity v relative to the medium and angular velocity ω,
+//!
+//! ```text
+//! viscous:    f_i = −3π d η v_i               t_i = −π d³ η ω_i
+//! quadratic:  f_i = −½ ρ s_j s_k |v_i| v_i    t_i = −ρ s_i (s_j⁴ + s_k⁴) |ω_i| ω_i / 64
+//! ```
+
+use crate::dynamics::project::{force_at, project_forces};
+use crate::model::{Model, Params};
+use crate::workspace::{Forces, Positions, Velocities};
+use clench_math::{Force, Mask, Motion, Real, Vec3};
+use std::f64::consts::PI;
+
+/// Below this mass (kg) a body feels no medium; also the least (kg m²) of a box's squared sides (MuJoCo's `mjMINVAL`).
+const TINY: f64 = 1e-15;
+
+/// Whether any lane has a medium.
+pub fn has_fluid<T: Real>(params: &Params<T>) -> bool {
+    !(params.density.eq(T::ZERO) & params.viscosity.eq(T::ZERO)).all()
+}
+
+/// `qfrc_fluid` (zero without a medium).
+pub fn fluid_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    force: &mut Forces<T>,
+) {
+    force.qfrc_fluid.fill(T::ZERO);
+    if !has_fluid(params) {
+        return;
+    }
+    for b in 0..model.nbody() {
+        let drag = Drag::new(model, params, pos, vel, b);
+        force.cfrc_body[b] = drag.force(model, pos);
+    }
+    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_fluid);
+}
+
+/// The resistance of the medium to one body, at one velocity.
+pub struct Drag<T> {
+    body: usize,
+    /// Velocity relative to the medium at the centre of mass, in the inertial frame.
+    velocity: Motion<T>,
+    /// Force per velocity of each component, N s/m.
+    viscous: Motion<T>,
+    /// Force per squared velocity.
+    quadratic: Motion<T>,
+}
+
+impl<T: Real> Drag<T> {
+    /// The resistance to body `b` as it moves now.
+    pub fn new(
+        model: &Model,
+        params: &Params<T>,
+        pos: &Positions<T>,
+        vel: &Velocities<T>,
+        b: usize,
+    ) -> Self {
+        let mass = params.body_mass[b];
+        let heavy = mass.ge(T::new(TINY));
+        let safe_mass = T::select(heavy, mass, T::ONE);
+        let i = params.body_inertia[b];
+        let side = |opposite: T| (opposite.max(T::new(TINY)) / safe_mass * T::new(6.0)).sqrt();
+        let s = Vec3::new(
+            side(i.y + i.z - i.x),
+            side(i.x + i.z - i.y),
+            side(i.x + i.y - i.z),
+        );
+        let density = T::select(heavy, params.density.max(T::ZERO), T::ZERO);
+        let viscosity = T::select(heavy, params.viscosity.max(T::ZERO), T::ZERO);
+        let all = |x: T| Vec3::new(x, x, x);
+        let diameter = (s.x + s.y + s.z) / T::new(3.0);
+        let viscous = Motion::new(
+            all(T::new(PI) * diameter * diameter * diameter * viscosity),
+            all(T::new(3.0 * PI) * diameter * viscosity),
+        );
+        let fourth = |x: T| x.squared().squared();
+        let (x4, y4, z4) = (fourth(s.x), fourth(s.y), fourth(s.z));
+        let quadratic = Motion::new(
+            s.scale_by(Vec3::new(y4 + z4, x4 + z4, x4 + y4)) * (density / T::new(64.0)),
+            Vec3::new(s.y * s.z, s.x * s.z, s.x * s.y) * (density * T::new(0.5)),
+        );
+        let mut velocity = local_velocity(model, pos, b, vel.cvel[b]);
+        velocity.linear -= pos.ximat[b].transpose_mul(params.wind);
+        Drag {
+            body: b,
+            velocity,
+            viscous,
+            quadratic,
+        }
+    }
+
+    /// The force on the body, about the reference point of its tree.
+    pub fn force(&self, model: &Model, pos: &Positions<T>) -> Force<T> {
+        let resist = |c1: T, c2: T, v: T| -(c1 * v + c2 * v.abs() * v);
+        let part = |c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>| {
+            Vec3::new(
+                resist(c1.x, c2.x, v.x),
+                resist(c1.y, c2.y, v.y),
+                resist(c1.z, c2.z, v.z),
+            )
+        };
+        self.to_world(
+            model,
+            pos,
+            part(
+                self.viscous.angular,
+                self.quadratic.angular,
+                self.velocity.angular,
+            ),
+            part(
+                self.viscous.linear,
+                self.quadratic.linear,
+                self.velocity.linear,
+            ),
+        )
+    }
+
+    /// The change of [`force`](Self::force) with a change `motion` of the body's velocity.
+    pub fn derivative(&self, model: &Model, pos: &Positions<T>, motion: Motion<T>) -> Force<T> {
+        let local = local_velocity(model, pos, self.body, motion);
+        let slope = |c1: T, c2: T, v: T| -(c1 + T::new(2.0) * c2 * v.abs());
+        let part = |c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>, dv: Vec3<T>| {
+            Vec3::new(
+                slope(c1.x, c2.x, v.x) * dv.x,
+                slope(c1.y, c2.y, v.y) * dv.y,
+                slope(c1.z, c2.z, v.z) * dv.z,
+            )
+        };
+        self.to_world(
+            model,
+            pos,
+            part(
+                self.viscous.angular,
+                self.quadratic.angular,
+                self.velocity.angular,
+                local.angular,
+            ),
+            part(
+                self.viscous.linear,
+                self.quadratic.linear,
+                self.velocity.linear,
+                local.linear,
+            ),
+        )
+    }
+
+    fn to_world(
+        &self,
+        model: &Model,
+        pos: &Positions<T>,
+        torque: Vec3<T>,
+        force: Vec3<T>,
+    ) -> Force<T> {
+        let (b, axes) = (self.body, &pos.ximat[self.body]);
+        force_at(model, pos, b, pos.xipos[b], *axes * force, *axes * torque)
+    }
+}
+
+/// A spatial velocity at the body's centre of mass, in its inertial frame.
+fn local_velocity<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    b: usize,
+    motion: Motion<T>,
+) -> Motion<T> {
+    let arm = pos.xipos[b] - pos.subtree_com[model.bodies[b].root];
+    let axes = &pos.ximat[b];
+    Motion::new(
+        axes.transpose_mul(motion.angular),
+        axes.transpose_mul(motion.velocity_at(arm)),
+    )
+}

@@ -1,0 +1,123 @@
+//! Advancing the state by a time step, once its rates of change are known.
+
+use crate::dynamics::activation::{nearest_setpoint, next_activation};
+use crate::model::{DynamicsKind, JointKind, Model, Params};
+use crate::state::State;
+use crate::workspace::Positions;
+use clench_math::{Quat, Real, Vec3};
+use clench_solver::{TreeFactor, TreeMatrix};
+
+/// Memory of the integrators.
+#[derive(Clone, Debug)]
+pub struct Integration<T> {
+    /// M − h ∂τ/∂v.
+    pub matrix: TreeMatrix<T>,
+    /// Its factor.
+    pub factor: TreeFactor<T>,
+    /// The acceleration that advances the velocity (nv).
+    pub qacc: Vec<T>,
+    /// Runge–Kutta: the state at the start of the step.
+    pub start: Rates<T>,
+    /// Runge–Kutta: the rates of the present stage.
+    pub stage: Rates<T>,
+    /// Runge–Kutta: the weighted mean of all stages' rates.
+    pub mean: Rates<T>,
+}
+
+/// Positions, velocities and activations, or their rates of change.
+#[derive(Clone, Debug, Default)]
+pub struct Rates<T> {
+    /// Positions (nq), or their rates (nv).
+    pub position: Vec<T>,
+    /// Velocities, or accelerations (nv).
+    pub velocity: Vec<T>,
+    /// Activations, or their rates (na).
+    pub activation: Vec<T>,
+}
+
+impl<T: Real> Rates<T> {
+    fn new(model: &Model, npos: usize) -> Self {
+        Rates {
+            position: vec![T::ZERO; npos],
+            velocity: vec![T::ZERO; model.nv],
+            activation: vec![T::ZERO; model.na],
+        }
+    }
+}
+
+impl<T: Real> Integration<T> {
+    /// Room for the integrators of a model.
+    pub fn new(model: &Model) -> Self {
+        Integration {
+            matrix: TreeMatrix::zeros(&model.tree),
+            factor: TreeFactor::zeros(&model.tree),
+            qacc: vec![T::ZERO; model.nv],
+            start: Rates::new(model, model.nq),
+            stage: Rates::new(model, model.nv),
+            mean: Rates::new(model, model.nv),
+        }
+    }
+}
+
+/// `out += x · scale`, entry by entry.
+pub fn add_scaled<T: Real>(out: &mut [T], x: &[T], scale: T) {
+    for (out, &x) in out.iter_mut().zip(x) {
+        *out += x * scale;
+    }
+}
+
+/// Moves `qpos` along `velocity` (nv) for `time` seconds. Orientations turn about the child's axes.
+pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T], time: T) {
+    for joint in &model.joints {
+        let (mut q, mut v) = (&mut qpos[joint.qpos..], &velocity[joint.dof..]);
+        match joint.kind {
+            JointKind::Slide | JointKind::Hinge => q[0] += v[0] * time,
+            JointKind::Ball | JointKind::Free => {
+                if joint.kind == JointKind::Free {
+                    add_scaled(&mut q[..3], v, time);
+                    (q, v) = (&mut q[3..], &v[3..]);
+                }
+                let turned = Quat::from_slice(q).integrate(Vec3::from_slice(v), time);
+                turned.write(q);
+            }
+        }
+    }
+}
+
+/// Moves activations by `act_dot`; those of disabled actuators stay where they are.
+pub fn advance_activations<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    act_dot: &[T],
+    act: &mut [T],
+) {
+    if !model.flags.actuation {
+        return;
+    }
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        let Some(a) = actuator.act else { continue };
+        let rate = if actuator.disabled {
+            T::ZERO
+        } else {
+            act_dot[a]
+        };
+        act[a] = next_activation(model, params, u, act[a], rate);
+        if actuator.dynamics == DynamicsKind::Integrator {
+            act[a] = nearest_setpoint(model, params, u, act[a], pos.actuator_length[u]);
+        }
+    }
+}
+
+/// Velocities first, then positions with the new velocities (semi-implicit Euler), then time.
+pub fn advance_semi_implicit<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qacc: &[T],
+    state: &mut State<T>,
+) {
+    let h = params.timestep;
+    add_scaled(&mut state.qvel, qacc, h);
+    integrate_positions(model, &mut state.qpos, &state.qvel, h);
+    state.time += h;
+}

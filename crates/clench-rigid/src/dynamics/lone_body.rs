@@ -1,0 +1,101 @@
+//! Gyroscopic forces of a free body without jointed children, integrated implicitly.
+//!
+//! Integrated explicitly they feed energy into a spinning body. With w the angular velocity, s the centre of mass relative to
+//! the joint and I the inertia about it, the bias force of the body and its change with a change δw are
+//!
+//! ```text
+//! f = m w×(w×s)                      t = w×Iw
+//! δf = m (δw×(w×s) + w×(δw×s))       δt = δw×Iw + w×Iδw
+//! ```
+//!
+//! The force acts along the joint's translations, the moment t + s×f about its rotations. (M − h D + h ∂bias/∂v) a = τ is
+//! then a 6 × 6 system apart from all others.
+
+use crate::model::{JointKind, Model, Params};
+use crate::workspace::{Positions, Workspace};
+use clench_math::{Real, Vec3};
+use std::array::from_fn;
+
+/// Whether joint `j` is the free joint of a body that is a tree by itself, all of its mass in that one body.
+pub fn is_lone_body(model: &Model, j: usize) -> bool {
+    let joint = &model.joints[j];
+    let (tree, after) = (&model.tree, joint.dof + 6);
+    joint.kind == JointKind::Free
+        && (after >= model.nv || tree.tree_of(after) != tree.tree_of(joint.dof))
+        && model.params.body_subtreemass[joint.body] == model.params.body_mass[joint.body]
+}
+
+/// Replaces the joint's part of `integration.qacc`.
+pub fn solve_lone_body<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    j: usize,
+    qvel: &[T],
+    ws: &mut Workspace<T>,
+) {
+    let dof = model.joints[j].dof;
+    let matrix = &ws.integration.matrix;
+    let entry = |r: usize, c: usize| matrix.row(&model.tree, dof + r.max(c))[r.min(c)];
+    let right_side = |r: usize| ws.force.qfrc_smooth[dof + r] + ws.qfrc_constraint[dof + r];
+    let mut rows = from_fn(|r| from_fn(|c| if c < 6 { entry(r, c) } else { right_side(r) }));
+    add_bias_slope(model, params, j, qvel, &ws.position, &mut rows);
+    let x = solve6(rows);
+    ws.integration.qacc[dof..dof + 6].copy_from_slice(&x);
+}
+
+/// Adds h ∂bias/∂v.
+fn add_bias_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    j: usize,
+    qvel: &[T],
+    pos: &Positions<T>,
+    rows: &mut [[T; 7]; 6],
+) {
+    let joint = &model.joints[j];
+    let b = joint.body;
+    let (h, mass, axes) = (params.timestep, params.body_mass[b], &pos.xmat[b]);
+    let s = pos.xipos[b] - pos.xpos[b];
+    let frame = &pos.ximat[b];
+    let rotate_inertia =
+        |v: Vec3<T>| *frame * params.body_inertia[b].scale_by(frame.transpose_mul(v));
+    let w = *axes * Vec3::from_slice(&qvel[joint.dof + 3..]);
+    for k in 0..3 {
+        let dw = axes.column(k);
+        let df = (dw.cross(w.cross(s)) + w.cross(dw.cross(s))) * mass;
+        let dt = dw.cross(rotate_inertia(w)) + w.cross(rotate_inertia(dw));
+        let moment = axes.transpose_mul(dt + s.cross(df));
+        for r in 0..3 {
+            rows[r][3 + k] += h * df[r];
+            rows[3 + r][3 + k] += h * moment[r];
+        }
+    }
+}
+
+/// Solves six equations, each with its right side as the seventh number, by elimination. The pivot of each column is
+/// brought up by exchanging rows, lane by lane.
+fn solve6<T: Real>(mut rows: [[T; 7]; 6]) -> [T; 6] {
+    for k in 0..6 {
+        let (above, below) = rows.split_at_mut(k + 1);
+        let pivot = &mut above[k];
+        for row in below.iter_mut() {
+            let larger = row[k].abs().gt(pivot[k].abs());
+            for (p, r) in pivot.iter_mut().zip(row) {
+                (*p, *r) = (T::select(larger, *r, *p), T::select(larger, *p, *r));
+            }
+        }
+        for row in below {
+            let factor = row[k] / pivot[k];
+            for (r, &p) in row.iter_mut().zip(&*pivot) {
+                *r -= factor * p;
+            }
+        }
+    }
+    let mut x = [T::ZERO; 6];
+    for (k, row) in rows.iter().enumerate().rev() {
+        let known = row[k + 1..6].iter().zip(&x[k + 1..]);
+        let rest = known.fold(row[6], |rest, (&a, &x)| rest - a * x);
+        x[k] = rest / row[k];
+    }
+    x
+}

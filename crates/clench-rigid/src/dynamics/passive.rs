@@ -1,0 +1,117 @@
+//! Passive forces: springs, dampers, gravity compensation and the medium.
+
+use crate::dynamics::fluid::fluid_forces;
+use crate::dynamics::project::{force_at, project_forces};
+use crate::dynamics::spring::{JointStretch, joint_stretch, tendon_stretch};
+use crate::dynamics::tendon::add_tendon_force;
+use crate::model::{Model, Params};
+use crate::workspace::{Forces, Positions, Velocities};
+use clench_math::{Force, Mask, Real, Vec3};
+
+/// `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid` and their sum `qfrc_passive`. Gravity compensation of joints
+/// with `actgravcomp` is left to the actuators. As in MuJoCo, without springs and dampers there is nothing passive at all.
+pub fn passive_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    qpos: &[T],
+    qvel: &[T],
+    force: &mut Forces<T>,
+) {
+    force.qfrc_spring.fill(T::ZERO);
+    force.qfrc_damper.fill(T::ZERO);
+    force.qfrc_gravcomp.fill(T::ZERO);
+    force.qfrc_fluid.fill(T::ZERO);
+    force.qfrc_passive.fill(T::ZERO);
+    if !model.flags.spring && !model.flags.damper {
+        return;
+    }
+    if model.flags.spring {
+        springs(model, params, pos, qpos, &mut force.qfrc_spring);
+    }
+    if model.flags.damper {
+        dampers(model, params, vel, qvel, &mut force.qfrc_damper);
+    }
+    gravity_compensation(model, params, pos, force);
+    fluid_forces(model, params, pos, vel, force);
+    for (i, dof) in model.dofs.iter().enumerate() {
+        let mut sum = force.qfrc_spring[i] + force.qfrc_damper[i] + force.qfrc_fluid[i];
+        if !model.joints[dof.joint].actgravcomp {
+            sum += force.qfrc_gravcomp[i];
+        }
+        force.qfrc_passive[i] = sum;
+    }
+}
+
+fn springs<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    qpos: &[T],
+    qfrc: &mut [T],
+) {
+    let add = |qfrc: &mut [T], force: Vec3<T>| {
+        for (qfrc, f) in qfrc.iter_mut().zip(force.to_array()) {
+            *qfrc += f;
+        }
+    };
+    for (j, joint) in model.joints.iter().enumerate() {
+        let stiffness = params.jnt_stiffness[j];
+        let qfrc = &mut qfrc[joint.dof..];
+        match joint_stretch(model, params, qpos, j) {
+            None => {}
+            Some(JointStretch::Scalar(x)) => qfrc[0] += -x * stiffness,
+            Some(JointStretch::Rotation(turn)) => add(qfrc, turn * -stiffness),
+            Some(JointStretch::Pose(shift, turn)) => {
+                add(qfrc, shift * -stiffness);
+                add(&mut qfrc[3..], turn * -stiffness);
+            }
+        }
+    }
+    for t in 0..model.tendons.len() {
+        let stretch = tendon_stretch(params, t, pos.ten_length[t]);
+        add_tendon_force(
+            model,
+            params,
+            t,
+            -stretch * params.tendon_stiffness[t],
+            qfrc,
+        );
+    }
+}
+
+fn dampers<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    vel: &Velocities<T>,
+    qvel: &[T],
+    qfrc: &mut [T],
+) {
+    for ((qfrc, &damping), &v) in qfrc.iter_mut().zip(&params.dof_damping).zip(qvel) {
+        *qfrc = -v * damping;
+    }
+    for t in 0..model.tendons.len() {
+        let force = -vel.ten_velocity[t] * params.tendon_damping[t];
+        add_tendon_force(model, params, t, force, qfrc);
+    }
+}
+
+/// Each body's weight, or the share of it that `gravcomp` says, is held at its centre of mass.
+fn gravity_compensation<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    force: &mut Forces<T>,
+) {
+    let none = |share: &T| share.eq(T::ZERO).all();
+    if !model.flags.gravity || params.body_gravcomp.iter().all(none) {
+        return;
+    }
+    for b in 0..model.nbody() {
+        let lift = params.gravity * -(params.body_mass[b] * params.body_gravcomp[b]);
+        force.cfrc_body[b] = force_at(model, pos, b, pos.xipos[b], lift, Vec3::ZERO);
+    }
+    force.cfrc_body[0] = Force::ZERO;
+    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_gravcomp);
+}

@@ -1,0 +1,133 @@
+//! D = ∂τ/∂v: how smooth forces change with velocities, in the pattern of the mass matrix.
+//!
+//! Coriolis forces are left out, so that D is symmetric, and so is what couples dofs of different branches, so that M − h D
+//! factors without fill (both as in MuJoCo's `implicitfast`). A force s along a generalized velocity J v contributes
+//! its slope: s′ JᵀJ.
+
+use crate::dynamics::activation::input;
+use crate::dynamics::fluid::{Drag, has_fluid};
+use crate::dynamics::tendon;
+use crate::dynamics::transmission::transmission_dofs;
+use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::state::State;
+use crate::workspace::{Forces, Positions, Velocities};
+use clench_math::{Mask, Real};
+use clench_solver::TreeMatrix;
+
+/// `matrix += scale · D`.
+pub fn add_velocity_slopes<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    (pos, vel, force): (&Positions<T>, &Velocities<T>, &Forces<T>),
+    scale: T,
+    matrix: &mut TreeMatrix<T>,
+) {
+    if model.flags.actuation {
+        for (u, actuator) in model.actuators.iter().enumerate() {
+            let slope = actuator_slope(model, params, state, pos, force, u);
+            let moment = &pos.actuator_moment[u * model.nv..(u + 1) * model.nv];
+            let arms = transmission_dofs(model, actuator.transmission).map(|i| (i, moment[i]));
+            add_outer(model, arms, slope * scale, matrix);
+        }
+    }
+    if (model.flags.spring || model.flags.damper) && has_fluid(params) {
+        for b in 1..model.nbody() {
+            add_fluid(model, params, pos, vel, b, scale, matrix);
+        }
+    }
+    if model.flags.damper {
+        for (i, &damping) in params.dof_damping.iter().enumerate() {
+            if let Some(diagonal) = matrix.row_mut(&model.tree, i).last_mut() {
+                *diagonal -= damping * scale;
+            }
+        }
+        for (t, &damping) in params.tendon_damping.iter().enumerate() {
+            let terms = tendon::terms(model, params, t);
+            add_outer(model, terms, -damping * scale, matrix);
+        }
+    }
+}
+
+/// Adds `scale · JᵀJ` of a sparse row J, where the pattern has room for it.
+fn add_outer<T: Real>(
+    model: &Model,
+    row: impl Iterator<Item = (usize, T)> + Clone,
+    scale: T,
+    matrix: &mut TreeMatrix<T>,
+) {
+    if scale.eq(T::ZERO).all() {
+        return;
+    }
+    for (i, arm) in row.clone() {
+        let entries = matrix.row_mut(&model.tree, i);
+        for (j, other) in row.clone() {
+            if let Ok(k) = model.tree.row(i).binary_search(&(j as u32)) {
+                entries[k] += scale * arm * other;
+            }
+        }
+    }
+}
+
+/// ∂force/∂velocity of actuator `u`; zero where a limit of the actuator, its tendon or its joint holds the force.
+fn actuator_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    pos: &Positions<T>,
+    force: &Forces<T>,
+    u: usize,
+) -> T {
+    let actuator = &model.actuators[u];
+    let mut slope = T::ZERO;
+    if actuator.disabled {
+        return slope;
+    }
+    if actuator.bias == BiasKind::Affine {
+        slope += params.actuator_biasprm[u][2];
+    }
+    if actuator.gain == GainKind::Affine {
+        let input = input(model, params, state, pos, &force.act_dot, u);
+        slope += params.actuator_gainprm[u][2] * input;
+    }
+    let saturated = |value: T, [low, high]: [T; 2]| value.le(low) | value.ge(high);
+    let mut held = T::Mask::splat(false);
+    if actuator.forcelimited {
+        held |= saturated(force.actuator_force[u], params.actuator_forcerange[u]);
+    }
+    match actuator.transmission {
+        Transmission::Tendon(t) if model.tendons[t].actfrclimited => {
+            held |= saturated(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
+        }
+        Transmission::Joint(j) | Transmission::JointInParent(j)
+            if model.joints[j].actfrclimited =>
+        {
+            let total = force.qfrc_actuator[model.joints[j].dof];
+            held |= saturated(total, params.jnt_actfrcrange[j]);
+        }
+        _ => {}
+    }
+    T::select(held, T::ZERO, slope)
+}
+
+/// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i.
+fn add_fluid<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    b: usize,
+    scale: T,
+    matrix: &mut TreeMatrix<T>,
+) {
+    let drag = Drag::new(model, params, pos, vel, b);
+    let mut chain = model.bodies[b].last_dof;
+    while let Some(i) = chain {
+        let force = drag.derivative(model, pos, pos.cdof[i]);
+        let entries = matrix.row_mut(&model.tree, i);
+        for (entry, &j) in entries.iter_mut().zip(model.tree.row(i)) {
+            *entry += scale * pos.cdof[j as usize].dot(force);
+        }
+        chain = model.dofs[i].parent;
+    }
+}

@@ -1,0 +1,38 @@
+//! The sum of all forces but constraints, and the acceleration they alone would cause.
+
+use crate::dynamics::project::{force_at, project_forces};
+use crate::model::Model;
+use crate::state::State;
+use crate::workspace::{Forces, Positions};
+use clench_math::{Force, Mask, Real};
+use clench_solver::Problem;
+
+/// `qfrc_smooth`: passive + actuator + applied − bias.
+pub fn smooth_forces<T: Real>(
+    model: &Model,
+    state: &State<T>,
+    pos: &Positions<T>,
+    force: &mut Forces<T>,
+) {
+    for (i, smooth) in force.qfrc_smooth.iter_mut().enumerate() {
+        *smooth = force.qfrc_passive[i] - force.qfrc_bias[i]
+            + state.qfrc_applied[i]
+            + force.qfrc_actuator[i];
+    }
+    let still = |f: &Force<T>| f.to_array().iter().all(|x| x.eq(T::ZERO).all());
+    if state.xfrc_applied.iter().all(still) {
+        return;
+    }
+    for (b, applied) in state.xfrc_applied.iter().enumerate() {
+        force.cfrc_body[b] = force_at(model, pos, b, pos.xipos[b], applied.linear, applied.angular);
+    }
+    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_smooth);
+}
+
+/// `qacc_smooth = M⁻¹ qfrc_smooth`, by the factor that the position stage left.
+pub fn smooth_acceleration<T: Real>(model: &Model, force: &Forces<T>, problem: &mut Problem<T>) {
+    problem.qacc_smooth.copy_from_slice(&force.qfrc_smooth);
+    problem
+        .mass_factor
+        .solve(&model.tree, &mut problem.qacc_smooth);
+}

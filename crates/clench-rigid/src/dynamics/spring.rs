@@ -1,0 +1,48 @@
+//! Springs: how far each is from rest. Force and energy both follow from that.
+
+use crate::model::{JointKind, Model, Params};
+use clench_math::{Mask, Quat, Real, Vec3};
+
+/// How far a joint is from its spring's rest position.
+pub enum JointStretch<T> {
+    /// A distance or an angle, on the joint's only dof.
+    Scalar(T),
+    /// A rotation vector in the child's frame.
+    Rotation(Vec3<T>),
+    /// A displacement in the world's frame and a rotation vector in the child's.
+    Pose(Vec3<T>, Vec3<T>),
+}
+
+/// The stretch of joint `j`; `None` where no lane has a spring there.
+pub fn joint_stretch<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qpos: &[T],
+    j: usize,
+) -> Option<JointStretch<T>> {
+    if params.jnt_stiffness[j].eq(T::ZERO).all() {
+        return None;
+    }
+    let joint = &model.joints[j];
+    let (q, rest) = (&qpos[joint.qpos..], &params.qpos_spring[joint.qpos..]);
+    let rotation = |q: &[T], rest: &[T]| {
+        Quat::from_slice(q)
+            .normalize()
+            .difference(Quat::from_slice(rest))
+    };
+    Some(match joint.kind {
+        JointKind::Slide | JointKind::Hinge => JointStretch::Scalar(q[0] - rest[0]),
+        JointKind::Ball => JointStretch::Rotation(rotation(q, rest)),
+        JointKind::Free => JointStretch::Pose(
+            Vec3::from_slice(q) - Vec3::from_slice(rest),
+            rotation(&q[3..], &rest[3..]),
+        ),
+    })
+}
+
+/// How far tendon `t` of length `length` is outside the dead band of its spring.
+pub fn tendon_stretch<T: Real>(params: &Params<T>, t: usize, length: T) -> T {
+    let [low, high] = params.tendon_lengthspring[t];
+    let below = T::select(length.lt(low), length - low, T::ZERO);
+    T::select(length.gt(high), length - high, below)
+}

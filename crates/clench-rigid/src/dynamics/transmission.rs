@@ -1,0 +1,87 @@
+//! Transmissions: the length of each actuator and its moment arms, ∂length/∂q along each dof.
+
+use crate::dynamics::tendon;
+use crate::model::{JointKind, Model, Params, Transmission};
+use crate::workspace::Positions;
+use clench_math::{Quat, Real, Vec3};
+
+/// The dofs that a transmission acts on: where its row of `actuator_moment` may be nonzero.
+pub fn transmission_dofs(
+    model: &Model,
+    transmission: Transmission,
+) -> impl Iterator<Item = usize> + Clone + '_ {
+    let (range, joints): (_, &[usize]) = match transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => {
+            let joint = &model.joints[j];
+            (joint.dof..joint.dof + joint.kind.nv(), &[])
+        }
+        Transmission::Tendon(t) => (0..0, &model.tendons[t].joints),
+    };
+    range.chain(joints.iter().map(|&j| model.joints[j].dof))
+}
+
+/// `actuator_length` and the nonzero entries of `actuator_moment`.
+///
+/// A ball joint's length is its rotation vector along the gear, a free joint has none (zero); their gears are wrenches in
+/// the child's frame, or for [`Transmission::JointInParent`] in the parent's.
+pub fn transmission<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qpos: &[T],
+    pos: &mut Positions<T>,
+) {
+    let nv = model.nv;
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        let gear = &params.actuator_gear[u];
+        let moment = &mut pos.actuator_moment[u * nv..(u + 1) * nv];
+        pos.actuator_length[u] = match actuator.transmission {
+            Transmission::Joint(j) => joint_arms(model, qpos, j, gear, false, moment),
+            Transmission::JointInParent(j) => joint_arms(model, qpos, j, gear, true, moment),
+            Transmission::Tendon(t) => {
+                for (dof, coef) in tendon::terms(model, params, t) {
+                    moment[dof] = coef * gear[0];
+                }
+                pos.ten_length[t] * gear[0]
+            }
+        };
+    }
+}
+
+/// Writes the moment arms on joint `j` and returns the length.
+fn joint_arms<T: Real>(
+    model: &Model,
+    qpos: &[T],
+    j: usize,
+    gear: &[T; 6],
+    in_parent: bool,
+    moment: &mut [T],
+) -> T {
+    let joint = &model.joints[j];
+    let arms = &mut moment[joint.dof..];
+    let q = &qpos[joint.qpos..];
+    let to_child = |quat: Quat<T>, wrench: Vec3<T>| {
+        if in_parent {
+            quat.conjugate().rotate(wrench)
+        } else {
+            wrench
+        }
+    };
+    match joint.kind {
+        JointKind::Slide | JointKind::Hinge => {
+            arms[0] = gear[0];
+            q[0] * gear[0]
+        }
+        JointKind::Ball => {
+            let quat = Quat::from_slice(q).normalize();
+            let axis = to_child(quat, Vec3::from_slice(gear));
+            axis.write(arms);
+            quat.to_rotation_vector().dot(axis)
+        }
+        JointKind::Free => {
+            let quat = Quat::from_slice(&q[3..]).normalize();
+            Vec3::from_slice(gear).write(arms);
+            to_child(quat, Vec3::from_slice(&gear[3..])).write(&mut arms[3..]);
+            T::ZERO
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The life of a step: each stage reads what the ones before it left in the workspace.
+
+use crate::constraint::constraint_stage;
+use crate::contact::detect;
+use crate::dynamics::actuation::actuation;
+use crate::dynamics::bias::bias_forces;
+use crate::dynamics::com::com_positions;
+use crate::dynamics::euler::euler;
+use crate::dynamics::implicit::implicit_fast;
+use crate::dynamics::inertia::composite_inertia;
+use crate::dynamics::kinematics::kinematics;
+use crate::dynamics::passive::passive_forces;
+use crate::dynamics::rk4::rk4;
+use crate::dynamics::smooth::{smooth_acceleration, smooth_forces};
+use crate::dynamics::tendon::tendon_lengths;
+use crate::dynamics::transmission::transmission;
+use crate::dynamics::velocity::velocities;
+use crate::model::{Integrator, Model, Params};
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::Real;
+
+/// What depends on positions: poses, spatial inertias and dof axes, tendons and transmissions, and the mass matrix with
+/// its factor.
+pub fn position_stage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let pos = &mut ws.position;
+    kinematics(model, params, state, pos);
+    com_positions(model, params, pos);
+    tendon_lengths(model, params, &state.qpos, pos);
+    transmission(model, params, &state.qpos, pos);
+    composite_inertia(model, params, pos, &mut ws.problem.mass);
+    ws.singular = !ws.problem.factor_mass();
+}
+
+/// What depends on velocities besides: velocities of bodies, tendons and actuators, passive and bias forces.
+pub fn velocity_stage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);
+    velocities(model, params, pos, &state.qvel, vel);
+    passive_forces(model, params, pos, vel, &state.qpos, &state.qvel, force);
+    bias_forces(model, params, pos, vel, &state.qvel, force);
+}
+
+/// Actuator forces, the sum of all smooth forces, and the acceleration that they alone would cause.
+pub fn force_stage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
+    actuation(model, params, state, pos, vel, force);
+    smooth_forces(model, state, pos, force);
+    smooth_acceleration(model, force, &mut ws.problem);
+}
+
+/// Forward dynamics: everything that follows from the state, up to `ws.qacc` and the constraint forces.
+pub fn forward<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    position_stage(model, params, state, ws);
+    detect(model, params, settings, ws);
+    velocity_stage(model, params, state, ws);
+    force_stage(model, params, state, ws);
+    constraint_stage(model, params, settings, state, ws);
+}
+
+/// Advances the state by one time step. The next step's solver starts from this one's acceleration.
+pub fn step<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    forward(model, params, settings, state, ws);
+    match model.integrator {
+        Integrator::Euler => euler(model, params, state, ws),
+        Integrator::ImplicitFast => implicit_fast(model, params, state, ws),
+        Integrator::Rk4 => rk4(model, params, state, ws, |state, ws| {
+            forward(model, params, settings, state, ws);
+        }),
+    }
+    state.qacc_warmstart.copy_from_slice(&ws.qacc);
+}
