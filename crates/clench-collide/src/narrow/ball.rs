@@ -21,13 +21,13 @@ pub(super) fn ball_ball<T: Real>(
     margin: T,
     wanted: T::Mask,
     out: &mut Contacts<T>,
-) -> T::Mask {
+) {
     let offset = b.center - a.center;
     let squared = offset.norm_squared();
     let reach = a.radius + b.radius + margin;
     let near = squared.le(reach * reach) & wanted;
     if !near.any() {
-        return near;
+        return;
     }
     let length = squared.sqrt();
     let distance = length - a.radius - b.radius;
@@ -40,7 +40,6 @@ pub(super) fn ball_ball<T: Real>(
     }
     let position = a.center + normal * (a.radius + distance * T::new(0.5));
     out.push(ContactPoint::new(position, normal, distance, active));
-    active
 }
 
 /// A unit vector across the axes of two shapes; x where they are parallel.

@@ -155,7 +155,7 @@ impl<S: Scalar> BoxPair<S> {
         let Feature::Face { owner, axis } = face else {
             return Some(face);
         };
-        let direction = self.edge_axis(i, j);
+        let (direction, _) = self.edge_axis(i, j).normalize();
         let along_face = if owner == 0 {
             direction[axis].abs()
         } else {

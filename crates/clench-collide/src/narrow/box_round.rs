@@ -4,7 +4,7 @@
 
 use super::Placed;
 use crate::{ContactPoint, Contacts};
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// Coordinate-wise clamp to the box of half lengths `size`.
 #[inline(always)]
@@ -248,11 +248,13 @@ impl<T: Real> Nearest<T> {
             walls[j] |= over_face;
             walls[k] |= over_face;
         }
+        // A side that the capsule is parallel to, but for rounding, is no limit.
+        let least = total.sqrt() * T::splat(T::Scalar::EPSILON) * T::new(1e4);
         let mut walk = T::ONE - way * self.along;
         for i in 0..3 {
             let step = way * half[i];
             let exit = (size[i].copysign(step) - self.point[i]) / step;
-            let counts = walls[i] & exit.gt(T::ZERO);
+            let counts = walls[i] & exit.gt(T::ZERO) & step.abs().gt(least);
             walk = T::select(counts, exit.min(walk), walk);
         }
         (self.along + way * walk, !way.eq(T::ZERO))

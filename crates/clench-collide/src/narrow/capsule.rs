@@ -6,7 +6,8 @@
 //!
 //! and the second parameter is the projection of that point. Clamping each to its segment in turn, and projecting once
 //! more, gives the nearest points of the segments. The triple product keeps its digits where the axes are nearly
-//! parallel. Below an angle of 1e-4 (MuJoCo 4.0's limit) they count as parallel and touch at two of their ends.
+//! parallel. Below an angle of 1e-4 (MuJoCo 4.0's limit) they count as parallel and touch at both ends of their overlap;
+//! where they do not overlap both contacts are the same, as in MuJoCo.
 
 use super::{
     Placed,
@@ -48,11 +49,6 @@ impl<T: Real> Segment<T> {
             radius: self.radius,
         }
     }
-    /// The ball on this segment nearest to a point.
-    #[inline(always)]
-    fn nearest(&self, point: Vec3<T>) -> Ball<T> {
-        self.ball(self.clamp(self.axis.dot(point - self.center)))
-    }
 }
 
 pub(super) fn capsule_capsule<T: Real>(
@@ -64,53 +60,35 @@ pub(super) fn capsule_capsule<T: Real>(
     let (first, second) = (Segment::new(a), Segment::new(b));
     let offset = second.center - first.center;
     let across = first.axis.cross(second.axis);
+    let cosine = first.axis.dot(second.axis);
+    let ahead = first.axis.dot(offset);
+    let behind = second.axis.dot(offset);
     let sine_squared = across.norm_squared();
     let parallel = sine_squared.lt(T::new(PARALLEL));
 
     let inverse = T::ONE / T::select(parallel, T::ONE, sine_squared);
     let s = first.clamp(offset.cross(second.axis).dot(across) * inverse);
-    let cosine = first.axis.dot(second.axis);
-    let free = cosine * s - second.axis.dot(offset);
+    let free = cosine * s - behind;
     let t = second.clamp(free);
-    let again = first.clamp(first.axis.dot(offset) + cosine * t);
-    let s = T::select(free.eq(t), s, again);
-    let normal = || across_axes(a, b);
-    ball_ball(
-        first.ball(s),
-        second.ball(t),
-        normal,
-        margin,
-        !parallel,
-        out,
-    );
-    if parallel.any() {
-        parallel_capsules(first, second, normal, margin, parallel, out);
-    }
-}
+    let s = T::select(free.eq(t), s, first.clamp(ahead + cosine * t));
 
-/// The first two contacts among: each end of the first capsule with what is nearest on the second, and the reverse.
-fn parallel_capsules<T: Real>(
-    first: Segment<T>,
-    second: Segment<T>,
-    normal: impl Fn() -> Vec3<T>,
-    margin: T,
-    parallel: T::Mask,
-    out: &mut Contacts<T>,
-) {
-    let mut found = T::ZERO;
-    let mut add = |one: Ball<T>, other: Ball<T>| {
-        let wanted = parallel & found.lt(T::new(2.0));
-        if wanted.any() {
-            let active = ball_ball(one, other, &normal, margin, wanted, out);
-            found += T::select(active, T::ONE, T::ZERO);
-        }
+    // Parallel: where the second segment, seen from the first, begins and ends on it. Each is an end of one of them.
+    let extent = second.half_length * cosine.abs();
+    let end = second.half_length.copysign(cosine);
+    let overlap = |sign: T| {
+        let free = ahead + extent * sign;
+        let s = first.clamp(free);
+        let projected = second.clamp(cosine * s - behind);
+        (s, T::select(free.eq(s), end * sign, projected))
     };
-    for sign in [1.0, -1.0] {
-        let end = first.ball(first.half_length * T::new(sign));
-        add(end, second.nearest(end.center));
-    }
-    for sign in [1.0, -1.0] {
-        let end = second.ball(second.half_length * T::new(sign));
-        add(first.nearest(end.center), end);
+    let begin = overlap(-T::ONE);
+    let s = T::select(parallel, begin.0, s);
+    let t = T::select(parallel, begin.1, t);
+    let normal = || across_axes(a, b);
+    let all = T::Mask::splat(true);
+    ball_ball(first.ball(s), second.ball(t), normal, margin, all, out);
+    if parallel.any() {
+        let (s, t) = overlap(T::ONE);
+        ball_ball(first.ball(s), second.ball(t), normal, margin, parallel, out);
     }
 }

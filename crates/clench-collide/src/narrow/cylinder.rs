@@ -2,7 +2,7 @@
 
 use super::{
     Placed,
-    way_out::{Segment, way_out},
+    way_out::{Segment, deepest, way_out},
 };
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3};
@@ -20,19 +20,21 @@ struct Cylinder<T> {
 }
 
 impl<T: Real> Cylinder<T> {
-    /// The cylinder `b`, its spare direction across the axes of `a` and `b`, or its own x axis.
+    /// The cylinder `b`. Its spare direction is across the axes of `a` and `b`; where these are parallel, across the
+    /// axis of `b` in the plane of the world's x axis, or its own x axis. The normal is against it.
     fn new(a: Placed<T>, b: Placed<T>) -> Self {
-        let axis = b.pose.rotation.transpose_mul(a.pose.axis());
-        // axis × z has no z component.
-        let (zero, across) = (T::ZERO, Vec3::new(axis.y, -axis.x, T::ZERO));
-        let length = across.norm();
-        let parallel = length.lt(T::new(1e-15));
-        let unit = across * (T::ONE / T::select(parallel, T::ONE, length));
+        let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
+        let tiny = T::new(1e-12);
+        let z = Vec3::new(T::ZERO, T::ZERO, T::ONE);
+        let world_x = flat(b.pose.rotation.rows[0]);
+        let own_x = Vec3::new(T::ONE, T::ZERO, T::ZERO);
+        let across = b.pose.rotation.transpose_mul(a.pose.axis()).cross(z);
+        let mut inward = Vec3::select(world_x.norm_squared().lt(tiny), own_x, world_x);
+        inward = Vec3::select(across.norm_squared().lt(tiny), inward, across);
         Cylinder {
             radius: b.shape.size.x,
             half_length: b.shape.size.y,
-            // MuJoCo's normal is a × b and points inward.
-            spare: Vec3::select(parallel, Vec3::new(T::ONE, zero, zero), -unit),
+            spare: -(inward * (T::ONE / inward.norm())),
         }
     }
 
@@ -129,10 +131,10 @@ pub(super) fn capsule_cylinder<T: Real>(
         // Where the two are parallel an end is as deep as anything between.
         let rounding = T::new(1e-9).max(T::splat(T::Scalar::EPSILON) * T::new(8.0));
         let level = least + rounding * (radius + cylinder.radius);
-        let mut deepest = nearest;
+        let mut first = nearest;
         for end in ends {
             let as_deep = cylinder.distance(segment.at(end)).0.le(level);
-            deepest = T::select(as_deep, end, deepest);
+            first = T::select(as_deep, end, first);
         }
         let mut add = |t: T, wanted: T::Mask| {
             let center = segment.at(t);
@@ -140,19 +142,16 @@ pub(super) fn capsule_cylinder<T: Real>(
             let active = wanted & (surface.0 - radius).le(margin);
             add_ball(center, radius, surface, b, active, out);
         };
-        add(deepest, beside);
+        add(first, beside);
         for end in ends {
-            add(end, beside & !end.eq(deepest));
+            add(end, beside & !end.eq(first));
         }
     }
     let inside = active & entered;
     if inside.any() {
-        let (depth, outward) = way_out(cylinder.radius, cylinder.half_length, &segment);
-        // The end that is deepest in that direction; where the capsule is across it, the point found above.
-        let slope = outward.dot(segment.axis);
-        let across = slope.abs().lt(T::new(1e-6));
-        let end = segment.half_length.copysign(-slope);
-        let center = segment.at(T::select(across, nearest, end));
+        let (radius_b, half_b) = (cylinder.radius, cylinder.half_length);
+        let (depth, outward) = way_out(radius_b, half_b, &segment);
+        let center = segment.at(deepest(radius_b, half_b, &segment, outward, nearest));
         add_ball(center, radius, (-depth, outward), b, inside, out);
     }
 }

@@ -125,3 +125,32 @@ fn over_the_rim<T: Real>(
     let n = a * high.0 + b * high.1;
     n * (T::ONE / n.norm())
 }
+
+/// Where along the segment it is deepest, seen along the `outward` direction that [`way_out`] found: at an end, or, where
+/// that direction is across the segment, below the rim or the side. Any point will do between two parallel flats; then
+/// it is `otherwise`.
+pub(super) fn deepest<T: Real>(
+    radius: T,
+    half_length: T,
+    segment: &Segment<T>,
+    outward: Vec3<T>,
+    otherwise: T,
+) -> T {
+    let tiny = T::new(1e-6);
+    let (c, u) = (segment.center, segment.axis);
+    let slope = outward.dot(u);
+    let end = segment.half_length.copysign(-slope);
+
+    let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
+    let level = flat(outward).norm();
+    let upward = outward.z.abs();
+    // The point of the rim furthest along the direction.
+    let mut rim = flat(outward) * (radius / T::select(level.lt(tiny), T::ONE, level));
+    rim.z = half_length.copysign(outward.z);
+    let below_rim = u.dot(rim - c);
+    let below_side = -(flat(c).dot(u)) / flat(u).norm_squared().max(tiny * tiny);
+    let across = T::select(upward.lt(tiny), below_side, below_rim);
+    let across = T::select(level.lt(tiny), otherwise, across);
+    let across = across.clamp(-segment.half_length, segment.half_length);
+    T::select(slope.abs().lt(tiny), across, end)
+}
