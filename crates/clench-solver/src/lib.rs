@@ -8,6 +8,17 @@
 //! blocks; a [`Solver`] finds the acceleration and the constraint forces. Nothing here knows of bodies, joints or
 //! contacts: what a constraint asks for arrives as J, aref, D and one of five [`Cost`]s.
 
+// Kernels walk several arrays by the same row or column; an index says so better than a chain of zips.
+#![allow(clippy::needless_range_loop)]
+
+mod cg;
+mod costs;
+mod descent;
+mod hessian;
+mod iterate;
+mod jacobian;
+mod line_search;
+mod newton;
 mod options;
 mod problem;
 mod solver;

@@ -1,5 +1,7 @@
 //! The problem: what stays constant during a solve.
 
+use crate::costs::{self, MAX_DIM, Rows};
+use crate::jacobian::{BlockIndex, StoredRows};
 use crate::{Tree, TreeFactor, TreeMatrix};
 use clench_math::{Mask, Real, Scalar};
 use std::ops::Range;
@@ -67,17 +69,6 @@ pub enum ProblemError {
     },
 }
 
-/// Where a block lies in the pools.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BlockIndex {
-    pub cost: Cost,
-    pub dim: usize,
-    pub ndof: usize,
-    pub row: usize,
-    pub dof: usize,
-    pub jacobian: usize,
-}
-
 /// The convex problem. Blocks stay in the order in which they were pushed.
 #[derive(Clone, Debug)]
 pub struct Problem<T> {
@@ -88,13 +79,15 @@ pub struct Problem<T> {
     pub mass_factor: TreeFactor<T>,
     /// Unconstrained acceleration a_unc = M⁻¹ τ, length nv.
     pub qacc_smooth: Vec<T>,
-    pub(crate) index: Vec<BlockIndex>,
-    pub(crate) dofs: Vec<u32>,
-    pub(crate) jacobian: Vec<T>,
+    pub(crate) jacobian: StoredRows<T>,
     pub(crate) aref: Vec<T>,
     pub(crate) r: Vec<T>,
     pub(crate) d: Vec<T>,
     pub(crate) shape: Vec<T>,
+    /// Total number of pieces.
+    pub(crate) npiece: usize,
+    /// The first block that was pushed with an impossible size.
+    malformed: Option<(usize, &'static str)>,
 }
 
 /// A new block to be filled in: every slice starts as zeros.
@@ -151,13 +144,13 @@ impl<T: Real> Problem<T> {
             mass_factor: TreeFactor::zeros(&tree),
             qacc_smooth: vec![T::ZERO; tree.nv()],
             tree,
-            index: Vec::new(),
-            dofs: Vec::new(),
-            jacobian: Vec::new(),
+            jacobian: StoredRows::default(),
             aref: Vec::new(),
             r: Vec::new(),
             d: Vec::new(),
             shape: Vec::new(),
+            npiece: 0,
+            malformed: None,
         }
     }
 
@@ -175,7 +168,7 @@ impl<T: Real> Problem<T> {
     }
     /// Number of constraint blocks.
     pub fn nblock(&self) -> usize {
-        self.index.len()
+        self.jacobian.blocks.len()
     }
 
     /// Factors `mass` into `mass_factor`. False in lanes where it is not positive definite.
@@ -185,65 +178,90 @@ impl<T: Real> Problem<T> {
 
     /// Removes all blocks and keeps their memory.
     pub fn clear_constraints(&mut self) {
-        self.index.clear();
-        self.dofs.clear();
         self.jacobian.clear();
         self.aref.clear();
         self.r.clear();
         self.d.clear();
         self.shape.clear();
+        self.npiece = 0;
+        self.malformed = None;
     }
 
-    /// Appends a block of `dim` rows that acts on `dofs` (ascending) and returns it to be filled in.
+    /// Appends a block of `dim` rows (1 to 6) that acts on `dofs` (ascending) and returns it to be filled in.
+    /// A block of impossible size is reported by the solve.
     pub fn push(&mut self, cost: Cost, dim: usize, dofs: &[u32]) -> BlockMut<'_, T> {
-        let block = BlockIndex {
-            cost,
-            dim,
-            ndof: dofs.len(),
-            row: self.aref.len(),
-            dof: self.dofs.len(),
-            jacobian: self.jacobian.len(),
-        };
-        self.index.push(block);
-        self.dofs.extend_from_slice(dofs);
-        let rows = block.row + dim;
-        self.jacobian
-            .resize(block.jacobian + dim * dofs.len(), T::ZERO);
+        if let (None, Err(reason)) = (self.malformed, check_size(cost, dim, dofs, self.nv())) {
+            self.malformed = Some((self.nblock(), reason));
+        }
+        let row = self.nrow();
+        let jacobian = self.jacobian.push(
+            BlockIndex {
+                cost,
+                dim,
+                ndof: dofs.len(),
+                row,
+                dof: self.jacobian.dofs.len(),
+                value: self.jacobian.values.len(),
+                piece: self.npiece,
+            },
+            dofs,
+        );
+        self.npiece += costs::pieces(cost, dim);
         for pool in [&mut self.aref, &mut self.r, &mut self.d, &mut self.shape] {
-            pool.resize(rows, T::ZERO);
+            pool.resize(row + dim, T::ZERO);
         }
         BlockMut {
-            jacobian: &mut self.jacobian[block.jacobian..],
-            aref: &mut self.aref[block.row..],
-            r: &mut self.r[block.row..],
-            d: &mut self.d[block.row..],
-            shape: &mut self.shape[block.row..],
+            jacobian,
+            aref: &mut self.aref[row..],
+            r: &mut self.r[row..],
+            d: &mut self.d[row..],
+            shape: &mut self.shape[row..],
         }
     }
 
     /// The blocks in the order in which they were pushed.
     pub fn blocks(&self) -> impl ExactSizeIterator<Item = Block<'_, T>> {
-        self.index.iter().map(|b| self.view(b))
+        self.jacobian.blocks.iter().map(|b| self.view(b))
     }
 
     /// Block `i`.
     pub fn block(&self, i: usize) -> Block<'_, T> {
-        self.view(&self.index[i])
+        self.view(&self.jacobian.blocks[i])
     }
 
-    #[inline(always)]
-    pub(crate) fn view(&self, b: &BlockIndex) -> Block<'_, T> {
+    fn view(&self, b: &BlockIndex) -> Block<'_, T> {
         let rows = b.row..b.row + b.dim;
         Block {
             cost: b.cost,
             row: b.row,
             dim: b.dim,
-            dofs: &self.dofs[b.dof..b.dof + b.ndof],
-            jacobian: &self.jacobian[b.jacobian..b.jacobian + b.dim * b.ndof],
+            dofs: self.jacobian.dofs(b),
+            jacobian: self.jacobian.values(b),
             aref: &self.aref[rows.clone()],
             r: &self.r[rows.clone()],
             d: &self.d[rows.clone()],
             shape: &self.shape[rows],
+        }
+    }
+
+    /// The cost parameters of one block.
+    #[inline(always)]
+    pub(crate) fn rows(&self, b: &BlockIndex) -> Rows<'_, T> {
+        let rows = b.rows();
+        Rows {
+            d: &self.d[rows.clone()],
+            r: &self.r[rows.clone()],
+            shape: &self.shape[rows],
+        }
+    }
+
+    /// Checks the sizes that a solve indexes by.
+    pub(crate) fn check_sizes(&self) -> Result<(), ProblemError> {
+        check_length("qacc_smooth", self.qacc_smooth.len(), self.nv())?;
+        check_length("mass", self.mass.values.len(), self.tree.nnz())?;
+        match self.malformed {
+            Some((block, reason)) => Err(ProblemError::Block { block, reason }),
+            None => Ok(()),
         }
     }
 
@@ -253,12 +271,11 @@ impl<T: Real> Problem<T> {
     /// # Errors
     /// The first thing found wrong.
     pub fn check(&self) -> Result<(), ProblemError> {
-        check_length("qacc_smooth", self.qacc_smooth.len(), self.nv())?;
-        check_length("mass", self.mass.values.len(), self.tree.nnz())?;
+        self.check_sizes()?;
         for (what, values) in [
             ("qacc_smooth", &self.qacc_smooth),
             ("mass", &self.mass.values),
-            ("jacobian", &self.jacobian),
+            ("jacobian", &self.jacobian.values),
             ("aref", &self.aref),
             ("r", &self.r),
             ("d", &self.d),
@@ -271,8 +288,7 @@ impl<T: Real> Problem<T> {
             return Err(ProblemError::MassNotPositiveDefinite { lane });
         }
         for (block, view) in self.blocks().enumerate() {
-            check_block(&view, self.nv())
-                .map_err(|reason| ProblemError::Block { block, reason })?;
+            check_block(&view).map_err(|reason| ProblemError::Block { block, reason })?;
         }
         Ok(())
     }
@@ -307,20 +323,24 @@ fn check_finite<T: Real>(what: &'static str, values: &[T]) -> Result<(), Problem
 /// How far D may be from 1 / R, and the rows of an elliptic block from their common scale.
 const CONSISTENT: f64 = 1e-4;
 
-fn check_block<T: Real>(block: &Block<T>, nv: usize) -> Result<(), &'static str> {
-    if block.dofs.windows(2).any(|w| w[0] >= w[1]) {
+fn check_size(cost: Cost, dim: usize, dofs: &[u32], nv: usize) -> Result<(), &'static str> {
+    let cone = matches!(cost, Cost::Pyramid | Cost::Elliptic);
+    if !(1..=MAX_DIM).contains(&dim) {
+        return Err("a block has 1 to 6 rows");
+    }
+    if cone && dim < 2 {
+        return Err("a cone has 2 to 6 rows");
+    }
+    if dofs.windows(2).any(|w| w[0] >= w[1]) {
         return Err("its dofs do not ascend");
     }
-    if block.dofs.last().is_some_and(|&dof| dof as usize >= nv) {
+    if dofs.last().is_some_and(|&dof| dof as usize >= nv) {
         return Err("it acts on a dof that the tree does not have");
     }
-    match block.cost {
-        Cost::Pyramid | Cost::Elliptic if !(2..=6).contains(&block.dim) => {
-            return Err("a cone has 2 to 6 rows");
-        }
-        _ if block.dim == 0 => return Err("it has no rows"),
-        _ => {}
-    }
+    Ok(())
+}
+
+fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {
     for lane in 0..T::LANES {
         let at = |values: &[T], row: usize| values[row].lane(lane).to_f64();
         for row in 0..block.dim {

@@ -86,7 +86,7 @@ impl Tree {
     pub fn row(&self, i: usize) -> &[u32] {
         &self.columns[self.starts[i]..self.starts[i + 1]]
     }
-    /// Where row `i` starts among the stored values.
+    /// Where row `i` starts among the stored values; `row_start(nv)` is their number.
     pub fn row_start(&self, i: usize) -> usize {
         self.starts[i]
     }

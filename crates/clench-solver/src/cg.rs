@@ -1,0 +1,70 @@
+//! Conjugate gradients, preconditioned by the mass matrix (Polak–Ribière, restarted where β would be negative).
+
+use crate::descent::{Direction, Progress};
+use crate::iterate::{Iterate, dot};
+use crate::{Problem, Settings, SolveStats};
+use clench_math::Real;
+
+/// The last gradient, and its image under M⁻¹.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cg<T> {
+    gradient: Vec<T>,
+    preconditioned: Vec<T>,
+    last: Vec<T>,
+    started: bool,
+}
+
+impl<T: Real> Direction<T> for Cg<T> {
+    const NEWTON: bool = false;
+    const PATIENCE: f64 = 20.0;
+
+    fn prepare(&mut self, _: &Problem<T>, _: &Settings) {
+        self.started = false;
+    }
+
+    fn restart(&mut self, mask: T::Mask) {
+        for g in &mut self.gradient {
+            *g = T::select(mask, T::ZERO, *g);
+        }
+    }
+
+    fn find(
+        &mut self,
+        problem: &Problem<T>,
+        iterate: &Iterate<T>,
+        _: &Progress<T>,
+        direction: &mut Vec<T>,
+        _: &mut SolveStats<T>,
+    ) {
+        std::mem::swap(&mut self.preconditioned, &mut self.last);
+        self.preconditioned.clear();
+        self.preconditioned.extend_from_slice(&iterate.gradient);
+        problem
+            .mass_factor
+            .solve(problem.tree(), &mut self.preconditioned);
+        let mut beta = T::ZERO;
+        if self.started {
+            let before = dot(&self.gradient, &self.last);
+            let mut now = T::ZERO;
+            for ((&g, &p), &l) in iterate
+                .gradient
+                .iter()
+                .zip(&self.preconditioned)
+                .zip(&self.last)
+            {
+                now += g * (p - l);
+            }
+            let positive = now.gt(T::ZERO) & before.gt(T::ZERO);
+            beta = T::select(positive, now / before, T::ZERO);
+        } else {
+            direction.clear();
+            direction.resize(problem.nv(), T::ZERO);
+        }
+        for (d, &p) in direction.iter_mut().zip(&self.preconditioned) {
+            *d = beta * *d - p;
+        }
+        self.gradient.clear();
+        self.gradient.extend_from_slice(&iterate.gradient);
+        self.started = true;
+    }
+}

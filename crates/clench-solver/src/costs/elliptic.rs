@@ -1,0 +1,183 @@
+//! Frictional contact with the exact cone, as MuJoCo defines it.
+//!
+//! Scale y so that the cone becomes circular, with μ the regularized coefficient (row 0 of `shape`):
+//!
+//! ```text
+//! N = μ y₀,   U_j = μ_j y_j,   T = |U|,   u = U / T,   K = D₀ / (μ² (1 + μ²))
+//! top     N ≥ μT          s = 0                      the contact separates
+//! bottom  μN + T ≤ 0      s = ½ Σ D y²               friction sticks
+//! middle                  s = ½ K (N − μT)²          friction slips, the force is on the cone's surface
+//! ```
+//!
+//! Since D_j = D₀ (μ_j/μ)² (the regularization that makes the three meet), Σ D y² = (D₀/μ²)(N² + T²), and
+//! (1 + μ²)(N² + T²) = (N − μT)² + (μN + T)². So with p = min(N − μT, 0) and q = min(μN + T, 0), all zones are
+//!
+//! ```text
+//! s = ½ K (p² + q²)
+//! force₀ = −K μ (p + μ q),      force_j = K μ_j u_j (μ p − q)
+//! ```
+//!
+//! In the middle, with c = −p μ / T = μ² − μN/T ≥ 0, w = (1, −μ u) = ∇(N − μT), F = diag(μ, μ_j), and I over U alone,
+//! `W = K F [ w wᵀ + c (I − u uᵀ) ] F`; along a ray `s'' = K [ (N' − μ u·U')² + c (|U'|² − (u·U')²) ]`.
+//! In the bottom zone W = diag(D).
+//! The piece is 0, 1, 2 for top, middle, bottom.
+
+use super::{BlockCost, Form, MAX_DIM, Rows, Slope, Tally, Weight};
+use clench_math::{Mask, Real};
+
+pub(crate) struct Elliptic;
+
+/// A block at one y, in the scaled coordinates.
+struct Zone<T: Real> {
+    k: T,
+    mu: T,
+    /// N − μT and μN + T, each where negative.
+    p: T,
+    q: T,
+    /// Direction of slip, zero where there is none.
+    u: [T; MAX_DIM],
+    /// μ² − μ N/T in the middle zone.
+    c: T,
+    /// Middle zone, bottom zone; neither in lanes without the contact.
+    middle: T::Mask,
+    bottom: T::Mask,
+}
+
+impl<T: Real> Zone<T> {
+    #[inline(always)]
+    fn new(rows: Rows<T>, y: impl Fn(usize) -> T) -> Self {
+        let dim = rows.d.len();
+        let exists = rows.d[0].gt(T::ZERO);
+        // A lane without the contact may have no coefficients either: 1 keeps it finite.
+        let mu = T::select(exists, rows.shape[0], T::ONE);
+        let k = rows.d[0] / (mu * mu * (T::ONE + mu * mu));
+        let n = mu * y(0);
+        let mut u = [T::ZERO; MAX_DIM];
+        let mut t2 = T::ZERO;
+        for j in 1..dim {
+            u[j] = rows.shape[j] * y(j);
+            t2 += u[j] * u[j];
+        }
+        let t = t2.sqrt();
+        let slips = t.gt(T::ZERO);
+        let inverse = T::ONE / T::select(slips, t, T::ONE);
+        for u in &mut u[1..dim] {
+            *u *= inverse;
+        }
+        let (a, b) = (n - mu * t, mu * n + t);
+        let top = a.ge(T::ZERO);
+        let bottom = !top & b.le(T::ZERO) & exists;
+        let middle = !top & !bottom & exists;
+        Zone {
+            k,
+            mu,
+            p: a.min(T::ZERO),
+            q: T::select(bottom, b, T::ZERO),
+            u,
+            c: T::select(middle, mu * mu - mu * n * inverse, T::ZERO),
+            middle,
+            bottom,
+        }
+    }
+
+    fn cost(&self) -> T {
+        T::new(0.5) * self.k * (self.p * self.p + self.q * self.q)
+    }
+}
+
+impl<T: Real> BlockCost<T> for Elliptic {
+    fn pieces(_: usize) -> usize {
+        1
+    }
+
+    #[inline(always)]
+    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>) {
+        let zone = Zone::new(rows, |j| y[j]);
+        let normal = -(zone.k * zone.mu * (zone.p + zone.mu * zone.q));
+        // In the middle, friction is exactly on the cone: written through the normal force.
+        let slip = zone.k * (zone.mu * zone.p - zone.q);
+        force[0] = normal;
+        for j in 1..rows.d.len() {
+            force[j] = slip * zone.u[j] * rows.shape[j];
+        }
+        tally.cost += zone.cost();
+        tally.curved |= zone.middle;
+        let now = T::select(
+            zone.bottom,
+            T::new(2.0),
+            T::select(zone.middle, T::ONE, T::ZERO),
+        );
+        tally.mark(&mut pieces[0], now);
+    }
+
+    #[inline(always)]
+    fn hessian(rows: Rows<T>, y: &[T], _: &[T], weight: &mut Weight<T>) -> Form {
+        let dim = rows.d.len();
+        let zone = Zone::new(rows, |j| y[j]);
+        if !zone.middle.any() {
+            for i in 0..dim {
+                weight[i][i] = T::select(zone.bottom, rows.d[i], T::ZERO);
+            }
+            return if zone.bottom.any() {
+                Form::Diagonal
+            } else {
+                Form::Zero
+            };
+        }
+        let Zone {
+            k,
+            mu,
+            ref u,
+            c,
+            middle,
+            bottom,
+            ..
+        } = zone;
+        let scale = |j: usize| if j == 0 { mu } else { rows.shape[j] };
+        let w = |j: usize| if j == 0 { T::ONE } else { -(mu * u[j]) };
+        for i in 0..dim {
+            for j in i..dim {
+                let mut curvature = w(i) * w(j);
+                if i > 0 {
+                    let unit = if i == j { T::ONE } else { T::ZERO };
+                    curvature += c * (unit - u[i] * u[j]);
+                }
+                let surface = k * scale(i) * scale(j) * curvature;
+                let stick = if i == j {
+                    T::select(bottom, rows.d[i], T::ZERO)
+                } else {
+                    T::ZERO
+                };
+                weight[i][j] = T::select(middle, surface, stick);
+                weight[j][i] = weight[i][j];
+            }
+        }
+        Form::Full
+    }
+
+    #[inline(always)]
+    fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
+        let zone = Zone::new(rows, |j| y[j] + alpha * dy[j]);
+        let dn = zone.mu * dy[0];
+        let mut along = T::ZERO;
+        let mut squares = T::ZERO;
+        for j in 1..rows.d.len() {
+            let du = rows.shape[j] * dy[j];
+            along += zone.u[j] * du;
+            squares += du * du;
+        }
+        let (da, db) = (dn - zone.mu * along, zone.mu * dn + along);
+        slope.first += zone.k * (zone.p * da + zone.q * db);
+        let surface = zone.k * (da * da + zone.c * (squares - along * along));
+        let stick = zone.k * (T::ONE + zone.mu * zone.mu) * (dn * dn + squares);
+        slope.second += T::select(zone.middle, surface, T::select(zone.bottom, stick, T::ZERO));
+    }
+
+    #[inline(always)]
+    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+        let before = Zone::new(rows, |j| y[j]);
+        let after = Zone::new(rows, |j| y[j] + alpha * dy[j]);
+        let (dp, dq) = (after.p - before.p, after.q - before.q);
+        T::new(0.5) * before.k * (dp * (after.p + before.p) + dq * (after.q + before.q))
+    }
+}

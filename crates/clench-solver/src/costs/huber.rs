@@ -1,0 +1,83 @@
+//! Dry friction of loss η: a quadratic that turns linear where the force reaches η.
+//!
+//! With c = clamp(y, −Rη, Rη):
+//!
+//! ```text
+//! s(y) = ½ D y² where |y| < Rη, else η |y| − ½ R η²      force = −D y, saturated at ±η
+//! Hessian = diag(D where |y| < Rη)                       pieces: −1, 0, 1 for y ≤ −Rη, between, y ≥ Rη
+//! s(y₁) − s(y₀) = D [ c₀ (y₁ − y₀) + (c₁ − c₀)(y₁ − ½ (c₀ + c₁)) ]      as s = D (c y − ½ c²)
+//! ```
+
+use super::{BlockCost, Form, Rows, Slope, Tally, Weight};
+use clench_math::{Mask, Real};
+
+pub(crate) struct Huber;
+
+impl<T: Real> BlockCost<T> for Huber {
+    fn pieces(dim: usize) -> usize {
+        dim
+    }
+
+    #[inline(always)]
+    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>) {
+        for i in 0..rows.d.len() {
+            let (d, y, eta) = (rows.d[i], y[i], rows.shape[i]);
+            let side = side(rows.r[i] * eta, y);
+            let inside = side.eq(T::ZERO);
+            let exists = d.gt(T::ZERO);
+            let saturated = -(side * eta);
+            force[i] = T::select(exists, T::select(inside, -(d * y), saturated), T::ZERO);
+            let quadratic = T::new(0.5) * d * y * y;
+            let linear = eta * (y.abs() - T::new(0.5) * rows.r[i] * eta);
+            tally.cost += T::select(exists, T::select(inside, quadratic, linear), T::ZERO);
+            tally.mark(&mut pieces[i], T::select(exists, side, T::ZERO));
+        }
+    }
+
+    #[inline(always)]
+    fn hessian(rows: Rows<T>, _: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form {
+        let mut any = T::Mask::splat(false);
+        for (i, (&d, &piece)) in rows.d.iter().zip(pieces).enumerate() {
+            let inside = piece.eq(T::ZERO) & d.gt(T::ZERO);
+            weight[i][i] = T::select(inside, d, T::ZERO);
+            any |= inside;
+        }
+        if any.any() {
+            Form::Diagonal
+        } else {
+            Form::Zero
+        }
+    }
+
+    #[inline(always)]
+    fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
+        for i in 0..rows.d.len() {
+            let (d, dy) = (rows.d[i], dy[i]);
+            let bound = rows.r[i] * rows.shape[i];
+            let y = y[i] + alpha * dy;
+            slope.first += d * y.clamp(-bound, bound) * dy;
+            slope.second += T::select(y.abs().lt(bound), d, T::ZERO) * dy * dy;
+        }
+    }
+
+    #[inline(always)]
+    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+        let mut sum = T::ZERO;
+        for i in 0..rows.d.len() {
+            let bound = rows.r[i] * rows.shape[i];
+            let step = alpha * dy[i];
+            let (y0, y1) = (y[i], y[i] + step);
+            let (c0, c1) = (y0.clamp(-bound, bound), y1.clamp(-bound, bound));
+            let inside = y0.abs().lt(bound) & y1.abs().lt(bound);
+            let dc = T::select(inside, step, c1 - c0);
+            sum += rows.d[i] * (c0 * step + dc * (y1 - T::new(0.5) * (c0 + c1)));
+        }
+        sum
+    }
+}
+
+/// −1, 0 or 1: which side of the quadratic stretch `y` is on.
+#[inline(always)]
+fn side<T: Real>(bound: T, y: T) -> T {
+    T::select(y.abs().lt(bound), T::ZERO, T::ONE.copysign(y))
+}

@@ -1,0 +1,129 @@
+//! The five constraint costs. Each file derives one: its value, force, Hessian block, and its restriction to a ray.
+
+mod elliptic;
+mod huber;
+mod one_sided;
+mod pyramid;
+mod quadratic;
+#[cfg(test)]
+mod tests;
+
+use crate::Cost;
+use clench_math::{Mask, Real};
+pub(crate) use elliptic::Elliptic;
+pub(crate) use huber::Huber;
+pub(crate) use one_sided::OneSided;
+pub(crate) use pyramid::Pyramid;
+pub(crate) use quadratic::Quadratic;
+
+/// Most rows of a block: a weld, or a contact with spin and roll.
+pub(crate) const MAX_DIM: usize = 6;
+
+/// The parameters of one block, row by row; see [`BlockMut`](crate::BlockMut).
+#[derive(Clone, Copy)]
+pub(crate) struct Rows<'a, T> {
+    pub d: &'a [T],
+    pub r: &'a [T],
+    pub shape: &'a [T],
+}
+
+/// What evaluating the blocks adds up to.
+#[derive(Clone, Copy)]
+pub(crate) struct Tally<T: Real> {
+    /// Σ s(y).
+    pub cost: T,
+    /// Pieces that differ from those of the last evaluation.
+    pub changes: T,
+    /// Where some block is on a piece whose Hessian varies: an elliptic cone's surface.
+    pub curved: T::Mask,
+}
+
+impl<T: Real> Tally<T> {
+    pub fn new() -> Self {
+        Tally {
+            cost: T::ZERO,
+            changes: T::ZERO,
+            curved: T::Mask::splat(false),
+        }
+    }
+
+    /// Records the piece that a row or edge is on now.
+    #[inline(always)]
+    pub fn mark(&mut self, piece: &mut T, now: T) {
+        self.changes += T::select(piece.eq(now), T::ZERO, T::ONE);
+        *piece = now;
+    }
+}
+
+/// The Hessian block of one cost, as far as its [`Form`] says it is written.
+pub(crate) type Weight<T> = [[T; MAX_DIM]; MAX_DIM];
+
+/// Which entries of a [`Weight`] can be nonzero.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Form {
+    /// None.
+    Zero,
+    /// The diagonal.
+    Diagonal,
+    /// First row, first column, diagonal (row 0 and the diagonal are written).
+    Arrow,
+    /// All.
+    Full,
+}
+
+/// First and second derivative along a ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Slope<T> {
+    pub first: T,
+    pub second: T,
+}
+
+/// Everything the solver may know about a constraint.
+///
+/// `y` is J a − aref. A lane without the constraint has D = 0: it adds nothing, and its pieces never change.
+pub(crate) trait BlockCost<T: Real> {
+    /// How many pieces (rows or edges that switch on their own) a block of `dim` rows has.
+    fn pieces(dim: usize) -> usize;
+    /// Writes the force −∇s(y) and the pieces, and adds to the tally.
+    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>);
+    /// Writes ∇²s(y), whose pieces are known.
+    fn hessian(rows: Rows<T>, y: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form;
+    /// Adds the derivatives of α ↦ s(y + α dy).
+    fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>);
+    /// s(y + α dy) − s(y), without the cancellation of subtracting two values.
+    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T;
+}
+
+/// Runs an expression with `$c` standing for the [`BlockCost`] of `$cost`.
+macro_rules! with_cost {
+    ($cost:expr, $c:ident => $body:expr) => {
+        match $cost {
+            $crate::Cost::Quadratic => {
+                type $c = $crate::costs::Quadratic;
+                $body
+            }
+            $crate::Cost::OneSided => {
+                type $c = $crate::costs::OneSided;
+                $body
+            }
+            $crate::Cost::Huber => {
+                type $c = $crate::costs::Huber;
+                $body
+            }
+            $crate::Cost::Pyramid => {
+                type $c = $crate::costs::Pyramid;
+                $body
+            }
+            $crate::Cost::Elliptic => {
+                type $c = $crate::costs::Elliptic;
+                $body
+            }
+        }
+    };
+}
+pub(crate) use with_cost;
+
+/// How many pieces a block of this cost has.
+pub(crate) fn pieces(cost: Cost, dim: usize) -> usize {
+    with_cost!(cost, C => <C as BlockCost<f64>>::pieces(dim))
+}

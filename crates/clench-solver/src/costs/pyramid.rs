@@ -1,0 +1,100 @@
+//! Frictional contact with the cone linearised: a one-sided cost on each edge.
+//!
+//! The block's rows are the contact frame (normal, then tangents, spin, rolls); the edges are combinations of them:
+//!
+//! ```text
+//! e_j± = y₀ ± μ_j y_j,   j = 1..dim−1,   m = min(e, 0)
+//! s = ½ D Σ m²           λ = −D m ≥ 0 along each edge
+//! force₀ = Σ λ           force_j = μ_j (λ_j+ − λ_j−)
+//! W₀₀ = D Σ active       W₀_j = D μ_j (active_j+ − active_j−)       W_jj = D μ_j² (active_j+ + active_j−)
+//! ```
+//!
+//! So the Hessian is an arrow, and friction obeys Σ |force_j| / μ_j ≤ force₀. Pieces: each edge 1 or 0, in the order
+//! 1+, 1−, 2+, 2−, ... All rows have the same D.
+
+use super::one_sided::{active, add_edge_slope, edge_change};
+use super::{BlockCost, Form, Rows, Slope, Tally, Weight};
+use clench_math::{Mask, Real};
+
+pub(crate) struct Pyramid;
+
+impl<T: Real> BlockCost<T> for Pyramid {
+    fn pieces(dim: usize) -> usize {
+        2 * dim.saturating_sub(1)
+    }
+
+    #[inline(always)]
+    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>) {
+        let d = rows.d[0];
+        let mut normal = T::ZERO;
+        let mut squares = T::ZERO;
+        for j in 1..rows.d.len() {
+            let side = rows.shape[j] * y[j];
+            let (plus, minus) = (y[0] + side, y[0] - side);
+            let (m, n) = (plus.min(T::ZERO), minus.min(T::ZERO));
+            normal += m + n;
+            squares += m * m + n * n;
+            force[j] = -(d * rows.shape[j] * (m - n));
+            tally.mark(&mut pieces[2 * j - 2], active(d, plus));
+            tally.mark(&mut pieces[2 * j - 1], active(d, minus));
+        }
+        force[0] = -(d * normal);
+        tally.cost += T::new(0.5) * d * squares;
+    }
+
+    #[inline(always)]
+    fn hessian(rows: Rows<T>, _: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form {
+        let d = rows.d[0];
+        let mut count = T::ZERO;
+        for j in 1..rows.d.len() {
+            let (plus, minus) = (pieces[2 * j - 2], pieces[2 * j - 1]);
+            let mu = rows.shape[j];
+            count += plus + minus;
+            weight[0][j] = d * mu * (plus - minus);
+            weight[j][j] = d * mu * mu * (plus + minus);
+        }
+        weight[0][0] = d * count;
+        if count.gt(T::ZERO).any() {
+            Form::Arrow
+        } else {
+            Form::Zero
+        }
+    }
+
+    #[inline(always)]
+    fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
+        let d = rows.d[0];
+        let normal = y[0] + alpha * dy[0];
+        for j in 1..rows.d.len() {
+            let mu = rows.shape[j];
+            let side = mu * (y[j] + alpha * dy[j]);
+            let dside = mu * dy[j];
+            add_edge_slope(d, normal + side, dy[0] + dside, slope);
+            add_edge_slope(d, normal - side, dy[0] - dside, slope);
+        }
+    }
+
+    #[inline(always)]
+    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+        let d = rows.d[0];
+        let mut sum = T::ZERO;
+        for j in 1..rows.d.len() {
+            let (side, dside) = (rows.shape[j] * y[j], rows.shape[j] * dy[j]);
+            let (plus, minus) = (y[0] + side, y[0] - side);
+            sum += edge_change(d, plus, alpha * (dy[0] + dside));
+            sum += edge_change(d, minus, alpha * (dy[0] - dside));
+        }
+        sum
+    }
+}
+
+impl Pyramid {
+    /// Writes the force λ along each edge.
+    pub(crate) fn edge_forces<T: Real>(rows: Rows<T>, y: &[T], edges: &mut [T]) {
+        for j in 1..rows.d.len() {
+            let side = rows.shape[j] * y[j];
+            edges[2 * j - 2] = -(rows.d[0] * (y[0] + side).min(T::ZERO));
+            edges[2 * j - 1] = -(rows.d[0] * (y[0] - side).min(T::ZERO));
+        }
+    }
+}

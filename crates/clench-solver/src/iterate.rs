@@ -1,0 +1,186 @@
+//! The iterate: what changes during a solve.
+
+use crate::Problem;
+use crate::costs::{BlockCost, Tally, with_cost};
+use crate::jacobian::Jacobian;
+use crate::line_search::Ray;
+use clench_math::Real;
+
+/// A point, and everything that follows from it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Iterate<T> {
+    /// a.
+    pub qacc: Vec<T>,
+    /// M (a − a_unc).
+    pub inertial: Vec<T>,
+    /// y = J a − aref.
+    pub residual: Vec<T>,
+    /// f = −∇s(y).
+    pub force: Vec<T>,
+    /// Jᵀ f.
+    pub qfrc_constraint: Vec<T>,
+    /// g = M (a − a_unc) − Jᵀ f.
+    pub gradient: Vec<T>,
+    /// The piece that each row or edge is on.
+    pub pieces: Vec<T>,
+}
+
+impl<T: Real> Iterate<T> {
+    /// Starts from `warmstart` where it costs less than the unconstrained acceleration; returns the tally there.
+    pub fn start(
+        &mut self,
+        problem: &Problem<T>,
+        warmstart: Option<&[T]>,
+        ray: &mut Ray<T>,
+    ) -> Tally<T> {
+        let (nv, nrow) = (problem.nv(), problem.nrow());
+        for v in [
+            &mut self.inertial,
+            &mut self.gradient,
+            &mut self.qfrc_constraint,
+        ] {
+            v.clear();
+            v.resize(nv, T::ZERO);
+        }
+        self.residual.resize(nrow, T::ZERO);
+        self.force.resize(nrow, T::ZERO);
+        self.pieces.resize(problem.npiece, T::ZERO);
+        self.qacc.clear();
+        self.qacc.extend_from_slice(&problem.qacc_smooth);
+        problem.jacobian.mul(&self.qacc, &mut self.residual);
+        subtract(&mut self.residual, &problem.aref);
+        let mut tally = self.evaluate(problem);
+        if let Some(warm) = warmstart {
+            self.take_if_better(problem, warm, tally.cost, ray);
+            tally = self.evaluate(problem);
+        }
+        tally
+    }
+
+    /// Moves to `warm` in the lanes where it costs less than `cost`.
+    fn take_if_better(&mut self, problem: &Problem<T>, warm: &[T], cost: T, ray: &mut Ray<T>) {
+        // The ray from here to there: its end is the candidate.
+        ray.direction.clear();
+        ray.direction
+            .extend(warm.iter().zip(&self.qacc).map(|(&w, &a)| w - a));
+        ray.mass_direction.resize(problem.nv(), T::ZERO);
+        problem
+            .mass
+            .mul(problem.tree(), &ray.direction, &mut ray.mass_direction);
+        ray.rows.resize(problem.nrow(), T::ZERO);
+        problem.jacobian.mul(warm, &mut ray.rows);
+        subtract(&mut ray.rows, &problem.aref);
+        std::mem::swap(&mut self.residual, &mut ray.rows);
+        let warm_cost =
+            self.evaluate(problem).cost + T::new(0.5) * dot(&ray.direction, &ray.mass_direction);
+        let better = warm_cost.lt(cost);
+        blend(better, &mut self.qacc, warm);
+        blend(better, &mut self.inertial, &ray.mass_direction);
+        blend(!better, &mut self.residual, &ray.rows);
+    }
+
+    /// Computes M (a − a_unc) and J a − aref anew in the lanes of `mask`, without the rounding that steps have added up.
+    pub fn refresh(&mut self, problem: &Problem<T>, mask: T::Mask, ray: &mut Ray<T>) {
+        ray.direction.clear();
+        ray.direction.extend(
+            self.qacc
+                .iter()
+                .zip(&problem.qacc_smooth)
+                .map(|(&a, &b)| a - b),
+        );
+        problem
+            .mass
+            .mul(problem.tree(), &ray.direction, &mut ray.mass_direction);
+        problem.jacobian.mul(&self.qacc, &mut ray.rows);
+        subtract(&mut ray.rows, &problem.aref);
+        blend(mask, &mut self.inertial, &ray.mass_direction);
+        blend(mask, &mut self.residual, &ray.rows);
+    }
+
+    /// Evaluates every block at the residual: forces, pieces, and the constraints' part of the cost.
+    pub fn evaluate(&mut self, problem: &Problem<T>) -> Tally<T> {
+        let mut tally = Tally::new();
+        for b in &problem.jacobian.blocks {
+            let rows = b.rows();
+            with_cost!(b.cost, C => {
+                let pieces = b.piece..b.piece + <C as BlockCost<T>>::pieces(b.dim);
+                C::evaluate(
+                    problem.rows(b),
+                    &self.residual[rows.clone()],
+                    &mut self.force[rows],
+                    &mut self.pieces[pieces],
+                    &mut tally,
+                );
+            });
+        }
+        tally
+    }
+
+    /// Computes Jᵀf and the gradient; returns its norm.
+    pub fn differentiate(&mut self, problem: &Problem<T>) -> T {
+        self.qfrc_constraint.fill(T::ZERO);
+        problem
+            .jacobian
+            .add_transposed(&self.force, &mut self.qfrc_constraint);
+        let mut square = T::ZERO;
+        for ((g, &m), &q) in self
+            .gradient
+            .iter_mut()
+            .zip(&self.inertial)
+            .zip(&self.qfrc_constraint)
+        {
+            *g = m - q;
+            square += *g * *g;
+        }
+        square.sqrt()
+    }
+
+    /// ½ (a − a_unc)ᵀ M (a − a_unc).
+    pub fn inertial_cost(&self, problem: &Problem<T>) -> T {
+        let mut sum = T::ZERO;
+        for ((&a, &b), &m) in self
+            .qacc
+            .iter()
+            .zip(&problem.qacc_smooth)
+            .zip(&self.inertial)
+        {
+            sum += (a - b) * m;
+        }
+        T::new(0.5) * sum
+    }
+
+    /// Moves by `alpha` along the ray.
+    pub fn advance(&mut self, alpha: T, ray: &Ray<T>) {
+        add_scaled(&mut self.qacc, alpha, &ray.direction);
+        add_scaled(&mut self.inertial, alpha, &ray.mass_direction);
+        add_scaled(&mut self.residual, alpha, &ray.rows);
+    }
+}
+
+/// x·y.
+#[inline]
+pub(crate) fn dot<T: Real>(x: &[T], y: &[T]) -> T {
+    let mut sum = T::ZERO;
+    for (&x, &y) in x.iter().zip(y) {
+        sum += x * y;
+    }
+    sum
+}
+
+fn add_scaled<T: Real>(x: &mut [T], alpha: T, y: &[T]) {
+    for (x, &y) in x.iter_mut().zip(y) {
+        *x += alpha * y;
+    }
+}
+
+fn subtract<T: Real>(x: &mut [T], y: &[T]) {
+    for (x, &y) in x.iter_mut().zip(y) {
+        *x -= y;
+    }
+}
+
+fn blend<T: Real>(mask: T::Mask, x: &mut [T], y: &[T]) {
+    for (x, &y) in x.iter_mut().zip(y) {
+        *x = T::select(mask, y, *x);
+    }
+}

@@ -1,0 +1,238 @@
+//! The constraint Jacobian as an operator: J x, Jᵀ f, and Jᵀ W J added to a Hessian.
+//!
+//! The solver asks for nothing else, so that rows need not be stored where another form is cheaper.
+
+use crate::Cost;
+use crate::costs::{Form, MAX_DIM, Weight};
+use crate::hessian::Hessian;
+use clench_math::Real;
+use std::ops::Range;
+
+/// Where a block lies in the pools.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BlockIndex {
+    pub cost: Cost,
+    pub dim: usize,
+    pub ndof: usize,
+    /// First row, first dof entry, first Jacobian value, first piece.
+    pub row: usize,
+    pub dof: usize,
+    pub value: usize,
+    pub piece: usize,
+}
+
+impl BlockIndex {
+    #[inline(always)]
+    pub fn rows(&self) -> Range<usize> {
+        self.row..self.row + self.dim
+    }
+}
+
+/// What the solver needs of J.
+pub(crate) trait Jacobian<T: Real> {
+    /// `out = J x`.
+    fn mul(&self, x: &[T], out: &mut [T]);
+    /// `out += Jᵀ f`.
+    fn add_transposed(&self, f: &[T], out: &mut [T]);
+    /// `hessian += Jᵀ W J`. `weigh` writes the Hessian block of a constraint.
+    fn add_gram(
+        &self,
+        weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
+        hessian: &mut Hessian<T>,
+    );
+}
+
+/// Rows stored block by block, over the dofs on which the block acts.
+#[derive(Clone, Debug)]
+pub(crate) struct StoredRows<T> {
+    pub blocks: Vec<BlockIndex>,
+    pub dofs: Vec<u32>,
+    pub values: Vec<T>,
+}
+
+impl<T> Default for StoredRows<T> {
+    fn default() -> Self {
+        StoredRows {
+            blocks: Vec::new(),
+            dofs: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+}
+
+impl<T: Real> StoredRows<T> {
+    pub fn clear(&mut self) {
+        self.blocks.clear();
+        self.dofs.clear();
+        self.values.clear();
+    }
+
+    /// Appends a block of zeros.
+    pub fn push(&mut self, block: BlockIndex, dofs: &[u32]) -> &mut [T] {
+        self.blocks.push(block);
+        self.dofs.extend_from_slice(dofs);
+        self.values
+            .resize(block.value + block.dim * block.ndof, T::ZERO);
+        &mut self.values[block.value..]
+    }
+
+    #[inline(always)]
+    pub fn dofs(&self, b: &BlockIndex) -> &[u32] {
+        &self.dofs[b.dof..b.dof + b.ndof]
+    }
+
+    #[inline(always)]
+    pub fn values(&self, b: &BlockIndex) -> &[T] {
+        &self.values[b.value..b.value + b.dim * b.ndof]
+    }
+
+    /// The rows of a block whose number is known to the compiler.
+    #[inline(always)]
+    fn rows<const DIM: usize>(&self, b: &BlockIndex) -> [&[T]; DIM] {
+        let values = self.values(b);
+        std::array::from_fn(|i| &values[i * b.ndof..(i + 1) * b.ndof])
+    }
+
+    #[inline(always)]
+    fn mul_block<const DIM: usize>(&self, b: &BlockIndex, x: &[T], out: &mut [T]) {
+        let rows = self.rows::<DIM>(b);
+        let mut sums = [T::ZERO; DIM];
+        for (k, &dof) in self.dofs(b).iter().enumerate() {
+            let x = x[dof as usize];
+            for i in 0..DIM {
+                sums[i] += rows[i][k] * x;
+            }
+        }
+        out[b.rows()].copy_from_slice(&sums);
+    }
+
+    #[inline(always)]
+    fn add_transposed_block<const DIM: usize>(&self, b: &BlockIndex, f: &[T], out: &mut [T]) {
+        let rows = self.rows::<DIM>(b);
+        let f: [T; DIM] = std::array::from_fn(|i| f[b.row + i]);
+        for (k, &dof) in self.dofs(b).iter().enumerate() {
+            let mut sum = rows[0][k] * f[0];
+            for i in 1..DIM {
+                sum += rows[i][k] * f[i];
+            }
+            out[dof as usize] += sum;
+        }
+    }
+
+    #[inline(always)]
+    fn add_gram_block<const DIM: usize>(
+        &self,
+        b: &BlockIndex,
+        weight: &Weight<T>,
+        form: Form,
+        hessian: &mut Hessian<T>,
+    ) {
+        let rows = self.rows::<DIM>(b);
+        let dofs = self.dofs(b);
+        for (k, &dof) in dofs.iter().enumerate() {
+            let j: [T; DIM] = std::array::from_fn(|i| rows[i][k]);
+            let wj = weigh_column::<T, DIM>(weight, form, &j);
+            let target = hessian.row_mut(dof as usize);
+            for (c, &column) in dofs[..=k].iter().enumerate() {
+                let mut sum = wj[0] * rows[0][c];
+                for i in 1..DIM {
+                    sum += wj[i] * rows[i][c];
+                }
+                target[column as usize] += sum;
+            }
+        }
+    }
+}
+
+/// W j for one column of a block.
+#[inline(always)]
+fn weigh_column<T: Real, const DIM: usize>(
+    weight: &Weight<T>,
+    form: Form,
+    j: &[T; DIM],
+) -> [T; DIM] {
+    match form {
+        Form::Zero => [T::ZERO; DIM],
+        Form::Diagonal => std::array::from_fn(|i| weight[i][i] * j[i]),
+        Form::Arrow => {
+            let mut first = weight[0][0] * j[0];
+            for i in 1..DIM {
+                first += weight[0][i] * j[i];
+            }
+            std::array::from_fn(|i| {
+                if i == 0 {
+                    first
+                } else {
+                    weight[0][i] * j[0] + weight[i][i] * j[i]
+                }
+            })
+        }
+        Form::Full => std::array::from_fn(|i| {
+            let mut sum = weight[i][0] * j[0];
+            for k in 1..DIM {
+                sum += weight[i][k] * j[k];
+            }
+            sum
+        }),
+    }
+}
+
+/// Runs an expression with the constant `$dim` standing for a number of rows.
+macro_rules! with_dim {
+    ($value:expr, $dim:ident => $body:expr) => {
+        match $value {
+            1 => {
+                const $dim: usize = 1;
+                $body
+            }
+            2 => {
+                const $dim: usize = 2;
+                $body
+            }
+            3 => {
+                const $dim: usize = 3;
+                $body
+            }
+            4 => {
+                const $dim: usize = 4;
+                $body
+            }
+            5 => {
+                const $dim: usize = 5;
+                $body
+            }
+            _ => {
+                const $dim: usize = MAX_DIM;
+                $body
+            }
+        }
+    };
+}
+
+impl<T: Real> Jacobian<T> for StoredRows<T> {
+    fn mul(&self, x: &[T], out: &mut [T]) {
+        for b in &self.blocks {
+            with_dim!(b.dim, DIM => self.mul_block::<DIM>(b, x, out));
+        }
+    }
+
+    fn add_transposed(&self, f: &[T], out: &mut [T]) {
+        for b in &self.blocks {
+            with_dim!(b.dim, DIM => self.add_transposed_block::<DIM>(b, f, out));
+        }
+    }
+
+    fn add_gram(
+        &self,
+        mut weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
+        hessian: &mut Hessian<T>,
+    ) {
+        let mut weight = [[T::ZERO; MAX_DIM]; MAX_DIM];
+        for b in &self.blocks {
+            let form = weigh(b, &mut weight);
+            if form != Form::Zero {
+                with_dim!(b.dim, DIM => self.add_gram_block::<DIM>(b, &weight, form, hessian));
+            }
+        }
+    }
+}
