@@ -5,16 +5,22 @@
 //! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.
 
 pub mod builder;
+mod check;
 pub mod constraint;
 pub mod contact;
 pub mod dynamics;
+mod error;
 pub mod model;
 pub mod pipeline;
+pub mod readout;
 pub mod settings;
+mod sim;
 mod state;
 pub mod workspace;
 
+pub use error::SimError;
 pub use model::{Model, Params};
 pub use settings::StepSettings;
+pub use sim::Sim;
 pub use state::State;
 pub use workspace::Workspace;

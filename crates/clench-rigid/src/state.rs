@@ -55,4 +55,19 @@ impl<T: Real> State<T> {
             qacc_warmstart: vec![T::ZERO; model.nv],
         }
     }
+
+    /// Takes over another state of the same model, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.time = other.time;
+        self.qpos.clone_from(&other.qpos);
+        self.qvel.clone_from(&other.qvel);
+        self.act.clone_from(&other.act);
+        self.ctrl.clone_from(&other.ctrl);
+        self.qfrc_applied.clone_from(&other.qfrc_applied);
+        self.xfrc_applied.clone_from(&other.xfrc_applied);
+        self.mocap_pos.clone_from(&other.mocap_pos);
+        self.mocap_quat.clone_from(&other.mocap_quat);
+        self.eq_active.clone_from(&other.eq_active);
+        self.qacc_warmstart.clone_from(&other.qacc_warmstart);
+    }
 }

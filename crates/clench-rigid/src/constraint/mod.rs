@@ -53,15 +53,9 @@ pub fn constraint_stage<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     assemble(model, params, settings, state, ws);
-    let warmstart = settings
-        .solver
-        .warmstart
-        .then_some(&state.qacc_warmstart[..]);
-    let solved = ws.solver.solve(&ws.problem, &settings.solver, warmstart);
-    debug_assert!(
-        solved.is_ok(),
-        "a state's warm start has the model's length"
-    );
+    let warmstart = Some(&state.qacc_warmstart[..]);
+    (ws.solver.solve(&ws.problem, &settings.solver, warmstart))
+        .expect("the arrays of a state and a workspace have the model's lengths");
     ws.qacc.copy_from_slice(ws.solver.qacc());
     ws.qfrc_constraint
         .copy_from_slice(ws.solver.qfrc_constraint());

@@ -1,0 +1,200 @@
+//! What a step computed, in MuJoCo's terms: constraint rows with the edges of pyramids spelled out, contact forces, dense
+//! matrices. For looking at, not for stepping: everything here allocates.
+
+use crate::constraint::ConstraintSource;
+use crate::model::Model;
+use crate::workspace::Workspace;
+use clench_math::{Real, Scalar};
+use clench_solver::{Block, Cost};
+
+/// One constraint row as MuJoCo's `efc` arrays have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstraintRow {
+    /// Where it comes from.
+    pub source: ConstraintSource,
+    /// Shape of its cost.
+    pub cost: Cost,
+    /// Which row of its constraint, edges of a pyramid counted one by one.
+    pub row: usize,
+    /// Position: violation of an equality, signed distance of a limit or contact, zero for friction.
+    pub pos: f64,
+    /// Distance at which it begins to act.
+    pub margin: f64,
+    /// Rate of change of the position.
+    pub vel: f64,
+    /// Acceleration that it asks for.
+    pub aref: f64,
+    /// Weight D = 1 / R of its cost.
+    pub d: f64,
+    /// Impedance.
+    pub impedance: f64,
+    /// Dry friction, zero for all else.
+    pub frictionloss: f64,
+    /// Force.
+    pub force: f64,
+}
+
+/// The constraint rows of lane `lane` in the last constraint stage.
+pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ConstraintRow> {
+    let mut rows = Vec::new();
+    for (index, block) in active_blocks(ws, lane) {
+        let record = &ws.record.blocks[index];
+        let number = |x: T| x.lane(lane).to_f64();
+        let forces = match block.cost {
+            Cost::Pyramid => ws.solver.edge_forces(&ws.problem, index),
+            _ => &ws.solver.force()[block.rows()],
+        };
+        let pos = |i: usize| ws.record.pos[block.row + i];
+        let is_friction = matches!(block.cost, Cost::Elliptic);
+        for (row, edge) in edges(&block, lane).enumerate() {
+            let combine = |values: &[T]| edge.combine(values, lane);
+            rows.push(ConstraintRow {
+                source: record.source,
+                cost: block.cost,
+                row,
+                pos: number(pos(edge.base)),
+                margin: if is_friction && row > 0 {
+                    0.0
+                } else {
+                    number(record.margin)
+                },
+                vel: combine(&ws.record.vel[block.rows()]),
+                aref: combine(block.aref),
+                d: number(block.d[edge.base]),
+                impedance: number(record.impedance),
+                frictionloss: match block.cost {
+                    Cost::Huber => number(block.shape[row]),
+                    _ => 0.0,
+                },
+                force: number(forces[row]),
+            });
+        }
+    }
+    rows
+}
+
+/// The Jacobian of lane `lane`, dense (rows as in [`constraint_rows`] × nv), row-major.
+pub fn jacobian<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
+    let nv = ws.problem.nv();
+    let mut dense = Vec::new();
+    for (_, block) in active_blocks(ws, lane) {
+        let n = block.dofs.len();
+        for edge in edges(&block, lane) {
+            let start = dense.len();
+            dense.resize(start + nv, 0.0);
+            let mut add = |row: usize, factor: f64| {
+                for (&dof, j) in block.dofs.iter().zip(&block.jacobian[row * n..]) {
+                    dense[start + dof as usize] += factor * j.lane(lane).to_f64();
+                }
+            };
+            add(edge.base, 1.0);
+            if let Some((row, factor)) = edge.added {
+                add(row, factor);
+            }
+        }
+    }
+    dense
+}
+
+/// The mass matrix of lane `lane`, dense (nv × nv).
+pub fn mass_matrix<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
+    let dense = ws.problem.mass.to_dense(ws.problem.tree());
+    dense.iter().map(|x| x.lane(lane).to_f64()).collect()
+}
+
+/// The force of contact `contact` of lane `lane` in the contact frame: along normal and tangents (N), about normal and
+/// tangents (N m). Zero where it is no constraint. It acts on the second geom; its negative on the first.
+pub fn contact_force<T: Real>(ws: &Workspace<T>, contact: usize, lane: usize) -> [f64; 6] {
+    let mut force = [0.0; 6];
+    if let Some(index) = ws.contacts.get(contact).and_then(|c| c.block) {
+        let rows = ws.problem.block(index).rows();
+        for (to, from) in force.iter_mut().zip(&ws.solver.force()[rows]) {
+            *to = from.lane(lane).to_f64();
+        }
+    }
+    force
+}
+
+impl ConstraintSource {
+    /// Kind of constraint, as MuJoCo groups them.
+    pub fn kind(self) -> &'static str {
+        match self {
+            ConstraintSource::Equality(_) => "equality",
+            ConstraintSource::DofFriction(_) => "friction_dof",
+            ConstraintSource::TendonFriction(_) => "friction_tendon",
+            ConstraintSource::JointLimit(_) => "limit_joint",
+            ConstraintSource::TendonLimit(_) => "limit_tendon",
+            ConstraintSource::Contact(_) => "contact",
+        }
+    }
+
+    /// Number of the source among those of its kind.
+    pub fn index(self) -> usize {
+        match self {
+            ConstraintSource::Equality(i)
+            | ConstraintSource::DofFriction(i)
+            | ConstraintSource::TendonFriction(i)
+            | ConstraintSource::JointLimit(i)
+            | ConstraintSource::TendonLimit(i)
+            | ConstraintSource::Contact(i) => i,
+        }
+    }
+
+    /// Name of the source, of the joint for a dof; empty where it has none and for contacts.
+    pub fn name(self, model: &Model) -> &str {
+        match self {
+            ConstraintSource::Equality(i) => &model.equalities[i].name,
+            ConstraintSource::DofFriction(i) => &model.joints[model.dofs[i].joint].name,
+            ConstraintSource::TendonFriction(i) | ConstraintSource::TendonLimit(i) => {
+                &model.tendons[i].name
+            }
+            ConstraintSource::JointLimit(i) => &model.joints[i].name,
+            ConstraintSource::Contact(_) => "",
+        }
+    }
+}
+
+fn active_blocks<T: Real>(
+    ws: &Workspace<T>,
+    lane: usize,
+) -> impl Iterator<Item = (usize, Block<'_, T>)> {
+    use clench_math::Mask;
+    let blocks = ws.problem.blocks().enumerate();
+    blocks.filter(move |&(i, _)| ws.record.blocks[i].active.lane(lane))
+}
+
+/// A row to show: a row of the block, or an edge of a pyramid, y₀ ± μ_j y_j.
+struct Edge {
+    base: usize,
+    added: Option<(usize, f64)>,
+}
+
+impl Edge {
+    fn combine<T: Real>(&self, values: &[T], lane: usize) -> f64 {
+        let number = |i: usize| values[i].lane(lane).to_f64();
+        match self.added {
+            None => number(self.base),
+            Some((j, factor)) => number(self.base) + factor * number(j),
+        }
+    }
+}
+
+fn edges<T: Real>(block: &Block<'_, T>, lane: usize) -> impl Iterator<Item = Edge> {
+    let pyramid = block.cost == Cost::Pyramid;
+    let count = if pyramid {
+        2 * (block.dim - 1)
+    } else {
+        block.dim
+    };
+    let shape = block.shape;
+    (0..count).map(move |row| {
+        if !pyramid {
+            let (base, added) = (row, None);
+            return Edge { base, added };
+        }
+        let j = 1 + row / 2;
+        let mu = shape[j].lane(lane).to_f64();
+        let added = Some((j, if row % 2 == 0 { mu } else { -mu }));
+        Edge { base: 0, added }
+    })
+}

@@ -1,0 +1,261 @@
+//! A simulation of one environment.
+
+use crate::check::{check_contact, check_result, check_state, check_values};
+use crate::contact::{Contact, check_supported};
+use crate::dynamics::energy::{Energy, energy};
+use crate::error::SimError;
+use crate::model::{Model, Params};
+use crate::pipeline;
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Quat, Scalar, Vec3, broadcast};
+use clench_solver::{LaneStats, RigidOptions};
+use std::sync::Arc;
+
+/// A model in motion: a state, and what follows from it.
+///
+/// [`state`](Self::state) is open to be read and written between steps; lengths and numbers are checked before they are
+/// used, so bad input is an error and never a panic. What a step or [`forward`](Self::forward) computed is read from
+/// [`workspace`](Self::workspace), or in MuJoCo's terms from [`readout`](crate::readout).
+#[derive(Debug)]
+pub struct Sim<T: Scalar = f64> {
+    /// What the next step depends on.
+    pub state: State<T>,
+    model: Arc<Model>,
+    params: Params<T>,
+    options: RigidOptions,
+    settings: StepSettings,
+    ws: Workspace<T>,
+    initial: State<T>,
+    last_good: State<T>,
+}
+
+impl<T: Scalar> Sim<T> {
+    /// A simulation in the model's initial state, with the model's options.
+    ///
+    /// # Errors
+    /// Options out of range; shapes that may meet and cannot be collided.
+    pub fn new(model: Arc<Model>) -> Result<Self, SimError> {
+        Sim::with_options(model, RigidOptions::new())
+    }
+
+    /// A simulation with options that go before those of the model.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_options(model: Arc<Model>, options: RigidOptions) -> Result<Self, SimError> {
+        let settings = StepSettings::new::<T>(&model, options)?;
+        if settings.flags.constraint && settings.flags.contact {
+            check_supported(&model)?;
+        }
+        let initial = State::new(&model);
+        Ok(Sim {
+            state: initial.clone(),
+            params: model.params.broadcast(),
+            options,
+            settings,
+            ws: Workspace::new(&model),
+            last_good: initial.clone(),
+            initial,
+            model,
+        })
+    }
+
+    /// Advances the state by one time step.
+    ///
+    /// # Errors
+    /// A state of wrong lengths or with numbers that are not finite; a motion that diverges or a mass matrix that is
+    /// singular. The state is then as before the step.
+    pub fn step(&mut self) -> Result<(), SimError> {
+        check_state(&self.model, &self.state)?;
+        self.last_good.copy_from(&self.state);
+        pipeline::step(
+            &self.model,
+            &self.params,
+            &self.settings,
+            &mut self.state,
+            &mut self.ws,
+        );
+        let result = check_result(self.last_good.time, &self.state, &self.ws);
+        if result.is_err() {
+            self.state.copy_from(&self.last_good);
+        }
+        result
+    }
+
+    /// Computes everything that follows from the state, and leaves the state alone.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn forward(&mut self) -> Result<(), SimError> {
+        check_state(&self.model, &self.state)?;
+        pipeline::forward(
+            &self.model,
+            &self.params,
+            &self.settings,
+            &self.state,
+            &mut self.ws,
+        );
+        check_result(self.state.time, &self.state, &self.ws)
+    }
+
+    /// As [`forward`](Self::forward), but with these contacts instead of detected ones. A contact takes part where it is
+    /// `active` and `dist < includemargin`.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), and contacts that make no sense.
+    pub fn forward_with_contacts(&mut self, contacts: &[Contact<T>]) -> Result<(), SimError> {
+        for (index, contact) in contacts.iter().enumerate() {
+            check_contact(&self.model, contact)
+                .map_err(|reason| SimError::Contact { index, reason })?;
+        }
+        self.ws.contacts.clear();
+        self.ws.contacts.extend_from_slice(contacts);
+        self.ws.collision.given = true;
+        let result = self.forward();
+        self.ws.collision.given = false;
+        result
+    }
+
+    /// Back to the model's initial state.
+    pub fn reset(&mut self) {
+        self.state.copy_from(&self.initial);
+    }
+
+    /// To a keyframe of the model; what a keyframe does not hold is as in the initial state.
+    ///
+    /// # Errors
+    /// A keyframe that the model does not have.
+    pub fn reset_to_keyframe(&mut self, index: usize) -> Result<(), SimError> {
+        let model = Arc::clone(&self.model);
+        let Some(key) = model.keyframes.get(index) else {
+            let count = model.keyframes.len();
+            return Err(no_such("keyframe", index, count));
+        };
+        self.reset();
+        let state = &mut self.state;
+        state.time = T::new(key.time);
+        for (to, from) in [
+            (&mut state.qpos, &key.qpos),
+            (&mut state.qvel, &key.qvel),
+            (&mut state.act, &key.act),
+            (&mut state.ctrl, &key.ctrl),
+        ] {
+            broadcast(from, to);
+        }
+        for (i, pos) in key.mocap_pos.chunks_exact(3).enumerate() {
+            state.mocap_pos[i] = Vec3::from_f64([pos[0], pos[1], pos[2]]);
+        }
+        for (i, quat) in key.mocap_quat.chunks_exact(4).enumerate() {
+            let quat = [quat[0], quat[1], quat[2], quat[3]];
+            state.mocap_quat[i] = Quat::from_f64(quat);
+        }
+        Ok(())
+    }
+
+    /// Sets the controls (nu).
+    ///
+    /// # Errors
+    /// A wrong length or a number that is not finite; the controls are then as before.
+    pub fn set_ctrl(&mut self, ctrl: &[T]) -> Result<(), SimError> {
+        check_values("ctrl", ctrl, self.state.ctrl.len())?;
+        self.state.ctrl.copy_from_slice(ctrl);
+        Ok(())
+    }
+
+    /// Sets the positions (nq) and the velocities (nv).
+    ///
+    /// # Errors
+    /// A wrong length or a number that is not finite; the state is then as before.
+    pub fn set_configuration(&mut self, qpos: &[T], qvel: &[T]) -> Result<(), SimError> {
+        check_values("qpos", qpos, self.model.nq)?;
+        check_values("qvel", qvel, self.model.nv)?;
+        self.state.qpos.copy_from_slice(qpos);
+        self.state.qvel.copy_from_slice(qvel);
+        Ok(())
+    }
+
+    /// Switches an equality constraint on or off.
+    ///
+    /// # Errors
+    /// An equality that the model does not have.
+    pub fn set_equality_active(&mut self, equality: usize, active: bool) -> Result<(), SimError> {
+        let count = self.model.equalities.len();
+        let Some(switch) = self.state.eq_active.get_mut(equality) else {
+            return Err(no_such("equality", equality, count));
+        };
+        *switch = active;
+        Ok(())
+    }
+
+    /// Sets the time step, s.
+    ///
+    /// # Errors
+    /// A time step that is not positive and finite.
+    pub fn set_timestep(&mut self, timestep: f64) -> Result<(), SimError> {
+        if !(timestep > 0.0 && timestep.is_finite()) {
+            return Err(SimError::OutOfRange {
+                field: "timestep",
+                value: timestep,
+                range: "positive and finite",
+            });
+        }
+        self.params.timestep = T::new(timestep);
+        Ok(())
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+    /// The model's numbers as this simulation uses them.
+    pub fn params(&self) -> &Params<T> {
+        &self.params
+    }
+    /// The model's numbers, to be changed for this simulation alone.
+    pub fn params_mut(&mut self) -> &mut Params<T> {
+        &mut self.params
+    }
+    /// The options that the user set.
+    pub fn options(&self) -> RigidOptions {
+        self.options
+    }
+    /// All options, decided.
+    pub fn settings(&self) -> &StepSettings {
+        &self.settings
+    }
+    /// What the last step or forward computed. After a step, positions and contacts are those at its start.
+    pub fn workspace(&self) -> &Workspace<T> {
+        &self.ws
+    }
+    /// The contacts of the last step or forward.
+    pub fn contacts(&self) -> &[Contact<T>] {
+        &self.ws.contacts
+    }
+    /// How the last solve went.
+    pub fn stats(&self) -> LaneStats {
+        self.ws.solver.stats().lane(0)
+    }
+    /// Whether the last step or forward found more contacts than the options allow, and left some out.
+    pub fn contact_overflow(&self) -> bool {
+        self.ws.collision.overflow
+    }
+
+    /// The mechanical energy of the state, J. Computes the positions that follow from the state.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
+        check_state(&self.model, &self.state)?;
+        let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
+        pipeline::position_stage(model, params, &self.state, ws);
+        let mass = &ws.problem.mass;
+        let (qpos, qvel) = (&self.state.qpos, &self.state.qvel);
+        Ok(energy(model, params, &ws.position, mass, qpos, qvel))
+    }
+}
+
+fn no_such(kind: &'static str, index: usize, count: usize) -> SimError {
+    SimError::NoSuchElement { kind, index, count }
+}
