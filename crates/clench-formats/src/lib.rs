@@ -1,1 +1,30 @@
-//! clench-formats
+//! Model files: readers that turn text into [`ModelBuilder`]s. All parsing and all file errors live here.
+//!
+//! MJCF, MuJoCo's own format, is read as MuJoCo 4.0 reads it: the same defaults, the same rules, the same rejections.
+//! What an MJCF file can say and this library cannot simulate yet is an error that names file, line and element, never
+//! a silent skip; what has no effect on motion (textures, cameras, colours, ...) is accepted by an explicit list.
+
+mod error;
+mod mjcf;
+
+pub use error::LoadError;
+
+use clench_rigid::builder::ModelBuilder;
+use std::path::Path;
+
+/// Reads a model file into a builder, before anything is computed.
+///
+/// # Errors
+/// [`LoadError`] where the file cannot be read, is not well-formed, breaks a rule of the format, or asks for something
+/// that is not supported yet.
+pub fn read(path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
+    mjcf::read_file(path.as_ref())
+}
+
+/// Reads a model from text, as [`read`]; includes are found from the working directory.
+///
+/// # Errors
+/// As [`read`]; the file name of an error is empty.
+pub fn read_str(text: &str) -> Result<ModelBuilder, LoadError> {
+    mjcf::read_text(text)
+}

@@ -9,12 +9,12 @@ mod error;
 mod physics;
 
 pub use elements::{
-    ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, GeomMass,
-    GeomSpec, InertiaSpec, InertialSpec, JointSpec, KeyframeSpec, PairSpec, SiteSpec, TendonSpec,
-    TransmissionSpec,
+    ActuatorSpec, BodySpec, ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind,
+    EqualitySpec, ExcludeSpec, GeomMass, GeomSpec, InertiaSpec, InertialSpec, JointSpec,
+    KeyframeSpec, PairSpec, SiteSpec, TendonSpec, TransmissionSpec,
 };
 pub use error::{BuildError, Origin};
-pub use physics::{CompilerSpec, InertiaFromGeom, PhysicsSpec};
+pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
 
 use clench_solver::RigidOptions;
 

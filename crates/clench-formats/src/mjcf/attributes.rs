@@ -1,0 +1,275 @@
+//! Typed reading of attributes, with the errors that MuJoCo gives: too few numbers, too many, not a number.
+
+use super::document::Element;
+use crate::LoadError;
+use clench_math::Vec3;
+
+/// Keywords of an attribute and what they stand for.
+pub(crate) type Keywords<'a, T> = &'a [(&'a str, T)];
+
+const BOOLEANS: Keywords<bool> = &[("false", false), ("true", true)];
+const TRISTATES: Keywords<Option<bool>> =
+    &[("false", Some(false)), ("true", Some(true)), ("auto", None)];
+
+impl Element {
+    /// An error about this element.
+    pub fn error(&self, message: impl Into<String>) -> LoadError {
+        LoadError::element(&self.origin, self.label(), message)
+    }
+
+    /// The element as errors name it: `joint "knee"`.
+    pub fn label(&self) -> String {
+        match self.text("name") {
+            Some(name) if !name.is_empty() => format!("{} \"{name}\"", self.tag),
+            _ => self.tag.clone(),
+        }
+    }
+
+    /// The text of an attribute.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        let found = self.attributes.iter().find(|(key, _)| key == name);
+        found.map(|(_, value)| value.as_str())
+    }
+
+    /// The text of an attribute, or nothing.
+    pub fn string(&self, name: &str) -> String {
+        self.text(name).unwrap_or_default().to_owned()
+    }
+
+    /// The text of an attribute that must be there.
+    pub fn required_text(&self, name: &str) -> Result<&str, LoadError> {
+        self.text(name).ok_or_else(|| self.missing(name))
+    }
+
+    /// The error of an attribute that must be there.
+    pub fn missing(&self, name: &str) -> LoadError {
+        self.error(format!("the attribute \"{name}\" is required"))
+    }
+
+    /// The numbers of an attribute, at most `max`; `None` where it is absent or blank.
+    fn parse_numbers(
+        &self,
+        name: &str,
+        max: usize,
+        infinite: bool,
+    ) -> Result<Option<Vec<f64>>, LoadError> {
+        let mut numbers = Vec::new();
+        for word in self.text(name).unwrap_or_default().split_ascii_whitespace() {
+            let number = word.parse::<f64>().ok();
+            let allowed =
+                |n: &f64| n.is_finite() || (infinite && n.is_infinite() && word.contains("inf"));
+            match number.filter(allowed) {
+                Some(number) => numbers.push(number),
+                None => {
+                    return Err(self.error(format!("\"{word}\" in {name} is not a finite number")));
+                }
+            }
+            if numbers.len() > max {
+                return Err(self.error(format!("{name} has more than {max} numbers")));
+            }
+        }
+        Ok((!numbers.is_empty()).then_some(numbers))
+    }
+
+    fn exactly<const N: usize>(
+        &self,
+        name: &str,
+        numbers: Vec<f64>,
+    ) -> Result<[f64; N], LoadError> {
+        let given = numbers.len();
+        let wrong = |_| self.error(format!("{name} needs {N} numbers, not {given}"));
+        numbers.try_into().map_err(wrong)
+    }
+
+    /// Exactly `N` finite numbers.
+    pub fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, LoadError> {
+        let numbers = self.parse_numbers(name, N, false)?;
+        numbers
+            .map(|numbers| self.exactly(name, numbers))
+            .transpose()
+    }
+
+    /// Exactly `N` finite numbers that must be there.
+    pub fn required_numbers<const N: usize>(&self, name: &str) -> Result<[f64; N], LoadError> {
+        self.numbers(name)?.ok_or_else(|| self.missing(name))
+    }
+
+    /// Any number of finite numbers.
+    pub fn list(&self, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
+        self.parse_numbers(name, usize::MAX, false)
+    }
+
+    /// Overwrites a number if the attribute is there.
+    pub fn set_number(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
+        if let Some([number]) = self.numbers(name)? {
+            *target = number;
+        }
+        Ok(())
+    }
+
+    /// Overwrites all of an array if the attribute is there.
+    pub fn set_numbers<const N: usize>(
+        &self,
+        name: &str,
+        target: &mut [f64; N],
+    ) -> Result<(), LoadError> {
+        if let Some(numbers) = self.numbers(name)? {
+            *target = numbers;
+        }
+        Ok(())
+    }
+
+    /// Overwrites a vector if the attribute is there.
+    pub fn set_vector(&self, name: &str, target: &mut Vec3<f64>) -> Result<(), LoadError> {
+        if let Some(numbers) = self.numbers(name)? {
+            *target = Vec3::from_array(numbers);
+        }
+        Ok(())
+    }
+
+    /// Overwrites a range, whose ends may be infinite, if the attribute is there.
+    pub fn set_range(&self, name: &str, target: &mut [f64; 2]) -> Result<(), LoadError> {
+        if let Some(numbers) = self.parse_numbers(name, 2, true)? {
+            *target = self.exactly(name, numbers)?;
+        }
+        Ok(())
+    }
+
+    /// Overwrites as many leading entries as the attribute gives, 1 to `N`, and says how many.
+    pub fn overlay<const N: usize>(
+        &self,
+        name: &str,
+        target: &mut [f64; N],
+    ) -> Result<usize, LoadError> {
+        let numbers = self.parse_numbers(name, N, false)?.unwrap_or_default();
+        target[..numbers.len()].copy_from_slice(&numbers);
+        Ok(numbers.len())
+    }
+
+    /// As `overlay`, for a value that may be undefined; defining it starts from zeros.
+    pub fn overlay_option<const N: usize>(
+        &self,
+        name: &str,
+        target: &mut Option<[f64; N]>,
+    ) -> Result<(), LoadError> {
+        let mut values = target.unwrap_or([0.0; N]);
+        if self.overlay(name, &mut values)? > 0 {
+            *target = Some(values);
+        }
+        Ok(())
+    }
+
+    /// The linear coefficient of a spring or damper polynomial; its higher coefficients must be zero.
+    pub fn set_linear(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
+        let mut coefficients = [*target, 0.0, 0.0];
+        self.overlay(name, &mut coefficients)?;
+        if coefficients[1..] != [0.0, 0.0] {
+            return Err(self.error(format!("polynomial {name} is not supported yet")));
+        }
+        *target = coefficients[0];
+        Ok(())
+    }
+
+    /// An integer.
+    pub fn integer(&self, name: &str) -> Result<Option<i32>, LoadError> {
+        let words: Vec<&str> = self
+            .text(name)
+            .unwrap_or_default()
+            .split_ascii_whitespace()
+            .collect();
+        match words[..] {
+            [] => Ok(None),
+            [word] => match word.parse() {
+                Ok(number) => Ok(Some(number)),
+                Err(_) => Err(self.error(format!("\"{word}\" in {name} is not a 32-bit integer"))),
+            },
+            _ => Err(self.error(format!("{name} has more than one number"))),
+        }
+    }
+
+    /// Overwrites an integer if the attribute is there.
+    pub fn set_integer(&self, name: &str, target: &mut i32) -> Result<(), LoadError> {
+        if let Some(number) = self.integer(name)? {
+            *target = number;
+        }
+        Ok(())
+    }
+
+    /// An integer that cannot be negative.
+    pub fn count(&self, name: &str) -> Result<Option<usize>, LoadError> {
+        let negative = |n: i32| {
+            usize::try_from(n).map_err(|_| self.error(format!("{name} cannot be negative")))
+        };
+        self.integer(name)?.map(negative).transpose()
+    }
+
+    /// Any number of integers.
+    pub fn integers(&self, name: &str) -> Result<Vec<i32>, LoadError> {
+        let words = self.text(name).unwrap_or_default().split_ascii_whitespace();
+        words
+            .map(|word| {
+                let wrong = |_| self.error(format!("\"{word}\" in {name} is not a 32-bit integer"));
+                word.parse().map_err(wrong)
+            })
+            .collect()
+    }
+
+    /// What a keyword stands for.
+    pub fn keyword<T: Clone>(
+        &self,
+        name: &str,
+        keywords: Keywords<T>,
+    ) -> Result<Option<T>, LoadError> {
+        let Some(text) = self.text(name) else {
+            return Ok(None);
+        };
+        match keywords.iter().find(|(keyword, _)| *keyword == text) {
+            Some((_, value)) => Ok(Some(value.clone())),
+            None => {
+                let known: Vec<&str> = keywords.iter().map(|(keyword, _)| *keyword).collect();
+                Err(self.error(format!(
+                    "{name} is \"{text}\", not one of {}",
+                    known.join(", ")
+                )))
+            }
+        }
+    }
+
+    /// Overwrites by what a keyword stands for if the attribute is there.
+    pub fn set_keyword<T: Clone>(
+        &self,
+        name: &str,
+        keywords: Keywords<T>,
+        target: &mut T,
+    ) -> Result<(), LoadError> {
+        if let Some(value) = self.keyword(name, keywords)? {
+            *target = value;
+        }
+        Ok(())
+    }
+
+    /// Overwrites a truth value if the attribute is there.
+    pub fn set_boolean(&self, name: &str, target: &mut bool) -> Result<(), LoadError> {
+        self.set_keyword(name, BOOLEANS, target)
+    }
+
+    /// Overwrites a "true", "false" or "auto" (`None`) if the attribute is there.
+    pub fn set_tristate(&self, name: &str, target: &mut Option<bool>) -> Result<(), LoadError> {
+        self.set_keyword(name, TRISTATES, target)
+    }
+
+    /// At most one of these attributes may be there.
+    pub fn at_most_one(&self, names: &[&str]) -> Result<(), LoadError> {
+        let given: Vec<&str> = names
+            .iter()
+            .copied()
+            .filter(|name| self.text(name).is_some())
+            .collect();
+        match given[..] {
+            [first, second, ..] => {
+                Err(self.error(format!("{first} and {second} cannot both be given")))
+            }
+            _ => Ok(()),
+        }
+    }
+}

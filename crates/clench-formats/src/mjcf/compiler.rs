@@ -1,0 +1,101 @@
+//! `<compiler>`: how to read what follows (units, order of rotations), and how to derive what it does not say.
+
+use super::document::Element;
+use crate::LoadError;
+use clench_math::{Quat, Vec3};
+use clench_rigid::builder::{CompilerSpec, InertiaFromGeom};
+
+/// How the file writes angles and rotations.
+#[derive(Clone, Debug)]
+pub(crate) struct Notation {
+    pub degrees: bool,
+    /// Axes of the three Euler rotations; lower case: moving axes, upper case: fixed ones.
+    pub eulerseq: [char; 3],
+}
+
+impl Default for Notation {
+    fn default() -> Self {
+        Notation {
+            degrees: true,
+            eulerseq: ['x', 'y', 'z'],
+        }
+    }
+}
+
+impl Notation {
+    /// An angle of the file in radians.
+    pub fn radians(&self, angle: f64) -> f64 {
+        if self.degrees {
+            angle.to_radians()
+        } else {
+            angle
+        }
+    }
+
+    /// The rotation by three angles of the file.
+    pub fn euler(&self, angles: [f64; 3]) -> Quat<f64> {
+        let mut total = Quat::IDENTITY;
+        for (angle, name) in angles.into_iter().zip(self.eulerseq) {
+            let axis = match name.to_ascii_lowercase() {
+                'x' => Vec3::new(1.0, 0.0, 0.0),
+                'y' => Vec3::new(0.0, 1.0, 0.0),
+                _ => Vec3::new(0.0, 0.0, 1.0),
+            };
+            let turn = Quat::from_axis_angle(axis, self.radians(angle));
+            total = if name.is_ascii_lowercase() {
+                total * turn
+            } else {
+                turn * total
+            };
+        }
+        total.normalize()
+    }
+
+    fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+        element.set_keyword(
+            "angle",
+            &[("radian", false), ("degree", true)],
+            &mut self.degrees,
+        )?;
+        if let Some(text) = element.text("eulerseq") {
+            let axes: Vec<char> = text.chars().filter(|c| "xyzXYZ".contains(*c)).collect();
+            let axes = <[char; 3]>::try_from(axes).ok().filter(|_| text.len() == 3);
+            self.eulerseq =
+                axes.ok_or_else(|| element.error("eulerseq needs three of x, y, z, X, Y, Z"))?;
+        }
+        Ok(())
+    }
+}
+
+/// Reads one `<compiler>`; a later one overrides what it gives.
+pub(crate) fn read(
+    element: &Element,
+    notation: &mut Notation,
+    spec: &mut CompilerSpec,
+) -> Result<(), LoadError> {
+    notation.read(element)?;
+    if element.keyword("coordinate", &[("local", false), ("global", true)])? == Some(true) {
+        return Err(element.error(
+            "global coordinates were removed from MJCF; convert the model with MuJoCo 2.3.3",
+        ));
+    }
+    element.set_boolean("autolimits", &mut spec.autolimits)?;
+    element.set_number("boundmass", &mut spec.boundmass)?;
+    element.set_number("boundinertia", &mut spec.boundinertia)?;
+    if let Some([mass]) = element.numbers("settotalmass")? {
+        spec.settotalmass = (mass > 0.0).then_some(mass);
+    }
+    element.set_boolean("balanceinertia", &mut spec.balanceinertia)?;
+    let sources = [
+        ("false", InertiaFromGeom::Never),
+        ("true", InertiaFromGeom::Always),
+        ("auto", InertiaFromGeom::Auto),
+    ];
+    element.set_keyword("inertiafromgeom", &sources, &mut spec.inertiafromgeom)?;
+    if element.text("inertiagrouprange").is_some() {
+        let groups = element.integers("inertiagrouprange")?;
+        let wrong = |_| element.error("inertiagrouprange needs two integers");
+        spec.inertiagrouprange = groups.try_into().map_err(wrong)?;
+    }
+    element.set_boolean("alignfree", &mut spec.alignfree)
+}

@@ -1,0 +1,156 @@
+//! `<geom>`.
+
+use super::compiler::Notation;
+use super::document::Element;
+use super::orientation::{Orientation, Pose, segment};
+use crate::LoadError;
+use clench_collide::ShapeKind;
+use clench_math::Vec3;
+use clench_rigid::builder::{GeomMass, GeomSpec};
+
+const KINDS: [(&str, Option<ShapeKind>); 9] = [
+    ("plane", Some(ShapeKind::Plane)),
+    ("hfield", None),
+    ("sphere", Some(ShapeKind::Sphere)),
+    ("capsule", Some(ShapeKind::Capsule)),
+    ("ellipsoid", Some(ShapeKind::Ellipsoid)),
+    ("cylinder", Some(ShapeKind::Cylinder)),
+    ("box", Some(ShapeKind::Box)),
+    ("mesh", None),
+    ("sdf", None),
+];
+
+/// The shape that `type` names.
+pub(crate) fn read_kind(element: &Element) -> Result<Option<ShapeKind>, LoadError> {
+    match element.keyword("type", &KINDS)? {
+        Some(None) => {
+            let name = element.string("type");
+            Err(element.error(format!("the type \"{name}\" is not supported yet")))
+        }
+        Some(kind) => Ok(kind),
+        None => Ok(None),
+    }
+}
+
+/// A geom as it is written, or as a default class has it.
+#[derive(Clone, Debug)]
+pub(crate) struct GeomDraft {
+    pub spec: GeomSpec,
+    size: [f64; 3],
+    pos: [f64; 3],
+    orientation: Orientation,
+    fromto: Option<[f64; 6]>,
+    mass: Option<f64>,
+    density: f64,
+}
+
+impl Default for GeomDraft {
+    fn default() -> Self {
+        GeomDraft {
+            spec: GeomSpec::default(),
+            size: [0.0; 3],
+            pos: [0.0; 3],
+            orientation: Orientation::default(),
+            fromto: None,
+            mass: None,
+            density: 1000.0,
+        }
+    }
+}
+
+impl GeomDraft {
+    /// Overwrites what the element gives.
+    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+        let geom = &mut self.spec;
+        if let Some(kind) = read_kind(element)? {
+            geom.kind = kind;
+        }
+        geom.contype = read_mask(element, "contype", geom.contype)?;
+        geom.conaffinity = read_mask(element, "conaffinity", geom.conaffinity)?;
+        if let Some(condim) = read_condim(element)? {
+            geom.condim = condim;
+        }
+        element.overlay("friction", &mut geom.friction)?;
+        element.set_integer("priority", &mut geom.priority)?;
+        element.set_number("solmix", &mut geom.solmix)?;
+        element.overlay("solref", &mut geom.solref)?;
+        element.overlay("solimp", &mut geom.solimp)?;
+        element.set_number("margin", &mut geom.margin)?;
+        element.set_number("gap", &mut geom.gap)?;
+        element.set_boolean("shellinertia", &mut geom.shellinertia)?;
+        element.set_integer("group", &mut geom.group)?;
+        element.overlay("size", &mut self.size)?;
+        element.set_numbers("pos", &mut self.pos)?;
+        self.orientation.read(element)?;
+        self.fromto = element.numbers("fromto")?.or(self.fromto);
+        self.mass = element.numbers("mass")?.map(|[mass]| mass).or(self.mass);
+        element.set_number("density", &mut self.density)
+    }
+
+    /// The geom in its body: shorthand resolved, carried along with the frame that it is written in.
+    pub fn finish(
+        mut self,
+        element: &Element,
+        notation: &Notation,
+        frame: &Pose,
+    ) -> Result<GeomSpec, LoadError> {
+        let pose = match self.fromto {
+            Some(points) => {
+                place_segment(points, self.pos, self.spec.kind, &mut self.size, element)?
+            }
+            None => Pose {
+                pos: Vec3::from_array(self.pos),
+                quat: self.orientation.resolve(notation, element)?,
+            },
+        };
+        let pose = frame.then(pose);
+        Ok(GeomSpec {
+            name: element.string("name"),
+            size: Vec3::from_array(self.size),
+            pos: pose.pos,
+            quat: pose.quat,
+            mass: match self.mass {
+                Some(mass) => GeomMass::Mass(mass),
+                None => GeomMass::Density(self.density),
+            },
+            origin: Some(element.origin.clone()),
+            ..self.spec
+        })
+    }
+}
+
+/// The pose of a shape that stretches between two points, whose distance becomes its size along z.
+pub(crate) fn place_segment(
+    points: [f64; 6],
+    pos: [f64; 3],
+    kind: ShapeKind,
+    size: &mut [f64; 3],
+    element: &Element,
+) -> Result<Pose, LoadError> {
+    if pos != [0.0; 3] {
+        return Err(element.error("pos and fromto cannot both be given"));
+    }
+    let (pose, half_length) = segment(points, element)?;
+    match kind {
+        ShapeKind::Capsule | ShapeKind::Cylinder => size[1] = half_length,
+        ShapeKind::Ellipsoid | ShapeKind::Box => *size = [size[0], size[0], half_length],
+        ShapeKind::Plane | ShapeKind::Sphere => {
+            return Err(element.error("fromto needs a capsule, cylinder, box or ellipsoid"));
+        }
+    }
+    Ok(pose)
+}
+
+/// Contact bits: a 32-bit integer, of which the bits count.
+fn read_mask(element: &Element, name: &str, current: u32) -> Result<u32, LoadError> {
+    Ok(element.integer(name)?.map_or(current, |bits| bits as u32))
+}
+
+/// Contact dimensions.
+pub(crate) fn read_condim(element: &Element) -> Result<Option<u32>, LoadError> {
+    match element.integer("condim")? {
+        Some(condim @ (1 | 3 | 4 | 6)) => Ok(Some(condim as u32)),
+        Some(condim) => Err(element.error(format!("condim is {condim}, not 1, 3, 4 or 6"))),
+        None => Ok(None),
+    }
+}

@@ -1,0 +1,72 @@
+//! `<joint>` and `<freejoint>`.
+
+use super::compiler::Notation;
+use super::document::Element;
+use super::orientation::Pose;
+use crate::LoadError;
+use clench_rigid::builder::JointSpec;
+use clench_rigid::model::JointKind;
+
+/// Overwrites what the element gives; angles stay in the file's unit until [`finish`].
+pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadError> {
+    let kinds = [
+        ("free", JointKind::Free),
+        ("ball", JointKind::Ball),
+        ("slide", JointKind::Slide),
+        ("hinge", JointKind::Hinge),
+    ];
+    element.set_keyword("type", &kinds, &mut joint.kind)?;
+    element.set_vector("pos", &mut joint.pos)?;
+    element.set_vector("axis", &mut joint.axis)?;
+    element.set_range("range", &mut joint.range)?;
+    element.set_tristate("limited", &mut joint.limited)?;
+    element.set_range("actuatorfrcrange", &mut joint.actuatorfrcrange)?;
+    element.set_tristate("actuatorfrclimited", &mut joint.actuatorfrclimited)?;
+    element.set_boolean("actuatorgravcomp", &mut joint.actuatorgravcomp)?;
+    element.set_number("margin", &mut joint.margin)?;
+    element.set_number("ref", &mut joint.reference)?;
+    element.set_number("springref", &mut joint.springref)?;
+    element.set_linear("stiffness", &mut joint.stiffness)?;
+    element.set_linear("damping", &mut joint.damping)?;
+    element.set_numbers("springdamper", &mut joint.springdamper)?;
+    element.set_number("armature", &mut joint.armature)?;
+    element.set_number("frictionloss", &mut joint.frictionloss)?;
+    element.overlay("solreflimit", &mut joint.solref_limit)?;
+    element.overlay("solimplimit", &mut joint.solimp_limit)?;
+    element.overlay("solreffriction", &mut joint.solref_friction)?;
+    element.overlay("solimpfriction", &mut joint.solimp_friction)?;
+    element.set_integer("group", &mut joint.group)
+}
+
+/// A free joint, which takes nothing from default classes.
+pub(crate) fn read_free(element: &Element) -> Result<JointSpec, LoadError> {
+    let mut joint = JointSpec {
+        name: element.string("name"),
+        kind: JointKind::Free,
+        origin: Some(element.origin.clone()),
+        ..JointSpec::default()
+    };
+    element.set_integer("group", &mut joint.group)?;
+    element.set_tristate("align", &mut joint.align)?;
+    Ok(joint)
+}
+
+/// Turns angles into radians and carries the joint along with the frame that it is written in.
+///
+/// As in MuJoCo, degrees concern the range of hinge and ball joints where it is a limit, and the reference angles of
+/// hinge joints.
+pub(crate) fn finish(mut joint: JointSpec, notation: &Notation, frame: &Pose) -> JointSpec {
+    let limits = joint.limited != Some(false);
+    if limits && matches!(joint.kind, JointKind::Hinge | JointKind::Ball) {
+        joint.range = joint.range.map(|angle| notation.radians(angle));
+    }
+    if joint.kind == JointKind::Hinge {
+        joint.reference = notation.radians(joint.reference);
+        joint.springref = notation.radians(joint.springref);
+    }
+    if joint.kind != JointKind::Free {
+        joint.pos = frame.point(joint.pos);
+        joint.axis = frame.quat.rotate(joint.axis);
+    }
+    joint
+}

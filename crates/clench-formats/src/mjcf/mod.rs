@@ -1,0 +1,150 @@
+//! MJCF, as MuJoCo 4.0 reads it.
+//!
+//! [`document`] turns text into elements, [`include`] splices files together, [`schema`] accepts or rejects every element
+//! and attribute, and only then do the sections read their values; so a section never meets what it does not know.
+
+mod actuator;
+mod attributes;
+mod body;
+mod compiler;
+mod contact;
+mod defaults;
+mod document;
+mod equality;
+mod geom;
+mod include;
+mod joint;
+mod keyframe;
+mod option;
+mod orientation;
+mod rules;
+mod schema;
+mod site;
+mod tendon;
+
+use crate::LoadError;
+use actuator::Shortcut;
+use body::BodyReader;
+use clench_rigid::builder::ModelBuilder;
+use compiler::Notation;
+use defaults::{Classes, MAIN};
+use document::Element;
+use include::Includes;
+use option::OptionReader;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads the model in a file.
+pub(crate) fn read_file(path: &Path) -> Result<ModelBuilder, LoadError> {
+    let file = Arc::from(path.to_string_lossy());
+    let unreadable = |error| LoadError::file(&file, format!("cannot read the file: {error}"));
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let directory = path.parent().unwrap_or(Path::new(""));
+    read(&bytes, &file, Includes::new(Some(path)), directory)
+}
+
+/// Reads a model from text.
+pub(crate) fn read_text(text: &str) -> Result<ModelBuilder, LoadError> {
+    read(
+        text.as_bytes(),
+        &Arc::from(""),
+        Includes::new(None),
+        Path::new(""),
+    )
+}
+
+fn read(
+    bytes: &[u8],
+    file: &Arc<str>,
+    mut includes: Includes,
+    directory: &Path,
+) -> Result<ModelBuilder, LoadError> {
+    let mut root = document::parse(bytes, file)?;
+    match root.tag.as_str() {
+        "mujoco" => {}
+        "robot" => return Err(root.error("URDF is not supported yet")),
+        _ => return Err(root.error("the root element of a model is <mujoco>")),
+    }
+    includes.expand(&mut root, directory, 1)?;
+    schema::check(&root)?;
+    read_model(&root)
+}
+
+/// The sections of a kind, in order.
+fn sections<'a>(root: &'a Element, tag: &str) -> impl Iterator<Item = &'a Element> {
+    root.children
+        .iter()
+        .filter(move |section| section.tag == tag)
+}
+
+/// The elements in all sections of a kind.
+fn entries<'a>(root: &'a Element, tag: &str) -> impl Iterator<Item = &'a Element> {
+    sections(root, tag).flat_map(|section| &section.children)
+}
+
+fn read_model(root: &Element) -> Result<ModelBuilder, LoadError> {
+    let mut builder = ModelBuilder {
+        name: root.text("model").unwrap_or("MuJoCo Model").to_owned(),
+        bodies: vec![body::world()],
+        ..ModelBuilder::default()
+    };
+    let mut notation = Notation::default();
+    for section in sections(root, "compiler") {
+        compiler::read(section, &mut notation, &mut builder.compiler)?;
+    }
+    let mut options = OptionReader::default();
+    for section in sections(root, "option") {
+        options.read(section, &mut builder)?;
+    }
+    options.finish(&mut builder);
+    builder.options = builder.options.or(option::format_defaults());
+    let mut classes = Classes::default();
+    for section in sections(root, "default") {
+        classes.read(section)?;
+    }
+    let mut bodies = BodyReader {
+        notation: &notation,
+        classes: &classes,
+        bodies: &mut builder.bodies,
+    };
+    for section in sections(root, "worldbody") {
+        bodies.read_world(section)?;
+    }
+    read_references(root, &classes, &mut builder)?;
+    Ok(builder)
+}
+
+/// The sections whose elements name elements of the body tree.
+fn read_references(
+    root: &Element,
+    classes: &Classes,
+    builder: &mut ModelBuilder,
+) -> Result<(), LoadError> {
+    for element in entries(root, "contact") {
+        if element.tag == "pair" {
+            let pair = classes.of(element)?.pair.clone();
+            builder.pairs.push(contact::finish_pair(element, pair)?);
+        } else {
+            builder.excludes.push(contact::read_exclude(element)?);
+        }
+    }
+    for element in entries(root, "equality") {
+        let draft = classes.of(element)?.equality.clone();
+        builder.equalities.push(equality::read(element, draft)?);
+    }
+    for element in entries(root, "tendon") {
+        let tendon = classes.of(element)?.tendon.clone();
+        builder.tendons.push(tendon::read_fixed(element, tendon)?);
+    }
+    for element in entries(root, "actuator") {
+        let class = classes.named_by(element, "class", MAIN)?;
+        let shortcut = Shortcut::from_tag(&element.tag).unwrap_or_default();
+        let mut draft = classes[class].actuator.clone();
+        draft.read(element, shortcut, classes.law(class, shortcut))?;
+        builder.actuators.push(draft.finish(element)?);
+    }
+    for element in entries(root, "keyframe") {
+        builder.keyframes.push(keyframe::read(element)?);
+    }
+    Ok(())
+}

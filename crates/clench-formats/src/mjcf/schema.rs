@@ -1,0 +1,149 @@
+//! Accepts or rejects every element and attribute of a file, before anything is read.
+//!
+//! Four answers: read; accepted and without effect on motion; known to MuJoCo but not supported yet; unknown. The
+//! tables are [`rules`](super::rules).
+
+use super::document::Element;
+use super::rules::{RULES, Rule};
+use crate::LoadError;
+
+/// Attributes that an element has in the model, but not in a default class.
+const NOT_IN_DEFAULTS: &[&str] = &[
+    "name",
+    "class",
+    "joint",
+    "jointinparent",
+    "tendon",
+    "lengthrange",
+    "geom1",
+    "geom2",
+    "target",
+];
+
+/// Checks a model whose includes are expanded.
+pub(crate) fn check(root: &Element) -> Result<(), LoadError> {
+    let rule = find("", "mujoco").ok_or_else(|| root.error("unknown element"))?;
+    check_element(root, rule)
+}
+
+/// The rule of an element below a parent: one for that parent alone, or one for anywhere.
+fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
+    let of = |name: &str| RULES.iter().find(|rule| rule.element == name);
+    of(&format!("{parent}/{tag}")).or_else(|| of(tag))
+}
+
+fn check_element(element: &Element, rule: &Rule) -> Result<(), LoadError> {
+    for (name, value) in &element.attributes {
+        check_attribute(element, rule, name, value)?;
+    }
+    for (position, child) in element.children.iter().enumerate() {
+        let child_rule = check_child(element, rule, child)?;
+        let once = words(rule.once).any(|tag| tag == child.tag);
+        if once
+            && element.children[..position]
+                .iter()
+                .any(|other| other.tag == child.tag)
+        {
+            return Err(child.error(format!("there can be only one in <{}>", element.tag)));
+        }
+        if element.tag == "default" {
+            reject_in_default(child)?;
+        }
+        check_element(child, child_rule)?;
+    }
+    Ok(())
+}
+
+fn check_child(
+    element: &Element,
+    rule: &Rule,
+    child: &Element,
+) -> Result<&'static Rule, LoadError> {
+    let known = || {
+        words(rule.children)
+            .chain(words(rule.once))
+            .chain(words(rule.later_children))
+    };
+    let tag = child.tag.as_str();
+    if words(rule.later_children).any(|later| later == tag) {
+        return Err(child.error(format!("<{tag}> in <{}> is not supported yet", element.tag)));
+    }
+    let allowed = known().any(|name| name == tag);
+    match find(&element.tag, tag).filter(|_| allowed) {
+        Some(rule) => Ok(rule),
+        None => {
+            let hint = suggestion(tag, known());
+            Err(child.error(format!(
+                "unknown element <{tag}> in <{}>{hint}",
+                element.tag
+            )))
+        }
+    }
+}
+
+fn check_attribute(
+    element: &Element,
+    rule: &Rule,
+    name: &str,
+    value: &str,
+) -> Result<(), LoadError> {
+    if words(rule.read)
+        .chain(words(rule.ignored))
+        .any(|known| known == name)
+    {
+        return Ok(());
+    }
+    for later in words(rule.later) {
+        let (later, harmless) = later.split_once('=').unwrap_or((later, ""));
+        if later == name {
+            return match is_harmless(value, harmless) {
+                true => Ok(()),
+                false => Err(element.error(format!("the attribute {name} is not supported yet"))),
+            };
+        }
+    }
+    let later =
+        words(rule.later).map(|later| later.split_once('=').map_or(later, |(name, _)| name));
+    let known = words(rule.read).chain(words(rule.ignored)).chain(later);
+    let hint = suggestion(name, known);
+    Err(element.error(format!("unknown attribute \"{name}\"{hint}")))
+}
+
+fn reject_in_default(element: &Element) -> Result<(), LoadError> {
+    if element.tag == "default" {
+        return Ok(());
+    }
+    match element
+        .attributes
+        .iter()
+        .find(|(name, _)| NOT_IN_DEFAULTS.contains(&name.as_str()))
+    {
+        Some((name, _)) => Err(element.error(format!("{name} cannot be given in a default"))),
+        None => Ok(()),
+    }
+}
+
+/// Whether every word of a value is the one (as text or number) with which an unsupported attribute does nothing.
+fn is_harmless(value: &str, harmless: &str) -> bool {
+    let number = harmless.parse::<f64>().ok();
+    let same =
+        |word: &str| word == harmless || (number.is_some() && word.parse::<f64>().ok() == number);
+    !harmless.is_empty() && value.split_ascii_whitespace().all(same)
+}
+
+fn words(text: &'static str) -> impl Iterator<Item = &'static str> {
+    text.split_ascii_whitespace()
+}
+
+/// `; did you mean "..."?` if some known name is near to a mistaken one.
+pub(crate) fn suggestion<'a>(mistaken: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let distance =
+        |name: &str| strsim::damerau_levenshtein(&mistaken.to_lowercase(), &name.to_lowercase());
+    let nearest = known.map(|name| (distance(name), name)).min();
+    match nearest {
+        Some((distance, name)) if distance <= 2.max(mistaken.len() / 3) => {
+            format!("; did you mean \"{name}\"?")
+        }
+        _ => String::new(),
+    }
+}

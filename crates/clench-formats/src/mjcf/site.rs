@@ -1,0 +1,70 @@
+//! `<site>`: its pose matters, its shape is only seen.
+
+use super::compiler::Notation;
+use super::document::Element;
+use super::geom::{place_segment, read_kind};
+use super::orientation::{Orientation, Pose};
+use crate::LoadError;
+use clench_collide::ShapeKind;
+use clench_math::Vec3;
+use clench_rigid::builder::SiteSpec;
+
+/// A site as it is written, or as a default class has it.
+#[derive(Clone, Debug)]
+pub(crate) struct SiteDraft {
+    kind: ShapeKind,
+    pos: [f64; 3],
+    orientation: Orientation,
+    fromto: Option<[f64; 6]>,
+    group: i32,
+}
+
+impl Default for SiteDraft {
+    fn default() -> Self {
+        SiteDraft {
+            kind: ShapeKind::Sphere,
+            pos: [0.0; 3],
+            orientation: Orientation::default(),
+            fromto: None,
+            group: 0,
+        }
+    }
+}
+
+impl SiteDraft {
+    /// Overwrites what the element gives.
+    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+        self.kind = read_kind(element)?.unwrap_or(self.kind);
+        if self.kind == ShapeKind::Plane {
+            return Err(element.error("a site cannot be a plane"));
+        }
+        element.set_numbers("pos", &mut self.pos)?;
+        self.orientation.read(element)?;
+        self.fromto = element.numbers("fromto")?.or(self.fromto);
+        element.set_integer("group", &mut self.group)
+    }
+
+    /// The site in its body, carried along with the frame that it is written in.
+    pub fn finish(
+        self,
+        element: &Element,
+        notation: &Notation,
+        frame: &Pose,
+    ) -> Result<SiteSpec, LoadError> {
+        let pose = match self.fromto {
+            Some(points) => place_segment(points, self.pos, self.kind, &mut [0.0; 3], element)?,
+            None => Pose {
+                pos: Vec3::from_array(self.pos),
+                quat: self.orientation.resolve(notation, element)?,
+            },
+        };
+        let pose = frame.then(pose);
+        Ok(SiteSpec {
+            name: element.string("name"),
+            pos: pose.pos,
+            quat: pose.quat,
+            group: self.group,
+            origin: Some(element.origin.clone()),
+        })
+    }
+}
