@@ -49,6 +49,37 @@ pub struct Positions<T> {
     pub actuator_moment: Vec<T>,
 }
 
+impl<T: Real> Positions<T> {
+    /// Room for a model; what its poses are is not known yet.
+    pub fn new(model: &Model) -> Self {
+        let (nbody, nv, nu) = (model.nbody(), model.nv, model.nu());
+        let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
+        let zeros = |n: usize| vec![T::ZERO; n];
+        let points = |n: usize| vec![Vec3::ZERO; n];
+        let frames = |n: usize| vec![Mat3::IDENTITY; n];
+        Positions {
+            xpos: points(nbody),
+            xquat: vec![Quat::IDENTITY; nbody],
+            xmat: frames(nbody),
+            xipos: points(nbody),
+            ximat: frames(nbody),
+            xanchor: points(nj),
+            xaxis: points(nj),
+            geom_xpos: points(ng),
+            geom_xmat: frames(ng),
+            site_xpos: points(ns),
+            site_xmat: frames(ns),
+            subtree_com: points(nbody),
+            cdof: vec![Motion::ZERO; nv],
+            cinert: vec![Inertia::ZERO; nbody],
+            crb: vec![Inertia::ZERO; nbody],
+            ten_length: zeros(model.tendons.len()),
+            actuator_length: zeros(nu),
+            actuator_moment: zeros(nu * nv),
+        }
+    }
+}
+
 /// What depends on velocities.
 #[derive(Clone, Debug, Default)]
 pub struct Velocities<T> {
@@ -127,31 +158,9 @@ impl<T: Real> Workspace<T> {
     /// Room for everything that the model needs.
     pub fn new(model: &Model) -> Self {
         let (nbody, nv, nu) = (model.nbody(), model.nv, model.nu());
-        let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
         let zeros = |n: usize| vec![T::ZERO; n];
-        let points = |n: usize| vec![Vec3::ZERO; n];
-        let frames = |n: usize| vec![Mat3::IDENTITY; n];
         Workspace {
-            position: Positions {
-                xpos: points(nbody),
-                xquat: vec![Quat::IDENTITY; nbody],
-                xmat: frames(nbody),
-                xipos: points(nbody),
-                ximat: frames(nbody),
-                xanchor: points(nj),
-                xaxis: points(nj),
-                geom_xpos: points(ng),
-                geom_xmat: frames(ng),
-                site_xpos: points(ns),
-                site_xmat: frames(ns),
-                subtree_com: points(nbody),
-                cdof: vec![Motion::ZERO; nv],
-                cinert: vec![Inertia::ZERO; nbody],
-                crb: vec![Inertia::ZERO; nbody],
-                ten_length: zeros(model.tendons.len()),
-                actuator_length: zeros(nu),
-                actuator_moment: zeros(nu * nv),
-            },
+            position: Positions::new(model),
             velocity: Velocities {
                 cvel: vec![Motion::ZERO; nbody],
                 cdof_dot: vec![Motion::ZERO; nv],

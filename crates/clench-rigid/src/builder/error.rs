@@ -39,3 +39,20 @@ impl fmt::Display for BuildError {
 }
 
 impl std::error::Error for BuildError {}
+
+impl BuildError {
+    /// An error of something that is not an element with an origin of its own.
+    pub(super) fn new(element: impl Into<String>, message: impl Into<String>) -> Self {
+        BuildError {
+            origin: None,
+            element: element.into(),
+            message: message.into(),
+        }
+    }
+
+    /// The same error, saying also on which body the element is.
+    pub(super) fn of_body(mut self, body: &str) -> Self {
+        self.element = format!("{} of {body}", self.element);
+        self
+    }
+}

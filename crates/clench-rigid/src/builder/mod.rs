@@ -3,10 +3,47 @@
 //!
 //! Angles are radians, orientations unit quaternions, poses relative to the parent body. References between elements
 //! are names. `None` means "not said": the builder then applies MuJoCo's rule for that field.
+//!
+//! A pendulum:
+//!
+//! ```
+//! use clench_rigid::builder::{BodySpec, GeomSpec, JointSpec, ModelBuilder};
+//!
+//! let mut builder = ModelBuilder::new("pendulum");
+//! builder.add_body(
+//!     ModelBuilder::WORLD,
+//!     BodySpec::new("arm")
+//!         .at([0.0, 0.0, 1.0])
+//!         .joint(JointSpec::hinge("pivot", [0.0, 1.0, 0.0]).damping(0.01))
+//!         .geom(GeomSpec::capsule(0.02, 0.25).at([0.0, 0.0, -0.25]).mass(0.5)),
+//! );
+//! let model = builder.build()?;
+//!
+//! let arm = model.body("arm").unwrap();
+//! assert_eq!((model.nq, model.nv), (1, 1));
+//! assert_eq!(model.params.body_mass[arm], 0.5);
+//! # Ok::<(), clench_rigid::builder::BuildError>(())
+//! ```
 
+mod actuators;
+mod bodies;
+mod build;
+mod by_hand;
+mod contacts;
+mod element;
 mod elements;
+mod equalities;
 mod error;
+mod geoms;
+mod inertia;
+mod joints;
+mod keyframes;
+mod numbers;
 mod physics;
+mod resolve;
+mod shapes;
+mod tendons;
+mod weights;
 
 pub use elements::{
     ActuatorSpec, BodySpec, ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind,
@@ -19,7 +56,7 @@ pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
 use clench_solver::RigidOptions;
 
 /// A model as its author wrote it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct ModelBuilder {
     /// Name of the model.
     pub name: String,
@@ -45,4 +82,24 @@ pub struct ModelBuilder {
     pub keyframes: Vec<KeyframeSpec>,
     /// Things worth telling the user once, such as a solver that was replaced.
     pub notes: Vec<String>,
+}
+
+/// A world without anything in it.
+impl Default for ModelBuilder {
+    fn default() -> Self {
+        ModelBuilder {
+            name: String::new(),
+            compiler: CompilerSpec::default(),
+            physics: PhysicsSpec::default(),
+            options: RigidOptions::default(),
+            bodies: vec![BodySpec::new("world")],
+            tendons: Vec::new(),
+            actuators: Vec::new(),
+            equalities: Vec::new(),
+            pairs: Vec::new(),
+            excludes: Vec::new(),
+            keyframes: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
 }

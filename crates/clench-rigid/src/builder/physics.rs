@@ -1,5 +1,6 @@
 //! Model-wide settings: how to derive what was not said, and the physics of the world.
 
+use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::{Flags, Integrator};
 
 /// When a body's inertia comes from its geoms.
@@ -84,6 +85,18 @@ pub struct ContactOverride {
     pub solimp: [f64; 5],
     /// Friction: two slides, spin, two rolls.
     pub friction: [f64; 5],
+}
+
+/// MuJoCo's defaults of its `o_margin`, `o_solref`, `o_solimp` and `o_friction`.
+impl Default for ContactOverride {
+    fn default() -> Self {
+        ContactOverride {
+            margin: 0.0,
+            solref: DEFAULT_SOLREF,
+            solimp: DEFAULT_SOLIMP,
+            friction: [1.0, 1.0, 0.005, 0.0001, 0.0001],
+        }
+    }
 }
 
 impl Default for PhysicsSpec {

@@ -4,6 +4,7 @@
 //! joint is a hinge, which geoms may collide. Numbers (masses, lengths, stiffnesses) live in [`Params`], so that a
 //! batch can give each environment its own.
 
+mod lookup;
 mod params;
 mod structure;
 

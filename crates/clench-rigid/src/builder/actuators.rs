@@ -1,0 +1,122 @@
+//! Actuators.
+
+use super::element::{Element, resolve_range};
+use super::resolve::AllNames;
+use super::tendons::require_scalar;
+use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec};
+use crate::model::{Actuator, BiasKind, DynamicsKind, GainKind, Model, Transmission};
+
+/// Adds all actuators, and numbers their activations.
+///
+/// # Errors
+/// Unknown targets, ranges that do not rise, an activation range without an activation, a range to inherit where there
+/// is none.
+pub(super) fn add_all(
+    builder: &ModelBuilder,
+    names: &AllNames,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    for spec in &builder.actuators {
+        let mut spec = spec.clone();
+        let transmission = transmission(&spec, names)?;
+        inherit_range(&mut spec, transmission, model)?;
+        add(builder, &spec, transmission, model)?;
+    }
+    Ok(())
+}
+
+fn transmission(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission, BuildError> {
+    Ok(match &spec.transmission {
+        TransmissionSpec::Joint(name) => Transmission::Joint(names.joints.find(name, spec)?),
+        TransmissionSpec::JointInParent(name) => {
+            Transmission::JointInParent(names.joints.find(name, spec)?)
+        }
+        TransmissionSpec::Tendon(name) => Transmission::Tendon(names.tendons.find(name, spec)?),
+    })
+}
+
+fn add(
+    builder: &ModelBuilder,
+    spec: &ActuatorSpec,
+    transmission: Transmission,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let auto = builder.compiler.autolimits;
+    let forcelimited = resolve_range(spec, "force", spec.forcelimited, spec.forcerange, auto)?;
+    let ctrllimited = resolve_range(spec, "ctrl", spec.ctrllimited, spec.ctrlrange, auto)?;
+    let actlimited = resolve_range(spec, "act", spec.actlimited, spec.actrange, auto)?;
+    if spec.dampratio.is_some() && !is_servo(spec) {
+        return Err(spec.error("dampratio needs a position servo (gainprm[0] = -biasprm[1])"));
+    }
+    let has_activation = spec.dynamics != DynamicsKind::None;
+    if actlimited && !has_activation {
+        return Err(spec.error("has an actrange, but no activation"));
+    }
+    model.actuators.push(Actuator {
+        name: spec.name.clone(),
+        transmission,
+        dynamics: spec.dynamics,
+        act: has_activation.then_some(model.na),
+        gain: spec.gain,
+        bias: spec.bias,
+        ctrllimited,
+        forcelimited,
+        actlimited,
+        actearly: spec.actearly,
+        disabled: (builder.physics.disabled_actuator_groups.iter())
+            .any(|&group| i64::from(group) == i64::from(spec.group)),
+        group: spec.group,
+    });
+    model.na += usize::from(has_activation);
+    let p = &mut model.params;
+    p.actuator_gear.push(spec.gear);
+    p.actuator_dynprm.push(spec.dynprm);
+    p.actuator_gainprm.push(spec.gainprm);
+    p.actuator_biasprm.push(spec.biasprm);
+    p.actuator_ctrlrange.push(spec.ctrlrange);
+    p.actuator_forcerange.push(spec.forcerange);
+    p.actuator_actrange.push(spec.actrange);
+    Ok(())
+}
+
+/// Whether the actuator is a servo: its force vanishes where the control equals the length.
+fn is_servo(spec: &ActuatorSpec) -> bool {
+    spec.gain == GainKind::Fixed
+        && spec.bias == BiasKind::Affine
+        && spec.gainprm[0] == -spec.biasprm[1]
+}
+
+/// MuJoCo's `inheritrange`: a servo's set point ranges over a share of its target's range, about the same middle.
+fn inherit_range(
+    spec: &mut ActuatorSpec,
+    transmission: Transmission,
+    model: &Model,
+) -> Result<(), BuildError> {
+    if spec.inheritrange == 0.0 {
+        return Ok(());
+    }
+    if !is_servo(spec) {
+        return Err(spec.error("inheritrange needs a position servo (gainprm[0] = -biasprm[1])"));
+    }
+    let [low, high] = match (transmission, &spec.transmission) {
+        (Transmission::Joint(j), TransmissionSpec::Joint(name)) => {
+            require_scalar(spec, name, j, model)?;
+            model.params.jnt_range[j]
+        }
+        (Transmission::Tendon(t), _) => model.params.tendon_range[t],
+        _ => return Err(spec.error("inheritrange needs a joint or tendon in its own frame")),
+    };
+    if low == high {
+        return Err(spec.error("inheritrange needs a target that has a range"));
+    }
+    let (mean, radius) = (0.5 * (high + low), 0.5 * (high - low) * spec.inheritrange);
+    let range = [mean - radius, mean + radius];
+    match spec.dynamics {
+        DynamicsKind::None | DynamicsKind::FilterExact => spec.ctrlrange = range,
+        DynamicsKind::Integrator => spec.actrange = range,
+        DynamicsKind::Filter => {
+            return Err(spec.error("inheritrange does not know this kind of dynamics"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! From a description to a model.
+
+use super::resolve::AllNames;
+use super::{
+    BuildError, ModelBuilder, actuators, bodies, contacts, equalities, keyframes, numbers, tendons,
+    weights,
+};
+use crate::State;
+use crate::dynamics::{com, kinematics, tendon, transmission};
+use crate::model::{Model, Params};
+use crate::workspace::Positions;
+use clench_math::Vec3;
+use clench_solver::Tree;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+impl ModelBuilder {
+    /// Checks the description and turns it into a model, by the rules of MuJoCo's compiler: bodies are numbered depth
+    /// first, masses come from geoms where they are not given, ranges become limits, and the inverse inertias that
+    /// scale constraints are computed in the initial configuration.
+    ///
+    /// # Errors
+    /// The first thing found that cannot be: names that are taken or lead nowhere, numbers that are not finite, sizes,
+    /// masses and inertias that no body has, joints where none can be, ranges that do not rise, vectors of the wrong
+    /// length. The error names the element and, if it came from a file, its place.
+    pub fn build(&self) -> Result<Model, BuildError> {
+        if self.bodies.is_empty() {
+            return Err(BuildError::new(
+                "model",
+                "has no body; the first is the world",
+            ));
+        }
+        numbers::check(self)?;
+        let order = bodies::depth_first(&self.bodies)?;
+        let names = AllNames::new(self, &order)?;
+        let mut model = self.empty_model();
+
+        bodies::add_all(self, &order, &mut model)?;
+        weights::require_inertia(&model)?;
+        weights::masses(self, &mut model);
+        model.tree = Arc::new(tree(&model)?);
+        contacts::add_all(self, &names, &mut model)?;
+        tendons::add_all(self, &names, &mut model)?;
+        actuators::add_all(self, &names, &mut model)?;
+
+        let mut pose0 = initial_pose(&model);
+        equalities::add_all(self, &names, &pose0, &mut model)?;
+        let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
+        let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
+        weights::derive(self, &springdampers, &mut pose0, &mut model)?;
+        keyframes::add_all(self, &mut model)?;
+        Ok(model)
+    }
+
+    /// A model without any element.
+    fn empty_model(&self) -> Model {
+        let physics = &self.physics;
+        let contacts = physics.contact_override.unwrap_or_default();
+        Model {
+            name: self.name.clone(),
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            dofs: Vec::new(),
+            geoms: Vec::new(),
+            sites: Vec::new(),
+            tendons: Vec::new(),
+            actuators: Vec::new(),
+            equalities: Vec::new(),
+            pairs: Vec::new(),
+            excludes: HashSet::new(),
+            keyframes: Vec::new(),
+            nq: 0,
+            nv: 0,
+            na: 0,
+            nmocap: 0,
+            tree: Arc::default(),
+            integrator: physics.integrator,
+            flags: physics.flags,
+            override_contacts: physics.contact_override.is_some(),
+            options: self.options,
+            params: Params {
+                timestep: physics.timestep,
+                gravity: Vec3::from_array(physics.gravity),
+                wind: Vec3::from_array(physics.wind),
+                density: physics.density,
+                viscosity: physics.viscosity,
+                override_margin: contacts.margin,
+                override_solref: contacts.solref,
+                override_solimp: contacts.solimp,
+                override_friction: contacts.friction,
+                ..Params::default()
+            },
+            notes: self.notes.clone(),
+        }
+    }
+}
+
+fn tree(model: &Model) -> Result<Tree, BuildError> {
+    let parents: Vec<_> = model.dofs.iter().map(|dof| dof.parent).collect();
+    Tree::new(&parents).map_err(|e| BuildError::new("model", e.to_string()))
+}
+
+/// Poses, and all that depends on them alone, at qpos0.
+fn initial_pose(model: &Model) -> Positions<f64> {
+    let (params, state) = (&model.params, State::new(model));
+    let mut pos = Positions::new(model);
+    kinematics::kinematics(model, params, &state, &mut pos);
+    com::com_positions(model, params, &mut pos);
+    tendon::tendon_lengths(model, params, &state.qpos, &mut pos);
+    transmission::transmission(model, params, &state.qpos, &mut pos);
+    pos
+}

@@ -1,0 +1,121 @@
+//! What all elements have in common: a kind, a name, a place where they were written, and numbers that must be numbers.
+
+use super::{
+    ActuatorSpec, BodySpec, BuildError, EqualitySpec, ExcludeSpec, GeomSpec, JointSpec,
+    KeyframeSpec, Origin, PairSpec, SiteSpec, TendonSpec,
+};
+
+/// An element of the author's description, as error messages see it.
+pub(super) trait Element {
+    /// What it is called in messages.
+    const KIND: &'static str;
+    /// Its name, possibly empty.
+    fn name(&self) -> &str;
+    /// Where it was written.
+    fn origin(&self) -> Option<&Origin>;
+
+    /// Something is wrong with this element.
+    fn error(&self, message: impl Into<String>) -> BuildError {
+        let element = match self.name() {
+            "" => format!("unnamed {}", Self::KIND),
+            name => format!("{} \"{name}\"", Self::KIND),
+        };
+        BuildError {
+            origin: self.origin().cloned(),
+            element,
+            message: message.into(),
+        }
+    }
+
+    /// Refuses NaN and infinity.
+    fn require_finite(&self, field: &str, values: &[f64]) -> Result<(), BuildError> {
+        match values.iter().find(|v| !v.is_finite()) {
+            Some(bad) => Err(self.error(format!("{field} contains {bad}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses NaN; a range may be infinite.
+    fn require_numbers(&self, field: &str, range: &[f64]) -> Result<(), BuildError> {
+        match range.iter().any(|v| v.is_nan()) {
+            true => Err(self.error(format!("{field} contains NaN"))),
+            false => Ok(()),
+        }
+    }
+
+    /// Refuses negative numbers, NaN and infinity.
+    fn require_not_negative(&self, field: &str, values: &[f64]) -> Result<(), BuildError> {
+        self.require_finite(field, values)?;
+        match values.iter().find(|&&v| v < 0.0) {
+            Some(bad) => Err(self.error(format!("{field} cannot be negative, but is {bad}"))),
+            None => Ok(()),
+        }
+    }
+}
+
+macro_rules! elements {
+    ($($spec:ty => $kind:literal),* $(,)?) => {
+        $(impl Element for $spec {
+            const KIND: &'static str = $kind;
+            fn name(&self) -> &str {
+                &self.name
+            }
+            fn origin(&self) -> Option<&Origin> {
+                self.origin.as_ref()
+            }
+        })*
+    };
+}
+
+elements! {
+    BodySpec => "body",
+    JointSpec => "joint",
+    GeomSpec => "geom",
+    SiteSpec => "site",
+    TendonSpec => "tendon",
+    ActuatorSpec => "actuator",
+    EqualitySpec => "equality constraint",
+    PairSpec => "contact pair",
+    ExcludeSpec => "contact exclude",
+    KeyframeSpec => "keyframe",
+}
+
+/// Whether a range limits: as the author said, else if it is given and not empty (MuJoCo's `autolimits`).
+///
+/// # Errors
+/// A range without a word on its use where `autolimits` is off.
+pub(super) fn resolve_limited(
+    element: &impl Element,
+    what: &str,
+    said: Option<bool>,
+    range: [f64; 2],
+    autolimits: bool,
+) -> Result<bool, BuildError> {
+    element.require_numbers(&format!("{what}range"), &range)?;
+    match said {
+        Some(said) => Ok(said),
+        None if range != [0.0; 2] && !autolimits => Err(element.error(format!(
+            "has a {what}range, but does not say whether it is {what}limited, and autolimits is off"
+        ))),
+        None => Ok(range[0] < range[1]),
+    }
+}
+
+/// As [`resolve_limited`], for a range that must rise where it limits.
+///
+/// # Errors
+/// Also a range that limits without rising.
+pub(super) fn resolve_range(
+    element: &impl Element,
+    what: &str,
+    said: Option<bool>,
+    range: [f64; 2],
+    autolimits: bool,
+) -> Result<bool, BuildError> {
+    let limited = resolve_limited(element, what, said, range, autolimits)?;
+    if limited && range[0] >= range[1] {
+        let [low, high] = range;
+        return Err(element.error(format!("{what}range must rise, but is {low} to {high}")));
+    }
+    Ok(limited)
+}

@@ -1,0 +1,196 @@
+//! A body's mass, centre of mass and principal moments: as the author gave them, or from its geoms.
+
+use super::element::Element;
+use super::shapes;
+use super::{
+    BodySpec, BuildError, CompilerSpec, GeomMass, GeomSpec, InertiaFromGeom, InertiaSpec,
+    InertialSpec,
+};
+use clench_math::{Inertia, Mat3, Quat, Vec3, principal_axes};
+
+/// Geoms of less mass (kg) do not count, nor less volume (m³), nor do principal moments (kg m²) of less count as positive
+/// (MuJoCo's `mjEPS`).
+const NEGLIGIBLE: f64 = 1e-14;
+
+/// Mass properties of a body, in its frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MassProperties {
+    pub mass: f64,
+    /// Centre of mass.
+    pub pos: Vec3<f64>,
+    /// Orientation of the principal frame.
+    pub quat: Quat<f64>,
+    /// Principal moments.
+    pub moments: Vec3<f64>,
+}
+
+impl MassProperties {
+    /// Those of the world.
+    pub const NONE: Self = MassProperties {
+        mass: 0.0,
+        pos: Vec3::ZERO,
+        quat: Quat::IDENTITY,
+        moments: Vec3::ZERO,
+    };
+}
+
+/// The mass properties of a body other than the world.
+///
+/// # Errors
+/// Masses or inertias that are negative, not finite, or that no body can have.
+pub(super) fn mass_properties(
+    body: &BodySpec,
+    compiler: &CompilerSpec,
+) -> Result<MassProperties, BuildError> {
+    let from_geoms = match compiler.inertiafromgeom {
+        InertiaFromGeom::Always => true,
+        InertiaFromGeom::Auto => body.inertial.is_none(),
+        InertiaFromGeom::Never => false,
+    };
+    let counted = match from_geoms {
+        true => geoms_with_mass(body, compiler)?,
+        false => Vec::new(),
+    };
+    let found = match (&counted[..], &body.inertial) {
+        ([], Some(inertial)) => given(body, inertial, compiler)?,
+        // Nothing known: MuJoCo puts the inertial frame at the body's offset from its parent.
+        ([], None) => MassProperties {
+            mass: 0.0,
+            pos: body.pos,
+            quat: body.quat.normalize(),
+            moments: Vec3::ZERO,
+        },
+        ([one], _) => *one,
+        (many, _) => combine(body, many, compiler)?,
+    };
+    plausible(body, found, compiler)
+}
+
+/// The geoms that count towards inertia.
+fn geoms_with_mass(
+    body: &BodySpec,
+    compiler: &CompilerSpec,
+) -> Result<Vec<MassProperties>, BuildError> {
+    let [first, last] = compiler.inertiagrouprange;
+    let mut counted = Vec::new();
+    for geom in &body.geoms {
+        if (first..=last).contains(&geom.group) {
+            let mass = geom_mass(geom)?;
+            if mass > NEGLIGIBLE {
+                counted.push(MassProperties {
+                    mass,
+                    pos: geom.pos,
+                    quat: geom.quat.normalize(),
+                    moments: shapes::moments(geom, mass),
+                });
+            }
+        }
+    }
+    Ok(counted)
+}
+
+fn geom_mass(geom: &GeomSpec) -> Result<f64, BuildError> {
+    let measure = shapes::measure(geom);
+    let mass = match geom.mass {
+        GeomMass::Mass(mass) if mass == 0.0 || measure > NEGLIGIBLE => mass,
+        GeomMass::Mass(_) => 0.0,
+        GeomMass::Density(density) => density * measure,
+    };
+    geom.require_not_negative("mass", &[mass])?;
+    Ok(mass)
+}
+
+/// What the author gave, in the principal frame.
+fn given(
+    body: &BodySpec,
+    inertial: &InertialSpec,
+    compiler: &CompilerSpec,
+) -> Result<MassProperties, BuildError> {
+    let (moments, quat) = match inertial.inertia {
+        InertiaSpec::Diagonal(moments) => (Vec3::from_array(moments), inertial.quat.normalize()),
+        InertiaSpec::Full(full) => principal(body, full, compiler)?,
+    };
+    Ok(MassProperties {
+        mass: inertial.mass,
+        pos: inertial.pos,
+        quat,
+        moments,
+    })
+}
+
+/// Several geoms as one: masses add, and so do inertias about the common centre of mass.
+fn combine(
+    body: &BodySpec,
+    geoms: &[MassProperties],
+    compiler: &CompilerSpec,
+) -> Result<MassProperties, BuildError> {
+    let mut mass = 0.0;
+    let mut moment = Vec3::ZERO;
+    for geom in geoms {
+        mass += geom.mass;
+        moment += geom.pos * geom.mass;
+    }
+    let pos = moment * (1.0 / mass);
+    let mut total = Inertia::ZERO;
+    for geom in geoms {
+        let axes = geom.quat.to_matrix();
+        total += Inertia::from_principal(geom.moments, &axes, geom.pos - pos, geom.mass);
+    }
+    let (moments, quat) = principal(body, total.rotational, compiler)?;
+    Ok(MassProperties {
+        mass,
+        pos,
+        quat,
+        moments,
+    })
+}
+
+/// Principal moments and frame of a full inertia: xx, yy, zz, xy, xz, yz.
+fn principal(
+    body: &BodySpec,
+    full: [f64; 6],
+    compiler: &CompilerSpec,
+) -> Result<(Vec3<f64>, Quat<f64>), BuildError> {
+    body.require_finite("inertia", &full)?;
+    let [xx, yy, zz, xy, xz, yz] = full;
+    let (moments, quat) =
+        principal_axes(&Mat3::from_f64([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]));
+    // A vanishing moment is one that `boundinertia` raises; a negative one is an error whatever the bound.
+    let least = match compiler.boundinertia > 0.0 {
+        true => -NEGLIGIBLE,
+        false => NEGLIGIBLE,
+    };
+    if moments.z < least {
+        return Err(body.error(format!(
+            "inertia must be positive definite, but its smallest principal moment is {}",
+            moments.z
+        )));
+    }
+    Ok((moments, quat))
+}
+
+/// Applies bounds, then asks for what every body satisfies: no moment exceeds the sum of the other two.
+fn plausible(
+    body: &BodySpec,
+    mut found: MassProperties,
+    compiler: &CompilerSpec,
+) -> Result<MassProperties, BuildError> {
+    found.mass = found.mass.max(compiler.boundmass);
+    for axis in 0..3 {
+        found.moments[axis] = found.moments[axis].max(compiler.boundinertia);
+    }
+    body.require_not_negative("mass", &[found.mass])?;
+    body.require_not_negative("inertia", &found.moments.to_array())?;
+    let [a, b, c] = found.moments.to_array();
+    if a + b < c || a + c < b || b + c < a {
+        if !compiler.balanceinertia {
+            return Err(body.error(format!(
+                "no body has the principal moments {a}, {b}, {c}: the sum of two is never below the third \
+                 (balanceinertia would replace them by their mean)"
+            )));
+        }
+        let mean = (a + b + c) / 3.0;
+        found.moments = Vec3::new(mean, mean, mean);
+    }
+    Ok(found)
+}

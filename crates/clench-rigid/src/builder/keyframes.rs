@@ -1,0 +1,67 @@
+//! Keyframes.
+
+use super::element::Element;
+use super::{BuildError, KeyframeSpec, ModelBuilder};
+use crate::State;
+use crate::model::{JointKind, Keyframe, Model};
+use clench_math::{Quat, Vec3};
+
+/// Adds all keyframes; a vector that is missing, or shorter than the model's, is completed from the initial state.
+///
+/// # Errors
+/// A vector longer than the model's.
+pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
+    let initial = State::<f64>::new(model);
+    let mocap_pos: Vec<_> = initial.mocap_pos.into_iter().map(Vec3::to_array).collect();
+    let mocap_quat: Vec<_> = initial.mocap_quat.into_iter().map(Quat::to_array).collect();
+    for spec in &builder.keyframes {
+        let mut keyframe = Keyframe {
+            name: spec.name.clone(),
+            time: spec.time,
+            qpos: complete(spec, "qpos", &spec.qpos, &initial.qpos)?,
+            qvel: complete(spec, "qvel", &spec.qvel, &initial.qvel)?,
+            act: complete(spec, "act", &spec.act, &initial.act)?,
+            ctrl: complete(spec, "ctrl", &spec.ctrl, &initial.ctrl)?,
+            mocap_pos: complete(spec, "mocap_pos", &spec.mocap_pos, mocap_pos.as_flattened())?,
+            mocap_quat: complete(
+                spec,
+                "mocap_quat",
+                &spec.mocap_quat,
+                mocap_quat.as_flattened(),
+            )?,
+        };
+        normalize_quats(model, &mut keyframe);
+        model.keyframes.push(keyframe);
+    }
+    Ok(())
+}
+
+fn complete(
+    spec: &KeyframeSpec,
+    field: &str,
+    given: &Option<Vec<f64>>,
+    initial: &[f64],
+) -> Result<Vec<f64>, BuildError> {
+    let mut values = given.clone().unwrap_or_default();
+    if values.len() > initial.len() {
+        return Err(spec.error(format!(
+            "{field} has {} numbers, the model has {}",
+            values.len(),
+            initial.len()
+        )));
+    }
+    values.extend_from_slice(&initial[values.len()..]);
+    Ok(values)
+}
+
+fn normalize_quats(model: &Model, keyframe: &mut Keyframe) {
+    let normalize = |q: &mut [f64]| Quat::from_slice(q).normalize().write(q);
+    for joint in &model.joints {
+        match joint.kind {
+            JointKind::Free => normalize(&mut keyframe.qpos[joint.qpos + 3..]),
+            JointKind::Ball => normalize(&mut keyframe.qpos[joint.qpos..]),
+            JointKind::Slide | JointKind::Hinge => {}
+        }
+    }
+    keyframe.mocap_quat.chunks_exact_mut(4).for_each(normalize);
+}

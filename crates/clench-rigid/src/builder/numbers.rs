@@ -1,0 +1,227 @@
+//! Every number of a description is a number: NaN and infinity are refused before anything is computed from them.
+
+use super::element::Element;
+use super::{
+    ActuatorSpec, BodySpec, BuildError, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
+    InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec, TendonSpec,
+};
+use clench_math::{Quat, Vec3};
+
+/// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
+const SHORTEST_QUAT: f64 = 1e-7;
+
+/// Looks at every element.
+///
+/// # Errors
+/// The first number found that cannot be.
+pub(super) fn check(builder: &ModelBuilder) -> Result<(), BuildError> {
+    check_physics(builder)?;
+    for (index, body) in builder.bodies.iter().enumerate() {
+        check_body(body)?;
+        let within = |e: BuildError| e.of_body(&describe(&body.name, index));
+        body.joints
+            .iter()
+            .try_for_each(check_joint)
+            .map_err(within)?;
+        body.geoms.iter().try_for_each(check_geom).map_err(within)?;
+        body.sites.iter().try_for_each(check_site).map_err(within)?;
+    }
+    builder.tendons.iter().try_for_each(check_tendon)?;
+    builder.actuators.iter().try_for_each(check_actuator)?;
+    builder.equalities.iter().try_for_each(check_equality)?;
+    builder.pairs.iter().try_for_each(check_pair)?;
+    builder.keyframes.iter().try_for_each(check_keyframe)
+}
+
+/// How a message calls a body.
+pub(super) fn describe(name: &str, index: usize) -> String {
+    match name {
+        "" => format!("body {index}"),
+        name => format!("body \"{name}\""),
+    }
+}
+
+fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
+    let (physics, compiler) = (&builder.physics, &builder.compiler);
+    let require = |holds: bool, field: &str, condition: &str| match holds {
+        true => Ok(()),
+        false => Err(BuildError::new(
+            "model",
+            format!("{field} must be {condition}"),
+        )),
+    };
+    let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
+    let not_negative = |v: f64| v.is_finite() && v >= 0.0;
+    require(
+        physics.timestep.is_finite() && physics.timestep > 0.0,
+        "timestep",
+        "a positive number",
+    )?;
+    require(finite(&physics.gravity), "gravity", "finite")?;
+    require(finite(&physics.wind), "wind", "finite")?;
+    require(not_negative(physics.density), "density", "zero or more")?;
+    require(not_negative(physics.viscosity), "viscosity", "zero or more")?;
+    require(
+        not_negative(compiler.boundmass),
+        "boundmass",
+        "zero or more",
+    )?;
+    require(
+        not_negative(compiler.boundinertia),
+        "boundinertia",
+        "zero or more",
+    )?;
+    if let Some(total) = compiler.settotalmass {
+        require(total.is_finite() && total > 0.0, "settotalmass", "positive")?;
+    }
+    if let Some(o) = &physics.contact_override {
+        let numbers = [&[o.margin][..], &o.solref, &o.solimp, &o.friction].concat();
+        require(finite(&numbers), "every contact override", "finite")?;
+    }
+    Ok(())
+}
+
+/// A finite position and an orientation that is one.
+fn check_pose(element: &impl Element, pos: Vec3<f64>, quat: Quat<f64>) -> Result<(), BuildError> {
+    element.require_finite("pos", &pos.to_array())?;
+    let quat = quat.to_array();
+    element.require_finite("quat", &quat)?;
+    match quat.iter().map(|q| q * q).sum::<f64>().sqrt() < SHORTEST_QUAT {
+        true => Err(element.error("quat is zero")),
+        false => Ok(()),
+    }
+}
+
+fn check_body(body: &BodySpec) -> Result<(), BuildError> {
+    check_pose(body, body.pos, body.quat)?;
+    body.require_finite("gravcomp", &[body.gravcomp])?;
+    let Some(inertial) = &body.inertial else {
+        return Ok(());
+    };
+    let at_inertial = |mut e: BuildError| {
+        e.element = format!("inertial of {}", e.element);
+        e.origin = inertial.origin.clone().or(e.origin);
+        e
+    };
+    check_pose(body, inertial.pos, inertial.quat).map_err(at_inertial)?;
+    let inertia = match &inertial.inertia {
+        InertiaSpec::Diagonal(moments) => &moments[..],
+        InertiaSpec::Full(full) => &full[..],
+    };
+    body.require_finite("inertia", inertia)
+        .map_err(at_inertial)?;
+    body.require_not_negative("mass", &[inertial.mass])
+        .map_err(at_inertial)
+}
+
+fn check_joint(j: &JointSpec) -> Result<(), BuildError> {
+    j.require_finite("pos", &j.pos.to_array())?;
+    j.require_finite("axis", &j.axis.to_array())?;
+    j.require_finite("ref", &[j.reference])?;
+    j.require_finite("springref", &[j.springref])?;
+    j.require_finite("margin", &[j.margin])?;
+    j.require_finite("stiffness", &[j.stiffness])?;
+    j.require_finite("damping", &[j.damping])?;
+    j.require_finite("springdamper", &j.springdamper)?;
+    j.require_not_negative("armature", &[j.armature])?;
+    j.require_not_negative("frictionloss", &[j.frictionloss])?;
+    check_softness(
+        j,
+        &[j.solref_limit, j.solref_friction],
+        &[j.solimp_limit, j.solimp_friction],
+    )
+}
+
+fn check_geom(g: &GeomSpec) -> Result<(), BuildError> {
+    check_pose(g, g.pos, g.quat)?;
+    g.require_finite("size", &g.size.to_array())?;
+    let (GeomMass::Mass(m) | GeomMass::Density(m)) = g.mass;
+    g.require_finite("mass or density", &[m])?;
+    g.require_not_negative("friction", &g.friction)?;
+    g.require_finite("margin", &[g.margin])?;
+    g.require_finite("gap", &[g.gap])?;
+    g.require_finite("solmix", &[g.solmix])?;
+    check_softness(g, &[g.solref], &[g.solimp])
+}
+
+fn check_site(s: &SiteSpec) -> Result<(), BuildError> {
+    check_pose(s, s.pos, s.quat)
+}
+
+fn check_tendon(t: &TendonSpec) -> Result<(), BuildError> {
+    for (_, coef) in &t.terms {
+        t.require_finite("coef", &[*coef])?;
+    }
+    t.require_finite("margin", &[t.margin])?;
+    t.require_finite("stiffness", &[t.stiffness])?;
+    t.require_finite("damping", &[t.damping])?;
+    t.require_not_negative("frictionloss", &[t.frictionloss])?;
+    t.require_finite("springlength", &t.springlength.unwrap_or_default())?;
+    check_softness(
+        t,
+        &[t.solref_limit, t.solref_friction],
+        &[t.solimp_limit, t.solimp_friction],
+    )
+}
+
+fn check_actuator(a: &ActuatorSpec) -> Result<(), BuildError> {
+    a.require_finite("dynprm", &a.dynprm)?;
+    a.require_finite("gainprm", &a.gainprm)?;
+    a.require_finite("biasprm", &a.biasprm)?;
+    a.require_finite("gear", &a.gear)?;
+    a.require_not_negative("inheritrange", &[a.inheritrange])?;
+    a.require_not_negative("dampratio", &[a.dampratio.unwrap_or(0.0)])
+}
+
+fn check_equality(e: &EqualitySpec) -> Result<(), BuildError> {
+    match &e.kind {
+        EqualityKind::Connect(_) => {}
+        EqualityKind::Weld {
+            relpose,
+            torquescale,
+            ..
+        } => {
+            e.require_not_negative("torquescale", &[*torquescale])?;
+            if let Some((pos, quat)) = relpose {
+                check_pose(e, *pos, *quat)?;
+            }
+        }
+        EqualityKind::Joint { polycoef, .. } | EqualityKind::Tendon { polycoef, .. } => {
+            e.require_finite("polycoef", polycoef)?;
+        }
+    }
+    check_softness(e, &[e.solref], &[e.solimp])
+}
+
+fn check_pair(p: &PairSpec) -> Result<(), BuildError> {
+    p.require_not_negative("friction", &p.friction.unwrap_or_default())?;
+    p.require_finite("margin", &[p.margin.unwrap_or(0.0)])?;
+    p.require_finite("gap", &[p.gap.unwrap_or(0.0)])?;
+    let solrefs = [p.solref, p.solreffriction].map(Option::unwrap_or_default);
+    check_softness(p, &solrefs, &[p.solimp.unwrap_or_default()])
+}
+
+fn check_keyframe(k: &KeyframeSpec) -> Result<(), BuildError> {
+    k.require_finite("time", &[k.time])?;
+    let vectors = [
+        ("qpos", &k.qpos),
+        ("qvel", &k.qvel),
+        ("act", &k.act),
+        ("ctrl", &k.ctrl),
+        ("mocap_pos", &k.mocap_pos),
+        ("mocap_quat", &k.mocap_quat),
+    ];
+    for (field, vector) in vectors {
+        k.require_finite(field, vector.as_deref().unwrap_or_default())?;
+    }
+    Ok(())
+}
+
+fn check_softness(
+    element: &impl Element,
+    solrefs: &[[f64; 2]],
+    solimps: &[[f64; 5]],
+) -> Result<(), BuildError> {
+    element.require_finite("solref", solrefs.as_flattened())?;
+    element.require_finite("solimp", solimps.as_flattened())
+}

@@ -1,0 +1,247 @@
+//! What follows from the model as a whole at qpos0: total and subtree masses, inverse inertias, derived damping.
+//!
+//! The inverse inertia that a constraint with Jacobian J meets is A = J M⁻¹ Jᵀ; MuJoCo's `invweight0` are such numbers at
+//! qpos0, averaged over the directions that belong together. With M = LᵀDL, A_ii = ‖D^(-1/2) L^(-T) J_iᵀ‖².
+
+use super::bodies::{is_null, is_null_position};
+use super::numbers::describe;
+use super::{BuildError, ModelBuilder};
+use crate::dynamics::inertia::composite_inertia;
+use crate::model::{JointKind, Model};
+use crate::workspace::Positions;
+use clench_math::Motion;
+use clench_solver::{TreeFactor, TreeMatrix};
+
+/// Smallest mass (kg), inertia (kg m²) or inverse that is divided by (MuJoCo's `mjMINVAL`).
+const SMALLEST: f64 = 1e-15;
+/// Parts of a unit axis below which it does not lean that way (MuJoCo's `mjEPS`).
+const ALIGNED: f64 = 1e-14;
+
+/// Masses scaled to the author's total, and the mass of every subtree.
+pub(super) fn masses(builder: &ModelBuilder, model: &mut Model) {
+    let p = &mut model.params;
+    if let Some(wanted) = builder.compiler.settotalmass {
+        let total: f64 = p.body_mass.iter().sum();
+        let scale = f64::max(SMALLEST, wanted / f64::max(SMALLEST, total));
+        for (mass, inertia) in p.body_mass.iter_mut().zip(&mut p.body_inertia) {
+            *mass *= scale;
+            *inertia = *inertia * scale;
+        }
+    }
+    p.body_subtreemass.clone_from(&p.body_mass);
+    for b in (1..model.bodies.len()).rev() {
+        let mass = p.body_subtreemass[b];
+        p.body_subtreemass[model.bodies[b].parent] += mass;
+    }
+}
+
+/// Every body with joints must have a mass and an inertia, its own or that of a body fixed to it.
+///
+/// # Errors
+/// One that has not.
+pub(super) fn require_inertia(model: &Model) -> Result<(), BuildError> {
+    let p = &model.params;
+    let heavy = |b: usize| {
+        p.body_mass[b] >= SMALLEST && p.body_inertia[b].to_array().iter().all(|&i| i >= SMALLEST)
+    };
+    let mut carries: Vec<bool> = (0..model.nbody()).map(heavy).collect();
+    for (b, body) in model.bodies.iter().enumerate().skip(1).rev() {
+        if body.joints.is_empty() {
+            carries[body.parent] |= carries[b];
+        } else if !carries[b] {
+            let mut error = BuildError::new(
+                describe(&body.name, b),
+                format!(
+                    "a moving body must have a mass and principal moments of at least {SMALLEST:e}, but has mass {} and \
+                     moments {:?}",
+                    p.body_mass[b],
+                    p.body_inertia[b].to_array()
+                ),
+            );
+            error.origin = body.origin.clone();
+            return Err(error);
+        }
+    }
+    Ok(())
+}
+
+/// Fills in the `invweight0` of dofs, bodies and tendons, and what is derived from them: springs from `springdamper`,
+/// servo damping from `dampratio`.
+///
+/// # Errors
+/// A mass matrix that is not positive definite.
+pub(super) fn derive(
+    builder: &ModelBuilder,
+    springdampers: &[[f64; 2]],
+    pose0: &mut Positions<f64>,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let mut inverse = InverseInertia::new(model, pose0)?;
+    let sliders: Vec<bool> = (0..model.nbody()).map(|b| slides_alone(model, b)).collect();
+    dof_weights(&mut inverse, &sliders, model);
+    body_weights(&mut inverse, &sliders, pose0, model);
+    tendon_weights(&mut inverse, model);
+    spring_dampers(springdampers, model);
+    servo_damping(builder, &mut inverse, pose0, model);
+    Ok(())
+}
+
+/// M⁻¹ at qpos0.
+struct InverseInertia {
+    factor: TreeFactor<f64>,
+    row: Vec<f64>,
+}
+
+impl InverseInertia {
+    fn new(model: &Model, pose0: &mut Positions<f64>) -> Result<Self, BuildError> {
+        let mut mass = TreeMatrix::zeros(&model.tree);
+        composite_inertia(model, &model.params, pose0, &mut mass);
+        let mut factor = TreeFactor::zeros(&model.tree);
+        match factor.factor(&model.tree, &mass) {
+            true => Ok(InverseInertia {
+                factor,
+                row: vec![0.0; model.nv],
+            }),
+            false => Err(BuildError::new(
+                "model",
+                "the mass matrix is not positive definite in the initial configuration: masses, inertias or armatures \
+                 are too small, too different, or not finite",
+            )),
+        }
+    }
+
+    /// J M⁻¹ Jᵀ for the row that `fill` writes into zeros.
+    fn weight(&mut self, model: &Model, fill: impl FnOnce(&mut [f64])) -> f64 {
+        self.row.fill(0.0);
+        fill(&mut self.row);
+        self.factor.solve_half(&model.tree, &mut self.row);
+        self.row.iter().map(|x| x * x).sum()
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn dof_weights(inverse: &mut InverseInertia, sliders: &[bool], model: &mut Model) {
+    let mut weights: Vec<f64> = (0..model.nv)
+        .map(|dof| inverse.weight(model, |row| row[dof] = 1.0))
+        .collect();
+    for joint in &model.joints {
+        let together = match joint.kind {
+            JointKind::Free => 3,
+            kind => kind.nv(),
+        };
+        let dofs = &mut weights[joint.dof..joint.dof + joint.kind.nv()];
+        for group in dofs.chunks_mut(together) {
+            group.fill(mean(group));
+        }
+        if sliders[joint.body] {
+            dofs.fill(1.0 / model.params.body_mass[joint.body].max(SMALLEST));
+        }
+    }
+    model.params.dof_invweight0 = weights;
+}
+
+/// Mean over the three translations of the centre of mass, and over the three rotations.
+fn body_weights(
+    inverse: &mut InverseInertia,
+    sliders: &[bool],
+    pose0: &Positions<f64>,
+    model: &mut Model,
+) {
+    let mut weights = vec![[0.0; 2]; model.nbody()];
+    for (b, weight) in weights.iter_mut().enumerate() {
+        if model.bodies[model.bodies[b].weld].joints.is_empty() {
+            continue;
+        }
+        if sliders[b] {
+            *weight = [1.0 / model.params.body_mass[b].max(SMALLEST), 0.0];
+            continue;
+        }
+        let offset = pose0.xipos[b] - pose0.subtree_com[model.bodies[b].root];
+        let mut along = |part: &dyn Fn(Motion<f64>) -> f64| {
+            inverse.weight(model, |row| {
+                let mut next = model.bodies[b].last_dof;
+                while let Some(dof) = next {
+                    row[dof] = part(pose0.cdof[dof]);
+                    next = model.dofs[dof].parent;
+                }
+            })
+        };
+        let translation = [0, 1, 2].map(|k| along(&|m| m.velocity_at(offset)[k]));
+        let rotation = [0, 1, 2].map(|k| along(&|m| m.angular[k]));
+        *weight = [mean(&translation), mean(&rotation)];
+    }
+    model.params.body_invweight0 = weights;
+}
+
+fn tendon_weights(inverse: &mut InverseInertia, model: &mut Model) {
+    let mut weights = Vec::with_capacity(model.tendons.len());
+    for tendon in &model.tendons {
+        let coefs = &model.params.wrap_coef[tendon.coefs.clone()];
+        weights.push(inverse.weight(model, |row| {
+            for (&j, &coef) in tendon.joints.iter().zip(coefs) {
+                row[model.joints[j].dof] = coef;
+            }
+        }));
+    }
+    model.params.tendon_invweight0 = weights;
+}
+
+/// Whether the body only slides along coordinate axes of the world or of a body fixed to it, and carries nothing: then
+/// MuJoCo takes 1/mass for its weights, in every direction and without armature (its `body_simple` of level two).
+fn slides_alone(model: &Model, b: usize) -> bool {
+    let body = &model.bodies[b];
+    let p = &model.params;
+    let on_fixed = {
+        let parent = &model.bodies[body.parent];
+        body.root == b || parent.parent == 0 && parent.joints.is_empty()
+    };
+    let slides = |j: usize| {
+        let leans = p.jnt_axis[j]
+            .to_array()
+            .iter()
+            .filter(|a| a.abs() > ALIGNED)
+            .count();
+        model.joints[j].kind == JointKind::Slide && leans == 1 && is_null_position(p.jnt_pos[j])
+    };
+    !body.joints.is_empty()
+        && on_fixed
+        && is_null(p.body_ipos[b], p.body_iquat[b])
+        && body.joints.clone().all(slides)
+        && model.bodies.get(b + 1).is_none_or(|next| next.parent != b)
+}
+
+/// Stiffness and damping that give a joint's time constant and damping ratio with its inertia at qpos0, as `solref` does.
+fn spring_dampers(springdampers: &[[f64; 2]], model: &mut Model) {
+    for (j, &[timeconst, dampratio]) in springdampers.iter().enumerate() {
+        if timeconst <= 0.0 || dampratio <= 0.0 {
+            continue;
+        }
+        let dofs = model.joints[j].dof..model.joints[j].dof + model.joints[j].kind.nv();
+        let p = &mut model.params;
+        let inertia = 1.0 / mean(&p.dof_invweight0[dofs.clone()]).max(SMALLEST);
+        let squared = timeconst * timeconst * dampratio * dampratio;
+        p.jnt_stiffness[j] = inertia / squared.max(SMALLEST);
+        p.dof_damping[dofs].fill(2.0 * inertia / timeconst.max(SMALLEST));
+    }
+}
+
+/// A servo of gain kp that moves the inertia m = (J M⁻¹ Jᵀ)⁻¹ is an oscillator, whose damping ratio is kv / (2 √(kp m)).
+fn servo_damping(
+    builder: &ModelBuilder,
+    inverse: &mut InverseInertia,
+    pose0: &Positions<f64>,
+    model: &mut Model,
+) {
+    for (u, spec) in builder.actuators.iter().enumerate() {
+        let Some(ratio) = spec.dampratio else {
+            continue;
+        };
+        let arms = &pose0.actuator_moment[u * model.nv..(u + 1) * model.nv];
+        let weight = inverse.weight(model, |row| row.copy_from_slice(arms));
+        let reflected = 1.0 / weight.max(SMALLEST);
+        model.params.actuator_biasprm[u][2] = -2.0 * ratio * (spec.gainprm[0] * reflected).sqrt();
+    }
+}

@@ -1,0 +1,34 @@
+//! Elements by name.
+
+use super::Model;
+
+macro_rules! lookups {
+    ($($(#[$doc:meta])* $method:ident in $elements:ident;)*) => {
+        /// Each takes time proportional to the number of elements: look up once, keep the index.
+        impl Model {
+            $($(#[$doc])*
+            pub fn $method(&self, name: &str) -> Option<usize> {
+                self.$elements.iter().position(|e| !name.is_empty() && e.name == name)
+            })*
+        }
+    };
+}
+
+lookups! {
+    /// Index of the body of that name (`world` is the first).
+    body in bodies;
+    /// Index of the joint of that name.
+    joint in joints;
+    /// Index of the geom of that name.
+    geom in geoms;
+    /// Index of the site of that name.
+    site in sites;
+    /// Index of the tendon of that name.
+    tendon in tendons;
+    /// Index of the actuator of that name.
+    actuator in actuators;
+    /// Index of the equality constraint of that name.
+    equality in equalities;
+    /// Index of the keyframe of that name.
+    keyframe in keyframes;
+}
