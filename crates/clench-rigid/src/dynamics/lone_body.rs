@@ -1,7 +1,8 @@
 //! Gyroscopic forces of a free body without jointed children, integrated implicitly.
 //!
 //! Integrated explicitly they feed energy into a spinning body. With w the angular velocity, s the centre of mass relative to
-//! the joint and I the inertia about it, the bias force of the body and its change with a change δw are
+//! the joint and I the inertia about it (of the body and what is welded to it), the bias force and its change with a
+//! change δw are
 //!
 //! ```text
 //! f = m w×(w×s)                      t = w×Iw
@@ -16,13 +17,12 @@ use crate::workspace::{Positions, Workspace};
 use clench_math::{Real, Vec3};
 use std::array::from_fn;
 
-/// Whether joint `j` is the free joint of a body that is a tree by itself, all of its mass in that one body.
+/// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
 pub fn is_lone_body(model: &Model, j: usize) -> bool {
     let joint = &model.joints[j];
     let (tree, after) = (&model.tree, joint.dof + 6);
     joint.kind == JointKind::Free
         && (after >= model.nv || tree.tree_of(after) != tree.tree_of(joint.dof))
-        && model.params.body_subtreemass[joint.body] == model.params.body_mass[joint.body]
 }
 
 /// Replaces the joint's part of `integration.qacc`.
@@ -54,16 +54,14 @@ fn add_bias_slope<T: Real>(
 ) {
     let joint = &model.joints[j];
     let b = joint.body;
-    let (h, mass, axes) = (params.timestep, params.body_mass[b], &pos.xmat[b]);
-    let s = pos.xipos[b] - pos.xpos[b];
-    let frame = &pos.ximat[b];
-    let rotate_inertia =
-        |v: Vec3<T>| *frame * params.body_inertia[b].scale_by(frame.transpose_mul(v));
+    let (h, axes) = (params.timestep, &pos.xmat[b]);
+    let inertia = &pos.crb[b];
+    let s = pos.subtree_com[b] - pos.xpos[b];
     let w = *axes * Vec3::from_slice(&qvel[joint.dof + 3..]);
     for k in 0..3 {
         let dw = axes.column(k);
-        let df = (dw.cross(w.cross(s)) + w.cross(dw.cross(s))) * mass;
-        let dt = dw.cross(rotate_inertia(w)) + w.cross(rotate_inertia(dw));
+        let df = (dw.cross(w.cross(s)) + w.cross(dw.cross(s))) * inertia.mass;
+        let dt = dw.cross(inertia.rotate(w)) + w.cross(inertia.rotate(dw));
         let moment = axes.transpose_mul(dt + s.cross(df));
         for r in 0..3 {
             rows[r][3 + k] += h * df[r];
