@@ -1,0 +1,23 @@
+"""Comparing arrays so that a failure names the place and both numbers."""
+
+import numpy as np
+
+
+def assert_close(what, actual, expected, tolerance, scale):
+    """Fails unless |actual − expected| ≤ tolerance · scale everywhere; scale is a number or shaped like expected."""
+    actual, expected = np.asarray(actual, dtype=float), np.asarray(expected, dtype=float)
+    if expected.size == 0:
+        assert actual.size == 0, f"{what}: {actual.size} numbers, MuJoCo has none"
+        return
+    assert actual.shape == expected.shape, f"{what}: shape {actual.shape}, MuJoCo's is {expected.shape}"
+    error = np.abs(actual - expected) / scale
+    worst = np.unravel_index(np.argmax(np.where(np.isfinite(error), error, np.inf)), error.shape)
+    assert np.isfinite(actual).all() and error[worst] <= tolerance, (
+        f"{what}{list(map(int, worst))}: {actual[worst]:.17g}, MuJoCo {expected[worst]:.17g}, "
+        f"error {error[worst]:.2e} of its scale, allowed {tolerance:.0e}"
+    )
+
+
+def largest(*arrays, floor=1e-9):
+    """The largest magnitude in the arrays, at least `floor`: the scale of quantities that are sums of theirs."""
+    return max([floor] + [np.abs(a).max() for a in map(np.asarray, arrays) if a.size])

@@ -1,0 +1,32 @@
+"""What the tests run on: the models, the cones, the solvers; and the check that the program is built."""
+
+import pathlib
+
+import pytest
+
+import program
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+GYMNASIUM = ROOT / ".cache/gymnasium-1.4.0/gymnasium/envs/mujoco/assets"
+
+
+def models():
+    """Every model compared: gymnasium's, the examples, and the ones that exist to cover a feature."""
+    return [
+        pytest.param(path, id=f"{group}-{path.stem}")
+        for group, folder in (("gym", GYMNASIUM), ("example", ROOT / "models"), ("feature", ROOT / "parity/models"))
+        for path in sorted(folder.glob("*.xml"))
+    ]
+
+
+def pytest_sessionstart(session):
+    if not program.CLENCH.is_file():
+        pytest.exit(f"{program.CLENCH} is missing: run `cargo build --release -p clench-cli`", returncode=2)
+    if len(list(GYMNASIUM.glob("*.xml"))) != 14:
+        pytest.exit(f"expected 14 models in {GYMNASIUM}: run `cargo xtask test python`", returncode=2)
+
+
+def pytest_generate_tests(metafunc):
+    for name, values in (("model", models()), ("cone", ["pyramidal", "elliptic"]), ("solver", ["newton", "cg"])):
+        if name in metafunc.fixturenames:
+            metafunc.parametrize(name, values, scope="session")

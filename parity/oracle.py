@@ -1,0 +1,102 @@
+"""MuJoCo 4.0 as the oracle: the same state through mj_forward, its results as plain arrays."""
+
+import functools
+import types
+
+import mujoco
+import numpy as np
+
+import states
+
+CONES = {"pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL, "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC}
+CONTACT_FIELDS = ("dist", "pos", "frame", "includemargin", "friction", "solref", "solreffriction", "solimp", "dim")
+INCLUDED = 0  # mjContact.exclude: this contact makes constraint rows
+
+
+def load(path, cone=None):
+    """The model with Newton run until no progress is possible, from a cold start; `cone` None keeps the file's."""
+    model = mujoco.MjModel.from_xml_path(str(path))
+    if cone is not None:
+        model.opt.cone = CONES[cone]
+    model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
+    model.opt.iterations, model.opt.tolerance = 300, 0.0
+    model.opt.ls_iterations, model.opt.ls_tolerance = 200, 1e-10
+    model.opt.noslip_iterations = 0
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_WARMSTART
+    return model
+
+
+@functools.lru_cache(maxsize=None)
+def references(path, cone):
+    """MuJoCo's results on every sampled state of a model."""
+    model = load(path, cone)
+    return [reference(model, state) for state in states.sample(path)]
+
+
+def reference(model, state):
+    """MuJoCo's results on one state."""
+    data = mujoco.MjData(model)
+    for name, value in state.items():
+        if name == "time":
+            data.time = value
+        else:
+            target = getattr(data, name)
+            target[:] = np.reshape(value, target.shape)
+    mujoco.mj_forward(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    forces = [f"qfrc_{name}" for name in ("constraint", "bias", "passive", "actuator", "smooth")]
+    efc = ("type", "pos", "vel", "aref", "D", "KBIP", "margin", "force")
+    return types.SimpleNamespace(
+        mass=mass,
+        jacobian=jacobian(model, data),
+        contacts=[contact(model, data, k) for k in range(data.ncon)],
+        **{name: getattr(data, name).copy() for name in ("qvel", "qacc", "qacc_smooth", *forces)},
+        **{f"efc_{name}": getattr(data, f"efc_{name}")[: data.nefc].copy() for name in efc},
+    )
+
+
+def jacobian(model, data):
+    """The constraint Jacobian as a dense (nefc, nv) array, whichever way MuJoCo stores it."""
+    dense = np.zeros((data.nefc, model.nv))
+    if data.nefc and mujoco.mj_isSparse(model):
+        mujoco.mju_sparse2dense(dense, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
+    elif data.nefc:
+        dense[:] = data.efc_J.reshape(data.nefc, model.nv)
+    return dense
+
+
+def contact(model, data, index):
+    """One contact as a dictionary that `clench forward` accepts, and the force MuJoCo puts there."""
+    this = data.contact[index]
+    force = np.zeros(6)
+    mujoco.mj_contactForce(model, data, index, force)
+    fields = {name: np.asarray(getattr(this, name)).tolist() for name in CONTACT_FIELDS}
+    return {"geom": this.geom.tolist(), **fields, "exclude": int(this.exclude), "force": force.tolist()}
+
+
+def fed(state, result):
+    """The state with MuJoCo's contacts in it, which replace collision detection."""
+    contacts = [{name: value for name, value in c.items() if name != "force"} for c in result.contacts]
+    return {**state, "contacts": contacts}
+
+
+def included(result):
+    """The contacts that make constraint rows."""
+    return [c for c in result.contacts if c["exclude"] == INCLUDED]
+
+
+def distance_to_optimum(result):
+    """A bound on how far MuJoCo's own qacc is from the minimiser, relative to the accelerations involved.
+
+    The gradient g of the convex cost at qacc gives it: the error e = H⁻¹g has ‖e‖ ≤ ‖M⁻¹g‖ in the norm of M, since
+    H = M + JᵀWJ is never less than M.
+    """
+    gradient = result.mass @ result.qacc - result.qfrc_smooth - result.qfrc_constraint
+    error = np.linalg.solve(result.mass, gradient)
+    return np.abs(error).max() / acceleration_scale(result)
+
+
+def acceleration_scale(result):
+    """The accelerations that cancel in qacc: a body at rest on the floor has qacc near zero but gravity acts on it."""
+    return max(np.abs(result.qacc).max(), np.abs(result.qacc_smooth).max(), 1e-9)

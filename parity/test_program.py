@@ -1,0 +1,60 @@
+"""What the program promises on its own: summaries, records, help, toggled equalities."""
+
+import json
+
+import numpy as np
+import pytest
+
+import program
+
+EXAMPLES = sorted((program.ROOT / "models").glob("*.xml"))
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_examples_simulate(path):
+    done = program.run("simulate", path, "--steps", 500)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip(), "a summary was promised"
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_examples_inspect(path):
+    done = program.run("inspect", path, "--steps", 100)
+    assert done.returncode == 0, done.stderr
+    assert "nv" in done.stdout
+
+
+def test_json_summary_and_record():
+    steps, every = 200, 10
+    record, summary = program.simulate(program.ROOT / "models/quadruped.xml", "--steps", steps, "--every", every)
+    assert {"seconds", "steps", "envs", "nv", "iterations_mean", "contacts_mean", "status"} <= summary.keys()
+    assert (summary["steps"], summary["envs"], summary["nv"]) == (steps, 1, 18)
+    assert summary["seconds"] > 0
+    count = len(record["time"])
+    assert count in (steps // every, steps // every + 1)
+    assert record["qpos"].shape == (count, 19) and record["qvel"].shape == (count, 18)
+    assert record["ctrl"].shape == (count, 12)
+    assert np.isclose(record["time"][-1], steps * 0.002)
+
+
+def test_the_same_run_twice_is_the_same_to_the_bit():
+    one, _ = program.simulate(program.ROOT / "models/humanoid.xml", "--steps", 300)
+    two, _ = program.simulate(program.ROOT / "models/humanoid.xml", "--steps", 300)
+    assert np.array_equal(one["qpos"], two["qpos"]) and np.array_equal(one["qvel"], two["qvel"])
+
+
+def test_a_toggled_weld_holds_its_crate():
+    """In the lifted pose the crate's weight is carried by the weld when it is on, and by nothing when it is off."""
+    with program.Forward(program.ROOT / "models/toggled_weld.xml") as forward:
+        lifted = {"qpos": [0, -0.2, 0, 0, 0.479, 1, 0, 0, 0]}
+        free, held = forward({**lifted, "eq_active": [False]}), forward({**lifted, "eq_active": [True]})
+    assert np.isclose(free["qacc"][4], -9.81) and not free["constraints"]
+    assert len(held["constraints"]) == 6 and held["qacc"][4] > -5
+
+
+def test_time_limits_and_help():
+    done = program.run("simulate", program.ROOT / "models/pendulum.xml", "--time", 0.5, "--json")
+    assert done.returncode == 0 and json.loads(done.stdout.splitlines()[-1])["steps"] == 250
+    for words in (["--help"], ["simulate", "--help"], ["forward", "--help"], ["inspect", "--help"]):
+        done = program.run(*words)
+        assert done.returncode == 0 and "--" in done.stdout
