@@ -180,21 +180,14 @@ impl<S: Scalar, const N: usize> Real for Lanes<S, N> {
     fn floor(self) -> Self {
         self.map(S::floor)
     }
-    fn sin_cos(self) -> (Self, Self) {
-        let pairs = self.0.map(S::sin_cos);
+    #[inline(always)]
+    fn exp2_integer(self) -> Self {
+        self.map(S::exp2_integer)
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let pairs = self.0.map(S::split_exponent);
         (Lanes(pairs.map(|p| p.0)), Lanes(pairs.map(|p| p.1)))
-    }
-    fn atan2(self, x: Self) -> Self {
-        self.zip(x, S::atan2)
-    }
-    fn exp(self) -> Self {
-        self.map(S::exp)
-    }
-    fn ln(self) -> Self {
-        self.map(S::ln)
-    }
-    fn powf(self, exponent: Self) -> Self {
-        self.zip(exponent, S::powf)
     }
 }
 

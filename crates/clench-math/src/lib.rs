@@ -3,6 +3,7 @@
 
 mod cast;
 mod eigen;
+mod elementary;
 mod lanes;
 mod matrix;
 mod quaternion;

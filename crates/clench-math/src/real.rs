@@ -4,6 +4,7 @@
 //! `Lanes<f32, N>`) with the same source. What differs between environments is a [`Mask`] and a
 //! [`select`](Real::select); a branch on [`Mask::any`] keeps the one-environment case as fast as plain code.
 
+use crate::elementary;
 use std::fmt::Debug;
 use std::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, Div, DivAssign, Mul, MulAssign, Neg,
@@ -38,8 +39,12 @@ pub trait Mask:
 
 /// A real number for each environment, with IEEE arithmetic lane by lane.
 ///
-/// Every operation on lanes equals the scalar operation to the bit. No fused multiply-add is ever used, so results
-/// do not depend on the processor. `min`, `max` return the second operand where the comparison fails (NaN included).
+/// Every operation on lanes equals the scalar operation to the bit (which of the NaNs comes out is left open). No fused
+/// multiply-add is ever used, so results do not depend on the processor. `min`, `max` return the second operand where
+/// the comparison fails (NaN included).
+///
+/// On a concrete `f64` or `f32` an inherent method of the same name comes first (`x.sin_cos()` is the standard
+/// library's); kernels are generic, and concrete code that must agree with them writes `Real::sin_cos(x)`.
 pub trait Real:
     Copy
     + Debug
@@ -105,16 +110,41 @@ pub trait Real:
     /// Largest integer not above.
     fn floor(self) -> Self;
 
-    /// Sine and cosine of an angle in radians.
-    fn sin_cos(self) -> (Self, Self);
-    /// Angle of the point (`x`, `self`), in (−π, π].
-    fn atan2(self, x: Self) -> Self;
+    /// 2 to the power `self`, an integer within the exponents of normal numbers (−1022..=1023, in `f32`
+    /// −126..=127); any other argument gives an unspecified number.
+    fn exp2_integer(self) -> Self;
+    /// (k, m) with `self` = 2ᵏ m and m in [√½, √2), for a positive normal number; any other argument gives
+    /// unspecified numbers.
+    fn split_exponent(self) -> (Self, Self);
+
+    /// Sine and cosine of an angle in radians, to about one unit in the last place up to 10⁶ rad (10⁵ in `f32`).
+    ///
+    /// Beyond, the error is at most that of an argument off by its own last place; past 2⁵⁰ rad (2²¹), where that place
+    /// is worth a quarter of a radian, the angle counts as 0. Infinity and NaN give NaN.
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        elementary::sin_cos(self)
+    }
+    /// Angle of the point (`x`, `self`), in [−π, π], rad; signed zeros and infinities as in IEEE 754.
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        elementary::atan2(self, x)
+    }
     /// Exponential.
-    fn exp(self) -> Self;
-    /// Natural logarithm.
-    fn ln(self) -> Self;
-    /// `self` raised to a real power; `self` ≥ 0.
-    fn powf(self, exponent: Self) -> Self;
+    #[inline(always)]
+    fn exp(self) -> Self {
+        elementary::exp(self)
+    }
+    /// Natural logarithm; −∞ at zero, NaN below.
+    #[inline(always)]
+    fn ln(self) -> Self {
+        elementary::ln(self)
+    }
+    /// `self` ≥ 0 raised to a real power; NaN below zero. Anything to the power 0 is 1.
+    #[inline(always)]
+    fn powf(self, exponent: Self) -> Self {
+        elementary::powf(self, exponent)
+    }
 
     /// Sine of an angle in radians.
     #[inline(always)]
@@ -144,6 +174,12 @@ pub trait Scalar: Real<Scalar = Self, Mask = bool> + PartialOrd + std::fmt::Disp
     const EPSILON: Self;
     /// Positive infinity.
     const INFINITY: Self;
+    /// The largest finite number.
+    const MAX: Self;
+    /// The smallest positive normal number.
+    const MIN_POSITIVE: Self;
+    /// Binary digits of the mantissa, the implicit one included: 53 or 24.
+    const DIGITS: u32;
     /// Widens (or keeps) the value.
     fn to_f64(self) -> f64;
 }

@@ -3,109 +3,122 @@
 use crate::real::{Real, Scalar};
 
 macro_rules! scalar {
-    ($t:ident) => {
-        impl Real for $t {
-            type Scalar = $t;
-            type Mask = bool;
-            const LANES: usize = 1;
-            const ZERO: $t = 0.0;
-            const ONE: $t = 1.0;
+    ($t:ident, $bits:ident) => {
+        const _: () = {
+            /// Bits of the fraction.
+            const FRACTION: u32 = $t::MANTISSA_DIGITS - 1;
+            /// What is added to an exponent before it is stored.
+            const BIAS: $bits = $t::MAX_EXP as $bits - 1;
+            /// 1.5 × 2^FRACTION: added to a small integer, it leaves that integer in the low bits of the fraction.
+            const INTEGERS: $t = ((3 as $bits) << (FRACTION - 1)) as $t;
 
-            #[inline(always)]
-            fn new(value: f64) -> $t {
-                value as $t
-            }
-            #[inline(always)]
-            fn splat(value: $t) -> $t {
-                value
-            }
-            #[inline(always)]
-            fn lane(self, _: usize) -> $t {
-                self
-            }
-            #[inline(always)]
-            fn set_lane(&mut self, _: usize, value: $t) {
-                *self = value;
-            }
-            #[inline(always)]
-            fn lt(self, other: $t) -> bool {
-                self < other
-            }
-            #[inline(always)]
-            fn le(self, other: $t) -> bool {
-                self <= other
-            }
-            #[inline(always)]
-            fn gt(self, other: $t) -> bool {
-                self > other
-            }
-            #[inline(always)]
-            fn ge(self, other: $t) -> bool {
-                self >= other
-            }
-            #[inline(always)]
-            fn eq(self, other: $t) -> bool {
-                self == other
-            }
-            #[inline(always)]
-            fn is_finite(self) -> bool {
-                $t::is_finite(self)
-            }
-            #[inline(always)]
-            fn select(mask: bool, yes: $t, no: $t) -> $t {
-                if mask { yes } else { no }
-            }
-            #[inline(always)]
-            fn abs(self) -> $t {
-                $t::abs(self)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> $t {
-                $t::sqrt(self)
-            }
-            #[inline(always)]
-            fn min(self, other: $t) -> $t {
-                if self < other { self } else { other }
-            }
-            #[inline(always)]
-            fn max(self, other: $t) -> $t {
-                if self > other { self } else { other }
-            }
-            #[inline(always)]
-            fn copysign(self, sign: $t) -> $t {
-                $t::copysign(self, sign)
-            }
-            #[inline(always)]
-            fn floor(self) -> $t {
-                $t::floor(self)
-            }
-            fn sin_cos(self) -> ($t, $t) {
-                $t::sin_cos(self)
-            }
-            fn atan2(self, x: $t) -> $t {
-                $t::atan2(self, x)
-            }
-            fn exp(self) -> $t {
-                $t::exp(self)
-            }
-            fn ln(self) -> $t {
-                $t::ln(self)
-            }
-            fn powf(self, exponent: $t) -> $t {
-                $t::powf(self, exponent)
-            }
-        }
+            impl Real for $t {
+                type Scalar = $t;
+                type Mask = bool;
+                const LANES: usize = 1;
+                const ZERO: $t = 0.0;
+                const ONE: $t = 1.0;
 
-        impl Scalar for $t {
-            const EPSILON: $t = $t::EPSILON;
-            const INFINITY: $t = $t::INFINITY;
-            #[inline(always)]
-            fn to_f64(self) -> f64 {
-                self as f64
+                #[inline(always)]
+                fn new(value: f64) -> $t {
+                    value as $t
+                }
+                #[inline(always)]
+                fn splat(value: $t) -> $t {
+                    value
+                }
+                #[inline(always)]
+                fn lane(self, _: usize) -> $t {
+                    self
+                }
+                #[inline(always)]
+                fn set_lane(&mut self, _: usize, value: $t) {
+                    *self = value;
+                }
+                #[inline(always)]
+                fn lt(self, other: $t) -> bool {
+                    self < other
+                }
+                #[inline(always)]
+                fn le(self, other: $t) -> bool {
+                    self <= other
+                }
+                #[inline(always)]
+                fn gt(self, other: $t) -> bool {
+                    self > other
+                }
+                #[inline(always)]
+                fn ge(self, other: $t) -> bool {
+                    self >= other
+                }
+                #[inline(always)]
+                fn eq(self, other: $t) -> bool {
+                    self == other
+                }
+                #[inline(always)]
+                fn is_finite(self) -> bool {
+                    $t::is_finite(self)
+                }
+                #[inline(always)]
+                fn select(mask: bool, yes: $t, no: $t) -> $t {
+                    if mask { yes } else { no }
+                }
+                #[inline(always)]
+                fn abs(self) -> $t {
+                    $t::abs(self)
+                }
+                #[inline(always)]
+                fn sqrt(self) -> $t {
+                    $t::sqrt(self)
+                }
+                #[inline(always)]
+                fn min(self, other: $t) -> $t {
+                    if self < other { self } else { other }
+                }
+                #[inline(always)]
+                fn max(self, other: $t) -> $t {
+                    if self > other { self } else { other }
+                }
+                #[inline(always)]
+                fn copysign(self, sign: $t) -> $t {
+                    $t::copysign(self, sign)
+                }
+                #[inline(always)]
+                fn floor(self) -> $t {
+                    $t::floor(self)
+                }
+                #[inline(always)]
+                fn exp2_integer(self) -> $t {
+                    $t::from_bits((self + INTEGERS).to_bits().wrapping_add(BIAS) << FRACTION)
+                }
+                #[inline(always)]
+                fn split_exponent(self) -> ($t, $t) {
+                    let root_half = $t::to_bits(std::f64::consts::FRAC_1_SQRT_2 as $t);
+                    // Multiplied by √2 in the sense of bits: the exponent then steps at √½ · 2ᵏ, and the fraction is 0 there.
+                    let moved = self.to_bits().wrapping_add((1 as $t).to_bits() - root_half);
+                    let exponent = $t::from_bits(INTEGERS.to_bits() + (moved >> FRACTION));
+                    let fraction = moved & ((1 << FRACTION) - 1);
+                    (
+                        exponent - (INTEGERS + BIAS as $t),
+                        $t::from_bits(fraction + root_half),
+                    )
+                }
             }
-        }
+
+            impl Scalar for $t {
+                const EPSILON: $t = $t::EPSILON;
+                const INFINITY: $t = $t::INFINITY;
+                const MAX: $t = $t::MAX;
+                const MIN_POSITIVE: $t = $t::MIN_POSITIVE;
+                const DIGITS: u32 = $t::MANTISSA_DIGITS;
+                #[inline(always)]
+                fn to_f64(self) -> f64 {
+                    self as f64
+                }
+            }
+        };
     };
 }
 
-scalar!(f64);
-scalar!(f32);
+scalar!(f64, u64);
+scalar!(f32, u32);

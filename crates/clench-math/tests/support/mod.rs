@@ -1,0 +1,122 @@
+//! Reproducible random numbers for the tests.
+//!
+//! Own code rather than a crate: the tests want control of bit patterns (subnormals, signed zeros, NaN), and this is
+//! ten lines of splitmix64 (Steele, Lea and Flood, 2014).
+
+#![allow(
+    dead_code,
+    reason = "each test file uses its own part of these helpers"
+)]
+
+use clench_math::{Quat, Real, Scalar, Vec3};
+
+/// A seeded source of numbers.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Random(seed)
+    }
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+    /// Uniform in `[low, high)`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
+    }
+    pub fn vector(&mut self, size: f64) -> Vec3<f64> {
+        Vec3::new(
+            self.between(-size, size),
+            self.between(-size, size),
+            self.between(-size, size),
+        )
+    }
+    pub fn unit_vector(&mut self) -> Vec3<f64> {
+        self.vector(1.0).normalize().0
+    }
+    pub fn rotation(&mut self) -> Quat<f64> {
+        let mut part = || self.between(-1.0, 1.0);
+        Quat::new(part(), part(), part(), part()).normalize()
+    }
+    /// A number of any kind: special values, any bit pattern, or something ordinary.
+    pub fn any<S: TestScalar>(&mut self) -> S {
+        let choice = self.bits();
+        match choice % 4 {
+            0 => {
+                let special = [
+                    0.0,
+                    f64::INFINITY,
+                    f64::NAN,
+                    1.0,
+                    2.0,
+                    0.5,
+                    S::MAX.to_f64(),
+                    S::EPSILON.to_f64(),
+                    S::MIN_POSITIVE.to_f64(),
+                    S::MIN_POSITIVE.to_f64() * (1.0 - S::EPSILON.to_f64()),
+                    S::MIN_POSITIVE.to_f64() * S::EPSILON.to_f64(),
+                ];
+                let value = S::new(special[(choice >> 8) as usize % special.len()]);
+                if choice & (1 << 7) == 0 {
+                    value
+                } else {
+                    -value
+                }
+            }
+            1 => S::from_any_bits(self.bits()),
+            2 => S::new(self.between(-10.0, 10.0)),
+            // Whole numbers: where floor, comparisons and ties are decided.
+            _ => S::new(self.between(-8.0, 8.0).floor() * 0.5),
+        }
+    }
+}
+
+/// Access to the representation, which `Scalar` does not give.
+pub trait TestScalar: Scalar {
+    fn from_any_bits(bits: u64) -> Self;
+    /// The bits, all NaNs alike.
+    fn identity(self) -> u64;
+}
+impl TestScalar for f64 {
+    fn from_any_bits(bits: u64) -> f64 {
+        f64::from_bits(bits)
+    }
+    fn identity(self) -> u64 {
+        if self.is_nan() {
+            f64::NAN.to_bits()
+        } else {
+            self.to_bits()
+        }
+    }
+}
+impl TestScalar for f32 {
+    fn from_any_bits(bits: u64) -> f32 {
+        f32::from_bits(bits as u32)
+    }
+    fn identity(self) -> u64 {
+        let bits = if self.is_nan() {
+            f32::NAN.to_bits()
+        } else {
+            self.to_bits()
+        };
+        u64::from(bits)
+    }
+}
+
+/// |a − b| in every coordinate is at most `tolerance`.
+pub fn assert_close<T: Real<Scalar = f64>>(a: &[T], b: &[T], tolerance: f64, what: &str) {
+    assert_eq!(a.len(), b.len(), "{what}: lengths differ");
+    for (i, (x, y)) in a.iter().zip(b).enumerate() {
+        for lane in 0..T::LANES {
+            let (x, y) = (x.lane(lane), y.lane(lane));
+            assert!(
+                (x - y).abs() <= tolerance,
+                "{what}: entry {i} is {x}, expected {y}"
+            );
+        }
+    }
+}
