@@ -6,14 +6,17 @@ use super::document::Element;
 use super::joint;
 use super::orientation::{Orientation, Pose};
 use crate::LoadError;
-use clench_math::{Quat, Vec3};
+use clench_math::{Mat3, Quat, Vec3};
 use clench_rigid::builder::{BodySpec, InertiaSpec, InertialSpec, JointSpec};
+use std::collections::HashSet;
 
 /// Reads the body tree into a list of bodies, parents before children.
 pub(crate) struct BodyReader<'a> {
     pub notation: &'a Notation,
     pub classes: &'a Classes,
     pub bodies: &'a mut Vec<BodySpec>,
+    /// Names in the file that stand for several elements of the model.
+    pub replicated: HashSet<String>,
 }
 
 /// Where in the tree the reader is.
@@ -27,6 +30,8 @@ struct Place {
     frame: Pose,
     /// What the enclosing replicas append to names.
     suffix: String,
+    /// The body that the innermost replicas are repeated in.
+    replicated_in: Option<usize>,
 }
 
 /// The world, before anything is on it.
@@ -46,6 +51,7 @@ impl BodyReader<'_> {
             class: MAIN,
             frame: Pose::IDENTITY,
             suffix: String::new(),
+            replicated_in: None,
         };
         self.read_children(element, &world)
     }
@@ -69,7 +75,7 @@ impl BodyReader<'_> {
             body: self.bodies.len() - 1,
             class: self.classes.named_by(element, "childclass", place.class)?,
             frame: Pose::IDENTITY,
-            suffix: place.suffix.clone(),
+            ..place.clone()
         };
         self.read_children(element, &inside)
     }
@@ -78,7 +84,7 @@ impl BodyReader<'_> {
     fn push_body(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let pose = place.frame.then(Pose::read(element, self.notation)?);
         let mut body = BodySpec {
-            name: named(element, place),
+            name: self.named(element, place),
             parent: place.body,
             pos: pose.pos,
             quat: pose.quat,
@@ -125,6 +131,7 @@ impl BodyReader<'_> {
                 class,
                 frame: place.frame.then(displaced),
                 suffix: format!("{separator}{replica:0digits$}{}", place.suffix),
+                replicated_in: Some(place.body),
                 ..place.clone()
             };
             self.read_children(element, &inside)?;
@@ -139,6 +146,12 @@ impl BodyReader<'_> {
     #[inline(never)]
     fn read_part(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let in_world = |what| Err(element.error(format!("the world cannot have {what}")));
+        let of_a_body = matches!(element.tag.as_str(), "inertial" | "joint" | "freejoint");
+        if of_a_body && place.replicated_in == Some(place.body) {
+            let message =
+                "cannot be repeated in one body; put it into a <body> inside of <replicate>";
+            return Err(element.error(message));
+        }
         match element.tag.as_str() {
             "inertial" if place.body == 0 => in_world("inertia")?,
             "joint" | "freejoint" if place.body == 0 => in_world("joints")?,
@@ -159,32 +172,12 @@ impl BodyReader<'_> {
     fn read_inertial(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let mut orientation = Orientation::default();
         orientation.read(element)?;
-        let orientations = [
-            "quat",
-            "axisangle",
-            "euler",
-            "xyaxes",
-            "zaxis",
-            "diaginertia",
-        ];
-        let full = element.numbers("fullinertia")?;
-        if let (Some(_), Some(name)) = (
-            full,
-            orientations
-                .iter()
-                .find(|name| element.text(name).is_some()),
-        ) {
-            return Err(element.error(format!("fullinertia and {name} cannot both be given")));
-        }
         let pose = place.frame.then(Pose {
             pos: Vec3::from_array(element.required_numbers("pos")?),
             quat: orientation.resolve(self.notation, element)?,
         });
         let [mass] = element.required_numbers("mass")?;
-        let inertia = match full {
-            Some(full) => InertiaSpec::Full(full),
-            None => InertiaSpec::Diagonal(element.numbers("diaginertia")?.unwrap_or_default()),
-        };
+        let inertia = read_inertia(element, &place.frame)?;
         let body = &mut self.bodies[place.body];
         if body.inertial.is_some() {
             return Err(element.error("a body can have only one inertial"));
@@ -197,6 +190,17 @@ impl BodyReader<'_> {
             origin: Some(element.origin.clone()),
         });
         Ok(())
+    }
+
+    /// The name of an element with what replicas append to it; what has no name keeps none.
+    fn named(&mut self, element: &Element, place: &Place) -> String {
+        let name = element.string("name");
+        if name.is_empty() || place.suffix.is_empty() {
+            return name;
+        }
+        let full = format!("{name}{}", place.suffix);
+        self.replicated.insert(name);
+        full
     }
 
     fn class(&self, element: &Element, place: &Place) -> Result<usize, LoadError> {
@@ -212,8 +216,9 @@ impl BodyReader<'_> {
     }
 
     fn push_joint(&mut self, joint: JointSpec, element: &Element, place: &Place) {
+        let name = self.named(element, place);
         self.bodies[place.body].joints.push(JointSpec {
-            name: named(element, place),
+            name,
             origin: Some(element.origin.clone()),
             ..joint
         });
@@ -223,7 +228,7 @@ impl BodyReader<'_> {
         let mut geom = self.classes[self.class(element, place)?].geom.clone();
         geom.read(element)?;
         let mut geom = geom.finish(element, self.notation, &place.frame)?;
-        geom.name = named(element, place);
+        geom.name = self.named(element, place);
         self.bodies[place.body].geoms.push(geom);
         Ok(())
     }
@@ -232,16 +237,38 @@ impl BodyReader<'_> {
         let mut site = self.classes[self.class(element, place)?].site.clone();
         site.read(element)?;
         let mut site = site.finish(element, self.notation, &place.frame)?;
-        site.name = named(element, place);
+        site.name = self.named(element, place);
         self.bodies[place.body].sites.push(site);
         Ok(())
     }
 }
 
-/// The name of an element with what replicas append to it; what has no name keeps none.
-fn named(element: &Element, place: &Place) -> String {
-    match element.text("name") {
-        Some(name) if !name.is_empty() => format!("{name}{}", place.suffix),
-        _ => String::new(),
+/// Moments in the inertial frame, or a matrix in the axes of the frame that the element is written in, which is turned
+/// into those of the body.
+fn read_inertia(element: &Element, frame: &Pose) -> Result<InertiaSpec, LoadError> {
+    let Some([xx, yy, zz, xy, xz, yz]) = element.numbers("fullinertia")? else {
+        let moments = element.numbers("diaginertia")?;
+        return Ok(InertiaSpec::Diagonal(moments.unwrap_or_default()));
+    };
+    let others = [
+        "quat",
+        "axisangle",
+        "euler",
+        "xyaxes",
+        "zaxis",
+        "diaginertia",
+    ];
+    if let Some(other) = others.iter().find(|name| element.text(name).is_some()) {
+        return Err(element.error(format!("fullinertia and {other} cannot both be given")));
     }
+    let written = Mat3 {
+        rows: [
+            Vec3::new(xx, xy, xz),
+            Vec3::new(xy, yy, yz),
+            Vec3::new(xz, yz, zz),
+        ],
+    };
+    let turn = frame.quat.to_matrix();
+    let [x, y, z] = (turn * written * turn.transpose()).rows;
+    Ok(InertiaSpec::Full([x.x, y.y, z.z, x.y, x.z, y.z]))
 }

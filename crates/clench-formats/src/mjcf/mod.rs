@@ -31,8 +31,23 @@ use defaults::{Classes, MAIN};
 use document::Element;
 use include::Includes;
 use option::OptionReader;
+use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Attributes that name an element of the body tree.
+const REFERENCES: &[&str] = &[
+    "joint",
+    "jointinparent",
+    "joint1",
+    "joint2",
+    "body1",
+    "body2",
+    "geom1",
+    "geom2",
+    "site1",
+    "site2",
+];
 
 /// Reads the model in a file.
 pub(crate) fn read_file(path: &Path) -> Result<ModelBuilder, LoadError> {
@@ -106,12 +121,34 @@ fn read_model(root: &Element) -> Result<ModelBuilder, LoadError> {
         notation: &notation,
         classes: &classes,
         bodies: &mut builder.bodies,
+        replicated: HashSet::new(),
     };
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }
+    let replicated = bodies.replicated;
+    for section in ["contact", "equality", "tendon", "actuator"] {
+        for element in entries(root, section) {
+            reject_replicated(element, &replicated)?;
+        }
+    }
     read_references(root, &classes, &mut builder)?;
     Ok(builder)
+}
+
+/// MuJoCo repeats an element that names a replicated one, as often as that; this reader does not yet.
+fn reject_replicated(element: &Element, replicated: &HashSet<String>) -> Result<(), LoadError> {
+    for child in &element.children {
+        reject_replicated(child, replicated)?;
+    }
+    for (attribute, value) in &element.attributes {
+        if REFERENCES.contains(&attribute.as_str()) && replicated.contains(value) {
+            let message =
+                format!("{attribute} names \"{value}\", which is replicated: not supported yet");
+            return Err(element.error(message));
+        }
+    }
+    Ok(())
 }
 
 /// The sections whose elements name elements of the body tree.

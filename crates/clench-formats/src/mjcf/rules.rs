@@ -133,14 +133,14 @@ pub(crate) const RULES: &[Rule] = &[
     section(
         "worldbody",
         "body frame replicate geom site camera light inertial joint freejoint",
-        "attach plugin composite flexcomp",
+        "attach plugin flexcomp",
     ),
     Rule {
         element: "body",
         read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp",
         ignored: "user sleep simple fuse",
         children: "body frame replicate geom site camera light inertial joint freejoint",
-        later_children: "attach plugin composite flexcomp",
+        later_children: "attach plugin flexcomp",
         ..NONE
     },
     Rule {
@@ -149,15 +149,15 @@ pub(crate) const RULES: &[Rule] = &[
         ignored: "name",
         later: "scale=1 scaling massscale=1",
         children: "body frame replicate geom site camera light inertial joint freejoint",
-        later_children: "attach plugin composite flexcomp",
+        later_children: "attach plugin flexcomp",
         ..NONE
     },
     Rule {
         element: "replicate",
         read: "class childclass count offset euler sep",
         ignored: "name",
-        children: "body frame replicate geom site camera light inertial",
-        later_children: "attach plugin composite flexcomp",
+        children: "body frame replicate geom site camera light inertial joint freejoint",
+        later_children: "attach plugin flexcomp",
         ..NONE
     },
     Rule {
@@ -220,11 +220,7 @@ pub(crate) const RULES: &[Rule] = &[
         read: "name body1 body2",
         ..NONE
     },
-    section(
-        "equality",
-        "connect weld joint tendon",
-        "flex flexvert flexstrain",
-    ),
+    section("equality", "connect weld joint tendon", "flex flexstrain"),
     Rule {
         element: "connect",
         read: "name class active solref solimp body1 body2 anchor site1 site2",
@@ -340,7 +336,11 @@ pub(crate) const RULES: &[Rule] = &[
         ..NONE
     },
     // What is only seen, or only for a user's program.
-    section("visual", "global quality headlight map scale rgba", ""),
+    Rule {
+        element: "visual",
+        once: "global quality headlight map scale rgba",
+        ..NONE
+    },
     ignored(
         "global",
         "cameraid orthographic fovy ipd azimuth elevation linewidth glow offwidth offheight realtime \
