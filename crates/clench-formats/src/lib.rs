@@ -9,8 +9,40 @@ mod mjcf;
 
 pub use error::LoadError;
 
+use clench_rigid::Model;
 use clench_rigid::builder::ModelBuilder;
 use std::path::Path;
+
+/// Loads a model file.
+///
+/// # Errors
+/// [`LoadError`] where [`read`] fails or the model cannot be built: dangling names, moving bodies without mass, ...
+pub fn load(path: impl AsRef<Path>) -> Result<Model, LoadError> {
+    Ok(read(path)?.build()?)
+}
+
+/// Loads a model from text; includes are found from the working directory.
+///
+/// ```
+/// let model = clench_formats::load_str(
+///     "<mujoco>
+///        <worldbody>
+///          <body name='ball' pos='0 0 1'>
+///            <freejoint/>
+///            <geom size='0.1'/>
+///          </body>
+///        </worldbody>
+///      </mujoco>",
+/// )?;
+/// assert_eq!((model.nq, model.nv), (7, 6));
+/// # Ok::<(), clench_formats::LoadError>(())
+/// ```
+///
+/// # Errors
+/// As [`load`]; the file name of an error is empty.
+pub fn load_str(text: &str) -> Result<Model, LoadError> {
+    Ok(read_str(text)?.build()?)
+}
 
 /// Reads a model file into a builder, before anything is computed.
 ///
