@@ -5,7 +5,7 @@ use crate::error::SimError;
 use crate::model::Model;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Real, Scalar};
+use clench_math::Scalar;
 
 /// The right length and only finite numbers.
 pub(crate) fn check_values<T: Scalar>(

@@ -7,10 +7,13 @@ use clench_rigid::constraint::softness::impedance;
 /// Twice a time step of 2 ms, MuJoCo's `refsafe`.
 const LEAST: f64 = 0.004;
 
+type Solref = [f64; 2];
+type Solimp = [f64; 5];
+
 /// Impedance, stiffness k, damping b and R of a slide's limit with A₀ = 0.5, measured in MuJoCo 4.0.0
 /// (`efc_KBIP`, `efc_R`; its solref, solimp, position).
 #[rustfmt::skip]
-const MEASURED: [([f64; 2], [f64; 5], f64, [f64; 4]); 14] = [
+const MEASURED: [(Solref, Solimp, f64, [f64; 4]); 14] = [
     ([0.02, 1.0], [0.9, 0.95, 0.001, 0.5, 2.0], -0.0001, [0.901, 2770.083102493075, 105.26315789473685, 0.054938956714761365]),
     ([0.02, 1.0], [0.9, 0.95, 0.001, 0.5, 2.0], -0.5, [0.95, 2770.083102493075, 105.26315789473685, 0.026315789473684237]),
     ([0.02, 1.0], [0.2, 0.99, 0.01, 0.3, 1.0], -0.0055, [0.6345, 2550.7601265177022, 101.010101010101, 0.2880220646178094]),

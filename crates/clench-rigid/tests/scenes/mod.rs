@@ -1,0 +1,301 @@
+//! Small scenes for the tests of constraints.
+#![allow(dead_code)] // Each test file uses some of these.
+
+use clench_collide::ShapeKind;
+use clench_math::{Quat, Vec3};
+use clench_rigid::builder::{
+    BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomMass, GeomSpec, JointSpec,
+    ModelBuilder, TendonSpec,
+};
+use clench_rigid::model::JointKind;
+use clench_rigid::{Model, Sim};
+use clench_solver::RigidOptions;
+use std::sync::Arc;
+
+pub const SOLREF: [f64; 2] = [0.02, 1.0];
+pub const SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
+
+/// An empty world that is solved as precisely as numbers allow.
+pub fn world() -> ModelBuilder {
+    ModelBuilder {
+        bodies: vec![BodySpec {
+            name: "world".into(),
+            ..BodySpec::default()
+        }],
+        options: RigidOptions::new()
+            .tolerance(0.0)
+            .iterations(200)
+            .constraint_timeconst(0.0),
+        ..ModelBuilder::default()
+    }
+}
+
+/// Adds a body and returns its number.
+pub fn add(
+    builder: &mut ModelBuilder,
+    parent: usize,
+    name: &str,
+    pos: [f64; 3],
+    joints: Vec<JointSpec>,
+    geoms: Vec<GeomSpec>,
+) -> usize {
+    builder.bodies.push(BodySpec {
+        name: name.into(),
+        parent,
+        pos: Vec3::from_f64(pos),
+        quat: Quat::IDENTITY,
+        joints,
+        geoms,
+        ..BodySpec::default()
+    });
+    builder.bodies.len() - 1
+}
+
+pub fn joint(kind: JointKind, name: &str, axis: [f64; 3]) -> JointSpec {
+    JointSpec {
+        name: name.into(),
+        kind,
+        axis: Vec3::from_f64(axis),
+        ..JointSpec::default()
+    }
+}
+
+pub fn free() -> Vec<JointSpec> {
+    vec![joint(JointKind::Free, "", [0.0, 0.0, 1.0])]
+}
+
+pub fn geom(kind: ShapeKind, size: [f64; 3]) -> GeomSpec {
+    GeomSpec {
+        kind,
+        size: Vec3::from_f64(size),
+        mass: GeomMass::Mass(1.0),
+        ..GeomSpec::default()
+    }
+}
+
+pub fn plane() -> GeomSpec {
+    geom(ShapeKind::Plane, [0.0, 0.0, 1.0])
+}
+
+pub fn sphere(radius: f64) -> GeomSpec {
+    geom(ShapeKind::Sphere, [radius, 0.0, 0.0])
+}
+
+pub fn cuboid(half: [f64; 3]) -> GeomSpec {
+    geom(ShapeKind::Box, half)
+}
+
+/// A shape that collides with nothing.
+pub fn ghost(mut geom: GeomSpec) -> GeomSpec {
+    geom.contype = 0;
+    geom.conaffinity = 0;
+    geom
+}
+
+pub fn equality(name: &str, kind: EqualityKind) -> EqualitySpec {
+    EqualitySpec {
+        name: name.into(),
+        kind,
+        active: true,
+        solref: SOLREF,
+        solimp: SOLIMP,
+        origin: None,
+    }
+}
+
+pub fn bodies(body1: &str, body2: &str, anchor: [f64; 3]) -> ConnectAnchor {
+    ConnectAnchor::Bodies {
+        body1: body1.into(),
+        body2: body2.into(),
+        anchor: Vec3::from_f64(anchor),
+    }
+}
+
+pub fn tendon(name: &str, terms: &[(&str, f64)]) -> TendonSpec {
+    TendonSpec {
+        name: name.into(),
+        terms: terms.iter().map(|&(j, c)| (j.to_string(), c)).collect(),
+        ..TendonSpec::default()
+    }
+}
+
+pub fn model(builder: &ModelBuilder) -> Arc<Model> {
+    Arc::new(builder.build().expect("the scene is a model"))
+}
+
+pub fn sim(builder: &ModelBuilder) -> Sim {
+    Sim::new(model(builder)).expect("the scene can be simulated")
+}
+
+/// Steps until `time` has passed, s.
+pub fn run(sim: &mut Sim, time: f64) {
+    let end = sim.state.time + time;
+    while sim.state.time < end - 1e-9 {
+        sim.step().expect("the motion stays finite");
+    }
+}
+
+/// Reproducible numbers in (−1, 1).
+pub struct Numbers(pub u64);
+
+impl Numbers {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+    pub fn fill(&mut self, out: &mut [f64], scale: f64) {
+        for x in out {
+            *x = scale * self.next();
+        }
+    }
+}
+
+/// A branched tree and a loose body, with every kind of constraint at work, far from rest.
+pub fn everything() -> ModelBuilder {
+    let mut b = world();
+    let limited = |mut j: JointSpec, range: [f64; 2]| {
+        j.range = range;
+        j.limited = Some(true);
+        j.margin = 0.01;
+        j.frictionloss = 0.3;
+        j.armature = 0.01;
+        j
+    };
+    b.bodies[0].geoms.push(plane());
+    let trunk = add(
+        &mut b,
+        0,
+        "trunk",
+        [0.0, 0.0, 0.5],
+        free(),
+        vec![cuboid([0.1, 0.2, 0.1])],
+    );
+    let mut ball = limited(joint(JointKind::Ball, "ball", [0.0, 0.0, 1.0]), [0.0, 0.2]);
+    ball.pos = Vec3::from_f64([0.0, 0.0, 0.1]);
+    let arm_geom = geom(ShapeKind::Capsule, [0.05, 0.2, 0.0]);
+    let arm = add(
+        &mut b,
+        trunk,
+        "arm",
+        [0.1, 0.2, 0.2],
+        vec![ball],
+        vec![arm_geom.clone()],
+    );
+    let elbow = limited(
+        joint(JointKind::Hinge, "elbow", [0.3, 1.0, 0.2]),
+        [-0.2, 0.1],
+    );
+    let hand = add(
+        &mut b,
+        arm,
+        "hand",
+        [0.0, 0.1, 0.3],
+        vec![elbow],
+        vec![sphere(0.1)],
+    );
+    let slide = limited(
+        joint(JointKind::Slide, "slide", [1.0, 0.5, 0.0]),
+        [-0.05, 0.3],
+    );
+    let hinge = limited(
+        joint(JointKind::Hinge, "hinge", [0.0, 1.0, 1.0]),
+        [-0.4, 0.4],
+    );
+    add(
+        &mut b,
+        trunk,
+        "leg",
+        [-0.1, -0.2, -0.2],
+        vec![slide, hinge],
+        vec![arm_geom],
+    );
+    add(
+        &mut b,
+        hand,
+        "tip",
+        [0.0, 0.0, 0.15],
+        vec![],
+        vec![sphere(0.05)],
+    );
+    add(
+        &mut b,
+        0,
+        "loose",
+        [0.6, 0.1, 0.4],
+        free(),
+        vec![cuboid([0.1, 0.1, 0.1])],
+    );
+    let mut span = tendon("span", &[("hinge", 0.7), ("elbow", -1.3)]);
+    span.range = [-0.01, 0.02];
+    span.limited = Some(true);
+    span.frictionloss = 0.2;
+    b.tendons = vec![span, tendon("other", &[("slide", 2.0), ("hinge", 0.5)])];
+    let quartic = [0.02, 0.9, -0.3, 0.7, 0.4];
+    b.equalities = vec![
+        equality(
+            "connect",
+            EqualityKind::Connect(bodies("tip", "loose", [0.05, 0.1, 0.0])),
+        ),
+        equality(
+            "loop",
+            EqualityKind::Connect(bodies("hand", "leg", [0.0, 0.1, 0.2])),
+        ),
+        equality(
+            "weld",
+            EqualityKind::Weld {
+                anchor: bodies("hand", "loose", [0.02, 0.03, 0.1]),
+                relpose: None,
+                torquescale: 0.7,
+            },
+        ),
+        equality(
+            "pin",
+            EqualityKind::Weld {
+                anchor: bodies("loose", "", [0.1, 0.0, 0.2]),
+                relpose: Some((
+                    Vec3::from_f64([0.3, 0.1, 0.1]),
+                    Quat::new(0.8, 0.0, 0.6, 0.0),
+                )),
+                torquescale: 1.3,
+            },
+        ),
+        equality(
+            "joints",
+            EqualityKind::Joint {
+                joint1: "elbow".into(),
+                joint2: Some("slide".into()),
+                polycoef: quartic,
+            },
+        ),
+        equality(
+            "fixed",
+            EqualityKind::Joint {
+                joint1: "hinge".into(),
+                joint2: None,
+                polycoef: [0.1, 0.0, 0.0, 0.0, 0.0],
+            },
+        ),
+        equality(
+            "tendons",
+            EqualityKind::Tendon {
+                tendon1: "span".into(),
+                tendon2: Some("other".into()),
+                polycoef: quartic,
+            },
+        ),
+    ];
+    b
+}
+
+/// Moves a simulation of [`everything`] to a random state.
+pub fn shake(sim: &mut Sim, seed: u64) {
+    let mut numbers = Numbers(seed);
+    let mut turn = vec![0.0; sim.model().nv];
+    numbers.fill(&mut turn, 0.5);
+    let model = Arc::clone(sim.model());
+    clench_rigid::dynamics::integrate::integrate_positions(&model, &mut sim.state.qpos, &turn, 1.0);
+    numbers.fill(&mut sim.state.qvel, 1.0);
+}
