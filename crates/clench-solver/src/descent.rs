@@ -76,8 +76,9 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
     };
     stats.gradient = scale * norm;
     stats.status = Status::IterationLimit.code();
-    let finite = norm.is_finite() & tally.cost.is_finite();
+    let finite = iterate.is_finite() & norm.is_finite();
     progress.end(!finite, Status::NonFinite, stats);
+    progress.end(!constrained(problem), Status::Unconstrained, stats);
 
     // Newton is trusted for its forces as well: the gap alone, a bound in cost, would let stiff ones be wrong.
     let gap = gap(problem, iterate, &mut ray.direction);
@@ -186,8 +187,16 @@ fn gap<T: Real>(problem: &Problem<T>, iterate: &Iterate<T>, scratch: &mut Vec<T>
     T::new(0.5) * dot(scratch, scratch)
 }
 
+/// The lanes in which some constraint acts.
+fn constrained<T: Real>(problem: &Problem<T>) -> T::Mask {
+    problem
+        .d
+        .iter()
+        .fold(T::Mask::splat(false), |mask, d| mask | d.gt(T::ZERO))
+}
+
 /// Mean inertia × nv.
-fn trace<T: Real>(problem: &Problem<T>) -> T {
+pub(crate) fn trace<T: Real>(problem: &Problem<T>) -> T {
     let tree = problem.tree();
     let mut sum = T::ZERO;
     for i in 0..tree.nv() {

@@ -4,7 +4,7 @@ use crate::Problem;
 use crate::costs::{BlockCost, Tally, with_cost};
 use crate::jacobian::Jacobian;
 use crate::line_search::Ray;
-use clench_math::Real;
+use clench_math::{Mask, Real};
 
 /// A point, and everything that follows from it.
 #[derive(Clone, Debug, Default)]
@@ -135,6 +135,11 @@ impl<T: Real> Iterate<T> {
         square.sqrt()
     }
 
+    /// The lanes in which acceleration and residuals are finite. (A one-sided cost of NaN is zero, so costs do not show it.)
+    pub fn is_finite(&self) -> T::Mask {
+        all_finite(&self.qacc) & all_finite(&self.residual)
+    }
+
     /// ½ (a − a_unc)ᵀ M (a − a_unc).
     pub fn inertial_cost(&self, problem: &Problem<T>) -> T {
         let mut sum = T::ZERO;
@@ -155,6 +160,12 @@ impl<T: Real> Iterate<T> {
         add_scaled(&mut self.inertial, alpha, &ray.mass_direction);
         add_scaled(&mut self.residual, alpha, &ray.rows);
     }
+}
+
+/// The lanes in which all of `x` is finite.
+pub(crate) fn all_finite<T: Real>(x: &[T]) -> T::Mask {
+    x.iter()
+        .fold(T::Mask::splat(true), |mask, x| mask & x.is_finite())
 }
 
 /// x·y.

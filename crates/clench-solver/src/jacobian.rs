@@ -26,6 +26,11 @@ impl BlockIndex {
     pub fn rows(&self) -> Range<usize> {
         self.row..self.row + self.dim
     }
+    /// Its pieces among all pieces.
+    #[inline(always)]
+    pub fn pieces(&self) -> Range<usize> {
+        self.piece..self.piece + crate::costs::pieces(self.cost, self.dim)
+    }
 }
 
 /// What the solver needs of J.
@@ -74,6 +79,26 @@ impl<T: Real> StoredRows<T> {
         self.values
             .resize(block.value + block.dim * block.ndof, T::ZERO);
         &mut self.values[block.value..]
+    }
+
+    /// Appends a copy of another problem's block, at the row and piece given.
+    pub fn push_copy(
+        &mut self,
+        block: &BlockIndex,
+        row: usize,
+        piece: usize,
+        dofs: impl Iterator<Item = u32>,
+        values: impl Iterator<Item = T>,
+    ) {
+        self.blocks.push(BlockIndex {
+            row,
+            piece,
+            dof: self.dofs.len(),
+            value: self.values.len(),
+            ..*block
+        });
+        self.dofs.extend(dofs);
+        self.values.extend(values);
     }
 
     #[inline(always)]

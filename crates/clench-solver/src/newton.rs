@@ -40,13 +40,18 @@ impl<T: Real> Direction<T> for Newton<T> {
         // Where no piece changed on a stretch without curvature, the factor at hand is still exact.
         let stale = progress.live & !progress.same_hessian;
         if stale.any() {
-            self.hessian.assemble(problem.tree(), &problem.mass, &problem.jacobian, |b, weight| {
-                let y = &iterate.residual[b.rows()];
-                with_cost!(b.cost, C => {
-                    let pieces = &iterate.pieces[b.piece..b.piece + <C as BlockCost<T>>::pieces(b.dim)];
-                    C::hessian(problem.rows(b), y, pieces, weight)
-                })
-            });
+            self.hessian.assemble(
+                problem.tree(),
+                &problem.mass,
+                &problem.jacobian,
+                |b, weight| {
+                    let y = &iterate.residual[b.rows()];
+                    with_cost!(b.cost, C => {
+                        let pieces = &iterate.pieces[b.pieces()];
+                        C::hessian(problem.rows(b), y, pieces, weight)
+                    })
+                },
+            );
             self.hessian.factor();
             stats.factorizations += T::select(stale, T::ONE, T::ZERO);
         }

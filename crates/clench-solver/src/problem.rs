@@ -255,6 +255,89 @@ impl<T: Real> Problem<T> {
         }
     }
 
+    /// Becomes the part of `whole` that `dofs` and `blocks` name; `local` maps its dofs to their place in `dofs`.
+    pub(crate) fn gather(
+        &mut self,
+        whole: &Problem<T>,
+        dofs: &[u32],
+        local: &[u32],
+        blocks: &[u32],
+    ) {
+        let from = &*whole.tree;
+        let parent = |i: usize| from.parent(dofs[i] as usize).map(|p| local[p] as usize);
+        let same =
+            self.nv() == dofs.len() && (0..dofs.len()).all(|i| self.tree.parent(i) == parent(i));
+        if !same {
+            // The tree of a gathered problem is nobody else's, but for the empty one it starts with.
+            let ascending = Arc::make_mut(&mut self.tree).rebuild(dofs.len(), parent);
+            debug_assert!(
+                ascending.is_ok(),
+                "a part of a tree is numbered like the tree"
+            );
+        }
+        self.mass.values.clear();
+        self.qacc_smooth.clear();
+        for &dof in dofs {
+            self.mass
+                .values
+                .extend_from_slice(whole.mass.row(from, dof as usize));
+            self.qacc_smooth.push(whole.qacc_smooth[dof as usize]);
+        }
+        self.mass_factor.gather(from, &whole.mass_factor, dofs);
+        self.clear_constraints();
+        for &k in blocks {
+            let b = &whole.jacobian.blocks[k as usize];
+            let dofs = whole
+                .jacobian
+                .dofs(b)
+                .iter()
+                .map(|&dof| local[dof as usize]);
+            self.jacobian.push_copy(
+                b,
+                self.aref.len(),
+                self.npiece,
+                dofs,
+                whole.jacobian.values(b).iter().copied(),
+            );
+            self.npiece += b.pieces().len();
+            self.aref.extend_from_slice(&whole.aref[b.rows()]);
+            self.r.extend_from_slice(&whole.r[b.rows()]);
+            self.d.extend_from_slice(&whole.d[b.rows()]);
+            self.shape.extend_from_slice(&whole.shape[b.rows()]);
+        }
+    }
+
+    /// Becomes lane `lane` of `whole`, with those of its blocks that `blocks` names.
+    pub(crate) fn gather_lane<L: Real<Scalar = T>>(
+        &mut self,
+        whole: &Problem<L>,
+        lane: usize,
+        blocks: &[u32],
+    ) {
+        if !Arc::ptr_eq(&self.tree, &whole.tree) {
+            self.tree = whole.tree.clone();
+        }
+        let copy = |to: &mut Vec<T>, from: &[L]| to.extend(from.iter().map(|x| x.lane(lane)));
+        self.mass.values.clear();
+        self.qacc_smooth.clear();
+        copy(&mut self.mass.values, &whole.mass.values);
+        copy(&mut self.qacc_smooth, &whole.qacc_smooth);
+        self.mass_factor.gather_lane(&whole.mass_factor, lane);
+        self.clear_constraints();
+        for &k in blocks {
+            let b = &whole.jacobian.blocks[k as usize];
+            let values = whole.jacobian.values(b).iter().map(|x| x.lane(lane));
+            let dofs = whole.jacobian.dofs(b).iter().copied();
+            self.jacobian
+                .push_copy(b, self.aref.len(), self.npiece, dofs, values);
+            self.npiece += b.pieces().len();
+            copy(&mut self.aref, &whole.aref[b.rows()]);
+            copy(&mut self.r, &whole.r[b.rows()]);
+            copy(&mut self.d, &whole.d[b.rows()]);
+            copy(&mut self.shape, &whole.shape[b.rows()]);
+        }
+    }
+
     /// Checks the sizes that a solve indexes by.
     pub(crate) fn check_sizes(&self) -> Result<(), ProblemError> {
         check_length("qacc_smooth", self.qacc_smooth.len(), self.nv())?;

@@ -1,42 +1,42 @@
-//! The solver.
+//! The solver: which parts of a problem are solved together, and where the results lie.
 
-use crate::cg::Cg;
-use crate::costs::Pyramid;
-use crate::descent::minimise;
-use crate::iterate::Iterate;
-use crate::line_search::Ray;
-use crate::newton::Newton;
+use crate::islands::Islands;
+use crate::iterate::all_finite;
+use crate::lane::{Lane, Results};
 use crate::problem::check_length;
-use crate::{ConstraintSolver, Cost, Problem, ProblemError, Settings, SolveStats, Status, Tree};
+use crate::workspace::Workspace;
+use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Status, Switch, Tree};
 use clench_math::Real;
 
 /// Solves [`Problem`]s; keeps its memory between solves.
+///
+/// A solve allocates nothing once problems of this size have been seen.
 #[derive(Clone, Debug)]
 pub struct Solver<T: Real> {
-    iterate: Iterate<T>,
-    ray: Ray<T>,
-    newton: Newton<T>,
-    cg: Cg<T>,
+    qacc: Vec<T>,
+    force: Vec<T>,
     /// Edge forces of pyramids, at the index of their pieces.
     edges: Vec<T>,
+    qfrc_constraint: Vec<T>,
     stats: SolveStats<T>,
+    whole: Workspace<T>,
+    islands: Islands<T>,
+    lane: Option<Box<Lane<T>>>,
 }
 
 impl<T: Real> Solver<T> {
-    /// A solver with memory for problems over `tree`.
+    /// A solver, with memory for the results of problems over `tree`.
     pub fn new(tree: &Tree) -> Self {
         let zeros = vec![T::ZERO; tree.nv()];
         Solver {
-            iterate: Iterate {
-                qacc: zeros.clone(),
-                qfrc_constraint: zeros,
-                ..Default::default()
-            },
-            ray: Ray::default(),
-            newton: Newton::default(),
-            cg: Cg::default(),
+            qacc: zeros.clone(),
+            force: Vec::new(),
             edges: Vec::new(),
+            qfrc_constraint: zeros,
             stats: SolveStats::default(),
+            whole: Workspace::default(),
+            islands: Islands::default(),
+            lane: None,
         }
     }
 
@@ -54,71 +54,128 @@ impl<T: Real> Solver<T> {
         if let Some(warm) = warmstart {
             check_length("warmstart", warm.len(), problem.nv())?;
         }
-        self.stats = SolveStats::default();
         let warmstart = warmstart.filter(|_| settings.warmstart);
-        let Solver {
-            iterate,
-            ray,
-            newton,
-            cg,
-            stats,
-            ..
-        } = self;
+        let parts = settings.islands != Switch::Off && problem.tree().ntree() > 1;
         if problem.nrow() == 0 {
-            iterate.start(problem, None, ray);
-            stats.status = Status::Unconstrained.code();
+            self.reset(problem);
+        } else if parts && T::LANES > 1 {
+            self.solve_lanes(problem, settings, warmstart)?;
+        } else if parts && self.islands.find(problem) {
+            self.solve_islands(problem, settings, warmstart);
         } else {
-            match settings.constraint_solver {
-                ConstraintSolver::Newton => {
-                    minimise(problem, settings, warmstart, iterate, ray, newton, stats)
-                }
-                ConstraintSolver::Cg => {
-                    minimise(problem, settings, warmstart, iterate, ray, cg, stats)
-                }
-            }
+            self.solve_whole(problem, settings, warmstart);
         }
-        self.read_edges(problem);
         Ok(&self.stats)
     }
 
-    fn read_edges(&mut self, problem: &Problem<T>) {
-        self.edges.resize(problem.npiece, T::ZERO);
-        for b in problem
-            .jacobian
-            .blocks
-            .iter()
-            .filter(|b| b.cost == Cost::Pyramid)
-        {
-            let edges = &mut self.edges[b.piece..b.piece + 2 * (b.dim - 1)];
-            Pyramid::edge_forces(problem.rows(b), &self.iterate.residual[b.rows()], edges);
+    /// The results of a problem without constraints.
+    fn reset(&mut self, problem: &Problem<T>) {
+        let finite = all_finite(&problem.qacc_smooth);
+        let status = T::select(
+            finite,
+            Status::Unconstrained.code(),
+            Status::NonFinite.code(),
+        );
+        self.stats = SolveStats {
+            status,
+            ..SolveStats::default()
+        };
+        copy(&mut self.qacc, &problem.qacc_smooth);
+        for (v, len) in [
+            (&mut self.force, problem.nrow()),
+            (&mut self.edges, problem.npiece),
+            (&mut self.qfrc_constraint, problem.nv()),
+        ] {
+            v.clear();
+            v.resize(len, T::ZERO);
         }
+    }
+
+    fn solve_whole(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
+        self.whole.run(problem, settings, warmstart);
+        self.stats = self.whole.stats;
+        copy(&mut self.qacc, &self.whole.iterate.qacc);
+        copy(&mut self.force, &self.whole.iterate.force);
+        copy(&mut self.edges, &self.whole.edges);
+        copy(
+            &mut self.qfrc_constraint,
+            &self.whole.iterate.qfrc_constraint,
+        );
+    }
+
+    fn solve_islands(
+        &mut self,
+        problem: &Problem<T>,
+        settings: &Settings,
+        warmstart: Option<&[T]>,
+    ) {
+        self.reset(problem);
+        let (islands, stats) = self.islands.solve(problem, settings, warmstart);
+        self.stats.combine(&stats);
+        for island in islands {
+            let iterate = &island.work.iterate;
+            for (local, &dof) in island.dofs.iter().enumerate() {
+                self.qacc[dof as usize] = iterate.qacc[local];
+                self.qfrc_constraint[dof as usize] = iterate.qfrc_constraint[local];
+            }
+            for (from, &k) in island.problem.jacobian.blocks.iter().zip(&island.blocks) {
+                let to = &problem.jacobian.blocks[k as usize];
+                self.force[to.rows()].copy_from_slice(&iterate.force[from.rows()]);
+                let edges = self.edges[to.piece..]
+                    .iter_mut()
+                    .zip(&island.work.edges[from.pieces()]);
+                edges.for_each(|(to, &from)| *to = from);
+            }
+        }
+    }
+
+    fn solve_lanes(
+        &mut self,
+        problem: &Problem<T>,
+        settings: &Settings,
+        warmstart: Option<&[T]>,
+    ) -> Result<(), ProblemError> {
+        self.reset(problem);
+        let lane = self.lane.get_or_insert_with(|| Box::new(Lane::new()));
+        let mut results = Results {
+            qacc: &mut self.qacc,
+            force: &mut self.force,
+            edges: &mut self.edges,
+            qfrc_constraint: &mut self.qfrc_constraint,
+            stats: &mut self.stats,
+        };
+        (0..T::LANES).try_for_each(|k| lane.solve(problem, k, settings, warmstart, &mut results))
     }
 
     /// The minimiser: generalized acceleration, length nv.
     pub fn qacc(&self) -> &[T] {
-        &self.iterate.qacc
+        &self.qacc
     }
     /// Constraint force of each row in block coordinates (for a pyramid: contact-frame rows, the sum of its edges).
     pub fn force(&self) -> &[T] {
-        &self.iterate.force
+        &self.force
     }
     /// Jᵀ f, length nv.
     pub fn qfrc_constraint(&self) -> &[T] {
-        &self.iterate.qfrc_constraint
+        &self.qfrc_constraint
     }
-    /// Forces along the 2 (dim − 1) edges of pyramid `block`, in the order y₀ + μ₁y₁, y₀ − μ₁y₁, y₀ + μ₂y₂, ...;
-    /// empty for other costs.
+    /// Forces along the 2 (dim − 1) edges of pyramid `block` of the problem last solved, in the order y₀ + μ₁y₁,
+    /// y₀ − μ₁y₁, y₀ + μ₂y₂, ...; empty for other costs.
     pub fn edge_forces(&self, problem: &Problem<T>, block: usize) -> &[T] {
         let b = &problem.jacobian.blocks[block];
-        let count = if b.cost == Cost::Pyramid {
-            2 * (b.dim - 1)
+        if b.cost == Cost::Pyramid {
+            &self.edges[b.pieces()]
         } else {
-            0
-        };
-        &self.edges[b.piece..b.piece + count]
+            &[]
+        }
     }
     /// Statistics of the last solve.
     pub fn stats(&self) -> &SolveStats<T> {
         &self.stats
     }
+}
+
+fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
+    to.clear();
+    to.extend_from_slice(from);
 }

@@ -89,6 +89,38 @@ pub struct LaneStats {
 }
 
 impl<T: Real> SolveStats<T> {
+    /// Takes in the statistics of another island.
+    pub(crate) fn combine(&mut self, other: &SolveStats<T>) {
+        self.iterations = self.iterations.max(other.iterations);
+        self.gradient = self.gradient.max(other.gradient);
+        self.improvement = self.improvement.max(other.improvement);
+        self.gap += other.gap;
+        self.piece_changes += other.piece_changes;
+        self.ls_evaluations += other.ls_evaluations;
+        self.factorizations += other.factorizations;
+        self.updates += other.updates;
+        self.noslip_iterations = self.noslip_iterations.max(other.noslip_iterations);
+        self.islands += other.islands;
+        // Codes ascend from good to bad.
+        self.status = self.status.max(other.status);
+    }
+
+    /// Takes lane `lane` from the statistics of a problem solved alone.
+    pub(crate) fn set_lane(&mut self, lane: usize, alone: &SolveStats<T::Scalar>) {
+        self.iterations.set_lane(lane, alone.iterations);
+        self.gradient.set_lane(lane, alone.gradient);
+        self.improvement.set_lane(lane, alone.improvement);
+        self.gap.set_lane(lane, alone.gap);
+        self.piece_changes.set_lane(lane, alone.piece_changes);
+        self.ls_evaluations.set_lane(lane, alone.ls_evaluations);
+        self.factorizations.set_lane(lane, alone.factorizations);
+        self.updates.set_lane(lane, alone.updates);
+        self.noslip_iterations
+            .set_lane(lane, alone.noslip_iterations);
+        self.islands.set_lane(lane, alone.islands);
+        self.status.set_lane(lane, alone.status);
+    }
+
     /// How lane `lane` ended.
     pub fn status(&self, lane: usize) -> Status {
         Status::ALL[self.status.lane(lane).to_f64() as usize]

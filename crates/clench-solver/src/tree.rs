@@ -205,6 +205,28 @@ impl<T: Real> TreeFactor<T> {
         positive
     }
 
+    /// Becomes the part of `whole`, the factor over `tree`, that belongs to the complete trees of `dofs`.
+    pub(crate) fn gather(&mut self, tree: &Tree, whole: &TreeFactor<T>, dofs: &[u32]) {
+        self.values.clear();
+        self.inverse_diagonal.clear();
+        for &dof in dofs {
+            let dof = dof as usize;
+            self.values
+                .extend_from_slice(&whole.values[tree.starts[dof]..tree.starts[dof + 1]]);
+            self.inverse_diagonal.push(whole.inverse_diagonal[dof]);
+        }
+    }
+
+    /// Becomes lane `lane` of `whole`.
+    pub(crate) fn gather_lane<L: Real<Scalar = T>>(&mut self, whole: &TreeFactor<L>, lane: usize) {
+        self.values.clear();
+        self.values
+            .extend(whole.values.iter().map(|x| x.lane(lane)));
+        self.inverse_diagonal.clear();
+        self.inverse_diagonal
+            .extend(whole.inverse_diagonal.iter().map(|x| x.lane(lane)));
+    }
+
     /// `x ← A⁻¹ x`.
     pub fn solve(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);

@@ -1,0 +1,155 @@
+//! Islands: trees that no constraint couples are separate problems.
+//!
+//! Each island is copied into a compact problem of its own and solved as if nothing else existed: fewer iterations where
+//! another island is hard, smaller factors, and a stop rule in its own scale. Trees on which no constraint acts are not
+//! touched at all. Slots are kept by island number, so that a scene that stays as it is reuses its patterns.
+
+use crate::problem::Problem;
+use crate::workspace::Workspace;
+use crate::{Settings, SolveStats, Tree};
+use clench_math::{Mask, Real};
+use std::sync::Arc;
+
+/// The partition, and a compact problem for each part.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Islands<T: Real> {
+    /// Union-find over trees.
+    leader: Vec<u32>,
+    /// The island of each tree, or `FREE`.
+    island_of: Vec<u32>,
+    /// The island-local index of each dof.
+    local: Vec<u32>,
+    slots: Vec<Island<T>>,
+    count: usize,
+}
+
+/// One part.
+#[derive(Clone, Debug)]
+pub(crate) struct Island<T: Real> {
+    /// Its dofs and its blocks in the whole problem, ascending.
+    pub dofs: Vec<u32>,
+    pub blocks: Vec<u32>,
+    pub problem: Problem<T>,
+    warmstart: Vec<T>,
+    pub work: Workspace<T>,
+}
+
+/// Marks a tree without constraints.
+const FREE: u32 = u32::MAX;
+
+impl<T: Real> Islands<T> {
+    /// Finds the islands of `problem`; true if they are a partition worth solving by parts: not one that covers everything.
+    pub fn find(&mut self, problem: &Problem<T>) -> bool {
+        let tree = problem.tree();
+        self.leader.clear();
+        self.leader.extend(0..tree.ntree() as u32);
+        self.island_of.clear();
+        self.island_of.resize(tree.ntree(), FREE);
+        for block in problem.blocks().filter(|b| acts(b.d)) {
+            let Some((&first, rest)) = block.dofs.split_first() else {
+                continue;
+            };
+            let mut leader = self.find_leader(tree.tree_of(first as usize));
+            for &dof in rest {
+                let other = self.find_leader(tree.tree_of(dof as usize));
+                // The lower number leads, so that islands are numbered by their first tree.
+                let (low, high) = (leader.min(other), leader.max(other));
+                self.leader[high] = low as u32;
+                leader = low;
+            }
+        }
+        for block in problem.blocks().filter(|b| acts(b.d)) {
+            if let Some(&dof) = block.dofs.first() {
+                let leader = self.find_leader(tree.tree_of(dof as usize));
+                self.island_of[leader] = 0;
+            }
+        }
+        self.count = 0;
+        for t in 0..tree.ntree() {
+            let leader = self.find_leader(t);
+            if leader != t {
+                self.island_of[t] = self.island_of[leader];
+            } else if self.island_of[t] != FREE {
+                self.island_of[t] = self.count as u32;
+                self.count += 1;
+            }
+        }
+        self.count != 1 || self.island_of.contains(&FREE)
+    }
+
+    fn find_leader(&mut self, tree: usize) -> usize {
+        let mut t = tree;
+        while self.leader[t] as usize != t {
+            self.leader[t] = self.leader[self.leader[t] as usize];
+            t = self.leader[t] as usize;
+        }
+        t
+    }
+
+    /// Solves each island; returns them and their statistics combined.
+    pub fn solve(
+        &mut self,
+        problem: &Problem<T>,
+        settings: &Settings,
+        warmstart: Option<&[T]>,
+    ) -> (&[Island<T>], SolveStats<T>) {
+        self.gather(problem);
+        let mut stats = SolveStats::default();
+        for island in &mut self.slots[..self.count] {
+            let warmstart = warmstart.map(|warm| {
+                island.warmstart.clear();
+                island
+                    .warmstart
+                    .extend(island.dofs.iter().map(|&dof| warm[dof as usize]));
+                &island.warmstart[..]
+            });
+            island.work.run(&island.problem, settings, warmstart);
+            stats.combine(&island.work.stats);
+        }
+        (&self.slots[..self.count], stats)
+    }
+
+    /// Copies the dofs and blocks of each island into its slot.
+    fn gather(&mut self, problem: &Problem<T>) {
+        let tree = problem.tree();
+        while self.slots.len() < self.count {
+            self.slots.push(Island {
+                dofs: Vec::new(),
+                blocks: Vec::new(),
+                problem: Problem::new(Arc::new(Tree::dense(0))),
+                warmstart: Vec::new(),
+                work: Workspace::default(),
+            });
+        }
+        for slot in &mut self.slots[..self.count] {
+            slot.dofs.clear();
+            slot.blocks.clear();
+        }
+        self.local.clear();
+        for dof in 0..tree.nv() {
+            let island = self.island_of[tree.tree_of(dof)];
+            if island == FREE {
+                self.local.push(FREE);
+            } else {
+                let dofs = &mut self.slots[island as usize].dofs;
+                self.local.push(dofs.len() as u32);
+                dofs.push(dof as u32);
+            }
+        }
+        for (k, block) in problem.blocks().enumerate().filter(|(_, b)| acts(b.d)) {
+            if let Some(&dof) = block.dofs.first() {
+                let island = self.island_of[tree.tree_of(dof as usize)];
+                self.slots[island as usize].blocks.push(k as u32);
+            }
+        }
+        for slot in &mut self.slots[..self.count] {
+            slot.problem
+                .gather(problem, &slot.dofs, &self.local, &slot.blocks);
+        }
+    }
+}
+
+/// Whether a block acts in some lane.
+fn acts<T: Real>(d: &[T]) -> bool {
+    d.iter().any(|d| d.gt(T::ZERO).any())
+}

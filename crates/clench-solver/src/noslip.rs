@@ -1,0 +1,361 @@
+//! Removes the slow slip that soft friction allows.
+//!
+//! After the solve, friction forces alone are solved again without regularization (R = 0), normal forces fixed:
+//!
+//! ```text
+//! minimise over the friction forces f:  ½ fᵀ A f + fᵀ b,    A = J M⁻¹ Jᵀ,    A f + b = J a(f) − aref
+//! ```
+//!
+//! by Gauss–Seidel sweeps, block by block: dry friction within ±η; elliptic friction within its ellipse; in a pyramid,
+//! each pair of opposing edges with their sum σ fixed, which leaves friction along one row free within ±μ σ. The
+//! acceleration a is carried along, so that an update costs one row of J and one of M⁻¹Jᵀ. As in MuJoCo, the
+//! regularization cost that is dropped counts towards the first sweep's improvement.
+
+use crate::costs::MAX_DIM;
+use crate::iterate::{Iterate, dot};
+use crate::jacobian::{BlockIndex, Jacobian};
+use crate::{Cost, Problem, Settings, SolveStats};
+use clench_math::{Mask, Real, Scalar};
+
+/// Most friction rows of a block.
+const MAX_FRICTION: usize = MAX_DIM - 1;
+/// Newton steps for the multiplier of an ellipse: it converges quadratically from below.
+const MULTIPLIER_STEPS: usize = 20;
+
+/// One block's share of A, and M⁻¹Jᵀ of its friction rows.
+#[derive(Clone, Debug)]
+struct Friction<T> {
+    block: BlockIndex,
+    /// First friction row within the block.
+    first: usize,
+    a: [[T; MAX_FRICTION]; MAX_FRICTION],
+    response: usize,
+}
+
+/// Memory of the sweeps.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Noslip<T> {
+    frictions: Vec<Friction<T>>,
+    /// M⁻¹Jᵀ, one row of nv for each friction row.
+    responses: Vec<T>,
+}
+
+impl<T: Real> Noslip<T> {
+    /// Runs the sweeps on the solved `iterate`. `edges` holds the edge forces of pyramids and is kept up to date.
+    pub fn run(
+        &mut self,
+        problem: &Problem<T>,
+        settings: &Settings,
+        scale: T,
+        iterate: &mut Iterate<T>,
+        edges: &mut [T],
+        stats: &mut SolveStats<T>,
+    ) {
+        self.prepare(problem);
+        if self.frictions.is_empty() {
+            return;
+        }
+        let mut live = T::Mask::splat(true);
+        let tolerance = T::new(settings.noslip_tolerance);
+        let mut improvement = regularization_cost(problem, &iterate.force, edges);
+        for _ in 0..settings.noslip_iterations {
+            for k in 0..self.frictions.len() {
+                improvement += self.update(k, problem, iterate, edges, live);
+            }
+            stats.noslip_iterations += T::select(live, T::ONE, T::ZERO);
+            live &= (scale * improvement).ge(tolerance);
+            if !live.any() {
+                break;
+            }
+            improvement = T::ZERO;
+        }
+        write_edges(problem, &iterate.force, edges);
+        iterate.qfrc_constraint.fill(T::ZERO);
+        problem
+            .jacobian
+            .add_transposed(&iterate.force, &mut iterate.qfrc_constraint);
+    }
+
+    /// Lists the friction rows, dry friction first, and computes their responses.
+    fn prepare(&mut self, problem: &Problem<T>) {
+        self.frictions.clear();
+        self.responses.clear();
+        for contact in [false, true] {
+            for block in &problem.jacobian.blocks {
+                let first = match block.cost {
+                    Cost::Huber if !contact => 0,
+                    Cost::Pyramid | Cost::Elliptic if contact => 1,
+                    _ => continue,
+                };
+                self.push(problem, block, first);
+            }
+        }
+    }
+
+    fn push(&mut self, problem: &Problem<T>, block: &BlockIndex, first: usize) {
+        let response = self.responses.len();
+        let nv = problem.nv();
+        let (dofs, values) = (problem.jacobian.dofs(block), problem.jacobian.values(block));
+        let row = |i: usize| {
+            dofs.iter()
+                .zip(&values[i * block.ndof..(i + 1) * block.ndof])
+        };
+        let mut a = [[T::ZERO; MAX_FRICTION]; MAX_FRICTION];
+        for i in first..block.dim {
+            let start = self.responses.len();
+            self.responses.resize(start + nv, T::ZERO);
+            for (&dof, &j) in row(i) {
+                self.responses[start + dof as usize] = j;
+            }
+            problem
+                .mass_factor
+                .solve(problem.tree(), &mut self.responses[start..]);
+            for k in first..block.dim {
+                for (&dof, &j) in row(k) {
+                    a[k - first][i - first] += j * self.responses[start + dof as usize];
+                }
+            }
+        }
+        self.frictions.push(Friction {
+            block: *block,
+            first,
+            a,
+            response,
+        });
+    }
+
+    /// Improves one block's friction in the lanes of `live`; returns by how much the objective fell.
+    fn update(
+        &self,
+        k: usize,
+        problem: &Problem<T>,
+        iterate: &mut Iterate<T>,
+        edges: &[T],
+        live: T::Mask,
+    ) -> T {
+        let Friction {
+            block,
+            first,
+            a,
+            response,
+        } = &self.frictions[k];
+        let (first, count) = (*first, block.dim - first);
+        let rows = problem.rows(block);
+        let exists = live & rows.d[0].gt(T::ZERO);
+        let force = &iterate.force[block.rows()];
+        let residual = residual(problem, block, first, &iterate.qacc);
+        let mut target = [T::ZERO; MAX_FRICTION];
+        match block.cost {
+            Cost::Elliptic => {
+                target = on_ellipse(a, &residual, &force[1..], &rows.shape[1..], force[0]);
+            }
+            Cost::Pyramid => {
+                // The pairs of a pyramid are solved one after the other, each seeing what those before it changed.
+                let mut residual = residual;
+                for j in 0..count {
+                    let pair = &edges[block.piece + 2 * j..];
+                    let bound = rows.shape[j + 1] * (pair[0] + pair[1]);
+                    target[j] = within(force[j + 1], residual[j], a[j][j], bound);
+                    let delta = target[j] - force[j + 1];
+                    for i in 0..count {
+                        residual[i] += a[i][j] * delta;
+                    }
+                }
+            }
+            _ => {
+                for j in 0..count {
+                    target[j] = within(force[j], residual[j], a[j][j], rows.shape[j]);
+                }
+            }
+        }
+        let mut delta = [T::ZERO; MAX_FRICTION];
+        for j in 0..count {
+            delta[j] = T::select(exists, target[j] - force[first + j], T::ZERO);
+        }
+        let nv = problem.nv();
+        let mut change = T::ZERO;
+        for j in 0..count {
+            iterate.force[block.row + first + j] += delta[j];
+            let start = response + j * nv;
+            for (a, &r) in iterate
+                .qacc
+                .iter_mut()
+                .zip(&self.responses[start..start + nv])
+            {
+                *a += r * delta[j];
+            }
+            let mut curvature = T::ZERO;
+            for i in 0..count {
+                curvature += a[j][i] * delta[i];
+            }
+            change += delta[j] * (residual[j] + T::new(0.5) * curvature);
+        }
+        -change
+    }
+}
+
+/// J a − aref of a block's friction rows.
+fn residual<T: Real>(
+    problem: &Problem<T>,
+    block: &BlockIndex,
+    first: usize,
+    qacc: &[T],
+) -> [T; MAX_FRICTION] {
+    let (dofs, values) = (problem.jacobian.dofs(block), problem.jacobian.values(block));
+    let mut residual = [T::ZERO; MAX_FRICTION];
+    for i in first..block.dim {
+        let mut sum = -problem.aref[block.row + i];
+        for (&dof, &j) in dofs.iter().zip(&values[i * block.ndof..]) {
+            sum += j * qacc[dof as usize];
+        }
+        residual[i - first] = sum;
+    }
+    residual
+}
+
+/// The best force of one row within ±bound.
+fn within<T: Real>(force: T, residual: T, a: T, bound: T) -> T {
+    let free = T::select(a.gt(T::ZERO), force - residual / a, T::ZERO);
+    free.clamp(-bound, bound)
+}
+
+/// The best friction within Σ (f_j / μ_j)² ≤ normal².
+///
+/// In g = f / μ the ellipse is a ball of radius r, and g minimises ½ gᵀBg + gᵀc with B = diag(μ) A diag(μ). Outside the
+/// ball, g(λ) = −(B + λ I)⁻¹ c with |g(λ)| = r: Newton's method on 1/r − 1/|g|, nearly linear in λ.
+fn on_ellipse<T: Real>(
+    a: &[[T; MAX_FRICTION]; MAX_FRICTION],
+    residual: &[T; MAX_FRICTION],
+    force: &[T],
+    mu: &[T],
+    normal: T,
+) -> [T; MAX_FRICTION] {
+    let n = mu.len();
+    let mut b = [[T::ZERO; MAX_FRICTION]; MAX_FRICTION];
+    let mut c = [T::ZERO; MAX_FRICTION];
+    for i in 0..n {
+        let mut linear = residual[i];
+        for j in 0..n {
+            linear -= a[i][j] * force[j];
+            b[i][j] = mu[i] * a[i][j] * mu[j];
+        }
+        c[i] = mu[i] * linear;
+    }
+    let mut trace = T::ZERO;
+    for i in 0..n {
+        trace += b[i][i];
+    }
+    let presses = normal.gt(T::ZERO) & trace.gt(T::ZERO);
+    let floor = trace * T::splat(T::Scalar::EPSILON);
+    let radius = T::select(presses, normal, T::ONE);
+    let mut lambda = T::ZERO;
+    let mut g = [T::ZERO; MAX_FRICTION];
+    let mut open = presses;
+    for _ in 0..MULTIPLIER_STEPS {
+        let (point, squared, slope) = shifted_minimum(&b, &c, lambda, floor, n);
+        g = std::array::from_fn(|i| T::select(open, point[i], g[i]));
+        let length = squared.sqrt();
+        // Newton's step for 1/r − 1/|g(λ)|; λ only grows, so a step back means that the root is reached.
+        let step = squared / slope * (length - radius) / radius;
+        open &= step.gt(lambda * T::splat(T::Scalar::EPSILON)) & step.is_finite();
+        if !open.any() {
+            break;
+        }
+        lambda = T::select(open, lambda + step, lambda);
+    }
+    // Exactly onto the ball what rounding left outside.
+    let length = dot(&g[..n], &g[..n]).sqrt();
+    let shrink = T::select(length.gt(radius), radius / length, T::ONE);
+    std::array::from_fn(|i| {
+        if i < n {
+            T::select(presses, g[i] * shrink * mu[i], T::ZERO)
+        } else {
+            T::ZERO
+        }
+    })
+}
+
+/// g = −(B + λ I)⁻¹ c, with |g|² and −½ d|g|²/dλ = gᵀ (B + λ I)⁻¹ g.
+fn shifted_minimum<T: Real>(
+    b: &[[T; MAX_FRICTION]; MAX_FRICTION],
+    c: &[T; MAX_FRICTION],
+    lambda: T,
+    floor: T,
+    n: usize,
+) -> ([T; MAX_FRICTION], T, T) {
+    // Cholesky of B + λ I; pivots that rounding has consumed are replaced by its size.
+    let mut l = *b;
+    for j in 0..n {
+        let mut pivot = l[j][j] + lambda;
+        for k in 0..j {
+            pivot -= l[j][k] * l[j][k];
+        }
+        let root = pivot.max(floor).sqrt();
+        l[j][j] = root;
+        for i in j + 1..n {
+            let mut sum = b[i][j];
+            for k in 0..j {
+                sum -= l[i][k] * l[j][k];
+            }
+            l[i][j] = sum / root;
+        }
+    }
+    let forward = |x: &mut [T; MAX_FRICTION]| {
+        for i in 0..n {
+            for k in 0..i {
+                let lik = l[i][k];
+                let xk = x[k];
+                x[i] -= lik * xk;
+            }
+            x[i] /= l[i][i];
+        }
+    };
+    let mut g: [T; MAX_FRICTION] = std::array::from_fn(|i| -c[i]);
+    forward(&mut g);
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            let gk = g[k];
+            g[i] -= l[k][i] * gk;
+        }
+        g[i] /= l[i][i];
+    }
+    let mut half = g;
+    forward(&mut half);
+    (g, dot(&g[..n], &g[..n]), dot(&half[..n], &half[..n]))
+}
+
+/// ½ Σ R f² over all rows, for pyramids over their edges.
+fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) -> T {
+    let mut sum = T::ZERO;
+    for b in &problem.jacobian.blocks {
+        if b.cost == Cost::Pyramid {
+            let edges = &edges[b.piece..b.piece + 2 * (b.dim - 1)];
+            sum += problem.r[b.row] * dot(edges, edges);
+        } else {
+            for row in b.rows() {
+                sum += problem.r[row] * force[row] * force[row];
+            }
+        }
+    }
+    T::new(0.5) * sum
+}
+
+/// Splits the friction of each pyramid row over its two edges, whose sum is as it was.
+fn write_edges<T: Real>(problem: &Problem<T>, force: &[T], edges: &mut [T]) {
+    for b in problem
+        .jacobian
+        .blocks
+        .iter()
+        .filter(|b| b.cost == Cost::Pyramid)
+    {
+        let rows = problem.rows(b);
+        let exists = rows.d[0].gt(T::ZERO);
+        for j in 1..b.dim {
+            let pair = &mut edges[b.piece + 2 * j - 2..b.piece + 2 * j];
+            let sum = pair[0] + pair[1];
+            let difference = T::select(exists, force[b.row + j] / rows.shape[j], T::ZERO);
+            pair[0] = T::new(0.5) * (sum + difference);
+            pair[1] = T::new(0.5) * (sum - difference);
+        }
+    }
+}

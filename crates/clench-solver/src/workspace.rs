@@ -1,0 +1,69 @@
+//! One problem, solved whole: the memory of a solve and its course.
+
+use crate::cg::Cg;
+use crate::costs::Pyramid;
+use crate::descent::{minimise, trace};
+use crate::iterate::Iterate;
+use crate::line_search::Ray;
+use crate::newton::Newton;
+use crate::noslip::Noslip;
+use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats};
+use clench_math::Real;
+
+/// Memory for problems solved as a whole.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Workspace<T: Real> {
+    pub iterate: Iterate<T>,
+    /// Edge forces of pyramids, at the index of their pieces.
+    pub edges: Vec<T>,
+    pub stats: SolveStats<T>,
+    ray: Ray<T>,
+    newton: Newton<T>,
+    cg: Cg<T>,
+    noslip: Noslip<T>,
+}
+
+impl<T: Real> Workspace<T> {
+    /// Minimises, then removes slip where the settings ask for it.
+    pub fn run(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
+        self.stats = SolveStats {
+            islands: T::ONE,
+            ..SolveStats::default()
+        };
+        let Workspace {
+            iterate,
+            ray,
+            newton,
+            cg,
+            stats,
+            ..
+        } = self;
+        match settings.constraint_solver {
+            ConstraintSolver::Newton => {
+                minimise(problem, settings, warmstart, iterate, ray, newton, stats)
+            }
+            ConstraintSolver::Cg => minimise(problem, settings, warmstart, iterate, ray, cg, stats),
+        }
+        self.edges.resize(problem.npiece, T::ZERO);
+        for b in problem
+            .jacobian
+            .blocks
+            .iter()
+            .filter(|b| b.cost == Cost::Pyramid)
+        {
+            let edges = &mut self.edges[b.piece..b.piece + 2 * (b.dim - 1)];
+            Pyramid::edge_forces(problem.rows(b), &self.iterate.residual[b.rows()], edges);
+        }
+        if settings.noslip_iterations > 0 {
+            let scale = T::ONE / trace(problem);
+            self.noslip.run(
+                problem,
+                settings,
+                scale,
+                &mut self.iterate,
+                &mut self.edges,
+                &mut self.stats,
+            );
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Problems solved side by side give, to the bit, what each gives alone.
+
+mod common;
+
+use clench_math::{Lanes, Real, Scalar};
+use clench_solver::{Block, ConstraintSolver, Cost, Problem, RigidOptions, Solver, Switch};
+use common::*;
+
+const N: usize = 4;
+
+/// N problems of one structure, in each of which some blocks are absent; packed, and each alone.
+fn pack<S: Scalar>(rng: &mut Rng, shape: &Shape) -> (Problem<Lanes<S, N>>, Vec<Problem<S>>) {
+    let seed = rng.bits();
+    // The same seed chooses the same structure; the numbers are then drawn anew.
+    let template = random_problem(&mut Rng(seed), shape);
+    let mut packed: Problem<Lanes<S, N>> = Problem::new(template.tree().clone());
+    let mut alone: Vec<Problem<S>> = (0..N)
+        .map(|_| Problem::new(template.tree().clone()))
+        .collect();
+    let number = |x: f64| S::new(x);
+    for (lane, alone) in alone.iter_mut().enumerate() {
+        let other = random_problem(
+            &mut Rng(rng.bits()),
+            &Shape {
+                blocks: 0,
+                ..shape.clone()
+            },
+        );
+        for (k, &m) in other.mass.values.iter().enumerate() {
+            packed.mass.values[k].set_lane(lane, number(m));
+            alone.mass.values[k] = number(m);
+        }
+        for (k, &a) in other.qacc_smooth.iter().enumerate() {
+            packed.qacc_smooth[k].set_lane(lane, number(a));
+            alone.qacc_smooth[k] = number(a);
+        }
+        assert!(alone.factor_mass());
+    }
+    packed.factor_mass();
+    for block in template.blocks() {
+        let slot = packed.push(block.cost, block.dim, block.dofs);
+        for (lane, alone) in alone.iter_mut().enumerate() {
+            if rng.unit() < 0.3 {
+                // Idle: no D, and whatever the slot held before, as long as it is finite.
+                slot.r
+                    .iter_mut()
+                    .for_each(|r| r.set_lane(lane, number(3.0)));
+                slot.aref
+                    .iter_mut()
+                    .for_each(|r| r.set_lane(lane, number(-7.0)));
+                slot.jacobian
+                    .iter_mut()
+                    .for_each(|j| j.set_lane(lane, number(0.5)));
+                continue;
+            }
+            let copy = alone.push(block.cost, block.dim, block.dofs);
+            let stretch = rng.scale(0.2, 5.0);
+            let fill = |to: &mut [Lanes<S, N>], copy: &mut [S], from: &[f64], factor: f64| {
+                for ((to, copy), &x) in to.iter_mut().zip(copy).zip(from) {
+                    *copy = number(x * factor);
+                    to.set_lane(lane, *copy);
+                }
+            };
+            fill(slot.jacobian, copy.jacobian, block.jacobian, 1.0 / stretch);
+            fill(slot.aref, copy.aref, block.aref, rng.range(-1.0, 1.0));
+            fill(slot.r, copy.r, block.r, 1.0 / stretch);
+            fill(slot.d, copy.d, block.d, stretch);
+            fill(slot.shape, copy.shape, block.shape, 1.0);
+        }
+    }
+    (packed, alone)
+}
+
+fn same<S: Scalar>(packed: &[Lanes<S, N>], lane: usize, alone: &[S], what: &str) {
+    let packed: Vec<f64> = packed.iter().map(|x| x.lane(lane).to_f64()).collect();
+    let alone: Vec<f64> = alone.iter().map(|x| x.to_f64()).collect();
+    assert_eq!(packed, alone, "{what}");
+}
+
+fn compare<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
+    let mut rng = Rng(11);
+    let settings = options.resolve::<S>();
+    for round in 0..rounds {
+        let mut shape = Shape::new(
+            if round % 2 == 0 {
+                humanoid()
+            } else {
+                random_forest(&mut rng, 17)
+            },
+            12,
+        );
+        shape.costs = costs.to_vec();
+        shape.stiffness = (1.0, 300.0);
+        let (packed, alone) = pack::<S>(&mut rng, &shape);
+        let mut together = Solver::new(packed.tree());
+        let warm: Vec<Lanes<S, N>> = (0..packed.nv())
+            .map(|_| Lanes::from_fn(|_| S::new(rng.range(-10.0, 10.0))))
+            .collect();
+        let stats = *together.solve(&packed, &settings, Some(&warm)).unwrap();
+        for (lane, problem) in alone.iter().enumerate() {
+            let warm: Vec<S> = warm.iter().map(|w| w.lane(lane)).collect();
+            let mut single = Solver::new(problem.tree());
+            let expected = single
+                .solve(problem, &settings, Some(&warm))
+                .unwrap()
+                .lane(0);
+            let name = format!("round {round} lane {lane} {expected:?}");
+            assert_eq!(stats.lane(lane), expected, "{name}");
+            same(together.qacc(), lane, single.qacc(), &name);
+            same(
+                together.qfrc_constraint(),
+                lane,
+                single.qfrc_constraint(),
+                &name,
+            );
+            compare_forces(&packed, &together, lane, problem, &single, &name);
+        }
+    }
+}
+
+/// Block by block, skipping those that the lane does not have.
+fn compare_forces<S: Scalar>(
+    packed: &Problem<Lanes<S, N>>,
+    together: &Solver<Lanes<S, N>>,
+    lane: usize,
+    alone: &Problem<S>,
+    single: &Solver<S>,
+    name: &str,
+) {
+    let mut next = 0;
+    let exists = |b: &Block<Lanes<S, N>>| b.d[0].lane(lane) > S::ZERO;
+    for (k, block) in packed.blocks().enumerate() {
+        let force = &together.force()[block.rows()];
+        if !exists(&block) {
+            assert!(force.iter().all(|f| f.lane(lane) == S::ZERO), "{name}");
+            continue;
+        }
+        same(force, lane, &single.force()[alone.block(next).rows()], name);
+        same(
+            together.edge_forces(packed, k),
+            lane,
+            single.edge_forces(alone, next),
+            name,
+        );
+        next += 1;
+    }
+}
+
+fn options() -> RigidOptions {
+    RigidOptions::new().islands(Switch::Off)
+}
+
+#[test]
+fn newton_on_all_costs() {
+    compare::<f64>(options(), &ALL_COSTS, 40);
+}
+
+#[test]
+fn newton_on_pyramids_to_the_working_precision() {
+    compare::<f64>(
+        options().tolerance(0.0),
+        &[Cost::Pyramid, Cost::OneSided],
+        40,
+    );
+}
+
+#[test]
+fn newton_on_cones_to_the_working_precision() {
+    compare::<f64>(options().tolerance(0.0), &[Cost::Elliptic], 40);
+}
+
+#[test]
+fn newton_dense() {
+    compare::<f64>(options().sparse_solve(Switch::Off), &ALL_COSTS, 10);
+}
+
+#[test]
+fn newton_sparse() {
+    compare::<f64>(options().sparse_solve(Switch::On), &ALL_COSTS, 10);
+}
+
+#[test]
+fn newton_cut_short() {
+    compare::<f64>(options().iterations(2).ls_iterations(2), &ALL_COSTS, 40);
+}
+
+#[test]
+fn conjugate_gradients() {
+    compare::<f64>(
+        options()
+            .constraint_solver(ConstraintSolver::Cg)
+            .iterations(100),
+        &ALL_COSTS,
+        20,
+    );
+}
+
+#[test]
+fn noslip() {
+    compare::<f64>(options().noslip_iterations(10), &ALL_COSTS, 20);
+    compare::<f64>(
+        options().noslip_iterations(100).noslip_tolerance(1e-3),
+        &[Cost::Elliptic],
+        20,
+    );
+}
+
+#[test]
+fn single_precision() {
+    compare::<f32>(options(), &ALL_COSTS, 40);
+    compare::<f32>(options().tolerance(0.0), &ALL_COSTS, 20);
+}
+
+#[test]
+fn a_failing_lane_disturbs_no_other() {
+    let mut rng = Rng(5);
+    let settings = options().resolve::<f64>();
+    let (mut packed, alone) = pack::<f64>(&mut rng, &Shape::new(humanoid(), 10));
+    packed.qacc_smooth[3].set_lane(2, f64::NAN);
+    let mut together = Solver::new(packed.tree());
+    let stats = *together.solve(&packed, &settings, None).unwrap();
+    assert_eq!(stats.lane(2).status, clench_solver::Status::NonFinite);
+    for lane in [0, 1, 3] {
+        let mut single = Solver::new(alone[lane].tree());
+        let expected = single.solve(&alone[lane], &settings, None).unwrap().lane(0);
+        assert_eq!(stats.lane(lane), expected);
+        same(together.qacc(), lane, single.qacc(), "qacc");
+    }
+}
