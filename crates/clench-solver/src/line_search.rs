@@ -160,7 +160,8 @@ impl<T: Real> Ray<T> {
             step.alpha = T::select(worse, bracket.low, step.alpha);
             change = T::select(worse, self.change(problem, iterate, step.alpha), change);
         }
-        step.improvement = (-change).max(T::ZERO);
+        // A convex function falls by no more than its slope at 0 promises; beyond that, the difference is rounding.
+        step.improvement = (-change).min(-(step.alpha * start)).max(T::ZERO);
         step
     }
 }
