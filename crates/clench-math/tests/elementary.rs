@@ -378,7 +378,7 @@ fn powf_is_accurate() {
         "powf",
         || (random.between(0.9, 1.1), random.between(-6000.0, 6000.0)),
         functions,
-        |x, p| Real::powf(x, p),
+        Real::powf,
     );
     sweep(
         "powf",
@@ -389,7 +389,7 @@ fn powf_is_accurate() {
             )
         },
         functions,
-        |x, p| Real::powf(x, p),
+        Real::powf,
     );
 }
 

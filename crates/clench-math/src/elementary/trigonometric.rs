@@ -3,7 +3,7 @@
 use super::extended::{ordered_sum, two_sum};
 use super::{by_precision, nearest_integer, polynomial};
 use crate::{Real, Scalar};
-use std::f64::consts::{FRAC_2_PI, SQRT_2};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, SQRT_2};
 
 /// π/2 in parts short enough that their products with the number of quarter turns are exact, up to 2²⁰ quarter turns
 /// in `f64` and 2¹⁶ in `f32` (1.6 million and 100,000 rad).
@@ -158,8 +158,8 @@ pub(crate) fn atan2<T: Real>(y: T, x: T) -> T {
     let backward = one.copysign(x).lt(zero);
     eighths = T::select(backward, T::new(4.0) - eighths, eighths);
     sign = T::select(backward, -sign, sign);
-    // π/4 in two parts, the first short enough to be multiplied exactly.
-    let high = T::new(by_precision::<T, _>(0.7853981633974483, 0.785398006439209));
+    // π/4 in two parts, the first ending in zeros (in f64 it does so by itself): its multiples up to 4 are exact.
+    let high = T::new(by_precision::<T, _>(FRAC_PI_4, 0.785398006439209));
     let low = T::new(by_precision::<T, _>(
         3.061616997868383e-17,
         1.5695823663008923e-07,
