@@ -3,6 +3,22 @@
 //! [`collide`] finds the contact points of one pair of shapes, [`listed`] and [`Sweep`] find the pairs worth asking
 //! about. Everything is generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or several
 //! side by side, where each contact point says in which of them it exists. Which points a pair yields follows MuJoCo 4.0.
+//!
+//! ```
+//! use clench_collide::{Contacts, Pose, Shape, ShapeKind, collide};
+//! use clench_math::Vec3;
+//!
+//! // A ball of radius 0.1 m pressed 1 mm into the ground.
+//! let ground = Shape { kind: ShapeKind::Plane, size: Vec3::ZERO };
+//! let ball = Shape { kind: ShapeKind::Sphere, size: Vec3::new(0.1, 0.0, 0.0) };
+//! let above = Pose { position: Vec3::new(0.0, 0.0, 0.099), ..Pose::IDENTITY };
+//!
+//! let mut contacts = Contacts::<f64>::new();
+//! collide(&ground, &Pose::IDENTITY, &ball, &above, 0.0, &mut contacts);
+//! let [point] = contacts.as_slice() else { panic!("a ball touches once") };
+//! assert!((point.distance + 0.001).abs() < 1e-12);
+//! assert_eq!(point.frame.rows[0], Vec3::new(0.0, 0.0, 1.0));
+//! ```
 
 mod broad;
 mod contact;

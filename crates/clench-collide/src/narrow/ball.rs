@@ -42,10 +42,17 @@ pub(super) fn ball_ball<T: Real>(
     out.push(ContactPoint::new(position, normal, distance, active));
 }
 
-/// A unit vector across the axes of two shapes; x where they are parallel.
-#[inline(always)]
+/// A unit vector across the axes of two shapes. Where these are parallel: across them, in the plane of the world's x axis
+/// (or y, if they are near that). MuJoCo takes x itself then, the same for upright shapes.
 pub(super) fn across_axes<T: Real>(a: Placed<T>, b: Placed<T>) -> Vec3<T> {
-    a.pose.axis().cross(b.pose.axis()).normalize().0
+    let axis = b.pose.axis();
+    let across = a.pose.axis().cross(axis);
+    let parallel = across.norm_squared().lt(T::new(1e-24));
+    let x = Vec3::new(T::ONE, T::ZERO, T::ZERO);
+    let y = Vec3::new(T::ZERO, T::ONE, T::ZERO);
+    let other = Vec3::select(axis.x.abs().gt(T::new(0.9)), y, x);
+    let other = other - axis * axis.dot(other);
+    Vec3::select(parallel, other, across).normalize().0
 }
 
 pub(super) fn sphere_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {

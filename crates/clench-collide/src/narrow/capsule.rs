@@ -2,7 +2,9 @@
 //!
 //! With unit axes u₁, u₂, offset d from the first centre to the second and w = u₁ × u₂, the lines are nearest at
 //!
-//!     t₁ = (d × u₂)·w / |w|²   on the first line,
+//! ```text
+//! t₁ = (d × u₂)·w / |w|²   on the first line,
+//! ```
 //!
 //! and the second parameter is the projection of that point. Clamping each to its segment in turn, and projecting once
 //! more, gives the nearest points of the segments. The triple product keeps its digits where the axes are nearly

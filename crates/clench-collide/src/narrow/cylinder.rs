@@ -2,6 +2,7 @@
 
 use super::{
     Placed,
+    ball::across_axes,
     way_out::{Segment, deepest, way_out},
 };
 use crate::{ContactPoint, Contacts};
@@ -20,21 +21,12 @@ struct Cylinder<T> {
 }
 
 impl<T: Real> Cylinder<T> {
-    /// The cylinder `b`. Its spare direction is across the axes of `a` and `b`; where these are parallel, across the
-    /// axis of `b` in the plane of the world's x axis, or its own x axis. The normal is against it.
+    /// The cylinder `b`, as the shape `a` meets it.
     fn new(a: Placed<T>, b: Placed<T>) -> Self {
-        let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
-        let tiny = T::new(1e-12);
-        let z = Vec3::new(T::ZERO, T::ZERO, T::ONE);
-        let world_x = flat(b.pose.rotation.rows[0]);
-        let own_x = Vec3::new(T::ONE, T::ZERO, T::ZERO);
-        let across = b.pose.rotation.transpose_mul(a.pose.axis()).cross(z);
-        let mut inward = Vec3::select(world_x.norm_squared().lt(tiny), own_x, world_x);
-        inward = Vec3::select(across.norm_squared().lt(tiny), inward, across);
         Cylinder {
             radius: b.shape.size.x,
             half_length: b.shape.size.y,
-            spare: -(inward * (T::ONE / inward.norm())),
+            spare: -b.pose.rotation.transpose_mul(across_axes(a, b)),
         }
     }
 
@@ -124,13 +116,14 @@ pub(super) fn capsule_cylinder<T: Real>(
     if !active.any() {
         return;
     }
-    let entered = least.lt(T::ZERO);
+    let rounding = T::splat(T::Scalar::EPSILON) * T::new(8.0);
+    let scale = radius + cylinder.radius;
+    let entered = least.le(rounding * scale);
     let beside = active & !entered;
     if beside.any() {
         let ends = cylinder.overlap(&segment, nearest);
         // Where the two are parallel an end is as deep as anything between.
-        let rounding = T::new(1e-9).max(T::splat(T::Scalar::EPSILON) * T::new(8.0));
-        let level = least + rounding * (radius + cylinder.radius);
+        let level = least + rounding.max(T::new(1e-9)) * scale;
         let mut first = nearest;
         for end in ends {
             let as_deep = cylinder.distance(segment.at(end)).0.le(level);

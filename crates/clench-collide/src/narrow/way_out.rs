@@ -3,14 +3,18 @@
 //! Moving by g(n) along the unit direction n just separates a cylinder (radius r, half length h, axis z) from a segment
 //! (centre c, unit axis u, half length s), where
 //!
-//!     g(n) = r |n across z| + h |n·z| + s |n·u| − n·c.
+//! ```text
+//! g(n) = r |n across z| + h |n·z| + s |n·u| − n·c.
+//! ```
 //!
 //! The depth is the least g. Where all terms are smooth the Hessian of g on the sphere has the eigenvalue −g < 0, so a
 //! least g > 0 lies on a crease: at n = ±z; among the horizontal n; or among the n across u. The second family is the
 //! distance from a point to a stadium's rim. In the third, with a = z × u, b = u × a (scaled to unit length),
 //! n = a cos θ + b sin θ, x = tan θ, k = r |u·z|, and a, b turned so that c·a, c·b ≥ 0, the slope of g has the sign of
 //!
-//!     F(x) = h |b·z| − c·b + (c·a) x − (r² − k²) x / √(r² + k² x²),
+//! ```text
+//! F(x) = h |b·z| − c·b + (c·a) x − (r² − k²) x / √(r² + k² x²),
+//! ```
 //!
 //! which is convex, so an interior minimum of g is the larger root of F, between the minimum of F and infinity.
 
@@ -148,7 +152,10 @@ pub(super) fn deepest<T: Real>(
     let mut rim = flat(outward) * (radius / T::select(level.lt(tiny), T::ONE, level));
     rim.z = half_length.copysign(outward.z);
     let below_rim = u.dot(rim - c);
-    let below_side = -(flat(c).dot(u)) / flat(u).norm_squared().max(tiny * tiny);
+    let level_part = flat(u).norm_squared();
+    let parallel = level_part.lt(tiny * tiny);
+    let below_side = -(flat(c).dot(u)) / T::select(parallel, T::ONE, level_part);
+    let below_side = T::select(parallel, otherwise, below_side);
     let across = T::select(upward.lt(tiny), below_side, below_rim);
     let across = T::select(level.lt(tiny), otherwise, across);
     let across = across.clamp(-segment.half_length, segment.half_length);

@@ -1,0 +1,145 @@
+//! Contact points against the truth about the shapes, found without the library: depths, normals and positions.
+
+mod common;
+
+use clench_collide::ShapeKind;
+use common::{PAIRS, Random, Scene, off_surface};
+
+/// How exact the search for the true distance is, m.
+const SEARCH: f64 = 1e-6;
+
+const BOXES: (ShapeKind, ShapeKind) = (ShapeKind::Box, ShapeKind::Box);
+
+/// A capsule counts as one or two spheres to a box, which tell its depth only until its middle line enters the box.
+fn pierces(scene: &Scene, random: &mut Random) -> bool {
+    let kinds = (scene.a.kind, scene.b.kind);
+    kinds == (ShapeKind::Capsule, ShapeKind::Box)
+        && scene.distance(random) < -0.999 * scene.a.size.x
+}
+
+#[test]
+fn the_deepest_point_is_the_true_distance() {
+    let mut random = Random(1);
+    for kinds in PAIRS.into_iter().filter(|kinds| *kinds != BOXES) {
+        let (mut touching, mut apart) = (0, 0);
+        for _ in 0..200 {
+            let scene = random.scene(kinds);
+            let truth = scene.distance(&mut random);
+            if pierces(&scene, &mut random) {
+                continue;
+            }
+            match scene.deepest() {
+                Some(point) => {
+                    touching += 1;
+                    let distance = point.distance;
+                    let error = (distance - truth).abs();
+                    assert!(
+                        error < SEARCH,
+                        "{kinds:?}: {distance} for {truth} in {scene:?}"
+                    );
+                }
+                None => {
+                    apart += 1;
+                    assert!(
+                        truth > scene.margin - SEARCH,
+                        "{kinds:?}: nothing at {truth} in {scene:?}"
+                    );
+                }
+            }
+        }
+        assert!(
+            touching > 50 && apart > 5,
+            "{kinds:?}: {touching} touch, {apart} are apart"
+        );
+    }
+}
+
+#[test]
+fn boxes_are_separated_along_an_axis_that_is_best_to_a_twentieth() {
+    let mut random = Random(2);
+    let mut touching = 0;
+    for _ in 0..1000 {
+        let scene = random.scene(BOXES);
+        let truth = scene.distance(&mut random);
+        let contacts = scene.contacts();
+        if truth < -SEARCH {
+            assert!(
+                !contacts.as_slice().is_empty(),
+                "nothing at {truth} in {scene:?}"
+            );
+        }
+        if truth > SEARCH && scene.margin == 0.0 {
+            assert!(
+                contacts.as_slice().is_empty(),
+                "something at {truth} in {scene:?}"
+            );
+        }
+        // Apart, no axis need tell the distance: the nearest points may be two corners.
+        if truth > 0.0 {
+            continue;
+        }
+        for c in contacts.as_slice() {
+            touching += 1;
+            let gap = scene.gap_along(c.frame.rows[0]);
+            assert!(
+                gap > truth - 0.05 * gap.abs() - SEARCH,
+                "{gap} for {truth} in {scene:?}"
+            );
+            assert!(
+                c.distance > gap - 1e-12,
+                "{} below {gap} in {scene:?}",
+                c.distance
+            );
+        }
+    }
+    assert!(touching > 500);
+}
+
+#[test]
+fn positions_lie_midway_between_the_surfaces() {
+    let mut random = Random(3);
+    for kinds in PAIRS {
+        for _ in 0..400 {
+            let scene = random.scene(kinds);
+            let Some(c) = scene.deepest() else { continue };
+            // Apart, the line between the nearest points of two edges leans off the normal.
+            let apart = kinds == BOXES && c.distance > 0.0;
+            if apart || pierces(&scene, &mut random) {
+                continue;
+            }
+            let half = c.frame.rows[0] * (0.5 * c.distance);
+            let on_a = off_surface(&scene.a, &scene.pose_a, c.position - half);
+            let on_b = off_surface(&scene.b, &scene.pose_b, c.position + half);
+            assert!(
+                on_a < 1e-9,
+                "{kinds:?}: {on_a} off the first in {scene:?}, {c:?}"
+            );
+            assert!(
+                on_b < 1e-9,
+                "{kinds:?}: {on_b} off the second in {scene:?}, {c:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn frames_are_rotations_and_normals_point_to_the_second_shape() {
+    let mut random = Random(4);
+    for kinds in PAIRS {
+        for _ in 0..1000 {
+            let scene = random.scene(kinds);
+            for c in scene.contacts().as_slice() {
+                let [n, t, b] = c.frame.rows;
+                for (u, v, dot) in [(n, n, 1.0), (t, t, 1.0), (b, b, 1.0), (n, t, 0.0)] {
+                    assert!((u.dot(v) - dot).abs() < 1e-9, "{kinds:?}: {scene:?}");
+                }
+                assert!((n.cross(t) - b).norm() < 1e-9, "{kinds:?}: {scene:?}");
+                // Moving the second shape along the normal by the depth just frees that point.
+                let mut moved = scene;
+                moved.pose_b.position += n * 1e-3;
+                let gain = moved.gap_along(n) - scene.gap_along(n);
+                assert!((gain - 1e-3).abs() < 1e-12, "{kinds:?}: {scene:?}");
+            }
+        }
+    }
+}
