@@ -1,2 +1,73 @@
-//! The `clench` program.
-fn main() {}
+//! The `clench` program: `simulate`, `forward` and `inspect` a robot file.
+//!
+//! One file a subcommand, plus what they share: options that override the file (`options`), the JSON of states and
+//! results (`protocol`), recorded arrays (`record`), tables for people (`table`). Physics lives in the library.
+
+mod forward;
+mod inspect;
+mod options;
+mod protocol;
+mod record;
+mod simulate;
+mod summary;
+mod table;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Exit code of bad input: a model, a state or an option that cannot be used.
+const BAD_INPUT: u8 = 2;
+
+/// Constrained motion of articulated rigid bodies, with MuJoCo's numbers.
+#[derive(Parser)]
+#[command(name = "clench", version, about, arg_required_else_help = true, after_help = EXAMPLES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  clench simulate models/humanoid.xml --time 2
+      step a robot for two seconds and summarise what happened
+  clench simulate models/pendulum.xml --steps 500 --record swing.npz --every 5
+      keep every fifth state as NumPy arrays
+  echo '{}' | clench forward models/quadruped.xml
+      accelerations, contacts and constraint forces of the initial state, as JSON
+  clench inspect models/four_bar.xml --steps 100
+      sizes, tree, options, and the constraints that act after 100 steps";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Step a model through time and summarise the run
+    Simulate(simulate::Arguments),
+    /// Compute accelerations and forces of states: one JSON state a line in, one JSON result a line out
+    Forward(forward::Arguments),
+    /// Show a model: sizes, tree, options, and the constraints that act
+    Inspect(inspect::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Forward(arguments) => forward::run(&arguments),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
+
+/// The reader of our output has gone, as in `clench … | head`: nothing to complain about.
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        cause
+            .downcast_ref::<std::io::Error>()
+            .is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+    })
+}

@@ -1,0 +1,45 @@
+//! `clench forward`: one JSON state a line in, one JSON result a line out.
+
+use crate::options::ModelArguments;
+use crate::protocol::{ResultLine, StateLine};
+use anyhow::{Context, Result};
+use clap::Args;
+use std::io::{self, BufRead, BufWriter, Write};
+
+/// Each line of standard input is a state: an object with any of `qpos`, `qvel`, `act`, `ctrl`, `qfrc_applied`,
+/// `xfrc_applied` (force, torque a body), `mocap_pos`, `mocap_quat`, `eq_active`, `time`, `qacc_warmstart`; what is
+/// missing keeps the model's default. With `contacts` (the fields of MuJoCo's mjContact) collision detection is
+/// replaced. Each line of standard output is the result for that state.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: ModelArguments,
+
+    /// Add the constraint Jacobian, a row a constraint
+    #[arg(long)]
+    jacobian: bool,
+    /// Add the mass matrix
+    #[arg(long)]
+    mass: bool,
+}
+
+/// Answers every line of standard input; stops with an error that names the line at the first that cannot be used.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let mut sim = arguments.model.sim()?;
+    let mut out = BufWriter::new(io::stdout().lock());
+    for (number, line) in io::stdin().lock().lines().enumerate() {
+        let context = || format!("standard input, line {}", number + 1);
+        let line = line.with_context(context)?;
+        if line.trim().is_empty() {
+            continue;
+        }
+        sim.reset();
+        let state = StateLine::parse(&line).with_context(context)?;
+        state.forward(&mut sim).with_context(context)?;
+        let result = ResultLine::new(&sim, arguments.mass, arguments.jacobian);
+        serde_json::to_writer(&mut out, &result)?;
+        out.write_all(b"\n")?;
+        out.flush()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,151 @@
+//! `clench inspect`: sizes, tree, options, and the constraints that act.
+
+use crate::options::ModelArguments;
+use crate::table::Table;
+use anyhow::{Context, Result};
+use clap::Args;
+use clench::rigid::constraint::ConstraintSource;
+use clench::rigid::model::JointKind;
+use clench::rigid::readout::{ConstraintRow, constraint_rows};
+use clench::{Model, Sim};
+
+/// Prints a model's sizes, its tree of bodies, the options in force, and a table of the active constraints with their
+/// forces, violations and impedances.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: ModelArguments,
+
+    /// Step this often before looking at the constraints
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    steps: usize,
+}
+
+/// Prints everything on standard output.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let mut sim = arguments.model.sim()?;
+    print_sizes(sim.model());
+    print_tree(sim.model());
+    print_options(&sim);
+    for step in 0..arguments.steps {
+        sim.step().with_context(|| format!("step {step}"))?;
+    }
+    sim.forward()?;
+    print_constraints(&sim);
+    Ok(())
+}
+
+fn name_or_index(name: &str, kind: &str, index: usize) -> String {
+    if name.is_empty() {
+        format!("{kind} {index}")
+    } else {
+        name.to_string()
+    }
+}
+
+fn print_sizes(model: &Model) {
+    let mass: f64 = model.params.body_mass.iter().sum();
+    println!("{}: {:.4} kg", name_or_index(&model.name, "model", 0), mass);
+    let sizes = [
+        ("position coordinates (nq)", model.nq),
+        ("degrees of freedom (nv)", model.nv),
+        ("controls (nu)", model.nu()),
+        ("activations (na)", model.na),
+        ("bodies, the world included", model.nbody()),
+        ("joints", model.joints.len()),
+        ("geoms", model.geoms.len()),
+        ("tendons", model.tendons.len()),
+        ("equality constraints", model.equalities.len()),
+        ("keyframes", model.keyframes.len()),
+        ("kinematic trees", model.tree.ntree()),
+    ];
+    for (name, size) in sizes {
+        println!("  {name:<28} {size}");
+    }
+}
+
+fn print_tree(model: &Model) {
+    println!("\nbodies");
+    let mut depth = vec![0; model.nbody()];
+    for (b, body) in model.bodies.iter().enumerate().skip(1) {
+        depth[b] = depth[body.parent] + 1;
+        let joints: Vec<_> = (body.joints.clone())
+            .map(|j| {
+                let joint = &model.joints[j];
+                let kind = match joint.kind {
+                    JointKind::Free => "free",
+                    JointKind::Ball => "ball",
+                    JointKind::Slide => "slide",
+                    JointKind::Hinge => "hinge",
+                };
+                format!("{kind} {}", name_or_index(&joint.name, "joint", j))
+            })
+            .collect();
+        let attached = match (joints.is_empty(), body.mocap) {
+            (false, _) => joints.join(", "),
+            (true, Some(_)) => "mocap".into(),
+            (true, None) => "fixed".into(),
+        };
+        println!(
+            "  {:indent$}{}  ({attached}; {:.4} kg, {} geoms)",
+            "",
+            name_or_index(&body.name, "body", b),
+            model.params.body_mass[b],
+            body.geoms.len(),
+            indent = 2 * (depth[b] - 1),
+        );
+    }
+}
+
+fn print_options(sim: &Sim) {
+    let settings = &sim.settings().solver;
+    println!("\noptions");
+    println!(
+        "  timestep {} s, integrator {:?}",
+        sim.params().timestep,
+        sim.model().integrator
+    );
+    // The derived listing, one option a line, without its braces.
+    let listing = format!("{settings:#?}");
+    for line in listing.lines().filter(|l| l.starts_with("    ")) {
+        println!("  {}", line.trim().trim_end_matches(','));
+    }
+}
+
+fn print_constraints(sim: &Sim) {
+    let rows = constraint_rows(sim.workspace(), 0);
+    let count = rows.len();
+    println!("\nconstraints at {:.4} s: {count} rows", sim.state.time);
+    if rows.is_empty() {
+        return;
+    }
+    let headings = [
+        "kind",
+        "source",
+        "force",
+        "violation",
+        "velocity",
+        "impedance",
+    ];
+    let mut table = Table::new(&headings);
+    for row in &rows {
+        table.row(vec![
+            row.source.kind().into(),
+            source(sim.model(), row),
+            format!("{:.6}", row.force),
+            format!("{:.6}", row.pos - row.margin),
+            format!("{:.6}", row.vel),
+            format!("{:.4}", row.impedance),
+        ]);
+    }
+    print!("{table}");
+}
+
+fn source(model: &Model, row: &ConstraintRow) -> String {
+    match row.source {
+        ConstraintSource::Contact(_) => format!("{}", row.source.index()),
+        source => name_or_index(source.name(model), "", source.index())
+            .trim()
+            .to_string(),
+    }
+}

@@ -1,0 +1,325 @@
+//! The JSON that `forward` reads and writes: states in, results out.
+
+use anyhow::{Context, Result, bail, ensure};
+use clench::Sim;
+use clench::math::{Force, Mat3, Quat, Vec3};
+use clench::rigid::contact::Contact;
+use clench::rigid::readout::{self, ConstraintRow};
+use clench::solver::Status;
+use serde::{Deserialize, Serialize};
+
+/// A state; what is missing keeps the model's default.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateLine {
+    time: Option<f64>,
+    qpos: Option<Vec<f64>>,
+    qvel: Option<Vec<f64>>,
+    act: Option<Vec<f64>>,
+    ctrl: Option<Vec<f64>>,
+    qfrc_applied: Option<Vec<f64>>,
+    /// A row (force, torque) a body, as in MuJoCo.
+    xfrc_applied: Option<Vec<[f64; 6]>>,
+    mocap_pos: Option<Vec<[f64; 3]>>,
+    mocap_quat: Option<Vec<[f64; 4]>>,
+    eq_active: Option<Vec<Truth>>,
+    qacc_warmstart: Option<Vec<f64>>,
+    /// Replaces collision detection.
+    contacts: Option<Vec<ContactLine>>,
+}
+
+/// `true`, `false`, or a number that is not zero, as MuJoCo stores flags.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum Truth {
+    Bool(bool),
+    Number(f64),
+}
+
+/// A contact with the fields of MuJoCo's `mjContact`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ContactLine {
+    geom: [i64; 2],
+    dist: f64,
+    pos: [f64; 3],
+    frame: [f64; 9],
+    includemargin: f64,
+    friction: [f64; 5],
+    solref: [f64; 2],
+    #[serde(default)]
+    solreffriction: [f64; 2],
+    solimp: [f64; 5],
+    dim: usize,
+    /// Not zero: the contact is listed but makes no constraint.
+    #[serde(default)]
+    exclude: i32,
+}
+
+impl StateLine {
+    /// Reads one line of standard input.
+    pub fn parse(line: &str) -> Result<StateLine> {
+        Ok(serde_json::from_str(line)?)
+    }
+
+    /// Sets the state of a simulation that stands at its defaults, and runs `forward` on it.
+    pub fn forward(self, sim: &mut Sim) -> Result<()> {
+        let state = &mut sim.state;
+        if let Some(time) = self.time {
+            state.time = time;
+        }
+        assign("qpos", &mut state.qpos, self.qpos)?;
+        assign("qvel", &mut state.qvel, self.qvel)?;
+        assign("act", &mut state.act, self.act)?;
+        assign("ctrl", &mut state.ctrl, self.ctrl)?;
+        assign("qfrc_applied", &mut state.qfrc_applied, self.qfrc_applied)?;
+        assign(
+            "qacc_warmstart",
+            &mut state.qacc_warmstart,
+            self.qacc_warmstart,
+        )?;
+        let wrench = |[fx, fy, fz, tx, ty, tz]: [f64; 6]| {
+            Force::new(Vec3::new(tx, ty, tz), Vec3::new(fx, fy, fz))
+        };
+        assign(
+            "xfrc_applied",
+            &mut state.xfrc_applied,
+            map(self.xfrc_applied, wrench),
+        )?;
+        assign(
+            "mocap_pos",
+            &mut state.mocap_pos,
+            map(self.mocap_pos, Vec3::from_array),
+        )?;
+        assign(
+            "mocap_quat",
+            &mut state.mocap_quat,
+            map(self.mocap_quat, Quat::from_f64),
+        )?;
+        let truth = |t| match t {
+            Truth::Bool(b) => b,
+            Truth::Number(x) => x != 0.0,
+        };
+        assign(
+            "eq_active",
+            &mut state.eq_active,
+            map(self.eq_active, truth),
+        )?;
+        match self.contacts {
+            None => sim.forward()?,
+            Some(lines) => {
+                let contacts = (lines.into_iter().enumerate())
+                    .map(|(i, c)| {
+                        c.into_contact(sim)
+                            .with_context(|| format!("contacts[{i}]"))
+                    })
+                    .collect::<Result<Vec<_>>>()?;
+                sim.forward_with_contacts(&contacts)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn map<A, B>(values: Option<Vec<A>>, f: impl Fn(A) -> B) -> Option<Vec<B>> {
+    values.map(|v| v.into_iter().map(f).collect())
+}
+
+fn assign<A>(name: &str, target: &mut Vec<A>, values: Option<Vec<A>>) -> Result<()> {
+    let Some(values) = values else { return Ok(()) };
+    ensure!(
+        values.len() == target.len(),
+        "{name}: {} values given, the model has {}",
+        values.len(),
+        target.len()
+    );
+    *target = values;
+    Ok(())
+}
+
+impl ContactLine {
+    fn into_contact(self, sim: &Sim) -> Result<Contact<f64>> {
+        let ngeom = sim.model().geoms.len();
+        let mut geoms = [0; 2];
+        for (geom, &given) in geoms.iter_mut().zip(&self.geom) {
+            match usize::try_from(given) {
+                Ok(g) if g < ngeom => *geom = g,
+                _ => bail!("geom: {given} is not one of the model's {ngeom} geoms"),
+            }
+        }
+        ensure!(
+            matches!(self.dim, 1 | 3 | 4 | 6),
+            "dim: {} is not 1, 3, 4 or 6",
+            self.dim
+        );
+        let f = self.frame;
+        Ok(Contact {
+            geoms,
+            active: self.exclude == 0,
+            dim: self.dim,
+            dist: self.dist,
+            pos: Vec3::from_array(self.pos),
+            frame: Mat3::from_rows(
+                Vec3::new(f[0], f[1], f[2]),
+                Vec3::new(f[3], f[4], f[5]),
+                Vec3::new(f[6], f[7], f[8]),
+            ),
+            includemargin: self.includemargin,
+            friction: self.friction,
+            solref: self.solref,
+            solreffriction: self.solreffriction,
+            solimp: self.solimp,
+            block: None,
+        })
+    }
+}
+
+/// The result of one state.
+#[derive(Serialize)]
+pub struct ResultLine<'a> {
+    time: f64,
+    qacc: &'a [f64],
+    qacc_smooth: &'a [f64],
+    qfrc_constraint: &'a [f64],
+    qfrc_bias: &'a [f64],
+    qfrc_passive: &'a [f64],
+    qfrc_actuator: &'a [f64],
+    contacts: Vec<ContactResult>,
+    constraints: Vec<RowResult<'a>>,
+    solver: SolverResult,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass: Option<Vec<Vec<f64>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    jacobian: Option<Vec<Vec<f64>>>,
+}
+
+#[derive(Serialize)]
+struct ContactResult {
+    geom: [usize; 2],
+    dist: f64,
+    pos: [f64; 3],
+    frame: [f64; 9],
+    dim: usize,
+    friction: [f64; 5],
+    /// In the contact frame: normal, two tangents, spin, two rolls.
+    force: [f64; 6],
+}
+
+#[derive(Serialize)]
+struct RowResult<'a> {
+    kind: &'static str,
+    source: Source<'a>,
+    pos: f64,
+    vel: f64,
+    aref: f64,
+    #[serde(rename = "D")]
+    d: f64,
+    force: f64,
+}
+
+/// The name of the element that makes a constraint, or its index where it has none.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Source<'a> {
+    Name(&'a str),
+    Index(usize),
+}
+
+#[derive(Serialize)]
+struct SolverResult {
+    status: &'static str,
+    iterations: usize,
+    gradient: f64,
+    improvement: f64,
+    gap: f64,
+}
+
+impl<'a> ResultLine<'a> {
+    /// What the last `forward` of a simulation computed.
+    pub fn new(sim: &'a Sim, mass: bool, jacobian: bool) -> Self {
+        let ws = sim.workspace();
+        let nv = sim.model().nv;
+        let stats = sim.stats();
+        ResultLine {
+            time: sim.state.time,
+            qacc: &ws.qacc,
+            qacc_smooth: &ws.problem.qacc_smooth,
+            qfrc_constraint: &ws.qfrc_constraint,
+            qfrc_bias: &ws.force.qfrc_bias,
+            qfrc_passive: &ws.force.qfrc_passive,
+            qfrc_actuator: &ws.force.qfrc_actuator,
+            contacts: (0..sim.contacts().len())
+                .map(|i| ContactResult::new(sim, i))
+                .collect(),
+            constraints: (readout::constraint_rows(ws, 0).iter())
+                .map(|row| RowResult::new(sim, row))
+                .collect(),
+            solver: SolverResult {
+                status: status_name(stats.status),
+                iterations: stats.iterations,
+                gradient: stats.gradient,
+                improvement: stats.improvement,
+                gap: stats.gap,
+            },
+            mass: mass.then(|| rows(&readout::mass_matrix(ws, 0), nv)),
+            jacobian: jacobian.then(|| rows(&readout::jacobian(ws, 0), nv)),
+        }
+    }
+}
+
+impl ContactResult {
+    fn new(sim: &Sim, index: usize) -> Self {
+        let contact = &sim.contacts()[index];
+        let mut frame = [0.0; 9];
+        for (out, row) in frame.chunks_exact_mut(3).zip(contact.frame.rows) {
+            row.write(out);
+        }
+        ContactResult {
+            geom: contact.geoms,
+            dist: contact.dist,
+            pos: contact.pos.to_array(),
+            frame,
+            dim: contact.dim,
+            friction: contact.friction,
+            force: readout::contact_force(sim.workspace(), index, 0),
+        }
+    }
+}
+
+impl<'a> RowResult<'a> {
+    fn new(sim: &'a Sim, row: &ConstraintRow) -> Self {
+        let name = row.source.name(sim.model());
+        RowResult {
+            kind: row.source.kind(),
+            source: match name {
+                "" => Source::Index(row.source.index()),
+                name => Source::Name(name),
+            },
+            pos: row.pos,
+            vel: row.vel,
+            aref: row.aref,
+            d: row.d,
+            force: row.force,
+        }
+    }
+}
+
+/// How a solve ended, in the words of the JSON output.
+pub fn status_name(status: Status) -> &'static str {
+    match status {
+        Status::Unconstrained => "unconstrained",
+        Status::Proven => "proven",
+        Status::Converged => "converged",
+        Status::NoProgress => "no_progress",
+        Status::IterationLimit => "iteration_limit",
+        Status::NonFinite => "non_finite",
+    }
+}
+
+/// A dense row-major matrix as rows; no rows where there are no columns.
+fn rows(dense: &[f64], columns: usize) -> Vec<Vec<f64>> {
+    dense
+        .chunks_exact(columns.max(1))
+        .map(<[f64]>::to_vec)
+        .collect()
+}
