@@ -36,7 +36,8 @@ impl<T: Real> Direction<T> for Cg<T> {
         direction: &mut Vec<T>,
         _: &mut SolveStats<T>,
     ) {
-        std::mem::swap(&mut self.preconditioned, &mut self.last);
+        self.last.clear();
+        self.last.extend_from_slice(&self.preconditioned);
         self.preconditioned.clear();
         self.preconditioned.extend_from_slice(&iterate.gradient);
         problem

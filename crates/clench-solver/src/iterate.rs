@@ -70,7 +70,7 @@ impl<T: Real> Iterate<T> {
         ray.rows.resize(problem.nrow(), T::ZERO);
         problem.jacobian.mul(warm, &mut ray.rows);
         subtract(&mut ray.rows, &problem.aref);
-        std::mem::swap(&mut self.residual, &mut ray.rows);
+        self.residual.swap_with_slice(&mut ray.rows);
         let warm_cost =
             self.evaluate(problem).cost + T::new(0.5) * dot(&ray.direction, &ray.mass_direction);
         let better = warm_cost.lt(cost);

@@ -23,6 +23,7 @@ mod line_search;
 mod newton;
 mod noslip;
 mod options;
+mod plain;
 mod problem;
 mod solver;
 mod stats;
@@ -30,6 +31,7 @@ mod tree;
 mod workspace;
 
 pub use options::{ConstraintSolver, FrictionCone, MaxContacts, RigidOptions, Settings, Switch};
+pub use plain::PlainBlock;
 pub use problem::{Block, BlockMut, Cost, Problem, ProblemError};
 pub use solver::Solver;
 pub use stats::{LaneStats, SolveStats, Status};

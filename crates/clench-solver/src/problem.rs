@@ -8,9 +8,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The shape of a constraint's cost s(y), y = J a − aref.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Cost {
     /// ½ D y² always: equalities.
+    #[default]
     Quadratic,
     /// ½ D y² where y < 0: limits, frictionless contacts.
     OneSided,

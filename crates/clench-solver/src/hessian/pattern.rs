@@ -19,7 +19,8 @@ pub(crate) struct Pattern {
     parents: Vec<Option<usize>>,
     /// The couplings that are not within a branch: each a count and its dofs.
     couplings: Vec<u32>,
-    previous: Vec<u32>,
+    /// Those of the problem at hand.
+    found: Vec<u32>,
     /// One bit set a row, `words` long.
     bits: Vec<u64>,
     words: usize,
@@ -45,20 +46,21 @@ impl Pattern {
         let same_tree = self.nv == tree.nv()
             && self.dense == dense
             && (0..self.nv).all(|i| self.parents[i] == tree.parent(i));
-        std::mem::swap(&mut self.couplings, &mut self.previous);
-        self.couplings.clear();
+        self.found.clear();
         if !dense {
             for b in blocks {
                 let dofs = &dofs[b.dof..b.dof + b.ndof];
                 if !within_branch(tree, dofs) {
-                    self.couplings.push(dofs.len() as u32);
-                    self.couplings.extend_from_slice(dofs);
+                    self.found.push(dofs.len() as u32);
+                    self.found.extend_from_slice(dofs);
                 }
             }
         }
-        if same_tree && !self.row_starts.is_empty() && self.couplings == self.previous {
+        if same_tree && !self.row_starts.is_empty() && self.couplings == self.found {
             return false;
         }
+        self.couplings.clear();
+        self.couplings.extend_from_slice(&self.found);
         self.dense = dense;
         self.parents.clear();
         self.parents.extend((0..tree.nv()).map(|i| tree.parent(i)));

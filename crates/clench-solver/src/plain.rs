@@ -1,0 +1,81 @@
+//! A problem from plain arrays, for use without trees, bodies or joints.
+
+use crate::problem::check_length;
+use crate::{Cost, Problem, ProblemError, Tree};
+use clench_math::{Mask, Real};
+use std::sync::Arc;
+
+/// One constraint block as plain arrays; see [`BlockMut`](crate::BlockMut) for the meaning of each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlainBlock<T> {
+    /// Shape of the cost.
+    pub cost: Cost,
+    /// J, dim × nv row-major.
+    pub jacobian: Vec<T>,
+    /// aref, length dim.
+    pub aref: Vec<T>,
+    /// R > 0, length dim.
+    pub r: Vec<T>,
+    /// Huber: η. Pyramid: unused, then μ_j. Elliptic: regularized μ, then μ_j. Otherwise empty.
+    pub shape: Vec<T>,
+}
+
+impl<T: Real> Problem<T> {
+    /// A problem from a dense mass matrix (nv × nv row-major, symmetric: its lower triangle is read), the unconstrained
+    /// acceleration (length nv) and blocks, checked and ready to be solved.
+    ///
+    /// # Errors
+    /// Arrays of the wrong length, and whatever [`check`](Self::check) finds.
+    pub fn from_arrays(
+        mass: &[T],
+        qacc_smooth: &[T],
+        blocks: &[PlainBlock<T>],
+    ) -> Result<Self, ProblemError> {
+        let nv = qacc_smooth.len();
+        check_length("mass", mass.len(), nv * nv)?;
+        let tree = Arc::new(Tree::dense(nv));
+        let mut problem = Problem::new(tree.clone());
+        for (i, row) in mass.chunks_exact(nv.max(1)).enumerate() {
+            problem.mass.row_mut(&tree, i).copy_from_slice(&row[..=i]);
+        }
+        problem.qacc_smooth.copy_from_slice(qacc_smooth);
+        for block in blocks {
+            problem.push_plain(block)?;
+        }
+        problem.check()?;
+        problem.factor_mass();
+        Ok(problem)
+    }
+
+    fn push_plain(&mut self, plain: &PlainBlock<T>) -> Result<(), ProblemError> {
+        let (nv, dim) = (self.nv(), plain.aref.len());
+        check_length("jacobian", plain.jacobian.len(), dim * nv)?;
+        check_length("r", plain.r.len(), dim)?;
+        if !plain.shape.is_empty() || !matches!(plain.cost, Cost::Quadratic | Cost::OneSided) {
+            check_length("shape", plain.shape.len(), dim)?;
+        }
+        let acts = |dof: &u32| {
+            (0..dim).any(|i| (!plain.jacobian[i * nv + *dof as usize].eq(T::ZERO)).any())
+        };
+        let dofs: Vec<u32> = (0..nv as u32).filter(acts).collect();
+        let block = self.push(plain.cost, dim, &dofs);
+        let columns = (0..dim).flat_map(|i| {
+            dofs.iter()
+                .map(move |&dof| plain.jacobian[i * nv + dof as usize])
+        });
+        block
+            .jacobian
+            .iter_mut()
+            .zip(columns)
+            .for_each(|(to, from)| *to = from);
+        block.aref.copy_from_slice(&plain.aref);
+        block.r.copy_from_slice(&plain.r);
+        block
+            .d
+            .iter_mut()
+            .zip(&plain.r)
+            .for_each(|(d, &r)| *d = T::ONE / r);
+        block.shape[..plain.shape.len()].copy_from_slice(&plain.shape);
+        Ok(())
+    }
+}
