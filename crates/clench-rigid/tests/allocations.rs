@@ -1,0 +1,193 @@
+//! A step allocates nothing once its buffers have grown.
+
+mod scenes;
+
+use clench_collide::ShapeKind;
+use clench_math::Vec3;
+use clench_rigid::Sim;
+use clench_rigid::builder::{ActuatorSpec, GeomSpec, JointSpec, ModelBuilder, TransmissionSpec};
+use clench_rigid::model::{BiasKind, DynamicsKind, GainKind, Integrator, JointKind};
+use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
+use scenes::{add, everything, free, geom, joint, model, plane, shake, sphere, world};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+/// Counts the allocations of each thread.
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let _ = COUNT.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        let _ = COUNT.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: as above.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn motor(joint: &str) -> ActuatorSpec {
+    ActuatorSpec {
+        name: String::new(),
+        transmission: TransmissionSpec::Joint(joint.into()),
+        dynamics: DynamicsKind::None,
+        dynprm: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        gain: GainKind::Fixed,
+        gainprm: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        bias: BiasKind::None,
+        biasprm: [0.0; 10],
+        dampratio: None,
+        inheritrange: 0.0,
+        gear: [8.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        ctrlrange: [0.0; 2],
+        ctrllimited: None,
+        forcerange: [0.0; 2],
+        forcelimited: None,
+        actrange: [0.0; 2],
+        actlimited: None,
+        actearly: false,
+        group: 0,
+        origin: None,
+    }
+}
+
+/// A torso with a head and four limbs of two links, on the floor.
+fn humanoid() -> ModelBuilder {
+    let mut b = world();
+    b.bodies[0].geoms.push(plane());
+    let limb = |from: [f64; 3], to: [f64; 3]| GeomSpec {
+        pos: Vec3::from_f64([0, 1, 2].map(|i| 0.5 * (from[i] + to[i]))),
+        ..geom(ShapeKind::Capsule, [0.05, 0.15, 0.0])
+    };
+    let hinge = |name: &str, axis| JointSpec {
+        range: [-1.0, 1.0],
+        damping: 0.5,
+        armature: 0.02,
+        ..joint(JointKind::Hinge, name, axis)
+    };
+    let torso = add(
+        &mut b,
+        0,
+        "torso",
+        [0.0, 0.0, 1.0],
+        free(),
+        vec![sphere(0.12)],
+    );
+    add(
+        &mut b,
+        torso,
+        "head",
+        [0.0, 0.0, 0.25],
+        vec![hinge("neck", [0.0, 1.0, 0.0])],
+        vec![sphere(0.1)],
+    );
+    for (i, (x, z)) in [(0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (-0.1, -0.2)]
+        .into_iter()
+        .enumerate()
+    {
+        let (first, second, knee) = (format!("hip_x{i}"), format!("hip_y{i}"), format!("knee{i}"));
+        let joints = vec![
+            hinge(&first, [1.0, 0.0, 0.0]),
+            hinge(&second, [0.0, 1.0, 0.0]),
+        ];
+        let end = [0.0, 0.0, -0.35];
+        let upper = add(
+            &mut b,
+            torso,
+            &format!("upper{i}"),
+            [x, 0.0, z],
+            joints,
+            vec![limb([0.0; 3], end)],
+        );
+        add(
+            &mut b,
+            upper,
+            &format!("lower{i}"),
+            end,
+            vec![hinge(&knee, [0.0, 1.0, 0.0])],
+            vec![limb([0.0; 3], end)],
+        );
+        b.actuators
+            .extend([first, second, knee].iter().map(|name| motor(name)));
+    }
+    b
+}
+
+/// Steps twice through the same trajectory and counts the allocations of the second.
+fn allocations_of_a_replay(sim: &mut Sim, steps: usize) -> (usize, usize) {
+    let start = sim.state.clone();
+    let mut contacts = 0;
+    let mut counted = 0;
+    for _ in 0..2 {
+        sim.state.copy_from(&start);
+        let before = COUNT.with(Cell::get);
+        for step in 0..steps {
+            for (i, ctrl) in sim.state.ctrl.iter_mut().enumerate() {
+                *ctrl = (0.05 * step as f64 + 1.3 * i as f64).sin();
+            }
+            sim.step().expect("the motion stays finite");
+            contacts += sim.contacts().len();
+        }
+        counted = COUNT.with(Cell::get) - before;
+    }
+    (counted, contacts)
+}
+
+#[test]
+fn a_replayed_humanoid_allocates_nothing() {
+    let model = model(&humanoid());
+    for solver in [ConstraintSolver::Newton, ConstraintSolver::Cg] {
+        for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
+            let options = RigidOptions::new()
+                .constraint_solver(solver)
+                .friction_cone(cone)
+                .tolerance(1e-8)
+                .noslip_iterations(3);
+            let mut sim = Sim::with_options(model.clone(), options).expect("valid");
+            let (allocations, contacts) = allocations_of_a_replay(&mut sim, 1000);
+            assert!(contacts > 2000, "it lies on the floor: {contacts}");
+            assert_eq!(allocations, 0, "{solver:?}, {cone:?}");
+        }
+    }
+}
+
+#[test]
+fn every_kind_of_constraint_and_integrator_allocates_nothing() {
+    for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {
+        let mut builder = everything();
+        builder.physics.integrator = integrator;
+        let mut sim = Sim::new(model(&builder)).expect("valid");
+        shake(&mut sim, 2);
+        let (allocations, _) = allocations_of_a_replay(&mut sim, 100);
+        assert_eq!(allocations, 0, "{integrator:?}");
+    }
+}
+
+#[test]
+fn a_swept_scene_allocates_nothing() {
+    let mut builder = world();
+    builder.options = builder.options.tolerance(1e-8);
+    builder.bodies[0].geoms.push(plane());
+    for i in 0..130 {
+        let pos = [0.3 * f64::from(i % 12), 0.3 * f64::from(i / 12), 0.12];
+        add(&mut builder, 0, "", pos, free(), vec![sphere(0.1)]);
+    }
+    let mut sim = Sim::new(model(&builder)).expect("valid");
+    let (allocations, contacts) = allocations_of_a_replay(&mut sim, 50);
+    assert!(contacts > 1000, "they reach the floor: {contacts}");
+    assert_eq!(allocations, 0);
+}
