@@ -57,7 +57,13 @@ fn jacobi_turn(d: &Mat3<f64>, negligible: f64) -> Option<Quat<f64>> {
     // The smaller of the two angles, so that the turns die out: |φ| ≤ π/4.
     let difference = d.rows[i][i] - d.rows[j][j];
     let opposite = 2.0 * d.rows[i][j];
-    let angle = 0.5 * f64::atan2(opposite.copysign(opposite * difference), difference.abs());
+    let side = match difference != 0.0 {
+        true => opposite * difference,
+        // Both quarter turns serve; MuJoCo's choice decides which axis comes first.
+        false if k == 1 => 1.0,
+        false => -1.0,
+    };
+    let angle = 0.5 * f64::atan2(opposite.copysign(side), difference.abs());
     let mut axis = Vec3::ZERO;
     axis[k] = 1.0;
     Some(Quat::from_axis_angle(axis, angle))

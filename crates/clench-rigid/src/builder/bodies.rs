@@ -1,8 +1,8 @@
 //! Bodies in MuJoCo's order, each with what stands on it.
 
+use super::check::describe;
 use super::element::Element;
 use super::inertia::{MassProperties, mass_properties};
-use super::numbers::describe;
 use super::{BodySpec, BuildError, JointSpec, ModelBuilder, geoms, joints};
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
@@ -54,8 +54,12 @@ pub(super) fn add_all(
     check_world(&builder.bodies[0])?;
     for &old in order {
         let spec = &builder.bodies[old];
-        let parent = number[spec.parent];
-        add(builder, spec, parent, has_children[old], model)?;
+        let place = Place {
+            name: describe(&spec.name, old),
+            parent: number[spec.parent],
+            has_children: has_children[old],
+        };
+        add(builder, spec, &place, model)?;
     }
     Ok(())
 }
@@ -71,6 +75,15 @@ fn check_world(world: &BodySpec) -> Result<(), BuildError> {
     Err(world.error(wrong))
 }
 
+/// A body among others.
+struct Place {
+    /// What messages call it.
+    name: String,
+    /// In the model's order.
+    parent: usize,
+    has_children: bool,
+}
+
 /// A body's own frame, and how its geoms and sites must follow where that frame was moved.
 struct Frame {
     pos: Vec3<f64>,
@@ -82,19 +95,19 @@ struct Frame {
 fn add(
     builder: &ModelBuilder,
     spec: &BodySpec,
-    parent: usize,
-    has_children: bool,
+    place: &Place,
     model: &mut Model,
 ) -> Result<(), BuildError> {
     let b = model.bodies.len();
     let is_world = b == 0;
-    check_joints(spec, parent)?;
+    let parent = place.parent;
+    check_joints(spec, parent).map_err(|e| e.about(&place.name))?;
     let mut inertia = match is_world {
         true => MassProperties::NONE,
-        false => mass_properties(spec, &builder.compiler)?,
+        false => mass_properties(spec, &place.name, &builder.compiler)?,
     };
-    let frame = align(builder, spec, has_children, &mut inertia);
-    let within = |e: BuildError| e.of_body(&describe(&spec.name, b));
+    let frame = align(builder, spec, place.has_children, &mut inertia);
+    let within = |e: BuildError| e.of_body(&place.name);
 
     let starts = [
         model.joints.len(),

@@ -2,7 +2,7 @@
 
 use super::resolve::AllNames;
 use super::{
-    BuildError, ModelBuilder, actuators, bodies, contacts, equalities, keyframes, numbers, tendons,
+    BuildError, ModelBuilder, actuators, bodies, check, contacts, equalities, keyframes, tendons,
     weights,
 };
 use crate::State;
@@ -30,13 +30,13 @@ impl ModelBuilder {
                 "has no body; the first is the world",
             ));
         }
-        numbers::check(self)?;
+        check::check(self)?;
         let order = bodies::depth_first(&self.bodies)?;
         let names = AllNames::new(self, &order)?;
         let mut model = self.empty_model();
 
         bodies::add_all(self, &order, &mut model)?;
-        weights::require_inertia(&model)?;
+        weights::require_inertia(&model, &order)?;
         weights::masses(self, &mut model);
         model.tree = Arc::new(tree(&model)?);
         contacts::add_all(self, &names, &mut model)?;

@@ -1,7 +1,7 @@
 //! Explicit contact pairs and excludes.
 
+use super::check::require_condim;
 use super::element::Element;
-use super::geoms::require_condim;
 use super::resolve::AllNames;
 use super::{BuildError, ModelBuilder, PairSpec};
 use crate::model::{Model, Pair};

@@ -30,7 +30,7 @@ pub(super) trait Element {
     /// Refuses NaN and infinity.
     fn require_finite(&self, field: &str, values: &[f64]) -> Result<(), BuildError> {
         match values.iter().find(|v| !v.is_finite()) {
-            Some(bad) => Err(self.error(format!("{field} contains {bad}"))),
+            Some(bad) => Err(self.error(format!("{field} must be finite, but has {bad}"))),
             None => Ok(()),
         }
     }

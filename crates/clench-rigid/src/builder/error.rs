@@ -50,6 +50,12 @@ impl BuildError {
         }
     }
 
+    /// The same error of an element called otherwise.
+    pub(super) fn about(mut self, element: &str) -> Self {
+        element.clone_into(&mut self.element);
+        self
+    }
+
     /// The same error, saying also on which body the element is.
     pub(super) fn of_body(mut self, body: &str) -> Self {
         self.element = format!("{} of {body}", self.element);

@@ -20,15 +20,13 @@ fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>
 /// Adds a geom of body `b`.
 ///
 /// # Errors
-/// Sizes that are not positive, a condim that there is not, a plane that would move.
+/// A plane that would move.
 pub(super) fn add_geom(
     spec: &GeomSpec,
     b: usize,
     moved: Moved,
     model: &mut Model,
 ) -> Result<(), BuildError> {
-    require_condim(spec, spec.condim)?;
-    check_size(spec)?;
     let weld = &model.bodies[model.bodies[b].weld];
     if spec.kind == ShapeKind::Plane && !weld.joints.is_empty() {
         return Err(spec.error("a plane can only stand on a body that no joint moves"));
@@ -63,49 +61,6 @@ pub(super) fn add_geom(
     p.geom_solref.push(spec.solref);
     p.geom_solimp.push(spec.solimp);
     Ok(())
-}
-
-/// Contacts have 1, 3, 4 or 6 dimensions.
-///
-/// # Errors
-/// Any other number.
-pub(super) fn require_condim(element: &impl Element, condim: u32) -> Result<(), BuildError> {
-    match condim {
-        1 | 3 | 4 | 6 => Ok(()),
-        other => Err(element.error(format!("condim must be 1, 3, 4 or 6, not {other}"))),
-    }
-}
-
-fn check_size(spec: &GeomSpec) -> Result<(), BuildError> {
-    let size = spec.size.to_array();
-    // MuJoCo asks for a plane's third number, the spacing of its grid, though nothing is computed from it.
-    let used = match spec.kind {
-        ShapeKind::Plane => 2..3,
-        ShapeKind::Sphere => 0..1,
-        ShapeKind::Capsule | ShapeKind::Cylinder => 0..2,
-        ShapeKind::Ellipsoid | ShapeKind::Box => 0..3,
-    };
-    for i in used {
-        if size[i] <= 0.0 {
-            return Err(spec.error(format!(
-                "size[{i}] of a {} must be positive, but is {}",
-                shape_name(spec.kind),
-                size[i]
-            )));
-        }
-    }
-    Ok(())
-}
-
-fn shape_name(kind: ShapeKind) -> &'static str {
-    match kind {
-        ShapeKind::Plane => "plane",
-        ShapeKind::Sphere => "sphere",
-        ShapeKind::Capsule => "capsule",
-        ShapeKind::Ellipsoid => "ellipsoid",
-        ShapeKind::Cylinder => "cylinder",
-        ShapeKind::Box => "box",
-    }
 }
 
 /// Adds a site of body `b`.

@@ -34,12 +34,13 @@ impl MassProperties {
     };
 }
 
-/// The mass properties of a body other than the world.
+/// The mass properties of a body other than the world, which messages call `name`.
 ///
 /// # Errors
 /// Masses or inertias that are negative, not finite, or that no body can have.
 pub(super) fn mass_properties(
     body: &BodySpec,
+    name: &str,
     compiler: &CompilerSpec,
 ) -> Result<MassProperties, BuildError> {
     let from_geoms = match compiler.inertiafromgeom {
@@ -48,22 +49,23 @@ pub(super) fn mass_properties(
         InertiaFromGeom::Never => false,
     };
     let counted = match from_geoms {
-        true => geoms_with_mass(body, compiler)?,
+        true => geoms_with_mass(body, compiler).map_err(|e| e.of_body(name))?,
         false => Vec::new(),
     };
     let found = match (&counted[..], &body.inertial) {
-        ([], Some(inertial)) => given(body, inertial, compiler)?,
+        ([], Some(inertial)) => given(body, inertial, compiler),
         // Nothing known: MuJoCo puts the inertial frame at the body's offset from its parent.
-        ([], None) => MassProperties {
-            mass: 0.0,
+        ([], None) => Ok(MassProperties {
             pos: body.pos,
             quat: body.quat.normalize(),
-            moments: Vec3::ZERO,
-        },
-        ([one], _) => *one,
-        (many, _) => combine(body, many, compiler)?,
+            ..MassProperties::NONE
+        }),
+        ([one], _) => Ok(*one),
+        (many, _) => combine(body, many, compiler),
     };
-    plausible(body, found, compiler)
+    found
+        .and_then(|found| plausible(body, found, compiler))
+        .map_err(|e| e.about(name))
 }
 
 /// The geoms that count towards inertia.

@@ -9,7 +9,7 @@ use clench_math::{Quat, Vec3};
 /// Adds all keyframes; a vector that is missing, or shorter than the model's, is completed from the initial state.
 ///
 /// # Errors
-/// A vector longer than the model's.
+/// A vector longer than the model's, or one that ends within a position or quaternion of a mocap body.
 pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
     let initial = State::<f64>::new(model);
     let mocap_pos: Vec<_> = initial.mocap_pos.into_iter().map(Vec3::to_array).collect();
@@ -18,14 +18,21 @@ pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), B
         let mut keyframe = Keyframe {
             name: spec.name.clone(),
             time: spec.time,
-            qpos: complete(spec, "qpos", &spec.qpos, &initial.qpos)?,
-            qvel: complete(spec, "qvel", &spec.qvel, &initial.qvel)?,
-            act: complete(spec, "act", &spec.act, &initial.act)?,
-            ctrl: complete(spec, "ctrl", &spec.ctrl, &initial.ctrl)?,
-            mocap_pos: complete(spec, "mocap_pos", &spec.mocap_pos, mocap_pos.as_flattened())?,
+            qpos: complete(spec, "qpos", 1, &spec.qpos, &initial.qpos)?,
+            qvel: complete(spec, "qvel", 1, &spec.qvel, &initial.qvel)?,
+            act: complete(spec, "act", 1, &spec.act, &initial.act)?,
+            ctrl: complete(spec, "ctrl", 1, &spec.ctrl, &initial.ctrl)?,
+            mocap_pos: complete(
+                spec,
+                "mocap_pos",
+                3,
+                &spec.mocap_pos,
+                mocap_pos.as_flattened(),
+            )?,
             mocap_quat: complete(
                 spec,
                 "mocap_quat",
+                4,
                 &spec.mocap_quat,
                 mocap_quat.as_flattened(),
             )?,
@@ -39,6 +46,7 @@ pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), B
 fn complete(
     spec: &KeyframeSpec,
     field: &str,
+    group: usize,
     given: &Option<Vec<f64>>,
     initial: &[f64],
 ) -> Result<Vec<f64>, BuildError> {
@@ -48,6 +56,12 @@ fn complete(
             "{field} has {} numbers, the model has {}",
             values.len(),
             initial.len()
+        )));
+    }
+    if !values.len().is_multiple_of(group) {
+        return Err(spec.error(format!(
+            "{field} has {} numbers, which is no multiple of {group}",
+            values.len()
         )));
     }
     values.extend_from_slice(&initial[values.len()..]);

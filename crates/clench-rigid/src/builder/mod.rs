@@ -29,6 +29,7 @@ mod actuators;
 mod bodies;
 mod build;
 mod by_hand;
+mod check;
 mod contacts;
 mod element;
 mod elements;
@@ -38,20 +39,23 @@ mod geoms;
 mod inertia;
 mod joints;
 mod keyframes;
-mod numbers;
 mod physics;
+mod relations;
 mod resolve;
 mod shapes;
 mod tendons;
 mod weights;
 
 pub use elements::{
-    ActuatorSpec, BodySpec, ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind,
-    EqualitySpec, ExcludeSpec, GeomMass, GeomSpec, InertiaSpec, InertialSpec, JointSpec,
-    KeyframeSpec, PairSpec, SiteSpec, TendonSpec, TransmissionSpec,
+    BodySpec, DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomMass, GeomSpec, InertiaSpec, InertialSpec,
+    JointSpec, SiteSpec,
 };
 pub use error::{BuildError, Origin};
 pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
+pub use relations::{
+    ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec,
+    TendonSpec, TransmissionSpec,
+};
 
 use clench_solver::RigidOptions;
 

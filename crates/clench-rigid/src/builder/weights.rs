@@ -4,7 +4,7 @@
 //! qpos0, averaged over the directions that belong together. With M = LᵀDL, A_ii = ‖D^(-1/2) L^(-T) J_iᵀ‖².
 
 use super::bodies::{is_null, is_null_position};
-use super::numbers::describe;
+use super::check::describe;
 use super::{BuildError, ModelBuilder};
 use crate::dynamics::inertia::composite_inertia;
 use crate::model::{JointKind, Model};
@@ -38,8 +38,8 @@ pub(super) fn masses(builder: &ModelBuilder, model: &mut Model) {
 /// Every body with joints must have a mass and an inertia, its own or that of a body fixed to it.
 ///
 /// # Errors
-/// One that has not.
-pub(super) fn require_inertia(model: &Model) -> Result<(), BuildError> {
+/// One that has not; `order` are the author's indices.
+pub(super) fn require_inertia(model: &Model, order: &[usize]) -> Result<(), BuildError> {
     let p = &model.params;
     let heavy = |b: usize| {
         p.body_mass[b] >= SMALLEST && p.body_inertia[b].to_array().iter().all(|&i| i >= SMALLEST)
@@ -50,9 +50,9 @@ pub(super) fn require_inertia(model: &Model) -> Result<(), BuildError> {
             carries[body.parent] |= carries[b];
         } else if !carries[b] {
             let mut error = BuildError::new(
-                describe(&body.name, b),
+                describe(&body.name, order[b]),
                 format!(
-                    "a moving body must have a mass and principal moments of at least {SMALLEST:e}, but has mass {} and \
+                    "a moving body must have a mass and principal moments of at least {SMALLEST:e}, but has mass {:?} and \
                      moments {:?}",
                     p.body_mass[b],
                     p.body_inertia[b].to_array()

@@ -1,10 +1,12 @@
-//! Every number of a description is a number: NaN and infinity are refused before anything is computed from them.
+//! What can be said of each element alone, before anything is computed: NaN and infinity are refused, and so are sizes
+//! and other numbers that must be positive.
 
 use super::element::Element;
 use super::{
     ActuatorSpec, BodySpec, BuildError, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
     InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec, TendonSpec,
 };
+use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 
 /// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
@@ -17,8 +19,9 @@ const SHORTEST_QUAT: f64 = 1e-7;
 pub(super) fn check(builder: &ModelBuilder) -> Result<(), BuildError> {
     check_physics(builder)?;
     for (index, body) in builder.bodies.iter().enumerate() {
-        check_body(body)?;
-        let within = |e: BuildError| e.of_body(&describe(&body.name, index));
+        let body_name = describe(&body.name, index);
+        check_body(body, &body_name)?;
+        let within = |e: BuildError| e.of_body(&body_name);
         body.joints
             .iter()
             .try_for_each(check_joint)
@@ -74,6 +77,22 @@ fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
     if let Some(total) = compiler.settotalmass {
         require(total.is_finite() && total > 0.0, "settotalmass", "positive")?;
     }
+    let options = &builder.options;
+    let tolerances = [
+        ("tolerance", options.tolerance),
+        ("ls_tolerance", options.ls_tolerance),
+        ("noslip_tolerance", options.noslip_tolerance),
+        ("constraint_timeconst", options.constraint_timeconst),
+    ];
+    for (field, value) in tolerances {
+        require(value.is_none_or(not_negative), field, "zero or more")?;
+    }
+    let impratio = options.impratio.unwrap_or(1.0);
+    require(
+        impratio.is_finite() && impratio > 0.0,
+        "impratio",
+        "a positive number",
+    )?;
     if let Some(o) = &physics.contact_override {
         let numbers = [&[o.margin][..], &o.solref, &o.solimp, &o.friction].concat();
         require(finite(&numbers), "every contact override", "finite")?;
@@ -92,26 +111,27 @@ fn check_pose(element: &impl Element, pos: Vec3<f64>, quat: Quat<f64>) -> Result
     }
 }
 
-fn check_body(body: &BodySpec) -> Result<(), BuildError> {
-    check_pose(body, body.pos, body.quat)?;
-    body.require_finite("gravcomp", &[body.gravcomp])?;
+fn check_body(body: &BodySpec, body_name: &str) -> Result<(), BuildError> {
+    let as_body = |e: BuildError| e.about(body_name);
+    check_pose(body, body.pos, body.quat).map_err(as_body)?;
+    body.require_finite("gravcomp", &[body.gravcomp])
+        .map_err(as_body)?;
     let Some(inertial) = &body.inertial else {
         return Ok(());
     };
-    let at_inertial = |mut e: BuildError| {
-        e.element = format!("inertial of {}", e.element);
+    let as_inertial = |mut e: BuildError| {
         e.origin = inertial.origin.clone().or(e.origin);
-        e
+        e.about("inertial").of_body(body_name)
     };
-    check_pose(body, inertial.pos, inertial.quat).map_err(at_inertial)?;
+    check_pose(body, inertial.pos, inertial.quat).map_err(as_inertial)?;
     let inertia = match &inertial.inertia {
         InertiaSpec::Diagonal(moments) => &moments[..],
         InertiaSpec::Full(full) => &full[..],
     };
     body.require_finite("inertia", inertia)
-        .map_err(at_inertial)?;
+        .map_err(as_inertial)?;
     body.require_not_negative("mass", &[inertial.mass])
-        .map_err(at_inertial)
+        .map_err(as_inertial)
 }
 
 fn check_joint(j: &JointSpec) -> Result<(), BuildError> {
@@ -141,7 +161,52 @@ fn check_geom(g: &GeomSpec) -> Result<(), BuildError> {
     g.require_finite("margin", &[g.margin])?;
     g.require_finite("gap", &[g.gap])?;
     g.require_finite("solmix", &[g.solmix])?;
-    check_softness(g, &[g.solref], &[g.solimp])
+    check_softness(g, &[g.solref], &[g.solimp])?;
+    require_condim(g, g.condim)?;
+    check_size(g)
+}
+
+/// Contacts have 1, 3, 4 or 6 dimensions.
+///
+/// # Errors
+/// Any other number.
+pub(super) fn require_condim(element: &impl Element, condim: u32) -> Result<(), BuildError> {
+    match condim {
+        1 | 3 | 4 | 6 => Ok(()),
+        other => Err(element.error(format!("condim must be 1, 3, 4 or 6, not {other}"))),
+    }
+}
+
+fn check_size(spec: &GeomSpec) -> Result<(), BuildError> {
+    let size = spec.size.to_array();
+    // MuJoCo asks for a plane's third number, the spacing of its grid, though nothing is computed from it.
+    let used = match spec.kind {
+        ShapeKind::Plane => 2..3,
+        ShapeKind::Sphere => 0..1,
+        ShapeKind::Capsule | ShapeKind::Cylinder => 0..2,
+        ShapeKind::Ellipsoid | ShapeKind::Box => 0..3,
+    };
+    for i in used {
+        if size[i] <= 0.0 {
+            return Err(spec.error(format!(
+                "size[{i}] of a {} must be positive, but is {}",
+                shape_name(spec.kind),
+                size[i]
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn shape_name(kind: ShapeKind) -> &'static str {
+    match kind {
+        ShapeKind::Plane => "plane",
+        ShapeKind::Sphere => "sphere",
+        ShapeKind::Capsule => "capsule",
+        ShapeKind::Ellipsoid => "ellipsoid",
+        ShapeKind::Cylinder => "cylinder",
+        ShapeKind::Box => "box",
+    }
 }
 
 fn check_site(s: &SiteSpec) -> Result<(), BuildError> {

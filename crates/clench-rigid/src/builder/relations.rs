@@ -1,0 +1,258 @@
+//! Elements that name others: tendons, actuators, equality constraints, contact pairs and keyframes, with MuJoCo's defaults.
+
+use super::Origin;
+use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use crate::model::{BiasKind, DynamicsKind, GainKind};
+use clench_math::{Quat, Vec3};
+
+/// A fixed tendon: a weighted sum of joint positions.
+#[derive(Clone, Debug)]
+pub struct TendonSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Joint name and coefficient of each term.
+    pub terms: Vec<(String, f64)>,
+    /// Allowed lengths.
+    pub range: [f64; 2],
+    /// Whether the range limits the tendon; `None`: if `autolimits` and a range is given.
+    pub limited: Option<bool>,
+    /// Limits of the total actuator force.
+    pub actuatorfrcrange: [f64; 2],
+    /// Whether that range applies; `None` as for `limited`.
+    pub actuatorfrclimited: Option<bool>,
+    /// Distance at which the limit constraint appears.
+    pub margin: f64,
+    /// Spring stiffness.
+    pub stiffness: f64,
+    /// Damping.
+    pub damping: f64,
+    /// Dead band of the spring; `None`: the length in the initial configuration.
+    pub springlength: Option<[f64; 2]>,
+    /// Dry friction.
+    pub frictionloss: f64,
+    /// Limit reference dynamics.
+    pub solref_limit: [f64; 2],
+    /// Limit impedance.
+    pub solimp_limit: [f64; 5],
+    /// Dry-friction reference dynamics.
+    pub solref_friction: [f64; 2],
+    /// Dry-friction impedance.
+    pub solimp_friction: [f64; 5],
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+impl Default for TendonSpec {
+    fn default() -> Self {
+        TendonSpec {
+            name: String::new(),
+            terms: Vec::new(),
+            range: [0.0; 2],
+            limited: None,
+            actuatorfrcrange: [0.0; 2],
+            actuatorfrclimited: None,
+            margin: 0.0,
+            stiffness: 0.0,
+            damping: 0.0,
+            springlength: None,
+            frictionloss: 0.0,
+            solref_limit: DEFAULT_SOLREF,
+            solimp_limit: DEFAULT_SOLIMP,
+            solref_friction: DEFAULT_SOLREF,
+            solimp_friction: DEFAULT_SOLIMP,
+            origin: None,
+        }
+    }
+}
+
+/// What an actuator pulls on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TransmissionSpec {
+    /// A joint, its axes in the child frame for ball and free joints.
+    Joint(String),
+    /// A joint, its axes in the parent frame for ball and free joints.
+    JointInParent(String),
+    /// A fixed tendon.
+    Tendon(String),
+}
+
+/// An actuator: force = gain · (control or activation) + bias.
+#[derive(Clone, Debug)]
+pub struct ActuatorSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// What it pulls on.
+    pub transmission: TransmissionSpec,
+    /// How the control becomes an activation.
+    pub dynamics: DynamicsKind,
+    /// Parameters of the dynamics.
+    pub dynprm: [f64; 10],
+    /// Gain as a function of length and velocity.
+    pub gain: GainKind,
+    /// Parameters of the gain.
+    pub gainprm: [f64; 10],
+    /// Bias as a function of length and velocity.
+    pub bias: BiasKind,
+    /// Parameters of the bias.
+    pub biasprm: [f64; 10],
+    /// Damping ratio of a position servo, resolved by the builder into `biasprm[2]`.
+    pub dampratio: Option<f64>,
+    /// Share of the joint or tendon range that the control range takes; needs a limited target.
+    pub inheritrange: f64,
+    /// Scaling of the force onto the transmission's axes.
+    pub gear: [f64; 6],
+    /// Allowed controls.
+    pub ctrlrange: [f64; 2],
+    /// Whether it applies; `None`: if `autolimits` and a range is given.
+    pub ctrllimited: Option<bool>,
+    /// Allowed forces.
+    pub forcerange: [f64; 2],
+    /// Whether it applies; `None` as for `ctrllimited`.
+    pub forcelimited: Option<bool>,
+    /// Allowed activations.
+    pub actrange: [f64; 2],
+    /// Whether it applies; `None` as for `ctrllimited`.
+    pub actlimited: Option<bool>,
+    /// Use the activation as of the end of the step.
+    pub actearly: bool,
+    /// Group.
+    pub group: i32,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// Where a connect or weld holds its bodies together.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConnectAnchor {
+    /// Two bodies (the second may be the world, by the empty name) and the anchor in the first body's frame; the
+    /// builder computes the second anchor from the initial configuration.
+    Bodies {
+        /// First body.
+        body1: String,
+        /// Second body.
+        body2: String,
+        /// Anchor in the first body's frame for connect, in the second body's for weld, m.
+        anchor: Vec3<f64>,
+    },
+    /// Two sites whose frames are to coincide.
+    Sites {
+        /// First site.
+        site1: String,
+        /// Second site.
+        site2: String,
+    },
+}
+
+/// What an equality keeps equal.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EqualityKind {
+    /// Two points coincide.
+    Connect(ConnectAnchor),
+    /// Two frames coincide.
+    Weld {
+        /// The two bodies or sites.
+        anchor: ConnectAnchor,
+        /// Pose of the second body relative to the first; `None`: as in the initial configuration.
+        relpose: Option<(Vec3<f64>, Quat<f64>)>,
+        /// Length that scales rotations against translations.
+        torquescale: f64,
+    },
+    /// One joint follows a quartic of another (or a constant): y − y₀ = Σ coef_k (x − x₀)^k.
+    Joint {
+        /// The joint that follows.
+        joint1: String,
+        /// The joint that leads, if any.
+        joint2: Option<String>,
+        /// Coefficients, constant first.
+        polycoef: [f64; 5],
+    },
+    /// One tendon follows a quartic of another (or a constant).
+    Tendon {
+        /// The tendon that follows.
+        tendon1: String,
+        /// The tendon that leads, if any.
+        tendon2: Option<String>,
+        /// Coefficients, constant first.
+        polycoef: [f64; 5],
+    },
+}
+
+/// An equality constraint.
+#[derive(Clone, Debug)]
+pub struct EqualitySpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// What it keeps equal.
+    pub kind: EqualityKind,
+    /// On in the initial state.
+    pub active: bool,
+    /// Reference dynamics.
+    pub solref: [f64; 2],
+    /// Impedance.
+    pub solimp: [f64; 5],
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// A geom pair that always collides; what is `None` is mixed from its geoms.
+#[derive(Clone, Debug, Default)]
+pub struct PairSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// First geom.
+    pub geom1: String,
+    /// Second geom.
+    pub geom2: String,
+    /// Dimensions of the contact.
+    pub condim: Option<u32>,
+    /// Friction: two slides, spin, two rolls.
+    pub friction: Option<[f64; 5]>,
+    /// Reference dynamics.
+    pub solref: Option<[f64; 2]>,
+    /// Reference dynamics of the friction dimensions; `None`: as `solref`.
+    pub solreffriction: Option<[f64; 2]>,
+    /// Impedance.
+    pub solimp: Option<[f64; 5]>,
+    /// Margin, m.
+    pub margin: Option<f64>,
+    /// Gap, m.
+    pub gap: Option<f64>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// Two bodies that never collide.
+#[derive(Clone, Debug, Default)]
+pub struct ExcludeSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// First body.
+    pub body1: String,
+    /// Second body.
+    pub body2: String,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// A stored state; what is `None` is as in the initial state.
+#[derive(Clone, Debug, Default)]
+pub struct KeyframeSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// s.
+    pub time: f64,
+    /// Positions (nq).
+    pub qpos: Option<Vec<f64>>,
+    /// Velocities (nv).
+    pub qvel: Option<Vec<f64>>,
+    /// Activations (na).
+    pub act: Option<Vec<f64>>,
+    /// Controls (nu).
+    pub ctrl: Option<Vec<f64>>,
+    /// Mocap positions (3 nmocap).
+    pub mocap_pos: Option<Vec<f64>>,
+    /// Mocap orientations (4 nmocap).
+    pub mocap_quat: Option<Vec<f64>>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}

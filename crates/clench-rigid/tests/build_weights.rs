@@ -1,0 +1,225 @@
+//! What the builder derives from the model as a whole: inverse inertias, springs, servo damping, equality data.
+
+use clench_math::{Quat, Vec3};
+use clench_rigid::State;
+use clench_rigid::builder::{
+    ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomSpec, JointSpec,
+    ModelBuilder, TendonSpec, TransmissionSpec,
+};
+use clench_rigid::dynamics::{com, inertia, kinematics};
+use clench_rigid::model::{EqualityTarget, Model};
+use clench_rigid::workspace::Positions;
+use clench_solver::TreeMatrix;
+
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+
+fn assert_close(actual: f64, expected: f64) {
+    let error = (actual - expected).abs() / expected.abs();
+    assert!(error < 1e-12, "{actual} instead of {expected}");
+}
+
+/// A point mass (nearly) at the end of a massless rod of length 1.
+fn bob(name: &str, mass: f64) -> BodySpec {
+    BodySpec::new(name).inertial(mass, [0.0, 0.0, -1.0], [1e-14; 3])
+}
+
+fn positions(model: &Model) -> (Positions<f64>, Vec<f64>) {
+    let mut pos = Positions::new(model);
+    kinematics::kinematics(model, &model.params, &State::new(model), &mut pos);
+    com::com_positions(model, &model.params, &mut pos);
+    let mut mass = TreeMatrix::zeros(&model.tree);
+    inertia::composite_inertia(model, &model.params, &mut pos, &mut mass);
+    let dense = mass.to_dense(&model.tree);
+    (pos, dense)
+}
+
+#[test]
+fn a_free_body_resists_with_its_mass_and_inertia() {
+    let mut builder = ModelBuilder::new("free");
+    let body = BodySpec::new("b")
+        .turned([0.3, 0.1, -0.5, 0.7])
+        .at([1.0, 2.0, 3.0]);
+    let body = body
+        .inertial(4.0, [0.0; 3], [0.5, 0.25, 0.4])
+        .joint(JointSpec::free("f"));
+    builder.add_body(ModelBuilder::WORLD, body);
+    let p = builder.build().unwrap().params;
+    let rotation = (1.0 / 0.5 + 1.0 / 0.25 + 1.0 / 0.4) / 3.0;
+    assert_close(p.body_invweight0[1][0], 0.25);
+    assert_close(p.body_invweight0[1][1], rotation);
+    for dof in 0..3 {
+        assert_close(p.dof_invweight0[dof], 0.25);
+        assert_close(p.dof_invweight0[dof + 3], rotation);
+    }
+    assert_eq!(p.body_invweight0[0], [0.0; 2]);
+}
+
+#[test]
+fn a_double_pendulum_resists_with_the_inverse_of_its_mass_matrix() {
+    let (m1, m2, armature) = (2.0, 3.0, 0.5);
+    let mut builder = ModelBuilder::new("double pendulum");
+    let upper = builder.add_body(
+        ModelBuilder::WORLD,
+        bob("upper", m1).joint(JointSpec::hinge("shoulder", Y).armature(armature)),
+    );
+    let lower = bob("lower", m2)
+        .at([0.0, 0.0, -1.0])
+        .joint(JointSpec::hinge("elbow", Y));
+    builder.add_body(upper, lower);
+    builder.tendons.push(TendonSpec::fixed(
+        "both",
+        &[("shoulder", 2.0), ("elbow", -1.0)],
+    ));
+    let model = builder.build().unwrap();
+    let p = &model.params;
+
+    // Hanging straight, in relative angles: M = [m1 + 4 m2 + armature, 2 m2; 2 m2, m2].
+    let (a, b, c) = (m1 + 4.0 * m2 + armature, 2.0 * m2, m2);
+    let det = a * c - b * b;
+    assert_close(p.dof_invweight0[0], c / det);
+    assert_close(p.dof_invweight0[1], a / det);
+    assert_close(p.tendon_invweight0[0], (4.0 * c + 4.0 * b + a) / det);
+    // The lower bob moves along x by −2 and −1 per radian, so a third of J M⁻¹ Jᵀ.
+    assert_close(p.body_invweight0[2][0], (4.0 * c - 4.0 * b + a) / det / 3.0);
+    assert_eq!(p.body_subtreemass, [5.0, 5.0, 3.0]);
+}
+
+#[test]
+fn a_lone_slider_resists_with_its_mass_in_every_direction() {
+    let mut builder = ModelBuilder::new("sliders");
+    let slider = |axis| JointSpec::slide("", axis).armature(3.0);
+    let ball = || BodySpec::new("").geom(GeomSpec::sphere(0.1).mass(2.0));
+    builder.add_body(ModelBuilder::WORLD, ball().joint(slider(Y)));
+    builder.add_body(ModelBuilder::WORLD, ball().joint(slider([0.0, 1.0, 1.0])));
+    let p = builder.build().unwrap().params;
+    // MuJoCo's rule for what slides along a coordinate axis, and the general one for what does not.
+    assert_eq!(
+        (p.body_invweight0[1], p.dof_invweight0[0]),
+        ([0.5, 0.0], 0.5)
+    );
+    assert_close(p.body_invweight0[2][0], 1.0 / 5.0 / 3.0);
+    assert_close(p.dof_invweight0[1], 1.0 / 5.0);
+}
+
+#[test]
+fn springs_and_servos_get_the_damping_ratio_asked_for() {
+    let mut builder = ModelBuilder::new("oscillators");
+    let hinge = |name| JointSpec::hinge(name, Y);
+    let sprung = JointSpec {
+        springdamper: [0.1, 0.7],
+        ..hinge("sprung")
+    };
+    builder.add_body(ModelBuilder::WORLD, bob("a", 2.0).joint(sprung));
+    builder.add_body(ModelBuilder::WORLD, bob("b", 5.0).joint(hinge("driven")));
+    let servo =
+        ActuatorSpec::position("servo", TransmissionSpec::Joint("driven".into()), 80.0, 0.0);
+    builder.actuators.push(ActuatorSpec {
+        dampratio: Some(0.4),
+        gear: [3.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        ..servo
+    });
+    let p = builder.build().unwrap().params;
+
+    // m ẍ + b ẋ + k x = 0 decays with time constant 2m/b and has damping ratio b / (2 √(k m)).
+    let (k, b, m) = (p.jnt_stiffness[0], p.dof_damping[0], 2.0 + 1e-14);
+    assert_close(2.0 * m / b, 0.1);
+    assert_close(b / (2.0 * (k * m).sqrt()), 0.7);
+    // Through a gear of 3 the joint feels nine times kp and kv.
+    let (kp, kv) = (80.0 * 9.0, -p.actuator_biasprm[0][2] * 9.0);
+    assert_close(kv / (2.0 * (kp * 5.0_f64).sqrt()), 0.4);
+}
+
+#[test]
+fn equalities_hold_in_the_initial_configuration() {
+    let mut builder = ModelBuilder::new("equalities");
+    let turned = |name: &str, pos, quat| {
+        BodySpec::new(name)
+            .at(pos)
+            .turned(quat)
+            .geom(GeomSpec::sphere(0.1))
+    };
+    let a = turned("a", [1.0, 2.0, 3.0], [0.3, 0.1, -0.5, 0.7]).joint(JointSpec::free("f"));
+    let b = turned("b", [0.5, 0.0, 0.2], [0.1, 0.9, 0.2, 0.1]).joint(JointSpec::hinge("h", Y));
+    let c = turned("c", [-1.0, 0.0, 0.0], [0.9, 0.1, 0.2, -0.1]).joint(JointSpec::ball("ball"));
+    let a = builder.add_body(ModelBuilder::WORLD, a);
+    builder.add_body(a, b);
+    builder.add_body(ModelBuilder::WORLD, c);
+    let anchor = |body1: &str, body2: &str| ConnectAnchor::Bodies {
+        body1: body1.into(),
+        body2: body2.into(),
+        anchor: Vec3::new(0.1, -0.2, 0.4),
+    };
+    let weld = |anchor| EqualityKind::Weld {
+        anchor,
+        relpose: None,
+        torquescale: 1.0,
+    };
+    for kind in [
+        EqualityKind::Connect(anchor("b", "c")),
+        EqualityKind::Connect(anchor("a", "")),
+        weld(anchor("c", "b")),
+        weld(anchor("a", "")),
+    ] {
+        builder.equalities.push(EqualitySpec::new("", kind));
+    }
+    let model = builder.build().unwrap();
+    let (pos, _) = positions(&model);
+    for (i, equality) in model.equalities.iter().enumerate() {
+        let (EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 }) =
+            equality.target
+        else {
+            panic!("only connects and welds were described");
+        };
+        let p = &model.params;
+        let first = pos.xpos[body1] + pos.xmat[body1] * p.eq_anchor1[i];
+        let second = pos.xpos[body2] + pos.xmat[body2] * p.eq_anchor2[i];
+        assert!((first - second).norm() < 1e-14);
+        if matches!(equality.target, EqualityTarget::Weld { .. }) {
+            let (first, second) = (
+                pos.xquat[body1] * p.eq_quat1[i],
+                pos.xquat[body2] * p.eq_quat2[i],
+            );
+            assert!(first.difference(second).norm() < 1e-14);
+        }
+    }
+}
+
+#[test]
+fn an_aligned_free_body_is_the_same_body_with_a_diagonal_mass_matrix() {
+    let described = |align| {
+        let mut builder = ModelBuilder::new("align");
+        let body = BodySpec::new("b")
+            .at([1.0, 2.0, 3.0])
+            .turned([0.3, 0.1, -0.5, 0.7]);
+        let block = GeomSpec::cuboid([0.1, 0.2, 0.3])
+            .at([0.3, 0.0, 0.1])
+            .turned([0.8, 0.1, 0.2, 0.3]);
+        let body = body
+            .geom(block)
+            .geom(GeomSpec::sphere(0.1))
+            .site("s", [1.0, 1.0, 1.0]);
+        builder.add_body(ModelBuilder::WORLD, body.joint(JointSpec::free("f")));
+        builder.compiler.alignfree = align;
+        builder.build().unwrap()
+    };
+    let (plain, aligned) = (described(false), described(true));
+    let ((old, _), (new, mass)) = (positions(&plain), positions(&aligned));
+    let near = |a: Vec3<f64>, b: Vec3<f64>| (a - b).norm() < 1e-13;
+    assert!(near(old.site_xpos[0], new.site_xpos[0]));
+    assert!(near(old.xipos[1], new.xipos[1]));
+    for g in 0..2 {
+        assert!(near(old.geom_xpos[g], new.geom_xpos[g]));
+        let turn =
+            Quat::from_matrix(&old.geom_xmat[g]).difference(Quat::from_matrix(&new.geom_xmat[g]));
+        assert!(turn.norm() < 1e-13);
+    }
+    for (i, row) in mass.chunks(6).enumerate() {
+        let off: f64 = row
+            .iter()
+            .enumerate()
+            .filter(|&(j, _)| j != i)
+            .map(|(_, v)| v.abs())
+            .sum();
+        assert!(off < 1e-12 * row[i], "row {i}: {row:?}");
+    }
+}
