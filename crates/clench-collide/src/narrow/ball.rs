@@ -1,6 +1,6 @@
 //! Two balls, and the pairs that come down to two balls: sphere–sphere and sphere–capsule.
 
-use super::Placed;
+use super::{Placed, segment::Segment};
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Vec3};
 
@@ -25,13 +25,12 @@ pub(super) fn ball_ball<T: Real>(
     let offset = b.center - a.center;
     let squared = offset.norm_squared();
     let reach = a.radius + b.radius + margin;
-    let near = squared.le(reach * reach) & wanted;
-    if !near.any() {
+    let active = squared.le(reach * reach) & reach.ge(T::ZERO) & wanted;
+    if !active.any() {
         return;
     }
     let length = squared.sqrt();
     let distance = length - a.radius - b.radius;
-    let active = distance.le(margin) & near;
     let coincident = length.lt(T::new(1e-15));
     let inverse = T::ONE / T::select(coincident, T::ONE, length);
     let mut normal = offset * inverse;
@@ -61,7 +60,8 @@ pub(super) fn sphere_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out:
         radius: s.shape.size.x,
     };
     let all = T::Mask::splat(true);
-    ball_ball(ball(a), ball(b), || across_axes(a, b), margin, all, out);
+    let across = || a.pose.axis().cross(b.pose.axis()).normalize().0;
+    ball_ball(ball(a), ball(b), across, margin, all, out);
 }
 
 pub(super) fn sphere_capsule<T: Real>(
@@ -70,18 +70,16 @@ pub(super) fn sphere_capsule<T: Real>(
     margin: T,
     out: &mut Contacts<T>,
 ) {
+    let segment = Segment::of(b);
     let center = a.pose.position;
-    let axis = b.pose.axis();
-    let (radius, half_length) = (b.shape.size.x, b.shape.size.y);
-    let along = axis.dot(center - b.pose.position);
-    let along = along.clamp(-half_length, half_length);
+    let along = segment.clamp(segment.axis.dot(center - segment.center));
     let sphere = Ball {
         center,
         radius: a.shape.size.x,
     };
     let nearest = Ball {
-        center: b.pose.position + axis * along,
-        radius,
+        center: segment.at(along),
+        radius: b.shape.size.x,
     };
     let all = T::Mask::splat(true);
     ball_ball(sphere, nearest, || across_axes(a, b), margin, all, out);

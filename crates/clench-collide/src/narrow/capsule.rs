@@ -14,44 +14,13 @@
 use super::{
     Placed,
     ball::{Ball, across_axes, ball_ball},
+    segment::Segment,
 };
 use crate::Contacts;
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Mask, Real};
 
 /// The squared sine of the angle below which capsules are parallel.
 const PARALLEL: f64 = 1e-8;
-
-/// The middle line of a capsule and its radius.
-#[derive(Clone, Copy)]
-struct Segment<T> {
-    center: Vec3<T>,
-    axis: Vec3<T>,
-    half_length: T,
-    radius: T,
-}
-
-impl<T: Real> Segment<T> {
-    #[inline(always)]
-    fn new(capsule: Placed<T>) -> Self {
-        Segment {
-            center: capsule.pose.position,
-            axis: capsule.pose.axis(),
-            half_length: capsule.shape.size.y,
-            radius: capsule.shape.size.x,
-        }
-    }
-    #[inline(always)]
-    fn clamp(&self, along: T) -> T {
-        along.clamp(-self.half_length, self.half_length)
-    }
-    #[inline(always)]
-    fn ball(&self, along: T) -> Ball<T> {
-        Ball {
-            center: self.center + self.axis * along,
-            radius: self.radius,
-        }
-    }
-}
 
 pub(super) fn capsule_capsule<T: Real>(
     a: Placed<T>,
@@ -59,7 +28,7 @@ pub(super) fn capsule_capsule<T: Real>(
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    let (first, second) = (Segment::new(a), Segment::new(b));
+    let (first, second) = (Segment::of(a), Segment::of(b));
     let offset = second.center - first.center;
     let across = first.axis.cross(second.axis);
     let cosine = first.axis.dot(second.axis);
@@ -86,11 +55,17 @@ pub(super) fn capsule_capsule<T: Real>(
     let begin = overlap(-T::ONE);
     let s = T::select(parallel, begin.0, s);
     let t = T::select(parallel, begin.1, t);
-    let normal = || across_axes(a, b);
-    let all = T::Mask::splat(true);
-    ball_ball(first.ball(s), second.ball(t), normal, margin, all, out);
+    let add = |s: T, t: T, wanted: T::Mask, out: &mut Contacts<T>| {
+        let ball = |capsule: Placed<T>, center| Ball {
+            center,
+            radius: capsule.shape.size.x,
+        };
+        let (one, other) = (ball(a, first.at(s)), ball(b, second.at(t)));
+        ball_ball(one, other, || across_axes(a, b), margin, wanted, out);
+    };
+    add(s, t, T::Mask::splat(true), out);
     if parallel.any() {
         let (s, t) = overlap(T::ONE);
-        ball_ball(first.ball(s), second.ball(t), normal, margin, parallel, out);
+        add(s, t, parallel, out);
     }
 }

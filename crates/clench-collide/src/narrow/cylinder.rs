@@ -3,7 +3,8 @@
 use super::{
     Placed,
     ball::across_axes,
-    way_out::{Segment, deepest, way_out},
+    segment::Segment,
+    way_out::{deepest, way_out},
 };
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3};
@@ -110,9 +111,13 @@ pub(super) fn capsule_cylinder<T: Real>(
         axis: b.pose.rotation.transpose_mul(a.pose.axis()),
         half_length: a.shape.size.y,
     };
+    let near = (cylinder.apart_at_least(&segment) - radius).le(margin);
+    if !near.any() {
+        return;
+    }
     let nearest = cylinder.nearest_on(&segment);
     let least = cylinder.distance(segment.at(nearest)).0;
-    let active = (least - radius).le(margin);
+    let active = near & (least - radius).le(margin);
     if !active.any() {
         return;
     }
@@ -150,6 +155,17 @@ pub(super) fn capsule_cylinder<T: Real>(
 }
 
 impl<T: Real> Cylinder<T> {
+    /// What a segment is at least away, cheaply: the larger of how far beyond the caps and beyond the side it stays.
+    fn apart_at_least(&self, segment: &Segment<T>) -> T {
+        let (c, u) = (segment.center, segment.axis);
+        let beyond_caps = c.z.abs() - segment.half_length * u.z.abs() - self.half_length;
+        let square = (u.x * u.x + u.y * u.y).max(T::new(1e-15));
+        let t = -(c.x * u.x + c.y * u.y) / square;
+        let p = segment.at(segment.clamp(t));
+        let beyond_side = (p.x * p.x + p.y * p.y).sqrt() - self.radius;
+        beyond_caps.max(beyond_side)
+    }
+
     /// The parameter of the point on a segment that has the least signed distance.
     fn nearest_on(&self, segment: &Segment<T>) -> T {
         let (mut low, mut high) = (-segment.half_length, segment.half_length);

@@ -9,6 +9,7 @@ mod box_round;
 mod capsule;
 mod cylinder;
 mod plane;
+mod segment;
 mod way_out;
 
 use crate::{Contacts, Pose, Shape, ShapeKind};

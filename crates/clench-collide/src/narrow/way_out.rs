@@ -18,25 +18,8 @@
 //!
 //! which is convex, so an interior minimum of g is the larger root of F, between the minimum of F and infinity.
 
+use super::segment::Segment;
 use clench_math::{Real, Vec3};
-
-/// A straight line of points.
-#[derive(Clone, Copy)]
-pub(super) struct Segment<T> {
-    /// Its middle.
-    pub center: Vec3<T>,
-    /// Unit direction.
-    pub axis: Vec3<T>,
-    pub half_length: T,
-}
-
-impl<T: Real> Segment<T> {
-    /// The point at a signed length from the middle.
-    #[inline(always)]
-    pub fn at(&self, t: T) -> Vec3<T> {
-        self.center + self.axis * t
-    }
-}
 
 /// Halvings of a right angle that leave less than a rounding error of it.
 const HALVINGS: usize = 54;
@@ -79,7 +62,7 @@ fn off_the_side<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
     let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
     let (c, u) = (flat(segment.center), flat(segment.axis));
     let square = u.norm_squared().max(T::new(1e-15));
-    let t = (-(c.dot(u)) / square).clamp(-segment.half_length, segment.half_length);
+    let t = segment.clamp(-(c.dot(u)) / square);
     let nearest = c + u * t;
     let length = nearest.norm();
     let on_axis = length.lt(T::new(1e-12));
@@ -158,6 +141,5 @@ pub(super) fn deepest<T: Real>(
     let below_side = T::select(parallel, otherwise, below_side);
     let across = T::select(upward.lt(tiny), below_side, below_rim);
     let across = T::select(level.lt(tiny), otherwise, across);
-    let across = across.clamp(-segment.half_length, segment.half_length);
-    T::select(slope.abs().lt(tiny), across, end)
+    T::select(slope.abs().lt(tiny), segment.clamp(across), end)
 }

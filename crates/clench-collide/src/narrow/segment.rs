@@ -1,0 +1,35 @@
+//! The middle line of a capsule.
+
+use super::Placed;
+use clench_math::{Real, Vec3};
+
+/// The points center + t axis with |t| ≤ half length.
+#[derive(Clone, Copy)]
+pub(super) struct Segment<T> {
+    pub center: Vec3<T>,
+    /// Unit direction.
+    pub axis: Vec3<T>,
+    pub half_length: T,
+}
+
+impl<T: Real> Segment<T> {
+    /// The middle line of a capsule, in the world.
+    #[inline(always)]
+    pub fn of(capsule: Placed<T>) -> Self {
+        Segment {
+            center: capsule.pose.position,
+            axis: capsule.pose.axis(),
+            half_length: capsule.shape.size.y,
+        }
+    }
+    /// The point at a signed length from the middle.
+    #[inline(always)]
+    pub fn at(&self, t: T) -> Vec3<T> {
+        self.center + self.axis * t
+    }
+    /// The nearest parameter on the segment.
+    #[inline(always)]
+    pub fn clamp(&self, t: T) -> T {
+        t.clamp(-self.half_length, self.half_length)
+    }
+}
