@@ -10,7 +10,6 @@ import states
 
 CONES = {"pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL, "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC}
 CONTACT_FIELDS = ("dist", "pos", "frame", "includemargin", "friction", "solref", "solreffriction", "solimp", "dim")
-INCLUDED = 0  # mjContact.exclude: this contact makes constraint rows
 
 
 def load(path, cone=None):
@@ -79,11 +78,6 @@ def fed(state, result):
     """The state with MuJoCo's contacts in it, which replace collision detection."""
     contacts = [{name: value for name, value in c.items() if name != "force"} for c in result.contacts]
     return {**state, "contacts": contacts}
-
-
-def included(result):
-    """The contacts that make constraint rows."""
-    return [c for c in result.contacts if c["exclude"] == INCLUDED]
 
 
 def distance_to_optimum(result):
