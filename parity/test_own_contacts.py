@@ -3,6 +3,10 @@
 Held to it are the pairs of shapes that MuJoCo solves in closed form. For the rest (a cylinder on a capsule, box or
 cylinder) MuJoCo iterates to a tolerance of its own and chooses points by another rule, so states in which such a pair
 touches are left out, and a model must keep some states.
+
+Where shapes touch at exactly the distance at which contact begins, as gymnasium's point does on its floor all the time,
+the last bit decides whether there is a contact, and MuJoCo's own bit is as good as ours. In such states the
+acceleration must be MuJoCo's either with all such contacts or with none of them.
 """
 
 import functools
@@ -17,6 +21,7 @@ from compare import assert_close
 
 SAME_POINT = 1e-8  # metres, and radians of the frame
 SOLVED = 1e-6
+LAST_BIT = 1e-12  # metres
 
 PLANE, SPHERE, CAPSULE, BOX, CYLINDER = (
     int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("PLANE", "SPHERE", "CAPSULE", "BOX", "CYLINDER")
@@ -27,13 +32,18 @@ CLOSED_FORM |= {(PLANE, CYLINDER), (SPHERE, CYLINDER)}
 
 @functools.lru_cache(maxsize=None)
 def comparable(model, cone):
-    """(state number, clench's result, MuJoCo's result) where every touching pair has a closed form."""
+    """(state number, state, clench's result, MuJoCo's result) where every touching pair has a closed form."""
     geom_type = oracle.load(model, cone).geom_type
     closed = lambda c: tuple(sorted(int(geom_type[g]) for g in c["geom"])) in CLOSED_FORM
     with program.Forward(model, "--cone", cone, "--iterations", 300, *program.EXACT) as forward:
         pairs = zip(states.sample(model), oracle.references(model, cone), strict=True)
-        both = [(k, forward(state), theirs) for k, (state, theirs) in enumerate(pairs)]
-    return [(k, ours, theirs) for k, ours, theirs in both if all(map(closed, ours["contacts"] + theirs.contacts))]
+        both = [(k, state, forward(state), theirs) for k, (state, theirs) in enumerate(pairs)]
+    return [case for case in both if all(map(closed, case[2]["contacts"] + case[3].contacts))]
+
+
+def certain(contacts):
+    """The contacts whose existence more than the last bit decides."""
+    return [c for c in contacts if abs(c["dist"] - c["includemargin"]) > LAST_BIT]
 
 
 def test_some_states_are_comparable(model):
@@ -42,22 +52,33 @@ def test_some_states_are_comparable(model):
 
 def test_contact_sets(model):
     """The same pairs, points, depths, frames, dimensions and friction, whatever their order."""
-    for k, ours, theirs in comparable(model, "pyramidal"):
-        left = list(ours["contacts"])
-        for contact in theirs.contacts:
+    for k, _, ours, theirs in comparable(model, "pyramidal"):
+        left = certain(ours["contacts"])
+        for contact in certain(theirs.contacts):
             same_pair = [c for c in left if c["geom"] == contact["geom"]]
             assert same_pair, f"state {k}: MuJoCo has {brief(contact)}, we have left {list(map(brief, left))}"
             nearest = min(same_pair, key=lambda c: np.linalg.norm(np.subtract(c["pos"], contact["pos"])))
             left.remove(nearest)
-            for field in ("dim", "dist", "pos", "frame", "friction"):
+            for field in ("dim", "dist", "pos", "frame", "includemargin", "friction"):
                 actual, expected = (np.ravel(c[field]) for c in (nearest, contact))
                 assert_close(f"state {k}: {brief(contact)} {field}", actual, expected, SAME_POINT, 1.0)
         assert not left, f"state {k}: MuJoCo has no {list(map(brief, left))}"
 
 
 def test_acceleration(model, cone):
-    for k, ours, theirs in comparable(model, cone):
-        assert_close(f"state {k}: qacc", ours["qacc"], theirs.qacc, SOLVED, oracle.acceleration_scale(theirs))
+    for k, state, ours, theirs in comparable(model, cone):
+        answers = [theirs]
+        if len(certain(theirs.contacts)) < len(theirs.contacts):
+            answers = [oracle.reference(widened(model, cone, margin), state) for margin in (LAST_BIT, -LAST_BIT)]
+        nearest = min(answers, key=lambda a: np.abs(a.qacc - ours["qacc"]).max())
+        assert_close(f"state {k}: qacc", ours["qacc"], nearest.qacc, SOLVED, oracle.acceleration_scale(nearest))
+
+
+def widened(model, cone, margin):
+    """MuJoCo's model with all contact margins changed by far less than matters, and more than rounding."""
+    mjmodel = oracle.load(model, cone)
+    mjmodel.geom_margin += margin
+    return mjmodel
 
 
 def brief(contact):

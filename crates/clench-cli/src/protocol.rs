@@ -59,7 +59,11 @@ struct ContactLine {
 impl StateLine {
     /// Reads one line of standard input.
     pub fn parse(line: &str) -> Result<StateLine> {
-        Ok(serde_json::from_str(line)?)
+        // A plain serde error says which column is wrong; the path says which field.
+        let mut json = serde_json::Deserializer::from_str(line);
+        let state = serde_path_to_error::deserialize(&mut json)?;
+        json.end()?;
+        Ok(state)
     }
 
     /// Sets the state of a simulation that stands at its defaults, and runs `forward` on it.
@@ -199,6 +203,8 @@ struct ContactResult {
     dist: f64,
     pos: [f64; 3],
     frame: [f64; 9],
+    /// The contact makes a force where `dist` is less.
+    includemargin: f64,
     dim: usize,
     friction: [f64; 5],
     /// In the contact frame: normal, two tangents, spin, two rolls.
@@ -279,6 +285,7 @@ impl ContactResult {
             dist: contact.dist,
             pos: contact.pos.to_array(),
             frame,
+            includemargin: contact.includemargin,
             dim: contact.dim,
             friction: contact.friction,
             force: readout::contact_force(sim.workspace(), index, 0),
