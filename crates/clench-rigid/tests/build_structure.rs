@@ -69,6 +69,13 @@ fn bodies_come_depth_first_and_know_what_moves_them() {
 }
 
 #[test]
+fn an_empty_world_is_a_model() {
+    let model = ModelBuilder::new("empty").build().unwrap();
+    assert_eq!((model.nbody(), model.nq, model.nv), (1, 0, 0));
+    assert_eq!(model.body("world"), Some(0));
+}
+
+#[test]
 fn ranges_limit_where_the_author_or_autolimits_says_so() {
     let mut builder = ModelBuilder::new("limits");
     let range = |limited| JointSpec {

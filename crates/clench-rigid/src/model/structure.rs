@@ -236,7 +236,8 @@ pub enum EqualityTarget {
         /// Second body.
         body2: usize,
     },
-    /// Frames of two bodies coincide; poses are `params.eq_anchor1`, `eq_anchor2`, `eq_relquat`, `eq_torquescale`.
+    /// Frames of two bodies coincide; poses are `params.eq_anchor1`, `eq_anchor2`,
+    /// `eq_quat1`, `eq_quat2`, `eq_torquescale`.
     Weld {
         /// First body.
         body1: usize,
