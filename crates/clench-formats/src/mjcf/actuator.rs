@@ -176,12 +176,14 @@ impl ActuatorDraft {
         if inherited.dynamics == DynamicsKind::FilterExact {
             (law.dynamics, law.dynprm) = (DynamicsKind::FilterExact, inherited.dynprm);
         }
-        match not_negative(element, "timeconst")? {
-            Some(0.0) => law.dynamics = DynamicsKind::None,
-            Some(timeconst) => {
-                (law.dynamics, law.dynprm) = (DynamicsKind::FilterExact, params([timeconst]));
-            }
-            None => {}
+        if let Some(timeconst) = not_negative(element, "timeconst")? {
+            let filters = timeconst > 0.0;
+            law.dynamics = if filters {
+                DynamicsKind::FilterExact
+            } else {
+                DynamicsKind::None
+            };
+            law.dynprm = params([timeconst]);
         }
         Ok(law)
     }

@@ -1,4 +1,4 @@
-//! `<keyframe>`: stored states.
+//! `<keyframe>`: stored states, and `<size nkey="..."/>`, which asks for more of them.
 
 use super::document::Element;
 use crate::LoadError;
@@ -19,4 +19,21 @@ pub(crate) fn read(element: &Element) -> Result<KeyframeSpec, LoadError> {
     };
     element.set_number("time", &mut key.time)?;
     Ok(key)
+}
+
+/// More keyframes than a file can mean to have.
+const MAX_KEYFRAMES: usize = 10_000;
+
+/// Adds keyframes in the initial state until there are as many as a `<size>` asks for.
+pub(crate) fn pad(size: &Element, keyframes: &mut Vec<KeyframeSpec>) -> Result<(), LoadError> {
+    // -1 is how MuJoCo writes "as many as there are".
+    let wanted = size.integer("nkey")?.unwrap_or(-1).max(-1);
+    let wanted = usize::try_from(wanted).unwrap_or(0);
+    if wanted > MAX_KEYFRAMES {
+        return Err(size.error(format!("nkey is more than {MAX_KEYFRAMES}")));
+    }
+    if keyframes.len() < wanted {
+        keyframes.resize_with(wanted, KeyframeSpec::default);
+    }
+    Ok(())
 }

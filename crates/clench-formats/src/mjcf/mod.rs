@@ -183,5 +183,8 @@ fn read_references(
     for element in entries(root, "keyframe") {
         builder.keyframes.push(keyframe::read(element)?);
     }
+    for size in sections(root, "size") {
+        keyframe::pad(size, &mut builder.keyframes)?;
+    }
     Ok(())
 }
