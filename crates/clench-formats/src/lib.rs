@@ -18,7 +18,14 @@ use std::path::Path;
 /// # Errors
 /// [`LoadError`] where [`read`] fails or the model cannot be built: dangling names, moving bodies without mass, ...
 pub fn load(path: impl AsRef<Path>) -> Result<Model, LoadError> {
-    Ok(read(path)?.build()?)
+    let path = path.as_ref();
+    read(path)?.build().map_err(|error| {
+        let mut error = LoadError::from(error);
+        if error.line.is_none() {
+            error.file = path.to_string_lossy().into();
+        }
+        error
+    })
 }
 
 /// Loads a model from text; includes are found from the working directory.

@@ -43,6 +43,11 @@ pub(crate) fn parse(bytes: &[u8], file: &Arc<str>) -> Result<Element, LoadError>
     Ok(convert(document.root_element(), file, &newlines))
 }
 
+/// What to say about elements below `MAX_DEPTH`.
+pub(crate) fn too_deep() -> String {
+    format!("elements are nested more than {MAX_DEPTH} deep")
+}
+
 fn count_newlines(bytes: &[u8]) -> u32 {
     bytes.iter().filter(|&&b| b == b'\n').count() as u32
 }
@@ -71,13 +76,13 @@ fn check_depth(text: &str, file: &Arc<str>) -> Result<(), LoadError> {
         let tag = &rest[..end];
         if tag.starts_with("</") {
             depth = depth.saturating_sub(1);
-        } else if !tag.starts_with("<!") && !tag.ends_with("/>") {
+        } else if !tag.starts_with("<!") {
             depth += 1;
             if depth > MAX_DEPTH {
                 let line = 1 + count_newlines(&text.as_bytes()[..start]);
-                let message = format!("elements are nested more than {MAX_DEPTH} deep");
-                return Err(LoadError::line(file, line, message));
+                return Err(LoadError::line(file, line, too_deep()));
             }
+            depth -= usize::from(tag.ends_with("/>"));
         }
         at = start + end;
     }

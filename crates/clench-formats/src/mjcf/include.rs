@@ -41,7 +41,7 @@ impl Includes {
         depth: usize,
     ) -> Result<(), LoadError> {
         if depth > MAX_DEPTH {
-            return Err(element.error(format!("elements are nested more than {MAX_DEPTH} deep")));
+            return Err(element.error(document::too_deep()));
         }
         let mut expanded = Vec::with_capacity(element.children.len());
         for mut child in std::mem::take(&mut element.children) {

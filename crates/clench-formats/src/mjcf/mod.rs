@@ -4,6 +4,7 @@
 //! and attribute, and only then do the sections read their values; so a section never meets what it does not know.
 
 mod actuator;
+mod assets;
 mod attributes;
 mod body;
 mod compiler;
@@ -82,6 +83,7 @@ fn read(
     }
     includes.expand(&mut root, directory, 1)?;
     schema::check(&root)?;
+    assets::check_materials(&root)?;
     read_model(&root)
 }
 

@@ -1,0 +1,197 @@
+//! Actuators and the laws that their shortcuts stand for.
+
+use clench_formats::read_str;
+use clench_rigid::builder::{ActuatorSpec, TransmissionSpec};
+use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
+
+/// The actuator of a model with these defaults.
+fn actuator(defaults: &str, element: &str) -> ActuatorSpec {
+    let text =
+        format!("<mujoco><default>{defaults}</default><actuator>{element}</actuator></mujoco>");
+    match read_str(&text) {
+        Ok(builder) => builder.actuators[0].clone(),
+        Err(error) => panic!("{element}: {error}"),
+    }
+}
+
+fn rejected(element: &str) -> String {
+    let text = format!("<mujoco><actuator>{element}</actuator></mujoco>");
+    read_str(&text).unwrap_err().message
+}
+
+/// Gain, bias on length, bias on velocity.
+fn servo(actuator: &ActuatorSpec) -> [f64; 3] {
+    [
+        actuator.gainprm[0],
+        actuator.biasprm[1],
+        actuator.biasprm[2],
+    ]
+}
+
+#[test]
+fn a_motor_passes_its_control_on() {
+    let motor = actuator(
+        "",
+        "<motor name='m' joint='j' gear='2 3' ctrlrange='-1 1'/>",
+    );
+    assert_eq!(motor.transmission, TransmissionSpec::Joint("j".into()));
+    assert_eq!((motor.gain, motor.bias, motor.dynamics), Default::default());
+    assert_eq!((motor.gainprm[0], motor.ctrlrange), (1.0, [-1.0, 1.0]));
+    assert_eq!(motor.gear, [2.0, 3.0, 0.0, 0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn transmissions() {
+    let tendon = actuator("", "<motor tendon='t'/>").transmission;
+    assert_eq!(tendon, TransmissionSpec::Tendon("t".into()));
+    let parent = actuator("", "<motor jointinparent='j'/>").transmission;
+    assert_eq!(parent, TransmissionSpec::JointInParent("j".into()));
+    assert!(rejected("<motor/>").contains("required"));
+    assert!(rejected("<motor joint='j' tendon='t'/>").contains("both"));
+    assert!(rejected("<motor site='s'/>").contains("not supported yet"));
+}
+
+#[test]
+fn position_pulls_to_its_target() {
+    let plain = actuator("", "<position joint='j'/>");
+    assert_eq!(
+        (servo(&plain), plain.bias),
+        ([1.0, -1.0, 0.0], BiasKind::Affine)
+    );
+    let damped = actuator("", "<position joint='j' kp='3' kv='2'/>");
+    assert_eq!(servo(&damped), [3.0, -3.0, -2.0]);
+    let ratio = actuator("", "<position joint='j' kp='3' dampratio='0.7'/>");
+    assert_eq!(
+        (servo(&ratio), ratio.dampratio),
+        ([3.0, -3.0, 0.0], Some(0.7))
+    );
+    let slow = actuator("", "<position joint='j' timeconst='0.1'/>");
+    assert_eq!(
+        (slow.dynamics, slow.dynprm[0]),
+        (DynamicsKind::FilterExact, 0.1)
+    );
+    let quick = actuator("", "<position joint='j' timeconst='0'/>");
+    assert_eq!(quick.dynamics, DynamicsKind::None);
+    assert!(rejected("<position joint='j' kv='1' dampratio='1'/>").contains("both"));
+    assert!(rejected("<position joint='j' kv='-1'/>").contains("negative"));
+}
+
+#[test]
+fn the_other_shortcuts() {
+    let velocity = actuator("", "<velocity joint='j' kv='4'/>");
+    assert_eq!(servo(&velocity), [4.0, 0.0, -4.0]);
+    let integrated = actuator("", "<intvelocity joint='j' kp='4' actrange='-1 1'/>");
+    assert_eq!(
+        (servo(&integrated), integrated.dynamics),
+        ([4.0, -4.0, 0.0], DynamicsKind::Integrator)
+    );
+    let damper = actuator("", "<damper joint='j' kv='2' ctrlrange='0 1'/>");
+    assert_eq!((damper.gain, damper.gainprm[2]), (GainKind::Affine, -2.0));
+    assert_eq!(damper.ctrllimited, Some(true));
+    let cylinder = actuator(
+        "",
+        "<cylinder joint='j' timeconst='.2' diameter='2' bias='1 2 3'/>",
+    );
+    assert_eq!(
+        (cylinder.dynamics, cylinder.dynprm[0]),
+        (DynamicsKind::Filter, 0.2)
+    );
+    assert!((cylinder.gainprm[0] - std::f64::consts::PI).abs() < 1e-15);
+    assert_eq!(cylinder.biasprm[..3], [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn a_shortcut_takes_its_law_from_its_own_kind_and_the_rest_from_any() {
+    let position = "<position kp='5' kv='2' ctrlrange='-1 1'/>";
+    assert_eq!(
+        servo(&actuator(position, "<position joint='j' kp='7'/>")),
+        [7.0, -7.0, -2.0]
+    );
+    let motor = actuator(position, "<motor joint='j'/>");
+    assert_eq!(
+        (servo(&motor), motor.ctrlrange),
+        ([1.0, 0.0, 0.0], [-1.0, 1.0])
+    );
+    assert_eq!(
+        servo(&actuator(position, "<velocity joint='j'/>")),
+        [1.0, 0.0, -1.0]
+    );
+    assert_eq!(
+        servo(&actuator(position, "<general joint='j'/>")),
+        [5.0, -5.0, -2.0]
+    );
+}
+
+#[test]
+fn a_law_is_looked_for_in_ancestor_classes() {
+    let classes =
+        "<position kp='5'/><default class='b'><velocity kv='3' ctrlrange='0 1'/></default>";
+    let position = actuator(classes, "<position joint='j' class='b'/>");
+    assert_eq!(
+        (servo(&position), position.ctrlrange),
+        ([5.0, -5.0, 0.0], [0.0, 1.0])
+    );
+}
+
+#[test]
+fn a_general_default_lends_its_law_where_the_gain_fits() {
+    let stiff = "<general gainprm='400' biasprm='1 -400 -3' biastype='affine' dyntype='filter' dynprm='7'/>";
+    let position = actuator(stiff, "<position joint='j'/>");
+    assert_eq!(
+        (servo(&position), position.dynamics),
+        ([400.0, -400.0, -3.0], DynamicsKind::None)
+    );
+    let affine = "<general gainprm='400 1 2' gaintype='affine'/>";
+    assert_eq!(
+        servo(&actuator(affine, "<position joint='j'/>")),
+        [1.0, -1.0, 0.0]
+    );
+}
+
+#[test]
+fn of_inheritrange_and_a_range_the_one_on_the_actuator_counts() {
+    let own_range = actuator(
+        "<position inheritrange='1'/>",
+        "<position joint='j' ctrlrange='0 1'/>",
+    );
+    assert_eq!(
+        (own_range.inheritrange, own_range.ctrlrange),
+        (0.0, [0.0, 1.0])
+    );
+    let inherits = actuator(
+        "<position ctrlrange='0 1'/>",
+        "<position joint='j' inheritrange='1'/>",
+    );
+    assert_eq!(
+        (inherits.inheritrange, inherits.ctrlrange),
+        (1.0, [0.0, 0.0])
+    );
+    assert!(rejected("<position joint='j' ctrlrange='0 1' inheritrange='1'/>").contains("both"));
+}
+
+#[test]
+fn a_positive_velocity_bias_of_a_servo_is_a_damping_ratio() {
+    let general = actuator(
+        "",
+        "<general joint='j' biastype='affine' biasprm='0 -1 2'/>",
+    );
+    assert_eq!((general.dampratio, general.biasprm[2]), (Some(2.0), 0.0));
+}
+
+#[test]
+fn what_is_not_supported_yet_says_so() {
+    for element in [
+        "<general joint='j' dyntype='muscle'/>",
+        "<general joint='j' gaintype='user'/>",
+        "<motor joint='j' damping='1'/>",
+        "<motor joint='j' delay='0.1'/>",
+        "<muscle joint='j'/>",
+        "<adhesion body='b'/>",
+    ] {
+        assert!(rejected(element).contains("not supported yet"), "{element}");
+    }
+    actuator(
+        "",
+        "<motor joint='j' damping='0' armature='0' lengthrange='0 1'/>",
+    );
+}

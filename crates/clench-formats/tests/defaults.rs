@@ -1,0 +1,119 @@
+//! Default classes.
+
+use clench_formats::read_str;
+use clench_rigid::builder::ModelBuilder;
+
+fn read(sections: &str) -> ModelBuilder {
+    match read_str(&format!("<mujoco>{sections}</mujoco>")) {
+        Ok(builder) => builder,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn classes_inherit_and_the_nearest_word_counts() {
+    let model = read(
+        "<default>
+           <joint damping='1' armature='1' stiffness='1'/>
+           <default class='arm'>
+             <joint armature='2'/>
+             <default class='hand'><joint stiffness='3'/></default>
+           </default>
+         </default>
+         <worldbody>
+           <body>
+             <joint/><joint class='arm'/><joint class='hand' damping='9'/>
+             <body childclass='arm'>
+               <joint/><joint class='main'/>
+               <frame childclass='hand'><joint/></frame>
+               <body><joint/></body>
+             </body>
+           </body>
+         </worldbody>",
+    );
+    let of = |body: usize, joint: usize| {
+        let joint = &model.bodies[body].joints[joint];
+        [joint.damping, joint.armature, joint.stiffness]
+    };
+    assert_eq!(of(1, 0), [1.0, 1.0, 1.0]);
+    assert_eq!(of(1, 1), [1.0, 2.0, 1.0]);
+    assert_eq!(of(1, 2), [9.0, 2.0, 3.0]);
+    assert_eq!(of(2, 0), [1.0, 2.0, 1.0]);
+    assert_eq!(of(2, 1), [1.0, 1.0, 1.0]);
+    assert_eq!(of(2, 2), [1.0, 2.0, 3.0]);
+    assert_eq!(of(3, 0), [1.0, 2.0, 1.0]);
+}
+
+#[test]
+fn a_class_sees_what_its_parent_says_after_it() {
+    let model = read(
+        "<default>
+           <default class='child'><geom margin='2'/></default>
+           <geom gap='1'/>
+         </default>
+         <worldbody><geom class='child' size='1'/></worldbody>",
+    );
+    let geom = &model.bodies[0].geoms[0];
+    assert_eq!((geom.margin, geom.gap), (2.0, 1.0));
+}
+
+#[test]
+fn several_default_sections_add_up() {
+    let model = read(
+        "<default><geom margin='1'/></default>
+         <default class='main'><geom gap='2'/></default>
+         <worldbody><geom size='1'/></worldbody>",
+    );
+    let geom = &model.bodies[0].geoms[0];
+    assert_eq!((geom.margin, geom.gap), (1.0, 2.0));
+}
+
+#[test]
+fn an_attribute_overwrites_only_as_many_numbers_as_it_gives() {
+    let model = read(
+        "<default><geom solimp='0.1 0.2 0.3' friction='2 3 4' size='7 8 9'/></default>
+         <worldbody><geom solimp='0.5' friction='5 6' size='1'/></worldbody>",
+    );
+    let geom = &model.bodies[0].geoms[0];
+    assert_eq!(geom.solimp, [0.5, 0.2, 0.3, 0.5, 2.0]);
+    assert_eq!(geom.friction, [5.0, 6.0, 4.0]);
+    assert_eq!(geom.size.to_array(), [1.0, 8.0, 9.0]);
+}
+
+#[test]
+fn an_orientation_of_any_kind_replaces_that_of_the_class() {
+    let model = read(
+        "<default><geom size='1' euler='0 0 90'/></default>
+         <worldbody><geom quat='1 0 0 0'/><geom zaxis='0 0 1'/></worldbody>",
+    );
+    for geom in &model.bodies[0].geoms {
+        assert_eq!(geom.quat.to_array(), [1.0, 0.0, 0.0, 0.0]);
+    }
+}
+
+#[test]
+fn every_kind_of_element_has_defaults() {
+    let model = read(
+        "<default>
+           <site pos='1 2 3'/>
+           <pair condim='6' friction='0.5'/>
+           <equality active='false' solref='0.5'/>
+           <tendon stiffness='4' springlength='1'/>
+         </default>
+         <worldbody><site/><body name='b'><joint name='j'/></body></worldbody>
+         <contact><pair geom1='a' geom2='b' friction='0.1 0.2'/></contact>
+         <equality><weld body1='b'/></equality>
+         <tendon><fixed damping='5'><joint joint='j' coef='1'/></fixed></tendon>",
+    );
+    assert_eq!(model.bodies[0].sites[0].pos.to_array(), [1.0, 2.0, 3.0]);
+    let pair = &model.pairs[0];
+    assert_eq!(
+        (pair.condim, pair.friction),
+        (Some(6), Some([0.1, 0.2, 0.005, 0.0001, 0.0001]))
+    );
+    let weld = &model.equalities[0];
+    assert_eq!((weld.active, weld.solref), (false, [0.5, 1.0]));
+    let tendon = &model.tendons[0];
+    assert_eq!((tendon.stiffness, tendon.damping), (4.0, 5.0));
+    assert_eq!(tendon.springlength, Some([1.0, 1.0]));
+}

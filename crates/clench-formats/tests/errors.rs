@@ -1,0 +1,355 @@
+//! Bad files: every error says where and why, and nothing panics.
+
+use clench_formats::{LoadError, load, load_str, read_str};
+
+fn rejected(text: &str) -> LoadError {
+    match load_str(text) {
+        Ok(_) => panic!("was accepted: {text}"),
+        Err(error) => error,
+    }
+}
+
+/// Line, element and message of the error in a model whose third line is `line`.
+#[track_caller]
+fn expect(line: &str, element: &str, message: &str) {
+    let error = rejected(&format!(
+        "<mujoco>\n<worldbody>\n{line}\n</worldbody>\n</mujoco>"
+    ));
+    assert_eq!(error.line, Some(3), "{error}");
+    assert_eq!(error.element.as_deref(), Some(element), "{error}");
+    assert!(error.message.contains(message), "{error}");
+}
+
+#[track_caller]
+fn expect_section(line: &str, element: &str, message: &str) {
+    expect(
+        &format!("</worldbody> {line} <worldbody>"),
+        element,
+        message,
+    );
+}
+
+#[test]
+fn an_error_names_file_line_and_element() {
+    let path = std::env::temp_dir().join(format!("clench-named-{}.xml", std::process::id()));
+    std::fs::write(&path, "<mujoco>\n <worldbody>\n  <body><joint name='knee' axes='1 0 0'/></body>\n </worldbody>\n</mujoco>").unwrap();
+    let error = load(&path).unwrap_err();
+    std::fs::remove_file(&path).unwrap();
+    let expected = format!(
+        "{}:3: joint \"knee\": unknown attribute \"axes\"; did you mean \"axis\"?",
+        path.display()
+    );
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn files_that_are_no_models() {
+    let error = load("/nowhere/robot.xml").unwrap_err();
+    assert_eq!(&*error.file, "/nowhere/robot.xml");
+    assert!(error.message.contains("cannot read the file"), "{error}");
+    assert!(
+        load(std::env::temp_dir())
+            .unwrap_err()
+            .message
+            .contains("cannot read the file")
+    );
+    assert!(rejected("").message.contains("empty"));
+    assert!(rejected(" \n ").message.contains("empty"));
+    assert!(rejected("not xml").message.contains("not well-formed"));
+    assert!(
+        rejected("<robot name='r'/>")
+            .message
+            .contains("URDF is not supported yet")
+    );
+    assert!(rejected("<Mujoco/>").message.contains("<mujoco>"));
+}
+
+#[test]
+fn broken_xml_is_located() {
+    for text in [
+        "<mujoco>\n<worldbody>\n<geom size='1'>\n</mujoco>",
+        "<mujoco>\n<geom size='1' size='2'/>\n</mujoco>",
+        "<mujoco>\n<geom size=1/>\n</mujoco>",
+        "<mujoco>\n<option/>",
+        "<mujoco/>\n<mujoco/>",
+        "<!DOCTYPE m [<!ENTITY a 'b'>]>\n<mujoco model='&a;'/>",
+    ] {
+        let error = rejected(text);
+        assert!(
+            error.line.is_some() && error.message.contains("not well-formed"),
+            "{text}: {error}"
+        );
+    }
+}
+
+#[test]
+fn text_must_be_utf8() {
+    let path = std::env::temp_dir().join(format!("clench-latin-{}.xml", std::process::id()));
+    std::fs::write(&path, b"<mujoco>\n<option/>\n<!-- \xe9 -->\n</mujoco>").unwrap();
+    let error = load(&path).unwrap_err();
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(
+        (error.line, error.message.contains("UTF-8")),
+        (Some(3), true),
+        "{error}"
+    );
+}
+
+#[test]
+fn nesting_has_a_bottom() {
+    for depth in [600, 200_000] {
+        let text = format!(
+            "<mujoco><worldbody>{}{}</worldbody></mujoco>",
+            "<body>".repeat(depth),
+            "</body>".repeat(depth)
+        );
+        assert!(rejected(&text).message.contains("deep"));
+        assert!(rejected(&"<a>".repeat(depth)).message.contains("deep"));
+    }
+}
+
+#[test]
+fn unknown_elements_and_attributes() {
+    expect(
+        "<geoms/>",
+        "geoms",
+        "unknown element <geoms> in <worldbody>; did you mean \"geom\"?",
+    );
+    expect(
+        "<body><joint typ='hinge'/></body>",
+        "joint",
+        "did you mean \"type\"?",
+    );
+    expect("<body class='a'/>", "body", "unknown attribute \"class\"");
+    expect("<composite/>", "composite", "unknown element");
+    expect_section(
+        "<option apirate='100'/>",
+        "option",
+        "unknown attribute \"apirate\"",
+    );
+    expect_section(
+        "<option Timestep='1'/>",
+        "option",
+        "did you mean \"timestep\"?",
+    );
+    expect_section(
+        "<default><joint name='j'/></default>",
+        "joint \"j\"",
+        "cannot be given in a default",
+    );
+    expect_section("<option><flag/><flag/></option>", "flag", "only one");
+}
+
+#[test]
+fn numbers_that_are_none() {
+    expect(
+        "<geom size='1 a'/>",
+        "geom",
+        "\"a\" in size is not a finite number",
+    );
+    expect("<geom size='nan'/>", "geom", "not a finite number");
+    expect("<geom size='inf'/>", "geom", "not a finite number");
+    expect("<geom size='1e400'/>", "geom", "not a finite number");
+    expect("<geom size='1,2'/>", "geom", "not a finite number");
+    expect("<geom pos='1 2'/>", "geom", "pos needs 3 numbers, not 2");
+    expect("<geom pos='1 2 3 4'/>", "geom", "more than 3");
+    expect("<geom size='1 2 3 4'/>", "geom", "more than 3");
+    expect("<geom condim='3.0'/>", "geom", "not a 32-bit integer");
+    expect(
+        "<geom group='99999999999'/>",
+        "geom",
+        "not a 32-bit integer",
+    );
+    expect("<geom condim='2'/>", "geom", "not 1, 3, 4 or 6");
+    expect_section("<option iterations='-1'/>", "option", "negative");
+    expect_section("<option timestep='0'/>", "option", "positive");
+    expect_section(
+        "<option actuatorgroupdisable='31'/>",
+        "option",
+        "not in 0 to 30",
+    );
+    expect_section("<compiler eulerseq='xyq'/>", "compiler", "eulerseq");
+}
+
+#[test]
+fn keywords_that_are_none() {
+    expect("<geom type='ball'/>", "geom", "type is \"ball\"");
+    expect(
+        "<body><joint limited='True'/></body>",
+        "joint",
+        "not one of false, true, auto",
+    );
+    expect_section(
+        "<option solver='newton'/>",
+        "option",
+        "not one of PGS, CG, Newton",
+    );
+    expect_section(
+        "<option><flag contact='false'/></option>",
+        "flag",
+        "not one of disable, enable",
+    );
+}
+
+#[test]
+fn contradictions() {
+    expect(
+        "<body quat='1 0 0 0' euler='0 0 0'/>",
+        "body",
+        "cannot both be given",
+    );
+    expect("<body quat='0 0 0 0'/>", "body", "zero");
+    expect("<body axisangle='0 0 0 1'/>", "body", "too short");
+    expect(
+        "<geom type='capsule' fromto='0 0 0 0 0 0' size='1'/>",
+        "geom",
+        "coincide",
+    );
+    expect(
+        "<geom type='capsule' fromto='0 0 0 1 0 0' pos='1 0 0' size='1'/>",
+        "geom",
+        "cannot both",
+    );
+    expect(
+        "<geom fromto='0 0 0 1 0 0' size='1'/>",
+        "geom",
+        "fromto needs a capsule",
+    );
+    expect("<joint/>", "joint", "the world cannot have joints");
+    expect(
+        "<body><inertial pos='0 0 0'/></body>",
+        "inertial",
+        "\"mass\" is required",
+    );
+    expect("<replicate count='0'/>", "replicate", "positive");
+    expect(
+        "<body><replicate count='2'><joint/></replicate></body>",
+        "joint",
+        "cannot be repeated",
+    );
+    expect(
+        "<geom size='1' material='steel'/>",
+        "geom",
+        "no material \"steel\"",
+    );
+    expect_section(
+        "<equality><connect body1='a'/></equality>",
+        "connect",
+        "\"anchor\" is required",
+    );
+    expect_section(
+        "<equality><connect site1='a'/></equality>",
+        "connect",
+        "together",
+    );
+    expect_section(
+        "<equality><weld body1='a' site1='b' site2='c'/></equality>",
+        "weld",
+        "cannot both",
+    );
+    expect_section("<equality><weld/></equality>", "weld", "must be given");
+    expect_section("<tendon><fixed/></tendon>", "fixed", "at least one joint");
+}
+
+#[test]
+fn names_that_lead_nowhere() {
+    expect("<geom class='x'/>", "geom", "no default class \"x\"");
+    expect(
+        "<body childclass='mian'/>",
+        "body",
+        "did you mean \"main\"?",
+    );
+    for section in [
+        "<actuator><motor joint='nobody'/></actuator>",
+        "<equality><weld body1='nobody'/></equality>",
+        "<contact><pair geom1='nobody' geom2='nobody'/></contact>",
+        "<contact><exclude body1='nobody' body2='nobody'/></contact>",
+        "<tendon><fixed><joint joint='nobody' coef='1'/></fixed></tendon>",
+    ] {
+        let error = rejected(&format!("<mujoco>\n{section}\n</mujoco>"));
+        assert_eq!(error.line, Some(2), "{error}");
+        assert!(error.message.contains("nobody"), "{error}");
+    }
+}
+
+#[test]
+fn classes_with_bad_names() {
+    expect_section("<default class='x'/>", "default", "called \"main\"");
+    expect_section("<default><default/></default>", "default", "needs a class");
+    expect_section(
+        "<default><default class='a'/><default class='a'/></default>",
+        "default",
+        "exists already",
+    );
+}
+
+#[test]
+fn errors_of_the_model_are_located_too() {
+    let error =
+        rejected("<mujoco><worldbody>\n<body name='ghost'>\n<joint/></body></worldbody></mujoco>");
+    assert_eq!(error.line, Some(2), "{error}");
+    assert!(error.message.contains("mass"), "{error}");
+}
+
+#[test]
+fn what_is_not_supported_yet_is_an_error_that_says_so() {
+    let later = "not supported yet";
+    for (line, element) in [
+        ("<geom type='mesh' mesh='m'/>", "geom"),
+        ("<geom type='hfield'/>", "geom"),
+        ("<geom size='1' adhesion='1'/>", "geom"),
+        ("<geom size='1' surfacevel='0 0 1'/>", "geom"),
+        ("<geom size='1' fluidshape='ellipsoid'/>", "geom"),
+        ("<frame scale='2'/>", "frame"),
+        ("<attach prefix='a'/>", "attach"),
+        ("<flexcomp/>", "flexcomp"),
+        ("<body><joint springyield='1'/></body>", "joint"),
+        ("<body><joint damping='1 2'/></body>", "joint"),
+        ("<body><joint stiffness='1 0 2'/></body>", "joint"),
+    ] {
+        expect(line, element, later);
+    }
+    for (line, element) in [
+        ("<sensor><clock/></sensor>", "clock"),
+        ("<tendon><spatial/></tendon>", "spatial"),
+        ("<deformable><flex/></deformable>", "flex"),
+        ("<extension><plugin/></extension>", "plugin"),
+        ("<asset><mesh/></asset>", "mesh"),
+        ("<asset><model/></asset>", "model"),
+        ("<equality><flex/></equality>", "flex"),
+        ("<option integrator='implicit'/>", "option"),
+        ("<option integrator='discrete'/>", "option"),
+        ("<option><flag sleep='enable'/></option>", "flag"),
+        ("<option><flag speculative='enable'/></option>", "flag"),
+        ("<compiler fusestatic='true'/>", "compiler"),
+    ] {
+        expect_section(line, element, later);
+    }
+}
+
+#[test]
+fn what_is_not_supported_is_accepted_where_it_does_nothing() {
+    read_str(
+        "<mujoco>
+           <option><flag sleep='disable' diagexact='disable'/></option>
+           <worldbody>
+             <geom size='1' adhesion='0' surfacevel='0 0 0' fluidshape='none'/>
+             <body><joint springyield='0' damping='1 0 0'/></body>
+             <frame scale='1'/>
+           </worldbody>
+         </mujoco>",
+    )
+    .unwrap();
+}
+
+#[test]
+fn replicated_elements_cannot_be_named_yet() {
+    let error = rejected(
+        "<mujoco><worldbody><replicate count='2'><body><joint name='j'/><geom size='1'/></body></replicate></worldbody>
+         <actuator><motor joint='j'/></actuator></mujoco>",
+    );
+    assert!(
+        error.message.contains("replicated: not supported yet"),
+        "{error}"
+    );
+}

@@ -1,0 +1,287 @@
+//! The body tree: poses, frames, replicas, units, shorthands.
+
+use clench_collide::ShapeKind;
+use clench_formats::{load_str, read_str};
+use clench_math::{Quat, Vec3};
+use clench_rigid::builder::{GeomMass, InertiaSpec, ModelBuilder};
+use clench_rigid::model::JointKind;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI};
+
+fn world(content: &str) -> ModelBuilder {
+    read(&format!("<worldbody>{content}</worldbody>"))
+}
+
+fn read(sections: &str) -> ModelBuilder {
+    match read_str(&format!("<mujoco>{sections}</mujoco>")) {
+        Ok(builder) => builder,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn near(a: Vec3<f64>, b: [f64; 3]) -> bool {
+    (a - Vec3::from_array(b)).norm() < 1e-14
+}
+
+fn same_rotation(a: Quat<f64>, b: [f64; 4]) -> bool {
+    let dot: f64 = a.to_array().iter().zip(b).map(|(x, y)| x * y).sum();
+    (dot.abs() - 1.0).abs() < 1e-14
+}
+
+#[test]
+fn bodies_stand_in_the_order_of_the_file_parents_first() {
+    let model = world(
+        "<body name='a'><body name='b'/></body><frame><body name='c'><body name='d'/></body></frame>",
+    );
+    let names: Vec<_> = model.bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(names, ["world", "a", "b", "c", "d"]);
+    let parents: Vec<_> = model.bodies.iter().map(|body| body.parent).collect();
+    assert_eq!(parents, [0, 0, 1, 0, 3]);
+}
+
+#[test]
+fn orientations_may_be_written_in_five_ways() {
+    let half = FRAC_1_SQRT_2;
+    let about_z = [half, 0.0, 0.0, half];
+    let ways = [
+        ("quat='2 0 0 2'", about_z),
+        ("axisangle='0 0 3 90'", about_z),
+        ("euler='0 0 90'", about_z),
+        ("xyaxes='0 2 0 -1 5 0'", about_z),
+        ("zaxis='1 0 0'", [half, 0.0, half, 0.0]),
+        ("zaxis='0 0 -4'", [0.0, 1.0, 0.0, 0.0]),
+    ];
+    for (way, expected) in ways {
+        let quat = world(&format!("<body {way}/>")).bodies[1].quat;
+        assert!(same_rotation(quat, expected), "{way}: {quat:?}");
+    }
+}
+
+#[test]
+fn angles_are_degrees_unless_the_compiler_says_radian() {
+    let body = "<worldbody><body euler='0 0 1.5707963267948966'/></worldbody>";
+    let quat = read(&format!("<compiler angle='radian'/>{body}")).bodies[1].quat;
+    assert!(same_rotation(
+        quat,
+        [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2]
+    ));
+    let degrees = read(body).bodies[1].quat;
+    assert!((degrees.z - (FRAC_PI_2.to_radians() / 2.0).sin()).abs() < 1e-15);
+}
+
+#[test]
+fn eulerseq_orders_rotations_about_moving_or_fixed_axes() {
+    let turned = |sequence| {
+        let text = format!(
+            "<compiler eulerseq='{sequence}'/><worldbody><body euler='90 90 0'/></worldbody>"
+        );
+        read(&text).bodies[1].quat.rotate(Vec3::new(0.0, 0.0, 1.0))
+    };
+    // Moving: the second turn is about the new y, which is the old z; z is tipped by the first alone, then turned.
+    assert!(near(turned("xyz"), [1.0, 0.0, 0.0]));
+    // Fixed: the first turn tips z to −y, the second, about y, leaves it there.
+    assert!(near(turned("XYZ"), [0.0, -1.0, 0.0]));
+}
+
+#[test]
+fn frames_carry_their_contents_along() {
+    let model = world(
+        "<frame pos='1 0 0' euler='0 0 90'>
+           <frame pos='0 2 0'>
+             <body pos='0 0 3'>
+               <frame pos='0 0 1' euler='90 0 0'>
+                 <joint pos='0 1 0' axis='0 1 0'/>
+                 <geom size='1' pos='0 1 0'/>
+                 <inertial pos='0 1 0' mass='1' diaginertia='1 1 1'/>
+               </frame>
+             </body>
+             <site pos='1 0 0'/>
+           </frame>
+         </frame>",
+    );
+    let body = &model.bodies[1];
+    assert!(near(body.pos, [-1.0, 0.0, 3.0]));
+    assert!(same_rotation(
+        body.quat,
+        [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2]
+    ));
+    assert!(near(body.joints[0].pos, [0.0, 0.0, 2.0]));
+    assert!(near(body.joints[0].axis, [0.0, 0.0, 1.0]));
+    assert!(near(body.geoms[0].pos, [0.0, 0.0, 2.0]));
+    assert!(near(body.inertial.as_ref().unwrap().pos, [0.0, 0.0, 2.0]));
+    assert!(near(model.bodies[0].sites[0].pos, [-1.0, 1.0, 0.0]));
+}
+
+#[test]
+fn a_full_inertia_turns_with_its_frame() {
+    let model = world(
+        "<body><frame euler='0 0 90'><inertial pos='0 0 0' mass='1' fullinertia='1 2 3 0.1 0.2 0.3'/></frame></body>",
+    );
+    let InertiaSpec::Full(inertia) = model.bodies[1].inertial.as_ref().unwrap().inertia else {
+        panic!("a full inertia was written");
+    };
+    // x becomes y, y becomes −x: moments swap, xy changes sign, xz becomes yz, yz becomes −xz.
+    let expected = [2.0, 1.0, 3.0, -0.1, -0.3, 0.2];
+    assert!(
+        inertia
+            .iter()
+            .zip(expected)
+            .all(|(a, b)| (a - b).abs() < 1e-14),
+        "{inertia:?}"
+    );
+}
+
+#[test]
+fn degrees_concern_limits_and_references_of_hinges_but_not_slides() {
+    let model = world(
+        "<body>
+           <joint type='hinge' range='-90 45' ref='180' springref='90'/>
+           <joint type='hinge' range='-90 45' limited='false'/>
+           <joint type='slide' range='-90 45' ref='180' springref='90'/>
+         </body>
+         <body><joint type='ball' range='0 90' ref='1'/></body>",
+    );
+    let joints = &model.bodies[1].joints;
+    assert_eq!(joints[0].range, [-FRAC_PI_2, FRAC_PI_4]);
+    assert_eq!((joints[0].reference, joints[0].springref), (PI, FRAC_PI_2));
+    assert_eq!(joints[1].range, [-90.0, 45.0]);
+    assert_eq!(joints[2].range, [-90.0, 45.0]);
+    assert_eq!((joints[2].reference, joints[2].springref), (180.0, 90.0));
+    let ball = &model.bodies[2].joints[0];
+    assert_eq!((ball.range, ball.reference), ([0.0, FRAC_PI_2], 1.0));
+}
+
+#[test]
+fn a_free_joint_takes_nothing_from_defaults() {
+    let model = read(
+        "<default><joint damping='3' armature='1'/></default>
+         <worldbody><body><freejoint name='root' align='false'/></body></worldbody>",
+    );
+    let joint = &model.bodies[1].joints[0];
+    assert_eq!(
+        (joint.kind, joint.damping, joint.armature),
+        (JointKind::Free, 0.0, 0.0)
+    );
+    assert_eq!((joint.name.as_str(), joint.align), ("root", Some(false)));
+}
+
+#[test]
+fn fromto_gives_place_direction_and_length() {
+    for (kind, size) in [
+        ("capsule", [0.1, 1.5, 0.0]),
+        ("cylinder", [0.1, 1.5, 0.0]),
+        ("box", [0.1, 0.1, 1.5]),
+        ("ellipsoid", [0.1, 0.1, 1.5]),
+    ] {
+        let model = world(&format!(
+            "<geom type='{kind}' fromto='1 0 0 4 0 0' size='0.1'/>"
+        ));
+        let geom = &model.bodies[0].geoms[0];
+        assert_eq!(geom.size.to_array(), size, "{kind}");
+        assert!(near(geom.pos, [2.5, 0.0, 0.0]));
+        // z points from the second point to the first.
+        assert!(near(
+            geom.quat.rotate(Vec3::new(0.0, 0.0, 1.0)),
+            [-1.0, 0.0, 0.0]
+        ));
+    }
+}
+
+#[test]
+fn a_mass_goes_before_a_density() {
+    let model =
+        world("<geom size='1'/><geom size='1' density='0'/><geom size='1' density='5' mass='2'/>");
+    let masses: Vec<_> = model.bodies[0].geoms.iter().map(|geom| geom.mass).collect();
+    let expected = [
+        GeomMass::Density(1000.0),
+        GeomMass::Density(0.0),
+        GeomMass::Mass(2.0),
+    ];
+    assert_eq!(masses, expected);
+}
+
+#[test]
+fn numbers_may_be_written_loosely() {
+    let model = world("<geom size='\t .5  +1.  2e-1\n' type='box' contype='-1'/>");
+    let geom = &model.bodies[0].geoms[0];
+    assert_eq!(geom.size.to_array(), [0.5, 1.0, 0.2]);
+    assert_eq!((geom.kind, geom.contype), (ShapeKind::Box, u32::MAX));
+}
+
+#[test]
+fn replicas_are_displaced_again_and_again_and_numbered() {
+    let model = world(
+        "<replicate count='2' offset='0 1 0' euler='90 0 0'>
+           <replicate count='2' sep='-' offset='1 0 0' euler='0 90 0'><geom name='Alice' size='0.1'/></replicate>
+         </replicate>",
+    );
+    // MuJoCo's own example, from its XML reference.
+    let expected = [
+        ("Alice-00", [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]),
+        (
+            "Alice-10",
+            [1.0, 0.0, 0.0],
+            [FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2, 0.0],
+        ),
+        (
+            "Alice-01",
+            [0.0, 1.0, 0.0],
+            [FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0, 0.0],
+        ),
+        ("Alice-11", [1.0, 1.0, 0.0], [0.5, 0.5, 0.5, 0.5]),
+    ];
+    assert_eq!(model.bodies[0].geoms.len(), expected.len());
+    for (geom, (name, pos, quat)) in model.bodies[0].geoms.iter().zip(expected) {
+        assert_eq!(geom.name, name);
+        assert!(
+            near(geom.pos, pos) && same_rotation(geom.quat, quat),
+            "{geom:?}"
+        );
+    }
+}
+
+#[test]
+fn replicas_are_numbered_with_as_many_digits_as_their_count() {
+    let model = world("<replicate count='11'><body name='b'/></replicate>");
+    assert_eq!(model.bodies[1].name, "b00");
+    assert_eq!(model.bodies[11].name, "b10");
+}
+
+#[test]
+fn mocap_bodies_and_gravity_compensation_are_read() {
+    let model = world("<body mocap='true'/><body gravcomp='0.5'/>");
+    assert!(model.bodies[1].mocap);
+    assert_eq!(model.bodies[2].gravcomp, 0.5);
+}
+
+#[test]
+fn what_is_only_seen_is_accepted() {
+    let model = load_str(
+        "<mujoco model='seen'>
+           <compiler meshdir='meshes' texturedir='textures' strippath='true' discardvisual='false'/>
+           <size nuser_geom='1' njmax='500' nconmax='100'/>
+           <visual><map fogstart='3'/><headlight ambient='.5 .5 .5'/></visual>
+           <statistic extent='2' center='0 0 1'/>
+           <asset>
+             <texture name='grid' type='2d' builtin='checker' width='100' height='100'/>
+             <material name='grid' texture='grid' reflectance='.5'><!-- shiny --></material>
+           </asset>
+           <custom><numeric name='init' data='1 2'/><text name='author' data='me'/></custom>
+           <worldbody>
+             <camera name='eye' pos='0 0 3'/>
+             <light diffuse='.5 .5 .5' directional='true'/>
+             <geom type='plane' size='1 1 1' material='grid' rgba='1 0 0 1' user='7'/>
+             <site rgba='1 1 1 1' size='0.1'/>
+           </worldbody>
+           <sensor/>
+         </mujoco>",
+    )
+    .unwrap();
+    assert_eq!((model.name.as_str(), model.geoms.len()), ("seen", 1));
+}
+
+#[test]
+fn a_chain_as_deep_as_a_file_may_be_is_read() {
+    let depth = 497;
+    let chain = "<body><joint/><geom size='1'/>".repeat(depth) + &"</body>".repeat(depth);
+    assert_eq!(world(&chain).bodies.len(), depth + 1);
+}
