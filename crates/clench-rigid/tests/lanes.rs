@@ -1,0 +1,165 @@
+//! Environments that share a register move as if each were alone, to the bit.
+
+mod scenes;
+
+use clench_math::{Lanes, Mask, Real};
+use clench_rigid::builder::{EqualityKind, GeomSpec, ModelBuilder};
+use clench_rigid::model::{Integrator, JointKind};
+use clench_rigid::{Model, Sim, State, StepSettings, Workspace, pipeline};
+use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
+use scenes::{Numbers, add, bodies, cuboid, equality, free, joint, plane, sphere, world};
+use std::sync::Arc;
+
+const N: usize = 4;
+type L = Lanes<f64, N>;
+
+/// A jointed pair, a ball and a box above a floor; the box can be welded to the world.
+fn scene() -> ModelBuilder {
+    let mut b = world();
+    b.options = RigidOptions::new().constraint_timeconst(0.0);
+    b.bodies[0].geoms.push(plane());
+    let rolls = |g: GeomSpec| GeomSpec { condim: 6, ..g };
+    let base = add(
+        &mut b,
+        0,
+        "base",
+        [0.0, 0.0, 0.15],
+        free(),
+        vec![sphere(0.1)],
+    );
+    let mut hinge = joint(JointKind::Hinge, "hinge", [0.0, 1.0, 0.0]);
+    hinge.range = [-0.6, 0.3];
+    hinge.frictionloss = 0.1;
+    add(
+        &mut b,
+        base,
+        "link",
+        [0.25, 0.0, 0.0],
+        vec![hinge],
+        vec![sphere(0.08)],
+    );
+    add(
+        &mut b,
+        0,
+        "ball",
+        [0.3, 0.1, 0.3],
+        free(),
+        vec![rolls(sphere(0.1))],
+    );
+    add(
+        &mut b,
+        0,
+        "box",
+        [-0.3, 0.1, 0.2],
+        free(),
+        vec![cuboid([0.1, 0.08, 0.06])],
+    );
+    let kind = EqualityKind::Weld {
+        anchor: bodies("box", "", [0.0; 3]),
+        relpose: None,
+        torquescale: 1.0,
+    };
+    b.equalities.push(equality("grip", kind));
+    b.equalities[0].active = false;
+    b
+}
+
+/// One of the environments: its own velocities, and the weld on in the last.
+fn start(model: &Arc<Model>, options: RigidOptions, lane: usize) -> Sim {
+    let mut sim = Sim::with_options(model.clone(), options).expect("valid");
+    Numbers(lane as u64).fill(&mut sim.state.qvel, 1.5);
+    sim.state.eq_active[0] = lane == N - 1;
+    sim
+}
+
+/// Steps all environments together and alone; whether any had too many contacts.
+fn compare(options: RigidOptions, integrator: Integrator, steps: usize) -> bool {
+    let mut builder = scene();
+    builder.physics.integrator = integrator;
+    let model = scenes::model(&builder);
+    let mut alone: Vec<Sim> = (0..N).map(|lane| start(&model, options, lane)).collect();
+
+    let settings = StepSettings::new::<L>(&model, options).expect("valid");
+    let params = model.params.broadcast::<L>();
+    let (mut state, mut ws) = (State::<L>::new(&model), Workspace::<L>::new(&model));
+    for (lane, sim) in alone.iter().enumerate() {
+        for (to, &from) in state.qvel.iter_mut().zip(&sim.state.qvel) {
+            to.set_lane(lane, from);
+        }
+        state.eq_active[0].set_lane(lane, sim.state.eq_active[0]);
+    }
+    let (mut contacts, mut overflow) = ([0; N], false);
+    for step in 0..steps {
+        pipeline::step(&model, &params, &settings, &mut state, &mut ws);
+        for (lane, sim) in alone.iter_mut().enumerate() {
+            sim.step().expect("finite");
+            let same = |what: &str, wide: &[L], narrow: &[f64]| {
+                for (i, (w, n)) in wide.iter().zip(narrow).enumerate() {
+                    let w = w.lane(lane);
+                    assert!(
+                        w.to_bits() == n.to_bits(),
+                        "step {step}, lane {lane}: {what}[{i}] is {w}, alone {n}"
+                    );
+                }
+            };
+            same("qpos", &state.qpos, &sim.state.qpos);
+            same("qvel", &state.qvel, &sim.state.qvel);
+            same("qacc", &ws.qacc, &sim.workspace().qacc);
+            same(
+                "qfrc_constraint",
+                &ws.qfrc_constraint,
+                &sim.workspace().qfrc_constraint,
+            );
+            let active = ws.contacts.iter().filter(|c| c.active.lane(lane)).count();
+            assert_eq!(
+                active,
+                sim.contacts().len(),
+                "step {step}, lane {lane}: contacts"
+            );
+            assert_eq!(
+                ws.solver.stats().lane(lane).iterations,
+                sim.stats().iterations
+            );
+            assert_eq!(ws.collision.overflow.lane(lane), sim.contact_overflow());
+            overflow |= sim.contact_overflow();
+            contacts[lane] += active;
+        }
+    }
+    assert!(
+        contacts.iter().all(|&c| c > steps),
+        "all touch: {contacts:?}"
+    );
+    assert!(
+        contacts.windows(2).any(|c| c[0] != c[1]),
+        "but not alike: {contacts:?}"
+    );
+    overflow
+}
+
+#[test]
+fn newton_with_pyramids() {
+    assert!(!compare(RigidOptions::new(), Integrator::Euler, 300));
+}
+
+#[test]
+fn newton_with_elliptic_cones() {
+    let options = RigidOptions::new()
+        .friction_cone(FrictionCone::Elliptic)
+        .impratio(3.0);
+    assert!(!compare(options, Integrator::ImplicitFast, 300));
+}
+
+#[test]
+fn cg_and_runge_kutta() {
+    let options = RigidOptions::new().constraint_solver(ConstraintSolver::Cg);
+    assert!(!compare(options, Integrator::Rk4, 300));
+}
+
+#[test]
+fn a_bound_on_contacts_holds_for_each_lane() {
+    let options = RigidOptions::new().max_contacts(clench_solver::MaxContacts::Limit(3));
+    assert!(
+        compare(options, Integrator::Euler, 300),
+        "the bound was reached"
+    );
+}

@@ -1,0 +1,265 @@
+//! A simulation takes good input, refuses bad input, and says when it cannot go on.
+
+mod scenes;
+
+use clench_collide::{ShapeKind, frame_from_normal};
+use clench_math::Vec3;
+use clench_rigid::builder::{KeyframeSpec, ModelBuilder};
+use clench_rigid::contact::Contact;
+use clench_rigid::model::JointKind;
+use clench_rigid::{Sim, SimError, readout};
+use clench_solver::RigidOptions;
+use scenes::{add, free, geom, joint, model, plane, run, sim, sphere, world};
+
+fn ball() -> ModelBuilder {
+    let mut b = world();
+    b.bodies[0].geoms.push(plane());
+    add(
+        &mut b,
+        0,
+        "ball",
+        [0.0, 0.0, 0.5],
+        free(),
+        vec![sphere(0.1)],
+    );
+    b
+}
+
+#[test]
+fn wrong_lengths_and_numbers_are_errors_that_say_where() {
+    let mut sim = sim(&ball());
+    sim.state.qpos.pop();
+    let wrong = SimError::WrongLength {
+        field: "qpos",
+        found: 6,
+        expected: 7,
+    };
+    assert_eq!(sim.step(), Err(wrong));
+    sim.reset();
+    sim.state.qvel[4] = f64::NAN;
+    let error = sim.forward().expect_err("not a number");
+    assert_eq!(error.to_string(), "qvel[4] is NaN");
+    sim.reset();
+    sim.state.xfrc_applied[1].linear.y = f64::INFINITY;
+    assert_eq!(
+        sim.step().expect_err("infinite").to_string(),
+        "xfrc_applied[10] is inf"
+    );
+    sim.reset();
+    sim.state.eq_active.push(true);
+    assert!(matches!(
+        sim.step(),
+        Err(SimError::WrongLength {
+            field: "eq_active",
+            ..
+        })
+    ));
+    sim.reset();
+    assert!(sim.set_ctrl(&[0.0]).is_err());
+    assert!(sim.set_configuration(&[0.0; 7], &[0.0; 5]).is_err());
+    assert!(sim.set_timestep(0.0).is_err());
+    assert!(sim.reset_to_keyframe(0).is_err());
+    sim.step().expect("all is well again");
+}
+
+#[test]
+fn options_out_of_range_are_errors() {
+    for options in [
+        RigidOptions::new().tolerance(f64::NAN),
+        RigidOptions::new().tolerance(-1.0),
+        RigidOptions::new().impratio(0.0),
+        RigidOptions::new().constraint_timeconst(f64::INFINITY),
+    ] {
+        assert!(matches!(
+            Sim::<f64>::with_options(model(&ball()), options),
+            Err(SimError::Option(_))
+        ));
+    }
+}
+
+#[test]
+fn shapes_that_cannot_be_collided_are_refused_before_the_first_step() {
+    let mut b = world();
+    add(
+        &mut b,
+        0,
+        "a",
+        [0.0; 3],
+        free(),
+        vec![geom(ShapeKind::Ellipsoid, [0.1, 0.2, 0.3])],
+    );
+    add(
+        &mut b,
+        0,
+        "b",
+        [1.0, 0.0, 0.0],
+        free(),
+        vec![geom(ShapeKind::Ellipsoid, [0.1, 0.2, 0.3])],
+    );
+    b.bodies[1].geoms[0].name = "egg".into();
+    let refused = Sim::<f64>::new(model(&b));
+    let Err(error @ SimError::UnsupportedPair(_)) = refused else {
+        panic!("two ellipsoids");
+    };
+    let text = error.to_string();
+    assert!(
+        text.contains("\"egg\"") && text.contains("ellipsoid against ellipsoid"),
+        "{text}"
+    );
+    let without = RigidOptions::new().disable_constraint(true);
+    assert!(
+        Sim::<f64>::with_options(model(&b), without).is_ok(),
+        "nothing can touch"
+    );
+}
+
+#[test]
+fn divergence_is_reported_and_the_state_stays_good() {
+    let mut b = world();
+    let mut spring = joint(JointKind::Slide, "spring", [1.0, 0.0, 0.0]);
+    spring.stiffness = 1e9;
+    add(&mut b, 0, "mass", [0.0; 3], vec![spring], vec![sphere(0.1)]);
+    let mut sim = sim(&b);
+    sim.state.qpos[0] = 1.0;
+    let error = loop {
+        let before = (sim.state.time, sim.state.qpos[0], sim.state.qvel[0]);
+        if let Err(error) = sim.step() {
+            assert_eq!(
+                before,
+                (sim.state.time, sim.state.qpos[0], sim.state.qvel[0])
+            );
+            break error;
+        }
+    };
+    let SimError::Diverged { time, index: 0, .. } = error else {
+        panic!("{error}");
+    };
+    assert_eq!(time, sim.state.time);
+    assert!(sim.state.qpos[0].is_finite());
+    sim.reset();
+    sim.step().expect("starts anew");
+}
+
+#[test]
+fn reset_and_keyframes_restore_states() {
+    let mut b = ball();
+    b.keyframes.push(KeyframeSpec {
+        name: "thrown".into(),
+        time: 2.0,
+        qvel: Some(vec![1.0, 0.0, 3.0, 0.0, 0.0, 0.0]),
+        ..KeyframeSpec::default()
+    });
+    let mut sim = sim(&b);
+    let initial = sim.state.qpos.clone();
+    run(&mut sim, 0.5);
+    assert_ne!(sim.state.qpos, initial);
+    sim.reset_to_keyframe(0).expect("it exists");
+    assert_eq!((sim.state.time, sim.state.qvel[2]), (2.0, 3.0));
+    assert_eq!(
+        (&sim.state.qpos, sim.state.qacc_warmstart[2]),
+        (&initial, 0.0)
+    );
+    sim.reset();
+    assert_eq!((sim.state.time, sim.state.qvel[2]), (0.0, 0.0));
+}
+
+#[test]
+fn a_replay_is_the_same_to_the_bit() {
+    let mut sim = sim(&ball());
+    let trace = |sim: &mut Sim| {
+        run(sim, 1.0);
+        sim.state
+            .qpos
+            .iter()
+            .map(|x| x.to_bits())
+            .collect::<Vec<_>>()
+    };
+    sim.state.qvel[3] = 2.0;
+    let first = trace(&mut sim);
+    sim.reset();
+    sim.state.qvel[3] = 2.0;
+    assert_eq!(trace(&mut sim), first);
+}
+
+#[test]
+fn given_contacts_replace_detection_once() {
+    let mut sim = sim(&ball());
+    let contact = Contact {
+        geoms: [0, 1],
+        active: true,
+        dim: 1,
+        dist: -0.01,
+        pos: Vec3::new(0.0, 0.0, 0.4),
+        frame: frame_from_normal(Vec3::new(0.0, 0.0, 1.0)),
+        includemargin: 0.0,
+        friction: [1.0; 5],
+        solref: scenes::SOLREF,
+        solreffriction: [0.0; 2],
+        solimp: scenes::SOLIMP,
+        block: None,
+    };
+    sim.forward_with_contacts(&[contact]).expect("valid");
+    let force = readout::contact_force(sim.workspace(), 0, 0);
+    assert!(force[0] > 9.81, "it pushes the ball up: {force:?}");
+    let far = Contact {
+        dist: 0.01,
+        ..contact
+    };
+    sim.forward_with_contacts(&[far]).expect("valid");
+    assert_eq!(readout::contact_force(sim.workspace(), 0, 0), [0.0; 6]);
+    for wrong in [
+        Contact {
+            geoms: [0, 7],
+            ..contact
+        },
+        Contact { dim: 2, ..contact },
+        Contact {
+            dist: f64::NAN,
+            ..contact
+        },
+        Contact {
+            dim: 3,
+            friction: [0.0; 5],
+            ..contact
+        },
+    ] {
+        let refused = sim.forward_with_contacts(&[contact, wrong]);
+        assert!(matches!(refused, Err(SimError::Contact { index: 1, .. })));
+    }
+    sim.forward().expect("valid");
+    assert!(sim.contacts().is_empty(), "the ball is in the air");
+}
+
+#[test]
+fn energy_is_that_of_the_state() {
+    let mut sim = sim(&ball());
+    sim.state.qvel[2] = 2.0;
+    let energy = sim.energy().expect("finite");
+    assert!((energy.kinetic - 2.0).abs() < 1e-15, "{energy:?}");
+    assert!((energy.potential - 9.81 * 0.5).abs() < 1e-14);
+    let start = energy.kinetic + energy.potential;
+    run(&mut sim, 0.2);
+    let end = sim.energy().expect("finite");
+    assert!(
+        (end.kinetic + end.potential - start).abs() < 0.02,
+        "semi-implicit Euler in free fall"
+    );
+}
+
+#[test]
+fn single_precision_rests_where_double_does() {
+    let mut builder = ball();
+    builder.options = RigidOptions::new();
+    let model = model(&builder);
+    let mut single = Sim::<f32>::new(model.clone()).expect("valid");
+    let mut double = Sim::<f64>::new(model).expect("valid");
+    for _ in 0..1500 {
+        single.step().expect("finite");
+        double.step().expect("finite");
+    }
+    let (found, expected) = (f64::from(single.state.qpos[2]), double.state.qpos[2]);
+    assert!(
+        (found - expected).abs() < 1e-5,
+        "{found} against {expected}"
+    );
+}
