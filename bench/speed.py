@@ -75,17 +75,17 @@ def compare(path, args):
 
     integrator = mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_")
     print(f"\n{path.stem}: nv {model.nv}, {integrator}, time step {model.opt.timestep:g} s")
-    print(f"  {'engine':<14}{'µs/step':>9}{'spread':>9}{'ratio':>8}{'contacts':>10}{'iterations':>12}")
+    print(f"  {'engine':<14}{'µs/step':>9}{'best':>9}{'ratio':>8}{'contacts':>10}{'iterations':>12}")
     baseline = statistics.median(seconds["mujoco newton"])
+    micro = lambda total: total / args.steps * 1e6
     rows = []
     for name, engine in engines.items():
         median = statistics.median(seconds[name])
-        spread = (max(seconds[name]) - min(seconds[name])) / median
         row = {"model": path.stem, "engine": name, "steps": args.steps, "seconds": seconds[name]}
         row |= {"ratio": baseline / median, "contacts_mean": engine.contacts, "iterations_mean": engine.iterations}
         rows.append(row)
         print(
-            f"  {name:<14}{median / args.steps * 1e6:>9.2f}{spread:>8.0%} {row['ratio']:>7.2f}"
+            f"  {name:<14}{micro(median):>9.2f}{micro(min(seconds[name])):>9.2f}{row['ratio']:>8.2f}"
             f"{engine.contacts:>10.2f}{engine.iterations:>12.2f}",
             flush=True,
         )
