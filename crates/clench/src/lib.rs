@@ -3,27 +3,88 @@
 //! Every constraint of a scene (contacts, joint limits, dry friction, equalities) enters one convex problem, solved once
 //! a step for the accelerations that satisfy them all together, softly. What follows is a tour from a file to a force.
 //!
-//! # Load
+//! # Load and step
 //!
-//! [`load`] reads an MJCF file, [`load_str`] the same from text. Names, units and defaults are MuJoCo's.
+//! [`load`] reads an MJCF file, [`load_str`] the same from text; names, units and defaults are MuJoCo's. A [`Model`]
+//! never changes, so simulations share it. A [`Sim`] is a model in motion: its [`State`] is open to be read and written
+//! between steps.
 //!
 //! ```
-//! let model = clench::load_str(
+//! use clench::prelude::*;
+//! use std::sync::Arc;
+//!
+//! let model = Arc::new(load_str(
 //!     "<mujoco>
 //!        <worldbody>
 //!          <geom name='floor' type='plane' size='1 1 1'/>
-//!          <body name='ball' pos='0 0 0.1'>
+//!          <body name='ball' pos='0 0 0.2'>
 //!            <freejoint/>
 //!            <geom size='0.1' mass='2'/>
 //!          </body>
 //!        </worldbody>
 //!      </mujoco>",
-//! )?;
-//! assert_eq!((model.nq, model.nv), (7, 6));
-//! # Ok::<(), clench::LoadError>(())
+//! )?);
+//! let mut sim = Sim::<f64>::new(model)?;
+//! for _ in 0..2000 {
+//!     sim.step()?;
+//! }
+//! // The ball has come to rest on the floor, sunk in by less than a millimetre: contacts are soft.
+//! let height = sim.state.qpos[2];
+//! assert!((0.099..0.1).contains(&height));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A mistake in a file is an error that says where it is:
+//! # Read contacts and forces
+//!
+//! What a step computed stands in its [`workspace`](Sim::workspace); [`rigid::readout`] turns that into MuJoCo's terms.
+//!
+//! ```
+//! use clench::{prelude::*, rigid::readout};
+//! # use std::sync::Arc;
+//! # let model = Arc::new(load_str(
+//! #     "<mujoco>
+//! #        <worldbody>
+//! #          <geom name='floor' type='plane' size='1 1 1'/>
+//! #          <body name='ball' pos='0 0 0.2'>
+//! #            <freejoint/>
+//! #            <geom size='0.1' mass='2'/>
+//! #          </body>
+//! #        </worldbody>
+//! #      </mujoco>",
+//! # )?);
+//! # let mut sim = Sim::<f64>::new(model)?;
+//! # for _ in 0..2000 { sim.step()?; }
+//! assert_eq!(sim.contacts().len(), 1);
+//! // Along the normal, along two tangents, then torques about them: the floor carries the ball's weight.
+//! let [normal, ..] = readout::contact_force(sim.workspace(), 0, 0);
+//! assert!((normal - 2.0 * 9.81).abs() < 1e-6);
+//!
+//! for row in readout::constraint_rows(sim.workspace(), 0) {
+//!     println!("{} violated by {:.1e} pushes with {:.3}", row.source.kind(), row.pos, row.force);
+//! }
+//! // Every solve says how it ended.
+//! println!("{:?} after {} iterations", sim.stats().status, sim.stats().iterations);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Set options
+//!
+//! What a user sets wins over the file's `<option>`, the file over its format's defaults.
+//!
+//! ```
+//! # use clench::prelude::*;
+//! # use std::sync::Arc;
+//! let model = Arc::new(load_str("<mujoco><option iterations='20' cone='elliptic'/></mujoco>")?);
+//! let options = RigidOptions::new().iterations(7);
+//! let sim = Sim::<f64>::with_options(model, options)?;
+//! assert_eq!(sim.settings().solver.iterations, 7);
+//! assert_eq!(sim.settings().solver.friction_cone, FrictionCone::Elliptic);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # When something is wrong
+//!
+//! A mistake in a file is an error that says where it is, and bad input never panics.
 //!
 //! ```
 //! let error = clench::load_str("<mujoco>\n  <option timestop='0.001'/>\n</mujoco>").unwrap_err();
@@ -48,12 +109,12 @@ pub use clench_rigid as rigid;
 pub use clench_solver as solver;
 
 pub use clench_formats::{LoadError, load, load_str};
-pub use clench_rigid::{Model, Sim, State};
+pub use clench_rigid::{Model, Sim, SimError, State};
 pub use clench_solver::RigidOptions;
 
 /// What most programs need: `use clench::prelude::*`.
 pub mod prelude {
-    pub use crate::{Model, RigidOptions, Sim, State, load, load_str};
+    pub use crate::{LoadError, Model, RigidOptions, Sim, SimError, State, load, load_str};
     pub use clench_math::{Quat, Vec3};
     pub use clench_solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
 }
