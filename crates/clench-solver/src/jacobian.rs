@@ -2,9 +2,8 @@
 //!
 //! The solver asks for nothing else, so that rows need not be stored where another form is cheaper.
 
-use crate::Cost;
 use crate::costs::{Form, MAX_DIM, Weight};
-use crate::hessian::Hessian;
+use crate::{Cost, Tree};
 use clench_math::Real;
 use std::ops::Range;
 
@@ -39,11 +38,13 @@ pub(crate) trait Jacobian<T: Real> {
     fn mul(&self, x: &[T], out: &mut [T]);
     /// `out += Jᵀ f`.
     fn add_transposed(&self, f: &[T], out: &mut [T]);
-    /// `hessian += Jᵀ W J`. `weigh` writes the Hessian block of a constraint.
+    /// `hessian += Jᵀ W J`, in the pattern of `tree`, a path of which holds the dofs of each block. `weigh` writes the Hessian
+    /// block of a constraint.
     fn add_gram(
         &self,
         weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
-        hessian: &mut Hessian<T>,
+        tree: &Tree,
+        hessian: &mut [T],
     );
 }
 
@@ -150,20 +151,33 @@ impl<T: Real> StoredRows<T> {
         b: &BlockIndex,
         weight: &Weight<T>,
         form: Form,
-        hessian: &mut Hessian<T>,
+        tree: &Tree,
+        hessian: &mut [T],
     ) {
         let rows = self.rows::<DIM>(b);
         let dofs = self.dofs(b);
+        let whole_path = dofs
+            .last()
+            .is_some_and(|&last| tree.depth(last as usize) + 1 == dofs.len());
         for (k, &dof) in dofs.iter().enumerate() {
-            let j: [T; DIM] = std::array::from_fn(|i| rows[i][k]);
-            let wj = weigh_column::<T, DIM>(weight, form, &j);
-            let target = hessian.row_mut(dof as usize);
-            for (c, &column) in dofs[..=k].iter().enumerate() {
+            let wj = weigh_column::<T, DIM>(weight, form, &std::array::from_fn(|i| rows[i][k]));
+            let rows: [&[T]; DIM] = std::array::from_fn(|i| &rows[i][..=k]);
+            let product = |c: usize| {
                 let mut sum = wj[0] * rows[0][c];
                 for i in 1..DIM {
                     sum += wj[i] * rows[i][c];
                 }
-                target[column as usize] += sum;
+                sum
+            };
+            let start = tree.row_start(dof as usize);
+            if whole_path {
+                for (c, h) in hessian[start..=start + k].iter_mut().enumerate() {
+                    *h += product(c);
+                }
+            } else {
+                for (c, &column) in dofs[..=k].iter().enumerate() {
+                    hessian[start + tree.depth(column as usize)] += product(c);
+                }
             }
         }
     }
@@ -250,13 +264,14 @@ impl<T: Real> Jacobian<T> for StoredRows<T> {
     fn add_gram(
         &self,
         mut weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
-        hessian: &mut Hessian<T>,
+        tree: &Tree,
+        hessian: &mut [T],
     ) {
         let mut weight = [[T::ZERO; MAX_DIM]; MAX_DIM];
         for b in &self.blocks {
             let form = weigh(b, &mut weight);
             if form != Form::Zero {
-                with_dim!(b.dim, DIM => self.add_gram_block::<DIM>(b, &weight, form, hessian));
+                with_dim!(b.dim, DIM => self.add_gram_block::<DIM>(b, &weight, form, tree, hessian));
             }
         }
     }

@@ -23,8 +23,7 @@ impl<T: Real> Direction<T> for Newton<T> {
             Switch::Off => true,
             Switch::Auto => problem.tree().nnz() * 2 > problem.nv() * (problem.nv() + 1),
         };
-        self.hessian
-            .prepare(problem.tree(), dense, &problem.jacobian);
+        self.hessian.prepare(problem, dense);
     }
 
     fn restart(&mut self, _: T::Mask) {}
@@ -40,19 +39,13 @@ impl<T: Real> Direction<T> for Newton<T> {
         // Where no piece changed on a stretch without curvature, the factor at hand is still exact.
         let stale = progress.live & !progress.same_hessian;
         if stale.any() {
-            self.hessian.assemble(
-                problem.tree(),
-                &problem.mass,
-                &problem.jacobian,
-                |b, weight| {
-                    let y = &iterate.residual[b.rows()];
-                    with_cost!(b.cost, C => {
-                        let pieces = &iterate.pieces[b.pieces()];
-                        C::hessian(problem.rows(b), y, pieces, weight)
-                    })
-                },
-            );
-            self.hessian.factor();
+            self.hessian.factor(problem, |b, weight| {
+                let y = &iterate.residual[b.rows()];
+                with_cost!(b.cost, C => {
+                    let pieces = &iterate.pieces[b.pieces()];
+                    C::hessian(problem.rows(b), y, pieces, weight)
+                })
+            });
             stats.factorizations += T::select(stale, T::ONE, T::ZERO);
         }
         direction.clear();

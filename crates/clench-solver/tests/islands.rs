@@ -11,7 +11,13 @@ fn scenes(count: usize) -> impl Iterator<Item = Problem<f64>> {
     (0..count).map(move |k| {
         // Many small trees; few couplings, so that islands of several trees and free trees both occur.
         let parents = (0..30)
-            .map(|i: usize| if i % 3 == 0 { None } else { Some(i - 1) })
+            .map(|i: usize| {
+                if i.is_multiple_of(3) {
+                    None
+                } else {
+                    Some(i - 1)
+                }
+            })
             .collect();
         let mut shape = Shape::new(parents, 1 + k % 12);
         shape.cross = 0.4;
@@ -145,16 +151,16 @@ fn lanes_with_different_islands_equal_scalars() {
         let mut alone: Vec<Problem<f64>> = (0..4)
             .map(|_| Problem::new(problem.tree().clone()))
             .collect();
-        for lane in 0..4 {
+        for (lane, alone) in alone.iter_mut().enumerate() {
             for (to, &from) in packed.mass.values.iter_mut().zip(&problem.mass.values) {
                 to.set_lane(lane, from);
             }
             for (to, &from) in packed.qacc_smooth.iter_mut().zip(&problem.qacc_smooth) {
                 to.set_lane(lane, from + lane as f64);
             }
-            alone[lane].mass = problem.mass.clone();
-            alone[lane].factor_mass();
-            alone[lane].qacc_smooth = problem
+            alone.mass = problem.mass.clone();
+            alone.factor_mass();
+            alone.qacc_smooth = problem
                 .qacc_smooth
                 .iter()
                 .map(|a| a + lane as f64)

@@ -130,13 +130,39 @@ fn random_mass(rng: &mut Rng, tree: &Tree) -> TreeMatrix<f64> {
 }
 
 fn push_random_block(rng: &mut Rng, shape: &Shape, tree: &Tree, problem: &mut Problem<f64>) {
-    let nv = tree.nv();
     let cost = shape.costs[rng.below(shape.costs.len())];
     let dim = match cost {
         Cost::Quadratic => [1, 3, 6][rng.below(3)],
         Cost::OneSided | Cost::Huber => 1,
         Cost::Pyramid | Cost::Elliptic => [2, 3, 4, 6][rng.below(4)],
     };
+    push_block(rng, shape, tree, problem, cost, dim);
+}
+
+/// Blocks that press: contacts of one kind as a standing robot has them.
+pub fn push_contacts(
+    rng: &mut Rng,
+    shape: &Shape,
+    problem: &mut Problem<f64>,
+    cost: Cost,
+    dim: usize,
+    count: usize,
+) {
+    let tree = problem.tree().clone();
+    for _ in 0..count {
+        push_block(rng, shape, &tree, problem, cost, dim);
+    }
+}
+
+fn push_block(
+    rng: &mut Rng,
+    shape: &Shape,
+    tree: &Tree,
+    problem: &mut Problem<f64>,
+    cost: Cost,
+    dim: usize,
+) {
+    let nv = tree.nv();
     let mut dofs = tree.row(rng.below(nv)).to_vec();
     if rng.unit() < shape.cross {
         dofs.extend_from_slice(tree.row(rng.below(nv)));

@@ -1,0 +1,104 @@
+//! The Hessian H = M + Jᵀ W J of the problem, and its factorization H = LᵀDL.
+//!
+//! Rows are eliminated from the last to the first, as for M itself: then a constraint within one branch of the tree
+//! creates no fill. A constraint between branches makes one hang on the other, and what comes out is a tree again, the
+//! elimination tree. So H and its factor live in the pattern of a [`Tree`] of their own, like M in that of the model: the
+//! model's where no constraint couples branches, a chain for the dense choice. Both choices run the same kernels, and
+//! **sparse and dense agree to the bit**.
+
+use crate::costs::{Form, Weight};
+use crate::jacobian::{BlockIndex, Jacobian, StoredRows};
+use crate::tree::Coupling;
+use crate::{Problem, Tree, TreeFactor, TreeMatrix};
+use clench_math::Real;
+
+/// H and its factor.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hessian<T> {
+    tree: Tree,
+    matrix: TreeMatrix<T>,
+    factor: TreeFactor<T>,
+    /// What the tree was made from: the model's parents, the couplings that are not within a branch, the choice.
+    parents: Vec<Option<usize>>,
+    couplings: Vec<u32>,
+    dense: bool,
+    /// The couplings of the problem at hand.
+    found: Vec<u32>,
+    scratch: Coupling,
+}
+
+impl<T: Real> Hessian<T> {
+    /// Fits the pattern to a problem.
+    pub fn prepare(&mut self, problem: &Problem<T>, dense: bool) {
+        let tree = problem.tree();
+        self.found.clear();
+        if !dense {
+            find_couplings(tree, &problem.jacobian, &mut self.found);
+        }
+        let same_tree = self.parents.len() == tree.nv()
+            && (0..tree.nv()).all(|i| self.parents[i] == tree.parent(i));
+        if same_tree && self.dense == dense && self.couplings == self.found {
+            return;
+        }
+        self.dense = dense;
+        self.couplings.clear();
+        self.couplings.extend_from_slice(&self.found);
+        self.parents.clear();
+        self.parents.extend((0..tree.nv()).map(|i| tree.parent(i)));
+        if dense {
+            // The one coupling of a dense Hessian is that of all dofs.
+            self.found.push(tree.nv() as u32);
+            self.found.extend(0..tree.nv() as u32);
+        }
+        self.tree
+            .rebuild_coupled(tree, &self.found, &mut self.scratch);
+        self.matrix.values.clear();
+        self.matrix.values.resize(self.tree.nnz(), T::ZERO);
+    }
+
+    /// H = M + Jᵀ W J, factored. `weigh` writes the Hessian block of a constraint.
+    pub fn factor(
+        &mut self,
+        problem: &Problem<T>,
+        weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
+    ) {
+        self.set(problem.tree(), &problem.mass);
+        problem
+            .jacobian
+            .add_gram(weigh, &self.tree, &mut self.matrix.values);
+        self.factor.factor_safely(&self.tree, &self.matrix);
+    }
+
+    /// H = M.
+    fn set(&mut self, tree: &Tree, mass: &TreeMatrix<T>) {
+        if self.tree.nnz() == tree.nnz() {
+            self.matrix.values.copy_from_slice(&mass.values);
+            return;
+        }
+        self.matrix.values.fill(T::ZERO);
+        for i in 0..tree.nv() {
+            let row = self.matrix.row_mut(&self.tree, i);
+            for (&c, &m) in tree.row(i).iter().zip(mass.row(tree, i)) {
+                row[self.tree.depth(c as usize)] = m;
+            }
+        }
+    }
+
+    /// `x ← H⁻¹ x`.
+    pub fn solve(&self, x: &mut [T]) {
+        self.factor.solve(&self.tree, x);
+    }
+}
+
+/// Lists the dofs of each block that acts on more than one branch: a count, then the dofs.
+fn find_couplings<T: Real>(tree: &Tree, rows: &StoredRows<T>, found: &mut Vec<u32>) {
+    let mut last = &[][..];
+    for b in &rows.blocks {
+        let dofs = rows.dofs(b);
+        if dofs != last && !tree.is_path(dofs) {
+            found.push(dofs.len() as u32);
+            found.extend_from_slice(dofs);
+        }
+        last = dofs;
+    }
+}

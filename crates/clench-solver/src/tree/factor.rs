@@ -1,0 +1,195 @@
+//! The factorization LᵀDL in the pattern of a tree.
+//!
+//! With U = D L, row i is `U_i = A_i − Σ_k L_ki U_k` over the descendants k of i, of whose rows it takes the beginning. A few
+//! columns at a time stay in registers while the sum runs. Every entry sums in the same order, and an entry that is zero
+//! contributes an exact zero, **so that a larger pattern gives the same bits**.
+
+use super::{Tree, TreeMatrix};
+use clench_math::{Mask, Real, Scalar};
+
+/// Columns summed at a time: one or a few registers.
+const WIDTH: usize = 4;
+
+/// The factorization A = LᵀDL of a [`TreeMatrix`], L unit lower triangular in the same pattern.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TreeFactor<T> {
+    /// L, row by row; its diagonal of ones is not stored but left as it comes.
+    lower: Vec<T>,
+    /// U = D L, needed only while factoring.
+    scaled: Vec<T>,
+    /// D and 1 / D.
+    diagonal: Vec<T>,
+    inverse: Vec<T>,
+}
+
+impl<T: Real> TreeFactor<T> {
+    /// An empty factor, to be filled by [`factor`](Self::factor).
+    pub fn zeros(tree: &Tree) -> Self {
+        let mut factor = TreeFactor::default();
+        factor.resize(tree);
+        factor
+    }
+
+    fn resize(&mut self, tree: &Tree) {
+        self.lower.resize(tree.nnz(), T::ZERO);
+        self.scaled.resize(tree.nnz(), T::ZERO);
+        self.diagonal.resize(tree.nv(), T::ZERO);
+        self.inverse.resize(tree.nv(), T::ZERO);
+    }
+
+    /// Factors `matrix`. False in lanes that met a pivot that is not positive: their factor is not usable.
+    pub fn factor(&mut self, tree: &Tree, matrix: &TreeMatrix<T>) -> T::Mask {
+        self.factor_above(tree, matrix, T::ZERO)
+    }
+
+    /// Factors `matrix`, in which a pivot that rounding has consumed is replaced by the size of the rounding.
+    pub(crate) fn factor_safely(&mut self, tree: &Tree, matrix: &TreeMatrix<T>) {
+        self.factor_above(tree, matrix, T::splat(T::Scalar::EPSILON));
+    }
+
+    /// Factors with pivots no smaller than `floor` times the diagonal.
+    fn factor_above(&mut self, tree: &Tree, matrix: &TreeMatrix<T>, floor: T) -> T::Mask {
+        self.resize(tree);
+        let mut positive = T::Mask::splat(true);
+        for i in (0..tree.nv()).rev() {
+            self.sum_row(tree, i, &matrix.values);
+            let row = tree.starts[i]..tree.starts[i + 1];
+            let pivot = self.scaled[row.end - 1];
+            positive &= pivot.gt(T::ZERO) & pivot.is_finite();
+            let pivot = pivot.max(floor * matrix.values[row.end - 1]);
+            let inverse = T::ONE / pivot;
+            self.diagonal[i] = pivot;
+            self.inverse[i] = inverse;
+            for (l, &u) in self.lower[row.clone()].iter_mut().zip(&self.scaled[row]) {
+                *l = u * inverse;
+            }
+        }
+        positive
+    }
+
+    /// Computes row `i` of U. Windows of columns may overlap: each starts from `values`, which stay as they are.
+    #[inline(always)]
+    fn sum_row(&mut self, tree: &Tree, i: usize, values: &[T]) {
+        let (start, end) = (tree.starts[i], tree.starts[i + 1]);
+        let descendants = tree.descendants(i);
+        let (done, below) = self.scaled.split_at_mut(end);
+        let row = &mut done[start..];
+        let (values, lower) = (&values[start..end], &self.lower[end..]);
+        let depth = row.len() - 1;
+        let mut column = 0;
+        while column + WIDTH <= row.len() {
+            sum_window::<T, WIDTH>(row, values, below, lower, descendants, end, depth, column);
+            column += WIDTH;
+        }
+        if column < row.len() && row.len() >= WIDTH {
+            sum_window::<T, WIDTH>(
+                row,
+                values,
+                below,
+                lower,
+                descendants,
+                end,
+                depth,
+                row.len() - WIDTH,
+            );
+        } else {
+            for column in column..row.len() {
+                sum_window::<T, 1>(row, values, below, lower, descendants, end, depth, column);
+            }
+        }
+    }
+
+    /// Becomes the part of `whole`, the factor over `tree`, that belongs to the complete trees of `dofs`.
+    pub(crate) fn gather(&mut self, tree: &Tree, whole: &TreeFactor<T>, dofs: &[u32]) {
+        self.lower.clear();
+        self.diagonal.clear();
+        self.inverse.clear();
+        for &dof in dofs {
+            let dof = dof as usize;
+            self.lower
+                .extend_from_slice(&whole.lower[tree.starts[dof]..tree.starts[dof + 1]]);
+            self.diagonal.push(whole.diagonal[dof]);
+            self.inverse.push(whole.inverse[dof]);
+        }
+    }
+
+    /// Becomes lane `lane` of `whole`.
+    pub(crate) fn gather_lane<L: Real<Scalar = T>>(&mut self, whole: &TreeFactor<L>, lane: usize) {
+        for (to, from) in [
+            (&mut self.lower, &whole.lower),
+            (&mut self.diagonal, &whole.diagonal),
+            (&mut self.inverse, &whole.inverse),
+        ] {
+            to.clear();
+            to.extend(from.iter().map(|x| x.lane(lane)));
+        }
+    }
+
+    /// `x ← A⁻¹ x`.
+    pub fn solve(&self, tree: &Tree, x: &mut [T]) {
+        self.solve_transposed(tree, x);
+        for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
+            *x *= inverse;
+        }
+        for k in 0..tree.nv() {
+            let (columns, values) = self.row(tree, k);
+            let mut sum = x[k];
+            for (&c, &l) in columns.iter().zip(values) {
+                sum -= l * x[c as usize];
+            }
+            x[k] = sum;
+        }
+    }
+
+    /// `x ← D^(-1/2) L^(-T) x`: afterwards `x·y` is the product `xᵀA⁻¹y` of what was given.
+    pub fn solve_half(&self, tree: &Tree, x: &mut [T]) {
+        self.solve_transposed(tree, x);
+        for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
+            *x *= inverse.sqrt();
+        }
+    }
+
+    fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
+        for k in (0..tree.nv()).rev() {
+            let (columns, values) = self.row(tree, k);
+            let xk = x[k];
+            for (&c, &l) in columns.iter().zip(values) {
+                x[c as usize] -= l * xk;
+            }
+        }
+    }
+
+    /// Row `k` of L left of the diagonal.
+    #[inline(always)]
+    fn row<'a>(&'a self, tree: &'a Tree, k: usize) -> (&'a [u32], &'a [T]) {
+        let (start, end) = (tree.starts[k], tree.starts[k + 1] - 1);
+        (&tree.columns[start..end], &self.lower[start..end])
+    }
+}
+
+/// `row[column..] = values[column..] − Σ_k L_k[depth] · U_k[column..]` for `N` columns.
+///
+/// `below` and `lower` are U and L from `end` on; `descendants` lists where the rows k start, counted from 0.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // the parts of one row, which the caller has split already
+fn sum_window<T: Real, const N: usize>(
+    row: &mut [T],
+    values: &[T],
+    below: &[T],
+    lower: &[T],
+    descendants: &[u32],
+    end: usize,
+    depth: usize,
+    column: usize,
+) {
+    let mut sum: [T; N] = std::array::from_fn(|c| values[column + c]);
+    for &start in descendants {
+        let start = start as usize - end;
+        let multiplier = lower[start + depth];
+        let other = &below[start + column..][..N];
+        for c in 0..N {
+            sum[c] -= multiplier * other[c];
+        }
+    }
+    row[column..column + N].copy_from_slice(&sum);
+}

@@ -1,0 +1,220 @@
+//! The sparsity of a joint-space mass matrix, and its factorization without fill.
+//!
+//! Entry (i, j) of M is nonzero only where one degree of freedom is an ancestor of the other. Numbered from the root
+//! outwards (every parent before its children), the factorization M = LᵀDL, computed from the last row to the first,
+//! creates no entry outside this pattern (Featherstone, *Rigid Body Dynamics Algorithms*, §6.5).
+//!
+//! A row lists a path from a root, so the row of an ancestor is the beginning of the row of each of its descendants, and a
+//! column keeps its place in all of them. The kernels here live on that: they run over contiguous values, without indices.
+
+mod factor;
+mod matrix;
+
+use crate::ProblemError;
+pub use factor::TreeFactor;
+pub use matrix::TreeMatrix;
+
+/// Which degrees of freedom (dofs) hang on which: the sparsity pattern of M.
+///
+/// Row `i` of the pattern lists the ancestors of dof `i` in ascending order and ends with `i` itself: the lower
+/// triangle of M in compressed rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tree {
+    parents: Vec<Option<u32>>,
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    trees: Vec<u32>,
+    ntree: usize,
+    /// For each dof, where the rows of its descendants start, in ascending order.
+    descendants: Vec<u32>,
+    descendant_starts: Vec<usize>,
+}
+
+impl Tree {
+    /// A forest from the parent of each dof.
+    ///
+    /// # Errors
+    /// A parent that does not come before its child.
+    pub fn new(parents: &[Option<usize>]) -> Result<Tree, ProblemError> {
+        let mut tree = Tree::default();
+        tree.rebuild(parents.len(), |i| parents[i])?;
+        Ok(tree)
+    }
+
+    /// The full lower triangle: a chain of `n` dofs.
+    pub fn dense(n: usize) -> Tree {
+        let mut tree = Tree::default();
+        let chain = tree.rebuild(n, |i| i.checked_sub(1));
+        debug_assert!(chain.is_ok(), "a chain is a valid tree");
+        tree
+    }
+
+    /// Rebuilds the pattern in place, reusing its memory.
+    pub(crate) fn rebuild(
+        &mut self,
+        nv: usize,
+        parent: impl Fn(usize) -> Option<usize>,
+    ) -> Result<(), ProblemError> {
+        self.parents.clear();
+        self.starts.clear();
+        self.columns.clear();
+        self.trees.clear();
+        self.ntree = 0;
+        self.starts.push(0);
+        for dof in 0..nv {
+            match parent(dof) {
+                Some(p) if p >= dof => {
+                    return Err(ProblemError::ParentAfterChild { dof, parent: p });
+                }
+                Some(p) => {
+                    self.columns
+                        .extend_from_within(self.starts[p]..self.starts[p + 1]);
+                    self.trees.push(self.trees[p]);
+                    self.parents.push(Some(p as u32));
+                }
+                None => {
+                    self.trees.push(self.ntree as u32);
+                    self.ntree += 1;
+                    self.parents.push(None);
+                }
+            }
+            self.columns.push(dof as u32);
+            self.starts.push(self.columns.len());
+        }
+        self.list_descendants();
+        Ok(())
+    }
+
+    fn list_descendants(&mut self) {
+        let nv = self.nv();
+        self.descendant_starts.clear();
+        self.descendant_starts.resize(nv + 1, 0);
+        for i in 0..nv {
+            for c in self.starts[i]..self.starts[i + 1] - 1 {
+                self.descendant_starts[self.columns[c] as usize + 1] += 1;
+            }
+        }
+        for i in 0..nv {
+            self.descendant_starts[i + 1] += self.descendant_starts[i];
+        }
+        self.descendants.clear();
+        self.descendants.resize(self.descendant_starts[nv], 0);
+        // Filling each list from its end moves its start back to where it belongs.
+        for i in (0..nv).rev() {
+            for c in self.starts[i]..self.starts[i + 1] - 1 {
+                let end = &mut self.descendant_starts[self.columns[c] as usize + 1];
+                *end -= 1;
+                self.descendants[*end] = self.starts[i] as u32;
+            }
+        }
+        self.descendant_starts.rotate_left(1);
+        if let Some(last) = self.descendant_starts.last_mut() {
+            *last = self.descendants.len();
+        }
+    }
+
+    /// The same dofs, with `couplings` (each a count, then ascending dofs) coupled as well: the elimination tree, whose paths
+    /// hold all entries that eliminating the coupled matrix from its last row fills. `edges` is scratch.
+    ///
+    /// Liu's algorithm, from the last dof to the first: the tree that holds a neighbour so far comes to hang on the dof.
+    /// Of a coupling, only each dof with the next one matters: what lies above hangs on that already.
+    pub(crate) fn rebuild_coupled(
+        &mut self,
+        tree: &Tree,
+        couplings: &[u32],
+        scratch: &mut Coupling,
+    ) {
+        let nv = tree.nv();
+        let Coupling {
+            edges,
+            parents,
+            roots,
+        } = scratch;
+        edges.clear();
+        edges.extend((0..nv).filter_map(|i| tree.parents[i].map(|p| (p, i as u32))));
+        let mut rest = couplings;
+        while let Some((&count, tail)) = rest.split_first() {
+            let (dofs, tail) = tail.split_at(count as usize);
+            edges.extend(dofs.windows(2).map(|w| (w[0], w[1])));
+            rest = tail;
+        }
+        edges.sort_unstable_by(|a, b| b.cmp(a));
+        parents.clear();
+        parents.resize(nv, None);
+        roots.clear();
+        roots.extend(0..nv as u32);
+        for &(low, high) in &*edges {
+            // The root of the tree that holds `high`, shortening the way for later.
+            let mut root = high as usize;
+            while roots[root] as usize != root {
+                roots[root] = roots[roots[root] as usize];
+                root = roots[root] as usize;
+            }
+            if root != low as usize {
+                roots[root] = low;
+                parents[root] = Some(low as usize);
+            }
+        }
+        let ascending = self.rebuild(nv, |i| parents[i]);
+        debug_assert!(ascending.is_ok(), "a dof hangs on one of lower number");
+    }
+
+    /// Where the rows of the descendants of dof `i` start.
+    #[inline(always)]
+    pub(crate) fn descendants(&self, i: usize) -> &[u32] {
+        &self.descendants[self.descendant_starts[i]..self.descendant_starts[i + 1]]
+    }
+    /// How many ancestors dof `i` has: its place in every row that it is in.
+    #[inline(always)]
+    pub(crate) fn depth(&self, i: usize) -> usize {
+        self.starts[i + 1] - self.starts[i] - 1
+    }
+
+    /// Number of dofs.
+    pub fn nv(&self) -> usize {
+        self.parents.len()
+    }
+    /// The parent of a dof, `None` for a root.
+    pub fn parent(&self, dof: usize) -> Option<usize> {
+        self.parents[dof].map(|p| p as usize)
+    }
+    /// Ancestors of dof `i`, ascending, then `i` itself.
+    pub fn row(&self, i: usize) -> &[u32] {
+        &self.columns[self.starts[i]..self.starts[i + 1]]
+    }
+    /// Where row `i` starts among the stored values; `row_start(nv)` is their number.
+    pub fn row_start(&self, i: usize) -> usize {
+        self.starts[i]
+    }
+    /// Number of stored values.
+    pub fn nnz(&self) -> usize {
+        self.columns.len()
+    }
+    /// Which tree of the forest a dof belongs to, counted by their roots.
+    pub fn tree_of(&self, dof: usize) -> usize {
+        self.trees[dof] as usize
+    }
+    /// Number of trees in the forest.
+    pub fn ntree(&self) -> usize {
+        self.ntree
+    }
+    /// Whether all of `dofs` (ascending) lie on the path from a root to the last of them.
+    pub(crate) fn is_path(&self, dofs: &[u32]) -> bool {
+        let Some(&last) = dofs.last() else {
+            return true;
+        };
+        let row = self.row(last as usize);
+        row.len() == dofs.len() && row == dofs
+            || dofs.iter().all(|dof| row.binary_search(dof).is_ok())
+    }
+}
+
+/// Scratch of [`Tree::rebuild_coupled`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Coupling {
+    /// (lower, higher) dof.
+    edges: Vec<(u32, u32)>,
+    parents: Vec<Option<usize>>,
+    /// Union-find.
+    roots: Vec<u32>,
+}
