@@ -222,6 +222,13 @@ fn contradictions() {
         "\"mass\" is required",
     );
     expect("<replicate count='0'/>", "replicate", "positive");
+    let nested = "<replicate count='2000'><replicate count='2000'/></replicate>";
+    expect(nested, "replicate", "more than 100000 replicas");
+    expect(
+        "<replicate count='2000000000'/>",
+        "replicate",
+        "more than 100000 replicas",
+    );
     expect(
         "<body><replicate count='2'><joint/></replicate></body>",
         "joint",

@@ -12,12 +12,16 @@ use std::collections::HashSet;
 
 /// Reads the body tree into a list of bodies, parents before children.
 pub(crate) struct BodyReader<'a> {
-    pub notation: &'a Notation,
-    pub classes: &'a Classes,
-    pub bodies: &'a mut Vec<BodySpec>,
+    notation: &'a Notation,
+    classes: &'a Classes,
+    bodies: &'a mut Vec<BodySpec>,
     /// Names in the file that stand for several elements of the model.
     pub replicated: HashSet<String>,
+    replicas: usize,
 }
+
+/// More replicas than a file can mean to have; nested ones multiply, and a short file must not fill the memory.
+const MAX_REPLICAS: usize = 100_000;
 
 /// Where in the tree the reader is.
 #[derive(Clone)]
@@ -43,7 +47,22 @@ pub(crate) fn world() -> BodySpec {
     }
 }
 
-impl BodyReader<'_> {
+impl<'a> BodyReader<'a> {
+    /// A reader that adds to a list of bodies which begins with the world.
+    pub fn new(
+        notation: &'a Notation,
+        classes: &'a Classes,
+        bodies: &'a mut Vec<BodySpec>,
+    ) -> Self {
+        BodyReader {
+            notation,
+            classes,
+            bodies,
+            replicated: HashSet::new(),
+            replicas: 0,
+        }
+    }
+
     /// Reads one `<worldbody>`.
     pub fn read_world(&mut self, element: &Element) -> Result<(), LoadError> {
         let world = Place {
@@ -114,6 +133,10 @@ impl BodyReader<'_> {
             .ok_or_else(|| element.missing("count"))?;
         if count == 0 {
             return Err(element.error("count must be positive"));
+        }
+        self.replicas = self.replicas.saturating_add(count);
+        if self.replicas > MAX_REPLICAS {
+            return Err(element.error(format!("there are more than {MAX_REPLICAS} replicas")));
         }
         let offset = Vec3::from_array(element.numbers("offset")?.unwrap_or_default());
         let euler: [f64; 3] = element.numbers("euler")?.unwrap_or_default();

@@ -119,12 +119,7 @@ fn read_model(root: &Element) -> Result<ModelBuilder, LoadError> {
     for section in sections(root, "default") {
         classes.read(section)?;
     }
-    let mut bodies = BodyReader {
-        notation: &notation,
-        classes: &classes,
-        bodies: &mut builder.bodies,
-        replicated: HashSet::new(),
-    };
+    let mut bodies = BodyReader::new(&notation, &classes, &mut builder.bodies);
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }
