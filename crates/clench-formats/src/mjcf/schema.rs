@@ -59,26 +59,19 @@ fn check_child(
     rule: &Rule,
     child: &Element,
 ) -> Result<&'static Rule, LoadError> {
-    let known = || {
-        words(rule.children)
-            .chain(words(rule.once))
-            .chain(words(rule.later_children))
-    };
     let tag = child.tag.as_str();
     if words(rule.later_children).any(|later| later == tag) {
         return Err(child.error(format!("<{tag}> in <{}> is not supported yet", element.tag)));
     }
+    let known = || words(rule.children).chain(words(rule.once));
     let allowed = known().any(|name| name == tag);
-    match find(&element.tag, tag).filter(|_| allowed) {
-        Some(rule) => Ok(rule),
-        None => {
-            let hint = suggestion(tag, known());
-            Err(child.error(format!(
-                "unknown element <{tag}> in <{}>{hint}",
-                element.tag
-            )))
-        }
-    }
+    find(&element.tag, tag).filter(|_| allowed).ok_or_else(|| {
+        let hint = suggestion(tag, known().chain(words(rule.later_children)));
+        child.error(format!(
+            "unknown element <{tag}> in <{}>{hint}",
+            element.tag
+        ))
+    })
 }
 
 fn check_attribute(
@@ -145,5 +138,35 @@ pub(crate) fn suggestion<'a>(mistaken: &str, known: impl Iterator<Item = &'a str
             format!("; did you mean \"{name}\"?")
         }
         _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_child_that_a_rule_allows_has_a_rule() {
+        for rule in RULES {
+            let parent = rule.element.rsplit('/').next().unwrap_or_default();
+            for tag in words(rule.children).chain(words(rule.once)) {
+                assert!(find(parent, tag).is_some(), "<{tag}> in <{parent}>");
+            }
+        }
+    }
+
+    #[test]
+    fn no_attribute_is_answered_twice() {
+        for rule in RULES {
+            let later = words(rule.later).map(|later| later.split('=').next().unwrap_or_default());
+            let mut all: Vec<&str> = words(rule.read)
+                .chain(words(rule.ignored))
+                .chain(later)
+                .collect();
+            let count = all.len();
+            all.sort_unstable();
+            all.dedup();
+            assert_eq!(all.len(), count, "<{}>", rule.element);
+        }
     }
 }
