@@ -12,15 +12,16 @@ use std::io::{self, BufRead, BufWriter, Write};
 /// replaced. Each line of standard output is the result for that state.
 #[derive(Args)]
 pub struct Arguments {
-    #[command(flatten)]
-    model: ModelArguments,
-
     /// Add the constraint Jacobian, a row a constraint
     #[arg(long)]
     jacobian: bool,
     /// Add the mass matrix
     #[arg(long)]
     mass: bool,
+
+    // Last, because its heading in the help holds for all that follows.
+    #[command(flatten)]
+    model: ModelArguments,
 }
 
 /// Answers every line of standard input; stops with an error that names the line at the first that cannot be used.

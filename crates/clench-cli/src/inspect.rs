@@ -13,12 +13,13 @@ use clench::{Model, Sim};
 /// forces, violations and impedances.
 #[derive(Args)]
 pub struct Arguments {
-    #[command(flatten)]
-    model: ModelArguments,
-
     /// Step this often before looking at the constraints
     #[arg(long, value_name = "N", default_value_t = 0)]
     steps: usize,
+
+    // Last, because its heading in the help holds for all that follows.
+    #[command(flatten)]
+    model: ModelArguments,
 }
 
 /// Prints everything on standard output.
@@ -87,7 +88,7 @@ fn print_tree(model: &Model) {
             (true, None) => "fixed".into(),
         };
         println!(
-            "  {:indent$}{}  ({attached}; {:.4} kg, {} geoms)",
+            "  {:indent$}{}  ({attached}; {:.4} kg; geoms: {})",
             "",
             name_or_index(&body.name, "body", b),
             model.params.body_mass[b],
@@ -131,7 +132,7 @@ fn print_constraints(sim: &Sim) {
     for row in &rows {
         table.row(vec![
             row.source.kind().into(),
-            source(sim.model(), row),
+            source(sim, row),
             format!("{:.6}", row.force),
             format!("{:.6}", row.pos - row.margin),
             format!("{:.6}", row.vel),
@@ -141,11 +142,18 @@ fn print_constraints(sim: &Sim) {
     print!("{table}");
 }
 
-fn source(model: &Model, row: &ConstraintRow) -> String {
+/// What a person calls the source of a row: its name, or for a contact the two geoms.
+fn source(sim: &Sim, row: &ConstraintRow) -> String {
+    let model = sim.model();
     match row.source {
-        ConstraintSource::Contact(_) => format!("{}", row.source.index()),
-        source => name_or_index(source.name(model), "", source.index())
-            .trim()
-            .to_string(),
+        ConstraintSource::Contact(i) => {
+            let name = |g: usize| name_or_index(&model.geoms[g].name, "geom", g);
+            let [a, b] = sim.contacts()[i].geoms.map(name);
+            format!("{a} – {b}")
+        }
+        source => match source.name(model) {
+            "" => source.index().to_string(),
+            name => name.to_string(),
+        },
     }
 }
