@@ -74,7 +74,8 @@ impl<T: Real> TreeFactor<T> {
         let descendants = tree.descendants(i);
         let (done, below) = self.scaled.split_at_mut(end);
         let row = &mut done[start..];
-        let (values, lower) = (&values[start..end], &self.lower[end..]);
+        let (values, lower) = (&values[start..end], &self.lower[end..tree.nnz()]);
+        let below = &below[..tree.nnz() - end];
         let depth = row.len() - 1;
         let mut column = 0;
         while column + WIDTH <= row.len() {
@@ -132,9 +133,13 @@ impl<T: Real> TreeFactor<T> {
             *x *= inverse;
         }
         for k in 0..tree.nv() {
-            let (columns, values) = self.row(tree, k);
+            let (first, lead, others) = tree.split_row(k);
+            let row = &self.lower[tree.starts[k]..];
             let mut sum = x[k];
-            for (&c, &l) in columns.iter().zip(values) {
+            for (&l, &x) in row.iter().zip(&x[first..first + lead]) {
+                sum -= l * x;
+            }
+            for (&l, &c) in row[lead..].iter().zip(others) {
                 sum -= l * x[c as usize];
             }
             x[k] = sum;
@@ -151,19 +156,16 @@ impl<T: Real> TreeFactor<T> {
 
     fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
         for k in (0..tree.nv()).rev() {
-            let (columns, values) = self.row(tree, k);
+            let (first, lead, others) = tree.split_row(k);
+            let row = &self.lower[tree.starts[k]..];
             let xk = x[k];
-            for (&c, &l) in columns.iter().zip(values) {
+            for (&l, x) in row.iter().zip(&mut x[first..first + lead]) {
+                *x -= l * xk;
+            }
+            for (&l, &c) in row[lead..].iter().zip(others) {
                 x[c as usize] -= l * xk;
             }
         }
-    }
-
-    /// Row `k` of L left of the diagonal.
-    #[inline(always)]
-    fn row<'a>(&'a self, tree: &'a Tree, k: usize) -> (&'a [u32], &'a [T]) {
-        let (start, end) = (tree.starts[k], tree.starts[k + 1] - 1);
-        (&tree.columns[start..end], &self.lower[start..end])
     }
 }
 
@@ -185,10 +187,15 @@ fn sum_window<T: Real, const N: usize>(
     let mut sum: [T; N] = std::array::from_fn(|c| values[column + c]);
     for &start in descendants {
         let start = start as usize - end;
-        let multiplier = lower[start + depth];
-        let other = &below[start + column..][..N];
-        for c in 0..N {
-            sum[c] -= multiplier * other[c];
+        debug_assert!(start + depth < lower.len() && column + N <= depth + 1);
+        // SAFETY: `start` is where the row of a descendant starts, which holds more than `depth` entries after it: a tree
+        // is built so, and `lower` and `below` have its size. The checks were half of the instructions of this loop, the
+        // hottest of all.
+        unsafe {
+            let multiplier = *lower.get_unchecked(start + depth);
+            for c in 0..N {
+                sum[c] -= multiplier * *below.get_unchecked(start + column + c);
+            }
         }
     }
     row[column..column + N].copy_from_slice(&sum);

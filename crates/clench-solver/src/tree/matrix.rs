@@ -28,11 +28,19 @@ impl<T: Real> TreeMatrix<T> {
     /// `out = A x`.
     pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
         for i in 0..tree.nv() {
-            let (columns, values) = (tree.row(i), self.row(tree, i));
-            let last = columns.len() - 1;
+            let (first, lead, others) = tree.split_row(i);
+            let row = self.row(tree, i);
             let xi = x[i];
-            let mut sum = values[last] * xi;
-            for (&c, &v) in columns[..last].iter().zip(values) {
+            let mut sum = row[row.len() - 1] * xi;
+            for ((&v, &x), out) in row
+                .iter()
+                .zip(&x[first..first + lead])
+                .zip(&mut out[first..first + lead])
+            {
+                sum += v * x;
+                *out += v * xi;
+            }
+            for (&v, &c) in row[lead..].iter().zip(others) {
                 sum += v * x[c as usize];
                 out[c as usize] += v * xi;
             }

@@ -25,6 +25,8 @@ pub struct Tree {
     columns: Vec<u32>,
     trees: Vec<u32>,
     ntree: usize,
+    /// How many columns at the beginning of each row follow one another without a gap, the diagonal left out.
+    leads: Vec<u32>,
     /// For each dof, where the rows of its descendants start, in ascending order.
     descendants: Vec<u32>,
     descendant_starts: Vec<usize>,
@@ -80,6 +82,16 @@ impl Tree {
             }
             self.columns.push(dof as u32);
             self.starts.push(self.columns.len());
+        }
+        self.leads.clear();
+        for i in 0..nv {
+            let before = &self.columns[self.starts[i]..self.starts[i + 1] - 1];
+            let lead = before
+                .iter()
+                .zip(before.first().copied().unwrap_or(0)..)
+                .take_while(|(c, k)| **c == *k)
+                .count();
+            self.leads.push(lead as u32);
         }
         self.list_descendants();
         Ok(())
@@ -157,6 +169,19 @@ impl Tree {
         }
         let ascending = self.rebuild(nv, |i| parents[i]);
         debug_assert!(ascending.is_ok(), "a dof hangs on one of lower number");
+    }
+
+    /// Row `i` left of the diagonal, split where its columns first leave a gap: the first column and the number of those
+    /// without, and the other columns.
+    #[inline(always)]
+    pub(crate) fn split_row(&self, i: usize) -> (usize, usize, &[u32]) {
+        let lead = self.leads[i] as usize;
+        let start = self.starts[i];
+        (
+            self.columns[start] as usize,
+            lead,
+            &self.columns[start + lead..self.starts[i + 1] - 1],
+        )
     }
 
     /// Where the rows of the descendants of dof `i` start.
