@@ -27,8 +27,8 @@ pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
             let limit = Limit {
                 source: ConstraintSource::JointLimit(i),
                 margin: params.jnt_margin[i],
-                solref: params.jnt_solref[i],
-                solimp: params.jnt_solimp[i],
+                solref: &params.jnt_solref[i],
+                solimp: &params.jnt_solimp[i],
                 a0: params.dof_invweight0[joint.dof],
             };
             match joint.kind {
@@ -47,8 +47,8 @@ pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
         let limit = Limit {
             source: ConstraintSource::TendonLimit(i),
             margin: params.tendon_margin[i],
-            solref: params.tendon_solref_lim[i],
-            solimp: params.tendon_solimp_lim[i],
+            solref: &params.tendon_solref_lim[i],
+            solimp: &params.tendon_solimp_lim[i],
             a0: params.tendon_invweight0[i],
         };
         let coordinate = Coordinate::tendon(scene, i);
@@ -56,15 +56,15 @@ pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
     }
 }
 
-struct Limit<T> {
+struct Limit<'a, T> {
     source: ConstraintSource,
     margin: T,
-    solref: [T; 2],
-    solimp: [T; 5],
+    solref: &'a [T; 2],
+    solimp: &'a [T; 5],
     a0: T,
 }
 
-impl<T: Real> Limit<T> {
+impl<T: Real> Limit<'_, T> {
     /// Lower, then upper end of a coordinate's range.
     fn push_range(
         &self,
@@ -114,7 +114,7 @@ impl<T: Real> Limit<T> {
         fill: impl FnOnce(&[u32], &mut [T]),
     ) {
         let violation = dist - self.margin;
-        let soft = Softness::new(self.solref, self.solimp, violation, scene.least_timeconst);
+        let soft = Softness::new(*self.solref, *self.solimp, violation, scene.least_timeconst);
         let row = Row::new(&soft, dist, self.margin, self.a0);
         let block = BlockRecord {
             source: self.source,

@@ -1,64 +1,67 @@
 //! Finds the contacts of a configuration: bounding spheres, then the narrow phase, in slots that all lanes share.
 
+use super::reach::{self, Reach, may_touch};
 use super::select::{explicit, geoms_may_collide};
 use super::{Candidate, Contact, candidates, contact_params, contact_range};
 use crate::model::{Model, Params};
 use crate::settings::StepSettings;
 use crate::workspace::{Positions, Workspace};
-use clench_collide::{Bound, Contacts, Pose, Shape, ShapeKind, Sweep, collide, near};
+use clench_collide::{Bound, Contacts, Pose, Shape, Sweep, collide};
 use clench_math::{Mask, Real};
 use clench_solver::MaxContacts;
 
 /// Above this many geoms the pairs are not listed but swept for: a list grows with the square.
 const MOST_LISTED_GEOMS: usize = 128;
 
-/// What detection keeps between steps: the pairs of a small model, or the sweep of a large one.
+/// What detection keeps between steps.
 #[derive(Clone, Debug)]
 pub struct Collision<T: Real> {
     /// The workspace's contacts were given by the user: detection leaves them alone.
     pub given: bool,
     /// Lanes in which the last step found more contacts than the options allow.
     pub overflow: T::Mask,
-    pairs: Pairs<T>,
+    /// Pairs to look at, in canonical order.
+    candidates: Vec<Candidate>,
+    /// Finds the candidates of a large model anew each step; those of a small one never change.
+    sweep: Option<Box<SweepState<T>>>,
+    reaches: Vec<Reach<T>>,
     points: Contacts<T>,
     count: T,
 }
 
 #[derive(Clone, Debug)]
-enum Pairs<T> {
-    Listed(Vec<Candidate>),
-    Swept {
-        sweep: Sweep,
-        bounds: Vec<Bound<T>>,
-        poses: Vec<Pose<T>>,
-        margins: Vec<T>,
-        hits: Vec<(u32, u32)>,
-        candidates: Vec<Candidate>,
-    },
+struct SweepState<T> {
+    sweep: Sweep,
+    bounds: Vec<Bound<T>>,
+    poses: Vec<Pose<T>>,
+    margins: Vec<T>,
+    hits: Vec<(u32, u32)>,
 }
 
 impl<T: Real> Collision<T> {
     /// Prepares detection for a model.
     pub fn new(model: &Model) -> Self {
-        let pairs = if model.geoms.len() <= MOST_LISTED_GEOMS {
-            Pairs::Listed(candidates(model))
-        } else {
-            Pairs::Swept {
-                sweep: Sweep::new(),
-                bounds: Vec::new(),
-                poses: Vec::new(),
-                margins: Vec::new(),
-                hits: Vec::new(),
-                candidates: Vec::new(),
-            }
-        };
+        let large = model.geoms.len() > MOST_LISTED_GEOMS;
         Collision {
             given: false,
             overflow: T::Mask::splat(false),
-            pairs,
+            candidates: if large { Vec::new() } else { candidates(model) },
+            sweep: large.then(|| Box::new(SweepState::new())),
+            reaches: Vec::new(),
             points: Contacts::new(),
             count: T::ZERO,
         }
+    }
+
+    /// Counts the lanes of a new contact; leaves those that are not full yet.
+    fn admit(&mut self, active: T::Mask, most: MaxContacts) -> T::Mask {
+        let MaxContacts::Limit(most) = most else {
+            return active;
+        };
+        let full = self.count.ge(T::new(most as f64));
+        self.overflow |= active & full;
+        self.count += T::select(active & !full, T::ONE, T::ZERO);
+        active & !full
     }
 }
 
@@ -69,7 +72,7 @@ pub fn detect<T: Real>(
     settings: &StepSettings,
     ws: &mut Workspace<T>,
 ) {
-    let (collision, contacts) = (&mut ws.collision, &mut ws.contacts);
+    let (collision, contacts, pos) = (&mut ws.collision, &mut ws.contacts, &ws.position);
     if collision.given {
         return;
     }
@@ -79,51 +82,24 @@ pub fn detect<T: Real>(
     if !settings.flags.constraint || !settings.flags.contact {
         return;
     }
-    collision.pairs.update(model, params, &ws.position);
-    let (Pairs::Listed(candidates) | Pairs::Swept { candidates, .. }) = &collision.pairs;
-    for candidate in candidates {
-        narrow(
-            model,
-            params,
-            &ws.position,
-            candidate,
-            &mut collision.points,
-        );
-        if collision.points.as_slice().is_empty() {
+    if let Some(sweep) = &mut collision.sweep {
+        sweep.find(model, params, pos, &mut collision.candidates);
+    }
+    reach::update(model, params, pos, &mut collision.reaches);
+    for index in 0..collision.candidates.len() {
+        let candidate = collision.candidates[index];
+        let range = || contact_range(model, params, &candidate).1;
+        if !may_touch(&candidate, &collision.reaches, pos, range).any() {
             continue;
         }
-        let mixed = contact_params(model, params, candidate);
-        for point in collision.points.as_slice() {
-            let mut active = point.active;
-            if let MaxContacts::Limit(most) = settings.solver.max_contacts {
-                let full = collision.count.ge(T::new(most as f64));
-                collision.overflow |= active & full;
-                active &= !full;
-                collision.count += T::select(active, T::ONE, T::ZERO);
-            }
-            if !active.any() {
-                continue;
-            }
-            contacts.push(Contact {
-                geoms: candidate.geoms.map(|g| g as usize),
-                active,
-                dim: mixed.dim,
-                dist: point.distance,
-                pos: point.position,
-                frame: point.frame,
-                includemargin: mixed.includemargin,
-                friction: mixed.friction,
-                solref: mixed.solref,
-                solreffriction: mixed.solreffriction,
-                solimp: mixed.solimp,
-                block: None,
-            });
+        narrow(model, params, pos, &candidate, &mut collision.points);
+        if !collision.points.as_slice().is_empty() {
+            list(model, params, settings, &candidate, collision, contacts);
         }
     }
 }
 
 /// The points of one candidate.
-#[inline(always)]
 fn narrow<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -131,19 +107,48 @@ fn narrow<T: Real>(
     candidate: &Candidate,
     points: &mut Contacts<T>,
 ) {
-    points.clear();
-    let [a, b] = candidate.geoms.map(|g| g as usize);
+    let [a, b] = [candidate.geoms[0] as usize, candidate.geoms[1] as usize];
+    let shape = |kind, geom: usize| Shape {
+        kind,
+        size: params.geom_size[geom],
+    };
+    let (shape_a, shape_b) = (shape(candidate.kinds[0], a), shape(candidate.kinds[1], b));
     let (pose_a, pose_b) = (pose(pos, a), pose(pos, b));
     let (_, range) = contact_range(model, params, candidate);
-    let (bound_a, bound_b) = (bound(model, params, a), bound(model, params, b));
-    if !near(&bound_a, &pose_a, &bound_b, &pose_b, range).any() {
-        return;
+    collide(&shape_a, &pose_a, &shape_b, &pose_b, range, points);
+}
+
+/// Makes contacts of the points of one candidate.
+fn list<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    candidate: &Candidate,
+    collision: &mut Collision<T>,
+    contacts: &mut Vec<Contact<T>>,
+) {
+    let mixed = contact_params(model, params, candidate);
+    for i in 0..collision.points.as_slice().len() {
+        let point = collision.points.as_slice()[i];
+        let active = collision.admit(point.active, settings.solver.max_contacts);
+        if !active.any() {
+            continue;
+        }
+        contacts.push(Contact {
+            geoms: candidate.geoms.map(|g| g as usize),
+            active,
+            dim: mixed.dim,
+            dist: point.distance,
+            pos: point.position,
+            frame: point.frame,
+            includemargin: mixed.includemargin,
+            friction: mixed.friction,
+            solref: mixed.solref,
+            solreffriction: mixed.solreffriction,
+            solimp: mixed.solimp,
+            block: None,
+        });
     }
-    let shape = |g: usize| Shape {
-        kind: model.geoms[g].kind,
-        size: params.geom_size[g],
-    };
-    collide(&shape(a), &pose_a, &shape(b), &pose_b, range, points);
 }
 
 #[inline(always)]
@@ -154,50 +159,47 @@ fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
     }
 }
 
-#[inline(always)]
-fn bound<T: Real>(model: &Model, params: &Params<T>, geom: usize) -> Bound<T> {
-    Bound {
-        radius: params.geom_rbound[geom],
-        plane: model.geoms[geom].kind == ShapeKind::Plane,
+impl<T: Real> SweepState<T> {
+    fn new() -> Self {
+        SweepState {
+            sweep: Sweep::new(),
+            bounds: Vec::new(),
+            poses: Vec::new(),
+            margins: Vec::new(),
+            hits: Vec::new(),
+        }
     }
-}
 
-impl<T: Real> Pairs<T> {
-    /// Brings the candidates of a swept model up to date; a list always is.
-    fn update(&mut self, model: &Model, params: &Params<T>, pos: &Positions<T>) {
-        let Pairs::Swept {
-            sweep,
-            bounds,
-            poses,
-            margins,
-            hits,
-            candidates,
-        } = self
-        else {
-            return;
-        };
+    /// Replaces `candidates` by the explicit pairs and those that are near in any lane.
+    fn find(
+        &mut self,
+        model: &Model,
+        params: &Params<T>,
+        pos: &Positions<T>,
+        candidates: &mut Vec<Candidate>,
+    ) {
         let ngeom = model.geoms.len();
-        bounds.clear();
-        poses.clear();
-        margins.clear();
-        bounds.extend((0..ngeom).map(|g| bound(model, params, g)));
-        poses.extend((0..ngeom).map(|g| pose(pos, g)));
-        margins.extend((0..ngeom).map(|g| {
-            let margin = if model.override_contacts {
-                params.override_margin * T::new(0.5)
-            } else {
-                params.geom_margin[g]
-            };
-            margin + params.geom_gap[g]
-        }));
+        let shape = |g: usize| Shape {
+            kind: model.geoms[g].kind,
+            size: params.geom_size[g],
+        };
+        self.bounds.clear();
+        self.bounds
+            .extend((0..ngeom).map(|g| Bound::new(&shape(g))));
+        self.poses.clear();
+        self.poses.extend((0..ngeom).map(|g| pose(pos, g)));
+        self.margins.clear();
+        self.margins
+            .extend((0..ngeom).map(|g| reach::own_margin(model, params, g)));
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
-        sweep.pairs(bounds, poses, margins, allowed, hits);
+        let hits = &mut self.hits;
+        self.sweep
+            .pairs(&self.bounds, &self.poses, &self.margins, allowed, hits);
         candidates.clear();
         candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
-        candidates.extend(
-            hits.iter()
-                .map(|&(g1, g2)| Candidate::new(model, [g1 as usize, g2 as usize], None)),
-        );
+        let found =
+            |&(g1, g2): &(u32, u32)| Candidate::new(model, [g1 as usize, g2 as usize], None);
+        candidates.extend(hits.iter().map(found));
         candidates.sort_unstable_by_key(|c| c.order(model));
     }
 }

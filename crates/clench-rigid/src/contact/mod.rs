@@ -3,6 +3,7 @@
 
 mod detect;
 mod mix;
+mod reach;
 mod select;
 
 pub use detect::{Collision, detect};

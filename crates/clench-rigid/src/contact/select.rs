@@ -8,13 +8,15 @@
 //! Candidates stand in the order in which MuJoCo lists contacts: by body pair, explicit pairs first, then by geoms.
 
 use crate::Model;
-use clench_collide::supported;
+use clench_collide::{ShapeKind, supported};
 
 /// Two geoms that may collide, the one of smaller shape kind first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Candidate {
     /// The geoms.
     pub geoms: [u32; 2],
+    /// Their shapes.
+    pub kinds: [ShapeKind; 2],
     /// The explicit pair, if it is one.
     pub pair: Option<u32>,
 }
@@ -69,11 +71,8 @@ pub(super) fn geoms_may_collide(model: &Model, g1: usize, g2: usize) -> bool {
 /// # Errors
 /// The first such pair.
 pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
-    let unsupported = candidates(model).into_iter().find(|c| {
-        let [a, b] = c.geoms.map(|g| model.geoms[g as usize].kind);
-        !supported(a, b)
-    });
-    let Some(candidate) = unsupported else {
+    let unsupported = |c: &Candidate| !supported(c.kinds[0], c.kinds[1]);
+    let Some(candidate) = candidates(model).into_iter().find(unsupported) else {
         return Ok(());
     };
     let geoms = candidate.geoms.map(|g| g as usize);
@@ -102,6 +101,7 @@ impl Candidate {
         let geoms = if swap { [g2, g1] } else { [g1, g2] };
         Candidate {
             geoms: geoms.map(|g| g as u32),
+            kinds: geoms.map(|g| model.geoms[g].kind),
             pair,
         }
     }

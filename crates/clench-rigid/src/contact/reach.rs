@@ -1,0 +1,74 @@
+//! How far geoms reach: spheres about them that hold all points where they could be in contact.
+
+use super::Candidate;
+use crate::model::{Model, Params};
+use crate::workspace::Positions;
+use clench_collide::ShapeKind;
+use clench_math::{Real, Scalar, Vec3};
+
+/// Spheres are this much larger than they need be, so that rounding never rejects a pair in which the narrow phase would
+/// find a point: what an environment gets must not depend on its neighbours in the lanes.
+const HAIR: f64 = 1e-6;
+
+/// A sphere about a geom's origin.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach<T> {
+    center: Vec3<T>,
+    /// Of the shape alone; 0 for a plane.
+    radius: T,
+    /// With the geom's share of margin and gap.
+    reach: T,
+}
+
+/// The spheres of all geoms of a configuration.
+pub(super) fn update<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    reaches: &mut Vec<Reach<T>>,
+) {
+    let hair = T::new(1.0 + HAIR).max(T::ONE + T::splat(T::Scalar::EPSILON) * T::new(64.0));
+    reaches.clear();
+    reaches.extend(pos.geom_xpos.iter().enumerate().map(|(g, &center)| {
+        let radius = params.geom_rbound[g] * hair;
+        let margin = own_margin(model, params, g);
+        Reach {
+            center,
+            radius,
+            reach: radius + margin,
+        }
+    }));
+}
+
+/// A geom's share of the distance within which contacts are listed.
+pub(super) fn own_margin<T: Real>(model: &Model, params: &Params<T>, geom: usize) -> T {
+    let margin = if model.override_contacts {
+        params.override_margin * T::new(0.5)
+    } else {
+        params.geom_margin[geom]
+    };
+    margin + params.geom_gap[geom]
+}
+
+/// In which lanes two geoms may be in contact. `range` is the listing distance of an explicit pair.
+#[inline(always)]
+pub(super) fn may_touch<T: Real>(
+    candidate: &Candidate,
+    reaches: &[Reach<T>],
+    pos: &Positions<T>,
+    range: impl FnOnce() -> T,
+) -> T::Mask {
+    let [a, b] = candidate.geoms.map(|g| g as usize);
+    let (first, second) = (&reaches[a], &reaches[b]);
+    let reach = match candidate.pair {
+        None => first.reach + second.reach,
+        Some(_) => first.radius + second.radius + range(),
+    };
+    let offset = second.center - first.center;
+    if candidate.kinds[0] == ShapeKind::Plane {
+        pos.geom_xmat[a].column(2).dot(offset).le(reach)
+    } else {
+        // Negative margins may make the reach negative: nothing touches then.
+        offset.norm_squared().le(reach * reach.max(T::ZERO))
+    }
+}
