@@ -1,5 +1,6 @@
 """Running the `clench` program: one `forward` process kept open for many states, and single runs of any command."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -50,7 +51,8 @@ class Forward:
         return self
 
     def __exit__(self, *_):
-        self.process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):  # the program has ended, and said why
+            self.process.stdin.close()
         self.process.wait(timeout=60)
         self.process.stdout.close()
         self.errors.close()
