@@ -90,7 +90,7 @@ pub fn input<T: Real>(
 /// The setpoint of a position servo on a ball joint, moved by whole turns to the one nearest to the actuator's length;
 /// other inputs pass unchanged.
 ///
-/// A servo has a fixed gain and an affine bias with gain = −bias[1]; a turn is 2π times the length of its gear.
+/// A servo has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
 pub fn nearest_setpoint<T: Real>(
     model: &Model,
     params: &Params<T>,

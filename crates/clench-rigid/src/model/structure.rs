@@ -180,10 +180,10 @@ pub enum DynamicsKind {
 /// Gain of an actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GainKind {
-    /// gainprm[0].
+    /// `gainprm[0]`.
     #[default]
     Fixed,
-    /// gainprm[0] + gainprm[1] · length + gainprm[2] · velocity.
+    /// `gainprm[0] + gainprm[1] · length + gainprm[2] · velocity`.
     Affine,
 }
 
@@ -193,7 +193,7 @@ pub enum BiasKind {
     /// None.
     #[default]
     None,
-    /// biasprm[0] + biasprm[1] · length + biasprm[2] · velocity.
+    /// `biasprm[0] + biasprm[1] · length + biasprm[2] · velocity`.
     Affine,
 }
 
