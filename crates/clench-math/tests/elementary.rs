@@ -391,6 +391,13 @@ fn powf_is_accurate() {
         functions,
         Real::powf,
     );
+    // Results over the whole range of exponents, from every mantissa: here the logarithm's extra digits count.
+    sweep(
+        "powf",
+        || (random.between(0.5, 2.0), random.between(-2000.0, 2000.0)),
+        functions,
+        Real::powf,
+    );
 }
 
 #[test]

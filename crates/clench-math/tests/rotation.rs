@@ -116,8 +116,10 @@ fn quaternions_come_back_from_their_matrices() {
 /// Signs as `mju_mat2Quat` gives them (MuJoCo 4.0.0): by the branch that the matrix falls in.
 #[test]
 fn quaternion_signs_are_mujocos() {
-    let cases: [[f64; 4]; 4] = [
+    let cases: [[f64; 4]; 6] = [
         [0.3, -0.5, 0.7, 0.4],
+        [0.55, -0.7, 0.4, 0.2],
+        [0.1, -0.3, 0.1, 0.9],
         [0.9, 0.1, -0.3, 0.2],
         [-0.1, 0.2, 0.3, 0.9],
         [-0.1, 0.9, 0.3, 0.2],
