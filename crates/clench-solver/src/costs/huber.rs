@@ -8,7 +8,7 @@
 //! s(y₁) − s(y₀) = D [ c₀ (y₁ − y₀) + (c₁ − c₀)(y₁ − ½ (c₀ + c₁)) ]      as s = D (c y − ½ c²)
 //! ```
 
-use super::{BlockCost, Form, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Huber;
@@ -46,6 +46,18 @@ impl<T: Real> BlockCost<T> for Huber {
             Form::Diagonal
         } else {
             Form::Zero
+        }
+    }
+
+    #[inline(always)]
+    fn changes(rows: Rows<T>, old: &[T], new: &[T], mut emit: impl FnMut(RankOne<T>)) {
+        for row in 0..rows.d.len() {
+            // |piece| is 1 where the row is saturated and has no curvature.
+            emit(RankOne {
+                sigma: rows.d[row] * (old[row].abs() - new[row].abs()),
+                row,
+                side: None,
+            });
         }
     }
 

@@ -78,6 +78,14 @@ pub(crate) struct Slope<T> {
     pub second: T,
 }
 
+/// A change σ j jᵀ of a Hessian block, with j = J_row + factor · J_side.
+#[derive(Clone, Copy)]
+pub(crate) struct RankOne<T> {
+    pub sigma: T,
+    pub row: usize,
+    pub side: Option<(usize, T)>,
+}
+
 /// Everything the solver may know about a constraint.
 ///
 /// `y` is J a − aref. A lane without the constraint has D = 0: it adds nothing, and its pieces never change.
@@ -88,6 +96,9 @@ pub(crate) trait BlockCost<T: Real> {
     fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>);
     /// Writes ∇²s(y), whose pieces are known.
     fn hessian(rows: Rows<T>, y: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form;
+    /// Calls `emit` with each rank-one change of the Hessian block from the pieces `old` to the pieces `new`, none of which
+    /// may be curved.
+    fn changes(rows: Rows<T>, old: &[T], new: &[T], emit: impl FnMut(RankOne<T>));
     /// Adds the derivatives of α ↦ s(y + α dy).
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>);
     /// s(y + α dy) − s(y), without the cancellation of subtracting two values.

@@ -7,7 +7,7 @@
 //! s(y₁) − s(y₀) = ½ Σ D (m₁ − m₀)(m₁ + m₀)
 //! ```
 
-use super::{BlockCost, Form, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct OneSided;
@@ -39,6 +39,17 @@ impl<T: Real> BlockCost<T> for OneSided {
             Form::Diagonal
         } else {
             Form::Zero
+        }
+    }
+
+    #[inline(always)]
+    fn changes(rows: Rows<T>, old: &[T], new: &[T], mut emit: impl FnMut(RankOne<T>)) {
+        for row in 0..rows.d.len() {
+            emit(RankOne {
+                sigma: rows.d[row] * (new[row] - old[row]),
+                row,
+                side: None,
+            });
         }
     }
 

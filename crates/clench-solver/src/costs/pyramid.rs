@@ -13,7 +13,7 @@
 //! 1+, 1−, 2+, 2−, ... All rows have the same D.
 
 use super::one_sided::{active, add_edge_slope, edge_change};
-use super::{BlockCost, Form, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Pyramid;
@@ -58,6 +58,23 @@ impl<T: Real> BlockCost<T> for Pyramid {
             Form::Arrow
         } else {
             Form::Zero
+        }
+    }
+
+    #[inline(always)]
+    fn changes(rows: Rows<T>, old: &[T], new: &[T], mut emit: impl FnMut(RankOne<T>)) {
+        for edge in 0..old.len() {
+            let j = edge / 2 + 1;
+            let mu = if edge % 2 == 0 {
+                rows.shape[j]
+            } else {
+                -rows.shape[j]
+            };
+            emit(RankOne {
+                sigma: rows.d[0] * (new[edge] - old[edge]),
+                row: 0,
+                side: Some((j, mu)),
+            });
         }
     }
 

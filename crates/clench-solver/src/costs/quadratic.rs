@@ -5,7 +5,7 @@
 //! s(y + α dy) − s(y) = α Σ D dy (y + ½ α dy)
 //! ```
 
-use super::{BlockCost, Form, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
 use clench_math::Real;
 
 pub(crate) struct Quadratic;
@@ -30,6 +30,8 @@ impl<T: Real> BlockCost<T> for Quadratic {
         }
         Form::Diagonal
     }
+
+    fn changes(_: Rows<T>, _: &[T], _: &[T], _: impl FnMut(RankOne<T>)) {}
 
     #[inline(always)]
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {

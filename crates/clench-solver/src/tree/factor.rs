@@ -30,7 +30,7 @@ impl<T: Real> TreeFactor<T> {
         factor
     }
 
-    fn resize(&mut self, tree: &Tree) {
+    pub(crate) fn resize(&mut self, tree: &Tree) {
         self.lower.resize(tree.nnz(), T::ZERO);
         self.scaled.resize(tree.nnz(), T::ZERO);
         self.diagonal.resize(tree.nv(), T::ZERO);
@@ -67,35 +67,78 @@ impl<T: Real> TreeFactor<T> {
         positive
     }
 
-    /// Computes row `i` of U. Windows of columns may overlap: each starts from `values`, which stay as they are.
+    /// Computes row `i` of U. Windows of columns may overlap: each starts from `values`, which
+    /// stay as they are.
     #[inline(always)]
     fn sum_row(&mut self, tree: &Tree, i: usize, values: &[T]) {
         let (start, end) = (tree.starts[i], tree.starts[i + 1]);
-        let descendants = tree.descendants(i);
         let (done, below) = self.scaled.split_at_mut(end);
+        let sum = RowSum {
+            values: &values[start..end],
+            lower: &self.lower[end..tree.nnz()],
+            scaled: &below[..tree.nnz() - end],
+            descendants: tree.descendants(i),
+            offset: end,
+        };
         let row = &mut done[start..];
-        let (values, lower) = (&values[start..end], &self.lower[end..tree.nnz()]);
-        let below = &below[..tree.nnz() - end];
-        let depth = row.len() - 1;
-        let mut column = 0;
-        while column + WIDTH <= row.len() {
-            sum_window::<T, WIDTH>(row, values, below, lower, descendants, end, depth, column);
-            column += WIDTH;
+        match row.len() {
+            1 => sum.window::<1>(row, 0),
+            2 => sum.window::<2>(row, 0),
+            3 => sum.window::<3>(row, 0),
+            len => {
+                for column in (0..=len - WIDTH).step_by(WIDTH) {
+                    sum.window::<WIDTH>(row, column);
+                }
+                if !len.is_multiple_of(WIDTH) {
+                    sum.window::<WIDTH>(row, len - WIDTH);
+                }
+            }
         }
-        if column < row.len() && row.len() >= WIDTH {
-            sum_window::<T, WIDTH>(
-                row,
-                values,
-                below,
-                lower,
-                descendants,
-                end,
-                depth,
-                row.len() - WIDTH,
-            );
-        } else {
-            for column in column..row.len() {
-                sum_window::<T, 1>(row, values, below, lower, descendants, end, depth, column);
+    }
+
+    /// Turns the factor of A into that of A + σ x xᵀ, x given along the path to dof `last` and
+    /// overwritten. Where σ is zero nothing changes, to the bit. False in lanes where the change
+    /// consumes a pivot: their factor is not usable any more.
+    ///
+    /// Method C1 of Gill, Golub, Murray and Saunders (*Methods for modifying matrix
+    /// factorizations*, 1974), from the last row to the first.
+    pub(crate) fn update(
+        &mut self,
+        tree: &Tree,
+        last: usize,
+        x: &mut [T],
+        mut sigma: T,
+    ) -> T::Mask {
+        let consumed = T::splat(T::Scalar::EPSILON).sqrt();
+        let mut good = T::Mask::splat(true);
+        for (depth, &k) in tree.row(last).iter().enumerate().rev() {
+            let k = k as usize;
+            let (p, old) = (x[depth], self.diagonal[k]);
+            let new = old + sigma * p * p;
+            good &= new.gt(consumed * old);
+            let inverse = T::ONE / new;
+            let beta = sigma * p * inverse;
+            sigma *= old / new;
+            self.diagonal[k] = new;
+            self.inverse[k] = inverse;
+            let row = &mut self.lower[tree.starts[k]..tree.starts[k] + depth];
+            for (l, x) in row.iter_mut().zip(&mut *x) {
+                *x -= p * *l;
+                *l += beta * *x;
+            }
+        }
+        good
+    }
+
+    /// Takes the lanes of `mask` from `other`, a factor over the same tree.
+    pub(crate) fn take(&mut self, mask: T::Mask, other: &TreeFactor<T>) {
+        for (to, from) in [
+            (&mut self.lower, &other.lower),
+            (&mut self.diagonal, &other.diagonal),
+            (&mut self.inverse, &other.inverse),
+        ] {
+            for (to, &from) in to.iter_mut().zip(from) {
+                *to = T::select(mask, from, *to);
             }
         }
     }
@@ -169,34 +212,37 @@ impl<T: Real> TreeFactor<T> {
     }
 }
 
-/// `row[column..] = values[column..] − Σ_k L_k[depth] · U_k[column..]` for `N` columns.
-///
-/// `below` and `lower` are U and L from `end` on; `descendants` lists where the rows k start, counted from 0.
-#[inline(always)]
-#[allow(clippy::too_many_arguments)] // the parts of one row, which the caller has split already
-fn sum_window<T: Real, const N: usize>(
-    row: &mut [T],
-    values: &[T],
-    below: &[T],
-    lower: &[T],
-    descendants: &[u32],
-    end: usize,
-    depth: usize,
-    column: usize,
-) {
-    let mut sum: [T; N] = std::array::from_fn(|c| values[column + c]);
-    for &start in descendants {
-        let start = start as usize - end;
-        debug_assert!(start + depth < lower.len() && column + N <= depth + 1);
-        // SAFETY: `start` is where the row of a descendant starts, which holds more than `depth` entries after it: a tree
-        // is built so, and `lower` and `below` have its size. The checks were half of the instructions of this loop, the
-        // hottest of all.
-        unsafe {
-            let multiplier = *lower.get_unchecked(start + depth);
-            for c in 0..N {
-                sum[c] -= multiplier * *below.get_unchecked(start + column + c);
+/// The sum that makes a row of U.
+struct RowSum<'a, T> {
+    /// The row of A.
+    values: &'a [T],
+    /// L and U from the row's end on.
+    lower: &'a [T],
+    scaled: &'a [T],
+    /// Where the rows of the descendants start, from `offset` on.
+    descendants: &'a [u32],
+    offset: usize,
+}
+
+impl<T: Real> RowSum<'_, T> {
+    /// Computes `N` columns.
+    #[inline(always)]
+    fn window<const N: usize>(&self, row: &mut [T], column: usize) {
+        let depth = row.len() - 1;
+        let mut sum: [T; N] = std::array::from_fn(|c| self.values[column + c]);
+        for &start in self.descendants {
+            let start = start as usize - self.offset;
+            debug_assert!(start + depth < self.lower.len() && column + N <= depth + 1);
+            // SAFETY: `start` is where the row of a descendant starts, which holds more than
+            // `depth` entries: a tree is built so, and `lower` and `scaled` reach to its end.
+            // The checks were half of the instructions of this loop, the hottest of all.
+            unsafe {
+                let multiplier = *self.lower.get_unchecked(start + depth);
+                for c in 0..N {
+                    sum[c] -= multiplier * *self.scaled.get_unchecked(start + column + c);
+                }
             }
         }
+        row[column..column + N].copy_from_slice(&sum);
     }
-    row[column..column + N].copy_from_slice(&sum);
 }
