@@ -37,16 +37,24 @@ impl StepSettings {
         let options = user.or(model.options);
         let mut solver = options.resolve::<T>();
         check(&solver)?;
+        // A switch of the file is a setting of the file: what the user says about the same thing wins.
         let mut flags = model.flags;
-        flags.constraint &= !solver.disable_constraint;
-        solver.warmstart &= flags.warmstart || user.warmstart == Some(true);
-        if !flags.island && user.islands.is_none() {
+        flags.constraint = match user.disable_constraint {
+            Some(disable) => !disable,
+            None => flags.constraint && !solver.disable_constraint,
+        };
+        let file_limits = flags.limit && solver.enable_joint_limit;
+        let joint_limits = user.enable_joint_limit.unwrap_or(file_limits);
+        if user.warmstart.is_none() {
+            solver.warmstart &= flags.warmstart;
+        }
+        if user.islands.is_none() && !flags.island {
             solver.islands = Switch::Off;
         }
         Ok(StepSettings {
-            joint_limits: flags.limit && solver.enable_joint_limit,
             solver,
             flags,
+            joint_limits,
         })
     }
 }

@@ -8,7 +8,7 @@ use clench_rigid::builder::{KeyframeSpec, ModelBuilder};
 use clench_rigid::contact::Contact;
 use clench_rigid::model::JointKind;
 use clench_rigid::{Sim, SimError, readout};
-use clench_solver::RigidOptions;
+use clench_solver::{RigidOptions, Switch};
 use scenes::{add, free, geom, joint, model, plane, run, sim, sphere, world};
 
 fn ball() -> ModelBuilder {
@@ -75,6 +75,44 @@ fn options_out_of_range_are_errors() {
             Err(SimError::Option(_))
         ));
     }
+}
+
+#[test]
+fn the_user_wins_over_the_file_and_the_file_over_the_defaults() {
+    let settings = |edit: fn(&mut ModelBuilder), user: RigidOptions| {
+        let mut builder = ball();
+        builder.options = RigidOptions::new().iterations(7);
+        edit(&mut builder);
+        *Sim::<f64>::with_options(model(&builder), user)
+            .expect("valid")
+            .settings()
+    };
+    let plain = settings(|_| {}, RigidOptions::new().impratio(2.0));
+    assert_eq!((plain.solver.iterations, plain.solver.impratio), (7, 2.0));
+    assert_eq!(
+        (
+            plain.solver.ls_iterations,
+            plain.solver.constraint_timeconst
+        ),
+        (50, 0.01)
+    );
+    let off: fn(&mut ModelBuilder) = |b| {
+        let flags = &mut b.physics.flags;
+        (flags.constraint, flags.limit, flags.warmstart, flags.island) =
+            (false, false, false, false);
+    };
+    let file = settings(off, RigidOptions::new());
+    assert!(!file.flags.constraint && !file.joint_limits && !file.solver.warmstart);
+    assert_eq!(file.solver.islands, Switch::Off);
+    let insistent = RigidOptions::new()
+        .disable_constraint(false)
+        .enable_joint_limit(true)
+        .warmstart(true)
+        .islands(Switch::On);
+    let user = settings(off, insistent);
+    assert!(user.flags.constraint && user.joint_limits && user.solver.warmstart);
+    assert_eq!(user.solver.islands, Switch::On);
+    assert!(!user.flags.limit, "limits of tendons stay off");
 }
 
 #[test]

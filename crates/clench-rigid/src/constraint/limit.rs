@@ -16,31 +16,34 @@ use crate::model::JointKind;
 use clench_math::{Mask, Quat, Real};
 use clench_solver::Cost;
 
-/// All limits of joints, then of tendons.
-pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
-    let (model, params) = (scene.model, scene.params);
-    if scene.settings.joint_limits {
-        for (i, joint) in model.joints.iter().enumerate() {
-            if !joint.limited {
-                continue;
+/// All limits of joints.
+pub(super) fn push_joints<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
+    let params = scene.params;
+    for (i, joint) in scene.model.joints.iter().enumerate() {
+        if !joint.limited {
+            continue;
+        }
+        let limit = Limit {
+            source: ConstraintSource::JointLimit(i),
+            margin: params.jnt_margin[i],
+            solref: &params.jnt_solref[i],
+            solimp: &params.jnt_solimp[i],
+            a0: params.dof_invweight0[joint.dof],
+        };
+        match joint.kind {
+            JointKind::Hinge | JointKind::Slide => {
+                limit.push_range(scene, out, Coordinate::Joint(i), params.jnt_range[i]);
             }
-            let limit = Limit {
-                source: ConstraintSource::JointLimit(i),
-                margin: params.jnt_margin[i],
-                solref: &params.jnt_solref[i],
-                solimp: &params.jnt_solimp[i],
-                a0: params.dof_invweight0[joint.dof],
-            };
-            match joint.kind {
-                JointKind::Hinge | JointKind::Slide => {
-                    limit.push_range(scene, out, Coordinate::Joint(i), params.jnt_range[i]);
-                }
-                JointKind::Ball => limit.push_cone(scene, out, i),
-                JointKind::Free => {}
-            }
+            JointKind::Ball => limit.push_cone(scene, out, i),
+            JointKind::Free => {}
         }
     }
-    for (i, tendon) in model.tendons.iter().enumerate() {
+}
+
+/// All limits of tendons.
+pub(super) fn push_tendons<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
+    let params = scene.params;
+    for (i, tendon) in scene.model.tendons.iter().enumerate() {
         if !tendon.limited {
             continue;
         }

@@ -95,8 +95,11 @@ pub fn assemble<T: Real>(
     if settings.flags.frictionloss {
         friction::push_all(&scene, &mut out);
     }
+    if settings.joint_limits {
+        limit::push_joints(&scene, &mut out);
+    }
     if settings.flags.limit {
-        limit::push_all(&scene, &mut out);
+        limit::push_tendons(&scene, &mut out);
     }
     if settings.flags.contact {
         push_contacts(&scene, &mut out, &mut ws.contacts);
