@@ -1,4 +1,4 @@
-"""States to compare on: seeded rollouts in MuJoCo under random controls, sampled every fifth of a second.
+"""States to compare on: seeded rollouts in MuJoCo under random controls, sampled every half second.
 
 Half of the states carry applied forces, every third has an equality switched over, and mocap bodies are moved. A state
 is a dictionary in the form that `clench forward` reads.
@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 ROLLOUTS, SAMPLES = 5, 4
-SPACING, CONTROL_HOLD = 0.2, 0.05  # seconds
+SPACING, CONTROL_HOLD = 0.5, 0.05  # seconds
 
 
 @functools.lru_cache(maxsize=None)
@@ -28,12 +28,13 @@ def rollout(model, index, rng):
     if start >= 0:
         mujoco.mj_resetDataKeyframe(model, data, start)
     data.qvel += 0.1 * rng.standard_normal(model.nv)
+    strength = (1.0, 0.1)[index % 2]  # thrash about, or settle where gravity puts them
     per_control = max(1, round(CONTROL_HOLD / model.opt.timestep))
     per_sample = max(1, round(SPACING / model.opt.timestep))
     for sample_index in range(SAMPLES):
         for step in range(per_sample):
             if step % per_control == 0:
-                data.ctrl[:] = controls(model, rng)
+                data.ctrl[:] = strength * controls(model, rng)
             mujoco.mj_step(model, data)
         if any(w.number for w in data.warning):
             raise RuntimeError("MuJoCo's rollout is unstable: these states would compare nothing")
