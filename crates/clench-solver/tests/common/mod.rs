@@ -219,9 +219,9 @@ pub fn residual(block: &Block<f64>, a: &[f64]) -> Vec<f64> {
 
 /// Cost and force of one block, by the definitions in MuJoCo's documentation.
 pub fn cost_and_force(block: &Block<f64>, y: &[f64]) -> (f64, Vec<f64>) {
-    let one_sided = |y: f64| {
+    let one_sided = |d: f64, y: f64| {
         if y < 0.0 {
-            (0.5 * block.d[0] * y * y, -block.d[0] * y)
+            (0.5 * d * y * y, -d * y)
         } else {
             (0.0, 0.0)
         }
@@ -235,20 +235,30 @@ pub fn cost_and_force(block: &Block<f64>, y: &[f64]) -> (f64, Vec<f64>) {
                 force[i] = -block.d[i] * y[i];
             }
         }
-        Cost::OneSided => (cost, force[0]) = one_sided(y[0]),
+        Cost::OneSided => {
+            for i in 0..block.dim {
+                let (s, f) = one_sided(block.d[i], y[i]);
+                cost += s;
+                force[i] = f;
+            }
+        }
         Cost::Huber => {
-            let (eta, r) = (block.shape[0], block.r[0]);
-            if y[0].abs() < r * eta {
-                (cost, force[0]) = (0.5 * y[0] * y[0] / r, -y[0] / r);
-            } else {
-                (cost, force[0]) = (eta * y[0].abs() - 0.5 * r * eta * eta, -eta * y[0].signum());
+            for i in 0..block.dim {
+                let (eta, r, y) = (block.shape[i], block.r[i], y[i]);
+                if y.abs() < r * eta {
+                    cost += 0.5 * y * y / r;
+                    force[i] = -y / r;
+                } else {
+                    cost += eta * y.abs() - 0.5 * r * eta * eta;
+                    force[i] = -eta * y.signum();
+                }
             }
         }
         Cost::Pyramid => {
             for j in 1..block.dim {
                 for sign in [1.0, -1.0] {
                     let mu = sign * block.shape[j];
-                    let (s, f) = one_sided(y[0] + mu * y[j]);
+                    let (s, f) = one_sided(block.d[0], y[0] + mu * y[j]);
                     cost += s;
                     force[0] += f;
                     force[j] += mu * f;
@@ -320,4 +330,24 @@ pub fn norm(x: &[f64]) -> f64 {
 pub fn difference(x: &[f64], y: &[f64]) -> f64 {
     let d: Vec<f64> = x.iter().zip(y).map(|(x, y)| x - y).collect();
     norm(&d) / norm(x).max(norm(y)).max(f64::MIN_POSITIVE)
+}
+
+/// Fails where a force is not one that its constraint can exert.
+pub fn assert_in_cone(block: &Block<f64>, f: &[f64]) {
+    let slack = 1e-12 * norm(f);
+    let along = |j: usize| f[j].abs() / block.shape[j];
+    let inside = match block.cost {
+        Cost::Quadratic => true,
+        Cost::OneSided => f.iter().all(|&f| f >= 0.0),
+        Cost::Huber => f
+            .iter()
+            .zip(block.shape)
+            .all(|(f, eta)| f.abs() <= eta + slack),
+        Cost::Pyramid => (1..block.dim).map(along).sum::<f64>() <= f[0] + slack,
+        Cost::Elliptic => {
+            let squares: f64 = (1..block.dim).map(|j| along(j).powi(2)).sum();
+            squares.sqrt() <= f[0] + slack
+        }
+    };
+    assert!(inside, "{:?} {f:?}", block.cost);
 }
