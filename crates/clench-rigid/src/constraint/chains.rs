@@ -59,6 +59,12 @@ impl<'a> Chains<'a> {
         }
     }
 
+    /// Dofs by whom they move, ascending.
+    #[inline(always)]
+    pub fn parts(&self) -> [(&'a [u32], Side); 3] {
+        self.parts
+    }
+
     /// Each dof and whom it moves, ascending.
     pub fn iter(&self) -> impl Iterator<Item = (usize, Side)> {
         let parts = self.parts.into_iter();

@@ -38,7 +38,8 @@ pub(super) fn push<T: Real>(
     if !active.any() {
         return;
     }
-    let bodies = contact.geoms.map(|g| scene.model.geoms[g].body);
+    let body = |i: usize| scene.model.geoms[contact.geoms[i]].body;
+    let bodies = [body(0), body(1)];
     let chains = Chains::new(scene, bodies).without_common();
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
@@ -50,8 +51,9 @@ pub(super) fn push<T: Real>(
         contact.dist - contact.includemargin,
         scene.least_timeconst,
     );
-    let weight = bodies.map(|b| scene.params.body_invweight0[b][0]);
-    let (cost, rows) = rows(scene, contact, &soft, weight[0] + weight[1]);
+    let weight = |body: usize| scene.params.body_invweight0[body][0];
+    let a0 = weight(bodies[0]) + weight(bodies[1]);
+    let (cost, rows) = rows(scene, contact, &soft, a0);
     let block = BlockRecord {
         source: ConstraintSource::Contact(index),
         active,
@@ -112,6 +114,7 @@ fn rows<T: Real>(
     }
 }
 
+/// Velocity of the second body less that of the first, column by column.
 #[inline(always)]
 fn fill<T: Real>(
     scene: &Scene<T>,
@@ -120,20 +123,28 @@ fn fill<T: Real>(
     chains: &Chains,
     jacobian: &mut [T],
 ) {
-    let offsets = bodies.map(|body| BodyPoint::new(scene, body, contact.pos).offset);
     let axes = &contact.frame.rows;
-    let ndof = jacobian.len() / contact.dim;
-    for (column, (dof, side)) in chains.iter().enumerate() {
-        let (motion, offset) = match side {
-            Side::Second => (scene.position.cdof[dof], offsets[1]),
-            _ => (-scene.position.cdof[dof], offsets[0]),
+    let (dim, ndof) = (contact.dim, jacobian.len() / contact.dim);
+    let mut column = 0;
+    for (dofs, side) in chains.parts() {
+        let (body, sign) = match side {
+            Side::Second => (bodies[1], T::ONE),
+            _ => (bodies[0], -T::ONE),
         };
-        let velocity = motion.velocity_at(offset);
-        for (i, axis) in axes.iter().enumerate().take(contact.dim) {
-            jacobian[i * ndof + column] = axis.dot(velocity);
-        }
-        for (i, axis) in axes.iter().enumerate().take(contact.dim.saturating_sub(3)) {
-            jacobian[(i + 3) * ndof + column] = axis.dot(motion.angular);
+        let offset = BodyPoint::new(scene, body, contact.pos).offset;
+        for &dof in dofs {
+            let motion = scene.position.cdof[dof as usize];
+            let velocity = motion.velocity_at(offset) * sign;
+            jacobian[column] = axes[0].dot(velocity);
+            if dim > 1 {
+                jacobian[ndof + column] = axes[1].dot(velocity);
+                jacobian[2 * ndof + column] = axes[2].dot(velocity);
+            }
+            let angular = motion.angular * sign;
+            for row in 3..dim {
+                jacobian[row * ndof + column] = axes[row - 3].dot(angular);
+            }
+            column += 1;
         }
     }
 }
