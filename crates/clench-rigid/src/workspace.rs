@@ -20,6 +20,8 @@ pub struct Positions<T> {
     pub xipos: Vec<Vec3<T>>,
     /// Orientations of inertial frames.
     pub ximat: Vec<Mat3<T>>,
+    /// Rotation by each joint (njnt).
+    pub jnt_turn: Vec<Quat<T>>,
     /// Joint anchors (njnt).
     pub xanchor: Vec<Vec3<T>>,
     /// Joint axes.
@@ -63,6 +65,7 @@ impl<T: Real> Positions<T> {
             xmat: frames(nbody),
             xipos: points(nbody),
             ximat: frames(nbody),
+            jnt_turn: vec![Quat::IDENTITY; nj],
             xanchor: points(nj),
             xaxis: points(nj),
             geom_xpos: points(ng),

@@ -3,6 +3,9 @@
 //! A body starts at its fixed pose in its parent and is then moved by its joints in turn. A rotation about an anchor p
 //! leaves p where it is, so after the orientation changed from R to R′ the position is p_world − R′ p. Joint axes and
 //! anchors are recorded as they are before the joint acts, which is where its motion turns them next.
+//!
+//! The joints' own rotations come first, in a pass of their own: they do not depend on one another, and so do not wait for
+//! one another, as poses along a chain do.
 
 use crate::model::{JointKind, Model, Params};
 use crate::state::State;
@@ -18,6 +21,7 @@ pub fn kinematics<T: Real>(
     state: &State<T>,
     pos: &mut Positions<T>,
 ) {
+    joint_turns(model, params, &state.qpos, &mut pos.jnt_turn);
     pos.xpos[0] = Vec3::ZERO;
     pos.xquat[0] = Quat::IDENTITY;
     pos.xmat[0] = Mat3::IDENTITY;
@@ -30,7 +34,23 @@ pub fn kinematics<T: Real>(
     attached_poses(model, params, pos);
 }
 
-/// The pose of body `b`; its joints' anchors and axes are written to `pos`.
+/// The rotation of each joint from its position at `qpos0` (a ball or free joint's whole orientation).
+fn joint_turns<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], turns: &mut [Quat<T>]) {
+    for ((joint, &axis), turn) in model.joints.iter().zip(&params.jnt_axis).zip(turns) {
+        let q = &qpos[joint.qpos..];
+        match joint.kind {
+            JointKind::Slide => {}
+            JointKind::Hinge => {
+                *turn = Quat::from_axis_angle(axis, q[0] - params.qpos0[joint.qpos]);
+            }
+            JointKind::Ball => *turn = Quat::from_slice(q).normalize(),
+            JointKind::Free => *turn = Quat::from_slice(&q[3..]).normalize(),
+        }
+    }
+}
+
+/// The pose of body `b`; its joints' anchors and axes are written to `pos`. Factors of a product of unit quaternions
+/// leave it of unit length but for rounding, so that only what the user sets is normalized.
 fn body_pose<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -39,50 +59,35 @@ fn body_pose<T: Real>(
     b: usize,
 ) -> (Vec3<T>, Quat<T>) {
     let body = &model.bodies[b];
-    if let [joint] = &model.joints[body.joints.clone()]
-        && joint.kind == JointKind::Free
-    {
-        let q = &state.qpos[joint.qpos..joint.qpos + 7];
-        let j = body.joints.start;
-        pos.xanchor[j] = Vec3::from_slice(q);
-        pos.xaxis[j] = params.jnt_axis[j];
-        return (Vec3::from_slice(q), Quat::from_slice(&q[3..]).normalize());
-    }
-    let (local_pos, local_quat) = match body.mocap {
+    let (mut xpos, mut xquat) = match body.mocap {
         Some(m) => (state.mocap_pos[m], state.mocap_quat[m].normalize()),
         None => (params.body_pos[b], params.body_quat[b]),
     };
-    let (mut xpos, mut xquat) = (local_pos, local_quat);
     if body.parent != 0 {
-        xpos = pos.xpos[body.parent] + pos.xmat[body.parent] * local_pos;
-        xquat = pos.xquat[body.parent] * local_quat;
+        xpos = pos.xpos[body.parent] + pos.xmat[body.parent] * xpos;
+        xquat = pos.xquat[body.parent] * xquat;
     }
     for j in body.joints.clone() {
         let joint = &model.joints[j];
-        let axis = params.jnt_axis[j];
+        if joint.kind == JointKind::Free {
+            xpos = Vec3::from_slice(&state.qpos[joint.qpos..]);
+            xquat = pos.jnt_turn[j];
+            pos.xanchor[j] = xpos;
+            pos.xaxis[j] = params.jnt_axis[j];
+            continue;
+        }
         let xanchor = xpos + xquat.rotate(params.jnt_pos[j]);
-        let xaxis = xquat.rotate(axis);
-        let turn = match joint.kind {
-            JointKind::Slide => {
-                xpos += xaxis * (state.qpos[joint.qpos] - params.qpos0[joint.qpos]);
-                None
-            }
-            JointKind::Hinge => {
-                let angle = state.qpos[joint.qpos] - params.qpos0[joint.qpos];
-                Some(Quat::from_axis_angle(axis, angle))
-            }
-            JointKind::Ball | JointKind::Free => {
-                Some(Quat::from_slice(&state.qpos[joint.qpos..]).normalize())
-            }
-        };
-        if let Some(turn) = turn {
-            xquat = xquat * turn;
+        let xaxis = xquat.rotate(params.jnt_axis[j]);
+        if joint.kind == JointKind::Slide {
+            xpos += xaxis * (state.qpos[joint.qpos] - params.qpos0[joint.qpos]);
+        } else {
+            xquat = xquat * pos.jnt_turn[j];
             xpos = xanchor - xquat.rotate(params.jnt_pos[j]);
         }
         pos.xanchor[j] = xanchor;
         pos.xaxis[j] = xaxis;
     }
-    (xpos, xquat.normalize())
+    (xpos, xquat)
 }
 
 /// Inertial frames, geoms and sites, each fixed to its body.

@@ -1,7 +1,7 @@
 //! Transmissions: the length of each actuator and its moment arms, ∂length/∂q along each dof.
 
 use crate::dynamics::tendon;
-use crate::model::{JointKind, Model, Params, Transmission};
+use crate::model::{Joint, JointKind, Model, Params, Transmission};
 use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3};
 
@@ -20,7 +20,7 @@ pub fn transmission_dofs(
     range.chain(joints.iter().map(|&j| model.joints[j].dof))
 }
 
-/// `actuator_length` and the nonzero entries of `actuator_moment`.
+/// `actuator_length` and the nonzero entries of `actuator_moment`, after the kinematics.
 ///
 /// A ball joint's length is its rotation vector along the gear, a free joint has none (zero); their gears are wrenches in
 /// the child's frame, or for [`Transmission::JointInParent`] in the parent's.
@@ -35,8 +35,19 @@ pub fn transmission<T: Real>(
         let gear = &params.actuator_gear[u];
         let moment = &mut pos.actuator_moment[u * nv..(u + 1) * nv];
         pos.actuator_length[u] = match actuator.transmission {
-            Transmission::Joint(j) => joint_arms(model, qpos, j, gear, false, moment),
-            Transmission::JointInParent(j) => joint_arms(model, qpos, j, gear, true, moment),
+            Transmission::Joint(j) | Transmission::JointInParent(j) => {
+                let joint = &model.joints[j];
+                let in_parent = matches!(actuator.transmission, Transmission::JointInParent(_));
+                let arms = &mut moment[joint.dof..];
+                joint_arms(
+                    joint,
+                    qpos[joint.qpos],
+                    pos.jnt_turn[j],
+                    gear,
+                    in_parent,
+                    arms,
+                )
+            }
             Transmission::Tendon(t) => {
                 for (dof, coef) in tendon::terms(model, params, t) {
                     moment[dof] = coef * gear[0];
@@ -47,21 +58,18 @@ pub fn transmission<T: Real>(
     }
 }
 
-/// Writes the moment arms on joint `j` and returns the length.
+/// Writes the moment arms on a joint that stands at `q`, or at the rotation `turn`, and returns the length.
 fn joint_arms<T: Real>(
-    model: &Model,
-    qpos: &[T],
-    j: usize,
+    joint: &Joint,
+    q: T,
+    turn: Quat<T>,
     gear: &[T; 6],
     in_parent: bool,
-    moment: &mut [T],
+    arms: &mut [T],
 ) -> T {
-    let joint = &model.joints[j];
-    let arms = &mut moment[joint.dof..];
-    let q = &qpos[joint.qpos..];
-    let to_child = |quat: Quat<T>, wrench: Vec3<T>| {
+    let to_child = |wrench: Vec3<T>| {
         if in_parent {
-            quat.conjugate().rotate(wrench)
+            turn.conjugate().rotate(wrench)
         } else {
             wrench
         }
@@ -69,18 +77,16 @@ fn joint_arms<T: Real>(
     match joint.kind {
         JointKind::Slide | JointKind::Hinge => {
             arms[0] = gear[0];
-            q[0] * gear[0]
+            q * gear[0]
         }
         JointKind::Ball => {
-            let quat = Quat::from_slice(q).normalize();
-            let axis = to_child(quat, Vec3::from_slice(gear));
+            let axis = to_child(Vec3::from_slice(gear));
             axis.write(arms);
-            quat.to_rotation_vector().dot(axis)
+            turn.to_rotation_vector().dot(axis)
         }
         JointKind::Free => {
-            let quat = Quat::from_slice(&q[3..]).normalize();
             Vec3::from_slice(gear).write(arms);
-            to_child(quat, Vec3::from_slice(&gear[3..])).write(&mut arms[3..]);
+            to_child(Vec3::from_slice(&gear[3..])).write(&mut arms[3..]);
             T::ZERO
         }
     }
