@@ -1,7 +1,8 @@
 //! The loop that Newton and CG share: direction, exact line search, step, and the stopping conditions.
 
+use crate::costs::Tally;
 use crate::iterate::{Iterate, dot};
-use crate::line_search::{Precision, Ray};
+use crate::line_search::{Precision, Ray, Step};
 use crate::{Problem, Settings, SolveStats, Status};
 use clench_math::{Mask, Real, Scalar};
 
@@ -13,7 +14,7 @@ pub(crate) trait Direction<T: Real> {
     const PATIENCE: f64;
     /// Called once before the iterations of a solve.
     fn prepare(&mut self, problem: &Problem<T>, settings: &Settings);
-    /// Forgets what it has learned in the lanes of `mask`, whose iterate was moved.
+    /// Forgets what it has learned in the lanes of `mask`, whose iterate or problem was changed.
     fn restart(&mut self, mask: T::Mask);
     /// Writes the next direction; `direction` holds the last one.
     fn find(
@@ -39,15 +40,17 @@ pub(crate) struct Progress<T: Real> {
     idle: T,
     /// Lanes that were refreshed when they first seemed stuck.
     refreshed: T::Mask,
+    /// 1 / (mean inertia × nv), by which gradients and improvements are scaled.
+    scale: T,
+    tolerance: T,
 }
 
 /// An improvement below this many times the rounding error of the cost tells nothing.
 const NEGLIGIBLE: f64 = 4.0;
-
 /// A gradient has to fall to this part of the best so far to count as progress.
 const NOTICEABLE: f64 = 0.7;
 
-/// Minimises from where `iterate` stands; its statistics go to `stats`.
+/// Minimises, from the better of `warmstart` and the unconstrained acceleration.
 pub(crate) fn minimise<T: Real, D: Direction<T>>(
     problem: &Problem<T>,
     settings: &Settings,
@@ -57,40 +60,20 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
     direction: &mut D,
     stats: &mut SolveStats<T>,
 ) {
-    let tally = iterate.start(problem, warmstart, ray);
-    let norm = iterate.differentiate(problem);
     let inertia = trace(problem);
-    let scale = T::ONE / inertia;
     let tolerance = T::new(settings.tolerance);
     let precision = Precision {
         evaluations: settings.ls_iterations,
         slope: tolerance * T::new(settings.ls_tolerance) * inertia,
     };
-    let mut progress = Progress {
-        live: T::Mask::splat(true),
-        same_hessian: T::Mask::splat(false),
-        curved: tally.curved,
-        best: norm,
-        idle: T::ZERO,
-        refreshed: T::Mask::splat(false),
-    };
-    stats.gradient = scale * norm;
-    stats.status = Status::IterationLimit.code();
-    let finite = iterate.is_finite() & norm.is_finite();
-    progress.end(!finite, Status::NonFinite, stats);
-    progress.end(!constrained(problem), Status::Unconstrained, stats);
-
-    // Newton is trusted for its forces as well: the gap alone, a bound in cost, would let stiff ones be wrong.
-    let gap = gap(problem, iterate, &mut ray.direction);
-    let proven = (scale * gap).le(tolerance)
-        & if D::NEWTON {
-            stats.gradient.le(tolerance)
-        } else {
-            finite
-        };
-    progress.end(proven, Status::Proven, stats);
-
+    let tally = iterate.start(problem, warmstart, ray);
+    let mut progress = Progress::new(tally, T::ONE / inertia, tolerance);
+    progress.judge_start::<D>(problem, iterate, ray, stats);
     direction.prepare(problem, settings);
+    if D::NEWTON && iterate.softening.start(problem, progress.live).any() {
+        progress.curved = iterate.evaluate(problem).curved;
+        iterate.differentiate(problem);
+    }
     for _ in 0..settings.iterations {
         if !progress.live.any() {
             break;
@@ -104,47 +87,26 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
         iterate.advance(step.alpha, ray);
         let tally = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
-
-        let live = progress.live;
-        let count = T::select(live, T::ONE, T::ZERO);
-        stats.iterations += count;
-        stats.ls_evaluations += step.evaluations;
-        stats.piece_changes += T::select(live, tally.changes, T::ZERO);
-        stats.gradient = T::select(live, scale * norm, stats.gradient);
-        stats.improvement = T::select(live, scale * step.improvement, stats.improvement);
-
-        progress.end(!norm.is_finite(), Status::NonFinite, stats);
-        progress.same_hessian = tally.changes.eq(T::ZERO) & !tally.curved & !progress.curved;
-        progress.curved = tally.curved;
-        // A full Newton step over a quadratic stretch ends at the minimum: the size of that step says nothing more.
-        let exact = if D::NEWTON {
-            progress.same_hessian
-        } else {
-            T::Mask::splat(false)
-        };
-        let settled = stats.improvement.le(tolerance) | exact;
-        progress.end(
-            stats.gradient.le(tolerance) & settled,
-            Status::Converged,
-            stats,
-        );
-        let cost = tally.cost + iterate.inertial_cost(problem);
-        let negligible = step
-            .improvement
-            .le(T::splat(T::Scalar::EPSILON) * T::new(NEGLIGIBLE) * cost)
-            | exact;
-        let stuck = progress.live
-            & (step.alpha.eq(T::ZERO) | progress.idles(norm, negligible, T::new(D::PATIENCE)));
-        progress.end(stuck & progress.refreshed, Status::NoProgress, stats);
-        if (stuck & progress.live).any() {
-            progress.refresh(problem, iterate, ray, stuck);
-            direction.restart(stuck);
-        }
+        progress.record(step, tally, norm, stats);
+        progress.judge(problem, iterate, ray, direction, step, tally, norm, stats);
     }
-    stats.gap = self::gap(problem, iterate, &mut ray.direction);
+    progress.finish(problem, iterate, ray, stats);
 }
 
 impl<T: Real> Progress<T> {
+    fn new(tally: Tally<T>, scale: T, tolerance: T) -> Self {
+        Progress {
+            live: T::Mask::splat(true),
+            same_hessian: T::Mask::splat(false),
+            curved: tally.curved,
+            best: T::splat(T::Scalar::INFINITY),
+            idle: T::ZERO,
+            refreshed: T::Mask::splat(false),
+            scale,
+            tolerance,
+        }
+    }
+
     /// Ends the live lanes of `mask` with `status`.
     fn end(&mut self, mask: T::Mask, status: Status, stats: &mut SolveStats<T>) {
         let ending = self.live & mask;
@@ -152,34 +114,131 @@ impl<T: Real> Progress<T> {
         self.live &= !mask;
     }
 
-    /// Gives the lanes of `stuck` a second chance from freshly computed residuals, if it is their first time.
-    fn refresh(
+    /// Ends the lanes that need no iteration.
+    fn judge_start<D: Direction<T>>(
         &mut self,
         problem: &Problem<T>,
         iterate: &mut Iterate<T>,
         ray: &mut Ray<T>,
-        stuck: T::Mask,
+        stats: &mut SolveStats<T>,
     ) {
-        iterate.refresh(problem, self.live & stuck, ray);
-        let tally = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
-        self.refreshed |= stuck;
-        self.same_hessian &= !stuck | (tally.changes.eq(T::ZERO) & !tally.curved);
-        self.curved = tally.curved;
-        self.best = T::select(stuck, norm, self.best);
-        self.idle = T::select(stuck, T::ZERO, self.idle);
+        stats.gradient = self.scale * norm;
+        stats.status = Status::IterationLimit.code();
+        self.end(
+            !(iterate.is_finite() & norm.is_finite()),
+            Status::NonFinite,
+            stats,
+        );
+        self.end(!constrained(problem), Status::Unconstrained, stats);
+        // Newton is trusted for its forces as well: the gap alone, a bound in cost, would let
+        // stiff ones be wrong.
+        let mut proven =
+            (self.scale * gap(problem, iterate, &mut ray.direction)).le(self.tolerance);
+        if D::NEWTON {
+            proven &= stats.gradient.le(self.tolerance);
+        }
+        self.end(proven, Status::Proven, stats);
     }
 
-    /// Whether the gradient has not fallen noticeably for too many iterations of negligible improvement.
+    /// Takes a step into the statistics.
+    fn record(&self, step: Step<T>, tally: Tally<T>, norm: T, stats: &mut SolveStats<T>) {
+        let live = self.live;
+        stats.iterations += T::select(live, T::ONE, T::ZERO);
+        stats.ls_evaluations += step.evaluations;
+        stats.piece_changes += T::select(live, tally.changes, T::ZERO);
+        stats.gradient = T::select(live, self.scale * norm, stats.gradient);
+        stats.improvement = T::select(live, self.scale * step.improvement, stats.improvement);
+    }
+
+    /// Ends the lanes that are done, and prepares the others for their next iteration.
+    #[allow(clippy::too_many_arguments)] // everything that an iteration has produced
+    fn judge<D: Direction<T>>(
+        &mut self,
+        problem: &Problem<T>,
+        iterate: &mut Iterate<T>,
+        ray: &mut Ray<T>,
+        direction: &mut D,
+        step: Step<T>,
+        tally: Tally<T>,
+        norm: T,
+        stats: &mut SolveStats<T>,
+    ) {
+        self.end(!norm.is_finite(), Status::NonFinite, stats);
+        self.same_hessian = tally.changes.eq(T::ZERO) & !tally.curved & !self.curved;
+        self.curved = tally.curved;
+        let cost = tally.cost + iterate.inertial_cost(problem);
+
+        let softened = iterate.softening.active();
+        if softened.any() {
+            let moved = self.live & iterate.softening.advance(step.improvement, cost);
+            self.reevaluate(problem, iterate, moved);
+            direction.restart(moved);
+        }
+
+        // A full Newton step over a quadratic stretch ends at the minimum: the size of that step
+        // says nothing more.
+        let exact = self.same_hessian & T::Mask::splat(D::NEWTON);
+        let settled = stats.improvement.le(self.tolerance) | exact;
+        let converged = stats.gradient.le(self.tolerance) & settled & !softened;
+        self.end(converged, Status::Converged, stats);
+
+        let rounding = T::splat(T::Scalar::EPSILON) * T::new(NEGLIGIBLE) * cost;
+        let negligible = step.improvement.le(rounding) | exact;
+        let idle = self.idles(norm, negligible, T::new(D::PATIENCE));
+        let stuck = self.live & !softened & (step.alpha.eq(T::ZERO) | idle);
+        self.end(stuck & self.refreshed, Status::NoProgress, stats);
+        let again = stuck & self.live;
+        if again.any() {
+            // A second chance, without the rounding that steps have added up.
+            iterate.refresh(problem, again, ray);
+            self.reevaluate(problem, iterate, again);
+            self.refreshed |= again;
+            direction.restart(again);
+        }
+    }
+
+    /// Whether the gradient has not fallen noticeably for too many iterations of negligible
+    /// improvement.
     fn idles(&mut self, norm: T, negligible: T::Mask, patience: T) -> T::Mask {
         let fell = norm.lt(T::new(NOTICEABLE) * self.best);
         self.best = T::select(fell, norm, self.best);
         self.idle = T::select(fell | !negligible, T::ZERO, self.idle + T::ONE);
         self.idle.ge(patience)
     }
+
+    /// Evaluates again after the lanes of `mask` were changed by more than a step.
+    fn reevaluate(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, mask: T::Mask) {
+        let tally = iterate.evaluate(problem);
+        let norm = iterate.differentiate(problem);
+        self.curved = tally.curved;
+        self.same_hessian &= !mask;
+        self.best = T::select(mask, norm, self.best);
+        self.idle = T::select(mask, T::ZERO, self.idle);
+    }
+
+    /// Completes the statistics.
+    fn finish(
+        &mut self,
+        problem: &Problem<T>,
+        iterate: &mut Iterate<T>,
+        ray: &mut Ray<T>,
+        stats: &mut SolveStats<T>,
+    ) {
+        let softened = iterate.softening.active();
+        if softened.any() {
+            // Cut short on the way: what is reported is true of the problem itself.
+            iterate.softening.reset();
+            iterate.evaluate(problem);
+            let norm = iterate.differentiate(problem);
+            stats.gradient = T::select(softened, self.scale * norm, stats.gradient);
+        }
+        stats.gap = gap(problem, iterate, &mut ray.direction);
+    }
 }
 
-/// The duality gap ½ gᵀM⁻¹g. The cost less ½ |a|²_M is convex, so the cost exceeds its minimum by at most this.
+/// The duality gap ½ gᵀM⁻¹g. The cost less ½ |a|²_M is convex, so the cost exceeds its minimum by
+/// at most this.
 fn gap<T: Real>(problem: &Problem<T>, iterate: &Iterate<T>, scratch: &mut Vec<T>) -> T {
     scratch.clear();
     scratch.extend_from_slice(&iterate.gradient);

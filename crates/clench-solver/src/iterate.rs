@@ -1,14 +1,15 @@
 //! The iterate: what changes during a solve.
 
 use crate::Problem;
-use crate::costs::{BlockCost, Tally, with_cost};
-use crate::jacobian::Jacobian;
+use crate::costs::{BlockCost, Rows, Tally, with_cost};
+use crate::jacobian::{BlockIndex, Jacobian};
 use crate::line_search::Ray;
+use crate::softening::Softening;
 use clench_math::{Mask, Real};
 
 /// A point, and everything that follows from it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Iterate<T> {
+pub(crate) struct Iterate<T: Real> {
     /// a.
     pub qacc: Vec<T>,
     /// M (a − a_unc).
@@ -23,6 +24,7 @@ pub(crate) struct Iterate<T> {
     pub gradient: Vec<T>,
     /// The piece that each row or edge is on.
     pub pieces: Vec<T>,
+    pub softening: Softening<T>,
 }
 
 impl<T: Real> Iterate<T> {
@@ -34,6 +36,7 @@ impl<T: Real> Iterate<T> {
         ray: &mut Ray<T>,
     ) -> Tally<T> {
         let (nv, nrow) = (problem.nv(), problem.nrow());
+        self.softening.reset();
         for v in [
             &mut self.inertial,
             &mut self.gradient,
@@ -97,6 +100,15 @@ impl<T: Real> Iterate<T> {
         blend(mask, &mut self.residual, &ray.rows);
     }
 
+    /// The cost parameters of a block, as soft as they are at present.
+    #[inline(always)]
+    pub fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
+        Rows {
+            softer: self.softening.of(b),
+            ..problem.rows(b)
+        }
+    }
+
     /// Evaluates every block at the residual: forces, pieces, and the constraints' part of the cost.
     pub fn evaluate(&mut self, problem: &Problem<T>) -> Tally<T> {
         let mut tally = Tally::new();
@@ -105,7 +117,7 @@ impl<T: Real> Iterate<T> {
             with_cost!(b.cost, C => {
                 let pieces = b.piece..b.piece + <C as BlockCost<T>>::pieces(b.dim);
                 C::evaluate(
-                    problem.rows(b),
+                    self.rows(problem, b),
                     &self.residual[rows.clone()],
                     &mut self.force[rows],
                     &mut self.pieces[pieces],

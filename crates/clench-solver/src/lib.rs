@@ -25,6 +25,7 @@ mod noslip;
 mod options;
 mod plain;
 mod problem;
+mod softening;
 mod solver;
 mod stats;
 mod tree;

@@ -88,7 +88,7 @@ impl<T: Real> Ray<T> {
             .filter(|b| b.cost != Cost::Quadratic)
         {
             let (y, dy) = (&iterate.residual[b.rows()], &self.rows[b.rows()]);
-            with_cost!(b.cost, C => C::slope(problem.rows(b), y, dy, alpha, &mut slope));
+            with_cost!(b.cost, C => C::slope(iterate.rows(problem, b), y, dy, alpha, &mut slope));
         }
         slope
     }
@@ -100,7 +100,7 @@ impl<T: Real> Ray<T> {
         let mut sum = alpha * (inertial + T::new(0.5) * alpha * mass);
         for b in &problem.jacobian.blocks {
             let (y, dy) = (&iterate.residual[b.rows()], &self.rows[b.rows()]);
-            sum += with_cost!(b.cost, C => C::change(problem.rows(b), y, dy, alpha));
+            sum += with_cost!(b.cost, C => C::change(iterate.rows(problem, b), y, dy, alpha));
         }
         sum
     }

@@ -51,7 +51,9 @@ impl<T: Real> Direction<T> for Newton<T> {
         self.updatable = T::Mask::splat(false);
     }
 
-    fn restart(&mut self, _: T::Mask) {}
+    fn restart(&mut self, mask: T::Mask) {
+        self.updatable &= !mask;
+    }
 
     fn find(
         &mut self,
@@ -73,7 +75,7 @@ impl<T: Real> Direction<T> for Newton<T> {
             self.hessian.factor(problem, rebuild, |b, weight| {
                 let y = &iterate.residual[b.rows()];
                 let pieces = &iterate.pieces[b.pieces()];
-                with_cost!(b.cost, C => C::hessian(problem.rows(b), y, pieces, weight))
+                with_cost!(b.cost, C => C::hessian(iterate.rows(problem, b), y, pieces, weight))
             });
             stats.factorizations += T::select(rebuild, T::ONE, T::ZERO);
         }
@@ -102,7 +104,7 @@ impl<T: Real> Newton<T> {
         let mut count = T::ZERO;
         for b in &problem.jacobian.blocks {
             let (old, new) = (&self.pieces[b.pieces()], &iterate.pieces[b.pieces()]);
-            with_cost!(b.cost, C => C::changes(problem.rows(b), old, new, |change| {
+            with_cost!(b.cost, C => C::changes(iterate.rows(problem, b), old, new, |change| {
                 count += T::select(change.sigma.eq(T::ZERO), T::ZERO, T::ONE);
             }));
         }
@@ -112,7 +114,7 @@ impl<T: Real> Newton<T> {
         }
         for b in &problem.jacobian.blocks {
             let (old, new) = (&self.pieces[b.pieces()], &iterate.pieces[b.pieces()]);
-            with_cost!(b.cost, C => C::changes(problem.rows(b), old, new, |mut change| {
+            with_cost!(b.cost, C => C::changes(iterate.rows(problem, b), old, new, |mut change| {
                 change.sigma = T::select(mask, change.sigma, T::ZERO);
                 let touched = !change.sigma.eq(T::ZERO);
                 if touched.any() {

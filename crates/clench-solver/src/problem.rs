@@ -253,6 +253,7 @@ impl<T: Real> Problem<T> {
             d: &self.d[rows.clone()],
             r: &self.r[rows.clone()],
             shape: &self.shape[rows],
+            softer: T::ZERO,
         }
     }
 

@@ -90,7 +90,11 @@ fn compare<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
             12,
         );
         shape.costs = costs.to_vec();
-        shape.stiffness = (1.0, 300.0);
+        shape.stiffness = if round % 5 == 4 {
+            (1e3, 1e9)
+        } else {
+            (1.0, 300.0)
+        };
         let (packed, alone) = pack::<S>(&mut rng, &shape);
         let mut together = Solver::new(packed.tree());
         let warm: Vec<Lanes<S, N>> = (0..packed.nv())

@@ -87,6 +87,41 @@ fn newton_satisfies_the_optimality_conditions() {
 }
 
 #[test]
+fn newton_reaches_the_working_precision_on_stiff_problems() {
+    for (k, problem) in problems_with_stiffness(200, (1e-2, 1e10)).enumerate() {
+        let solver = solve(&problem, &exact().iterations(1000).resolve::<f64>());
+        let error = relative_gradient(&problem, &solver);
+        let stats = solver.stats().lane(0);
+        assert!(error < 4.0, "problem {k}: {error:e} {stats:?}");
+        assert_ne!(
+            stats.status,
+            Status::IterationLimit,
+            "problem {k}: {stats:?}"
+        );
+    }
+}
+
+#[test]
+fn what_is_reported_of_a_stiff_solve_cut_short_is_true() {
+    for (k, problem) in problems_with_stiffness(100, (1e6, 1e9)).enumerate() {
+        let solver = solve(
+            &problem,
+            &RigidOptions::new().iterations(4).resolve::<f64>(),
+        );
+        for block in problem.blocks() {
+            let (_, force) = cost_and_force(&block, &residual(&block, solver.qacc()));
+            let error = difference(&force, &solver.force()[block.rows()]);
+            let size = norm(&force) / block.d[0];
+            assert!(
+                error < 1e-5 || size < 1e-9,
+                "problem {k}: {error:e} {:?}",
+                block.cost
+            );
+        }
+    }
+}
+
+#[test]
 fn cg_reaches_newtons_minimiser() {
     for (k, problem) in soft_problems(200).enumerate() {
         let newton = solve(&problem, &exact().resolve::<f64>());

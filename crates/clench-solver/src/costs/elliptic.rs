@@ -50,7 +50,7 @@ impl<T: Real> Zone<T> {
         let exists = rows.d[0].gt(T::ZERO);
         // A lane without the contact may have no coefficients either: 1 keeps it finite.
         let mu = T::select(exists, rows.shape[0], T::ONE);
-        let k = rows.d[0] / (mu * mu * (T::ONE + mu * mu));
+        let k = rows.d[0] / (mu * mu * (T::ONE + mu * mu) * stiffening(rows));
         let n = mu * y(0);
         let mut u = [T::ZERO; MAX_DIM];
         let mut t2 = T::ZERO;
@@ -85,6 +85,12 @@ impl<T: Real> Zone<T> {
     }
 }
 
+/// By how much the block would be stiffer without softening.
+#[inline(always)]
+fn stiffening<T: Real>(rows: Rows<T>) -> T {
+    T::ONE + rows.d[0] * rows.softer
+}
+
 impl<T: Real> BlockCost<T> for Elliptic {
     fn pieces(_: usize) -> usize {
         1
@@ -116,7 +122,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
         let zone = Zone::new(rows, |j| y[j]);
         if !zone.middle.any() {
             for i in 0..dim {
-                weight[i][i] = T::select(zone.bottom, rows.d[i], T::ZERO);
+                weight[i][i] = T::select(zone.bottom, rows.d[i] / stiffening(rows), T::ZERO);
             }
             return if zone.bottom.any() {
                 Form::Diagonal
@@ -144,7 +150,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
                 }
                 let surface = k * scale(i) * scale(j) * curvature;
                 let stick = if i == j {
-                    T::select(bottom, rows.d[i], T::ZERO)
+                    T::select(bottom, rows.d[i] / stiffening(rows), T::ZERO)
                 } else {
                     T::ZERO
                 };

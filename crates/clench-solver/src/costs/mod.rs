@@ -25,6 +25,8 @@ pub(crate) struct Rows<'a, T> {
     pub d: &'a [T],
     pub r: &'a [T],
     pub shape: &'a [T],
+    /// Added to R by a stage of [softening](crate::softening); only elliptic cones heed it.
+    pub softer: T,
 }
 
 /// What evaluating the blocks adds up to.

@@ -27,6 +27,7 @@ impl Sample {
             d: &self.d,
             r: &self.r,
             shape: &self.shape,
+            softer: 0.0,
         }
     }
 

@@ -42,12 +42,13 @@ impl<T: Real> TreeFactor<T> {
         self.factor_above(tree, matrix, T::ZERO)
     }
 
-    /// Factors `matrix`, in which a pivot that rounding has consumed is replaced by the size of the rounding.
+    /// Factors `matrix`; a pivot that rounding has consumed is replaced by the diagonal it came
+    /// from, so that what is solved with it stays finite and a direction of descent.
     pub(crate) fn factor_safely(&mut self, tree: &Tree, matrix: &TreeMatrix<T>) {
         self.factor_above(tree, matrix, T::splat(T::Scalar::EPSILON));
     }
 
-    /// Factors with pivots no smaller than `floor` times the diagonal.
+    /// Factors; pivots below `floor` times the diagonal are replaced by the diagonal.
     fn factor_above(&mut self, tree: &Tree, matrix: &TreeMatrix<T>, floor: T) -> T::Mask {
         self.resize(tree);
         let mut positive = T::Mask::splat(true);
@@ -56,7 +57,8 @@ impl<T: Real> TreeFactor<T> {
             let row = tree.starts[i]..tree.starts[i + 1];
             let pivot = self.scaled[row.end - 1];
             positive &= pivot.gt(T::ZERO) & pivot.is_finite();
-            let pivot = pivot.max(floor * matrix.values[row.end - 1]);
+            let diagonal = matrix.values[row.end - 1];
+            let pivot = T::select(pivot.gt(floor * diagonal), pivot, diagonal);
             let inverse = T::ONE / pivot;
             self.diagonal[i] = pivot;
             self.inverse[i] = inverse;

@@ -9,6 +9,8 @@
 
 mod factor;
 mod matrix;
+#[cfg(test)]
+mod tests;
 
 use crate::ProblemError;
 pub use factor::TreeFactor;
