@@ -12,6 +12,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod cg;
+mod check;
 mod costs;
 mod descent;
 mod hessian;
@@ -31,9 +32,10 @@ mod stats;
 mod tree;
 mod workspace;
 
+pub use check::ProblemError;
 pub use options::{ConstraintSolver, FrictionCone, MaxContacts, RigidOptions, Settings, Switch};
 pub use plain::PlainBlock;
-pub use problem::{Block, BlockMut, Cost, Problem, ProblemError};
+pub use problem::{Block, BlockMut, Cost, Problem};
 pub use solver::Solver;
 pub use stats::{LaneStats, SolveStats, Status};
 pub use tree::{Tree, TreeFactor, TreeMatrix};

@@ -17,8 +17,6 @@ use crate::jacobian::{BlockIndex, Jacobian};
 use crate::{Cost, Problem, Settings, SolveStats};
 use clench_math::{Mask, Real, Scalar};
 
-/// Most friction rows of a block.
-const MAX_FRICTION: usize = MAX_DIM - 1;
 /// Newton steps for the multiplier of an ellipse: it converges quadratically from below.
 const MULTIPLIER_STEPS: usize = 20;
 
@@ -28,7 +26,7 @@ struct Friction<T> {
     block: BlockIndex,
     /// First friction row within the block.
     first: usize,
-    a: [[T; MAX_FRICTION]; MAX_FRICTION],
+    a: [[T; MAX_DIM]; MAX_DIM],
     response: usize,
 }
 
@@ -100,7 +98,7 @@ impl<T: Real> Noslip<T> {
             dofs.iter()
                 .zip(&values[i * block.ndof..(i + 1) * block.ndof])
         };
-        let mut a = [[T::ZERO; MAX_FRICTION]; MAX_FRICTION];
+        let mut a = [[T::ZERO; MAX_DIM]; MAX_DIM];
         for i in first..block.dim {
             let start = self.responses.len();
             self.responses.resize(start + nv, T::ZERO);
@@ -144,31 +142,32 @@ impl<T: Real> Noslip<T> {
         let exists = live & rows.d[0].gt(T::ZERO);
         let force = &iterate.force[block.rows()];
         let residual = residual(problem, block, first, &iterate.qacc);
-        let mut target = [T::ZERO; MAX_FRICTION];
+        let mut target = [T::ZERO; MAX_DIM];
         match block.cost {
             Cost::Elliptic => {
                 target = on_ellipse(a, &residual, &force[1..], &rows.shape[1..], force[0]);
             }
-            Cost::Pyramid => {
-                // The pairs of a pyramid are solved one after the other, each seeing what those before it changed.
+            _ => {
+                // Rows are solved one after the other, each seeing what those before it changed.
                 let mut residual = residual;
                 for j in 0..count {
-                    let pair = &edges[block.piece + 2 * j..];
-                    let bound = rows.shape[j + 1] * (pair[0] + pair[1]);
-                    target[j] = within(force[j + 1], residual[j], a[j][j], bound);
-                    let delta = target[j] - force[j + 1];
+                    let bound = match block.cost {
+                        Cost::Pyramid => {
+                            let pair = &edges[block.piece + 2 * j..];
+                            rows.shape[j + 1] * (pair[0] + pair[1])
+                        }
+                        _ => rows.shape[j],
+                    };
+                    let old = force[first + j];
+                    target[j] = within(old, residual[j], a[j][j], bound);
+                    let delta = target[j] - old;
                     for i in 0..count {
                         residual[i] += a[i][j] * delta;
                     }
                 }
             }
-            _ => {
-                for j in 0..count {
-                    target[j] = within(force[j], residual[j], a[j][j], rows.shape[j]);
-                }
-            }
         }
-        let mut delta = [T::ZERO; MAX_FRICTION];
+        let mut delta = [T::ZERO; MAX_DIM];
         for j in 0..count {
             delta[j] = T::select(exists, target[j] - force[first + j], T::ZERO);
         }
@@ -200,9 +199,9 @@ fn residual<T: Real>(
     block: &BlockIndex,
     first: usize,
     qacc: &[T],
-) -> [T; MAX_FRICTION] {
+) -> [T; MAX_DIM] {
     let (dofs, values) = (problem.jacobian.dofs(block), problem.jacobian.values(block));
-    let mut residual = [T::ZERO; MAX_FRICTION];
+    let mut residual = [T::ZERO; MAX_DIM];
     for i in first..block.dim {
         let mut sum = -problem.aref[block.row + i];
         for (&dof, &j) in dofs.iter().zip(&values[i * block.ndof..]) {
@@ -224,15 +223,15 @@ fn within<T: Real>(force: T, residual: T, a: T, bound: T) -> T {
 /// In g = f / μ the ellipse is a ball of radius r, and g minimises ½ gᵀBg + gᵀc with B = diag(μ) A diag(μ). Outside the
 /// ball, g(λ) = −(B + λ I)⁻¹ c with |g(λ)| = r: Newton's method on 1/r − 1/|g|, nearly linear in λ.
 fn on_ellipse<T: Real>(
-    a: &[[T; MAX_FRICTION]; MAX_FRICTION],
-    residual: &[T; MAX_FRICTION],
+    a: &[[T; MAX_DIM]; MAX_DIM],
+    residual: &[T; MAX_DIM],
     force: &[T],
     mu: &[T],
     normal: T,
-) -> [T; MAX_FRICTION] {
+) -> [T; MAX_DIM] {
     let n = mu.len();
-    let mut b = [[T::ZERO; MAX_FRICTION]; MAX_FRICTION];
-    let mut c = [T::ZERO; MAX_FRICTION];
+    let mut b = [[T::ZERO; MAX_DIM]; MAX_DIM];
+    let mut c = [T::ZERO; MAX_DIM];
     for i in 0..n {
         let mut linear = residual[i];
         for j in 0..n {
@@ -249,7 +248,7 @@ fn on_ellipse<T: Real>(
     let floor = trace * T::splat(T::Scalar::EPSILON);
     let radius = T::select(presses, normal, T::ONE);
     let mut lambda = T::ZERO;
-    let mut g = [T::ZERO; MAX_FRICTION];
+    let mut g = [T::ZERO; MAX_DIM];
     let mut open = presses;
     for _ in 0..MULTIPLIER_STEPS {
         let (point, squared, slope) = shifted_minimum(&b, &c, lambda, floor, n);
@@ -277,12 +276,12 @@ fn on_ellipse<T: Real>(
 
 /// g = −(B + λ I)⁻¹ c, with |g|² and −½ d|g|²/dλ = gᵀ (B + λ I)⁻¹ g.
 fn shifted_minimum<T: Real>(
-    b: &[[T; MAX_FRICTION]; MAX_FRICTION],
-    c: &[T; MAX_FRICTION],
+    b: &[[T; MAX_DIM]; MAX_DIM],
+    c: &[T; MAX_DIM],
     lambda: T,
     floor: T,
     n: usize,
-) -> ([T; MAX_FRICTION], T, T) {
+) -> ([T; MAX_DIM], T, T) {
     // Cholesky of B + λ I; pivots that rounding has consumed are replaced by its size.
     let mut l = *b;
     for j in 0..n {
@@ -300,7 +299,7 @@ fn shifted_minimum<T: Real>(
             l[i][j] = sum / root;
         }
     }
-    let forward = |x: &mut [T; MAX_FRICTION]| {
+    let forward = |x: &mut [T; MAX_DIM]| {
         for i in 0..n {
             for k in 0..i {
                 let lik = l[i][k];
@@ -310,7 +309,7 @@ fn shifted_minimum<T: Real>(
             x[i] /= l[i][i];
         }
     };
-    let mut g: [T; MAX_FRICTION] = std::array::from_fn(|i| -c[i]);
+    let mut g: [T; MAX_DIM] = std::array::from_fn(|i| -c[i]);
     forward(&mut g);
     for i in (0..n).rev() {
         for k in i + 1..n {

@@ -1,6 +1,6 @@
 //! A problem from plain arrays, for use without trees, bodies or joints.
 
-use crate::problem::check_length;
+use crate::check::check_length;
 use crate::{Cost, Problem, ProblemError, Tree};
 use clench_math::{Mask, Real};
 use std::sync::Arc;

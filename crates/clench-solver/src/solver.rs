@@ -1,9 +1,9 @@
 //! The solver: which parts of a problem are solved together, and where the results lie.
 
+use crate::check::check_length;
 use crate::islands::Islands;
 use crate::iterate::all_finite;
 use crate::lane::{Lane, Results};
-use crate::problem::check_length;
 use crate::workspace::Workspace;
 use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Status, Switch, Tree};
 use clench_math::Real;

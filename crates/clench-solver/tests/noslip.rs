@@ -46,7 +46,9 @@ fn leftover(problem: &Problem<f64>, solver: &Solver<f64>, k: usize, block: &Bloc
     let slip = residual(block, solver.qacc());
     let force = &solver.force()[block.rows()];
     match block.cost {
-        Cost::Huber => wrong_slip(force[0], block.shape[0], slip[0]),
+        Cost::Huber => (0..block.dim)
+            .map(|j| wrong_slip(force[j], block.shape[j], slip[j]))
+            .fold(0.0, f64::max),
         Cost::Pyramid => (1..block.dim)
             .map(|j| {
                 let pair = &solver.edge_forces(problem, k)[2 * j - 2..2 * j];
@@ -90,6 +92,20 @@ fn sweeps_converge_to_friction_without_slip() {
                 );
             }
         }
+    }
+}
+
+/// A block of dry friction may have six rows, and its rows may work on the same dofs.
+#[test]
+fn rows_of_one_block_come_to_rest_together() {
+    let mut rng = Rng(11);
+    for _ in 0..20 {
+        let mut problem = random_problem(&mut rng, &Shape::new(humanoid(), 0));
+        let shape = Shape::new(humanoid(), 1);
+        push_contacts(&mut rng, &shape, &mut problem, Cost::Huber, 6, 1);
+        let solver = solve(&problem, 10_000);
+        let slip = leftover(&problem, &solver, 0, &problem.block(0));
+        assert!(slip < 1e-5, "{slip:e}");
     }
 }
 

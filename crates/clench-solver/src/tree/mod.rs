@@ -128,7 +128,7 @@ impl Tree {
     }
 
     /// The same dofs, with `couplings` (each a count, then ascending dofs) coupled as well: the elimination tree, whose paths
-    /// hold all entries that eliminating the coupled matrix from its last row fills. `edges` is scratch.
+    /// hold all entries that eliminating the coupled matrix from its last row fills.
     ///
     /// Liu's algorithm, from the last dof to the first: the tree that holds a neighbour so far comes to hang on the dof.
     /// Of a coupling, only each dof with the next one matters: what lies above hangs on that already.

@@ -1,0 +1,188 @@
+//! What a problem must be to be solved, and what is wrong with one that is not.
+
+use crate::costs::MAX_DIM;
+use crate::{Block, Cost, Problem, TreeFactor};
+use clench_math::{Mask, Real, Scalar};
+
+/// Why a problem is not one.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ProblemError {
+    /// Tree numbering.
+    #[error("dof {dof} has parent {parent}, which does not come before it")]
+    ParentAfterChild {
+        /// The child.
+        dof: usize,
+        /// Its parent.
+        parent: usize,
+    },
+    /// A slice of the wrong length.
+    #[error("{what} has {found} entries where {expected} are needed")]
+    WrongLength {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it needs.
+        expected: usize,
+    },
+    /// An infinite or undefined number.
+    #[error("{what} is not finite at entry {index} (lane {lane})")]
+    NotFinite {
+        /// Which array.
+        what: &'static str,
+        /// Where in it.
+        index: usize,
+        /// Which lane.
+        lane: usize,
+    },
+    /// The mass matrix cannot be factored.
+    #[error("the mass matrix is not positive definite (lane {lane})")]
+    MassNotPositiveDefinite {
+        /// Which lane.
+        lane: usize,
+    },
+    /// A block that makes no sense.
+    #[error("constraint block {block}: {reason}")]
+    Block {
+        /// Which block.
+        block: usize,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+}
+
+impl<T: Real> Problem<T> {
+    /// Checks the sizes that a solve indexes by.
+    pub(crate) fn check_sizes(&self) -> Result<(), ProblemError> {
+        check_length("qacc_smooth", self.qacc_smooth.len(), self.nv())?;
+        check_length("mass", self.mass.values.len(), self.tree().nnz())?;
+        match self.malformed {
+            Some((block, reason)) => Err(ProblemError::Block { block, reason }),
+            None => Ok(()),
+        }
+    }
+
+    /// Checks everything that a solve relies on: lengths, finite numbers, a positive definite M, and for each block the
+    /// range of its parameters. A solve itself does not check, so that a caller that builds blocks by rule pays nothing.
+    ///
+    /// # Errors
+    /// The first thing found wrong.
+    pub fn check(&self) -> Result<(), ProblemError> {
+        self.check_sizes()?;
+        for (what, values) in [
+            ("qacc_smooth", &self.qacc_smooth),
+            ("mass", &self.mass.values),
+            ("jacobian", &self.jacobian.values),
+            ("aref", &self.aref),
+            ("r", &self.r),
+            ("d", &self.d),
+            ("shape", &self.shape),
+        ] {
+            check_finite(what, values)?;
+        }
+        let positive = TreeFactor::zeros(self.tree()).factor(self.tree(), &self.mass);
+        if let Some(lane) = (0..T::LANES).find(|&lane| !positive.lane(lane)) {
+            return Err(ProblemError::MassNotPositiveDefinite { lane });
+        }
+        for (block, view) in self.blocks().enumerate() {
+            check_block(&view).map_err(|reason| ProblemError::Block { block, reason })?;
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), ProblemError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(ProblemError::WrongLength {
+            what,
+            found,
+            expected,
+        })
+    }
+}
+
+fn check_finite<T: Real>(what: &'static str, values: &[T]) -> Result<(), ProblemError> {
+    for (index, value) in values.iter().enumerate() {
+        let finite = value.is_finite();
+        if let Some(lane) = (0..T::LANES).find(|&lane| !finite.lane(lane)) {
+            return Err(ProblemError::NotFinite { what, index, lane });
+        }
+    }
+    Ok(())
+}
+
+/// How far D may be from 1 / R, and the rows of an elliptic block from their common scale.
+const CONSISTENT: f64 = 1e-4;
+
+/// Whether a block over these dofs can be stored and indexed at all.
+pub(crate) fn check_size(
+    cost: Cost,
+    dim: usize,
+    dofs: &[u32],
+    nv: usize,
+) -> Result<(), &'static str> {
+    let cone = matches!(cost, Cost::Pyramid | Cost::Elliptic);
+    if !(1..=MAX_DIM).contains(&dim) {
+        return Err("a block has 1 to 6 rows");
+    }
+    if cone && dim < 2 {
+        return Err("a cone has 2 to 6 rows");
+    }
+    if dofs.windows(2).any(|w| w[0] >= w[1]) {
+        return Err("its dofs do not ascend");
+    }
+    if dofs.last().is_some_and(|&dof| dof as usize >= nv) {
+        return Err("it acts on a dof that the tree does not have");
+    }
+    Ok(())
+}
+
+/// The ranges of a block's parameters, lane by lane; a lane without the constraint has D = 0.
+fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {
+    for lane in 0..T::LANES {
+        let at = |values: &[T], row: usize| values[row].lane(lane).to_f64();
+        for row in 0..block.dim {
+            let (r, d, shape) = (at(block.r, row), at(block.d, row), at(block.shape, row));
+            if d < 0.0 {
+                return Err("D is negative");
+            }
+            if d > 0.0 && (d * r - 1.0).abs() > CONSISTENT {
+                return Err("D is not 1 / R");
+            }
+            if block.cost == Cost::Huber && shape < 0.0 {
+                return Err("a friction loss is negative");
+            }
+        }
+        if at(block.d, 0) == 0.0 {
+            continue;
+        }
+        if matches!(block.cost, Cost::Pyramid | Cost::Elliptic)
+            && (1..block.dim).any(|j| at(block.shape, j) <= 0.0)
+        {
+            return Err("a friction coefficient is not positive");
+        }
+        if block.cost == Cost::Pyramid && (1..block.dim).any(|j| at(block.d, j) != at(block.d, 0)) {
+            return Err("the rows of a pyramid need the same D");
+        }
+        if block.cost == Cost::Elliptic {
+            let mu = at(block.shape, 0);
+            if mu <= 0.0 {
+                return Err("the regularized friction coefficient is not positive");
+            }
+            let scale = at(block.d, 0) / (mu * mu);
+            let consistent = |j| {
+                (at(block.d, j) / (scale * at(block.shape, j).powi(2)) - 1.0).abs() < CONSISTENT
+            };
+            if !(1..block.dim).all(consistent) {
+                return Err("the rows of an elliptic cone need D_j = D_0 (mu_j / mu)²");
+            }
+        }
+    }
+    Ok(())
+}
