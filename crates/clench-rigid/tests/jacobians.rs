@@ -4,6 +4,7 @@ mod scenes;
 
 use clench_collide::frame_from_normal;
 use clench_math::{Mat3, Vec3};
+use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use clench_rigid::constraint::ConstraintSource;
 use clench_rigid::contact::Contact;
 use clench_rigid::dynamics::integrate::integrate_positions;
@@ -126,13 +127,14 @@ fn connect_and_weld_ask_for_the_right_acceleration() {
                 .sum::<f64>()
                 .sqrt();
             let soft = clench_rigid::constraint::Softness::new(
-                scenes::SOLREF,
-                scenes::SOLIMP,
+                DEFAULT_SOLREF,
+                DEFAULT_SOLIMP,
                 length,
                 0.0,
             );
             for i in start..start + dim {
-                let bias = soft.aref(rows[i].vel, rows[i].pos) - rows[i].aref;
+                let bias =
+                    -soft.damping * rows[i].vel - soft.stiffness * rows[i].pos - rows[i].aref;
                 let expected = (after[i].vel - before[i].vel) / (2.0 * H);
                 assert!(
                     (bias - expected).abs() < 1e-7,
@@ -174,9 +176,9 @@ fn given_contacts(sim: &Sim) -> Vec<Contact<f64>> {
         frame: frame_from_normal(normal),
         includemargin: 0.0,
         friction: [0.8, 0.7, 0.02, 0.003, 0.004],
-        solref: scenes::SOLREF,
+        solref: DEFAULT_SOLREF,
         solreffriction: [0.0; 2],
-        solimp: scenes::SOLIMP,
+        solimp: DEFAULT_SOLIMP,
         block: None,
     })
     .collect()

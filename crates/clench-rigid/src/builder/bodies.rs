@@ -109,42 +109,7 @@ fn add(
     let frame = align(builder, spec, place.has_children, &mut inertia);
     let within = |e: BuildError| e.of_body(&place.name);
 
-    let starts = [
-        model.joints.len(),
-        model.nv,
-        model.geoms.len(),
-        model.sites.len(),
-    ];
-    let weld = match is_world || spec.mocap || !spec.joints.is_empty() {
-        true => b,
-        false => model.bodies[parent].weld,
-    };
-    model.bodies.push(Body {
-        name: match &spec.name[..] {
-            "" if is_world => "world".to_owned(),
-            name => name.to_owned(),
-        },
-        parent,
-        root: if parent == 0 {
-            b
-        } else {
-            model.bodies[parent].root
-        },
-        weld,
-        joints: starts[0]..starts[0],
-        dofs: starts[1]..starts[1],
-        geoms: starts[2]..starts[2],
-        sites: starts[3]..starts[3],
-        mocap: spec.mocap.then_some(model.nmocap),
-        last_dof: if is_world {
-            None
-        } else {
-            model.bodies[parent].last_dof
-        },
-        simple_inertia: is_null(inertia.pos, inertia.quat),
-        origin: spec.origin.clone(),
-    });
-    model.nmocap += usize::from(spec.mocap);
+    push_body(model, spec, parent, is_null(inertia.pos, inertia.quat));
     push_params(model, spec, &frame, &inertia);
 
     for joint in &spec.joints {
@@ -161,6 +126,39 @@ fn add(
     }
     model.bodies[b].sites.end = model.sites.len();
     Ok(())
+}
+
+/// Adds the record of a body that has no joints, geoms and sites yet.
+fn push_body(model: &mut Model, spec: &BodySpec, parent: usize, simple_inertia: bool) {
+    let b = model.bodies.len();
+    let is_world = b == 0;
+    let parent_body = (!is_world).then(|| &model.bodies[parent]);
+    let empty = |start: usize| start..start;
+    let body = Body {
+        name: match &spec.name[..] {
+            "" if is_world => "world".to_owned(),
+            name => name.to_owned(),
+        },
+        parent,
+        root: match parent_body {
+            Some(above) if parent != 0 => above.root,
+            _ => b,
+        },
+        weld: match parent_body {
+            Some(above) if !spec.mocap && spec.joints.is_empty() => above.weld,
+            _ => b,
+        },
+        joints: empty(model.joints.len()),
+        dofs: empty(model.nv),
+        geoms: empty(model.geoms.len()),
+        sites: empty(model.sites.len()),
+        mocap: spec.mocap.then_some(model.nmocap),
+        last_dof: parent_body.and_then(|above| above.last_dof),
+        simple_inertia,
+        origin: spec.origin.clone(),
+    };
+    model.bodies.push(body);
+    model.nmocap += usize::from(spec.mocap);
 }
 
 /// Which joints a body may have, and where.

@@ -19,7 +19,12 @@ pub(super) fn add_all(
     model: &mut Model,
 ) -> Result<(), BuildError> {
     for spec in &builder.equalities {
-        let (target, data) = resolve(spec, names, pose0, model)?;
+        let scene = Scene {
+            names,
+            pose0,
+            model,
+        };
+        let (target, data) = scene.resolve(spec)?;
         model.equalities.push(Equality {
             name: spec.name.clone(),
             target,
@@ -48,98 +53,152 @@ struct Data {
     polycoef: [f64; 5],
 }
 
-fn resolve(
-    spec: &EqualitySpec,
-    names: &AllNames,
-    pose0: &Positions<f64>,
-    model: &Model,
-) -> Result<(EqualityTarget, Data), BuildError> {
-    match &spec.kind {
-        EqualityKind::Connect(anchor) => {
-            let ([body1, body2], data) = match anchor {
-                ConnectAnchor::Bodies {
-                    body1,
-                    body2,
-                    anchor,
-                } => {
-                    let bodies = two_bodies(spec, names, body1, body2)?;
-                    let points = [*anchor, carry(pose0, bodies, *anchor)];
-                    let quats = Default::default();
-                    (
-                        bodies,
-                        Data {
-                            points,
-                            quats,
-                            ..Data::default()
-                        },
-                    )
-                }
-                ConnectAnchor::Sites { site1, site2 } => {
-                    let (bodies, data) = two_sites(spec, names, model, site1, site2)?;
-                    let quats = Default::default();
-                    (bodies, Data { quats, ..data })
-                }
-            };
-            require_finite_points(spec, &data)?;
-            Ok((EqualityTarget::Connect { body1, body2 }, data))
-        }
-        EqualityKind::Weld {
-            anchor,
-            relpose,
-            torquescale,
-        } => {
-            let ([body1, body2], data) = match anchor {
-                ConnectAnchor::Bodies {
-                    body1,
-                    body2,
-                    anchor,
-                } => {
-                    let bodies = two_bodies(spec, names, body1, body2)?;
-                    (bodies, weld_bodies(pose0, bodies, *anchor, *relpose))
-                }
-                ConnectAnchor::Sites { site1, site2 } => {
-                    two_sites(spec, names, model, site1, site2)?
-                }
-            };
-            let torquescale = *torquescale;
-            require_finite_points(spec, &data)?;
-            let data = Data {
+/// What a constraint holds, and its numbers.
+type Resolved = Result<(EqualityTarget, Data), BuildError>;
+
+/// What names and poses are looked up in.
+struct Scene<'a> {
+    names: &'a AllNames<'a>,
+    pose0: &'a Positions<f64>,
+    model: &'a Model,
+}
+
+impl Scene<'_> {
+    fn resolve(&self, spec: &EqualitySpec) -> Resolved {
+        match &spec.kind {
+            EqualityKind::Connect(anchor) => self.connect(spec, anchor),
+            EqualityKind::Weld {
+                anchor,
+                relpose,
                 torquescale,
-                ..data
-            };
-            Ok((EqualityTarget::Weld { body1, body2 }, data))
-        }
-        EqualityKind::Joint {
-            joint1,
-            joint2,
-            polycoef,
-        } => {
-            let scalar = |name: &String| {
-                let joint = names.joints.find(name, spec)?;
-                require_scalar(spec, name, joint, model)?;
-                Ok(joint)
-            };
-            let (joint1, joint2) = (scalar(joint1)?, joint2.as_ref().map(scalar).transpose()?);
-            require_different(spec, Some(joint1) != joint2)?;
-            Ok((
-                EqualityTarget::Joint { joint1, joint2 },
-                polynomial(polycoef),
-            ))
-        }
-        EqualityKind::Tendon {
-            tendon1,
-            tendon2,
-            polycoef,
-        } => {
-            let find = |name: &String| names.tendons.find(name, spec);
-            let (tendon1, tendon2) = (find(tendon1)?, tendon2.as_ref().map(find).transpose()?);
-            require_different(spec, Some(tendon1) != tendon2)?;
-            Ok((
-                EqualityTarget::Tendon { tendon1, tendon2 },
-                polynomial(polycoef),
-            ))
+            } => self.weld(spec, anchor, *relpose, *torquescale),
+            EqualityKind::Joint {
+                joint1,
+                joint2,
+                polycoef,
+            } => {
+                let (joint1, joint2) = two(spec, joint1, joint2, |name| self.scalar(spec, name))?;
+                let target = EqualityTarget::Joint { joint1, joint2 };
+                Ok((target, polynomial(polycoef)))
+            }
+            EqualityKind::Tendon {
+                tendon1,
+                tendon2,
+                polycoef,
+            } => {
+                let find = |name: &str| self.names.tendons.find(name, spec);
+                let (tendon1, tendon2) = two(spec, tendon1, tendon2, find)?;
+                let target = EqualityTarget::Tendon { tendon1, tendon2 };
+                Ok((target, polynomial(polycoef)))
+            }
         }
     }
+
+    fn connect(&self, spec: &EqualitySpec, anchor: &ConnectAnchor) -> Resolved {
+        let ([body1, body2], points) = match anchor {
+            ConnectAnchor::Bodies {
+                body1,
+                body2,
+                anchor,
+            } => {
+                let bodies = self.two_bodies(spec, body1, body2)?;
+                (bodies, [*anchor, carry(self.pose0, bodies, *anchor)])
+            }
+            ConnectAnchor::Sites { site1, site2 } => {
+                let (bodies, data) = self.two_sites(spec, site1, site2)?;
+                (bodies, data.points)
+            }
+        };
+        let data = Data {
+            points,
+            ..Data::default()
+        };
+        require_finite_points(spec, &data)?;
+        Ok((EqualityTarget::Connect { body1, body2 }, data))
+    }
+
+    fn weld(
+        &self,
+        spec: &EqualitySpec,
+        anchor: &ConnectAnchor,
+        relpose: Option<(Vec3<f64>, Quat<f64>)>,
+        torquescale: f64,
+    ) -> Resolved {
+        let ([body1, body2], data) = match anchor {
+            ConnectAnchor::Bodies {
+                body1,
+                body2,
+                anchor,
+            } => {
+                let bodies = self.two_bodies(spec, body1, body2)?;
+                (bodies, weld_bodies(self.pose0, bodies, *anchor, relpose))
+            }
+            ConnectAnchor::Sites { site1, site2 } => self.two_sites(spec, site1, site2)?,
+        };
+        require_finite_points(spec, &data)?;
+        let data = Data {
+            torquescale,
+            ..data
+        };
+        Ok((EqualityTarget::Weld { body1, body2 }, data))
+    }
+
+    fn scalar(&self, spec: &EqualitySpec, name: &str) -> Result<usize, BuildError> {
+        let joint = self.names.joints.find(name, spec)?;
+        require_scalar(spec, name, joint, self.model)?;
+        Ok(joint)
+    }
+
+    fn two_bodies(
+        &self,
+        spec: &EqualitySpec,
+        body1: &str,
+        body2: &str,
+    ) -> Result<[usize; 2], BuildError> {
+        let world_if_empty = |name| match name {
+            "" => "world",
+            name => name,
+        };
+        let bodies = [
+            self.names.bodies.find(body1, spec)?,
+            self.names.bodies.find(world_if_empty(body2), spec)?,
+        ];
+        require_different(spec, bodies[0] != bodies[1])?;
+        Ok(bodies)
+    }
+
+    /// The bodies of two sites, and the sites' poses in them.
+    fn two_sites(
+        &self,
+        spec: &EqualitySpec,
+        site1: &str,
+        site2: &str,
+    ) -> Result<([usize; 2], Data), BuildError> {
+        let sites = [
+            self.names.sites.find(site1, spec)?,
+            self.names.sites.find(site2, spec)?,
+        ];
+        require_different(spec, sites[0] != sites[1])?;
+        let data = Data {
+            points: sites.map(|s| self.model.params.site_pos[s]),
+            quats: sites.map(|s| self.model.params.site_quat[s]),
+            ..Data::default()
+        };
+        Ok((sites.map(|s| self.model.sites[s].body), data))
+    }
+}
+
+/// One that follows, and one that leads if any; not the same.
+fn two(
+    spec: &EqualitySpec,
+    follower: &str,
+    leader: &Option<String>,
+    find: impl Fn(&str) -> Result<usize, BuildError>,
+) -> Result<(usize, Option<usize>), BuildError> {
+    let follower = find(follower)?;
+    let leader = leader.as_deref().map(find).transpose()?;
+    require_different(spec, Some(follower) != leader)?;
+    Ok((follower, leader))
 }
 
 fn polynomial(polycoef: &[f64; 5]) -> Data {
@@ -159,44 +218,6 @@ fn require_different(spec: &EqualitySpec, different: bool) -> Result<(), BuildEr
 fn require_finite_points(spec: &EqualitySpec, data: &Data) -> Result<(), BuildError> {
     let numbers = data.points.map(Vec3::to_array);
     spec.require_finite("anchor", numbers.as_flattened())
-}
-
-fn two_bodies(
-    spec: &EqualitySpec,
-    names: &AllNames,
-    body1: &str,
-    body2: &str,
-) -> Result<[usize; 2], BuildError> {
-    let world_if_empty = |name| match name {
-        "" => "world",
-        name => name,
-    };
-    let bodies = [
-        names.bodies.find(body1, spec)?,
-        names.bodies.find(world_if_empty(body2), spec)?,
-    ];
-    require_different(spec, bodies[0] != bodies[1])?;
-    Ok(bodies)
-}
-
-fn two_sites(
-    spec: &EqualitySpec,
-    names: &AllNames,
-    model: &Model,
-    site1: &str,
-    site2: &str,
-) -> Result<([usize; 2], Data), BuildError> {
-    let sites = [
-        names.sites.find(site1, spec)?,
-        names.sites.find(site2, spec)?,
-    ];
-    require_different(spec, sites[0] != sites[1])?;
-    let data = Data {
-        points: sites.map(|s| model.params.site_pos[s]),
-        quats: sites.map(|s| model.params.site_quat[s]),
-        ..Data::default()
-    };
-    Ok((sites.map(|s| model.sites[s].body), data))
 }
 
 /// A point of the first body in the coordinates of the second, as they are placed initially.

@@ -1,7 +1,7 @@
 //! Where constraints put their rows: the convex problem, and beside it what a reader wants to know of each row.
 
 use super::softness::Softness;
-use clench_math::{Mask, Real};
+use clench_math::Real;
 use clench_solver::{Cost, Problem};
 
 /// What a constraint comes from; the number counts the sources of its kind.
@@ -130,10 +130,5 @@ impl<T: Real> ConstraintRecord<T> {
         self.blocks.clear();
         self.pos.clear();
         self.vel.clear();
-    }
-
-    /// How many blocks lane `lane` has.
-    pub fn active_blocks(&self, lane: usize) -> usize {
-        self.blocks.iter().filter(|b| b.active.lane(lane)).count()
     }
 }

@@ -8,10 +8,10 @@
 //! point, plus ω × ṗ. The impedance is that of the violation's length; A₀ the sum of the bodies' translational inverse
 //! weights.
 
-use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::Scene;
+use super::assembly::{Assembly, Row};
 use super::chains::{BodyPoint, Chains, Side};
-use super::{Scene, Softness};
-use clench_math::{Real, Vec3};
+use clench_math::{Motion, Real, Vec3};
 use clench_solver::Cost;
 
 pub(super) fn push<T: Real>(
@@ -25,16 +25,11 @@ pub(super) fn push<T: Real>(
     if out.dofs().is_empty() {
         return;
     }
-    let points = anchors(scene, equality, bodies);
-    let (violation, offsets, bias) = separation(scene, bodies, points);
-    let params = scene.params;
-    let soft = Softness::new(
-        params.eq_solref[equality],
-        params.eq_solimp[equality],
-        violation.norm(),
-        scene.least_timeconst,
-    );
-    let a0 = bodies.map(|b| params.body_invweight0[b][0]);
+    let anchors = Anchors::new(scene, equality, bodies);
+    let violation = anchors.separation;
+    let bias = anchors.bias[0].linear - anchors.bias[1].linear;
+    let (soft, block) = scene.equality(equality, violation.norm());
+    let a0 = bodies.map(|b| scene.params.body_invweight0[b][0]);
     let rows: [Row<T>; 3] = std::array::from_fn(|i| {
         let row = Row::new(&soft, violation[i], T::ZERO, a0[0] + a0[1]);
         Row {
@@ -42,63 +37,48 @@ pub(super) fn push<T: Real>(
             ..row
         }
     });
-    let block = BlockRecord {
-        source: ConstraintSource::Equality(equality),
-        active: scene.state.eq_active[equality],
-        margin: T::ZERO,
-        impedance: soft.impedance,
-    };
     out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
-        fill_translation(scene, &chains, offsets, jacobian);
+        anchors.fill_translation(scene, &chains, jacobian);
     });
 }
 
-/// The anchors of a connect or weld in the world.
-pub(super) fn anchors<T: Real>(
-    scene: &Scene<T>,
-    equality: usize,
-    [body1, body2]: [usize; 2],
-) -> [Vec3<T>; 2] {
-    let (pos, params) = (scene.position, scene.params);
-    [
-        pos.xpos[body1] + pos.xmat[body1] * params.eq_anchor1[equality],
-        pos.xpos[body2] + pos.xmat[body2] * params.eq_anchor2[equality],
-    ]
-}
-
-/// The separation of two points of two bodies, their offsets from the reference points of their trees, and the
-/// acceleration of the separation while no dof accelerates.
-pub(super) fn separation<T: Real>(
-    scene: &Scene<T>,
-    bodies: [usize; 2],
-    points: [Vec3<T>; 2],
-) -> (Vec3<T>, [Vec3<T>; 2], Vec3<T>) {
-    let moving = [0, 1].map(|i| BodyPoint::new(scene, bodies[i], points[i]));
-    let bias = moving.map(|point| point.bias_acceleration(scene).linear);
-    (
-        points[0] - points[1],
-        moving.map(|point| point.offset),
-        bias[0] - bias[1],
-    )
-}
-
-/// Rows 0 to 2 of a Jacobian: velocity of the first point less that of the second.
-pub(super) fn fill_translation<T: Real>(
-    scene: &Scene<T>,
-    chains: &Chains,
+/// The points of two bodies that a connect or weld holds together.
+pub(super) struct Anchors<T> {
+    /// The first point less the second, m.
+    pub separation: Vec3<T>,
+    /// Acceleration of each body, linear at its point, while no dof accelerates.
+    pub bias: [Motion<T>; 2],
+    /// Each point from the reference point of its body's tree.
     offsets: [Vec3<T>; 2],
-    jacobian: &mut [T],
-) {
-    let ndof = chains.iter().count();
-    for (column, (dof, side)) in chains.iter().enumerate() {
-        let axis = scene.position.cdof[dof];
-        let velocity = match side {
-            Side::Both => axis.velocity_at(offsets[0]) - axis.velocity_at(offsets[1]),
-            Side::First => axis.velocity_at(offsets[0]),
-            Side::Second => -axis.velocity_at(offsets[1]),
-        };
-        for i in 0..3 {
-            jacobian[i * ndof + column] = velocity[i];
+}
+
+impl<T: Real> Anchors<T> {
+    pub fn new(scene: &Scene<T>, equality: usize, bodies: [usize; 2]) -> Self {
+        let (pos, params) = (scene.position, scene.params);
+        let local = [params.eq_anchor1[equality], params.eq_anchor2[equality]];
+        let world = [0, 1].map(|i| pos.xpos[bodies[i]] + pos.xmat[bodies[i]] * local[i]);
+        let moving = [0, 1].map(|i| BodyPoint::new(scene, bodies[i], world[i]));
+        Anchors {
+            separation: world[0] - world[1],
+            bias: moving.map(|point| point.bias_acceleration(scene)),
+            offsets: moving.map(|point| point.offset),
+        }
+    }
+
+    /// Rows 0 to 2 of a Jacobian: velocity of the first point less that of the second.
+    pub fn fill_translation(&self, scene: &Scene<T>, chains: &Chains, jacobian: &mut [T]) {
+        let ndof = chains.iter().count();
+        let [first, second] = self.offsets;
+        for (column, (dof, side)) in chains.iter().enumerate() {
+            let axis = scene.position.cdof[dof];
+            let velocity = match side {
+                Side::Both => axis.velocity_at(first) - axis.velocity_at(second),
+                Side::First => axis.velocity_at(first),
+                Side::Second => -axis.velocity_at(second),
+            };
+            for i in 0..3 {
+                jacobian[i * ndof + column] = velocity[i];
+            }
         }
     }
 }

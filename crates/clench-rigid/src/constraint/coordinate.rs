@@ -1,28 +1,24 @@
 //! A scalar function of joint positions, which equalities, limits and dry friction of joints and tendons act on.
 
 use super::Scene;
-use crate::model::Tendon;
+use crate::dynamics::tendon;
 use clench_math::Real;
 
 /// A joint coordinate or a tendon length, and its constant derivatives.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Coordinate<'a> {
+pub(super) enum Coordinate {
     /// A hinge or slide.
     Joint(usize),
     /// A fixed tendon.
-    Tendon(usize, &'a Tendon),
+    Tendon(usize),
 }
 
-impl<'a> Coordinate<'a> {
-    pub fn tendon<T: Real>(scene: &Scene<'a, T>, tendon: usize) -> Self {
-        Coordinate::Tendon(tendon, &scene.model.tendons[tendon])
-    }
-
+impl Coordinate {
     /// Its value.
     pub fn value<T: Real>(self, scene: &Scene<T>) -> T {
         match self {
             Coordinate::Joint(joint) => scene.state.qpos[scene.model.joints[joint].qpos],
-            Coordinate::Tendon(tendon, _) => scene.position.ten_length[tendon],
+            Coordinate::Tendon(tendon) => scene.position.ten_length[tendon],
         }
     }
 
@@ -30,7 +26,7 @@ impl<'a> Coordinate<'a> {
     pub fn initial<T: Real>(self, scene: &Scene<T>) -> T {
         match self {
             Coordinate::Joint(joint) => scene.params.qpos0[scene.model.joints[joint].qpos],
-            Coordinate::Tendon(tendon, _) => scene.params.tendon_length0[tendon],
+            Coordinate::Tendon(tendon) => scene.params.tendon_length0[tendon],
         }
     }
 
@@ -38,7 +34,7 @@ impl<'a> Coordinate<'a> {
     pub fn inverse_weight<T: Real>(self, scene: &Scene<T>) -> T {
         match self {
             Coordinate::Joint(joint) => scene.params.dof_invweight0[scene.model.joints[joint].dof],
-            Coordinate::Tendon(tendon, _) => scene.params.tendon_invweight0[tendon],
+            Coordinate::Tendon(tendon) => scene.params.tendon_invweight0[tendon],
         }
     }
 
@@ -61,13 +57,11 @@ impl<'a> Coordinate<'a> {
     }
 
     fn each<T: Real>(self, scene: &Scene<T>, mut visit: impl FnMut(u32, T)) {
-        let dof = |joint: usize| scene.model.joints[joint].dof as u32;
         match self {
-            Coordinate::Joint(joint) => visit(dof(joint), T::ONE),
-            Coordinate::Tendon(_, tendon) => {
-                let coefs = &scene.params.wrap_coef[tendon.coefs.clone()];
-                for (&joint, &coefficient) in tendon.joints.iter().zip(coefs) {
-                    visit(dof(joint), coefficient);
+            Coordinate::Joint(joint) => visit(scene.model.joints[joint].dof as u32, T::ONE),
+            Coordinate::Tendon(tendon) => {
+                for (dof, coefficient) in tendon::terms(scene.model, scene.params, tendon) {
+                    visit(dof as u32, coefficient);
                 }
             }
         }

@@ -7,9 +7,9 @@
 //! Zero subscripts are the initial configuration. As in MuJoCo the part of r̈ that is quadratic in velocity, −P″ ẋ², is
 //! left out of aref. A₀ is the sum of both coordinates' inverse weights.
 
-use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::Scene;
+use super::assembly::{Assembly, Row};
 use super::coordinate::Coordinate;
-use super::{Scene, Softness};
 use clench_math::Real;
 use clench_solver::Cost;
 
@@ -20,8 +20,7 @@ pub(super) fn push<T: Real>(
     follower: Coordinate,
     leader: Option<Coordinate>,
 ) {
-    let params = scene.params;
-    let polynomial = params.eq_polycoef[equality];
+    let polynomial = scene.params.eq_polycoef[equality];
     let error = |c: Coordinate| c.value(scene) - c.initial(scene);
     let dofs = out.dofs();
     dofs.clear();
@@ -35,19 +34,8 @@ pub(super) fn push<T: Real>(
         a0 += leader.inverse_weight(scene);
     }
     let violation = error(follower) - target;
-    let soft = Softness::new(
-        params.eq_solref[equality],
-        params.eq_solimp[equality],
-        violation,
-        scene.least_timeconst,
-    );
+    let (soft, block) = scene.equality(equality, violation);
     let row = Row::new(&soft, violation, T::ZERO, a0);
-    let block = BlockRecord {
-        source: ConstraintSource::Equality(equality),
-        active: scene.state.eq_active[equality],
-        margin: T::ZERO,
-        impedance: soft.impedance,
-    };
     out.push(Cost::Quadratic, block, &[row], |dofs, jacobian| {
         follower.add_gradient(scene, dofs, T::ONE, jacobian);
         if let Some(leader) = leader {

@@ -36,7 +36,7 @@ pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
         if !tendon.frictionloss {
             continue;
         }
-        let coordinate = Coordinate::tendon(scene, i);
+        let coordinate = Coordinate::Tendon(i);
         let dofs = out.dofs();
         dofs.clear();
         coordinate.insert_dofs(scene, dofs);

@@ -54,7 +54,7 @@ pub(super) fn push_tendons<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
             solimp: &params.tendon_solimp_lim[i],
             a0: params.tendon_invweight0[i],
         };
-        let coordinate = Coordinate::tendon(scene, i);
+        let coordinate = Coordinate::Tendon(i);
         limit.push_range(scene, out, coordinate, params.tendon_range[i]);
     }
 }

@@ -40,6 +40,25 @@ struct Scene<'a, T: Real> {
     impratio: T,
 }
 
+impl<T: Real> Scene<'_, T> {
+    /// How soft an equality is at a violation of this size, and the record of its block.
+    fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
+        let soft = Softness::new(
+            self.params.eq_solref[equality],
+            self.params.eq_solimp[equality],
+            violation,
+            self.least_timeconst,
+        );
+        let record = BlockRecord {
+            source: ConstraintSource::Equality(equality),
+            active: self.state.eq_active[equality],
+            margin: T::ZERO,
+            impedance: soft.impedance,
+        };
+        (soft, record)
+    }
+}
+
 /// Turns the constraints of a configuration into blocks, solves the problem, and leaves the acceleration in `ws.qacc`
 /// and the constraint forces along dofs in `ws.qfrc_constraint`.
 ///
@@ -120,7 +139,6 @@ fn push_equalities<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
         if !scene.state.eq_active[i].any() {
             continue;
         }
-        let tendon = |i: usize| Coordinate::tendon(scene, i);
         match equality.target {
             EqualityTarget::Connect { body1, body2 } => {
                 connect::push(scene, out, i, [body1, body2])
@@ -131,7 +149,8 @@ fn push_equalities<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
                 coupling::push(scene, out, i, Coordinate::Joint(joint1), leader);
             }
             EqualityTarget::Tendon { tendon1, tendon2 } => {
-                coupling::push(scene, out, i, tendon(tendon1), tendon2.map(tendon));
+                let leader = tendon2.map(Coordinate::Tendon);
+                coupling::push(scene, out, i, Coordinate::Tendon(tendon1), leader);
             }
         }
     }

@@ -69,12 +69,6 @@ impl<T: Real> Softness<T> {
         let d = self.impedance;
         ((T::ONE - d) * a0 / d).max(T::new(MIN_VALUE))
     }
-
-    /// aref of a row at rate `v` and violation `r`.
-    #[inline(always)]
-    pub fn aref(&self, v: T, r: T) -> T {
-        -self.damping * v - self.stiffness * r
-    }
 }
 
 fn is_mixed<T: Real>(solref: [T; 2]) -> T::Mask {

@@ -12,10 +12,10 @@
 //! J̇ v is r̈ with ω̇ the bias accelerations. The impedance is that of the length of all six rows; A₀ the sums of the
 //! bodies' inverse weights, translational and rotational.
 
-use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
-use super::chains::{BodyPoint, Chains, Side};
-use super::connect::{anchors, fill_translation, separation};
-use super::{Scene, Softness};
+use super::Scene;
+use super::assembly::{Assembly, Row};
+use super::chains::{Chains, Side};
+use super::connect::Anchors;
 use clench_math::{Quat, Real, Vec3};
 use clench_solver::Cost;
 
@@ -30,40 +30,30 @@ pub(super) fn push<T: Real>(
     if out.dofs().is_empty() {
         return;
     }
-    let params = scene.params;
-    let points = anchors(scene, equality, bodies);
-    let (translation, offsets, bias_translation) = separation(scene, bodies, points);
+    let anchors = Anchors::new(scene, equality, bodies);
+    let [bias1, bias2] = anchors.bias;
+    let translation = anchors.separation;
+    let bias_translation = bias1.linear - bias2.linear;
     let relative = Relative::new(scene, equality, bodies);
     let rotation = relative.rho.imaginary() * relative.scale;
-    let bias_rotation = relative.bias(scene, bodies, points);
+    let bias_rotation = relative.bias(scene, bodies, [bias1.angular, bias2.angular]);
     let length = (translation.norm_squared() + rotation.norm_squared()).sqrt();
-    let soft = Softness::new(
-        params.eq_solref[equality],
-        params.eq_solimp[equality],
-        length,
-        scene.least_timeconst,
-    );
+    let (soft, block) = scene.equality(equality, length);
     let rows: [Row<T>; 6] = std::array::from_fn(|i| {
         let (pos, bias, part) = match i {
             0..3 => (translation[i], bias_translation[i], 0),
             _ => (rotation[i - 3], bias_rotation[i - 3], 1),
         };
-        let a0 = bodies.map(|b| params.body_invweight0[b][part]);
+        let a0 = bodies.map(|b| scene.params.body_invweight0[b][part]);
         let row = Row::new(&soft, pos, T::ZERO, a0[0] + a0[1]);
         Row {
             aref: row.aref - bias,
             ..row
         }
     });
-    let block = BlockRecord {
-        source: ConstraintSource::Equality(equality),
-        active: scene.state.eq_active[equality],
-        margin: T::ZERO,
-        impedance: soft.impedance,
-    };
     out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
         let (upper, lower) = jacobian.split_at_mut(jacobian.len() / 2);
-        fill_translation(scene, &chains, offsets, upper);
+        anchors.fill_translation(scene, &chains, upper);
         relative.fill(scene, &chains, lower);
     });
 }
@@ -93,13 +83,15 @@ impl<T: Real> Relative<T> {
         half_product(u, self.rho)
     }
 
-    fn bias(&self, scene: &Scene<T>, bodies: [usize; 2], points: [Vec3<T>; 2]) -> Vec3<T> {
+    /// J̇ v of the rows, from the bodies' angular accelerations while no dof accelerates.
+    fn bias(
+        &self,
+        scene: &Scene<T>,
+        bodies: [usize; 2],
+        [alpha1, alpha2]: [Vec3<T>; 2],
+    ) -> Vec3<T> {
         let cvel = &scene.velocity.cvel;
         let [omega1, omega2] = bodies.map(|b| cvel[b].angular);
-        let [alpha1, alpha2] = [0, 1].map(|i| {
-            let point = BodyPoint::new(scene, bodies[i], points[i]);
-            point.bias_acceleration(scene).angular
-        });
         let omega = omega1 - omega2;
         let u = self.to_second.rotate(omega);
         let u_dot = self.to_second.rotate(alpha1 - alpha2 - omega2.cross(omega));

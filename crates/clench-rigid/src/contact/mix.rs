@@ -10,7 +10,7 @@ use super::Candidate;
 use crate::model::{Model, Params};
 use clench_math::{Mask, Real};
 
-/// Weights below this count as none (MuJoCo's `mjMINVAL`).
+/// Weights below this count as none while stepping (MuJoCo's `mjMINVAL`).
 const MIN_WEIGHT: f64 = 1e-15;
 /// Least friction coefficient (MuJoCo's `mjMINMU`).
 const MIN_FRICTION: f64 = 1e-5;
@@ -59,7 +59,7 @@ pub fn contact_params<T: Real>(
 ) -> ContactParams<T> {
     let mut mixed = match pair.pair {
         Some(p) => pair_params(model, params, p as usize),
-        None => mixed_params(model, params, pair.geoms.map(|g| g as usize)),
+        None => mixed_params(model, params, pair.geoms.map(|g| g as usize), MIN_WEIGHT),
     };
     mixed.includemargin = contact_range(model, params, pair).0;
     if model.override_contacts {
@@ -83,10 +83,12 @@ fn pair_params<T: Real>(model: &Model, params: &Params<T>, pair: usize) -> Conta
     }
 }
 
-fn mixed_params<T: Real>(
+/// The parameters of two geoms, without margin and override; `solmix` below `min_weight` counts as none.
+pub(crate) fn mixed_params<T: Real>(
     model: &Model,
     params: &Params<T>,
     [a, b]: [usize; 2],
+    min_weight: f64,
 ) -> ContactParams<T> {
     let (geom_a, geom_b) = (&model.geoms[a], &model.geoms[b]);
     let (condim, [slide, spin, roll], solref, solimp);
@@ -94,7 +96,7 @@ fn mixed_params<T: Real>(
         condim = geom_a.condim.max(geom_b.condim);
         let (friction_a, friction_b) = (params.geom_friction[a], params.geom_friction[b]);
         [slide, spin, roll] = std::array::from_fn(|i| friction_a[i].max(friction_b[i]));
-        let weight = weight(params.geom_solmix[a], params.geom_solmix[b]);
+        let weight = weight(params.geom_solmix[a], params.geom_solmix[b], min_weight);
         solref = mix_solref(params.geom_solref[a], params.geom_solref[b], weight);
         solimp = average(params.geom_solimp[a], params.geom_solimp[b], weight);
     } else {
@@ -119,8 +121,8 @@ fn mixed_params<T: Real>(
 }
 
 /// The share of the first of two weights; halves where both vanish.
-fn weight<T: Real>(a: T, b: T) -> T {
-    let least = T::new(MIN_WEIGHT);
+fn weight<T: Real>(a: T, b: T, least: f64) -> T {
+    let least = T::new(least);
     let (has_a, has_b) = (a.ge(least), b.ge(least));
     let (a, b) = (T::select(has_a, a, T::ZERO), T::select(has_b, b, T::ZERO));
     let both = has_a | has_b;

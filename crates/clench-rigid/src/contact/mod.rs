@@ -7,6 +7,7 @@ mod reach;
 mod select;
 
 pub use detect::{Collision, detect};
+pub(crate) use mix::mixed_params;
 pub use mix::{ContactParams, contact_params, contact_range};
 pub use select::{Candidate, UnsupportedPair, candidates, check_supported};
 
