@@ -3,7 +3,7 @@
 //! The damping force −B v is taken at the end of the step, −B (v + h a): the acceleration that advances the velocity solves
 //! (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second factorization.
 
-use crate::dynamics::integrate::{advance_activations, advance_semi_implicit};
+use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit};
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -26,14 +26,7 @@ pub fn euler<T: Real>(
     if damped.any() {
         damped_acceleration(model, params, damped, ws);
     }
-    advance_activations(
-        model,
-        params,
-        &ws.position,
-        &ws.force.act_dot,
-        &mut state.act,
-    );
-    advance_semi_implicit(model, params, &ws.integration.qacc, state);
+    advance_semi_implicit(model, params, state, ws);
 }
 
 /// Solves with M + h B in the lanes that are `damped`.
@@ -44,20 +37,15 @@ fn damped_acceleration<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let tree = &model.tree;
-    let integration = &mut ws.integration;
-    let (matrix, qacc) = (&mut integration.matrix, &mut integration.qacc);
+    let matrix = &mut ws.integration.matrix;
     matrix.values.copy_from_slice(&ws.problem.mass.values);
     for (i, &damping) in params.dof_damping.iter().enumerate() {
         if let Some(diagonal) = matrix.row_mut(tree, i).last_mut() {
             *diagonal += params.timestep * damping;
         }
     }
-    ws.singular |= damped & !integration.factor.factor(tree, matrix);
-    for (i, qacc) in qacc.iter_mut().enumerate() {
-        *qacc = ws.force.qfrc_smooth[i] + ws.qfrc_constraint[i];
-    }
-    integration.factor.solve(tree, qacc);
-    for (solved, &explicit) in qacc.iter_mut().zip(&ws.qacc) {
+    solve_implicit(tree, damped, ws);
+    for (solved, &explicit) in ws.integration.qacc.iter_mut().zip(&ws.qacc) {
         *solved = T::select(damped, *solved, explicit);
     }
 }

@@ -4,13 +4,13 @@
 //! [`slopes`](crate::dynamics::slopes) for D. A free body that is a tree by itself is then solved once more, with its
 //! gyroscopic forces, see [`lone_body`](crate::dynamics::lone_body).
 
-use crate::dynamics::integrate::{advance_activations, advance_semi_implicit};
+use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit};
 use crate::dynamics::lone_body::{is_lone_body, solve_lone_body};
 use crate::dynamics::slopes::add_velocity_slopes;
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::Real;
+use clench_math::{Mask, Real};
 
 /// Advances the state by a time step, from the accelerations and forces of `ws`.
 pub fn implicit_fast<T: Real>(
@@ -19,8 +19,7 @@ pub fn implicit_fast<T: Real>(
     state: &mut State<T>,
     ws: &mut Workspace<T>,
 ) {
-    let integration = &mut ws.integration;
-    let matrix = &mut integration.matrix;
+    let matrix = &mut ws.integration.matrix;
     matrix.values.copy_from_slice(&ws.problem.mass.values);
     add_velocity_slopes(
         model,
@@ -30,22 +29,11 @@ pub fn implicit_fast<T: Real>(
         -params.timestep,
         matrix,
     );
-    ws.singular |= !integration.factor.factor(&model.tree, matrix);
-    for (i, qacc) in integration.qacc.iter_mut().enumerate() {
-        *qacc = ws.force.qfrc_smooth[i] + ws.qfrc_constraint[i];
-    }
-    integration.factor.solve(&model.tree, &mut integration.qacc);
+    solve_implicit(&model.tree, T::Mask::splat(true), ws);
     for j in 0..model.joints.len() {
         if is_lone_body(model, j) {
             solve_lone_body(model, params, j, &state.qvel, ws);
         }
     }
-    advance_activations(
-        model,
-        params,
-        &ws.position,
-        &ws.force.act_dot,
-        &mut state.act,
-    );
-    advance_semi_implicit(model, params, &ws.integration.qacc, state);
+    advance_semi_implicit(model, params, state, ws);
 }

@@ -3,9 +3,9 @@
 use crate::dynamics::activation::{nearest_setpoint, next_activation};
 use crate::model::{DynamicsKind, JointKind, Model, Params};
 use crate::state::State;
-use crate::workspace::Positions;
+use crate::workspace::{Positions, Workspace};
 use clench_math::{Quat, Real, Vec3};
-use clench_solver::{TreeFactor, TreeMatrix};
+use clench_solver::{Tree, TreeFactor, TreeMatrix};
 
 /// Memory of the integrators.
 #[derive(Clone, Debug)]
@@ -109,15 +109,34 @@ pub fn advance_activations<T: Real>(
     }
 }
 
-/// Velocities first, then positions with the new velocities (semi-implicit Euler), then time.
+/// Solves `integration.matrix` · a = τ + Jᵀf for `integration.qacc`; lanes of `wanted` whose matrix is not positive definite
+/// are marked singular.
+pub fn solve_implicit<T: Real>(tree: &Tree, wanted: T::Mask, ws: &mut Workspace<T>) {
+    let Integration {
+        matrix,
+        factor,
+        qacc,
+        ..
+    } = &mut ws.integration;
+    ws.singular |= wanted & !factor.factor(tree, matrix);
+    let forces = ws.force.qfrc_smooth.iter().zip(&ws.qfrc_constraint);
+    for (qacc, (&smooth, &constraint)) in qacc.iter_mut().zip(forces) {
+        *qacc = smooth + constraint;
+    }
+    factor.solve(tree, qacc);
+}
+
+/// Activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit Euler), then time.
 pub fn advance_semi_implicit<T: Real>(
     model: &Model,
     params: &Params<T>,
-    qacc: &[T],
     state: &mut State<T>,
+    ws: &Workspace<T>,
 ) {
     let h = params.timestep;
-    add_scaled(&mut state.qvel, qacc, h);
+    let (pos, act_dot) = (&ws.position, &ws.force.act_dot);
+    advance_activations(model, params, pos, act_dot, &mut state.act);
+    add_scaled(&mut state.qvel, &ws.integration.qacc, h);
     integrate_positions(model, &mut state.qpos, &state.qvel, h);
     state.time += h;
 }
