@@ -6,7 +6,7 @@ use clench_collide::ShapeKind;
 use clench_math::Vec3;
 use clench_rigid::Sim;
 use clench_rigid::builder::{ActuatorSpec, GeomSpec, JointSpec, ModelBuilder, TransmissionSpec};
-use clench_rigid::model::{BiasKind, DynamicsKind, GainKind, Integrator, JointKind};
+use clench_rigid::model::{Integrator, JointKind};
 use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
 use scenes::{add, everything, free, geom, joint, model, plane, shake, sphere, world};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -39,31 +39,6 @@ unsafe impl GlobalAlloc for Counting {
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
-
-fn motor(joint: &str) -> ActuatorSpec {
-    ActuatorSpec {
-        name: String::new(),
-        transmission: TransmissionSpec::Joint(joint.into()),
-        dynamics: DynamicsKind::None,
-        dynprm: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        gain: GainKind::Fixed,
-        gainprm: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        bias: BiasKind::None,
-        biasprm: [0.0; 10],
-        dampratio: None,
-        inheritrange: 0.0,
-        gear: [8.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        ctrlrange: [0.0; 2],
-        ctrllimited: None,
-        forcerange: [0.0; 2],
-        forcelimited: None,
-        actrange: [0.0; 2],
-        actlimited: None,
-        actearly: false,
-        group: 0,
-        origin: None,
-    }
-}
 
 /// A torso with a head and four limbs of two links, on the floor.
 fn humanoid() -> ModelBuilder {
@@ -121,8 +96,10 @@ fn humanoid() -> ModelBuilder {
             vec![hinge(&knee, [0.0, 1.0, 0.0])],
             vec![limb([0.0; 3], end)],
         );
-        b.actuators
-            .extend([first, second, knee].iter().map(|name| motor(name)));
+        b.actuators.extend(
+            [first, second, knee]
+                .map(|joint| ActuatorSpec::motor("", TransmissionSpec::Joint(joint), 8.0)),
+        );
     }
     b
 }

@@ -3,11 +3,11 @@
 mod scenes;
 
 use clench_math::{Lanes, Mask, Real};
-use clench_rigid::builder::{EqualityKind, GeomSpec, ModelBuilder};
+use clench_rigid::builder::{EqualityKind, EqualitySpec, GeomSpec, ModelBuilder};
 use clench_rigid::model::{Integrator, JointKind};
 use clench_rigid::{Model, Sim, State, StepSettings, Workspace, pipeline};
 use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
-use scenes::{Numbers, add, bodies, cuboid, equality, free, joint, plane, sphere, world};
+use scenes::{Numbers, add, bodies, cuboid, free, joint, plane, sphere, world};
 use std::sync::Arc;
 
 const N: usize = 4;
@@ -59,7 +59,7 @@ fn scene() -> ModelBuilder {
         relpose: None,
         torquescale: 1.0,
     };
-    b.equalities.push(equality("grip", kind));
+    b.equalities.push(EqualitySpec::new("grip", kind));
     b.equalities[0].active = false;
     b
 }

@@ -4,7 +4,7 @@ mod scenes;
 
 use clench_collide::{ShapeKind, frame_from_normal};
 use clench_math::Vec3;
-use clench_rigid::builder::{KeyframeSpec, ModelBuilder};
+use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, KeyframeSpec, ModelBuilder};
 use clench_rigid::contact::Contact;
 use clench_rigid::model::JointKind;
 use clench_rigid::{Sim, SimError, readout};
@@ -231,9 +231,9 @@ fn given_contacts_replace_detection_once() {
         frame: frame_from_normal(Vec3::new(0.0, 0.0, 1.0)),
         includemargin: 0.0,
         friction: [1.0; 5],
-        solref: scenes::SOLREF,
+        solref: DEFAULT_SOLREF,
         solreffriction: [0.0; 2],
-        solimp: scenes::SOLIMP,
+        solimp: DEFAULT_SOLIMP,
         block: None,
     };
     sim.forward_with_contacts(&[contact]).expect("valid");

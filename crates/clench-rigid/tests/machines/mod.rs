@@ -1,14 +1,16 @@
 //! Machines for the tests of smooth dynamics.
 #![allow(dead_code)] // Each test file uses some of these.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 use clench_math::{Quat, Vec3};
+use clench_rigid::Sim;
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, GeomSpec, JointSpec, ModelBuilder, TendonSpec, TransmissionSpec,
 };
-use clench_rigid::dynamics::integrate::integrate_positions;
 use clench_rigid::model::{BiasKind, DynamicsKind, Flags, GainKind};
-use clench_rigid::{Model, Sim};
-use std::sync::Arc;
+pub use common::*;
 
 /// A world without contacts and other constraints.
 pub fn world(name: &str) -> ModelBuilder {
@@ -18,14 +20,6 @@ pub fn world(name: &str) -> ModelBuilder {
         ..Flags::default()
     };
     builder
-}
-
-pub fn model(builder: &ModelBuilder) -> Arc<Model> {
-    Arc::new(builder.build().expect("the machine is a model"))
-}
-
-pub fn sim(builder: &ModelBuilder) -> Sim {
-    Sim::new(model(builder)).expect("the machine can be simulated")
 }
 
 fn offset(joint: JointSpec, pos: [f64; 3]) -> JointSpec {
@@ -187,30 +181,10 @@ fn actuators() -> Vec<ActuatorSpec> {
 /// Moves everything that can move to somewhere in `seed`'s direction.
 pub fn shake(sim: &mut Sim, seed: u64) {
     let mut numbers = Numbers(seed);
-    let mut turn = vec![0.0; sim.model().nv];
-    numbers.fill(&mut turn, 1.0);
-    let model = Arc::clone(sim.model());
-    integrate_positions(&model, &mut sim.state.qpos, &turn, 1.0);
+    turn(sim, &mut numbers, 1.0);
     numbers.fill(&mut sim.state.qvel, 2.0);
     numbers.fill(&mut sim.state.act, 1.0);
     numbers.fill(&mut sim.state.ctrl, 1.0);
-}
-
-/// Reproducible numbers in (−1, 1).
-pub struct Numbers(pub u64);
-
-impl Numbers {
-    pub fn next(&mut self) -> f64 {
-        self.0 = (self.0)
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    pub fn fill(&mut self, out: &mut [f64], scale: f64) {
-        for x in out {
-            *x = scale * self.next();
-        }
-    }
 }
 
 /// The largest difference of two slices.

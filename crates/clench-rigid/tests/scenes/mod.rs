@@ -1,27 +1,24 @@
 //! Small scenes for the tests of constraints.
 #![allow(dead_code)] // Each test file uses some of these.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
+use clench_rigid::Sim;
 use clench_rigid::builder::{
     BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomMass, GeomSpec, JointSpec,
     ModelBuilder, TendonSpec,
 };
+use clench_rigid::constraint::softness::impedance;
 use clench_rigid::model::JointKind;
-use clench_rigid::{Model, Sim};
 use clench_solver::RigidOptions;
-use std::sync::Arc;
-
-pub const SOLREF: [f64; 2] = [0.02, 1.0];
-pub const SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
+pub use common::*;
 
 /// An empty world that is solved as precisely as numbers allow.
 pub fn world() -> ModelBuilder {
     ModelBuilder {
-        bodies: vec![BodySpec {
-            name: "world".into(),
-            ..BodySpec::default()
-        }],
         options: RigidOptions::new()
             .tolerance(0.0)
             .iterations(200)
@@ -43,7 +40,6 @@ pub fn add(
         name: name.into(),
         parent,
         pos: Vec3::from_f64(pos),
-        quat: Quat::IDENTITY,
         joints,
         geoms,
         ..BodySpec::default()
@@ -92,17 +88,6 @@ pub fn ghost(mut geom: GeomSpec) -> GeomSpec {
     geom
 }
 
-pub fn equality(name: &str, kind: EqualityKind) -> EqualitySpec {
-    EqualitySpec {
-        name: name.into(),
-        kind,
-        active: true,
-        solref: SOLREF,
-        solimp: SOLIMP,
-        origin: None,
-    }
-}
-
 pub fn bodies(body1: &str, body2: &str, anchor: [f64; 3]) -> ConnectAnchor {
     ConnectAnchor::Bodies {
         body1: body1.into(),
@@ -111,20 +96,28 @@ pub fn bodies(body1: &str, body2: &str, anchor: [f64; 3]) -> ConnectAnchor {
     }
 }
 
-pub fn tendon(name: &str, terms: &[(&str, f64)]) -> TendonSpec {
-    TendonSpec {
-        name: name.into(),
-        terms: terms.iter().map(|&(j, c)| (j.to_string(), c)).collect(),
-        ..TendonSpec::default()
+/// Gravity, m/s².
+pub const G: f64 = 9.81;
+
+/// The penetration at which n like contacts carry the weight of a free body of mass m, whose bodies' inverse weight is
+/// 1/m: n f = m g with f = −k d r / R and R = ρ (1 − d) / (d m), where ρ is 1 for frictionless and elliptic contacts,
+/// and for a pyramid's 4 edges, which together are 4/R as stiff, ρ = 2 μ² (1 + μ²).
+pub fn rest_penetration(n: f64, rho: f64, solimp: [f64; 5], timeconst: f64) -> f64 {
+    let k = 1.0 / (solimp[1] * timeconst).powi(2);
+    let excess = |r: f64| {
+        let d = impedance(solimp, r);
+        n * k * d * d * r / (rho * (1.0 - d)) - G
+    };
+    let (mut low, mut high) = (0.0, 0.1);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
-}
-
-pub fn model(builder: &ModelBuilder) -> Arc<Model> {
-    Arc::new(builder.build().expect("the scene is a model"))
-}
-
-pub fn sim(builder: &ModelBuilder) -> Sim {
-    Sim::new(model(builder)).expect("the scene can be simulated")
+    low
 }
 
 /// Steps until `time` has passed, s.
@@ -132,24 +125,6 @@ pub fn run(sim: &mut Sim, time: f64) {
     let end = sim.state.time + time;
     while sim.state.time < end - 1e-9 {
         sim.step().expect("the motion stays finite");
-    }
-}
-
-/// Reproducible numbers in (−1, 1).
-pub struct Numbers(pub u64);
-
-impl Numbers {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    pub fn fill(&mut self, out: &mut [f64], scale: f64) {
-        for x in out {
-            *x = scale * self.next();
-        }
     }
 }
 
@@ -228,22 +203,25 @@ pub fn everything() -> ModelBuilder {
         free(),
         vec![cuboid([0.1, 0.1, 0.1])],
     );
-    let mut span = tendon("span", &[("hinge", 0.7), ("elbow", -1.3)]);
+    let mut span = TendonSpec::fixed("span", &[("hinge", 0.7), ("elbow", -1.3)]);
     span.range = [-0.01, 0.02];
     span.limited = Some(true);
     span.frictionloss = 0.2;
-    b.tendons = vec![span, tendon("other", &[("slide", 2.0), ("hinge", 0.5)])];
+    b.tendons = vec![
+        span,
+        TendonSpec::fixed("other", &[("slide", 2.0), ("hinge", 0.5)]),
+    ];
     let quartic = [0.02, 0.9, -0.3, 0.7, 0.4];
     b.equalities = vec![
-        equality(
+        EqualitySpec::new(
             "connect",
             EqualityKind::Connect(bodies("tip", "loose", [0.05, 0.1, 0.0])),
         ),
-        equality(
+        EqualitySpec::new(
             "loop",
             EqualityKind::Connect(bodies("hand", "leg", [0.0, 0.1, 0.2])),
         ),
-        equality(
+        EqualitySpec::new(
             "weld",
             EqualityKind::Weld {
                 anchor: bodies("hand", "loose", [0.02, 0.03, 0.1]),
@@ -251,7 +229,7 @@ pub fn everything() -> ModelBuilder {
                 torquescale: 0.7,
             },
         ),
-        equality(
+        EqualitySpec::new(
             "pin",
             EqualityKind::Weld {
                 anchor: bodies("loose", "", [0.1, 0.0, 0.2]),
@@ -262,7 +240,7 @@ pub fn everything() -> ModelBuilder {
                 torquescale: 1.3,
             },
         ),
-        equality(
+        EqualitySpec::new(
             "joints",
             EqualityKind::Joint {
                 joint1: "elbow".into(),
@@ -270,7 +248,7 @@ pub fn everything() -> ModelBuilder {
                 polycoef: quartic,
             },
         ),
-        equality(
+        EqualitySpec::new(
             "fixed",
             EqualityKind::Joint {
                 joint1: "hinge".into(),
@@ -278,7 +256,7 @@ pub fn everything() -> ModelBuilder {
                 polycoef: [0.1, 0.0, 0.0, 0.0, 0.0],
             },
         ),
-        equality(
+        EqualitySpec::new(
             "tendons",
             EqualityKind::Tendon {
                 tendon1: "span".into(),
@@ -293,9 +271,6 @@ pub fn everything() -> ModelBuilder {
 /// Moves a simulation of [`everything`] to a random state.
 pub fn shake(sim: &mut Sim, seed: u64) {
     let mut numbers = Numbers(seed);
-    let mut turn = vec![0.0; sim.model().nv];
-    numbers.fill(&mut turn, 0.5);
-    let model = Arc::clone(sim.model());
-    clench_rigid::dynamics::integrate::integrate_positions(&model, &mut sim.state.qpos, &turn, 1.0);
+    turn(sim, &mut numbers, 0.5);
     numbers.fill(&mut sim.state.qvel, 1.0);
 }
