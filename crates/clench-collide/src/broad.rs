@@ -24,17 +24,6 @@ impl<T: Real> Bound<T> {
     }
 }
 
-/// Two shapes that may collide.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair<T: Real> {
-    /// Index of the first shape.
-    pub first: u32,
-    /// Index of the second shape.
-    pub second: u32,
-    /// Points up to this distance are wanted, m.
-    pub margin: T::Scalar,
-}
-
 /// In which environments two shapes are near enough that they may be within `margin` metres of each other. Two planes
 /// never are.
 #[inline(always)]
@@ -54,24 +43,6 @@ pub fn near<T: Real>(
         (true, false) => pose_a.axis().dot(offset).le(b.radius + margin),
         (false, true) => (-pose_b.axis().dot(offset)).le(a.radius + margin),
         (true, true) => T::Mask::splat(false),
-    }
-}
-
-/// Replaces `hits` by the indices, ascending, of those `pairs` that are [`near`] in any environment. For models of few
-/// shapes, whose allowed pairs are known beforehand.
-pub fn listed<T: Real>(
-    bounds: &[Bound<T>],
-    poses: &[Pose<T>],
-    pairs: &[Pair<T>],
-    hits: &mut Vec<u32>,
-) {
-    hits.clear();
-    for (index, pair) in pairs.iter().enumerate() {
-        let (a, b) = (pair.first as usize, pair.second as usize);
-        let margin = T::splat(pair.margin);
-        if near(&bounds[a], &poses[a], &bounds[b], &poses[b], margin).any() {
-            hits.push(index as u32);
-        }
     }
 }
 
