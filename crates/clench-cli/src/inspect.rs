@@ -117,6 +117,9 @@ fn print_constraints(sim: &Sim) {
     let rows = constraint_rows(sim.workspace(), 0);
     let count = rows.len();
     println!("\nconstraints at {:.4} s: {count} rows", sim.state.time);
+    if sim.contact_overflow() {
+        println!("  contacts beyond --max-contacts are left out");
+    }
     if rows.is_empty() {
         return;
     }

@@ -189,6 +189,9 @@ pub struct ResultLine<'a> {
     qfrc_passive: &'a [f64],
     qfrc_actuator: &'a [f64],
     contacts: Vec<ContactResult>,
+    /// More contacts were found than the options allow: some are left out.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    contact_overflow: bool,
     constraints: Vec<RowResult<'a>>,
     solver: SolverResult,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -257,6 +260,7 @@ impl<'a> ResultLine<'a> {
             contacts: (0..sim.contacts().len())
                 .map(|i| ContactResult::new(sim, i))
                 .collect(),
+            contact_overflow: sim.contact_overflow(),
             constraints: (readout::constraint_rows(ws, 0).iter())
                 .map(|row| RowResult::new(sim, row))
                 .collect(),

@@ -12,8 +12,26 @@ use zip::write::SimpleFileOptions;
 /// An uncompressed zip archive of `.npy` files: what NumPy calls an `.npz`.
 type Npz = ZipWriter<BufWriter<File>>;
 
-/// Reads an (N, `width`) array of numbers as rows.
-pub fn read_rows(path: &Path, width: usize) -> Result<Vec<Vec<f64>>> {
+/// An (N, width) array of numbers.
+pub struct Rows {
+    count: usize,
+    width: usize,
+    values: Vec<f64>,
+}
+
+impl Rows {
+    /// N.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+    /// Row `k`.
+    pub fn row(&self, k: usize) -> &[f64] {
+        &self.values[k * self.width..(k + 1) * self.width]
+    }
+}
+
+/// Reads an (N, `width`) array of finite numbers.
+pub fn read_rows(path: &Path, width: usize) -> Result<Rows> {
     let file = NpyFile::new(BufReader::new(File::open(path)?))?;
     let shape = file.shape().to_vec();
     ensure!(
@@ -43,11 +61,12 @@ pub fn read_rows(path: &Path, width: usize) -> Result<Vec<Vec<f64>>> {
             values[bad]
         );
     }
-    // An array of no columns still has its number of rows.
-    let rows = usize::try_from(shape[0])?;
-    Ok((0..rows)
-        .map(|r| values[r * width..(r + 1) * width].to_vec())
-        .collect())
+    Ok(Rows {
+        // An array of no columns still has its number of rows.
+        count: usize::try_from(shape[0])?,
+        width,
+        values,
+    })
 }
 
 /// Rows of what happened after every K-th step.

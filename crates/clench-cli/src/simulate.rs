@@ -64,14 +64,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ),
         None => None,
     };
-    let steps = steps_to_take(arguments, &sim, controls.as_ref().map(|c| c.len()))?;
+    let steps = steps_to_take(arguments, &sim, controls.as_ref().map(|c| c.count()))?;
     let mut recorder = (arguments.record.as_ref()).map(|_| Recorder::new(&sim, arguments.every));
     let mut summary = Summary::new(&mut sim)?;
     let progress = progress_bar(steps);
     let mut seconds = 0.0;
     for step in 0..steps {
         if let Some(rows) = &controls {
-            sim.state.ctrl.copy_from_slice(&rows[step]);
+            sim.state.ctrl.copy_from_slice(rows.row(step));
         }
         let start = Instant::now();
         let result = sim.step();

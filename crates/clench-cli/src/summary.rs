@@ -16,6 +16,7 @@ pub struct Summary {
     worst_gap: f64,
     worst_penetration: f64,
     unconverged: usize,
+    overflows: usize,
     constrained: bool,
     start_energy: f64,
     start_time: f64,
@@ -25,7 +26,8 @@ pub struct Summary {
 /// The figures of a finished run.
 #[derive(Serialize)]
 pub struct Report {
-    /// `ok`, `iteration_limit` (some solve stopped at its limit) or `failed`.
+    /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out) or
+    /// `failed`.
     status: &'static str,
     /// Wall time of stepping alone, s.
     seconds: f64,
@@ -42,6 +44,8 @@ pub struct Report {
     penetration_max: f64,
     /// Steps whose solve stopped at the iteration limit.
     unconverged_steps: usize,
+    /// Steps that found more contacts than the options allow.
+    overflow_steps: usize,
     /// Change of the mechanical energy over the run, J; only where nothing adds or removes energy.
     energy_drift: Option<f64>,
     /// What went wrong, if something did.
@@ -61,6 +65,7 @@ impl Summary {
             worst_gap: 0.0,
             worst_penetration: 0.0,
             unconverged: 0,
+            overflows: 0,
             constrained: false,
             start_energy,
             start_time: sim.state.time,
@@ -79,6 +84,7 @@ impl Summary {
         self.worst_gap = self.worst_gap.max(stats.gap);
         self.worst_penetration = self.worst_penetration.max(worst_penetration(sim));
         self.unconverged += usize::from(stats.status == Status::IterationLimit);
+        self.overflows += usize::from(sim.contact_overflow());
         self.constrained |= sim.workspace().problem.nrow() > 0;
     }
 
@@ -93,10 +99,11 @@ impl Summary {
         let per_step = |total: usize| total as f64 / self.steps.max(1) as f64;
         let energy_drift = self.energy_drift(sim);
         Report {
-            status: match (&self.failure, self.unconverged) {
-                (Some(_), _) => "failed",
-                (None, 0) => "ok",
-                (None, _) => "iteration_limit",
+            status: match (&self.failure, self.overflows, self.unconverged) {
+                (Some(_), ..) => "failed",
+                (None, 0, 0) => "ok",
+                (None, 0, _) => "iteration_limit",
+                _ => "contact_overflow",
             },
             seconds,
             steps: self.steps,
@@ -111,6 +118,7 @@ impl Summary {
             gap_max: self.worst_gap,
             penetration_max: self.worst_penetration,
             unconverged_steps: self.unconverged,
+            overflow_steps: self.overflows,
             energy_drift,
             failure: self.failure,
         }
@@ -186,6 +194,12 @@ impl fmt::Display for Report {
                     "{} steps stopped at the iteration limit",
                     self.unconverged_steps
                 ),
+            )?;
+        }
+        if self.overflow_steps > 0 {
+            line(
+                "contacts left out",
+                format!("in {} steps, by --max-contacts", self.overflow_steps),
             )?;
         }
         line("status", self.status.to_string())
