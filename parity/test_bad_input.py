@@ -127,6 +127,13 @@ def test_state(tmp_path, state, words):
     assert len(done.stdout.splitlines()) == 1
 
 
+@pytest.mark.parametrize("change", [{"dist": -1e308}, {"pos": [1e308] * 3}, {"solref": [-1e308] * 2}], ids=str)
+def test_a_contact_beyond_all_numbers(change):
+    """Finite input whose forces are not: an error, where a result would hold nulls."""
+    line = json.dumps({"contacts": [{**CONTACT, "geom": [0, 1], **change}]})
+    refused(program.run("forward", program.ROOT / "models/rolling_sphere.xml", stdin=line), "line 1", "diverged")
+
+
 def test_controls(tmp_path):
     (tmp_path / "good.xml").write_text(GOOD)
     simulate = lambda *flags: program.run("simulate", tmp_path / "good.xml", "--steps", 5, *flags)

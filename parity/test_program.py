@@ -1,6 +1,7 @@
 """What the program promises on its own: summaries, records, help, toggled equalities."""
 
 import json
+import subprocess
 
 import numpy as np
 import pytest
@@ -58,3 +59,36 @@ def test_time_limits_and_help():
     for words in (["--help"], ["simulate", "--help"], ["forward", "--help"], ["inspect", "--help"]):
         done = program.run(*words)
         assert done.returncode == 0 and "--" in done.stdout
+
+
+def test_contacts_left_out_are_reported():
+    model = program.ROOT / "models/quadruped.xml"
+    done = program.run("simulate", model, "--json", "--max-contacts", 2)
+    assert done.returncode == 0 and json.loads(done.stdout.splitlines()[-1])["status"] == "contact_overflow"
+    crouched = {"qpos": [0, 0, 0.2, 1, 0, 0, 0] + 4 * [0, 0.9, -1.8]}
+    with program.Forward(model, "--max-contacts", 2) as forward:
+        result = forward(crouched)
+    assert result["contact_overflow"] and len(result["contacts"]) == 2
+
+
+def test_a_line_search_cut_short_is_no_success():
+    """One evaluation a search cannot solve this scene; a summary that says ok would hide it."""
+    done = program.run("simulate", program.ROOT / "models/pinch.xml", "--json", "--ls-iterations", 1)
+    summary = json.loads(done.stdout.splitlines()[-1])
+    assert summary["status"] == "iteration_limit" and summary["unconverged_steps"] > 0
+
+
+@pytest.mark.parametrize("command", ["simulate", "inspect"])
+def test_a_reader_that_leaves_is_no_error(command):
+    """`clench inspect MODEL | true`."""
+    words = [str(program.CLENCH), command, str(program.ROOT / "models/humanoid.xml")]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process.stdout.close()
+    assert (process.stderr.read(), process.wait(timeout=60)) == (b"", 0)
+    process.stderr.close()
+
+
+def test_a_record_that_cannot_be_written_costs_no_run(tmp_path):
+    path = tmp_path / "no such folder" / "out.npz"
+    done = program.run("simulate", program.ROOT / "models/humanoid.xml", "--time", 1e6, "--record", path)
+    assert done.returncode == 2 and str(path) in done.stderr

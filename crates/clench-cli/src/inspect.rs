@@ -8,6 +8,7 @@ use clench::rigid::constraint::ConstraintSource;
 use clench::rigid::model::JointKind;
 use clench::rigid::readout::{ConstraintRow, constraint_rows};
 use clench::{Model, Sim};
+use std::io::{self, Write};
 
 /// Prints a model's sizes, its tree of bodies, the options in force, and a table of the active constraints with their
 /// forces, violations and impedances.
@@ -25,14 +26,15 @@ pub struct Arguments {
 /// Prints everything on standard output.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let mut sim = arguments.model.sim()?;
-    print_sizes(sim.model());
-    print_tree(sim.model());
-    print_options(&sim);
+    let mut out = io::stdout().lock();
+    print_sizes(&mut out, sim.model())?;
+    print_tree(&mut out, sim.model())?;
+    print_options(&mut out, &sim)?;
     for step in 0..arguments.steps {
         sim.step().with_context(|| format!("step {step}"))?;
     }
     sim.forward()?;
-    print_constraints(&sim);
+    print_constraints(&mut out, &sim)?;
     Ok(())
 }
 
@@ -44,9 +46,14 @@ fn name_or_index(name: &str, kind: &str, index: usize) -> String {
     }
 }
 
-fn print_sizes(model: &Model) {
+fn print_sizes(out: &mut impl Write, model: &Model) -> io::Result<()> {
     let mass: f64 = model.params.body_mass.iter().sum();
-    println!("{}: {:.4} kg", name_or_index(&model.name, "model", 0), mass);
+    writeln!(
+        out,
+        "{}: {:.4} kg",
+        name_or_index(&model.name, "model", 0),
+        mass
+    )?;
     let sizes = [
         ("position coordinates (nq)", model.nq),
         ("degrees of freedom (nv)", model.nv),
@@ -61,12 +68,13 @@ fn print_sizes(model: &Model) {
         ("kinematic trees", model.tree.ntree()),
     ];
     for (name, size) in sizes {
-        println!("  {name:<28} {size}");
+        writeln!(out, "  {name:<28} {size}")?;
     }
+    Ok(())
 }
 
-fn print_tree(model: &Model) {
-    println!("\nbodies");
+fn print_tree(out: &mut impl Write, model: &Model) -> io::Result<()> {
+    writeln!(out, "\nbodies")?;
     let mut depth = vec![0; model.nbody()];
     for (b, body) in model.bodies.iter().enumerate().skip(1) {
         depth[b] = depth[body.parent] + 1;
@@ -87,41 +95,49 @@ fn print_tree(model: &Model) {
             (true, Some(_)) => "mocap".into(),
             (true, None) => "fixed".into(),
         };
-        println!(
+        writeln!(
+            out,
             "  {:indent$}{}  ({attached}; {:.4} kg; geoms: {})",
             "",
             name_or_index(&body.name, "body", b),
             model.params.body_mass[b],
             body.geoms.len(),
             indent = 2 * (depth[b] - 1),
-        );
+        )?;
     }
+    Ok(())
 }
 
-fn print_options(sim: &Sim) {
+fn print_options(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
     let settings = &sim.settings().solver;
-    println!("\noptions");
-    println!(
+    writeln!(out, "\noptions")?;
+    writeln!(
+        out,
         "  timestep {} s, integrator {:?}",
         sim.params().timestep,
         sim.model().integrator
-    );
+    )?;
     // The derived listing, one option a line, without its braces.
     let listing = format!("{settings:#?}");
     for line in listing.lines().filter(|l| l.starts_with("    ")) {
-        println!("  {}", line.trim().trim_end_matches(','));
+        writeln!(out, "  {}", line.trim().trim_end_matches(','))?;
     }
+    Ok(())
 }
 
-fn print_constraints(sim: &Sim) {
+fn print_constraints(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
     let rows = constraint_rows(sim.workspace(), 0);
     let count = rows.len();
-    println!("\nconstraints at {:.4} s: {count} rows", sim.state.time);
+    writeln!(
+        out,
+        "\nconstraints at {:.4} s: {count} rows",
+        sim.state.time
+    )?;
     if sim.contact_overflow() {
-        println!("  contacts beyond --max-contacts are left out");
+        writeln!(out, "  contacts beyond --max-contacts are left out")?;
     }
     if rows.is_empty() {
-        return;
+        return Ok(());
     }
     let headings = [
         "kind",
@@ -142,7 +158,7 @@ fn print_constraints(sim: &Sim) {
             format!("{:.4}", row.impedance),
         ]);
     }
-    print!("{table}");
+    write!(out, "{table}")
 }
 
 /// What a person calls the source of a row: its name, or for a contact the two geoms.

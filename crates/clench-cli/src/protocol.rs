@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// A state; what is missing keeps the model's default.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a state: an object in braces")]
 pub struct StateLine {
     time: Option<f64>,
     qpos: Option<Vec<f64>>,
@@ -30,7 +30,7 @@ pub struct StateLine {
 
 /// `true`, `false`, or a number that is not zero, as MuJoCo stores flags.
 #[derive(Clone, Copy, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "true, false or a number")]
 enum Truth {
     Bool(bool),
     Number(f64),
@@ -38,7 +38,7 @@ enum Truth {
 
 /// A contact with the fields of MuJoCo's `mjContact`.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a contact: an object in braces")]
 struct ContactLine {
     geom: [i64; 2],
     dist: f64,

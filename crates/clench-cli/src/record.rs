@@ -85,13 +85,15 @@ pub struct Recorder {
     gap: Vec<f64>,
     status: Vec<i64>,
     widths: [u64; 3],
+    file: File,
 }
 
 impl Recorder {
-    /// An empty record that keeps every `every`-th step.
-    pub fn new(sim: &Sim, every: u64) -> Self {
+    /// An empty record that keeps every `every`-th step. The file is made at once: a path that cannot be written should
+    /// not cost the user a run.
+    pub fn create(path: &Path, sim: &Sim, every: u64) -> Result<Self> {
         let model = sim.model();
-        Recorder {
+        Ok(Recorder {
             every,
             rows: 0,
             time: Vec::new(),
@@ -106,7 +108,8 @@ impl Recorder {
             gap: Vec::new(),
             status: Vec::new(),
             widths: [model.nq, model.nv, model.nu()].map(|n| n as u64),
-        }
+            file: File::create(path)?,
+        })
     }
 
     /// Appends the state that step number `step` (from 0) led to, and the statistics of its solve.
@@ -133,8 +136,8 @@ impl Recorder {
     ///
     /// Arrays: `time` (n), `qpos` (n, nq), `qvel` (n, nv), `ctrl` (n, nu), `contacts` (n), `penetration` (n, m),
     /// `iterations`, `gradient`, `improvement`, `gap`, `status` (n).
-    pub fn write(&self, path: &Path) -> Result<()> {
-        let mut npz = Npz::new(BufWriter::new(File::create(path)?));
+    pub fn write(self) -> Result<()> {
+        let mut npz = Npz::new(BufWriter::new(self.file));
         let n = self.rows;
         let [nq, nv, nu] = self.widths;
         array(&mut npz, "time", &[n], &self.time)?;

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use clench::Sim;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -65,7 +66,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         None => None,
     };
     let steps = steps_to_take(arguments, &sim, controls.as_ref().map(|c| c.count()))?;
-    let mut recorder = (arguments.record.as_ref()).map(|_| Recorder::new(&sim, arguments.every));
+    let mut recorder = match &arguments.record {
+        Some(path) => Some(
+            Recorder::create(path, &sim, arguments.every)
+                .with_context(|| format!("--record {}", path.display()))?,
+        ),
+        None => None,
+    };
     let mut summary = Summary::new(&mut sim)?;
     let progress = progress_bar(steps);
     let mut seconds = 0.0;
@@ -90,14 +97,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     progress.finish_and_clear();
     if let (Some(recorder), Some(path)) = (recorder, &arguments.record) {
         recorder
-            .write(path)
+            .write()
             .with_context(|| format!("--record {}", path.display()))?;
     }
     let report = summary.finish(&mut sim, seconds);
+    let mut out = io::stdout().lock();
     if arguments.json {
-        println!("{}", serde_json::to_string(&report)?);
+        writeln!(out, "{}", serde_json::to_string(&report)?)?;
     } else {
-        print!("{report}");
+        write!(out, "{report}")?;
     }
     match report.failure {
         Some(message) => bail!(message),

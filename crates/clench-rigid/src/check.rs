@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::Scalar;
+use clench_solver::Status;
 
 /// The right length and only finite numbers.
 pub(crate) fn check_values<T: Scalar>(
@@ -81,7 +82,7 @@ pub(crate) fn check_state<T: Scalar>(model: &Model, s: &State<T>) -> Result<(), 
     check_length("eq_active", s.eq_active.len(), model.equalities.len())
 }
 
-/// What a step from `time` produced: finite accelerations and a finite state.
+/// What a step from `time` produced: finite accelerations and constraint forces, and a finite state.
 pub(crate) fn check_result<T: Scalar>(
     time: T,
     state: &State<T>,
@@ -93,6 +94,7 @@ pub(crate) fn check_result<T: Scalar>(
     }
     for (field, values) in [
         ("qacc", &ws.qacc),
+        ("qfrc_constraint", &ws.qfrc_constraint),
         ("qvel", &state.qvel),
         ("qpos", &state.qpos),
         ("act", &state.act),
@@ -105,6 +107,15 @@ pub(crate) fn check_result<T: Scalar>(
                 value,
             });
         }
+    }
+    let stats = ws.solver.stats().lane(0);
+    if stats.status == Status::NonFinite {
+        return Err(SimError::Diverged {
+            time,
+            field: "gap",
+            index: 0,
+            value: stats.gap,
+        });
     }
     Ok(())
 }

@@ -61,7 +61,9 @@ pub enum SimError {
         reason: &'static str,
     },
     /// The mass matrix of the configuration is not positive definite.
-    #[error("at t = {time} s the mass matrix is not positive definite: some dof moves no mass")]
+    #[error(
+        "at t = {time} s the mass matrix is not positive definite: some dof moves no mass, or the state has diverged"
+    )]
     Singular {
         /// Time of the state that cannot move on, s.
         time: f64,

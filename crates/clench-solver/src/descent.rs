@@ -187,6 +187,9 @@ impl<T: Real> Progress<T> {
         let negligible = step.improvement.le(rounding) | exact;
         let idle = self.idles(norm, negligible, T::new(D::PATIENCE));
         let stuck = self.live & !softened & (step.alpha.eq(T::ZERO) | idle);
+        // The precision is not to blame where a search was not allowed to reach a lower cost.
+        let cut = stuck & step.cut & step.alpha.eq(T::ZERO);
+        self.end(cut & self.refreshed, Status::IterationLimit, stats);
         self.end(stuck & self.refreshed, Status::NoProgress, stats);
         let again = stuck & self.live;
         if again.any() {

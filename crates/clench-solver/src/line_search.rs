@@ -26,13 +26,15 @@ pub(crate) struct Ray<T> {
 
 /// Where a line search ended.
 #[derive(Clone, Copy)]
-pub(crate) struct Step<T> {
+pub(crate) struct Step<T: Real> {
     /// Step length; 0 where no step reduces the cost.
     pub alpha: T,
     /// Reduction of the cost, ≥ 0.
     pub improvement: T,
     /// Evaluations of the derivatives.
     pub evaluations: T,
+    /// Lanes in which the evaluations ran out before the search had closed in on a point.
+    pub cut: T::Mask,
 }
 
 /// How precisely a ray is searched.
@@ -122,6 +124,7 @@ impl<T: Real> Ray<T> {
             alpha: T::ZERO,
             improvement: T::ZERO,
             evaluations: T::ZERO,
+            cut: descends,
         };
         if !descends.any() || precision.evaluations == 0 {
             return step;
@@ -151,6 +154,7 @@ impl<T: Real> Ray<T> {
                 break;
             }
         }
+        step.cut = open & (bracket.high - bracket.low).gt(resolution);
         step.alpha = T::select(descends, bracket.alpha, T::ZERO);
         let mut change = self.change(problem, iterate, step.alpha);
         // Only a search cut short can end above its start (elsewhere, what looks like it is rounding); the low end of its

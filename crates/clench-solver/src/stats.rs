@@ -14,7 +14,7 @@ pub enum Status {
     Converged,
     /// The working precision allows no further progress. With a tolerance of zero this is success.
     NoProgress,
-    /// The iteration limit came first.
+    /// The iteration limit came first, or that of a line search before it found a lower cost.
     IterationLimit,
     /// A number became infinite or undefined; the result of this lane is not usable.
     NonFinite,

@@ -208,7 +208,7 @@ fn limits_are_kept_and_reported() {
     let settings = RigidOptions::new().ls_iterations(0).resolve::<f64>();
     assert_eq!(
         solver.solve(&problem, &settings, None).unwrap().status(0),
-        Status::NoProgress
+        Status::IterationLimit
     );
 }
 
