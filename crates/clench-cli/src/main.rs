@@ -1,7 +1,7 @@
 //! The `clench` program: `simulate`, `forward` and `inspect` a robot file.
 //!
 //! One file a subcommand, plus what they share: options that override the file (`options`), the JSON of states and
-//! results (`protocol`), recorded arrays (`record`), tables for people (`table`). Physics lives in the library.
+//! results (`protocol`), recorded arrays (`record`), figures of a run (`summary`), tables for people (`table`). Physics lives in the library.
 
 mod forward;
 mod inspect;

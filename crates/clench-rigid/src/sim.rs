@@ -213,7 +213,8 @@ impl<T: Scalar> Sim<T> {
     pub fn params(&self) -> &Params<T> {
         &self.params
     }
-    /// The model's numbers, to be changed for this simulation alone.
+    /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is derived
+    /// anew: who changes a mass or a size changes what follows from it (`body_subtreemass`, `geom_rbound`, `*_invweight0`).
     pub fn params_mut(&mut self) -> &mut Params<T> {
         &mut self.params
     }

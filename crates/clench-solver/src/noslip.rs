@@ -131,42 +131,15 @@ impl<T: Real> Noslip<T> {
         edges: &[T],
         live: T::Mask,
     ) -> T {
+        let friction = &self.frictions[k];
         let Friction {
-            block,
-            first,
-            a,
-            response,
-        } = &self.frictions[k];
+            block, first, a, ..
+        } = friction;
         let (first, count) = (*first, block.dim - first);
-        let rows = problem.rows(block);
-        let exists = live & rows.d[0].gt(T::ZERO);
+        let exists = live & problem.rows(block).d[0].gt(T::ZERO);
         let force = &iterate.force[block.rows()];
         let residual = residual(problem, block, first, &iterate.qacc);
-        let mut target = [T::ZERO; MAX_DIM];
-        match block.cost {
-            Cost::Elliptic => {
-                target = on_ellipse(a, &residual, &force[1..], &rows.shape[1..], force[0]);
-            }
-            _ => {
-                // Rows are solved one after the other, each seeing what those before it changed.
-                let mut residual = residual;
-                for j in 0..count {
-                    let bound = match block.cost {
-                        Cost::Pyramid => {
-                            let pair = &edges[block.piece + 2 * j..];
-                            rows.shape[j + 1] * (pair[0] + pair[1])
-                        }
-                        _ => rows.shape[j],
-                    };
-                    let old = force[first + j];
-                    target[j] = within(old, residual[j], a[j][j], bound);
-                    let delta = target[j] - old;
-                    for i in 0..count {
-                        residual[i] += a[i][j] * delta;
-                    }
-                }
-            }
-        }
+        let target = friction.target(problem, force, edges, residual);
         let mut delta = [T::ZERO; MAX_DIM];
         for j in 0..count {
             delta[j] = T::select(exists, target[j] - force[first + j], T::ZERO);
@@ -175,7 +148,7 @@ impl<T: Real> Noslip<T> {
         let mut change = T::ZERO;
         for j in 0..count {
             iterate.force[block.row + first + j] += delta[j];
-            let start = response + j * nv;
+            let start = friction.response + j * nv;
             for (a, &r) in iterate
                 .qacc
                 .iter_mut()
@@ -190,6 +163,44 @@ impl<T: Real> Noslip<T> {
             change += delta[j] * (residual[j] + T::new(0.5) * curvature);
         }
         -change
+    }
+}
+
+impl<T: Real> Friction<T> {
+    /// What the friction forces should be, from all forces of the block and its friction rows' J a − aref.
+    fn target(
+        &self,
+        problem: &Problem<T>,
+        force: &[T],
+        edges: &[T],
+        mut residual: [T; MAX_DIM],
+    ) -> [T; MAX_DIM] {
+        let Friction {
+            block, first, a, ..
+        } = self;
+        let shape = problem.rows(block).shape;
+        if block.cost == Cost::Elliptic {
+            return on_ellipse(a, &residual, &force[1..], &shape[1..], force[0]);
+        }
+        // Rows are solved one after the other, each seeing what those before it changed.
+        let mut target = [T::ZERO; MAX_DIM];
+        let count = block.dim - first;
+        for j in 0..count {
+            let bound = match block.cost {
+                Cost::Pyramid => {
+                    let pair = &edges[block.piece + 2 * j..];
+                    shape[j + 1] * (pair[0] + pair[1])
+                }
+                _ => shape[j],
+            };
+            let old = force[first + j];
+            target[j] = within(old, residual[j], a[j][j], bound);
+            let delta = target[j] - old;
+            for i in 0..count {
+                residual[i] += a[i][j] * delta;
+            }
+        }
+        target
     }
 }
 

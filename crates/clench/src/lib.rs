@@ -82,6 +82,32 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Build a model by hand
+//!
+//! What a file says can be said in Rust: [`rigid::builder`] holds a description with public fields, and setters for what
+//! is said most often.
+//!
+//! ```
+//! use clench::prelude::*;
+//! use clench::rigid::builder::{BodySpec, GeomSpec, JointSpec, ModelBuilder};
+//! # use std::sync::Arc;
+//!
+//! let mut builder = ModelBuilder::new("pendulum");
+//! builder.add_ground(GeomSpec::plane());
+//! builder.add_body(
+//!     ModelBuilder::WORLD,
+//!     BodySpec::new("arm")
+//!         .at([0.0, 0.0, 1.0])
+//!         .joint(JointSpec::hinge("pivot", [0.0, 1.0, 0.0]))
+//!         .geom(GeomSpec::capsule(0.02, 0.25).at([0.25, 0.0, 0.0]).mass(0.5)),
+//! );
+//! let mut sim = Sim::<f64>::new(Arc::new(builder.build()?))?;
+//! sim.step()?;
+//! // It begins to fall.
+//! assert!(sim.state.qvel[0] > 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # When something is wrong
 //!
 //! A mistake in a file is an error that says where it is, and bad input never panics.
@@ -111,6 +137,10 @@ pub use clench_solver as solver;
 pub use clench_formats::{LoadError, load, load_str};
 pub use clench_rigid::{Model, Sim, SimError, State};
 pub use clench_solver::RigidOptions;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
 
 /// What most programs need: `use clench::prelude::*`.
 pub mod prelude {

@@ -55,6 +55,13 @@ const fn section(
     }
 }
 
+/// What stands in the world, a body, a frame or a replica.
+const IN_A_BODY: &str = "body frame replicate geom site camera light inertial joint freejoint";
+const IN_A_BODY_LATER: &str = "attach plugin flexcomp";
+/// What no shortcut of an actuator can do yet.
+const SHORTCUT_LATER: &str =
+    "nsample=0 interp delay=0 damping=0 armature=0 cranklength cranksite slidersite site refsite";
+
 /// One rule an element.
 pub(crate) const RULES: &[Rule] = &[
     // Top level.
@@ -130,17 +137,13 @@ pub(crate) const RULES: &[Rule] = &[
         contact e_potential e_kinetic clock tactile user plugin",
     ),
     // The tree of bodies.
-    section(
-        "worldbody",
-        "body frame replicate geom site camera light inertial joint freejoint",
-        "attach plugin flexcomp",
-    ),
+    section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
     Rule {
         element: "body",
         read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp",
         ignored: "user sleep simple fuse",
-        children: "body frame replicate geom site camera light inertial joint freejoint",
-        later_children: "attach plugin flexcomp",
+        children: IN_A_BODY,
+        later_children: IN_A_BODY_LATER,
         ..NONE
     },
     Rule {
@@ -148,16 +151,16 @@ pub(crate) const RULES: &[Rule] = &[
         read: "class childclass pos quat axisangle euler xyaxes zaxis",
         ignored: "name",
         later: "scale=1 scaling massscale=1",
-        children: "body frame replicate geom site camera light inertial joint freejoint",
-        later_children: "attach plugin flexcomp",
+        children: IN_A_BODY,
+        later_children: IN_A_BODY_LATER,
         ..NONE
     },
     Rule {
         element: "replicate",
         read: "class childclass count offset euler sep",
         ignored: "name",
-        children: "body frame replicate geom site camera light inertial joint freejoint",
-        later_children: "attach plugin flexcomp",
+        children: IN_A_BODY,
+        later_children: IN_A_BODY_LATER,
         ..NONE
     },
     Rule {
@@ -287,7 +290,7 @@ pub(crate) const RULES: &[Rule] = &[
         element: "motor",
         read: "name class group joint jointinparent tendon gear ctrlrange forcerange forcelimited ctrllimited",
         ignored: "user lengthrange",
-        later: "nsample=0 interp delay=0 damping=0 armature=0 cranklength cranksite slidersite site refsite",
+        later: SHORTCUT_LATER,
         ..NONE
     },
     Rule {
@@ -295,14 +298,14 @@ pub(crate) const RULES: &[Rule] = &[
         read: "name class group joint jointinparent tendon gear ctrlrange forcerange forcelimited ctrllimited kp kv \
             dampratio timeconst inheritrange",
         ignored: "user lengthrange",
-        later: "nsample=0 interp delay=0 damping=0 armature=0 cranklength cranksite slidersite site refsite",
+        later: SHORTCUT_LATER,
         ..NONE
     },
     Rule {
         element: "velocity",
         read: "name class group joint jointinparent tendon gear ctrlrange forcerange forcelimited ctrllimited kv",
         ignored: "user lengthrange",
-        later: "nsample=0 interp delay=0 damping=0 armature=0 cranklength cranksite slidersite site refsite",
+        later: SHORTCUT_LATER,
         ..NONE
     },
     Rule {
@@ -310,14 +313,14 @@ pub(crate) const RULES: &[Rule] = &[
         read: "name class group joint jointinparent tendon gear ctrlrange forcerange forcelimited ctrllimited \
             actlimited actrange kp kv dampratio inheritrange",
         ignored: "user lengthrange",
-        later: "nsample=0 interp delay=0 damping=0 armature=0 cranklength cranksite slidersite site refsite",
+        later: SHORTCUT_LATER,
         ..NONE
     },
     Rule {
         element: "damper",
         read: "name class group joint jointinparent tendon gear ctrlrange forcerange forcelimited kv",
         ignored: "user lengthrange",
-        later: "nsample=0 interp delay=0 damping=0 armature=0 cranklength cranksite slidersite site refsite",
+        later: SHORTCUT_LATER,
         ..NONE
     },
     Rule {
@@ -325,7 +328,7 @@ pub(crate) const RULES: &[Rule] = &[
         read: "name class group joint jointinparent tendon gear ctrlrange forcerange forcelimited ctrllimited \
             timeconst area diameter bias",
         ignored: "user lengthrange",
-        later: "nsample=0 interp delay=0 damping=0 armature=0 cranklength cranksite slidersite site refsite",
+        later: SHORTCUT_LATER,
         ..NONE
     },
     section("keyframe", "key", ""),
