@@ -142,6 +142,12 @@ def test_controls(tmp_path):
     refused(simulate("--ctrl", tmp_path / "wide.npy"), "wide.npy", "3", "1")
     np.save(tmp_path / "nan.npy", np.array([[0.0], [np.nan]]))
     refused(simulate("--ctrl", tmp_path / "nan.npy"), "nan.npy")
+    whole = (tmp_path / "wide.npy").read_bytes()
+    short, endless = whole.replace(b"(5, 3)", b"(5, 1)")[:-100], whole.replace(b"(5, 3), }" + 8 * b" ", b"(999999999, 1), }")
+    for name, content in (("short.npy", short), ("endless.npy", endless)):
+        assert content != whole
+        (tmp_path / name).write_bytes(content)
+        refused(simulate("--ctrl", tmp_path / name), name)
     (tmp_path / "text.npy").write_text("no array")
     refused(simulate("--ctrl", tmp_path / "text.npy"), "text.npy")
 

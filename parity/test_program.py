@@ -53,6 +53,18 @@ def test_a_toggled_weld_holds_its_crate():
     assert len(held["constraints"]) == 6 and held["qacc"][4] > -5
 
 
+def test_contacts_that_are_left_out_are_told_of():
+    model, few = program.ROOT / "models/box_stack.xml", ("--max-contacts", 1)
+    _, summary = program.simulate(model, "--steps", 10, *few)
+    assert summary["status"] == "contact_overflow" and summary["overflow_steps"] == 10
+    assert "left out" in program.run("inspect", model, *few).stdout
+    with program.Forward(model, *few) as forward:
+        result = forward({})
+    assert result["contact_overflow"] and len(result["contacts"]) == 1
+    with program.Forward(model) as forward:
+        assert "contact_overflow" not in forward({})
+
+
 def test_time_limits_and_help():
     done = program.run("simulate", program.ROOT / "models/pendulum.xml", "--time", 0.5, "--json")
     assert done.returncode == 0 and json.loads(done.stdout.splitlines()[-1])["steps"] == 250

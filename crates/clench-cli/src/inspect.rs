@@ -117,10 +117,11 @@ fn print_options(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
         sim.params().timestep,
         sim.model().integrator
     )?;
-    // The derived listing, one option a line, without its braces.
-    let listing = format!("{settings:#?}");
-    for line in listing.lines().filter(|l| l.starts_with("    ")) {
-        writeln!(out, "  {}", line.trim().trim_end_matches(','))?;
+    // The derived listing, `Settings { name: value, ... }`, one option a line.
+    let listing = format!("{settings:?}");
+    let fields = listing.split_once('{').map_or("", |(_, fields)| fields);
+    for field in fields.trim_end_matches('}').split(", ") {
+        writeln!(out, "  {}", field.trim())?;
     }
     Ok(())
 }

@@ -49,10 +49,14 @@ pub fn read_rows(path: &Path, width: usize) -> Result<Rows> {
         )
     };
     let values: Vec<f64> = match (kind.type_char(), kind.size_field()) {
-        (TypeChar::Float, 8) => file.into_vec::<f64>()?,
-        (TypeChar::Float, 4) => (file.into_vec::<f32>()?.into_iter().map(f64::from)).collect(),
+        (TypeChar::Float, 8) => numbers::<f64>(file)?,
+        (TypeChar::Float, 4) => numbers::<f32>(file)?,
         _ => bail!("numbers of type float64 or float32 are needed, this array holds {kind}"),
     };
+    ensure!(
+        shape[0].checked_mul(shape[1]) == Some(values.len() as u64),
+        "the file does not hold as many numbers as its shape {shape:?} says"
+    );
     if let Some(bad) = values.iter().position(|v| !v.is_finite()) {
         bail!(
             "row {}, column {}: {} is not a finite number",
@@ -67,6 +71,15 @@ pub fn read_rows(path: &Path, width: usize) -> Result<Rows> {
         width,
         values,
     })
+}
+
+/// All numbers of a file. Room is made as they come, not for what the header promises.
+fn numbers<T: npyz::Deserialize + Into<f64>>(file: NpyFile<BufReader<File>>) -> Result<Vec<f64>> {
+    let mut values = Vec::new();
+    for value in file.data::<T>()? {
+        values.push(value?.into());
+    }
+    Ok(values)
 }
 
 /// Rows of what happened after every K-th step.
