@@ -73,16 +73,6 @@ def test_time_limits_and_help():
         assert done.returncode == 0 and "--" in done.stdout
 
 
-def test_contacts_left_out_are_reported():
-    model = program.ROOT / "models/quadruped.xml"
-    done = program.run("simulate", model, "--json", "--max-contacts", 2)
-    assert done.returncode == 0 and json.loads(done.stdout.splitlines()[-1])["status"] == "contact_overflow"
-    crouched = {"qpos": [0, 0, 0.2, 1, 0, 0, 0] + 4 * [0, 0.9, -1.8]}
-    with program.Forward(model, "--max-contacts", 2) as forward:
-        result = forward(crouched)
-    assert result["contact_overflow"] and len(result["contacts"]) == 2
-
-
 def test_a_line_search_cut_short_is_no_success():
     """One evaluation a search cannot solve this scene; a summary that says ok would hide it."""
     done = program.run("simulate", program.ROOT / "models/pinch.xml", "--json", "--ls-iterations", 1)
