@@ -3,6 +3,13 @@
 use crate::{Pose, Shape, ShapeKind, bounding_radius};
 use clench_math::{Mask, Real, Scalar};
 
+/// By how much bounding radii are enlarged, a hair more than 1, so that rounding never rejects a pair in which the narrow
+/// phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
+#[inline(always)]
+pub fn allowance<T: Real>() -> T {
+    T::ONE + T::new(1e-6).max(T::splat(T::Scalar::EPSILON) * T::new(64.0))
+}
+
 /// What the broad phase knows of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound<T> {
@@ -13,12 +20,10 @@ pub struct Bound<T> {
 }
 
 impl<T: Real> Bound<T> {
-    /// The bound of a shape, a hair larger than [`bounding_radius`], so that rounding never rejects a pair in which
-    /// the narrow phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
+    /// The bound of a shape: [`bounding_radius`] with its [`allowance`].
     pub fn new(shape: &Shape<T>) -> Self {
-        let hair = T::new(1e-6).max(T::splat(T::Scalar::EPSILON) * T::new(64.0));
         Bound {
-            radius: bounding_radius(shape) * (T::ONE + hair),
+            radius: bounding_radius(shape) * allowance(),
             plane: shape.kind == ShapeKind::Plane,
         }
     }

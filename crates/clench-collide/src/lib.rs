@@ -25,7 +25,7 @@ mod frame;
 mod narrow;
 mod shape;
 
-pub use broad::{Bound, Sweep, near};
+pub use broad::{Bound, Sweep, allowance, near};
 pub use contact::{ContactPoint, Contacts, MAX_POINTS};
 pub use frame::{frame_along, frame_from_normal};
 pub use narrow::{collide, supported};

@@ -3,12 +3,8 @@
 use super::Candidate;
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
-use clench_collide::ShapeKind;
-use clench_math::{Real, Scalar, Vec3};
-
-/// Spheres are this much larger than they need be, so that rounding never rejects a pair in which the narrow phase would
-/// find a point: what an environment gets must not depend on its neighbours in the lanes.
-const HAIR: f64 = 1e-6;
+use clench_collide::{ShapeKind, allowance};
+use clench_math::{Real, Vec3};
 
 /// A sphere about a geom's origin.
 #[derive(Clone, Copy, Debug)]
@@ -27,10 +23,10 @@ pub(super) fn update<T: Real>(
     pos: &Positions<T>,
     reaches: &mut Vec<Reach<T>>,
 ) {
-    let hair = T::new(1.0 + HAIR).max(T::ONE + T::splat(T::Scalar::EPSILON) * T::new(64.0));
+    let allowance = allowance::<T>();
     reaches.clear();
     reaches.extend(pos.geom_xpos.iter().enumerate().map(|(g, &center)| {
-        let radius = params.geom_rbound[g] * hair;
+        let radius = params.geom_rbound[g] * allowance;
         let margin = own_margin(model, params, g);
         Reach {
             center,
