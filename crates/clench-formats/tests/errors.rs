@@ -163,6 +163,10 @@ fn numbers_that_are_none() {
     expect("<geom condim='2'/>", "geom", "not 1, 3, 4 or 6");
     expect_section("<option iterations='-1'/>", "option", "negative");
     expect_section("<option timestep='0'/>", "option", "positive");
+    expect_section("<option tolerance='-1'/>", "option", "tolerance");
+    expect_section("<option impratio='0'/>", "option", "impratio");
+    expect_section("<option viscosity='-1'/>", "option", "viscosity");
+    expect_section("<compiler boundmass='-1'/>", "compiler", "boundmass");
     expect_section(
         "<option actuatorgroupdisable='31'/>",
         "option",

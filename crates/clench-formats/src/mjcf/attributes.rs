@@ -107,6 +107,16 @@ impl Element {
         Ok(())
     }
 
+    /// Refuses single numbers below zero.
+    pub fn refuse_negative(&self, names: &[&str]) -> Result<(), LoadError> {
+        for name in names {
+            if self.numbers(name)?.is_some_and(|[number]| number < 0.0) {
+                return Err(self.error(format!("{name} cannot be negative")));
+            }
+        }
+        Ok(())
+    }
+
     /// Overwrites all of an array if the attribute is there.
     pub fn set_numbers<const N: usize>(
         &self,

@@ -80,6 +80,7 @@ pub(crate) fn read(
         ));
     }
     element.set_boolean("autolimits", &mut spec.autolimits)?;
+    element.refuse_negative(&["boundmass", "boundinertia"])?;
     element.set_number("boundmass", &mut spec.boundmass)?;
     element.set_number("boundinertia", &mut spec.boundinertia)?;
     if let Some([mass]) = element.numbers("settotalmass")? {

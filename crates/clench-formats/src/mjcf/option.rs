@@ -97,7 +97,11 @@ impl OptionReader {
             .keyword("jacobian", &jacobians)?
             .or(options.sparse_solve);
         let number = |name| Ok::<_, LoadError>(element.numbers(name)?.map(|[n]| n));
+        element.refuse_negative(&["impratio", "tolerance", "ls_tolerance", "noslip_tolerance"])?;
         options.impratio = number("impratio")?.or(options.impratio);
+        if options.impratio == Some(0.0) {
+            return Err(element.error("impratio must be positive"));
+        }
         options.tolerance = number("tolerance")?.or(options.tolerance);
         options.ls_tolerance = number("ls_tolerance")?.or(options.ls_tolerance);
         options.noslip_tolerance = number("noslip_tolerance")?.or(options.noslip_tolerance);
@@ -118,6 +122,7 @@ fn read_physics(element: &Element, builder: &mut ModelBuilder) -> Result<(), Loa
     }
     element.set_numbers("gravity", &mut physics.gravity)?;
     element.set_numbers("wind", &mut physics.wind)?;
+    element.refuse_negative(&["density", "viscosity"])?;
     element.set_number("density", &mut physics.density)?;
     element.set_number("viscosity", &mut physics.viscosity)?;
     let integrators = [
