@@ -3,6 +3,7 @@
 import json
 import subprocess
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -63,6 +64,24 @@ def test_contacts_that_are_left_out_are_told_of():
     assert result["contact_overflow"] and len(result["contacts"]) == 1
     with program.Forward(model) as forward:
         assert "contact_overflow" not in forward({})
+
+
+def test_a_whole_mjcontact_is_understood():
+    """Every field that MuJoCo has on a contact can be passed; what it derives changes nothing."""
+    model = mujoco.MjModel.from_xml_path(str(program.ROOT / "models/box_stack.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 20)
+    mujoco.mj_forward(model, data)
+    assert data.ncon > 0
+    whole = [
+        {name: np.asarray(getattr(c, name)).tolist() for name in dir(c) if not name.startswith("_")} for c in data.contact
+    ]
+    state = {"qpos": data.qpos.tolist(), "qvel": data.qvel.tolist()}
+    with program.Forward(program.ROOT / "models/box_stack.xml") as forward:
+        result = forward({**state, "contacts": whole})
+        assert len(result["constraints"]) == data.nefc
+        again = forward({**state, "contacts": [{**c, **r} for c, r in zip(whole, result["contacts"], strict=True)]})
+        assert again["qacc"] == result["qacc"]
 
 
 def test_time_limits_and_help():

@@ -6,6 +6,7 @@ use clench::math::{Force, Mat3, Quat, Vec3};
 use clench::rigid::contact::Contact;
 use clench::rigid::readout::{self, ConstraintRow};
 use clench::solver::Status;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 /// A state; what is missing keeps the model's default.
@@ -54,6 +55,32 @@ struct ContactLine {
     /// Not zero: the contact is listed but makes no constraint.
     #[serde(default)]
     exclude: i32,
+    /// Not supported: has to be zero.
+    #[serde(default)]
+    surfacevel: [f64; 3],
+    /// Not supported: has to be zero.
+    #[serde(default)]
+    adhesion: f64,
+    /// What MuJoCo derives from the rest, and our own `force`: read past, so that a whole mjContact or a contact of a
+    /// result can be passed.
+    #[serde(default, rename = "mu")]
+    _mu: IgnoredAny,
+    #[serde(default, rename = "H")]
+    _hessian: IgnoredAny,
+    #[serde(default, rename = "geom1")]
+    _geom1: IgnoredAny,
+    #[serde(default, rename = "geom2")]
+    _geom2: IgnoredAny,
+    #[serde(default, rename = "flex")]
+    _flex: IgnoredAny,
+    #[serde(default, rename = "elem")]
+    _elem: IgnoredAny,
+    #[serde(default, rename = "vert")]
+    _vert: IgnoredAny,
+    #[serde(default, rename = "efc_address")]
+    _efc_address: IgnoredAny,
+    #[serde(default, rename = "force")]
+    _force: IgnoredAny,
 }
 
 impl StateLine {
@@ -155,6 +182,14 @@ impl ContactLine {
             matches!(self.dim, 1 | 3 | 4 | 6),
             "dim: {} is not 1, 3, 4 or 6",
             self.dim
+        );
+        ensure!(
+            self.surfacevel == [0.0; 3],
+            "surfacevel: moving surfaces are not supported yet"
+        );
+        ensure!(
+            self.adhesion == 0.0,
+            "adhesion: adhesive contacts are not supported yet"
         );
         let f = self.frame;
         Ok(Contact {
