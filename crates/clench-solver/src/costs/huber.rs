@@ -42,11 +42,7 @@ impl<T: Real> BlockCost<T> for Huber {
             weight[i][i] = T::select(inside, d, T::ZERO);
             any |= inside;
         }
-        if any.any() {
-            Form::Diagonal
-        } else {
-            Form::Zero
-        }
+        Form::diagonal_if(any.any())
     }
 
     #[inline(always)]

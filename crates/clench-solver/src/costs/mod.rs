@@ -73,6 +73,14 @@ pub(crate) enum Form {
     Full,
 }
 
+impl Form {
+    /// A diagonal with nonzero entries, or nothing.
+    #[inline(always)]
+    fn diagonal_if(nonzero: bool) -> Form {
+        if nonzero { Form::Diagonal } else { Form::Zero }
+    }
+}
+
 /// First and second derivative along a ray.
 #[derive(Clone, Copy)]
 pub(crate) struct Slope<T> {

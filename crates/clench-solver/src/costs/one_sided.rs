@@ -35,11 +35,7 @@ impl<T: Real> BlockCost<T> for OneSided {
             weight[i][i] = d * piece;
             any |= piece.gt(T::ZERO);
         }
-        if any.any() {
-            Form::Diagonal
-        } else {
-            Form::Zero
-        }
+        Form::diagonal_if(any.any())
     }
 
     #[inline(always)]
