@@ -1,6 +1,6 @@
 //! Plain `f64` rows, as users see them, in and out of lanes.
 
-use crate::{Real, Scalar};
+use crate::Real;
 
 /// Constants, each the same in every lane.
 #[inline(always)]
@@ -17,17 +17,21 @@ pub fn broadcast<T: Real>(row: &[f64], out: &mut [T]) {
 }
 
 /// Writes one environment's row into lane `lane`; both slices have the same length.
-pub fn write_lane<T: Real>(row: &[f64], lane: usize, out: &mut [T]) {
+#[inline(always)]
+pub fn write_lane<T: Real>(row: &[T::Scalar], lane: usize, out: &mut [T]) {
     assert_eq!(row.len(), out.len(), "row and lanes differ in length");
-    for (out, &value) in out.iter_mut().zip(row) {
-        out.set_lane(lane, T::Scalar::new(value));
+    let lanes = T::as_scalars_mut(out).chunks_exact_mut(T::LANES);
+    for (lanes, &value) in lanes.zip(row) {
+        lanes[lane] = value;
     }
 }
 
 /// Reads one environment's row out of lane `lane`; both slices have the same length.
-pub fn read_lane<T: Real>(values: &[T], lane: usize, row: &mut [f64]) {
+#[inline(always)]
+pub fn read_lane<T: Real>(values: &[T], lane: usize, row: &mut [T::Scalar]) {
     assert_eq!(row.len(), values.len(), "row and lanes differ in length");
-    for (row, value) in row.iter_mut().zip(values) {
-        *row = value.lane(lane).to_f64();
+    let lanes = T::as_scalars(values).chunks_exact(T::LANES);
+    for (row, lanes) in row.iter_mut().zip(lanes) {
+        *row = lanes[lane];
     }
 }

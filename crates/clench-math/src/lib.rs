@@ -13,8 +13,10 @@ mod spatial;
 mod vector;
 
 pub use cast::{broadcast, cast, read_lane, write_lane};
+/// Compiles a numerical function for the instruction set of its number type `T`.
+pub use clench_kernel::kernel;
 pub use eigen::principal_axes;
-pub use lanes::{LaneMask, Lanes};
+pub use lanes::{Instructions, LaneMask, LaneTask, Lanes, Portable};
 pub use matrix::Mat3;
 pub use quaternion::Quat;
 pub use real::{Mask, Real, Scalar};

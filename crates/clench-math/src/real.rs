@@ -5,6 +5,7 @@
 //! [`select`](Real::select); a branch on [`Mask::any`] keeps the one-environment case as fast as plain code.
 
 use crate::elementary;
+use crate::{Instructions, LaneTask};
 use std::fmt::Debug;
 use std::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, Div, DivAssign, Mul, MulAssign, Neg,
@@ -31,6 +32,8 @@ pub trait Mask:
     fn any(self) -> bool;
     /// True where every lane is.
     fn all(self) -> bool;
+    /// In how many lanes it is true.
+    fn count(self) -> usize;
     /// The truth value of lane `i`.
     fn lane(self, i: usize) -> bool;
     /// Sets the truth value of lane `i`.
@@ -73,6 +76,10 @@ pub trait Real:
     /// One.
     const ONE: Self;
 
+    /// Runs a closure compiled for the instructions that these lanes are made of; [`kernel`](crate::kernel) wraps whole
+    /// functions so.
+    fn vectorize<R>(kernel: impl FnOnce() -> R) -> R;
+
     /// The same constant in every lane, rounded to the lane's precision.
     fn new(value: f64) -> Self;
     /// The same value in every lane.
@@ -81,6 +88,11 @@ pub trait Real:
     fn lane(self, i: usize) -> Self::Scalar;
     /// Sets the value of lane `i`.
     fn set_lane(&mut self, i: usize, value: Self::Scalar);
+
+    /// The lanes of many numbers, number after number.
+    fn as_scalars(values: &[Self]) -> &[Self::Scalar];
+    /// The lanes of many numbers, to be written.
+    fn as_scalars_mut(values: &mut [Self]) -> &mut [Self::Scalar];
 
     /// `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
@@ -182,6 +194,8 @@ pub trait Scalar: Real<Scalar = Self, Mask = bool> + PartialOrd + std::fmt::Disp
     const DIGITS: u32;
     /// Widens (or keeps) the value.
     fn to_f64(self) -> f64;
+    /// Runs a task in lanes of these instructions; `None` if the processor lacks them.
+    fn in_lanes<K: LaneTask<Self>>(instructions: Instructions, task: K) -> Option<K::Output>;
 }
 
 impl Mask for bool {
@@ -196,6 +210,10 @@ impl Mask for bool {
     #[inline(always)]
     fn all(self) -> bool {
         self
+    }
+    #[inline(always)]
+    fn count(self) -> usize {
+        usize::from(self)
     }
     #[inline(always)]
     fn lane(self, _: usize) -> bool {

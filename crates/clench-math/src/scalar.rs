@@ -1,6 +1,8 @@
 //! `Real` for one environment: `f64` and `f32`.
 
+use crate::lanes::dispatch as lanes;
 use crate::real::{Real, Scalar};
+use crate::{Instructions, LaneTask};
 
 macro_rules! scalar {
     ($t:ident, $bits:ident) => {
@@ -19,6 +21,18 @@ macro_rules! scalar {
                 const ZERO: $t = 0.0;
                 const ONE: $t = 1.0;
 
+                #[inline(always)]
+                fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {
+                    kernel()
+                }
+                #[inline(always)]
+                fn as_scalars(values: &[$t]) -> &[$t] {
+                    values
+                }
+                #[inline(always)]
+                fn as_scalars_mut(values: &mut [$t]) -> &mut [$t] {
+                    values
+                }
                 #[inline(always)]
                 fn new(value: f64) -> $t {
                     value as $t
@@ -114,6 +128,13 @@ macro_rules! scalar {
                 #[inline(always)]
                 fn to_f64(self) -> f64 {
                     self as f64
+                }
+                #[inline(always)]
+                fn in_lanes<K: LaneTask<$t>>(
+                    instructions: Instructions,
+                    task: K,
+                ) -> Option<K::Output> {
+                    lanes::$t(instructions, task)
                 }
             }
         };

@@ -267,7 +267,7 @@ fn vectors_too_short_to_have_a_direction_get_a_default() {
         Quat::<f64>::IDENTITY
     );
     // In lanes, only the lane concerned.
-    let mixed = Vec3::new(Lanes::ZERO, Lanes::from([0.0, 2.0]), Lanes::ZERO);
+    let mixed = Vec3::new(Lanes::ZERO, Lanes::<f64, 2>::from([0.0, 2.0]), Lanes::ZERO);
     let (unit, norm) = mixed.normalize();
     assert_eq!(norm.to_array(), [0.0, 2.0]);
     assert_eq!(

@@ -1,0 +1,102 @@
+//! Which instructions the processor has, and running a task in lanes of them.
+
+use super::{Lanes, Portable};
+#[cfg(target_arch = "x86_64")]
+use super::{avx2::Avx2, avx512::Avx512};
+use crate::real::{Real, Scalar};
+
+/// How the numbers of several environments are held side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Instructions {
+    /// One environment at a time.
+    Scalar,
+    /// Plain arrays: 2 × `f64`, 4 × `f32`, whatever the processor.
+    Portable,
+    /// 2 × `f64`, 4 × `f32` on ARM.
+    Neon,
+    /// 4 × `f64`, 8 × `f32`.
+    Avx2,
+    /// 8 × `f64`, 16 × `f32`.
+    Avx512,
+}
+
+impl Instructions {
+    /// All, narrowest first.
+    const ALL: [Instructions; 5] = [
+        Instructions::Scalar,
+        Instructions::Portable,
+        Instructions::Neon,
+        Instructions::Avx2,
+        Instructions::Avx512,
+    ];
+
+    /// Whether this processor has them.
+    pub fn available(self) -> bool {
+        match self {
+            Instructions::Scalar | Instructions::Portable => true,
+            Instructions::Neon => cfg!(target_arch = "aarch64"),
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 => Avx2::detected(),
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512 => Avx512::detected(),
+            #[cfg(not(target_arch = "x86_64"))]
+            Instructions::Avx2 | Instructions::Avx512 => false,
+        }
+    }
+
+    /// Those that this processor has, narrowest first.
+    pub fn all_available() -> impl DoubleEndedIterator<Item = Instructions> {
+        Self::ALL.into_iter().filter(|i| i.available())
+    }
+
+    /// The widest that this processor has.
+    pub fn widest() -> Instructions {
+        Self::all_available()
+            .next_back()
+            .unwrap_or(Instructions::Scalar)
+    }
+
+    /// How many numbers of type `S` lie side by side.
+    pub fn lanes<S: Scalar>(self) -> usize {
+        let bytes = match self {
+            Instructions::Scalar => return 1,
+            Instructions::Portable | Instructions::Neon => 16,
+            Instructions::Avx2 => 32,
+            Instructions::Avx512 => 64,
+        };
+        bytes / size_of::<S>()
+    }
+}
+
+/// Something to be done in lanes whose type is known at run time only.
+pub trait LaneTask<S: Scalar> {
+    /// What comes out.
+    type Output;
+    /// Does it in lanes of type `T`.
+    fn run<T: Real<Scalar = S>>(self) -> Self::Output;
+}
+
+macro_rules! in_lanes {
+    ($scalar:ident: $narrow:literal $medium:literal $wide:literal) => {
+        /// Runs a task in lanes of these instructions; `None` if the processor lacks them.
+        #[inline(always)]
+        pub(crate) fn $scalar<K: LaneTask<$scalar>>(
+            instructions: Instructions,
+            task: K,
+        ) -> Option<K::Output> {
+            if !instructions.available() {
+                return None;
+            }
+            Some(match instructions {
+                Instructions::Scalar => task.run::<$scalar>(),
+                #[cfg(target_arch = "x86_64")]
+                Instructions::Avx2 => task.run::<Lanes<$scalar, $medium, Avx2>>(),
+                #[cfg(target_arch = "x86_64")]
+                Instructions::Avx512 => task.run::<Lanes<$scalar, $wide, Avx512>>(),
+                _ => task.run::<Lanes<$scalar, $narrow, Portable>>(),
+            })
+        }
+    };
+}
+in_lanes!(f64: 2 4 8);
+in_lanes!(f32: 4 8 16);

@@ -1,0 +1,322 @@
+//! `Real` for N environments side by side.
+//!
+//! [`Lanes`] gives the registers of an instruction set the operations of a number; [`Registers`] is what an instruction
+//! set must provide. A set other than [`Portable`] can be had only through [`Instructions`], which knows what the processor
+//! has: so every value of such lanes is proof that its instructions exist, and the `unsafe` that this needs stays here.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+pub(crate) mod dispatch;
+mod portable;
+mod registers;
+
+use crate::real::{Mask, Real, Scalar};
+pub use dispatch::{Instructions, LaneTask};
+pub use portable::Portable;
+use registers::Registers;
+use std::array::from_fn;
+use std::fmt;
+use std::ops::{
+    Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, Div, DivAssign, Mul, MulAssign, Neg,
+    Not, Sub, SubAssign,
+};
+
+/// One number for each of `N` environments, in the registers of the instruction set `I`.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub struct Lanes<S: Scalar, const N: usize, I: Registers<S, N> = Portable>(I::Vector);
+
+/// One truth value for each of `N` environments.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub struct LaneMask<S: Scalar, const N: usize, I: Registers<S, N> = Portable>(I::Mask);
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Lanes<S, N, I> {
+    /// One value a lane.
+    #[inline(always)]
+    pub fn from_array(values: [S; N]) -> Self {
+        Lanes(I::from_array(values))
+    }
+    /// The value of every lane.
+    #[inline(always)]
+    pub fn to_array(self) -> [S; N] {
+        I::to_array(self.0)
+    }
+    /// Lane `i` holds `value(i)`.
+    #[inline(always)]
+    pub fn from_fn(value: impl FnMut(usize) -> S) -> Self {
+        Self::from_array(from_fn(value))
+    }
+    /// The values, lane 0 first.
+    #[inline(always)]
+    pub fn iter(self) -> impl ExactSizeIterator<Item = S> {
+        self.to_array().into_iter()
+    }
+}
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> From<[S; N]> for Lanes<S, N, I> {
+    fn from(values: [S; N]) -> Self {
+        Self::from_array(values)
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> From<Lanes<S, N, I>> for [S; N] {
+    fn from(lanes: Lanes<S, N, I>) -> Self {
+        lanes.to_array()
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Default for Lanes<S, N, I> {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> PartialEq for Lanes<S, N, I> {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_array() == other.to_array()
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> fmt::Debug for Lanes<S, N, I> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.to_array().fmt(f)
+    }
+}
+
+macro_rules! lane_by_lane {
+    ($($operator:ident $method:ident $assign:ident $assign_method:ident;)*) => {$(
+        impl<S: Scalar, const N: usize, I: Registers<S, N>> $operator for Lanes<S, N, I> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Lanes(I::$method(self.0, other.0))
+            }
+        }
+        impl<S: Scalar, const N: usize, I: Registers<S, N>> $assign for Lanes<S, N, I> {
+            #[inline(always)]
+            fn $assign_method(&mut self, other: Self) {
+                self.0 = I::$method(self.0, other.0);
+            }
+        }
+    )*};
+}
+lane_by_lane! {
+    Add add AddAssign add_assign;
+    Sub sub SubAssign sub_assign;
+    Mul mul MulAssign mul_assign;
+    Div div DivAssign div_assign;
+}
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Neg for Lanes<S, N, I> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Lanes(I::neg(self.0))
+    }
+}
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
+    type Scalar = S;
+    type Mask = LaneMask<S, N, I>;
+    const LANES: usize = N;
+    const ZERO: Self = Lanes(I::ZERO);
+    const ONE: Self = Lanes(I::ONE);
+
+    #[inline(always)]
+    fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {
+        I::vectorize(kernel)
+    }
+
+    #[inline(always)]
+    fn new(value: f64) -> Self {
+        Self::splat(S::new(value))
+    }
+    #[inline(always)]
+    fn splat(value: S) -> Self {
+        Lanes(I::splat(value))
+    }
+    #[inline(always)]
+    fn lane(self, i: usize) -> S {
+        self.to_array()[i]
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, value: S) {
+        let mut values = self.to_array();
+        values[i] = value;
+        *self = Self::from_array(values);
+    }
+    #[inline(always)]
+    fn as_scalars(values: &[Self]) -> &[S] {
+        // SAFETY: the registers of an instruction set hold N numbers one after the other, and nothing else.
+        unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), N * values.len()) }
+    }
+    #[inline(always)]
+    fn as_scalars_mut(values: &mut [Self]) -> &mut [S] {
+        // SAFETY: as above, and any numbers are valid lanes.
+        unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), N * values.len()) }
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> Self::Mask {
+        LaneMask(I::lt(self.0, other.0))
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Self::Mask {
+        LaneMask(I::le(self.0, other.0))
+    }
+    #[inline(always)]
+    fn gt(self, other: Self) -> Self::Mask {
+        LaneMask(I::lt(other.0, self.0))
+    }
+    #[inline(always)]
+    fn ge(self, other: Self) -> Self::Mask {
+        LaneMask(I::le(other.0, self.0))
+    }
+    #[inline(always)]
+    fn eq(self, other: Self) -> Self::Mask {
+        LaneMask(I::eq(self.0, other.0))
+    }
+    #[inline(always)]
+    fn is_finite(self) -> Self::Mask {
+        self.abs().lt(Self::splat(S::INFINITY))
+    }
+    #[inline(always)]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        Lanes(I::select(mask.0, yes.0, no.0))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Lanes(I::abs(self.0))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Lanes(I::sqrt(self.0))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Lanes(I::min(self.0, other.0))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Lanes(I::max(self.0, other.0))
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        Lanes(I::copysign(self.0, sign.0))
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Lanes(I::floor(self.0))
+    }
+    #[inline(always)]
+    fn exp2_integer(self) -> Self {
+        Lanes(I::exp2_integer(self.0))
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let (exponent, fraction) = I::split_exponent(self.0);
+        (Lanes(exponent), Lanes(fraction))
+    }
+}
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> LaneMask<S, N, I> {
+    /// One truth value a lane.
+    #[inline(always)]
+    pub fn from_array(values: [bool; N]) -> Self {
+        let bit = |i: usize| u32::from(values[i]) << i;
+        LaneMask(I::mask_from_bits((0..N).fold(0, |bits, i| bits | bit(i))))
+    }
+    /// The truth value of every lane.
+    #[inline(always)]
+    pub fn to_array(self) -> [bool; N] {
+        from_fn(|i| self.lane(i))
+    }
+    /// The truth values, lane 0 first.
+    #[inline(always)]
+    pub fn iter(self) -> impl ExactSizeIterator<Item = bool> {
+        self.to_array().into_iter()
+    }
+
+    /// The bits of a mask that is true everywhere.
+    const FULL: u32 = ((1_u64 << N) - 1) as u32;
+
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        I::mask_bits(self.0)
+    }
+}
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> PartialEq for LaneMask<S, N, I> {
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        self.bits() == other.bits()
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Eq for LaneMask<S, N, I> {}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> fmt::Debug for LaneMask<S, N, I> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.to_array().fmt(f)
+    }
+}
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Mask for LaneMask<S, N, I> {
+    #[inline(always)]
+    fn splat(value: bool) -> Self {
+        LaneMask(I::mask_from_bits(if value { Self::FULL } else { 0 }))
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+    #[inline(always)]
+    fn all(self) -> bool {
+        self.bits() == Self::FULL
+    }
+    #[inline(always)]
+    fn count(self) -> usize {
+        self.bits().count_ones() as usize
+    }
+    #[inline(always)]
+    fn lane(self, i: usize) -> bool {
+        self.bits() >> i & 1 != 0
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, value: bool) {
+        let others = self.bits() & !(1 << i);
+        *self = LaneMask(I::mask_from_bits(others | u32::from(value) << i));
+    }
+}
+
+impl<S: Scalar, const N: usize, I: Registers<S, N>> BitAnd for LaneMask<S, N, I> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        LaneMask(I::mask_and(self.0, other.0))
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> BitOr for LaneMask<S, N, I> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        LaneMask(I::mask_or(self.0, other.0))
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Not for LaneMask<S, N, I> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        LaneMask(I::mask_not(self.0))
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> BitAndAssign for LaneMask<S, N, I> {
+    #[inline(always)]
+    fn bitand_assign(&mut self, other: Self) {
+        *self = *self & other;
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> BitOrAssign for LaneMask<S, N, I> {
+    #[inline(always)]
+    fn bitor_assign(&mut self, other: Self) {
+        *self = *self | other;
+    }
+}

@@ -1,0 +1,65 @@
+//! What an instruction set provides for lanes.
+
+use crate::real::Scalar;
+
+/// The registers of an instruction set that hold `N` numbers of type `S`, and its operations on them.
+///
+/// Lane by lane each operation equals that of the scalar, to the bit (see [`Real`](crate::Real)).
+///
+/// # Safety
+/// `Vector` is `N` numbers one after the other, and nothing else. Other than for `Portable`, whoever names an implementor
+/// has made sure that the processor has its instructions.
+pub unsafe trait Registers<S: Scalar, const N: usize>: Copy + Send + Sync + 'static {
+    /// `N` numbers.
+    type Vector: Copy + Send + Sync + 'static;
+    /// `N` truth values.
+    type Mask: Copy + Send + Sync + 'static;
+    /// Zeros.
+    const ZERO: Self::Vector;
+    /// Ones.
+    const ONE: Self::Vector;
+
+    /// Runs a closure that is compiled for the instruction set.
+    fn vectorize<R>(kernel: impl FnOnce() -> R) -> R;
+
+    fn from_array(values: [S; N]) -> Self::Vector;
+    fn to_array(v: Self::Vector) -> [S; N];
+    fn splat(value: S) -> Self::Vector;
+
+    fn add(a: Self::Vector, b: Self::Vector) -> Self::Vector;
+    fn sub(a: Self::Vector, b: Self::Vector) -> Self::Vector;
+    fn mul(a: Self::Vector, b: Self::Vector) -> Self::Vector;
+    fn div(a: Self::Vector, b: Self::Vector) -> Self::Vector;
+    fn neg(a: Self::Vector) -> Self::Vector;
+    fn abs(a: Self::Vector) -> Self::Vector;
+    fn sqrt(a: Self::Vector) -> Self::Vector;
+    fn min(a: Self::Vector, b: Self::Vector) -> Self::Vector;
+    fn max(a: Self::Vector, b: Self::Vector) -> Self::Vector;
+    fn copysign(a: Self::Vector, sign: Self::Vector) -> Self::Vector;
+    fn floor(a: Self::Vector) -> Self::Vector;
+    #[inline(always)]
+    fn exp2_integer(a: Self::Vector) -> Self::Vector {
+        Self::from_array(Self::to_array(a).map(S::exp2_integer))
+    }
+    #[inline(always)]
+    fn split_exponent(a: Self::Vector) -> (Self::Vector, Self::Vector) {
+        let pairs = Self::to_array(a).map(S::split_exponent);
+        (
+            Self::from_array(pairs.map(|p| p.0)),
+            Self::from_array(pairs.map(|p| p.1)),
+        )
+    }
+
+    fn lt(a: Self::Vector, b: Self::Vector) -> Self::Mask;
+    fn le(a: Self::Vector, b: Self::Vector) -> Self::Mask;
+    fn eq(a: Self::Vector, b: Self::Vector) -> Self::Mask;
+    fn select(mask: Self::Mask, yes: Self::Vector, no: Self::Vector) -> Self::Vector;
+
+    /// Bit `i` is lane `i`; higher bits are zero.
+    fn mask_bits(mask: Self::Mask) -> u32;
+    /// The inverse of [`mask_bits`](Self::mask_bits).
+    fn mask_from_bits(bits: u32) -> Self::Mask;
+    fn mask_and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn mask_or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn mask_not(mask: Self::Mask) -> Self::Mask;
+}
