@@ -5,10 +5,13 @@ use crate::Real;
 /// Constants, each the same in every lane.
 #[inline(always)]
 pub fn cast<T: Real, const K: usize>(values: [f64; K]) -> [T; K] {
-    values.map(T::new)
+    let mut out = [T::ZERO; K];
+    broadcast(&values, &mut out);
+    out
 }
 
 /// Writes the same row into every lane; both slices have the same length.
+#[inline(always)]
 pub fn broadcast<T: Real>(row: &[f64], out: &mut [T]) {
     assert_eq!(row.len(), out.len(), "row and lanes differ in length");
     for (out, &value) in out.iter_mut().zip(row) {

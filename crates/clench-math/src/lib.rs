@@ -1,6 +1,9 @@
 //! Numbers and small geometry that every kernel shares: [`Real`] (one environment or many side by side),
 //! vectors, rotations, and spatial motion and force vectors. Nothing here knows of bodies, joints or contacts.
 
+// `#[kernel]` names this crate; inside it too.
+extern crate self as clench_math;
+
 mod cast;
 mod eigen;
 mod elementary;

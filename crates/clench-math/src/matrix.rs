@@ -60,10 +60,10 @@ impl<T: Real> Mat3<T> {
         self.rows[0] * v.x + self.rows[1] * v.y + self.rows[2] * v.z
     }
     /// The same constant matrix in every lane, by rows.
+    #[inline(always)]
     pub fn from_f64(m: [[f64; 3]; 3]) -> Self {
-        Mat3 {
-            rows: m.map(Vec3::from_f64),
-        }
+        let [a, b, c] = m;
+        Mat3::from_rows(Vec3::from_f64(a), Vec3::from_f64(b), Vec3::from_f64(c))
     }
     /// The determinant.
     #[inline(always)]
@@ -73,9 +73,12 @@ impl<T: Real> Mat3<T> {
     /// Entry by entry choice.
     #[inline(always)]
     pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
-        Mat3 {
-            rows: std::array::from_fn(|i| Vec3::select(mask, yes.rows[i], no.rows[i])),
-        }
+        let ([a, b, c], [d, e, f]) = (yes.rows, no.rows);
+        Mat3::from_rows(
+            Vec3::select(mask, a, d),
+            Vec3::select(mask, b, e),
+            Vec3::select(mask, c, f),
+        )
     }
 }
 
@@ -94,8 +97,7 @@ impl<T: Real> Mul for Mat3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        Mat3 {
-            rows: std::array::from_fn(|i| o.transpose_mul(self.rows[i])),
-        }
+        let [a, b, c] = self.rows;
+        Mat3::from_rows(o.transpose_mul(a), o.transpose_mul(b), o.transpose_mul(c))
     }
 }

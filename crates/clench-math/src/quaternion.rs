@@ -1,6 +1,6 @@
 //! Unit quaternions as rotations, in MuJoCo's order (w, x, y, z).
 
-use crate::{Mat3, Real, Vec3};
+use crate::{Mat3, Real, Vec3, kernel};
 use std::ops::Mul;
 
 /// A quaternion; as a rotation it maps local coordinates to the outer frame.
@@ -17,6 +17,7 @@ pub struct Quat<T> {
 }
 
 impl<T: Real> Default for Quat<T> {
+    #[inline(always)]
     fn default() -> Self {
         Quat::IDENTITY
     }
@@ -66,6 +67,7 @@ impl<T: Real> Quat<T> {
     ///
     /// Four rows of 4 q qᵀ can be read off the matrix, each a multiple of q; the row of `w` serves where the trace is
     /// positive, else that of the largest imaginary part, whose sign is then positive (MuJoCo's `mju_mat2Quat`).
+    #[kernel]
     pub fn from_matrix(m: &Mat3<T>) -> Self {
         let [a, b, c] = m.rows;
         let one = T::ONE;
@@ -84,6 +86,7 @@ impl<T: Real> Quat<T> {
     ///
     /// Opposite vectors leave the axis open: it is then the coordinate axis on which `from` is smallest, made
     /// perpendicular to `from`; for `from` = z that is x.
+    #[kernel]
     pub fn from_two_vectors(from: Vec3<T>, to: Vec3<T>) -> Self {
         let half = T::new(0.5);
         let (cosine, sine) = ((from + to).norm() * half, (to - from).norm() * half);

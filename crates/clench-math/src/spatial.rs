@@ -144,16 +144,16 @@ impl<T: Real> Inertia<T> {
     pub fn from_principal(diagonal: Vec3<T>, axes: &Mat3<T>, offset: Vec3<T>, mass: T) -> Self {
         let r = &axes.rows;
         let d = diagonal;
-        let local = |i: usize, j: usize| r[i].scale_by(d).dot(r[j]);
+        let scaled = [r[0].scale_by(d), r[1].scale_by(d), r[2].scale_by(d)];
         let o = offset;
         Inertia {
             rotational: [
-                local(0, 0) + mass * (o.y * o.y + o.z * o.z),
-                local(1, 1) + mass * (o.x * o.x + o.z * o.z),
-                local(2, 2) + mass * (o.x * o.x + o.y * o.y),
-                local(0, 1) - mass * o.x * o.y,
-                local(0, 2) - mass * o.x * o.z,
-                local(1, 2) - mass * o.y * o.z,
+                scaled[0].dot(r[0]) + mass * (o.y * o.y + o.z * o.z),
+                scaled[1].dot(r[1]) + mass * (o.x * o.x + o.z * o.z),
+                scaled[2].dot(r[2]) + mass * (o.x * o.x + o.y * o.y),
+                scaled[0].dot(r[1]) - mass * o.x * o.y,
+                scaled[0].dot(r[2]) - mass * o.x * o.z,
+                scaled[1].dot(r[2]) - mass * o.y * o.z,
             ],
             moment: o * mass,
             mass,
@@ -185,8 +185,8 @@ impl<T: Real> Mul<Motion<T>> for Inertia<T> {
 impl<T: Real> AddAssign for Inertia<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
-        for (a, b) in self.rotational.iter_mut().zip(o.rotational) {
-            *a += b;
+        for i in 0..6 {
+            self.rotational[i] += o.rotational[i];
         }
         self.moment += o.moment;
         self.mass += o.mass;

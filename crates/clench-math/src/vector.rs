@@ -1,6 +1,6 @@
 //! Three-vectors.
 
-use crate::Real;
+use crate::{Mat3, Real, kernel};
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 /// A vector in space, in metres, newtons or whatever the context says.
@@ -88,15 +88,12 @@ impl<T: Real> Vec3<T> {
     }
     /// A unit vector perpendicular to the unit vector `self`: the coordinate axis on which `self` is smallest (the
     /// first of equals), less its part along `self`.
+    #[kernel]
     pub fn any_perpendicular(self) -> Self {
         let (x, y, z) = (self.x.abs(), self.y.abs(), self.z.abs());
-        let unit = |i: usize| {
-            let mut e = Vec3::ZERO;
-            e[i] = T::ONE;
-            e
-        };
-        let y_or_z = Vec3::select(y.le(z), unit(1), unit(2));
-        let axis = Vec3::select(x.le(y) & x.le(z), unit(0), y_or_z);
+        let [unit_x, unit_y, unit_z] = Mat3::IDENTITY.rows;
+        let y_or_z = Vec3::select(y.le(z), unit_y, unit_z);
+        let axis = Vec3::select(x.le(y) & x.le(z), unit_x, y_or_z);
         (axis - self * self.dot(axis)).normalize().0
     }
     /// The unit vector along `self` and the length; the x axis where the length is below 1e-15

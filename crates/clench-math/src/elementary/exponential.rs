@@ -2,7 +2,7 @@
 
 use super::extended::{ordered_sum, two_product, two_sum};
 use super::{bounded, by_precision, nearest_integer, polynomial};
-use crate::{Real, Scalar};
+use crate::{Real, Scalar, kernel};
 use std::f64::consts::LOG2_E;
 
 /// (eʳ − 1 − r) / r² for |r| ≤ ½ ln 2.
@@ -47,13 +47,13 @@ fn ln_2<T: Real>() -> (T, T) {
 }
 
 /// Exponential: 0 or ∞ past the ends of the range, gradual underflow between.
-#[inline]
+#[kernel]
 pub(crate) fn exp<T: Real>(x: T) -> T {
     exp_extended(x, T::ZERO)
 }
 
 /// Natural logarithm: −∞ at 0, NaN below.
-#[inline]
+#[kernel]
 pub(crate) fn ln<T: Real>(x: T) -> T {
     let infinity = T::splat(T::Scalar::INFINITY);
     let (high, low) = ln_extended(x);
@@ -63,7 +63,7 @@ pub(crate) fn ln<T: Real>(x: T) -> T {
 }
 
 /// `x` to the power `p`, for x ≥ 0 (NaN below): exp(p ln x) in extended precision. Anything to the power 0 is 1.
-#[inline]
+#[kernel]
 pub(crate) fn powf<T: Real>(x: T, p: T) -> T {
     let (zero, infinity) = (T::ZERO, T::splat(T::Scalar::INFINITY));
     // A larger power over- or underflows for every x but 1, and could spoil the exact product below.
@@ -83,7 +83,7 @@ pub(crate) fn powf<T: Real>(x: T, p: T) -> T {
 /// e to the power `high + low`, `low` far below `high`.
 ///
 /// x = k ln 2 + r with |r| ≤ ½ ln 2, and eˣ = 2ᵏ eʳ.
-#[inline]
+#[inline(always)]
 fn exp_extended<T: Real>(high: T, low: T) -> T {
     // A little past where the result is ∞ or 0; at the bounds a stray low part no longer matters, but must stay small.
     let (least, most) = by_precision::<T, _>((-750.0, 712.0), (-108.0, 92.0));
@@ -101,7 +101,7 @@ fn exp_extended<T: Real>(high: T, low: T) -> T {
 /// Natural logarithm of a positive finite number as an unevaluated sum, good to some 10 bits beyond the precision.
 ///
 /// x = 2ᵏ m with m in [√½, √2), and ln m = 2 artanh s with s = (m − 1)/(m + 1).
-#[inline]
+#[inline(always)]
 fn ln_extended<T: Real>(x: T) -> (T, T) {
     let (one, two) = (T::ONE, T::new(2.0));
     let (exponent, m) = split_any(x);

@@ -37,16 +37,18 @@ fn by_precision<T: Real, C>(double: C, single: C) -> C {
 fn polynomial<T: Real>(z: T, double: &[f64], single: &[f64]) -> T {
     let coefficients = by_precision::<T, _>(double, single);
     let squared = z * z;
-    let chain = |first: usize| {
-        let mut sum = T::ZERO;
-        let count = (coefficients.len() - first).div_ceil(2);
-        for i in 0..count {
-            let c = T::new(coefficients[first + 2 * (count - 1 - i)]);
-            sum = if i == 0 { c } else { sum * squared + c };
-        }
-        sum
-    };
-    chain(0) + z * chain(1)
+    every_other(squared, coefficients) + z * every_other(squared, &coefficients[1..])
+}
+
+/// c₀ + c₂ x + c₄ x² + …
+#[inline(always)]
+fn every_other<T: Real>(x: T, coefficients: &[f64]) -> T {
+    let last = (coefficients.len() - 1) / 2;
+    let mut sum = T::new(coefficients[2 * last]);
+    for i in (0..last).rev() {
+        sum = sum * x + T::new(coefficients[2 * i]);
+    }
+    sum
 }
 
 /// The nearest integer, for magnitudes below a quarter of the first number without fraction bits (2⁵¹, 2²²).

@@ -2,7 +2,7 @@
 
 use super::extended::{ordered_sum, two_sum};
 use super::{by_precision, nearest_integer, polynomial};
-use crate::{Real, Scalar};
+use crate::{Real, Scalar, kernel};
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, SQRT_2};
 
 /// π/2 in parts short enough that their products with the number of quarter turns are exact, up to 2²⁰ quarter turns
@@ -139,7 +139,7 @@ fn small_sin_cos<T: Real>(y: T, tail: T) -> (T, T) {
 /// With s the smaller and l the larger of |x|, |y|, atan(s/l) is atan t or π/4 + atan t with t = s/l or
 /// (s − l)/(s + l), |t| ≤ tan(π/8); reflections at the diagonal (|y| > |x|) and at the y axis (x < 0) then turn an
 /// angle m π/4 + σ atan t into (2 − m) π/4 − σ atan t and (4 − m) π/4 − σ atan t.
-#[inline]
+#[kernel]
 pub(crate) fn atan2<T: Real>(y: T, x: T) -> T {
     let (zero, one) = (T::ZERO, T::ONE);
     let steep = y.abs().gt(x.abs());

@@ -24,12 +24,12 @@ use std::ops::{
 };
 
 /// One number for each of `N` environments, in the registers of the instruction set `I`.
-#[derive(Clone, Copy)]
+#[derive(Copy)]
 #[repr(transparent)]
 pub struct Lanes<S: Scalar, const N: usize, I: Registers<S, N> = Portable>(I::Vector);
 
 /// One truth value for each of `N` environments.
-#[derive(Clone, Copy)]
+#[derive(Copy)]
 #[repr(transparent)]
 pub struct LaneMask<S: Scalar, const N: usize, I: Registers<S, N> = Portable>(I::Mask);
 
@@ -56,22 +56,39 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Lanes<S, N, I> {
     }
 }
 
+// By hand: a derived method need not be inlined.
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Clone for Lanes<S, N, I> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<S: Scalar, const N: usize, I: Registers<S, N>> Clone for LaneMask<S, N, I> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
 impl<S: Scalar, const N: usize, I: Registers<S, N>> From<[S; N]> for Lanes<S, N, I> {
+    #[inline(always)]
     fn from(values: [S; N]) -> Self {
         Self::from_array(values)
     }
 }
 impl<S: Scalar, const N: usize, I: Registers<S, N>> From<Lanes<S, N, I>> for [S; N] {
+    #[inline(always)]
     fn from(lanes: Lanes<S, N, I>) -> Self {
         lanes.to_array()
     }
 }
 impl<S: Scalar, const N: usize, I: Registers<S, N>> Default for Lanes<S, N, I> {
+    #[inline(always)]
     fn default() -> Self {
         Self::ZERO
     }
 }
 impl<S: Scalar, const N: usize, I: Registers<S, N>> PartialEq for Lanes<S, N, I> {
+    #[inline(always)]
     fn eq(&self, other: &Self) -> bool {
         self.to_array() == other.to_array()
     }
@@ -223,8 +240,11 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> LaneMask<S, N, I> {
     /// One truth value a lane.
     #[inline(always)]
     pub fn from_array(values: [bool; N]) -> Self {
-        let bit = |i: usize| u32::from(values[i]) << i;
-        LaneMask(I::mask_from_bits((0..N).fold(0, |bits, i| bits | bit(i))))
+        let mut bits = 0;
+        for (i, value) in values.into_iter().enumerate() {
+            bits |= u32::from(value) << i;
+        }
+        LaneMask(I::mask_from_bits(bits))
     }
     /// The truth value of every lane.
     #[inline(always)]
