@@ -22,6 +22,7 @@ pub struct ContactPoint<T: Real> {
 
 impl<T: Real> ContactPoint<T> {
     /// A point that exists nowhere.
+    #[inline(always)]
     pub(crate) fn none() -> Self {
         ContactPoint {
             position: Vec3::ZERO,
@@ -51,6 +52,7 @@ pub struct Contacts<T: Real> {
 
 impl<T: Real> Contacts<T> {
     /// No points.
+    #[inline(always)]
     pub fn new() -> Self {
         Contacts {
             points: [ContactPoint::none(); MAX_POINTS],
@@ -80,6 +82,7 @@ impl<T: Real> Contacts<T> {
 }
 
 impl<T: Real> Default for Contacts<T> {
+    #[inline(always)]
     fn default() -> Self {
         Contacts::new()
     }

@@ -29,15 +29,24 @@ pub fn frame_from_normal<T: Real>(normal: Vec3<T>) -> Mat3<T> {
 pub fn frame_along<T: Real>(normal: Vec3<T>, direction: Vec3<T>) -> Mat3<T> {
     // Below this length what is left of the direction is mostly rounding error.
     let least = T::splat(T::Scalar::EPSILON * T::Scalar::new(1e4));
-    let across = |v: Vec3<T>| v - normal * normal.dot(v);
-    let mut tangent = across(direction);
+    let mut tangent = across(normal, direction);
     let parallel = tangent.norm_squared().lt(least * least);
     if parallel.any() {
         let near_x = normal.x.abs().gt(T::new(0.9));
         let x = Vec3::new(T::ONE, T::ZERO, T::ZERO);
         let y = Vec3::new(T::ZERO, T::ONE, T::ZERO);
-        tangent = Vec3::select(parallel, across(Vec3::select(near_x, y, x)), tangent);
+        tangent = Vec3::select(
+            parallel,
+            across(normal, Vec3::select(near_x, y, x)),
+            tangent,
+        );
     }
     let tangent = tangent * (T::ONE / tangent.norm());
     Mat3::from_rows(normal, tangent, normal.cross(tangent))
+}
+
+/// What is left of `v` without its part along the unit `normal`.
+#[inline(always)]
+fn across<T: Real>(normal: Vec3<T>, v: Vec3<T>) -> Vec3<T> {
+    v - normal * normal.dot(v)
 }

@@ -62,6 +62,7 @@ impl<T: Real> Pose<T> {
 }
 
 /// The radius in metres of the smallest sphere about the shape's origin that holds it; infinite for a plane.
+#[inline(always)]
 pub fn bounding_radius<T: Real>(shape: &Shape<T>) -> T {
     let s = shape.size;
     match shape.kind {

@@ -4,6 +4,7 @@
 // `#[kernel]` names this crate; inside it too.
 extern crate self as clench_math;
 
+mod array;
 mod cast;
 mod eigen;
 mod elementary;
@@ -15,6 +16,7 @@ mod scalar;
 mod spatial;
 mod vector;
 
+pub use array::array;
 pub use cast::{broadcast, cast, read_lane, write_lane};
 /// Compiles a numerical function for the instruction set of its number type `T`.
 pub use clench_kernel::kernel;

@@ -3,7 +3,7 @@
 use crate::descent::{Direction, Progress};
 use crate::iterate::{Iterate, dot};
 use crate::{Problem, Settings, SolveStats};
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// The last gradient, and its image under M⁻¹.
 #[derive(Clone, Debug, Default)]
@@ -18,16 +18,19 @@ impl<T: Real> Direction<T> for Cg<T> {
     const NEWTON: bool = false;
     const PATIENCE: f64 = 20.0;
 
+    #[inline(always)]
     fn prepare(&mut self, _: &Problem<T>, _: &Settings) {
         self.started = false;
     }
 
+    #[inline(always)]
     fn restart(&mut self, mask: T::Mask) {
         for g in &mut self.gradient {
             *g = T::select(mask, T::ZERO, *g);
         }
     }
 
+    #[kernel]
     fn find(
         &mut self,
         problem: &Problem<T>,

@@ -4,7 +4,7 @@ use crate::costs::Tally;
 use crate::iterate::{Iterate, dot};
 use crate::line_search::{Precision, Ray, Step};
 use crate::{Problem, Settings, SolveStats, Status};
-use clench_math::{Mask, Real, Scalar};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// How an algorithm chooses where to search.
 pub(crate) trait Direction<T: Real> {
@@ -51,6 +51,7 @@ const NEGLIGIBLE: f64 = 4.0;
 const NOTICEABLE: f64 = 0.7;
 
 /// Minimises, from the better of `warmstart` and the unconstrained acceleration.
+#[kernel]
 pub(crate) fn minimise<T: Real, D: Direction<T>>(
     problem: &Problem<T>,
     settings: &Settings,
@@ -94,6 +95,7 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
 }
 
 impl<T: Real> Progress<T> {
+    #[inline(always)]
     fn new(tally: Tally<T>, scale: T, tolerance: T) -> Self {
         Progress {
             live: T::Mask::splat(true),
@@ -108,6 +110,7 @@ impl<T: Real> Progress<T> {
     }
 
     /// Ends the live lanes of `mask` with `status`.
+    #[inline(always)]
     fn end(&mut self, mask: T::Mask, status: Status, stats: &mut SolveStats<T>) {
         let ending = self.live & mask;
         stats.status = T::select(ending, status.code(), stats.status);
@@ -115,6 +118,7 @@ impl<T: Real> Progress<T> {
     }
 
     /// Ends the lanes that need no iteration.
+    #[inline(always)]
     fn judge_start<D: Direction<T>>(
         &mut self,
         problem: &Problem<T>,
@@ -142,6 +146,7 @@ impl<T: Real> Progress<T> {
     }
 
     /// Takes a step into the statistics.
+    #[inline(always)]
     fn record(&self, step: Step<T>, tally: Tally<T>, norm: T, stats: &mut SolveStats<T>) {
         let live = self.live;
         stats.iterations += T::select(live, T::ONE, T::ZERO);
@@ -153,6 +158,7 @@ impl<T: Real> Progress<T> {
 
     /// Ends the lanes that are done, and prepares the others for their next iteration.
     #[allow(clippy::too_many_arguments)] // everything that an iteration has produced
+    #[inline(always)]
     fn judge<D: Direction<T>>(
         &mut self,
         problem: &Problem<T>,
@@ -203,6 +209,7 @@ impl<T: Real> Progress<T> {
 
     /// Whether the gradient has not fallen noticeably for too many iterations of negligible
     /// improvement.
+    #[inline(always)]
     fn idles(&mut self, norm: T, negligible: T::Mask, patience: T) -> T::Mask {
         let fell = norm.lt(T::new(NOTICEABLE) * self.best);
         self.best = T::select(fell, norm, self.best);
@@ -211,6 +218,7 @@ impl<T: Real> Progress<T> {
     }
 
     /// Evaluates again after the lanes of `mask` were changed by more than a step.
+    #[kernel]
     fn reevaluate(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, mask: T::Mask) {
         let tally = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
@@ -221,6 +229,7 @@ impl<T: Real> Progress<T> {
     }
 
     /// Completes the statistics.
+    #[kernel]
     fn finish(
         &mut self,
         problem: &Problem<T>,
@@ -242,6 +251,7 @@ impl<T: Real> Progress<T> {
 
 /// The duality gap ½ gᵀM⁻¹g. The cost less ½ |a|²_M is convex, so the cost exceeds its minimum by
 /// at most this.
+#[kernel]
 fn gap<T: Real>(problem: &Problem<T>, iterate: &Iterate<T>, scratch: &mut Vec<T>) -> T {
     scratch.clear();
     scratch.extend_from_slice(&iterate.gradient);
@@ -250,6 +260,7 @@ fn gap<T: Real>(problem: &Problem<T>, iterate: &Iterate<T>, scratch: &mut Vec<T>
 }
 
 /// The lanes in which some constraint acts.
+#[inline(always)]
 fn constrained<T: Real>(problem: &Problem<T>) -> T::Mask {
     problem
         .d
@@ -258,6 +269,7 @@ fn constrained<T: Real>(problem: &Problem<T>) -> T::Mask {
 }
 
 /// Mean inertia × nv.
+#[inline(always)]
 pub(crate) fn trace<T: Real>(problem: &Problem<T>) -> T {
     let tree = problem.tree();
     let mut sum = T::ZERO;

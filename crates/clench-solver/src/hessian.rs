@@ -10,7 +10,7 @@ use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, Jacobian, StoredRows};
 use crate::tree::Coupling;
 use crate::{Problem, Tree, TreeFactor, TreeMatrix};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// H and its factor.
 #[derive(Clone, Debug, Default)]
@@ -62,6 +62,7 @@ impl<T: Real> Hessian<T> {
     }
 
     /// Factors H = M + Jᵀ W J in the lanes of `mask`. `weigh` writes the Hessian block of a constraint.
+    #[inline(always)]
     pub fn factor(
         &mut self,
         problem: &Problem<T>,
@@ -81,6 +82,7 @@ impl<T: Real> Hessian<T> {
     }
 
     /// Applies a rank-one change of a block's Hessian. False in lanes whose factor it spoils.
+    #[kernel]
     pub fn update(&mut self, problem: &Problem<T>, b: &BlockIndex, change: RankOne<T>) -> T::Mask {
         let (dofs, values) = (problem.jacobian.dofs(b), problem.jacobian.values(b));
         let Some(&last) = dofs.last() else {
@@ -101,6 +103,7 @@ impl<T: Real> Hessian<T> {
     }
 
     /// H = M.
+    #[kernel]
     fn set(&mut self, tree: &Tree, mass: &TreeMatrix<T>) {
         if self.tree.nnz() == tree.nnz() {
             self.matrix.values.copy_from_slice(&mass.values);
@@ -116,6 +119,7 @@ impl<T: Real> Hessian<T> {
     }
 
     /// `x ← H⁻¹ x`.
+    #[inline(always)]
     pub fn solve(&self, x: &mut [T]) {
         self.factor.solve(&self.tree, x);
     }

@@ -5,7 +5,7 @@ use crate::costs::{BlockCost, Rows, Tally, with_cost};
 use crate::jacobian::{BlockIndex, Jacobian};
 use crate::line_search::Ray;
 use crate::softening::Softening;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// A point, and everything that follows from it.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +29,7 @@ pub(crate) struct Iterate<T: Real> {
 
 impl<T: Real> Iterate<T> {
     /// Starts from `warmstart` where it costs less than the unconstrained acceleration; returns the tally there.
+    #[kernel]
     pub fn start(
         &mut self,
         problem: &Problem<T>,
@@ -61,6 +62,7 @@ impl<T: Real> Iterate<T> {
     }
 
     /// Moves to `warm` in the lanes where it costs less than `cost`.
+    #[kernel]
     fn take_if_better(&mut self, problem: &Problem<T>, warm: &[T], cost: T, ray: &mut Ray<T>) {
         // The ray from here to there: its end is the candidate.
         ray.direction.clear();
@@ -83,6 +85,7 @@ impl<T: Real> Iterate<T> {
     }
 
     /// Computes M (a − a_unc) and J a − aref anew in the lanes of `mask`, without the rounding that steps have added up.
+    #[kernel]
     pub fn refresh(&mut self, problem: &Problem<T>, mask: T::Mask, ray: &mut Ray<T>) {
         ray.direction.clear();
         ray.direction.extend(
@@ -110,6 +113,7 @@ impl<T: Real> Iterate<T> {
     }
 
     /// Evaluates every block at the residual: forces, pieces, and the constraints' part of the cost.
+    #[kernel]
     pub fn evaluate(&mut self, problem: &Problem<T>) -> Tally<T> {
         let mut tally = Tally::new();
         for b in &problem.jacobian.blocks {
@@ -129,6 +133,7 @@ impl<T: Real> Iterate<T> {
     }
 
     /// Computes Jᵀf and the gradient; returns its norm.
+    #[kernel]
     pub fn differentiate(&mut self, problem: &Problem<T>) -> T {
         self.qfrc_constraint.fill(T::ZERO);
         problem
@@ -148,11 +153,13 @@ impl<T: Real> Iterate<T> {
     }
 
     /// The lanes in which acceleration and residuals are finite. (A one-sided cost of NaN is zero, so costs do not show it.)
+    #[inline(always)]
     pub fn is_finite(&self) -> T::Mask {
         all_finite(&self.qacc) & all_finite(&self.residual)
     }
 
     /// ½ (a − a_unc)ᵀ M (a − a_unc).
+    #[inline(always)]
     pub fn inertial_cost(&self, problem: &Problem<T>) -> T {
         let mut sum = T::ZERO;
         for ((&a, &b), &m) in self
@@ -167,6 +174,7 @@ impl<T: Real> Iterate<T> {
     }
 
     /// Moves by `alpha` along the ray.
+    #[kernel]
     pub fn advance(&mut self, alpha: T, ray: &Ray<T>) {
         add_scaled(&mut self.qacc, alpha, &ray.direction);
         add_scaled(&mut self.inertial, alpha, &ray.mass_direction);
@@ -175,13 +183,14 @@ impl<T: Real> Iterate<T> {
 }
 
 /// The lanes in which all of `x` is finite.
+#[inline(always)]
 pub(crate) fn all_finite<T: Real>(x: &[T]) -> T::Mask {
     x.iter()
         .fold(T::Mask::splat(true), |mask, x| mask & x.is_finite())
 }
 
 /// x·y.
-#[inline]
+#[inline(always)]
 pub(crate) fn dot<T: Real>(x: &[T], y: &[T]) -> T {
     let mut sum = T::ZERO;
     for (&x, &y) in x.iter().zip(y) {
@@ -190,18 +199,21 @@ pub(crate) fn dot<T: Real>(x: &[T], y: &[T]) -> T {
     sum
 }
 
+#[inline(always)]
 fn add_scaled<T: Real>(x: &mut [T], alpha: T, y: &[T]) {
     for (x, &y) in x.iter_mut().zip(y) {
         *x += alpha * y;
     }
 }
 
+#[inline(always)]
 fn subtract<T: Real>(x: &mut [T], y: &[T]) {
     for (x, &y) in x.iter_mut().zip(y) {
         *x -= y;
     }
 }
 
+#[inline(always)]
 fn blend<T: Real>(mask: T::Mask, x: &mut [T], y: &[T]) {
     for (x, &y) in x.iter_mut().zip(y) {
         *x = T::select(mask, y, *x);

@@ -4,7 +4,7 @@
 
 use crate::costs::{Form, MAX_DIM, Weight};
 use crate::{Cost, Tree};
-use clench_math::Real;
+use clench_math::{Real, array, kernel};
 use std::ops::Range;
 
 /// Where a block lies in the pools.
@@ -67,6 +67,7 @@ impl<T> Default for StoredRows<T> {
 }
 
 impl<T: Real> StoredRows<T> {
+    #[inline(always)]
     pub fn clear(&mut self) {
         self.blocks.clear();
         self.dofs.clear();
@@ -74,6 +75,7 @@ impl<T: Real> StoredRows<T> {
     }
 
     /// Appends a block of zeros.
+    #[inline(always)]
     pub fn push(&mut self, block: BlockIndex, dofs: &[u32]) -> &mut [T] {
         self.blocks.push(block);
         self.dofs.extend_from_slice(dofs);
@@ -83,6 +85,7 @@ impl<T: Real> StoredRows<T> {
     }
 
     /// Appends a copy of another problem's block, at the row and piece given.
+    #[inline(always)]
     pub fn push_copy(
         &mut self,
         block: &BlockIndex,
@@ -135,7 +138,7 @@ impl<T: Real> StoredRows<T> {
     #[inline(always)]
     fn add_transposed_block<const DIM: usize>(&self, b: &BlockIndex, f: &[T], out: &mut [T]) {
         let rows = self.rows::<DIM>(b);
-        let f: [T; DIM] = std::array::from_fn(|i| f[b.row + i]);
+        let f: [T; DIM] = array(|i| f[b.row + i]);
         for (k, &dof) in self.dofs(b).iter().enumerate() {
             let mut sum = rows[0][k] * f[0];
             for i in 1..DIM {
@@ -160,27 +163,30 @@ impl<T: Real> StoredRows<T> {
             .last()
             .is_some_and(|&last| tree.depth(last as usize) + 1 == dofs.len());
         for (k, &dof) in dofs.iter().enumerate() {
-            let wj = weigh_column::<T, DIM>(weight, form, &std::array::from_fn(|i| rows[i][k]));
+            let wj = weigh_column::<T, DIM>(weight, form, &array(|i| rows[i][k]));
             let rows: [&[T]; DIM] = std::array::from_fn(|i| &rows[i][..=k]);
-            let product = |c: usize| {
-                let mut sum = wj[0] * rows[0][c];
-                for i in 1..DIM {
-                    sum += wj[i] * rows[i][c];
-                }
-                sum
-            };
             let start = tree.row_start(dof as usize);
             if whole_path {
                 for (c, h) in hessian[start..=start + k].iter_mut().enumerate() {
-                    *h += product(c);
+                    *h += weighted(&wj, &rows, c);
                 }
             } else {
                 for (c, &column) in dofs[..=k].iter().enumerate() {
-                    hessian[start + tree.depth(column as usize)] += product(c);
+                    hessian[start + tree.depth(column as usize)] += weighted(&wj, &rows, c);
                 }
             }
         }
     }
+}
+
+/// The product of column `c` of some rows with a column of weights.
+#[inline(always)]
+fn weighted<T: Real, const DIM: usize>(weights: &[T; DIM], rows: &[&[T]; DIM], c: usize) -> T {
+    let mut sum = weights[0] * rows[0][c];
+    for i in 1..DIM {
+        sum += weights[i] * rows[i][c];
+    }
+    sum
 }
 
 /// W j for one column of a block.
@@ -192,27 +198,36 @@ fn weigh_column<T: Real, const DIM: usize>(
 ) -> [T; DIM] {
     match form {
         Form::Zero => [T::ZERO; DIM],
-        Form::Diagonal => std::array::from_fn(|i| weight[i][i] * j[i]),
+        Form::Diagonal => array(
+            #[inline(always)]
+            |i| weight[i][i] * j[i],
+        ),
         Form::Arrow => {
             let mut first = weight[0][0] * j[0];
             for i in 1..DIM {
                 first += weight[0][i] * j[i];
             }
-            std::array::from_fn(|i| {
-                if i == 0 {
-                    first
-                } else {
-                    weight[0][i] * j[0] + weight[i][i] * j[i]
-                }
-            })
+            array(
+                #[inline(always)]
+                |i| {
+                    if i == 0 {
+                        first
+                    } else {
+                        weight[0][i] * j[0] + weight[i][i] * j[i]
+                    }
+                },
+            )
         }
-        Form::Full => std::array::from_fn(|i| {
-            let mut sum = weight[i][0] * j[0];
-            for k in 1..DIM {
-                sum += weight[i][k] * j[k];
-            }
-            sum
-        }),
+        Form::Full => array(
+            #[inline(always)]
+            |i| {
+                let mut sum = weight[i][0] * j[0];
+                for k in 1..DIM {
+                    sum += weight[i][k] * j[k];
+                }
+                sum
+            },
+        ),
     }
 }
 
@@ -249,18 +264,21 @@ macro_rules! with_dim {
 }
 
 impl<T: Real> Jacobian<T> for StoredRows<T> {
+    #[kernel]
     fn mul(&self, x: &[T], out: &mut [T]) {
         for b in &self.blocks {
             with_dim!(b.dim, DIM => self.mul_block::<DIM>(b, x, out));
         }
     }
 
+    #[kernel]
     fn add_transposed(&self, f: &[T], out: &mut [T]) {
         for b in &self.blocks {
             with_dim!(b.dim, DIM => self.add_transposed_block::<DIM>(b, f, out));
         }
     }
 
+    #[kernel]
     fn add_gram(
         &self,
         mut weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,

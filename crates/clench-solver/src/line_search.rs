@@ -8,7 +8,7 @@ use crate::costs::{BlockCost, Slope, with_cost};
 use crate::iterate::{Iterate, dot};
 use crate::jacobian::Jacobian;
 use crate::{Cost, Problem};
-use clench_math::{Mask, Real, Scalar};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// A search direction with what the line search needs of it.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +54,7 @@ const NOISE: f64 = 4.0;
 
 impl<T: Real> Ray<T> {
     /// Computes M p, J p and the quadratic part, for the direction already set.
+    #[kernel]
     pub fn prepare(&mut self, problem: &Problem<T>, iterate: &Iterate<T>) {
         self.mass_direction.resize(problem.nv(), T::ZERO);
         self.rows.resize(problem.nrow(), T::ZERO);
@@ -78,6 +79,7 @@ impl<T: Real> Ray<T> {
     }
 
     /// Derivatives of the cost at α.
+    #[kernel]
     fn slope(&self, problem: &Problem<T>, iterate: &Iterate<T>, alpha: T) -> Slope<T> {
         let mut slope = Slope {
             first: self.first + alpha * self.second,
@@ -96,6 +98,7 @@ impl<T: Real> Ray<T> {
     }
 
     /// Cost at α less cost at 0.
+    #[kernel]
     fn change(&self, problem: &Problem<T>, iterate: &Iterate<T>, alpha: T) -> T {
         let inertial = dot(&iterate.inertial, &self.direction);
         let mass = dot(&self.direction, &self.mass_direction);
@@ -109,6 +112,7 @@ impl<T: Real> Ray<T> {
 
     /// Finds the minimiser along the ray in the lanes of `live`. `newton` says that the direction is Newton's, so that 1 is
     /// the first guess; otherwise the guess comes from the derivatives at 0.
+    #[kernel]
     pub fn search(
         &self,
         problem: &Problem<T>,
@@ -181,6 +185,7 @@ struct Bracket<T> {
 }
 
 impl<T: Real> Bracket<T> {
+    #[inline(always)]
     fn new(guess: T) -> Self {
         let infinity = T::splat(T::Scalar::INFINITY);
         Bracket {
@@ -193,6 +198,7 @@ impl<T: Real> Bracket<T> {
     }
 
     /// Takes in the slope at `alpha` and moves `alpha`, in the lanes of `open`; returns those where it moved noticeably.
+    #[inline(always)]
     fn narrow(&mut self, slope: Slope<T>, resolution: T, open: T::Mask) -> T::Mask {
         let falling = slope.first.lt(T::ZERO);
         self.low = T::select(open & falling, self.alpha, self.low);

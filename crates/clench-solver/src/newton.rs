@@ -8,7 +8,7 @@ use crate::descent::{Direction, Progress};
 use crate::hessian::Hessian;
 use crate::iterate::Iterate;
 use crate::{Problem, Settings, SolveStats, Switch};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// Holds the factored Hessian.
 #[derive(Clone, Debug)]
@@ -51,10 +51,12 @@ impl<T: Real> Direction<T> for Newton<T> {
         self.updatable = T::Mask::splat(false);
     }
 
+    #[inline(always)]
     fn restart(&mut self, mask: T::Mask) {
         self.updatable &= !mask;
     }
 
+    #[kernel]
     fn find(
         &mut self,
         problem: &Problem<T>,
@@ -91,6 +93,7 @@ impl<T: Real> Direction<T> for Newton<T> {
 
 impl<T: Real> Newton<T> {
     /// Updates the factor in those lanes of `mask` where few pieces changed; returns where that worked.
+    #[kernel]
     fn update(
         &mut self,
         problem: &Problem<T>,

@@ -15,7 +15,7 @@ use crate::costs::MAX_DIM;
 use crate::iterate::{Iterate, dot};
 use crate::jacobian::{BlockIndex, Jacobian};
 use crate::{Cost, Problem, Settings, SolveStats};
-use clench_math::{Mask, Real, Scalar};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// Newton steps for the multiplier of an ellipse: it converges quadratically from below.
 const MULTIPLIER_STEPS: usize = 20;
@@ -40,6 +40,7 @@ pub(crate) struct Noslip<T> {
 
 impl<T: Real> Noslip<T> {
     /// Runs the sweeps on the solved `iterate`. `edges` holds the edge forces of pyramids and is kept up to date.
+    #[kernel]
     pub fn run(
         &mut self,
         problem: &Problem<T>,
@@ -75,6 +76,7 @@ impl<T: Real> Noslip<T> {
     }
 
     /// Lists the friction rows, dry friction first, and computes their responses.
+    #[inline(always)]
     fn prepare(&mut self, problem: &Problem<T>) {
         self.frictions.clear();
         self.responses.clear();
@@ -90,6 +92,7 @@ impl<T: Real> Noslip<T> {
         }
     }
 
+    #[inline(always)]
     fn push(&mut self, problem: &Problem<T>, block: &BlockIndex, first: usize) {
         let response = self.responses.len();
         let nv = problem.nv();
@@ -123,6 +126,7 @@ impl<T: Real> Noslip<T> {
     }
 
     /// Improves one block's friction in the lanes of `live`; returns by how much the objective fell.
+    #[inline(always)]
     fn update(
         &self,
         k: usize,
@@ -168,6 +172,7 @@ impl<T: Real> Noslip<T> {
 
 impl<T: Real> Friction<T> {
     /// What the friction forces should be, from all forces of the block and its friction rows' J a − aref.
+    #[inline(always)]
     fn target(
         &self,
         problem: &Problem<T>,
@@ -205,6 +210,7 @@ impl<T: Real> Friction<T> {
 }
 
 /// J a − aref of a block's friction rows.
+#[inline(always)]
 fn residual<T: Real>(
     problem: &Problem<T>,
     block: &BlockIndex,
@@ -224,6 +230,7 @@ fn residual<T: Real>(
 }
 
 /// The best force of one row within ±bound.
+#[inline(always)]
 fn within<T: Real>(force: T, residual: T, a: T, bound: T) -> T {
     let free = T::select(a.gt(T::ZERO), force - residual / a, T::ZERO);
     free.clamp(-bound, bound)
@@ -233,6 +240,7 @@ fn within<T: Real>(force: T, residual: T, a: T, bound: T) -> T {
 ///
 /// In g = f / μ the ellipse is a ball of radius r, and g minimises ½ gᵀBg + gᵀc with B = diag(μ) A diag(μ). Outside the
 /// ball, g(λ) = −(B + λ I)⁻¹ c with |g(λ)| = r: Newton's method on 1/r − 1/|g|, nearly linear in λ.
+#[inline(always)]
 fn on_ellipse<T: Real>(
     a: &[[T; MAX_DIM]; MAX_DIM],
     residual: &[T; MAX_DIM],
@@ -286,6 +294,7 @@ fn on_ellipse<T: Real>(
 }
 
 /// g = −(B + λ I)⁻¹ c, with |g|² and −½ d|g|²/dλ = gᵀ (B + λ I)⁻¹ g.
+#[kernel]
 fn shifted_minimum<T: Real>(
     b: &[[T; MAX_DIM]; MAX_DIM],
     c: &[T; MAX_DIM],
@@ -335,6 +344,7 @@ fn shifted_minimum<T: Real>(
 }
 
 /// ½ Σ R f² over all rows, for pyramids over their edges.
+#[inline(always)]
 fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) -> T {
     let mut sum = T::ZERO;
     for b in &problem.jacobian.blocks {
@@ -351,6 +361,7 @@ fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) 
 }
 
 /// Splits the friction of each pyramid row over its two edges, whose sum is as it was.
+#[inline(always)]
 fn write_edges<T: Real>(problem: &Problem<T>, force: &[T], edges: &mut [T]) {
     for b in problem
         .jacobian

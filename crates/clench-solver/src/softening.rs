@@ -8,7 +8,7 @@
 
 use crate::jacobian::BlockIndex;
 use crate::{Cost, Problem};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// A D above which a cone is very stiff.
 const STIFF: f64 = 2e4;
@@ -41,11 +41,13 @@ impl<T: Real> Default for Softening<T> {
 
 impl<T: Real> Softening<T> {
     /// Solves the problem itself.
+    #[inline(always)]
     pub fn reset(&mut self) {
         self.level = T::ZERO;
     }
 
     /// Starts with the first stage in those lanes of `mask` that have a very stiff cone; returns them.
+    #[kernel]
     pub fn start(&mut self, problem: &Problem<T>, mask: T::Mask) -> T::Mask {
         self.stiffest = T::ZERO;
         self.inverse_inertia.resize(problem.npiece, T::ZERO);
@@ -74,11 +76,13 @@ impl<T: Real> Softening<T> {
     }
 
     /// The lanes that do not solve the problem itself yet.
+    #[inline(always)]
     pub fn active(&self) -> T::Mask {
         self.level.gt(T::ZERO)
     }
 
     /// Moves to the next stage where this one is over; returns those lanes.
+    #[inline(always)]
     pub fn advance(&mut self, improvement: T, cost: T) -> T::Mask {
         let over = self.active() & !improvement.gt(T::new(SETTLED) * cost);
         let next = self.level * T::new(1.0 / STAGE);

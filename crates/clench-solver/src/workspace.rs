@@ -8,7 +8,7 @@ use crate::line_search::Ray;
 use crate::newton::Newton;
 use crate::noslip::Noslip;
 use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats};
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// Memory for problems solved as a whole.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +25,7 @@ pub(crate) struct Workspace<T: Real> {
 
 impl<T: Real> Workspace<T> {
     /// Minimises, then removes slip where the settings ask for it.
+    #[kernel]
     pub fn run(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
         self.stats = SolveStats {
             islands: T::ONE,

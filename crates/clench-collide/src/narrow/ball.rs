@@ -2,7 +2,7 @@
 
 use super::{Placed, segment::Segment};
 use crate::{ContactPoint, Contacts};
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Mask, Real, Vec3, kernel};
 
 /// A point with a radius: a sphere, or one place on the axis of a capsule.
 #[derive(Clone, Copy)]
@@ -43,6 +43,7 @@ pub(super) fn ball_ball<T: Real>(
 
 /// A unit vector across the axes of two shapes. Where these are parallel: across them, in the plane of the world's x axis
 /// (or y, if they are near that). MuJoCo takes x itself then, the same for upright shapes.
+#[inline(always)]
 pub(super) fn across_axes<T: Real>(a: Placed<T>, b: Placed<T>) -> Vec3<T> {
     let axis = b.pose.axis();
     let across = a.pose.axis().cross(axis);
@@ -54,6 +55,7 @@ pub(super) fn across_axes<T: Real>(a: Placed<T>, b: Placed<T>) -> Vec3<T> {
     Vec3::select(parallel, other, across).normalize().0
 }
 
+#[kernel]
 pub(super) fn sphere_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let ball = |s: Placed<T>| Ball {
         center: s.pose.position,
@@ -64,6 +66,7 @@ pub(super) fn sphere_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out:
     ball_ball(ball(a), ball(b), across, margin, all, out);
 }
 
+#[kernel]
 pub(super) fn sphere_capsule<T: Real>(
     a: Placed<T>,
     b: Placed<T>,

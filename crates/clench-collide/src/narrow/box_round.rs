@@ -4,7 +4,7 @@
 
 use super::Placed;
 use crate::{ContactPoint, Contacts};
-use clench_math::{Mask, Real, Scalar, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// Coordinate-wise clamp to the box of half lengths `size`.
 #[inline(always)]
@@ -22,6 +22,7 @@ fn differ<M: Mask>(a: M, b: M) -> M {
 }
 
 /// The normal out of a ball whose centre is inside the box, through the nearest face, and that face's distance.
+#[inline(always)]
 fn nearest_face<T: Real>(center: Vec3<T>, size: Vec3<T>) -> (Vec3<T>, T) {
     let mut depth = T::new(f64::INFINITY);
     let mut normal = Vec3::ZERO;
@@ -76,12 +77,14 @@ fn ball_box<T: Real>(
     ));
 }
 
+#[kernel]
 pub(super) fn sphere_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let center = b.pose.local(a.pose.position);
     let all = T::Mask::splat(true);
     ball_box(center, a.shape.size.x, b, margin, all, out);
 }
 
+#[kernel]
 pub(super) fn capsule_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let center = b.pose.local(a.pose.position);
     let half = b.pose.rotation.transpose_mul(a.pose.axis()) * a.shape.size.y;
@@ -109,6 +112,7 @@ struct Nearest<T: Real> {
 
 impl<T: Real> Nearest<T> {
     /// Either an end of the segment is nearest, to a face or inside the box, or some point of it to one of the edges.
+    #[inline(always)]
     fn find(center: Vec3<T>, half: Vec3<T>, size: Vec3<T>) -> Self {
         let mut best = Nearest {
             along: T::ZERO,
@@ -209,6 +213,7 @@ impl<T: Real> Nearest<T> {
     /// edge), until it ends or leaves the box: that is as far as the two can touch. Which way to walk, and which sides
     /// of the box to mind, follows from where the nearest point is and for each axis whether walking forward leads
     /// inward from there. A capsule that points at the box from outside has no second contact.
+    #[inline(always)]
     fn second(&self, half: Vec3<T>, size: Vec3<T>) -> (T, T::Mask) {
         let limit = self.limit;
         let forward = [0, 1, 2].map(|i| half[i].gt(T::ZERO));

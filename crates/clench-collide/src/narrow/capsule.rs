@@ -17,11 +17,12 @@ use super::{
     segment::Segment,
 };
 use crate::Contacts;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// The squared sine of the angle below which capsules are parallel.
 const PARALLEL: f64 = 1e-8;
 
+#[kernel]
 pub(super) fn capsule_capsule<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
@@ -46,26 +47,27 @@ pub(super) fn capsule_capsule<T: Real>(
     // Parallel: where the second segment, seen from the first, begins and ends on it. Each is an end of one of them.
     let extent = second.half_length * cosine.abs();
     let end = second.half_length.copysign(cosine);
-    let overlap = |sign: T| {
+    for (sign, wanted) in [(-T::ONE, T::Mask::splat(true)), (T::ONE, parallel)] {
+        if !wanted.any() {
+            break;
+        }
         let free = ahead + extent * sign;
-        let s = first.clamp(free);
-        let projected = second.clamp(cosine * s - behind);
-        (s, T::select(free.eq(s), end * sign, projected))
-    };
-    let begin = overlap(-T::ONE);
-    let s = T::select(parallel, begin.0, s);
-    let t = T::select(parallel, begin.1, t);
-    let add = |s: T, t: T, wanted: T::Mask, out: &mut Contacts<T>| {
-        let ball = |capsule: Placed<T>, center| Ball {
-            center,
-            radius: capsule.shape.size.x,
+        let overlap = first.clamp(free);
+        let projected = second.clamp(cosine * overlap - behind);
+        let s = T::select(parallel, overlap, s);
+        let t = T::select(
+            parallel,
+            T::select(free.eq(overlap), end * sign, projected),
+            t,
+        );
+        let one = Ball {
+            center: first.at(s),
+            radius: a.shape.size.x,
         };
-        let (one, other) = (ball(a, first.at(s)), ball(b, second.at(t)));
+        let other = Ball {
+            center: second.at(t),
+            radius: b.shape.size.x,
+        };
         ball_ball(one, other, || across_axes(a, b), margin, wanted, out);
-    };
-    add(s, t, T::Mask::splat(true), out);
-    if parallel.any() {
-        let (s, t) = overlap(T::ONE);
-        add(s, t, parallel, out);
     }
 }

@@ -7,7 +7,7 @@ use super::{
     way_out::{deepest, way_out},
 };
 use crate::{ContactPoint, Contacts};
-use clench_math::{Mask, Real, Scalar, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// Halvings of a segment that leave less than a rounding error of it.
 const HALVINGS: usize = 54;
@@ -23,6 +23,7 @@ struct Cylinder<T> {
 
 impl<T: Real> Cylinder<T> {
     /// The cylinder `b`, as the shape `a` meets it.
+    #[inline(always)]
     fn new(a: Placed<T>, b: Placed<T>) -> Self {
         Cylinder {
             radius: b.shape.size.x,
@@ -80,6 +81,7 @@ fn add_ball<T: Real>(
     }
 }
 
+#[kernel]
 pub(super) fn sphere_cylinder<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
@@ -98,6 +100,7 @@ pub(super) fn sphere_cylinder<T: Real>(
 /// The signed distance is convex, so along the capsule's middle segment its slope changes sign once, and halving finds
 /// where. Once the segment itself enters the cylinder, that distance no longer tells how far the capsule must move to
 /// be free, and [`way_out`] does.
+#[kernel]
 pub(super) fn capsule_cylinder<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
@@ -134,15 +137,16 @@ pub(super) fn capsule_cylinder<T: Real>(
             let as_deep = cylinder.distance(segment.at(end)).0.le(level);
             first = T::select(as_deep, end, first);
         }
-        let mut add = |t: T, wanted: T::Mask| {
+        for (k, t) in [first, ends[0], ends[1]].into_iter().enumerate() {
+            let wanted = if k == 0 {
+                beside
+            } else {
+                beside & !t.eq(first)
+            };
             let center = segment.at(t);
             let surface = cylinder.distance(center);
             let active = wanted & (surface.0 - radius).le(margin);
             add_ball(center, radius, surface, b, active, out);
-        };
-        add(first, beside);
-        for end in ends {
-            add(end, beside & !end.eq(first));
         }
     }
     let inside = active & entered;
@@ -156,6 +160,7 @@ pub(super) fn capsule_cylinder<T: Real>(
 
 impl<T: Real> Cylinder<T> {
     /// What a segment is at least away, cheaply: the larger of how far beyond the caps and beyond the side it stays.
+    #[inline(always)]
     fn apart_at_least(&self, segment: &Segment<T>) -> T {
         let (c, u) = (segment.center, segment.axis);
         let beyond_caps = c.z.abs() - segment.half_length * u.z.abs() - self.half_length;
@@ -167,6 +172,7 @@ impl<T: Real> Cylinder<T> {
     }
 
     /// The parameter of the point on a segment that has the least signed distance.
+    #[inline(always)]
     fn nearest_on(&self, segment: &Segment<T>) -> T {
         let (mut low, mut high) = (-segment.half_length, segment.half_length);
         for _ in 0..HALVINGS {
@@ -181,6 +187,7 @@ impl<T: Real> Cylinder<T> {
 
     /// The ends of the stretch of a segment above the cap, or beside the side, whichever the point at `nearest` faces
     /// more; at least that point.
+    #[inline(always)]
     fn overlap(&self, segment: &Segment<T>, nearest: T) -> [T; 2] {
         let (c, u) = (segment.center, segment.axis);
         let tiny = T::new(1e-15);

@@ -2,7 +2,7 @@
 
 use super::Placed;
 use crate::{ContactPoint, Contacts, frame_along, frame_from_normal};
-use clench_math::{Mask, Mat3, Real, Vec3};
+use clench_math::{Mask, Mat3, Real, Vec3, kernel};
 
 /// Adds the point of a surface that is `distance` above the plane.
 #[inline(always)]
@@ -29,6 +29,7 @@ fn height<T: Real>(plane: Placed<T>, shape: Placed<T>) -> (Vec3<T>, T) {
     (normal, above)
 }
 
+#[kernel]
 pub(super) fn plane_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let radius = b.shape.size.x;
     let (normal, above) = height(a, b);
@@ -41,6 +42,7 @@ pub(super) fn plane_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: 
 }
 
 /// The two ends of the capsule, the first tangent along its axis.
+#[kernel]
 pub(super) fn plane_capsule<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let (radius, half_length) = (b.shape.size.x, b.shape.size.y);
     let axis = b.pose.axis();
@@ -59,6 +61,7 @@ pub(super) fn plane_capsule<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out:
 }
 
 /// The lowest point: the ellipsoid's support against the normal.
+#[kernel]
 pub(super) fn plane_ellipsoid<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
@@ -79,6 +82,7 @@ pub(super) fn plane_ellipsoid<T: Real>(
 }
 
 /// The lowest points of both rims, then two more on the lower rim, so that the three there form a regular triangle.
+#[kernel]
 pub(super) fn plane_cylinder<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
@@ -127,6 +131,7 @@ pub(super) fn plane_cylinder<T: Real>(
 }
 
 /// The corners on the lower side, at most four.
+#[kernel]
 pub(super) fn plane_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let (normal, above) = height(a, b);
     let rotation = &b.pose.rotation;

@@ -19,12 +19,13 @@
 //! which is convex, so an interior minimum of g is the larger root of F, between the minimum of F and infinity.
 
 use super::segment::Segment;
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Scalar, Vec3, kernel};
 
 /// Halvings of a right angle that leave less than a rounding error of it.
 const HALVINGS: usize = 54;
 
 /// The depth of a segment in a cylinder about the origin along z, and the unit direction in which to move it out.
+#[kernel]
 pub(super) fn way_out<T: Real>(radius: T, half_length: T, segment: &Segment<T>) -> (T, Vec3<T>) {
     let Segment {
         center,
@@ -33,31 +34,36 @@ pub(super) fn way_out<T: Real>(radius: T, half_length: T, segment: &Segment<T>) 
     } = *segment;
     let (zero, one) = (T::ZERO, T::ONE);
     let z = Vec3::new(zero, zero, one);
-    let depth = |n: Vec3<T>| {
-        let across = (n.x * n.x + n.y * n.y).sqrt();
-        radius * across + half_length * n.z.abs() + reach * n.dot(axis).abs() - n.dot(center)
-    };
-    let towards = |n: Vec3<T>| Vec3::select(n.dot(center).lt(zero), -n, n);
     let (a, _) = z.cross(axis).normalize();
-    let a = towards(a);
-    let b = towards(axis.cross(a).normalize().0);
+    let a = towards(center, a);
+    let b = towards(center, axis.cross(a).normalize().0);
 
     let candidates = [
-        towards(z),
+        a,
+        towards(center, z),
         b,
         off_the_side(segment, a),
         over_the_rim(radius, half_length, segment, a, b),
     ];
-    let mut best = (depth(a), a);
+    let mut best = (T::splat(T::Scalar::INFINITY), a);
     for n in candidates {
-        let g = depth(n);
+        let across = (n.x * n.x + n.y * n.y).sqrt();
+        let sides = radius * across + half_length * n.z.abs() + reach * n.dot(axis).abs();
+        let g = sides - n.dot(center);
         let less = g.lt(best.0);
         best = (T::select(less, g, best.0), Vec3::select(less, n, best.1));
     }
     best
 }
 
+/// The direction along `n`, either way, on whose side `center` lies.
+#[inline(always)]
+fn towards<T: Real>(center: Vec3<T>, n: Vec3<T>) -> Vec3<T> {
+    Vec3::select(n.dot(center).lt(T::ZERO), -n, n)
+}
+
 /// The best horizontal direction: from the cylinder's axis to the nearest point of the segment, both seen from above.
+#[inline(always)]
 fn off_the_side<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
     let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
     let (c, u) = (flat(segment.center), flat(segment.axis));
@@ -71,6 +77,7 @@ fn off_the_side<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
 }
 
 /// The best direction across the segment, between `a` and `b`.
+#[inline(always)]
 fn over_the_rim<T: Real>(
     radius: T,
     half_length: T,
@@ -116,6 +123,7 @@ fn over_the_rim<T: Real>(
 /// Where along the segment it is deepest, seen along the `outward` direction that [`way_out`] found: at an end, or, where
 /// that direction is across the segment, below the rim or the side. Any point will do between two parallel flats; then
 /// it is `otherwise`.
+#[kernel]
 pub(super) fn deepest<T: Real>(
     radius: T,
     half_length: T,

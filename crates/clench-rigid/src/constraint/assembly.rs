@@ -85,6 +85,7 @@ pub(super) struct Assembly<'a, T: Real> {
 
 impl<T: Real> Assembly<'_, T> {
     /// The dofs of the next block, to be filled in ascending order.
+    #[inline(always)]
     pub fn dofs(&mut self) -> &mut Vec<u32> {
         &mut self.record.dofs
     }
@@ -126,6 +127,7 @@ impl<T: Real> Assembly<'_, T> {
 
 impl<T: Real> ConstraintRecord<T> {
     /// Forgets all rows and keeps their memory.
+    #[inline(always)]
     pub(super) fn clear(&mut self) {
         self.blocks.clear();
         self.pos.clear();

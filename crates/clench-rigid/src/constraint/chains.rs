@@ -22,6 +22,7 @@ pub(super) struct Chains<'a> {
 
 impl<'a> Chains<'a> {
     /// All dofs that move either body.
+    #[inline(always)]
     pub fn new<T: Real>(scene: &Scene<'a, T>, [body1, body2]: [usize; 2]) -> Self {
         let model = scene.model;
         let chain = |body: usize| match model.bodies[body].last_dof {
@@ -46,12 +47,14 @@ impl<'a> Chains<'a> {
     }
 
     /// Leaves out dofs that move both bodies: at one common point their motion has no difference.
+    #[inline(always)]
     pub fn without_common(mut self) -> Self {
         self.parts[0].0 = &[];
         self
     }
 
     /// Replaces `dofs` by those of the chains.
+    #[inline(always)]
     pub fn collect(&self, dofs: &mut Vec<u32>) {
         dofs.clear();
         for (part, _) in self.parts {
@@ -66,6 +69,7 @@ impl<'a> Chains<'a> {
     }
 
     /// Each dof and whom it moves, ascending.
+    #[inline(always)]
     pub fn iter(&self) -> impl Iterator<Item = (usize, Side)> {
         let parts = self.parts.into_iter();
         parts.flat_map(|(part, side)| part.iter().map(move |&dof| (dof as usize, side)))
@@ -92,6 +96,7 @@ impl<T: Real> BodyPoint<T> {
     }
 
     /// Acceleration of the body and of the point while no dof accelerates (J̇ v): angular, then linear at the point.
+    #[inline(always)]
     pub fn bias_acceleration(&self, scene: &Scene<T>) -> Motion<T> {
         let mut sum = Motion::ZERO;
         if let Some(last) = scene.model.bodies[self.body].last_dof {

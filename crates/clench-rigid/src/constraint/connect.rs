@@ -11,9 +11,10 @@
 use super::Scene;
 use super::assembly::{Assembly, Row};
 use super::chains::{BodyPoint, Chains, Side};
-use clench_math::{Motion, Real, Vec3};
+use clench_math::{Motion, Real, Vec3, kernel};
 use clench_solver::Cost;
 
+#[kernel]
 pub(super) fn push<T: Real>(
     scene: &Scene<T>,
     out: &mut Assembly<T>,
@@ -53,6 +54,7 @@ pub(super) struct Anchors<T> {
 }
 
 impl<T: Real> Anchors<T> {
+    #[inline(always)]
     pub fn new(scene: &Scene<T>, equality: usize, bodies: [usize; 2]) -> Self {
         let (pos, params) = (scene.position, scene.params);
         let local = [params.eq_anchor1[equality], params.eq_anchor2[equality]];
@@ -66,6 +68,7 @@ impl<T: Real> Anchors<T> {
     }
 
     /// Rows 0 to 2 of a Jacobian: velocity of the first point less that of the second.
+    #[inline(always)]
     pub fn fill_translation(&self, scene: &Scene<T>, chains: &Chains, jacobian: &mut [T]) {
         let ndof = chains.iter().count();
         let [first, second] = self.offsets;

@@ -20,13 +20,14 @@ use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
 use super::chains::{BodyPoint, Chains, Side};
 use super::{Scene, Softness};
 use crate::contact::Contact;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 use clench_solver::{Cost, FrictionCone};
 
 /// The most rows of a contact.
 const MAX_DIM: usize = 6;
 
 /// Makes a block of `contact`, the `index`-th of the workspace, where any lane touches and any dof is between the bodies.
+#[kernel]
 pub(super) fn push<T: Real>(
     scene: &Scene<T>,
     out: &mut Assembly<T>,
@@ -66,6 +67,7 @@ pub(super) fn push<T: Real>(
     });
 }
 
+#[inline(always)]
 fn rows<T: Real>(
     scene: &Scene<T>,
     contact: &Contact<T>,

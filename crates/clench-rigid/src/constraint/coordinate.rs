@@ -15,6 +15,7 @@ pub(super) enum Coordinate {
 
 impl Coordinate {
     /// Its value.
+    #[inline(always)]
     pub fn value<T: Real>(self, scene: &Scene<T>) -> T {
         match self {
             Coordinate::Joint(joint) => scene.state.qpos[scene.model.joints[joint].qpos],
@@ -23,6 +24,7 @@ impl Coordinate {
     }
 
     /// Its value in the initial configuration.
+    #[inline(always)]
     pub fn initial<T: Real>(self, scene: &Scene<T>) -> T {
         match self {
             Coordinate::Joint(joint) => scene.params.qpos0[scene.model.joints[joint].qpos],
@@ -31,6 +33,7 @@ impl Coordinate {
     }
 
     /// The inverse inertia that it sees in the initial configuration.
+    #[inline(always)]
     pub fn inverse_weight<T: Real>(self, scene: &Scene<T>) -> T {
         match self {
             Coordinate::Joint(joint) => scene.params.dof_invweight0[scene.model.joints[joint].dof],
@@ -39,6 +42,7 @@ impl Coordinate {
     }
 
     /// Adds its dofs to `dofs`, keeping them ascending and each once.
+    #[inline(always)]
     pub fn insert_dofs<T: Real>(self, scene: &Scene<T>, dofs: &mut Vec<u32>) {
         self.each(scene, |dof, _| {
             if let Err(place) = dofs.binary_search(&dof) {
@@ -48,6 +52,7 @@ impl Coordinate {
     }
 
     /// Adds `scale` times its gradient to a Jacobian row over the dofs that [`insert_dofs`](Self::insert_dofs) left.
+    #[inline(always)]
     pub fn add_gradient<T: Real>(self, scene: &Scene<T>, dofs: &[u32], scale: T, row: &mut [T]) {
         self.each(scene, |dof, coefficient| {
             if let Ok(column) = dofs.binary_search(&dof) {
@@ -56,6 +61,7 @@ impl Coordinate {
         });
     }
 
+    #[inline(always)]
     fn each<T: Real>(self, scene: &Scene<T>, mut visit: impl FnMut(u32, T)) {
         match self {
             Coordinate::Joint(joint) => visit(scene.model.joints[joint].dof as u32, T::ONE),

@@ -10,9 +10,10 @@
 use super::Scene;
 use super::assembly::{Assembly, Row};
 use super::coordinate::Coordinate;
-use clench_math::Real;
+use clench_math::{Real, kernel};
 use clench_solver::Cost;
 
+#[kernel]
 pub(super) fn push<T: Real>(
     scene: &Scene<T>,
     out: &mut Assembly<T>,
@@ -45,6 +46,7 @@ pub(super) fn push<T: Real>(
 }
 
 /// P(e) and P′(e).
+#[inline(always)]
 fn evaluate<T: Real>(polynomial: [T; 5], e: T) -> (T, T) {
     let (mut value, mut slope) = (polynomial[4], T::ZERO);
     for coefficient in polynomial[..4].iter().rev() {

@@ -10,10 +10,11 @@
 use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
 use super::coordinate::Coordinate;
 use super::{Scene, Softness};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 
 /// All dofs, then all tendons, that have a friction loss.
+#[kernel]
 pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
     let (model, params) = (scene.model, scene.params);
     for (i, dof) in model.dofs.iter().enumerate() {
@@ -62,6 +63,7 @@ struct Friction<T> {
 }
 
 impl<T: Real> Friction<T> {
+    #[inline(always)]
     fn push(self, scene: &Scene<T>, out: &mut Assembly<T>, fill: impl FnOnce(&[u32], &mut [T])) {
         let active = self.loss.gt(T::ZERO);
         if !active.any() {

@@ -13,10 +13,11 @@ use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
 use super::coordinate::Coordinate;
 use super::{Scene, Softness};
 use crate::model::JointKind;
-use clench_math::{Mask, Quat, Real};
+use clench_math::{Mask, Quat, Real, kernel};
 use clench_solver::Cost;
 
 /// All limits of joints.
+#[kernel]
 pub(super) fn push_joints<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
     let params = scene.params;
     for (i, joint) in scene.model.joints.iter().enumerate() {
@@ -41,6 +42,7 @@ pub(super) fn push_joints<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
 }
 
 /// All limits of tendons.
+#[kernel]
 pub(super) fn push_tendons<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
     let params = scene.params;
     for (i, tendon) in scene.model.tendons.iter().enumerate() {
@@ -69,6 +71,7 @@ struct Limit<'a, T> {
 
 impl<T: Real> Limit<'_, T> {
     /// Lower, then upper end of a coordinate's range.
+    #[inline(always)]
     fn push_range(
         &self,
         scene: &Scene<T>,
@@ -84,13 +87,20 @@ impl<T: Real> Limit<'_, T> {
             let dofs = out.dofs();
             dofs.clear();
             coordinate.insert_dofs(scene, dofs);
-            self.push(scene, out, dist, |dofs, jacobian| {
-                coordinate.add_gradient(scene, dofs, sign, jacobian);
-            });
+            self.push(
+                scene,
+                out,
+                dist,
+                #[inline(always)]
+                |dofs, jacobian| {
+                    coordinate.add_gradient(scene, dofs, sign, jacobian);
+                },
+            );
         }
     }
 
     /// The largest angle of a ball joint.
+    #[inline(always)]
     fn push_cone(&self, scene: &Scene<T>, out: &mut Assembly<T>, joint: usize) {
         let (qpos, dof) = {
             let joint = &scene.model.joints[joint];
@@ -109,6 +119,7 @@ impl<T: Real> Limit<'_, T> {
         self.push(scene, out, dist, |_, jacobian| (-axis).write(jacobian));
     }
 
+    #[inline(always)]
     fn push(
         &self,
         scene: &Scene<T>,

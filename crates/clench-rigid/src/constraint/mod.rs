@@ -42,6 +42,7 @@ struct Scene<'a, T: Real> {
 
 impl<T: Real> Scene<'_, T> {
     /// How soft an equality is at a violation of this size, and the record of its block.
+    #[inline(always)]
     fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
         let soft = Softness::new(
             self.params.eq_solref[equality],
@@ -125,6 +126,7 @@ pub fn assemble<T: Real>(
     }
 }
 
+#[inline(always)]
 fn least_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
     let floor = T::new(settings.solver.constraint_timeconst);
     if settings.flags.refsafe {

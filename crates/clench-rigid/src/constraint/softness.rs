@@ -16,7 +16,7 @@
 //! and limits are MuJoCo 4.0's (Computation, "Constraint model"), with one of our own: no time constant is shorter than
 //! `constraint_timeconst`.
 
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, array};
 
 /// Least R, and least width of the impedance's rise (MuJoCo's `mjMINVAL`).
 const MIN_VALUE: f64 = 1e-15;
@@ -41,8 +41,10 @@ impl<T: Real> Softness<T> {
     #[inline(always)]
     pub fn new(solref: [T; 2], solimp: [T; 5], r: T, least_timeconst: T) -> Self {
         let mixed = is_mixed(solref);
-        let solref =
-            std::array::from_fn(|i| T::select(mixed, T::new(DEFAULT_SOLREF[i]), solref[i]));
+        let solref = array(
+            #[inline(always)]
+            |i| T::select(mixed, T::new(DEFAULT_SOLREF[i]), solref[i]),
+        );
         let impedance = impedance(solimp, r);
         let (k, damping) = spring_damper(solref, solimp[1], least_timeconst);
         Softness {
@@ -71,6 +73,7 @@ impl<T: Real> Softness<T> {
     }
 }
 
+#[inline(always)]
 fn is_mixed<T: Real>(solref: [T; 2]) -> T::Mask {
     let [a, b] = solref.map(|x| x.gt(T::ZERO));
     (a & !b) | (!a & b)
@@ -121,6 +124,7 @@ pub fn impedance<T: Real>(solimp: [T; 5], r: T) -> T {
 }
 
 /// y(x) for 0 < x < 1.
+#[inline(always)]
 fn spline<T: Real>(x: T, midpoint: T, power: T) -> T {
     let below = x.le(midpoint);
     let base = T::select(below, x, T::ONE - x);
@@ -131,6 +135,7 @@ fn spline<T: Real>(x: T, midpoint: T, power: T) -> T {
 }
 
 /// base^exponent, exact for the usual exponents 1 and 2.
+#[inline(always)]
 fn raise<T: Real>(base: T, exponent: T) -> T {
     let first = exponent.eq(T::ONE);
     let usual = first | exponent.eq(T::new(2.0));

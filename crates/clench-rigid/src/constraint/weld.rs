@@ -16,9 +16,10 @@ use super::Scene;
 use super::assembly::{Assembly, Row};
 use super::chains::{Chains, Side};
 use super::connect::Anchors;
-use clench_math::{Quat, Real, Vec3};
+use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Cost;
 
+#[kernel]
 pub(super) fn push<T: Real>(
     scene: &Scene<T>,
     out: &mut Assembly<T>,
@@ -67,6 +68,7 @@ struct Relative<T> {
 }
 
 impl<T: Real> Relative<T> {
+    #[inline(always)]
     fn new(scene: &Scene<T>, equality: usize, [body1, body2]: [usize; 2]) -> Self {
         let (params, xquat) = (scene.params, &scene.position.xquat);
         let first = xquat[body1] * params.eq_quat1[equality];
@@ -79,11 +81,13 @@ impl<T: Real> Relative<T> {
     }
 
     /// B u.
+    #[inline(always)]
     fn rate(&self, u: Vec3<T>) -> Vec3<T> {
         half_product(u, self.rho)
     }
 
     /// J̇ v of the rows, from the bodies' angular accelerations while no dof accelerates.
+    #[inline(always)]
     fn bias(
         &self,
         scene: &Scene<T>,
@@ -100,6 +104,7 @@ impl<T: Real> Relative<T> {
         (self.rate(u_dot) + half_product(u, rho_dot) * half) * self.scale
     }
 
+    #[inline(always)]
     fn fill(&self, scene: &Scene<T>, chains: &Chains, jacobian: &mut [T]) {
         let ndof = chains.iter().count();
         for (column, (dof, side)) in chains.iter().enumerate() {
@@ -118,6 +123,7 @@ impl<T: Real> Relative<T> {
 }
 
 /// Imaginary part of ½ (0, u) q.
+#[inline(always)]
 fn half_product<T: Real>(u: Vec3<T>, q: Quat<T>) -> Vec3<T> {
     (u * q.w + u.cross(q.imaginary())) * T::new(0.5)
 }

@@ -7,7 +7,7 @@ use crate::model::{Model, Params};
 use crate::settings::StepSettings;
 use crate::workspace::{Positions, Workspace};
 use clench_collide::{Bound, Contacts, Pose, Shape, Sweep, collide};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 use clench_solver::MaxContacts;
 
 /// Above this many geoms the pairs are not listed but swept for: a list grows with the square.
@@ -54,6 +54,7 @@ impl<T: Real> Collision<T> {
     }
 
     /// Counts the lanes of a new contact; leaves those that are not full yet.
+    #[inline(always)]
     fn admit(&mut self, active: T::Mask, most: MaxContacts) -> T::Mask {
         let MaxContacts::Limit(most) = most else {
             return active;
@@ -66,6 +67,7 @@ impl<T: Real> Collision<T> {
 }
 
 /// Fills `ws.contacts` from the geoms' poses, in canonical order.
+#[kernel]
 pub fn detect<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -100,6 +102,7 @@ pub fn detect<T: Real>(
 }
 
 /// The points of one candidate.
+#[inline(always)]
 fn narrow<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -119,6 +122,7 @@ fn narrow<T: Real>(
 }
 
 /// Makes contacts of the points of one candidate.
+#[kernel]
 fn list<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -8,7 +8,7 @@
 
 use super::Candidate;
 use crate::model::{Model, Params};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, array};
 
 /// Weights below this count as none while stepping (MuJoCo's `mjMINVAL`).
 const MIN_WEIGHT: f64 = 1e-15;
@@ -52,6 +52,7 @@ pub fn contact_range<T: Real>(model: &Model, params: &Params<T>, pair: &Candidat
 }
 
 /// The parameters of every contact of a pair.
+#[inline(always)]
 pub fn contact_params<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -72,6 +73,7 @@ pub fn contact_params<T: Real>(
     mixed
 }
 
+#[inline(always)]
 fn pair_params<T: Real>(model: &Model, params: &Params<T>, pair: usize) -> ContactParams<T> {
     ContactParams {
         dim: model.pairs[pair].condim as usize,
@@ -84,6 +86,7 @@ fn pair_params<T: Real>(model: &Model, params: &Params<T>, pair: usize) -> Conta
 }
 
 /// The parameters of two geoms, without margin and override; `solmix` below `min_weight` counts as none.
+#[inline(always)]
 pub(crate) fn mixed_params<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -95,7 +98,10 @@ pub(crate) fn mixed_params<T: Real>(
     if geom_a.priority == geom_b.priority {
         condim = geom_a.condim.max(geom_b.condim);
         let (friction_a, friction_b) = (params.geom_friction[a], params.geom_friction[b]);
-        [slide, spin, roll] = std::array::from_fn(|i| friction_a[i].max(friction_b[i]));
+        [slide, spin, roll] = array(
+            #[inline(always)]
+            |i| friction_a[i].max(friction_b[i]),
+        );
         let weight = weight(params.geom_solmix[a], params.geom_solmix[b], min_weight);
         solref = mix_solref(params.geom_solref[a], params.geom_solref[b], weight);
         solimp = average(params.geom_solimp[a], params.geom_solimp[b], weight);
@@ -121,6 +127,7 @@ pub(crate) fn mixed_params<T: Real>(
 }
 
 /// The share of the first of two weights; halves where both vanish.
+#[inline(always)]
 fn weight<T: Real>(a: T, b: T, least: f64) -> T {
     let least = T::new(least);
     let (has_a, has_b) = (a.ge(least), b.ge(least));
@@ -129,15 +136,23 @@ fn weight<T: Real>(a: T, b: T, least: f64) -> T {
     T::select(both, a / T::select(both, a + b, T::ONE), T::new(0.5))
 }
 
+#[inline(always)]
 fn average<T: Real, const N: usize>(a: [T; N], b: [T; N], weight: T) -> [T; N] {
-    std::array::from_fn(|i| weight * a[i] + (T::ONE - weight) * b[i])
+    array(
+        #[inline(always)]
+        |i| weight * a[i] + (T::ONE - weight) * b[i],
+    )
 }
 
+#[inline(always)]
 fn mix_solref<T: Real>(a: [T; 2], b: [T; 2], weight: T) -> [T; 2] {
     let standard = a[0].gt(T::ZERO) & b[0].gt(T::ZERO);
     let mean = average(a, b, weight);
     if standard.all() {
         return mean;
     }
-    std::array::from_fn(|i| T::select(standard, mean[i], a[i].min(b[i])))
+    array(
+        #[inline(always)]
+        |i| T::select(standard, mean[i], a[i].min(b[i])),
+    )
 }

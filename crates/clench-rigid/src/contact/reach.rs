@@ -4,7 +4,7 @@ use super::Candidate;
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
 use clench_collide::{ShapeKind, allowance};
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Vec3, kernel};
 
 /// A sphere about a geom's origin.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,7 @@ pub(super) struct Reach<T> {
 }
 
 /// The spheres of all geoms of a configuration.
+#[kernel]
 pub(super) fn update<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -37,6 +38,7 @@ pub(super) fn update<T: Real>(
 }
 
 /// A geom's share of the distance within which contacts are listed.
+#[inline(always)]
 pub(super) fn own_margin<T: Real>(model: &Model, params: &Params<T>, geom: usize) -> T {
     let margin = if model.override_contacts {
         params.override_margin * T::new(0.5)

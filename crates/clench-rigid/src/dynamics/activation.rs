@@ -3,12 +3,13 @@
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::Positions;
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Mask, Real, Vec3, kernel};
 
 /// The shortest time constant (s) of a filter (MuJoCo's `mjMINVAL`).
 const SHORTEST: f64 = 1e-15;
 
 /// The control of actuator `u` within its range.
+#[inline(always)]
 pub fn control<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, u: usize) -> T {
     let ctrl = state.ctrl[u];
     if model.actuators[u].ctrllimited && model.flags.clampctrl {
@@ -19,11 +20,13 @@ pub fn control<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, u: 
     }
 }
 
+#[inline(always)]
 fn time_constant<T: Real>(params: &Params<T>, u: usize) -> T {
     params.actuator_dynprm[u][0].max(T::new(SHORTEST))
 }
 
 /// The rate of change of each activation (na).
+#[kernel]
 pub fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -45,6 +48,7 @@ pub fn activation_rates<T: Real>(
 
 /// The activation of actuator `u` a time step later, if its rate is `act_dot`, within its range. An exact filter
 /// approaches its control by 1 − exp(−h/τ) of the distance.
+#[inline(always)]
 pub fn next_activation<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -70,6 +74,7 @@ pub fn next_activation<T: Real>(
 }
 
 /// What the gain of actuator `u` multiplies: its control, or its activation (of the end of the step with `actearly`).
+#[inline(always)]
 pub fn input<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -91,6 +96,7 @@ pub fn input<T: Real>(
 /// other inputs pass unchanged.
 ///
 /// A servo has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
+#[inline(always)]
 pub fn nearest_setpoint<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -5,10 +5,11 @@ use crate::dynamics::transmission::transmission_dofs;
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// `act_dot`, `actuator_force` and `qfrc_actuator`, within the limits of tendons, actuators and joints, in this order. Gravity
 /// compensation of joints with `actgravcomp` is part of the joint's actuation, if the model has any actuator.
+#[kernel]
 pub fn actuation<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -46,6 +47,7 @@ pub fn actuation<T: Real>(
     finish_joints(model, params, force);
 }
 
+#[inline(always)]
 fn scalar_force<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -67,6 +69,7 @@ fn scalar_force<T: Real>(
 }
 
 /// Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
+#[inline(always)]
 fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut Forces<T>) {
     let limited = |transmission| match transmission {
         Transmission::Tendon(t) if model.tendons[t].actfrclimited => Some(t),
@@ -90,6 +93,7 @@ fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut F
     }
 }
 
+#[inline(always)]
 fn finish_joints<T: Real>(model: &Model, params: &Params<T>, force: &mut Forces<T>) {
     for (j, joint) in model.joints.iter().enumerate() {
         if joint.actgravcomp {

@@ -6,9 +6,10 @@
 use crate::dynamics::project::project_forces;
 use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::{Force, Motion, Real, Vec3};
+use clench_math::{Force, Motion, Real, Vec3, kernel};
 
 /// `qfrc_bias`, on the left side of the equation of motion.
+#[kernel]
 pub fn bias_forces<T: Real>(
     model: &Model,
     params: &Params<T>,

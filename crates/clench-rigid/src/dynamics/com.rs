@@ -2,12 +2,13 @@
 
 use crate::model::{JointKind, Model, Params};
 use crate::workspace::Positions;
-use clench_math::{Inertia, Motion, Real, Vec3};
+use clench_math::{Inertia, Motion, Real, Vec3, kernel};
 
 /// Below this mass (kg) a subtree's centre of mass is that of its top body (MuJoCo's `mjMINVAL`).
 const MASSLESS: f64 = 1e-15;
 
 /// `subtree_com`, `cinert` and `cdof` from the poses.
+#[kernel]
 pub fn com_positions<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T>) {
     subtree_com(model, params, pos);
     pos.cinert[0] = Inertia::ZERO;
@@ -23,6 +24,7 @@ pub fn com_positions<T: Real>(model: &Model, params: &Params<T>, pos: &mut Posit
     dof_axes(model, pos);
 }
 
+#[inline(always)]
 fn subtree_com<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T>) {
     for ((com, &xipos), &mass) in (pos.subtree_com.iter_mut())
         .zip(&pos.xipos)
@@ -47,6 +49,7 @@ fn subtree_com<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T
 /// The spatial motion of each dof at unit velocity: for a rotation about an axis through an anchor, the linear part at
 /// the centre of mass is axis × (com − anchor). Ball and free joints rotate about the body's own axes as they end up; a
 /// free joint translates along the world's.
+#[inline(always)]
 fn dof_axes<T: Real>(model: &Model, pos: &mut Positions<T>) {
     for (j, joint) in model.joints.iter().enumerate() {
         let offset = pos.subtree_com[model.bodies[joint.body].root] - pos.xanchor[j];

@@ -3,7 +3,7 @@
 use crate::dynamics::spring::{JointStretch, joint_stretch, tendon_stretch};
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
-use clench_math::Real;
+use clench_math::{Real, kernel};
 use clench_solver::TreeMatrix;
 
 /// Energy of a state, J.
@@ -16,6 +16,7 @@ pub struct Energy<T> {
 }
 
 /// The energy at the positions of `pos` and `qpos`, with velocities `qvel` and the mass matrix at those positions.
+#[kernel]
 pub fn energy<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -40,6 +41,7 @@ pub fn energy<T: Real>(
 }
 
 /// ½ k x² of every spring.
+#[inline(always)]
 fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>, qpos: &[T]) -> T {
     let half = T::new(0.5);
     let mut energy = T::ZERO;
@@ -59,6 +61,7 @@ fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>,
 }
 
 /// ½ vᵀ M v, each pair of the lower triangle once.
+#[inline(always)]
 fn kinetic_energy<T: Real>(model: &Model, mass: &TreeMatrix<T>, qvel: &[T]) -> T {
     let half = T::new(0.5);
     let mut energy = T::ZERO;

@@ -7,9 +7,10 @@ use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit};
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// Advances the state by a time step, from the accelerations and forces of `ws`.
+#[kernel]
 pub fn euler<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -30,6 +31,7 @@ pub fn euler<T: Real>(
 }
 
 /// Solves with M + h B in the lanes that are `damped`.
+#[inline(always)]
 fn damped_acceleration<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -11,18 +11,20 @@
 use crate::dynamics::project::{force_at, project_forces};
 use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::{Force, Mask, Motion, Real, Vec3};
+use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 use std::f64::consts::PI;
 
 /// Below this mass (kg) a body feels no medium; also the least (kg m²) of a box's squared sides (MuJoCo's `mjMINVAL`).
 const TINY: f64 = 1e-15;
 
 /// Whether any lane has a medium.
+#[inline(always)]
 pub fn has_fluid<T: Real>(params: &Params<T>) -> bool {
     !(params.density.eq(T::ZERO) & params.viscosity.eq(T::ZERO)).all()
 }
 
 /// `qfrc_fluid` (zero without a medium).
+#[kernel]
 pub fn fluid_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -54,6 +56,7 @@ pub struct Drag<T> {
 
 impl<T: Real> Drag<T> {
     /// The resistance to body `b` as it moves now.
+    #[inline(always)]
     pub fn new(
         model: &Model,
         params: &Params<T>,
@@ -96,24 +99,17 @@ impl<T: Real> Drag<T> {
     }
 
     /// The force on the body, about the reference point of its tree.
+    #[inline(always)]
     pub fn force(&self, model: &Model, pos: &Positions<T>) -> Force<T> {
-        let resist = |c1: T, c2: T, v: T| -(c1 * v + c2 * v.abs() * v);
-        let part = |c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>| {
-            Vec3::new(
-                resist(c1.x, c2.x, v.x),
-                resist(c1.y, c2.y, v.y),
-                resist(c1.z, c2.z, v.z),
-            )
-        };
         self.to_world(
             model,
             pos,
-            part(
+            resistance(
                 self.viscous.angular,
                 self.quadratic.angular,
                 self.velocity.angular,
             ),
-            part(
+            resistance(
                 self.viscous.linear,
                 self.quadratic.linear,
                 self.velocity.linear,
@@ -122,26 +118,19 @@ impl<T: Real> Drag<T> {
     }
 
     /// The change of [`force`](Self::force) with a change `motion` of the body's velocity.
+    #[inline(always)]
     pub fn derivative(&self, model: &Model, pos: &Positions<T>, motion: Motion<T>) -> Force<T> {
         let local = local_velocity(model, pos, self.body, motion);
-        let slope = |c1: T, c2: T, v: T| -(c1 + T::new(2.0) * c2 * v.abs());
-        let part = |c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>, dv: Vec3<T>| {
-            Vec3::new(
-                slope(c1.x, c2.x, v.x) * dv.x,
-                slope(c1.y, c2.y, v.y) * dv.y,
-                slope(c1.z, c2.z, v.z) * dv.z,
-            )
-        };
         self.to_world(
             model,
             pos,
-            part(
+            resistance_slope(
                 self.viscous.angular,
                 self.quadratic.angular,
                 self.velocity.angular,
                 local.angular,
             ),
-            part(
+            resistance_slope(
                 self.viscous.linear,
                 self.quadratic.linear,
                 self.velocity.linear,
@@ -150,6 +139,7 @@ impl<T: Real> Drag<T> {
         )
     }
 
+    #[inline(always)]
     fn to_world(
         &self,
         model: &Model,
@@ -163,6 +153,7 @@ impl<T: Real> Drag<T> {
 }
 
 /// A spatial velocity at the body's centre of mass, in its inertial frame.
+#[inline(always)]
 fn local_velocity<T: Real>(
     model: &Model,
     pos: &Positions<T>,
@@ -174,5 +165,27 @@ fn local_velocity<T: Real>(
     Motion::new(
         axes.transpose_mul(motion.angular),
         axes.transpose_mul(motion.velocity_at(arm)),
+    )
+}
+
+/// −(c₁ v + c₂ |v| v), axis by axis.
+#[inline(always)]
+fn resistance<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>) -> Vec3<T> {
+    let axis = |c1: T, c2: T, v: T| -(c1 * v + c2 * v.abs() * v);
+    Vec3::new(
+        axis(c1.x, c2.x, v.x),
+        axis(c1.y, c2.y, v.y),
+        axis(c1.z, c2.z, v.z),
+    )
+}
+
+/// The change of [`resistance`] with a change `dv` of the velocity.
+#[inline(always)]
+fn resistance_slope<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>, dv: Vec3<T>) -> Vec3<T> {
+    let axis = |c1: T, c2: T, v: T| -(c1 + T::new(2.0) * c2 * v.abs());
+    Vec3::new(
+        axis(c1.x, c2.x, v.x) * dv.x,
+        axis(c1.y, c2.y, v.y) * dv.y,
+        axis(c1.z, c2.z, v.z) * dv.z,
     )
 }

@@ -10,9 +10,10 @@ use crate::dynamics::slopes::add_velocity_slopes;
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// Advances the state by a time step, from the accelerations and forces of `ws`.
+#[kernel]
 pub fn implicit_fast<T: Real>(
     model: &Model,
     params: &Params<T>,

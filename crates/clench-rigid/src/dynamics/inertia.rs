@@ -5,10 +5,11 @@
 
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
-use clench_math::Real;
+use clench_math::{Real, kernel};
 use clench_solver::TreeMatrix;
 
 /// `crb` and the mass matrix, armature included.
+#[kernel]
 pub fn composite_inertia<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -4,7 +4,7 @@ use crate::dynamics::activation::{nearest_setpoint, next_activation};
 use crate::model::{DynamicsKind, JointKind, Model, Params};
 use crate::state::State;
 use crate::workspace::{Positions, Workspace};
-use clench_math::{Quat, Real, Vec3};
+use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::{Tree, TreeFactor, TreeMatrix};
 
 /// Memory of the integrators.
@@ -60,6 +60,7 @@ impl<T: Real> Integration<T> {
 }
 
 /// `out += x · scale`, entry by entry.
+#[inline(always)]
 pub fn add_scaled<T: Real>(out: &mut [T], x: &[T], scale: T) {
     for (out, &x) in out.iter_mut().zip(x) {
         *out += x * scale;
@@ -67,6 +68,7 @@ pub fn add_scaled<T: Real>(out: &mut [T], x: &[T], scale: T) {
 }
 
 /// Moves `qpos` along `velocity` (nv) for `time` seconds. Orientations turn about the child's axes.
+#[kernel]
 pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T], time: T) {
     for joint in &model.joints {
         let (mut q, mut v) = (&mut qpos[joint.qpos..], &velocity[joint.dof..]);
@@ -85,6 +87,7 @@ pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T
 }
 
 /// Moves activations by `act_dot`; those of disabled actuators stay where they are.
+#[kernel]
 pub fn advance_activations<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -111,6 +114,7 @@ pub fn advance_activations<T: Real>(
 
 /// Solves `integration.matrix` · a = τ + Jᵀf for `integration.qacc`; lanes of `wanted` whose matrix is not positive definite
 /// are marked singular.
+#[inline(always)]
 pub fn solve_implicit<T: Real>(tree: &Tree, wanted: T::Mask, ws: &mut Workspace<T>) {
     let Integration {
         matrix,
@@ -127,6 +131,7 @@ pub fn solve_implicit<T: Real>(tree: &Tree, wanted: T::Mask, ws: &mut Workspace<
 }
 
 /// Activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit Euler), then time.
+#[inline(always)]
 pub fn advance_semi_implicit<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -10,11 +10,12 @@
 use crate::model::{JointKind, Model, Params};
 use crate::state::State;
 use crate::workspace::Positions;
-use clench_math::{Mat3, Quat, Real, Vec3};
+use clench_math::{Mat3, Quat, Real, Vec3, kernel};
 
 /// Poses of bodies, inertial frames, joints, geoms and sites from `state.qpos` and the mocap poses.
 ///
 /// Quaternions need not be of unit length: they are read normalized, and never written.
+#[kernel]
 pub fn kinematics<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -35,6 +36,7 @@ pub fn kinematics<T: Real>(
 }
 
 /// The rotation of each joint from its position at `qpos0` (a ball or free joint's whole orientation).
+#[inline(always)]
 fn joint_turns<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], turns: &mut [Quat<T>]) {
     for ((joint, &axis), turn) in model.joints.iter().zip(&params.jnt_axis).zip(turns) {
         let q = &qpos[joint.qpos..];
@@ -51,6 +53,7 @@ fn joint_turns<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], turns: &m
 
 /// The pose of body `b`; its joints' anchors and axes are written to `pos`. Factors of a product of unit quaternions
 /// leave it of unit length but for rounding, so that only what the user sets is normalized.
+#[inline(always)]
 fn body_pose<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -91,25 +94,24 @@ fn body_pose<T: Real>(
 }
 
 /// Inertial frames, geoms and sites, each fixed to its body.
+#[inline(always)]
 fn attached_poses<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T>) {
     for b in 0..model.nbody() {
         let body = &model.bodies[b];
         let (xpos, xquat, xmat) = (pos.xpos[b], pos.xquat[b], pos.xmat[b]);
-        let place = |local: Vec3<T>| xpos + xmat * local;
-        let turn = |local: Quat<T>| (xquat * local).to_matrix();
         if body.simple_inertia {
             (pos.xipos[b], pos.ximat[b]) = (xpos, xmat);
         } else {
-            pos.xipos[b] = place(params.body_ipos[b]);
-            pos.ximat[b] = turn(params.body_iquat[b]);
+            pos.xipos[b] = xpos + xmat * params.body_ipos[b];
+            pos.ximat[b] = (xquat * params.body_iquat[b]).to_matrix();
         }
         for g in body.geoms.clone() {
-            pos.geom_xpos[g] = place(params.geom_pos[g]);
-            pos.geom_xmat[g] = turn(params.geom_quat[g]);
+            pos.geom_xpos[g] = xpos + xmat * params.geom_pos[g];
+            pos.geom_xmat[g] = (xquat * params.geom_quat[g]).to_matrix();
         }
         for s in body.sites.clone() {
-            pos.site_xpos[s] = place(params.site_pos[s]);
-            pos.site_xmat[s] = turn(params.site_quat[s]);
+            pos.site_xpos[s] = xpos + xmat * params.site_pos[s];
+            pos.site_xmat[s] = (xquat * params.site_quat[s]).to_matrix();
         }
     }
 }

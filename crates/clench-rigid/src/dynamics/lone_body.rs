@@ -14,10 +14,11 @@
 
 use crate::model::{JointKind, Model, Params};
 use crate::workspace::{Positions, Workspace};
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Vec3, kernel};
 use std::array::from_fn;
 
 /// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
+#[inline(always)]
 pub fn is_lone_body(model: &Model, j: usize) -> bool {
     let joint = &model.joints[j];
     let (tree, after) = (&model.tree, joint.dof + 6);
@@ -26,6 +27,7 @@ pub fn is_lone_body(model: &Model, j: usize) -> bool {
 }
 
 /// Replaces the joint's part of `integration.qacc`.
+#[kernel]
 pub fn solve_lone_body<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -44,6 +46,7 @@ pub fn solve_lone_body<T: Real>(
 }
 
 /// Adds h ∂bias/∂v.
+#[inline(always)]
 fn add_bias_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -72,6 +75,7 @@ fn add_bias_slope<T: Real>(
 
 /// Solves six equations, each with its right side as the seventh number, by elimination. The pivot of each column is
 /// brought up by exchanging rows, lane by lane.
+#[inline(always)]
 fn solve6<T: Real>(mut rows: [[T; 7]; 6]) -> [T; 6] {
     for k in 0..6 {
         let (above, below) = rows.split_at_mut(k + 1);

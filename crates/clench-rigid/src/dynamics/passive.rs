@@ -6,10 +6,11 @@ use crate::dynamics::spring::{JointStretch, joint_stretch, tendon_stretch};
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::{Force, Mask, Real, Vec3};
+use clench_math::{Force, Mask, Real, Vec3, kernel};
 
 /// `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid` and their sum `qfrc_passive`. Gravity compensation of joints
 /// with `actgravcomp` is left to the actuators. As in MuJoCo, without springs and dampers there is nothing passive at all.
+#[kernel]
 pub fn passive_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -44,6 +45,7 @@ pub fn passive_forces<T: Real>(
     }
 }
 
+#[inline(always)]
 fn springs<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -81,6 +83,7 @@ fn springs<T: Real>(
     }
 }
 
+#[inline(always)]
 fn dampers<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -98,6 +101,7 @@ fn dampers<T: Real>(
 }
 
 /// Each body's weight, or the share of it that `gravcomp` says, is held at its centre of mass.
+#[inline(always)]
 fn gravity_compensation<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -2,7 +2,7 @@
 
 use crate::model::Model;
 use crate::workspace::Positions;
-use clench_math::{Force, Real, Vec3};
+use clench_math::{Force, Real, Vec3, kernel};
 
 /// The spatial force, about the reference point of its tree, of a force and a torque that act on body `b` at `point`.
 #[inline(always)]
@@ -20,6 +20,7 @@ pub fn force_at<T: Real>(
 
 /// Adds the dof forces of one spatial force a body to `qfrc`. `forces` is used up: afterwards each holds the force on the
 /// body and all below it.
+#[kernel]
 pub fn project_forces<T: Real>(
     model: &Model,
     pos: &Positions<T>,

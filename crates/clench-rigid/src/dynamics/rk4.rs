@@ -15,7 +15,7 @@ use crate::dynamics::integrate::{
 use crate::model::{JointKind, Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Vec3, kernel};
 
 /// Where stages 1, 2 and 3 lie, in time steps.
 const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
@@ -26,6 +26,7 @@ const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 const SMALL: f64 = 0.01;
 
 /// Advances the state by a time step. `ws` holds the forward dynamics of `state`; `forward` computes them elsewhere.
+#[kernel]
 pub fn rk4<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -62,6 +63,7 @@ pub fn rk4<T: Real>(
 }
 
 /// Keeps the state, and the rates of stage 0.
+#[kernel]
 fn begin<T: Real>(state: &State<T>, ws: &mut Workspace<T>) {
     let Integration {
         start, stage, mean, ..
@@ -78,12 +80,14 @@ fn begin<T: Real>(state: &State<T>, ws: &mut Workspace<T>) {
     add_weighted(mean, stage, T::new(WEIGHTS[0]));
 }
 
+#[inline(always)]
 fn restore<T: Real>(start: &Rates<T>, state: &mut State<T>) {
     state.qpos.copy_from_slice(&start.position);
     state.qvel.copy_from_slice(&start.velocity);
     state.act.copy_from_slice(&start.activation);
 }
 
+#[kernel]
 fn add_weighted<T: Real>(mean: &mut Rates<T>, stage: &Rates<T>, weight: T) {
     add_scaled(&mut mean.position, &stage.position, weight);
     add_scaled(&mut mean.velocity, &stage.velocity, weight);
@@ -91,6 +95,7 @@ fn add_weighted<T: Real>(mean: &mut Rates<T>, stage: &Rates<T>, weight: T) {
 }
 
 /// Takes the rates of a stage that was reached by going `step` along the stage before.
+#[kernel]
 fn collect<T: Real>(model: &Model, state: &State<T>, step: T, weight: T, ws: &mut Workspace<T>) {
     let Integration { stage, mean, .. } = &mut ws.integration;
     for joint in &model.joints {
@@ -114,6 +119,7 @@ fn collect<T: Real>(model: &Model, state: &State<T>, step: T, weight: T, ws: &mu
 }
 
 /// u̇ of the rotation vector u while its end turns at ω (see above).
+#[inline(always)]
 fn increment_rate<T: Real>(u: Vec3<T>, omega: Vec3<T>) -> Vec3<T> {
     let squared = u.norm_squared();
     let series = T::new(1.0 / 12.0)

@@ -11,10 +11,11 @@ use crate::dynamics::transmission::transmission_dofs;
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 use clench_solver::TreeMatrix;
 
 /// `matrix += scale · D`.
+#[kernel]
 pub fn add_velocity_slopes<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -50,6 +51,7 @@ pub fn add_velocity_slopes<T: Real>(
 }
 
 /// Adds `scale · JᵀJ` of a sparse row J, where the pattern has room for it.
+#[inline(always)]
 fn add_outer<T: Real>(
     model: &Model,
     row: impl Iterator<Item = (usize, T)> + Clone,
@@ -70,6 +72,7 @@ fn add_outer<T: Real>(
 }
 
 /// ∂force/∂velocity of actuator `u`; zero where a limit of the actuator, its tendon or its joint holds the force.
+#[inline(always)]
 fn actuator_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -111,6 +114,7 @@ fn actuator_slope<T: Real>(
 }
 
 /// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i.
+#[inline(always)]
 fn add_fluid<T: Real>(
     model: &Model,
     params: &Params<T>,

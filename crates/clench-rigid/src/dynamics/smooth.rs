@@ -4,10 +4,11 @@ use crate::dynamics::project::{force_at, project_forces};
 use crate::model::Model;
 use crate::state::State;
 use crate::workspace::{Forces, Positions};
-use clench_math::{Force, Mask, Real};
+use clench_math::{Force, Mask, Real, kernel};
 use clench_solver::Problem;
 
 /// `qfrc_smooth`: passive + actuator + applied − bias.
+#[kernel]
 pub fn smooth_forces<T: Real>(
     model: &Model,
     state: &State<T>,

@@ -14,6 +14,7 @@ pub enum JointStretch<T> {
 }
 
 /// The stretch of joint `j`; `None` where no lane has a spring there.
+#[inline(always)]
 pub fn joint_stretch<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -41,6 +42,7 @@ pub fn joint_stretch<T: Real>(
 }
 
 /// How far tendon `t` of length `length` is outside the dead band of its spring.
+#[inline(always)]
 pub fn tendon_stretch<T: Real>(params: &Params<T>, t: usize, length: T) -> T {
     let [low, high] = params.tendon_lengthspring[t];
     let below = T::select(length.lt(low), length - low, T::ZERO);

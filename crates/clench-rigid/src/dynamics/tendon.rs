@@ -2,9 +2,10 @@
 
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// The dofs of a fixed tendon with their weights.
+#[inline(always)]
 pub fn terms<'a, T: Real>(
     model: &'a Model,
     params: &'a Params<T>,
@@ -17,6 +18,7 @@ pub fn terms<'a, T: Real>(
 }
 
 /// `ten_length` at `qpos`.
+#[kernel]
 pub fn tendon_lengths<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -33,6 +35,7 @@ pub fn tendon_lengths<T: Real>(
 }
 
 /// Rate of change of each tendon's length (ntendon).
+#[kernel]
 pub fn tendon_velocities<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -48,6 +51,7 @@ pub fn tendon_velocities<T: Real>(
 }
 
 /// Adds the joint forces of tendon `tendon` pulling with `force` to `qfrc`.
+#[inline(always)]
 pub fn add_tendon_force<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -3,9 +3,10 @@
 use crate::dynamics::tendon;
 use crate::model::{Joint, JointKind, Model, Params, Transmission};
 use crate::workspace::Positions;
-use clench_math::{Quat, Real, Vec3};
+use clench_math::{Quat, Real, Vec3, kernel};
 
 /// The dofs that a transmission acts on: where its row of `actuator_moment` may be nonzero.
+#[inline(always)]
 pub fn transmission_dofs(
     model: &Model,
     transmission: Transmission,
@@ -24,6 +25,7 @@ pub fn transmission_dofs(
 ///
 /// A ball joint's length is its rotation vector along the gear, a free joint has none (zero); their gears are wrenches in
 /// the child's frame, or for [`Transmission::JointInParent`] in the parent's.
+#[kernel]
 pub fn transmission<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -59,6 +61,7 @@ pub fn transmission<T: Real>(
 }
 
 /// Writes the moment arms on a joint that stands at `q`, or at the rotation `turn`, and returns the length.
+#[inline(always)]
 fn joint_arms<T: Real>(
     joint: &Joint,
     q: T,
@@ -67,27 +70,31 @@ fn joint_arms<T: Real>(
     in_parent: bool,
     arms: &mut [T],
 ) -> T {
-    let to_child = |wrench: Vec3<T>| {
-        if in_parent {
-            turn.conjugate().rotate(wrench)
-        } else {
-            wrench
-        }
-    };
     match joint.kind {
         JointKind::Slide | JointKind::Hinge => {
             arms[0] = gear[0];
             q * gear[0]
         }
         JointKind::Ball => {
-            let axis = to_child(Vec3::from_slice(gear));
+            let axis = to_child(turn, in_parent, gear);
             axis.write(arms);
             turn.to_rotation_vector().dot(axis)
         }
         JointKind::Free => {
             Vec3::from_slice(gear).write(arms);
-            to_child(Vec3::from_slice(&gear[3..])).write(&mut arms[3..]);
+            to_child(turn, in_parent, &gear[3..]).write(&mut arms[3..]);
             T::ZERO
         }
+    }
+}
+
+/// A torque on a joint that stands at the rotation `turn`, along the axes of the child.
+#[inline(always)]
+fn to_child<T: Real>(turn: Quat<T>, in_parent: bool, torque: &[T]) -> Vec3<T> {
+    let torque = Vec3::from_slice(torque);
+    if in_parent {
+        turn.conjugate().rotate(torque)
+    } else {
+        torque
     }
 }

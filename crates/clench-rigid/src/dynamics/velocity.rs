@@ -4,9 +4,10 @@ use crate::dynamics::tendon;
 use crate::dynamics::transmission::transmission_dofs;
 use crate::model::{JointKind, Model, Params};
 use crate::workspace::{Positions, Velocities};
-use clench_math::{Motion, Real};
+use clench_math::{Motion, Real, kernel};
 
 /// `cvel`, `cdof_dot`, tendon and actuator velocities.
+#[kernel]
 pub fn velocities<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -32,6 +33,7 @@ pub fn velocities<T: Real>(
 /// A body moves as its parent does, plus its own dofs. An axis fixed in the frame before its joint moves with that
 /// frame's velocity. The axes of a ball joint are the body's own, but turning about one of them by their common velocity
 /// is of no account: what counts is Σ ċ_k v_k, and ω × ω = 0. A free joint's translations keep the world's axes.
+#[inline(always)]
 fn body_velocities<T: Real>(
     model: &Model,
     pos: &Positions<T>,

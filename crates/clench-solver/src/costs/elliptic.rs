@@ -80,6 +80,7 @@ impl<T: Real> Zone<T> {
         }
     }
 
+    #[inline(always)]
     fn cost(&self) -> T {
         T::new(0.5) * self.k * (self.p * self.p + self.q * self.q)
     }
@@ -92,6 +93,7 @@ fn stiffening<T: Real>(rows: Rows<T>) -> T {
 }
 
 impl<T: Real> BlockCost<T> for Elliptic {
+    #[inline(always)]
     fn pieces(_: usize) -> usize {
         1
     }

@@ -14,6 +14,7 @@ use clench_math::{Mask, Real};
 pub(crate) struct Huber;
 
 impl<T: Real> BlockCost<T> for Huber {
+    #[inline(always)]
     fn pieces(dim: usize) -> usize {
         dim
     }

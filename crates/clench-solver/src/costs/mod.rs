@@ -41,6 +41,7 @@ pub(crate) struct Tally<T: Real> {
 }
 
 impl<T: Real> Tally<T> {
+    #[inline(always)]
     pub fn new() -> Self {
         Tally {
             cost: T::ZERO,

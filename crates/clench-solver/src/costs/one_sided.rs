@@ -13,6 +13,7 @@ use clench_math::{Mask, Real};
 pub(crate) struct OneSided;
 
 impl<T: Real> BlockCost<T> for OneSided {
+    #[inline(always)]
     fn pieces(dim: usize) -> usize {
         dim
     }

@@ -19,6 +19,7 @@ use clench_math::{Mask, Real};
 pub(crate) struct Pyramid;
 
 impl<T: Real> BlockCost<T> for Pyramid {
+    #[inline(always)]
     fn pieces(dim: usize) -> usize {
         2 * dim.saturating_sub(1)
     }
@@ -107,6 +108,7 @@ impl<T: Real> BlockCost<T> for Pyramid {
 
 impl Pyramid {
     /// Writes the force λ along each edge.
+    #[inline(always)]
     pub(crate) fn edge_forces<T: Real>(rows: Rows<T>, y: &[T], edges: &mut [T]) {
         for j in 1..rows.d.len() {
             let side = rows.shape[j] * y[j];

@@ -11,6 +11,7 @@ use clench_math::Real;
 pub(crate) struct Quadratic;
 
 impl<T: Real> BlockCost<T> for Quadratic {
+    #[inline(always)]
     fn pieces(_: usize) -> usize {
         0
     }
@@ -31,6 +32,7 @@ impl<T: Real> BlockCost<T> for Quadratic {
         Form::Diagonal
     }
 
+    #[inline(always)]
     fn changes(_: Rows<T>, _: &[T], _: &[T], _: impl FnMut(RankOne<T>)) {}
 
     #[inline(always)]

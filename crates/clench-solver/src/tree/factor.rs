@@ -5,7 +5,7 @@
 //! contributes an exact zero, **so that a larger pattern gives the same bits**.
 
 use super::{Tree, TreeMatrix};
-use clench_math::{Mask, Real, Scalar};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// Columns summed at a time: one or a few registers.
 const WIDTH: usize = 4;
@@ -30,6 +30,7 @@ impl<T: Real> TreeFactor<T> {
         factor
     }
 
+    #[inline(always)]
     pub(crate) fn resize(&mut self, tree: &Tree) {
         self.lower.resize(tree.nnz(), T::ZERO);
         self.scaled.resize(tree.nnz(), T::ZERO);
@@ -49,6 +50,7 @@ impl<T: Real> TreeFactor<T> {
     }
 
     /// Factors; pivots below `floor` times the diagonal are replaced by the diagonal.
+    #[kernel]
     fn factor_above(&mut self, tree: &Tree, matrix: &TreeMatrix<T>, floor: T) -> T::Mask {
         self.resize(tree);
         let mut positive = T::Mask::splat(true);
@@ -104,6 +106,7 @@ impl<T: Real> TreeFactor<T> {
     ///
     /// Method C1 of Gill, Golub, Murray and Saunders (*Methods for modifying matrix
     /// factorizations*, 1974), from the last row to the first.
+    #[kernel]
     pub(crate) fn update(
         &mut self,
         tree: &Tree,
@@ -133,6 +136,7 @@ impl<T: Real> TreeFactor<T> {
     }
 
     /// Takes the lanes of `mask` from `other`, a factor over the same tree.
+    #[kernel]
     pub(crate) fn take(&mut self, mask: T::Mask, other: &TreeFactor<T>) {
         for (to, from) in [
             (&mut self.lower, &other.lower),
@@ -172,6 +176,7 @@ impl<T: Real> TreeFactor<T> {
     }
 
     /// `x ← A⁻¹ x`.
+    #[kernel]
     pub fn solve(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);
         for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
@@ -192,6 +197,7 @@ impl<T: Real> TreeFactor<T> {
     }
 
     /// `x ← D^(-1/2) L^(-T) x`: afterwards `x·y` is the product `xᵀA⁻¹y` of what was given.
+    #[kernel]
     pub fn solve_half(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);
         for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
@@ -199,6 +205,7 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
+    #[inline(always)]
     fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
         for k in (0..tree.nv()).rev() {
             let (first, lead, others) = tree.split_row(k);

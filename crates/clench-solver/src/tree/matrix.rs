@@ -1,7 +1,7 @@
 //! A symmetric matrix in the pattern of a tree.
 
 use super::Tree;
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// A symmetric matrix in the pattern of a [`Tree`]: its lower triangle, row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,14 +18,17 @@ impl<T: Real> TreeMatrix<T> {
         }
     }
     /// The stored values of row `i`.
+    #[inline(always)]
     pub fn row<'a>(&'a self, tree: &Tree, i: usize) -> &'a [T] {
         &self.values[tree.starts[i]..tree.starts[i + 1]]
     }
     /// The stored values of row `i`, to be written.
+    #[inline(always)]
     pub fn row_mut<'a>(&'a mut self, tree: &Tree, i: usize) -> &'a mut [T] {
         &mut self.values[tree.starts[i]..tree.starts[i + 1]]
     }
     /// `out = A x`.
+    #[kernel]
     pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
         for i in 0..tree.nv() {
             let (first, lead, others) = tree.split_row(i);
