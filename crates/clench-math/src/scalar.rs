@@ -5,14 +5,27 @@ use crate::real::{Real, Scalar};
 use crate::{Instructions, LaneTask};
 
 macro_rules! scalar {
-    ($t:ident, $bits:ident) => {
-        const _: () = {
+    ($t:ident, $bits:ident, $layout:ident) => {
+        /// How the bits of a number are used.
+        pub(crate) mod $layout {
             /// Bits of the fraction.
-            const FRACTION: u32 = $t::MANTISSA_DIGITS - 1;
+            pub const FRACTION: u32 = $t::MANTISSA_DIGITS - 1;
+            /// Ones where the fraction is.
+            pub const FRACTION_MASK: $bits = (1 << FRACTION) - 1;
             /// What is added to an exponent before it is stored.
-            const BIAS: $bits = $t::MAX_EXP as $bits - 1;
+            pub const BIAS: $bits = $t::MAX_EXP as $bits - 1;
             /// 1.5 × 2^FRACTION: added to a small integer, it leaves that integer in the low bits of the fraction.
-            const INTEGERS: $t = ((3 as $bits) << (FRACTION - 1)) as $t;
+            pub const INTEGERS: $t = ((3 as $bits) << (FRACTION - 1)) as $t;
+            /// The same, and the bias of an exponent that was added as stored.
+            pub const BIASED_INTEGERS: $t = INTEGERS + BIAS as $t;
+            /// √½.
+            pub const ROOT_HALF: $bits = (std::f64::consts::FRAC_1_SQRT_2 as $t).to_bits();
+            /// Added to the bits of a number it multiplies it by √2, so to speak: the exponent then steps at √½ · 2ᵏ, and the
+            /// fraction is 0 there.
+            pub const TO_ROOT_HALF: $bits = (1 as $t).to_bits() - ROOT_HALF;
+        }
+        const _: () = {
+            use $layout::*;
 
             impl Real for $t {
                 type Scalar = $t;
@@ -107,15 +120,10 @@ macro_rules! scalar {
                 }
                 #[inline(always)]
                 fn split_exponent(self) -> ($t, $t) {
-                    let root_half = $t::to_bits(std::f64::consts::FRAC_1_SQRT_2 as $t);
-                    // Multiplied by √2 in the sense of bits: the exponent then steps at √½ · 2ᵏ, and the fraction is 0 there.
-                    let moved = self.to_bits().wrapping_add((1 as $t).to_bits() - root_half);
+                    let moved = self.to_bits().wrapping_add(TO_ROOT_HALF);
                     let exponent = $t::from_bits(INTEGERS.to_bits() + (moved >> FRACTION));
-                    let fraction = moved & ((1 << FRACTION) - 1);
-                    (
-                        exponent - (INTEGERS + BIAS as $t),
-                        $t::from_bits(fraction + root_half),
-                    )
+                    let mantissa = $t::from_bits((moved & FRACTION_MASK) + ROOT_HALF);
+                    (exponent - BIASED_INTEGERS, mantissa)
                 }
             }
 
@@ -141,5 +149,5 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f64, u64);
-scalar!(f32, u32);
+scalar!(f64, u64, double);
+scalar!(f32, u32, single);

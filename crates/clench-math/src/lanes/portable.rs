@@ -78,6 +78,15 @@ unsafe impl<S: Scalar, const N: usize> Registers<S, N> for Portable {
         from_fn(|i| a[i].floor())
     }
     #[inline(always)]
+    fn exp2_integer(a: [S; N]) -> [S; N] {
+        from_fn(|i| a[i].exp2_integer())
+    }
+    #[inline(always)]
+    fn split_exponent(a: [S; N]) -> ([S; N], [S; N]) {
+        let pairs = a.map(S::split_exponent);
+        (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
+    }
+    #[inline(always)]
     fn lt(a: [S; N], b: [S; N]) -> [bool; N] {
         from_fn(|i| a[i] < b[i])
     }

@@ -37,18 +37,8 @@ pub unsafe trait Registers<S: Scalar, const N: usize>: Copy + Send + Sync + 'sta
     fn max(a: Self::Vector, b: Self::Vector) -> Self::Vector;
     fn copysign(a: Self::Vector, sign: Self::Vector) -> Self::Vector;
     fn floor(a: Self::Vector) -> Self::Vector;
-    #[inline(always)]
-    fn exp2_integer(a: Self::Vector) -> Self::Vector {
-        Self::from_array(Self::to_array(a).map(S::exp2_integer))
-    }
-    #[inline(always)]
-    fn split_exponent(a: Self::Vector) -> (Self::Vector, Self::Vector) {
-        let pairs = Self::to_array(a).map(S::split_exponent);
-        (
-            Self::from_array(pairs.map(|p| p.0)),
-            Self::from_array(pairs.map(|p| p.1)),
-        )
-    }
+    fn exp2_integer(a: Self::Vector) -> Self::Vector;
+    fn split_exponent(a: Self::Vector) -> (Self::Vector, Self::Vector);
 
     fn lt(a: Self::Vector, b: Self::Vector) -> Self::Mask;
     fn le(a: Self::Vector, b: Self::Vector) -> Self::Mask;
