@@ -8,7 +8,7 @@
     reason = "each test file uses its own part of these helpers"
 )]
 
-use clench_math::{Quat, Real, Scalar, Vec3};
+use clench_math::{Instructions, LaneTask, Lanes, Quat, Real, Scalar, Vec3, kernel, read_lane};
 
 /// A seeded source of numbers.
 pub struct Random(u64);
@@ -105,6 +105,70 @@ impl TestScalar for f32 {
         };
         u64::from(bits)
     }
+}
+
+/// Runs a task in lanes of all instruction sets that the processor has.
+pub fn in_instruction_sets<S: TestScalar>(task: impl LaneTask<S, Output = ()> + Copy) {
+    for instructions in Instructions::all_available() {
+        assert!(S::in_lanes(instructions, task).is_some());
+    }
+}
+/// Runs a task in arrays of several widths.
+pub fn in_arrays<S: TestScalar>(task: impl LaneTask<S, Output = ()> + Copy) {
+    task.run::<Lanes<S, 2>>();
+    task.run::<Lanes<S, 3>>();
+    task.run::<Lanes<S, 4>>();
+    task.run::<Lanes<S, 5>>();
+    task.run::<Lanes<S, 8>>();
+    task.run::<Lanes<S, 16>>();
+}
+
+/// Numbers computed from numbers by code that is written once for every `Real`.
+pub trait Formula: Copy {
+    /// How many numbers go in.
+    const ARGUMENTS: usize;
+    /// What comes out, by name. To be marked `#[inline(always)]`.
+    fn evaluate<T: Real>(self, arguments: &[T]) -> Vec<(&'static str, T)>;
+}
+
+/// A task: in lanes a formula gives each environment what it gives that environment alone, to the bit.
+#[derive(Clone, Copy)]
+pub struct EqualsAlone<'a, F, S> {
+    pub formula: F,
+    pub rounds: usize,
+    /// Draws an argument.
+    pub draw: &'a dyn Fn(&mut Random) -> S,
+}
+impl<S: TestScalar, F: Formula> LaneTask<S> for EqualsAlone<'_, F, S> {
+    type Output = ();
+    fn run<T: Real<Scalar = S>>(self) {
+        let mut random = Random::new(T::LANES as u64);
+        let mut arguments = vec![T::ZERO; F::ARGUMENTS];
+        let mut row = vec![S::ZERO; F::ARGUMENTS];
+        for _ in 0..self.rounds {
+            T::as_scalars_mut(&mut arguments).fill_with(|| (self.draw)(&mut random));
+            let together = evaluate(self.formula, &arguments);
+            for lane in 0..T::LANES {
+                read_lane(&arguments, lane, &mut row);
+                let alone = evaluate(self.formula, &row);
+                assert_eq!(alone.len(), together.len());
+                for (&(name, together), (_, alone)) in together.iter().zip(alone) {
+                    let together = together.lane(lane);
+                    assert!(
+                        together.identity() == alone.identity(),
+                        "{name} of {row:?} in lane {lane} of {}: {together:e} instead of {alone:e}",
+                        std::any::type_name::<T>(),
+                        together = together.to_f64(),
+                        alone = alone.to_f64(),
+                    );
+                }
+            }
+        }
+    }
+}
+#[kernel]
+fn evaluate<T: Real, F: Formula>(formula: F, arguments: &[T]) -> Vec<(&'static str, T)> {
+    formula.evaluate(arguments)
 }
 
 /// |a − b| in every coordinate is at most `tolerance`.
