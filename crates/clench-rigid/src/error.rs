@@ -2,6 +2,7 @@
 
 use crate::contact::UnsupportedPair;
 use crate::settings::OptionError;
+use clench_math::Instructions;
 
 /// Why a simulation cannot start, take an input, or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -21,16 +22,6 @@ pub enum SimError {
         found: usize,
         /// The length that the model needs.
         expected: usize,
-    },
-    /// An input that is infinite or not a number.
-    #[error("{field}[{index}] is {value}")]
-    NotFinite {
-        /// Which part of the state.
-        field: &'static str,
-        /// Where in it.
-        index: usize,
-        /// What it is.
-        value: f64,
     },
     /// An input out of its range.
     #[error("{field} is {value}, but must be {range}")]
@@ -52,6 +43,20 @@ pub enum SimError {
         /// How many there are.
         count: usize,
     },
+    /// An instruction set that the processor lacks.
+    #[error("this processor has no {0:?} instructions")]
+    Instructions(Instructions),
+    /// More memory than there is.
+    #[error("there is no memory for {count} rows of {width} numbers")]
+    OutOfMemory {
+        /// How many rows.
+        count: usize,
+        /// How many numbers in each.
+        width: usize,
+    },
+    /// Threads that cannot be started.
+    #[error("threads cannot be started: {0}")]
+    Threads(String),
     /// A given contact that makes no sense.
     #[error("given contact {index}: {reason}")]
     Contact {
@@ -59,6 +64,25 @@ pub enum SimError {
         index: usize,
         /// What is wrong with it.
         reason: &'static str,
+    },
+    /// A state that cannot be stepped from, or a step that led nowhere.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+}
+
+/// Why an environment cannot go on. Fields of the state are named, and their numbers counted, as in the rows of a
+/// [`Batch`](crate::Batch): `xfrc_applied` has six a body, the force first.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// An input that is infinite or not a number.
+    #[error("{field}[{index}] is {value}")]
+    NotFinite {
+        /// Which part of the state.
+        field: &'static str,
+        /// Where in it.
+        index: usize,
+        /// What it is.
+        value: f64,
     },
     /// The mass matrix of the configuration is not positive definite.
     #[error(
@@ -81,5 +105,16 @@ pub enum SimError {
         index: usize,
         /// What it became.
         value: f64,
+    },
+    /// More contacts than the options allow. A [`Sim`](crate::Sim) leaves the rest out and says so; an environment of a
+    /// batch stops.
+    #[error(
+        "in the step from t = {time} s there are more contacts than the {limit} that the options allow"
+    )]
+    ContactOverflow {
+        /// Time of the last good state, s.
+        time: f64,
+        /// How many may be.
+        limit: usize,
     },
 }

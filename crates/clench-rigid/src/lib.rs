@@ -4,6 +4,7 @@
 //! Data lives in three kinds of struct: [`Model`] never changes while stepping, [`State`] is what a user saves and
 //! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.
 
+pub mod batch;
 pub mod builder;
 mod check;
 pub mod constraint;
@@ -18,7 +19,8 @@ mod sim;
 mod state;
 pub mod workspace;
 
-pub use error::SimError;
+pub use batch::{Batch, BatchOptions, EnvStatus, Precision, Rows, StateRows};
+pub use error::{Fault, SimError};
 pub use model::{Model, Params};
 pub use settings::StepSettings;
 pub use sim::Sim;

@@ -1,6 +1,6 @@
 //! A simulation of one environment.
 
-use crate::check::{check_contact, check_result, check_state, check_values};
+use crate::check::{self, check_contact, check_values};
 use crate::contact::{Contact, check_supported};
 use crate::dynamics::energy::{Energy, energy};
 use crate::error::SimError;
@@ -9,7 +9,7 @@ use crate::pipeline;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Quat, Scalar, Vec3, broadcast};
+use clench_math::Scalar;
 use clench_solver::{LaneStats, RigidOptions};
 use std::sync::Arc;
 
@@ -68,7 +68,7 @@ impl<T: Scalar> Sim<T> {
     /// A state of wrong lengths or with numbers that are not finite; a motion that diverges or a mass matrix that is
     /// singular. The state is then as before the step.
     pub fn step(&mut self) -> Result<(), SimError> {
-        check_state(&self.model, &self.state)?;
+        self.check_state()?;
         self.last_good.copy_from(&self.state);
         pipeline::step(
             &self.model,
@@ -77,7 +77,7 @@ impl<T: Scalar> Sim<T> {
             &mut self.state,
             &mut self.ws,
         );
-        let result = check_result(self.last_good.time, &self.state, &self.ws);
+        let result = self.check_result(self.last_good.time);
         if result.is_err() {
             self.state.copy_from(&self.last_good);
         }
@@ -89,7 +89,7 @@ impl<T: Scalar> Sim<T> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<(), SimError> {
-        check_state(&self.model, &self.state)?;
+        self.check_state()?;
         pipeline::forward(
             &self.model,
             &self.params,
@@ -97,7 +97,23 @@ impl<T: Scalar> Sim<T> {
             &self.state,
             &mut self.ws,
         );
-        check_result(self.state.time, &self.state, &self.ws)
+        self.check_result(self.state.time)
+    }
+
+    fn check_state(&self) -> Result<(), SimError> {
+        check::check_lengths(&self.model, &self.state)?;
+        if check::good_inputs(&self.state) {
+            return Ok(());
+        }
+        Err(check::input_fault(&self.state, 0).into())
+    }
+
+    /// Of a step from `time`.
+    fn check_result(&self, time: T) -> Result<(), SimError> {
+        if check::good_results(&self.state, &self.ws) {
+            return Ok(());
+        }
+        Err(check::result_fault(time.to_f64(), &self.state, &self.ws, 0).into())
     }
 
     /// As [`forward`](Self::forward), but with these contacts instead of detected ones. A contact takes part where it is
@@ -128,29 +144,11 @@ impl<T: Scalar> Sim<T> {
     /// # Errors
     /// A keyframe that the model does not have.
     pub fn reset_to_keyframe(&mut self, index: usize) -> Result<(), SimError> {
-        let model = Arc::clone(&self.model);
-        let Some(key) = model.keyframes.get(index) else {
-            let count = model.keyframes.len();
-            return Err(no_such("keyframe", index, count));
+        let Some(key) = self.model.keyframes.get(index) else {
+            return Err(no_such("keyframe", index, self.model.keyframes.len()));
         };
-        self.reset();
-        let state = &mut self.state;
-        state.time = T::new(key.time);
-        for (to, from) in [
-            (&mut state.qpos, &key.qpos),
-            (&mut state.qvel, &key.qvel),
-            (&mut state.act, &key.act),
-            (&mut state.ctrl, &key.ctrl),
-        ] {
-            broadcast(from, to);
-        }
-        for (i, pos) in key.mocap_pos.chunks_exact(3).enumerate() {
-            state.mocap_pos[i] = Vec3::from_f64([pos[0], pos[1], pos[2]]);
-        }
-        for (i, quat) in key.mocap_quat.chunks_exact(4).enumerate() {
-            let quat = [quat[0], quat[1], quat[2], quat[3]];
-            state.mocap_quat[i] = Quat::from_f64(quat);
-        }
+        self.state.copy_from(&self.initial);
+        self.state.set_keyframe(key);
         Ok(())
     }
 
@@ -248,7 +246,7 @@ impl<T: Scalar> Sim<T> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
-        check_state(&self.model, &self.state)?;
+        self.check_state()?;
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
         pipeline::position_stage(model, params, &self.state, ws);
         let mass = &ws.problem.mass;
@@ -257,6 +255,6 @@ impl<T: Scalar> Sim<T> {
     }
 }
 
-fn no_such(kind: &'static str, index: usize, count: usize) -> SimError {
+pub(crate) fn no_such(kind: &'static str, index: usize, count: usize) -> SimError {
     SimError::NoSuchElement { kind, index, count }
 }

@@ -1,7 +1,7 @@
 //! What a user saves and restores.
 
-use crate::Model;
-use clench_math::{Force, Mask, Quat, Real, Vec3};
+use crate::model::{Keyframe, Model};
+use clench_math::{Force, Mask, Quat, Real, Vec3, broadcast};
 
 /// The state of one environment (or of the lanes of a group): everything that the next step depends on.
 #[derive(Clone, Debug)]
@@ -69,5 +69,24 @@ impl<T: Real> State<T> {
         self.mocap_quat.clone_from(&other.mocap_quat);
         self.eq_active.clone_from(&other.eq_active);
         self.qacc_warmstart.clone_from(&other.qacc_warmstart);
+    }
+
+    /// Takes over what a keyframe of the model holds, the same in every lane.
+    pub fn set_keyframe(&mut self, key: &Keyframe) {
+        self.time = T::new(key.time);
+        for (to, from) in [
+            (&mut self.qpos, &key.qpos),
+            (&mut self.qvel, &key.qvel),
+            (&mut self.act, &key.act),
+            (&mut self.ctrl, &key.ctrl),
+        ] {
+            broadcast(from, to);
+        }
+        for (to, p) in (self.mocap_pos.iter_mut()).zip(key.mocap_pos.chunks_exact(3)) {
+            *to = Vec3::from_f64([p[0], p[1], p[2]]);
+        }
+        for (to, q) in (self.mocap_quat.iter_mut()).zip(key.mocap_quat.chunks_exact(4)) {
+            *to = Quat::from_f64([q[0], q[1], q[2], q[3]]);
+        }
     }
 }

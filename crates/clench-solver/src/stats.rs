@@ -126,6 +126,12 @@ impl<T: Real> SolveStats<T> {
         Status::ALL[self.status.lane(lane).to_f64() as usize]
     }
 
+    /// The lanes that ended as [`Status::NonFinite`].
+    #[inline(always)]
+    pub fn failed(&self) -> T::Mask {
+        self.status.eq(Status::NonFinite.code())
+    }
+
     /// The statistics of lane `lane`.
     pub fn lane(&self, lane: usize) -> LaneStats {
         let count = |x: T| x.lane(lane).to_f64() as usize;

@@ -135,7 +135,7 @@ pub use clench_rigid as rigid;
 pub use clench_solver as solver;
 
 pub use clench_formats::{LoadError, load, load_str};
-pub use clench_rigid::{Model, Sim, SimError, State};
+pub use clench_rigid::{Batch, BatchOptions, Model, Sim, SimError, State};
 pub use clench_solver::RigidOptions;
 
 #[cfg(doctest)]
@@ -144,7 +144,9 @@ struct Readme;
 
 /// What most programs need: `use clench::prelude::*`.
 pub mod prelude {
-    pub use crate::{LoadError, Model, RigidOptions, Sim, SimError, State, load, load_str};
+    pub use crate::{
+        Batch, BatchOptions, LoadError, Model, RigidOptions, Sim, SimError, State, load, load_str,
+    };
     pub use clench_math::{Quat, Vec3};
     pub use clench_solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
 }

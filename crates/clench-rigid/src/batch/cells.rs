@@ -1,0 +1,58 @@
+//! Rows that several threads write at once, each its own environments.
+//!
+//! Which environments a thread steps follows from their contacts, so their rows cannot be dealt out beforehand as disjoint
+//! slices. Numbers are therefore written through atomic cells: on all processors an ordinary store, and no race whatever
+//! the groups are.
+
+use super::Rows;
+use super::precision::Lanewise;
+use clench_math::Real;
+
+/// The rows of a table, shared by threads for the time of a call.
+pub struct Cells<'a, S: Lanewise> {
+    cells: &'a [S::Cell],
+    width: usize,
+}
+
+impl<'a, S: Lanewise> Cells<'a, S> {
+    pub fn new(rows: &'a mut Rows<S>) -> Self {
+        Cells {
+            width: rows.width(),
+            cells: S::cells(rows.as_mut_slice()),
+        }
+    }
+
+    fn row(&self, env: usize) -> &[S::Cell] {
+        &self.cells[env * self.width..][..self.width]
+    }
+
+    /// Copies the row of an environment into lane `lane` of `out`, as long as a row.
+    #[inline(always)]
+    pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, out: &mut [T]) {
+        let lanes = T::as_scalars_mut(out).chunks_exact_mut(T::LANES);
+        for (lanes, cell) in lanes.zip(self.row(env)) {
+            lanes[lane] = S::load(cell);
+        }
+    }
+
+    /// Copies lane `lane` of `values`, as long as a row, into the row of an environment.
+    #[inline(always)]
+    pub fn write<T: Real<Scalar = S>>(&self, env: usize, lane: usize, values: &[T]) {
+        self.write_part(env, 0, lane, values);
+    }
+
+    /// As [`write`](Self::write), into the numbers of the row from `start`.
+    #[inline(always)]
+    pub fn write_part<T: Real<Scalar = S>>(
+        &self,
+        env: usize,
+        start: usize,
+        lane: usize,
+        values: &[T],
+    ) {
+        let lanes = T::as_scalars(values).chunks_exact(T::LANES);
+        for (lanes, cell) in lanes.zip(&self.row(env)[start..]) {
+            S::store(cell, lanes[lane]);
+        }
+    }
+}

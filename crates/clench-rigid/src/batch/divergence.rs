@@ -1,0 +1,87 @@
+//! How unlike the environments of a group are: what lanes lose.
+
+use crate::workspace::Workspace;
+use clench_math::{Mask, Real};
+use std::ops::AddAssign;
+
+/// Sums over steps of groups, by which the loss to divergence can be judged. A group goes on as long as one of its
+/// environments needs it, and has a slot for every contact that any of them has.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Divergence {
+    /// Steps of groups.
+    pub group_steps: u64,
+    /// Steps of environments.
+    pub env_steps: u64,
+    /// Lanes of those groups, idle ones included.
+    pub lane_steps: u64,
+    /// Solver iterations that groups went through.
+    pub group_iterations: u64,
+    /// Solver iterations that environments needed.
+    pub env_iterations: u64,
+    /// Lanes times iterations of groups.
+    pub lane_iterations: u64,
+    /// Contact slots of groups.
+    pub contact_slots: u64,
+    /// Contacts of environments.
+    pub contacts: u64,
+}
+
+impl Divergence {
+    /// The share of lanes that is still at work in an iteration of the solver; 1 where there were none.
+    pub fn live_share(&self) -> f64 {
+        match self.lane_iterations {
+            0 => 1.0,
+            lanes => self.env_iterations as f64 / lanes as f64,
+        }
+    }
+    /// Solver iterations of a group, on average.
+    pub fn iterations_per_group(&self) -> f64 {
+        ratio(self.group_iterations, self.group_steps)
+    }
+    /// Solver iterations of an environment, on average.
+    pub fn iterations_per_env(&self) -> f64 {
+        ratio(self.env_iterations, self.env_steps)
+    }
+    /// Contact slots of a group, on average.
+    pub fn slots_per_group(&self) -> f64 {
+        ratio(self.contact_slots, self.group_steps)
+    }
+    /// Contacts of an environment, on average.
+    pub fn contacts_per_env(&self) -> f64 {
+        ratio(self.contacts, self.env_steps)
+    }
+
+    /// Takes in a step of a group, in whose first `len` lanes environments are.
+    pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize) {
+        let iterations = |lane| ws.solver.stats().lane(lane).iterations as u64;
+        let most = (0..len).map(iterations).max().unwrap_or(0);
+        self.group_steps += 1;
+        self.env_steps += len as u64;
+        self.lane_steps += T::LANES as u64;
+        self.group_iterations += most;
+        self.env_iterations += (0..len).map(iterations).sum::<u64>();
+        self.lane_iterations += most * T::LANES as u64;
+        self.contact_slots += ws.contacts.len() as u64;
+        for contact in &ws.contacts {
+            let active = (0..len).filter(|&lane| contact.active.lane(lane));
+            self.contacts += active.count() as u64;
+        }
+    }
+}
+
+impl AddAssign for Divergence {
+    fn add_assign(&mut self, other: Self) {
+        self.group_steps += other.group_steps;
+        self.env_steps += other.env_steps;
+        self.lane_steps += other.lane_steps;
+        self.group_iterations += other.group_iterations;
+        self.env_iterations += other.env_iterations;
+        self.lane_iterations += other.lane_iterations;
+        self.contact_slots += other.contact_slots;
+        self.contacts += other.contacts;
+    }
+}
+
+fn ratio(a: u64, b: u64) -> f64 {
+    if b == 0 { 0.0 } else { a as f64 / b as f64 }
+}

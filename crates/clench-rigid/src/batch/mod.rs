@@ -1,0 +1,306 @@
+//! Many environments of one model, stepped side by side in lanes and spread over threads.
+
+mod cells;
+mod divergence;
+mod options;
+mod precision;
+mod rows;
+mod snapshot;
+mod state_rows;
+mod stepper;
+
+pub use divergence::Divergence;
+pub use options::BatchOptions;
+pub use precision::Precision;
+pub use rows::Rows;
+pub use snapshot::Snapshot;
+pub use state_rows::StateRows;
+
+use crate::contact::check_supported;
+use crate::error::{Fault, SimError};
+use crate::model::Model;
+use crate::settings::StepSettings;
+use crate::sim::{Sim, no_such};
+use crate::state::State;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use stepper::{Job, Stepper};
+
+/// Whether an environment takes part in steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EnvStatus {
+    /// It does.
+    Running,
+    /// It stands still at its last good state until it is reset or revived.
+    Failed(Fault),
+}
+
+/// What a call did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// Environments that failed in this call.
+    pub failed: usize,
+    /// Environments that run on.
+    pub running: usize,
+}
+
+/// Many environments of one model.
+///
+/// Environment i moves as a [`Sim`] alone would in the same precision, to the bit: whatever instructions, threads,
+/// neighbours and groups there are. One that cannot go on keeps its last good state and says why in
+/// [`status`](Self::status); its neighbours do not notice.
+pub struct Batch<S: Precision = f64> {
+    /// The states of all environments.
+    pub state: StateRows<S>,
+    model: Arc<Model>,
+    options: BatchOptions,
+    settings: StepSettings,
+    status: Vec<EnvStatus>,
+    initial: State<S>,
+    scratch: State<S>,
+    signatures: Vec<AtomicU64>,
+    /// The environments that run, those of like contacts together.
+    order: Vec<u32>,
+    steppers: Vec<Box<dyn Stepper<S>>>,
+    pool: Option<ThreadPool>,
+    divergence: Divergence,
+}
+
+impl<S: Precision> Batch<S> {
+    /// `count` environments in the model's initial state, with the model's options, on all processors.
+    ///
+    /// # Errors
+    /// As [`with_options`](Self::with_options).
+    pub fn new(model: Arc<Model>, count: usize) -> Result<Self, SimError> {
+        Batch::with_options(model, count, BatchOptions::default())
+    }
+
+    /// `count` environments in the model's initial state.
+    ///
+    /// # Errors
+    /// Options out of range; shapes that may meet and cannot be collided; instructions that the processor lacks; more
+    /// environments than memory holds.
+    pub fn with_options(
+        model: Arc<Model>,
+        count: usize,
+        options: BatchOptions,
+    ) -> Result<Self, SimError> {
+        let settings = StepSettings::new::<S>(&model, options.options)?;
+        if settings.flags.constraint && settings.flags.contact {
+            check_supported(&model)?;
+        }
+        let threads = options.threads()?;
+        let instructions = options.instructions::<S>(count, threads)?;
+        let stepper = || S::stepper(instructions, &model);
+        let steppers = (0..threads).map(|_| stepper()).collect::<Option<Vec<_>>>();
+        let initial = State::new(&model);
+        let mut state = StateRows::new(&model, count)?;
+        for env in 0..count {
+            state.write(env, &initial);
+        }
+        Ok(Batch {
+            state,
+            settings,
+            status: vec![EnvStatus::Running; count],
+            scratch: initial.clone(),
+            initial,
+            signatures: (0..count).map(|_| AtomicU64::new(0)).collect(),
+            order: Vec::with_capacity(count),
+            steppers: steppers.ok_or(SimError::Instructions(instructions))?,
+            pool: (threads > 1).then(|| options.pool(threads)).transpose()?,
+            divergence: Divergence::default(),
+            options,
+            model,
+        })
+    }
+
+    /// Advances every running environment by one time step.
+    ///
+    /// # Errors
+    /// Tables of [`state`](Self::state) that are not those of this batch.
+    pub fn step(&mut self) -> Result<Summary, SimError> {
+        self.step_n(1)
+    }
+
+    /// Advances every running environment by `steps` time steps, with the same controls and applied forces.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
+        self.run(true, steps)
+    }
+
+    /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
+    /// now on.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn forward(&mut self) -> Result<Summary, SimError> {
+        self.run(false, 1)
+    }
+
+    fn run(&mut self, advance: bool, steps: usize) -> Result<Summary, SimError> {
+        self.state.check_shapes(&self.model, self.count())?;
+        self.regroup();
+        let (motion, inputs) = self.state.share();
+        let job = Job {
+            model: &self.model,
+            settings: &self.settings,
+            motion,
+            inputs,
+            signatures: &self.signatures,
+            advance,
+            steps,
+        };
+        let (next, order) = (AtomicUsize::new(0), &self.order[..]);
+        let work = |stepper: &mut Box<dyn Stepper<S>>| {
+            let lanes = stepper.lanes();
+            // Groups are claimed one by one, so that threads end together though groups take unlike times.
+            while let Some(group) = order.chunks(lanes).nth(next.fetch_add(1, Relaxed)) {
+                stepper.run(group, &job);
+            }
+        };
+        match &self.pool {
+            None => self.steppers.iter_mut().for_each(work),
+            Some(pool) => {
+                let steppers = &mut self.steppers;
+                pool.install(|| steppers.par_iter_mut().with_max_len(1).for_each(work));
+            }
+        }
+        Ok(self.settle())
+    }
+
+    /// Lists the environments that run, those of like contacts side by side.
+    fn regroup(&mut self) {
+        let running = |env: &u32| self.status[*env as usize] == EnvStatus::Running;
+        self.order.clear();
+        let envs = 0..self.status.len() as u32;
+        self.order.extend(envs.filter(running));
+        if self.options.grouping {
+            let signature = |env: &u32| self.signatures[*env as usize].load(Relaxed);
+            self.order.sort_unstable_by_key(signature);
+        }
+    }
+
+    /// Takes over what the steppers have to report.
+    fn settle(&mut self) -> Summary {
+        let mut failed = 0;
+        for stepper in &mut self.steppers {
+            let tally = stepper.tally();
+            for (env, fault) in tally.faults.drain(..) {
+                self.status[env as usize] = EnvStatus::Failed(fault);
+                failed += 1;
+            }
+            self.divergence += std::mem::take(&mut tally.divergence);
+        }
+        let running = self.order.len() - failed;
+        Summary { failed, running }
+    }
+
+    /// Environment `env` back to the model's initial state, running.
+    ///
+    /// # Errors
+    /// An environment that the batch does not have.
+    pub fn reset(&mut self, env: usize) -> Result<(), SimError> {
+        self.check_env(env)?;
+        self.state.write(env, &self.initial);
+        self.status[env] = EnvStatus::Running;
+        Ok(())
+    }
+
+    /// Environment `env` to a keyframe of the model, running; what a keyframe does not hold is as in the initial state.
+    ///
+    /// # Errors
+    /// An environment that the batch or a keyframe that the model does not have.
+    pub fn reset_to_keyframe(&mut self, env: usize, key: usize) -> Result<(), SimError> {
+        self.check_env(env)?;
+        let Some(keyframe) = self.model.keyframes.get(key) else {
+            return Err(no_such("keyframe", key, self.model.keyframes.len()));
+        };
+        self.scratch.copy_from(&self.initial);
+        self.scratch.set_keyframe(keyframe);
+        self.state.write(env, &self.scratch);
+        self.status[env] = EnvStatus::Running;
+        Ok(())
+    }
+
+    /// Lets environment `env` run on from the state in its rows.
+    ///
+    /// # Errors
+    /// An environment that the batch does not have.
+    pub fn revive(&mut self, env: usize) -> Result<(), SimError> {
+        self.check_env(env)?;
+        self.status[env] = EnvStatus::Running;
+        Ok(())
+    }
+
+    /// A simulation of one environment, in the state of `env`.
+    ///
+    /// # Errors
+    /// An environment that the batch does not have.
+    pub fn sim(&self, env: usize) -> Result<Sim<S>, SimError> {
+        self.check_env(env)?;
+        let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
+        self.state.read(env, &mut sim.state);
+        Ok(sim)
+    }
+
+    fn check_env(&self, env: usize) -> Result<(), SimError> {
+        if env < self.count() {
+            return Ok(());
+        }
+        Err(no_such("environment", env, self.count()))
+    }
+
+    fn check_envs(&self, envs: &[usize]) -> Result<(), SimError> {
+        envs.iter().try_for_each(|&env| self.check_env(env))
+    }
+
+    /// Bytes that an environment takes: its rows, whether it runs, and its place in groups.
+    pub fn bytes_per_env(&self) -> usize {
+        let groups = size_of::<AtomicU64>() + size_of::<u32>();
+        self.state.row_bytes() + size_of::<EnvStatus>() + groups
+    }
+
+    /// How many environments there are.
+    pub fn count(&self) -> usize {
+        self.status.len()
+    }
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+    /// All options, decided.
+    pub fn settings(&self) -> &StepSettings {
+        &self.settings
+    }
+    /// How many environments a thread steps side by side.
+    pub fn lanes(&self) -> usize {
+        self.steppers.first().map_or(1, |stepper| stepper.lanes())
+    }
+    /// How many threads step.
+    pub fn threads(&self) -> usize {
+        self.steppers.len()
+    }
+    /// Whether each environment runs.
+    pub fn statuses(&self) -> &[EnvStatus] {
+        &self.status
+    }
+    /// Whether environment `env` runs.
+    ///
+    /// # Panics
+    /// If there is no such environment, as slices do.
+    pub fn status(&self, env: usize) -> EnvStatus {
+        self.status[env]
+    }
+    /// How unlike the environments of groups were since the last [`clear_divergence`](Self::clear_divergence).
+    pub fn divergence(&self) -> Divergence {
+        self.divergence
+    }
+    /// Begins the figures of [`divergence`](Self::divergence) anew.
+    pub fn clear_divergence(&mut self) {
+        self.divergence = Divergence::default();
+    }
+}

@@ -1,0 +1,54 @@
+//! The number types of batches.
+
+use super::stepper::{MakeStepper, Stepper};
+use crate::model::Model;
+use clench_math::{Instructions, Scalar};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+
+/// A number type of batches: `f64` or `f32`.
+pub trait Precision: Lanewise {}
+impl Precision for f64 {}
+impl Precision for f32 {}
+
+/// What a batch needs of a number type; outside this crate only its name is known.
+pub trait Lanewise: Scalar {
+    /// The same number where several threads write.
+    type Cell: Sync;
+    /// Numbers as cells.
+    fn cells(values: &mut [Self]) -> &[Self::Cell];
+    /// The number in a cell.
+    fn load(cell: &Self::Cell) -> Self;
+    /// Puts a number into a cell.
+    fn store(cell: &Self::Cell, value: Self);
+    /// A thread's scratch in lanes of these instructions; `None` if the processor lacks them. Not generic, so that stepping in
+    /// lanes is compiled with this crate and not with each of its users.
+    fn stepper(instructions: Instructions, model: &Model) -> Option<Box<dyn Stepper<Self>>>;
+}
+
+macro_rules! lanewise {
+    ($scalar:ident in $cell:ident) => {
+        impl Lanewise for $scalar {
+            type Cell = $cell;
+            fn cells(values: &mut [$scalar]) -> &[$cell] {
+                let cells: &mut [$cell] = zerocopy::transmute_mut!(values);
+                cells
+            }
+            #[inline(always)]
+            fn load(cell: &$cell) -> $scalar {
+                $scalar::from_bits(cell.load(Relaxed))
+            }
+            #[inline(always)]
+            fn store(cell: &$cell, value: $scalar) {
+                cell.store(value.to_bits(), Relaxed);
+            }
+            fn stepper(
+                instructions: Instructions,
+                model: &Model,
+            ) -> Option<Box<dyn Stepper<$scalar>>> {
+                $scalar::in_lanes(instructions, MakeStepper { model })
+            }
+        }
+    };
+}
+lanewise!(f64 in AtomicU64);
+lanewise!(f32 in AtomicU32);

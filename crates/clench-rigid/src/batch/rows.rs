@@ -1,0 +1,90 @@
+//! What users see of a batch: plain rows, one an environment, that never move.
+
+use crate::error::SimError;
+use std::fmt;
+
+/// Bytes to which rows are aligned: a cache line, the widest register, and what other array libraries ask for.
+const ALIGNMENT: usize = 64;
+
+/// A table with a row for each environment, row after row in memory.
+///
+/// The numbers begin at a multiple of 64 bytes, and stay where they are as long as the table lives.
+pub struct Rows<E> {
+    /// With room to begin at an aligned address.
+    buffer: Vec<E>,
+    start: usize,
+    count: usize,
+    width: usize,
+}
+
+impl<E: Copy> Rows<E> {
+    /// `count` rows of `width` times `value`.
+    ///
+    /// # Errors
+    /// More memory than there is.
+    pub(crate) fn new(count: usize, width: usize, value: E) -> Result<Self, SimError> {
+        let spare = ALIGNMENT / size_of::<E>().max(1);
+        let len = count.checked_mul(width);
+        let room = len.and_then(|len| len.checked_add(spare));
+        let mut buffer = Vec::new();
+        match room.map(|room| buffer.try_reserve_exact(room)) {
+            Some(Ok(())) => {}
+            _ => return Err(SimError::OutOfMemory { count, width }),
+        }
+        buffer.resize(len.unwrap_or(0) + spare, value);
+        Ok(Rows {
+            start: buffer.as_ptr().align_offset(ALIGNMENT).min(spare),
+            buffer,
+            count,
+            width,
+        })
+    }
+}
+
+impl<E> Rows<E> {
+    /// How many rows there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+    /// How many numbers a row has.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+    /// All rows, one after the other.
+    pub fn as_slice(&self) -> &[E] {
+        &self.buffer[self.start..][..self.count * self.width]
+    }
+    /// All rows, to be written.
+    pub fn as_mut_slice(&mut self) -> &mut [E] {
+        &mut self.buffer[self.start..][..self.count * self.width]
+    }
+    /// The row of environment `env`.
+    ///
+    /// # Panics
+    /// If there is no such row, as slices do.
+    pub fn row(&self, env: usize) -> &[E] {
+        &self.as_slice()[env * self.width..][..self.width]
+    }
+    /// The row of environment `env`, to be written.
+    ///
+    /// # Panics
+    /// If there is no such row, as slices do.
+    pub fn row_mut(&mut self, env: usize) -> &mut [E] {
+        let width = self.width;
+        &mut self.as_mut_slice()[env * width..][..width]
+    }
+    /// The rows in turn.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[E]> {
+        (0..self.count).map(|env| self.row(env))
+    }
+    /// Bytes that a row takes.
+    pub(crate) fn row_bytes(&self) -> usize {
+        self.width * size_of::<E>()
+    }
+}
+
+impl<E: fmt::Debug> fmt::Debug for Rows<E> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_list().entries(self.iter()).finish()
+    }
+}

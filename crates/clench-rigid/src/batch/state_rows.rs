@@ -1,0 +1,281 @@
+//! The states of all environments, a table a field.
+
+use super::cells::Cells;
+use super::precision::Lanewise;
+use super::{Precision, Rows};
+use crate::check::check_length;
+use crate::error::SimError;
+use crate::model::Model;
+use crate::state::State;
+use clench_math::{Mask, Real, write_lane};
+use std::slice::{from_mut, from_ref};
+
+/// The states of the environments of a batch, field by field, a row an environment. To be read and written between steps;
+/// what a step reads is checked first.
+#[derive(Debug)]
+pub struct StateRows<S> {
+    /// s (n, 1).
+    pub time: Rows<S>,
+    /// Position coordinates (n, nq).
+    pub qpos: Rows<S>,
+    /// Velocities (n, nv).
+    pub qvel: Rows<S>,
+    /// Activations (n, na).
+    pub act: Rows<S>,
+    /// Controls (n, nu).
+    pub ctrl: Rows<S>,
+    /// Forces that the user applies along dofs (n, nv).
+    pub qfrc_applied: Rows<S>,
+    /// Forces and torques that the user applies to bodies at their centres of mass, world axes (n, 6 nbody): three numbers
+    /// of force, three of torque, body after body.
+    pub xfrc_applied: Rows<S>,
+    /// Positions of mocap bodies (n, 3 nmocap).
+    pub mocap_pos: Rows<S>,
+    /// Orientations of mocap bodies (n, 4 nmocap).
+    pub mocap_quat: Rows<S>,
+    /// Which equality constraints are on (n, neq).
+    pub eq_active: Rows<bool>,
+    /// Acceleration of the previous step, where the solver starts (n, nv).
+    pub qacc_warmstart: Rows<S>,
+}
+
+impl<S: Precision> StateRows<S> {
+    /// Room for `count` states of a model, all zero.
+    ///
+    /// # Errors
+    /// More memory than there is.
+    pub(super) fn new(model: &Model, count: usize) -> Result<Self, SimError> {
+        let rows = |width| Rows::new(count, width, S::ZERO);
+        Ok(StateRows {
+            time: rows(1)?,
+            qpos: rows(model.nq)?,
+            qvel: rows(model.nv)?,
+            act: rows(model.na)?,
+            ctrl: rows(model.nu())?,
+            qfrc_applied: rows(model.nv)?,
+            xfrc_applied: rows(6 * model.nbody())?,
+            mocap_pos: rows(3 * model.nmocap)?,
+            mocap_quat: rows(4 * model.nmocap)?,
+            eq_active: Rows::new(count, model.equalities.len(), false)?,
+            qacc_warmstart: rows(model.nv)?,
+        })
+    }
+
+    /// The tables of numbers, each with its name.
+    fn numbers(&self) -> [(&'static str, &Rows<S>); 10] {
+        [
+            ("time", &self.time),
+            ("qpos", &self.qpos),
+            ("qvel", &self.qvel),
+            ("act", &self.act),
+            ("ctrl", &self.ctrl),
+            ("qfrc_applied", &self.qfrc_applied),
+            ("xfrc_applied", &self.xfrc_applied),
+            ("mocap_pos", &self.mocap_pos),
+            ("mocap_quat", &self.mocap_quat),
+            ("qacc_warmstart", &self.qacc_warmstart),
+        ]
+    }
+
+    fn numbers_mut(&mut self) -> [&mut Rows<S>; 10] {
+        [
+            &mut self.time,
+            &mut self.qpos,
+            &mut self.qvel,
+            &mut self.act,
+            &mut self.ctrl,
+            &mut self.qfrc_applied,
+            &mut self.xfrc_applied,
+            &mut self.mocap_pos,
+            &mut self.mocap_quat,
+            &mut self.qacc_warmstart,
+        ]
+    }
+
+    /// How many states there are.
+    pub fn count(&self) -> usize {
+        self.time.count()
+    }
+
+    /// Bytes that a state takes.
+    pub(super) fn row_bytes(&self) -> usize {
+        let numbers = self.numbers().map(|(_, rows)| rows.row_bytes());
+        numbers.iter().sum::<usize>() + self.eq_active.row_bytes()
+    }
+
+    /// Tables of the shapes that `like` has.
+    ///
+    /// # Errors
+    /// The first of another shape.
+    pub(super) fn check_shapes(&self, model: &Model, count: usize) -> Result<(), SimError> {
+        let widths = [
+            1,
+            model.nq,
+            model.nv,
+            model.na,
+            model.nu(),
+            model.nv,
+            6 * model.nbody(),
+            3 * model.nmocap,
+            4 * model.nmocap,
+            model.nv,
+        ];
+        for ((field, rows), width) in self.numbers().into_iter().zip(widths) {
+            check_length(field, rows.as_slice().len(), count * width)?;
+        }
+        let switches = self.eq_active.as_slice().len();
+        check_length("eq_active", switches, count * model.equalities.len())
+    }
+
+    /// Takes row `from` of another table as row `to`.
+    pub(super) fn copy_row(&mut self, to: usize, other: &Self, from: usize) {
+        for (rows, (_, other)) in self.numbers_mut().into_iter().zip(other.numbers()) {
+            rows.row_mut(to).copy_from_slice(other.row(from));
+        }
+        let switches = other.eq_active.row(from);
+        self.eq_active.row_mut(to).copy_from_slice(switches);
+    }
+
+    /// Copies row `env` into a state of the same model.
+    pub(super) fn read(&self, env: usize, state: &mut State<S>) {
+        write_lane(self.time.row(env), 0, from_mut(&mut state.time));
+        write_lane(self.qpos.row(env), 0, &mut state.qpos);
+        write_lane(self.qvel.row(env), 0, &mut state.qvel);
+        write_lane(self.act.row(env), 0, &mut state.act);
+        let warmstart = self.qacc_warmstart.row(env);
+        write_lane(warmstart, 0, &mut state.qacc_warmstart);
+        let inputs = Inputs {
+            ctrl: &self.ctrl,
+            qfrc_applied: &self.qfrc_applied,
+            xfrc_applied: &self.xfrc_applied,
+            mocap_pos: &self.mocap_pos,
+            mocap_quat: &self.mocap_quat,
+            eq_active: &self.eq_active,
+        };
+        inputs.read(env, 0, state);
+    }
+
+    /// Copies a state of the same model into row `env`.
+    pub(super) fn write(&mut self, env: usize, state: &State<S>) {
+        self.time.row_mut(env)[0] = state.time;
+        self.qpos.row_mut(env).copy_from_slice(&state.qpos);
+        self.qvel.row_mut(env).copy_from_slice(&state.qvel);
+        self.act.row_mut(env).copy_from_slice(&state.act);
+        self.ctrl.row_mut(env).copy_from_slice(&state.ctrl);
+        let forces = self.xfrc_applied.row_mut(env).chunks_exact_mut(6);
+        for (row, force) in forces.zip(&state.xfrc_applied) {
+            force.linear.write(row);
+            force.angular.write(&mut row[3..]);
+        }
+        (self.qfrc_applied.row_mut(env)).copy_from_slice(&state.qfrc_applied);
+        let positions = self.mocap_pos.row_mut(env).chunks_exact_mut(3);
+        for (row, pos) in positions.zip(&state.mocap_pos) {
+            pos.write(row);
+        }
+        let turns = self.mocap_quat.row_mut(env).chunks_exact_mut(4);
+        for (row, quat) in turns.zip(&state.mocap_quat) {
+            quat.write(row);
+        }
+        (self.eq_active.row_mut(env)).copy_from_slice(&state.eq_active);
+        (self.qacc_warmstart.row_mut(env)).copy_from_slice(&state.qacc_warmstart);
+    }
+
+    /// The tables as a step sees them.
+    pub(super) fn share(&mut self) -> (Motion<'_, S>, Inputs<'_, S>) {
+        let motion = Motion {
+            time: Cells::new(&mut self.time),
+            qpos: Cells::new(&mut self.qpos),
+            qvel: Cells::new(&mut self.qvel),
+            act: Cells::new(&mut self.act),
+            qacc_warmstart: Cells::new(&mut self.qacc_warmstart),
+        };
+        let inputs = Inputs {
+            ctrl: &self.ctrl,
+            qfrc_applied: &self.qfrc_applied,
+            xfrc_applied: &self.xfrc_applied,
+            mocap_pos: &self.mocap_pos,
+            mocap_quat: &self.mocap_quat,
+            eq_active: &self.eq_active,
+        };
+        (motion, inputs)
+    }
+}
+
+/// What a step reads and writes.
+pub struct Motion<'a, S: Lanewise> {
+    time: Cells<'a, S>,
+    qpos: Cells<'a, S>,
+    qvel: Cells<'a, S>,
+    act: Cells<'a, S>,
+    qacc_warmstart: Cells<'a, S>,
+}
+
+impl<S: Lanewise> Motion<'_, S> {
+    /// Copies the row of an environment into lane `lane`.
+    pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
+        self.time.read(env, lane, from_mut(&mut state.time));
+        self.qpos.read(env, lane, &mut state.qpos);
+        self.qvel.read(env, lane, &mut state.qvel);
+        self.act.read(env, lane, &mut state.act);
+        self.qacc_warmstart
+            .read(env, lane, &mut state.qacc_warmstart);
+    }
+
+    /// Copies lane `lane` into the row of an environment.
+    pub fn write<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
+        self.time.write(env, lane, from_ref(&state.time));
+        self.qpos.write(env, lane, &state.qpos);
+        self.qvel.write(env, lane, &state.qvel);
+        self.act.write(env, lane, &state.act);
+        self.qacc_warmstart.write(env, lane, &state.qacc_warmstart);
+    }
+}
+
+/// What a step only reads.
+pub struct Inputs<'a, S> {
+    ctrl: &'a Rows<S>,
+    qfrc_applied: &'a Rows<S>,
+    xfrc_applied: &'a Rows<S>,
+    mocap_pos: &'a Rows<S>,
+    mocap_quat: &'a Rows<S>,
+    eq_active: &'a Rows<bool>,
+}
+
+impl<S: Lanewise> Inputs<'_, S> {
+    /// Copies the row of an environment into lane `lane`.
+    pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
+        write_lane(self.ctrl.row(env), lane, &mut state.ctrl);
+        write_lane(self.qfrc_applied.row(env), lane, &mut state.qfrc_applied);
+        let forces = self.xfrc_applied.row(env).chunks_exact(6);
+        for (force, row) in state.xfrc_applied.iter_mut().zip(forces) {
+            let (linear, angular) = (&mut force.linear, &mut force.angular);
+            let axes = [
+                &mut linear.x,
+                &mut linear.y,
+                &mut linear.z,
+                &mut angular.x,
+                &mut angular.y,
+                &mut angular.z,
+            ];
+            set_lanes(axes, lane, row);
+        }
+        let positions = self.mocap_pos.row(env).chunks_exact(3);
+        for (p, row) in state.mocap_pos.iter_mut().zip(positions) {
+            set_lanes([&mut p.x, &mut p.y, &mut p.z], lane, row);
+        }
+        let turns = self.mocap_quat.row(env).chunks_exact(4);
+        for (q, row) in state.mocap_quat.iter_mut().zip(turns) {
+            set_lanes([&mut q.w, &mut q.x, &mut q.y, &mut q.z], lane, row);
+        }
+        for (switch, &on) in state.eq_active.iter_mut().zip(self.eq_active.row(env)) {
+            switch.set_lane(lane, on);
+        }
+    }
+}
+
+#[inline(always)]
+fn set_lanes<T: Real, const N: usize>(to: [&mut T; N], lane: usize, row: &[T::Scalar]) {
+    for (to, &value) in to.into_iter().zip(row) {
+        T::as_scalars_mut(from_mut(to))[lane] = value;
+    }
+}

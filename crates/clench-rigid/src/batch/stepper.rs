@@ -1,0 +1,241 @@
+//! A thread's scratch: environments come in by groups, are stepped side by side, and go out again.
+
+use super::divergence::Divergence;
+use super::precision::Lanewise;
+use super::state_rows::{Inputs, Motion};
+use crate::check;
+use crate::error::Fault;
+use crate::model::{Model, Params};
+use crate::pipeline;
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{LaneTask, Mask, Real, Scalar};
+use clench_solver::MaxContacts;
+use std::marker::PhantomData;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// The most lanes that any instruction set has.
+const MOST_LANES: usize = 16;
+
+/// What a call asks of its threads, the same for every group.
+pub struct Job<'a, S: Lanewise> {
+    pub model: &'a Model,
+    pub settings: &'a StepSettings,
+    pub motion: Motion<'a, S>,
+    pub inputs: Inputs<'a, S>,
+    /// Which contacts each environment had in its last step, for grouping.
+    pub signatures: &'a [AtomicU64],
+    /// Whether states advance, or stay and only what follows from them is computed.
+    pub advance: bool,
+    pub steps: usize,
+}
+
+/// What a stepper has to report.
+#[derive(Default)]
+pub struct Tally {
+    /// Environments that cannot go on, and why.
+    pub faults: Vec<(u32, Fault)>,
+    pub divergence: Divergence,
+}
+
+/// A thread's scratch in lanes of some width.
+pub trait Stepper<S: Lanewise>: Send {
+    /// How many environments it steps at once.
+    fn lanes(&self) -> usize;
+    /// Does a job for a group of at most so many environments.
+    fn run(&mut self, group: &[u32], job: &Job<S>);
+    /// What happened since it was last cleared.
+    fn tally(&mut self) -> &mut Tally;
+}
+
+/// Makes a stepper in lanes picked at run time.
+pub struct MakeStepper<'a> {
+    pub model: &'a Model,
+}
+
+impl<S: Lanewise> LaneTask<S> for MakeStepper<'_> {
+    type Output = Box<dyn Stepper<S>>;
+    fn run<T: Real<Scalar = S>>(self) -> Self::Output {
+        Box::new(LaneStepper::<T>::new(self.model))
+    }
+}
+
+pub struct LaneStepper<T: Real> {
+    state: State<T>,
+    params: Params<T>,
+    ws: Workspace<T>,
+    tally: Tally,
+}
+
+/// The environments in the lanes, the first `len` of them.
+struct Group<T> {
+    envs: [u32; MOST_LANES],
+    len: usize,
+    lanes: PhantomData<T>,
+}
+
+impl<T: Real> Group<T> {
+    fn new(envs: &[u32]) -> Self {
+        let mut group = Group {
+            envs: [0; MOST_LANES],
+            len: envs.len().min(T::LANES),
+            lanes: PhantomData,
+        };
+        group.envs[..group.len].copy_from_slice(&envs[..group.len]);
+        group
+    }
+
+    /// Each environment with its lane.
+    fn iter(&self) -> impl Iterator<Item = (usize, usize)> {
+        (0..self.len).map(|lane| (lane, self.envs[lane] as usize))
+    }
+
+    /// Every lane with an environment: those left over repeat the last.
+    fn fill(&self) -> impl Iterator<Item = (usize, usize)> {
+        (0..T::LANES).map(|lane| (lane, self.envs[lane.min(self.len - 1)] as usize))
+    }
+
+    /// Keeps the environments of some lanes.
+    fn keep(&mut self, lanes: T::Mask) {
+        let mut kept = 0;
+        for lane in 0..self.len {
+            if lanes.lane(lane) {
+                self.envs[kept] = self.envs[lane];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+}
+
+impl<T: Real> LaneStepper<T>
+where
+    T::Scalar: Lanewise,
+{
+    fn new(model: &Model) -> Self {
+        LaneStepper {
+            state: State::new(model),
+            params: model.params.broadcast(),
+            ws: Workspace::new(model),
+            tally: Tally::default(),
+        }
+    }
+
+    fn gather(&mut self, group: &Group<T>, job: &Job<T::Scalar>) {
+        for (lane, env) in group.fill() {
+            job.motion.read(env, lane, &mut self.state);
+            job.inputs.read(env, lane, &mut self.state);
+        }
+    }
+
+    /// Lets go of the environments whose state no step can start from. Whether all stay.
+    fn admit(&mut self, group: &mut Group<T>) -> bool {
+        let good = check::good_inputs(&self.state);
+        if !good.all() {
+            let state = &self.state;
+            let fault = |lane| check::input_fault(state, lane);
+            report(group, good, &mut self.tally.faults, fault);
+        }
+        good.all()
+    }
+
+    /// One step of all lanes. Environments that fail in it leave the group and keep the rows that they have. Whether all
+    /// stay.
+    fn step(&mut self, group: &mut Group<T>, job: &Job<T::Scalar>) -> bool {
+        let (model, settings) = (job.model, job.settings);
+        let time = self.state.time;
+        let (state, params, ws) = (&mut self.state, &self.params, &mut self.ws);
+        if job.advance {
+            pipeline::step(model, params, settings, state, ws);
+        } else {
+            pipeline::forward(model, params, settings, state, ws);
+        }
+        let overflow = ws.collision.overflow;
+        let finite = check::good_results(state, ws);
+        let good = finite & !overflow;
+        self.scatter(group, good, job);
+        if !good.all() {
+            let (state, ws, most) = (&self.state, &self.ws, settings.solver.max_contacts);
+            report(group, good, &mut self.tally.faults, |lane| {
+                let time = time.lane(lane).to_f64();
+                match most {
+                    MaxContacts::Limit(limit) if finite.lane(lane) => {
+                        Fault::ContactOverflow { time, limit }
+                    }
+                    _ => check::result_fault(time, state, ws, lane),
+                }
+            });
+        }
+        good.all()
+    }
+
+    fn scatter(&mut self, group: &Group<T>, good: T::Mask, job: &Job<T::Scalar>) {
+        let mut signatures = [0; MOST_LANES];
+        for contact in &self.ws.contacts {
+            let [a, b] = contact.geoms.map(|g| g as u64);
+            for (lane, signature) in signatures.iter_mut().enumerate().take(T::LANES) {
+                if contact.active.lane(lane) {
+                    *signature |= contact_bit(a, b);
+                }
+            }
+        }
+        for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
+            if job.advance {
+                job.motion.write(env, lane, &self.state);
+            }
+            job.signatures[env].store(signatures[lane], Relaxed);
+        }
+        self.tally.divergence.count(&self.ws, group.len);
+    }
+}
+
+/// Notes the faults of the lanes that are not good, and lets them go.
+fn report<T: Real>(
+    group: &mut Group<T>,
+    good: T::Mask,
+    faults: &mut Vec<(u32, Fault)>,
+    fault: impl Fn(usize) -> Fault,
+) {
+    for (lane, env) in group.iter().filter(|&(lane, _)| !good.lane(lane)) {
+        faults.push((env as u32, fault(lane)));
+    }
+    group.keep(good);
+}
+
+/// One of 64 bits for a pair of geoms.
+fn contact_bit(a: u64, b: u64) -> u64 {
+    // Fibonacci hashing: the upper bits of a multiple of the golden ratio spread neighbours well.
+    let hash = (a << 32 | b).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    1 << (hash >> 58)
+}
+
+impl<T: Real> Stepper<T::Scalar> for LaneStepper<T>
+where
+    T::Scalar: Lanewise,
+{
+    fn lanes(&self) -> usize {
+        T::LANES
+    }
+
+    fn run(&mut self, envs: &[u32], job: &Job<T::Scalar>) {
+        let mut group = Group::new(envs);
+        let mut step = 0;
+        while step < job.steps && group.len > 0 {
+            self.gather(&group, job);
+            while step < job.steps && group.len > 0 {
+                if !self.admit(&mut group) {
+                    break;
+                }
+                step += 1;
+                if !self.step(&mut group, job) {
+                    break;
+                }
+            }
+        }
+    }
+
+    fn tally(&mut self) -> &mut Tally {
+        &mut self.tally
+    }
+}
