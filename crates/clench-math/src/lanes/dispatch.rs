@@ -1,5 +1,7 @@
 //! Which instructions the processor has, and running a task in lanes of them.
 
+#[cfg(target_arch = "aarch64")]
+use super::neon::Neon;
 use super::{Lanes, Portable};
 #[cfg(target_arch = "x86_64")]
 use super::{avx2::Avx2, avx512::Avx512};
@@ -89,6 +91,8 @@ macro_rules! in_lanes {
             }
             Some(match instructions {
                 Instructions::Scalar => task.run::<$scalar>(),
+                #[cfg(target_arch = "aarch64")]
+                Instructions::Neon => task.run::<Lanes<$scalar, $narrow, Neon>>(),
                 #[cfg(target_arch = "x86_64")]
                 Instructions::Avx2 => task.run::<Lanes<$scalar, $medium, Avx2>>(),
                 #[cfg(target_arch = "x86_64")]
