@@ -13,6 +13,7 @@ pub mod dynamics;
 mod error;
 pub mod model;
 pub mod pipeline;
+pub mod profile;
 pub mod readout;
 pub mod settings;
 mod sim;

@@ -16,6 +16,7 @@ use crate::dynamics::tendon::tendon_lengths;
 use crate::dynamics::transmission::transmission;
 use crate::dynamics::velocity::velocities;
 use crate::model::{Integrator, Model, Params};
+use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -34,8 +35,11 @@ pub fn position_stage<T: Real>(
     com_positions(model, params, pos);
     tendon_lengths(model, params, &state.qpos, pos);
     transmission(model, params, &state.qpos, pos);
+    ws.clock.lap(Stage::Kinematics as usize);
     composite_inertia(model, params, pos, &mut ws.problem.mass);
+    ws.clock.lap(Stage::Inertia as usize);
     ws.singular = !ws.problem.factor_mass();
+    ws.clock.lap(Stage::MassFactorization as usize);
 }
 
 /// What depends on velocities besides: velocities of bodies, tendons and actuators, passive and bias forces.
@@ -49,6 +53,7 @@ pub fn velocity_stage<T: Real>(
     velocities(model, params, pos, &state.qvel, vel);
     passive_forces(model, params, pos, vel, &state.qpos, &state.qvel, force);
     bias_forces(model, params, pos, vel, &state.qvel, force);
+    ws.clock.lap(Stage::Velocity as usize);
 }
 
 /// Actuator forces, the sum of all smooth forces, and the acceleration that they alone would cause.
@@ -62,6 +67,7 @@ pub fn force_stage<T: Real>(
     actuation(model, params, state, pos, vel, force);
     smooth_forces(model, state, pos, force);
     smooth_acceleration(model, force, &mut ws.problem);
+    ws.clock.lap(Stage::Force as usize);
 }
 
 /// Forward dynamics: everything that follows from the state, up to `ws.qacc` and the constraint forces.
@@ -72,6 +78,7 @@ pub fn forward<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
+    ws.clock.start();
     position_stage(model, params, state, ws);
     detect(model, params, settings, ws);
     velocity_stage(model, params, state, ws);
@@ -96,4 +103,5 @@ pub fn step<T: Real>(
         }),
     }
     state.qacc_warmstart.copy_from_slice(&ws.qacc);
+    ws.clock.lap(Stage::Integration as usize);
 }

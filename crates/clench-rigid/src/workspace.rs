@@ -4,6 +4,7 @@ use crate::Model;
 use crate::constraint::ConstraintRecord;
 use crate::contact::{Collision, Contact};
 use crate::dynamics::integrate::Integration;
+use crate::profile::{Profile, StepClock};
 use clench_math::{Force, Inertia, Mask, Mat3, Motion, Quat, Real, Vec3};
 use clench_solver::{Problem, Solver};
 
@@ -152,6 +153,8 @@ pub struct Workspace<T: Real> {
     pub qfrc_constraint: Vec<T>,
     /// What integrators need besides.
     pub integration: Integration<T>,
+    /// Where the time goes, once it runs; see also the solver's.
+    pub clock: StepClock,
     /// Lanes in which a matrix that had to be positive definite (the mass matrix, or that of an implicit integrator) was
     /// not: their accelerations mean nothing.
     pub singular: T::Mask,
@@ -193,7 +196,19 @@ impl<T: Real> Workspace<T> {
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
             integration: Integration::new(model),
+            clock: StepClock::default(),
             singular: T::Mask::splat(false),
         }
+    }
+
+    /// Lets the clocks of stages and of solves run, or not.
+    pub fn run_clocks(&mut self, running: bool) {
+        self.clock.run(running);
+        self.solver.clock().run(running);
+    }
+
+    /// Where the time went while the clocks ran.
+    pub fn profile(&mut self) -> Profile {
+        Profile::new(&self.clock, self.solver.clock())
     }
 }

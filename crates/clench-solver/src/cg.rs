@@ -1,8 +1,8 @@
 //! Conjugate gradients, preconditioned by the mass matrix (Polak–Ribière, restarted where β would be negative).
 
-use crate::descent::{Direction, Progress};
-use crate::iterate::{Iterate, dot};
-use crate::{Problem, Settings, SolveStats};
+use crate::descent::{Course, Direction, Progress};
+use crate::iterate::dot;
+use crate::{Problem, Settings};
 use clench_math::{Real, kernel};
 
 /// The last gradient, and its image under M⁻¹.
@@ -31,14 +31,8 @@ impl<T: Real> Direction<T> for Cg<T> {
     }
 
     #[kernel]
-    fn find(
-        &mut self,
-        problem: &Problem<T>,
-        iterate: &Iterate<T>,
-        _: &Progress<T>,
-        direction: &mut Vec<T>,
-        _: &mut SolveStats<T>,
-    ) {
+    fn find(&mut self, problem: &Problem<T>, _: &Progress<T>, course: &mut Course<T>) {
+        let (iterate, direction) = (&course.iterate, &mut course.ray.direction);
         self.last.clear();
         self.last.extend_from_slice(&self.preconditioned);
         self.preconditioned.clear();

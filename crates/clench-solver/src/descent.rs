@@ -3,7 +3,7 @@
 use crate::costs::Tally;
 use crate::iterate::{Iterate, dot};
 use crate::line_search::{Precision, Ray, Step};
-use crate::{Problem, Settings, SolveStats, Status};
+use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Status};
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// How an algorithm chooses where to search.
@@ -16,15 +16,17 @@ pub(crate) trait Direction<T: Real> {
     fn prepare(&mut self, problem: &Problem<T>, settings: &Settings);
     /// Forgets what it has learned in the lanes of `mask`, whose iterate or problem was changed.
     fn restart(&mut self, mask: T::Mask);
-    /// Writes the next direction; `direction` holds the last one.
-    fn find(
-        &mut self,
-        problem: &Problem<T>,
-        iterate: &Iterate<T>,
-        progress: &Progress<T>,
-        direction: &mut Vec<T>,
-        stats: &mut SolveStats<T>,
-    );
+    /// Writes the next direction into `course.ray`, which holds the last one.
+    fn find(&mut self, problem: &Problem<T>, progress: &Progress<T>, course: &mut Course<T>);
+}
+
+/// The memory of a descent: where it is, where it looks, and what it reports.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Course<T: Real> {
+    pub iterate: Iterate<T>,
+    pub ray: Ray<T>,
+    pub stats: SolveStats<T>,
+    pub clock: SolveClock,
 }
 
 /// Where each lane stands.
@@ -56,42 +58,54 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
     problem: &Problem<T>,
     settings: &Settings,
     warmstart: Option<&[T]>,
-    iterate: &mut Iterate<T>,
-    ray: &mut Ray<T>,
     direction: &mut D,
-    stats: &mut SolveStats<T>,
+    course: &mut Course<T>,
 ) {
+    course.clock.start();
     let inertia = trace(problem);
     let tolerance = T::new(settings.tolerance);
     let precision = Precision {
         evaluations: settings.ls_iterations,
         slope: tolerance * T::new(settings.ls_tolerance) * inertia,
     };
+    let Course { iterate, ray, .. } = &mut *course;
     let tally = iterate.start(problem, warmstart, ray);
     let mut progress = Progress::new(tally, T::ONE / inertia, tolerance);
-    progress.judge_start::<D>(problem, iterate, ray, stats);
+    progress.judge_start::<D>(problem, course);
     direction.prepare(problem, settings);
+    let iterate = &mut course.iterate;
     if D::NEWTON && iterate.softening.start(problem, progress.live).any() {
         progress.curved = iterate.evaluate(problem).curved;
         iterate.differentiate(problem);
     }
+    course.clock.lap(SolvePart::Start as usize);
     for _ in 0..settings.iterations {
         if !progress.live.any() {
             break;
         }
-        direction.find(problem, iterate, &progress, &mut ray.direction, stats);
+        direction.find(problem, &progress, course);
+        let Course {
+            iterate,
+            ray,
+            clock,
+            ..
+        } = &mut *course;
         for p in &mut ray.direction {
             *p = T::select(progress.live, *p, T::ZERO);
         }
+        clock.lap(SolvePart::Direction as usize);
         ray.prepare(problem, iterate);
         let step = ray.search(problem, iterate, D::NEWTON, precision, progress.live);
+        clock.lap(SolvePart::LineSearch as usize);
         iterate.advance(step.alpha, ray);
         let tally = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
-        progress.record(step, tally, norm, stats);
-        progress.judge(problem, iterate, ray, direction, step, tally, norm, stats);
+        progress.record(step, tally, norm, &mut course.stats);
+        progress.judge(problem, direction, course, step, tally, norm);
+        course.clock.lap(SolvePart::Evaluation as usize);
     }
-    progress.finish(problem, iterate, ray, stats);
+    progress.finish(problem, course);
+    course.clock.lap(SolvePart::Evaluation as usize);
 }
 
 impl<T: Real> Progress<T> {
@@ -119,13 +133,13 @@ impl<T: Real> Progress<T> {
 
     /// Ends the lanes that need no iteration.
     #[inline(always)]
-    fn judge_start<D: Direction<T>>(
-        &mut self,
-        problem: &Problem<T>,
-        iterate: &mut Iterate<T>,
-        ray: &mut Ray<T>,
-        stats: &mut SolveStats<T>,
-    ) {
+    fn judge_start<D: Direction<T>>(&mut self, problem: &Problem<T>, course: &mut Course<T>) {
+        let Course {
+            iterate,
+            ray,
+            stats,
+            ..
+        } = course;
         let norm = iterate.differentiate(problem);
         stats.gradient = self.scale * norm;
         stats.status = Status::IterationLimit.code();
@@ -157,19 +171,22 @@ impl<T: Real> Progress<T> {
     }
 
     /// Ends the lanes that are done, and prepares the others for their next iteration.
-    #[allow(clippy::too_many_arguments)] // everything that an iteration has produced
     #[inline(always)]
     fn judge<D: Direction<T>>(
         &mut self,
         problem: &Problem<T>,
-        iterate: &mut Iterate<T>,
-        ray: &mut Ray<T>,
         direction: &mut D,
+        course: &mut Course<T>,
         step: Step<T>,
         tally: Tally<T>,
         norm: T,
-        stats: &mut SolveStats<T>,
     ) {
+        let Course {
+            iterate,
+            ray,
+            stats,
+            ..
+        } = course;
         self.end(!norm.is_finite(), Status::NonFinite, stats);
         self.same_hessian = tally.changes.eq(T::ZERO) & !tally.curved & !self.curved;
         self.curved = tally.curved;
@@ -230,13 +247,13 @@ impl<T: Real> Progress<T> {
 
     /// Completes the statistics.
     #[kernel]
-    fn finish(
-        &mut self,
-        problem: &Problem<T>,
-        iterate: &mut Iterate<T>,
-        ray: &mut Ray<T>,
-        stats: &mut SolveStats<T>,
-    ) {
+    fn finish(&mut self, problem: &Problem<T>, course: &mut Course<T>) {
+        let Course {
+            iterate,
+            ray,
+            stats,
+            ..
+        } = course;
         let softened = iterate.softening.active();
         if softened.any() {
             // Cut short on the way: what is reported is true of the problem itself.

@@ -9,7 +9,7 @@
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, Jacobian, StoredRows};
 use crate::tree::Coupling;
-use crate::{Problem, Tree, TreeFactor, TreeMatrix};
+use crate::{Problem, SolveClock, SolvePart, Tree, TreeFactor, TreeMatrix};
 use clench_math::{Mask, Real, kernel};
 
 /// H and its factor.
@@ -67,18 +67,21 @@ impl<T: Real> Hessian<T> {
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
+        clock: &mut SolveClock,
         weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
     ) {
         self.set(problem.tree(), &problem.mass);
         problem
             .jacobian
             .add_gram(weigh, &self.tree, &mut self.matrix.values);
+        clock.lap(SolvePart::Hessian as usize);
         if mask.all() {
             self.factor.factor_safely(&self.tree, &self.matrix);
         } else {
             self.spare.factor_safely(&self.tree, &self.matrix);
             self.factor.take(mask, &self.spare);
         }
+        clock.lap(SolvePart::Factorization as usize);
     }
 
     /// Applies a rank-one change of a block's Hessian. False in lanes whose factor it spoils.

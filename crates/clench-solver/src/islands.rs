@@ -6,7 +6,7 @@
 
 use crate::problem::Problem;
 use crate::workspace::Workspace;
-use crate::{Settings, SolveStats, Tree};
+use crate::{Settings, SolveClock, SolveStats, Tree};
 use clench_math::{Mask, Real};
 use std::sync::Arc;
 
@@ -92,6 +92,7 @@ impl<T: Real> Islands<T> {
         problem: &Problem<T>,
         settings: &Settings,
         warmstart: Option<&[T]>,
+        clock: &mut SolveClock,
     ) -> (&[Island<T>], SolveStats<T>) {
         self.gather(problem);
         let mut stats = SolveStats::default();
@@ -103,8 +104,10 @@ impl<T: Real> Islands<T> {
                     .extend(island.dofs.iter().map(|&dof| warm[dof as usize]));
                 &island.warmstart[..]
             });
+            std::mem::swap(&mut island.work.course.clock, clock);
             island.work.run(&island.problem, settings, warmstart);
-            stats.combine(&island.work.stats);
+            std::mem::swap(&mut island.work.course.clock, clock);
+            stats.combine(&island.work.course.stats);
         }
         (&self.slots[..self.count], stats)
     }

@@ -1,6 +1,6 @@
 //! Lanes taken apart: where environments have different islands, each is solved alone.
 
-use crate::{Problem, ProblemError, Settings, SolveStats, Solver, Tree};
+use crate::{Problem, ProblemError, Settings, SolveClock, SolveStats, Solver, Tree};
 use clench_math::Real;
 use std::sync::Arc;
 
@@ -32,6 +32,11 @@ impl<T: Real> Lane<T> {
             warmstart: Vec::new(),
             blocks: Vec::new(),
         }
+    }
+
+    /// Times its solves.
+    pub fn clock(&mut self) -> &mut SolveClock {
+        self.solver.clock()
     }
 
     /// Solves lane `lane` of `problem` and writes its results.

@@ -29,6 +29,7 @@ mod problem;
 mod softening;
 mod solver;
 mod stats;
+mod stopwatch;
 mod tree;
 mod workspace;
 
@@ -37,5 +38,7 @@ pub use options::{ConstraintSolver, FrictionCone, MaxContacts, RigidOptions, Set
 pub use plain::PlainBlock;
 pub use problem::{Block, BlockMut, Cost, Problem};
 pub use solver::Solver;
+pub use solver::{SolveClock, SolvePart};
 pub use stats::{LaneStats, SolveStats, Status};
+pub use stopwatch::Stopwatch;
 pub use tree::{Tree, TreeFactor, TreeMatrix};

@@ -4,10 +4,10 @@
 //! by a rank-one change for each; else it is rebuilt. Each lane decides for itself, by its own changes alone.
 
 use crate::costs::{BlockCost, with_cost};
-use crate::descent::{Direction, Progress};
+use crate::descent::{Course, Direction, Progress};
 use crate::hessian::Hessian;
 use crate::iterate::Iterate;
-use crate::{Problem, Settings, SolveStats, Switch};
+use crate::{Problem, Settings, SolvePart, SolveStats, Switch};
 use clench_math::{Mask, Real, kernel};
 
 /// Holds the factored Hessian.
@@ -57,14 +57,13 @@ impl<T: Real> Direction<T> for Newton<T> {
     }
 
     #[kernel]
-    fn find(
-        &mut self,
-        problem: &Problem<T>,
-        iterate: &Iterate<T>,
-        progress: &Progress<T>,
-        direction: &mut Vec<T>,
-        stats: &mut SolveStats<T>,
-    ) {
+    fn find(&mut self, problem: &Problem<T>, progress: &Progress<T>, course: &mut Course<T>) {
+        let Course {
+            iterate,
+            ray,
+            stats,
+            clock,
+        } = course;
         let stale = progress.live & !progress.same_hessian;
         let updated = self.update(
             problem,
@@ -74,20 +73,27 @@ impl<T: Real> Direction<T> for Newton<T> {
         );
         let rebuild = stale & !updated;
         if rebuild.any() {
-            self.hessian.factor(problem, rebuild, |b, weight| {
-                let y = &iterate.residual[b.rows()];
-                let pieces = &iterate.pieces[b.pieces()];
-                with_cost!(b.cost, C => C::hessian(iterate.rows(problem, b), y, pieces, weight))
-            });
+            self.hessian.factor(
+                problem,
+                rebuild,
+                clock,
+                #[inline(always)]
+                |b, weight| {
+                    let y = &iterate.residual[b.rows()];
+                    let pieces = &iterate.pieces[b.pieces()];
+                    with_cost!(b.cost, C => C::hessian(iterate.rows(problem, b), y, pieces, weight))
+                },
+            );
             stats.factorizations += T::select(rebuild, T::ONE, T::ZERO);
         }
         if stale.any() {
             self.pieces.copy_from_slice(&iterate.pieces);
             self.updatable = !progress.curved;
         }
-        direction.clear();
-        direction.extend(iterate.gradient.iter().map(|&g| -g));
-        self.hessian.solve(direction);
+        clock.lap(SolvePart::Factorization as usize);
+        ray.direction.clear();
+        ray.direction.extend(iterate.gradient.iter().map(|&g| -g));
+        self.hessian.solve(&mut ray.direction);
     }
 }
 

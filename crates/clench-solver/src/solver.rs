@@ -5,8 +5,33 @@ use crate::islands::Islands;
 use crate::iterate::all_finite;
 use crate::lane::{Lane, Results};
 use crate::workspace::Workspace;
-use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Status, Switch, Tree};
+use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Status, Stopwatch, Switch, Tree};
 use clench_math::Real;
+
+/// What a solve spends its time on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolvePart {
+    /// The better of two starting points, and whether it is good enough already.
+    Start,
+    /// H.
+    Hessian,
+    /// Its factorization, or an update of it.
+    Factorization,
+    /// The direction.
+    Direction,
+    /// How far to go along it.
+    LineSearch,
+    /// Costs and gradient at the new point, and whether to stop there.
+    Evaluation,
+}
+
+impl SolvePart {
+    /// How many there are.
+    pub const COUNT: usize = 6;
+}
+
+/// Times the parts of solves.
+pub type SolveClock = Stopwatch<{ SolvePart::COUNT }>;
 
 /// Solves [`Problem`]s; keeps its memory between solves.
 ///
@@ -93,13 +118,13 @@ impl<T: Real> Solver<T> {
 
     fn solve_whole(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
         self.whole.run(problem, settings, warmstart);
-        self.stats = self.whole.stats;
-        copy(&mut self.qacc, &self.whole.iterate.qacc);
-        copy(&mut self.force, &self.whole.iterate.force);
+        self.stats = self.whole.course.stats;
+        copy(&mut self.qacc, &self.whole.course.iterate.qacc);
+        copy(&mut self.force, &self.whole.course.iterate.force);
         copy(&mut self.edges, &self.whole.edges);
         copy(
             &mut self.qfrc_constraint,
-            &self.whole.iterate.qfrc_constraint,
+            &self.whole.course.iterate.qfrc_constraint,
         );
     }
 
@@ -110,10 +135,11 @@ impl<T: Real> Solver<T> {
         warmstart: Option<&[T]>,
     ) {
         self.reset(problem);
-        let (islands, stats) = self.islands.solve(problem, settings, warmstart);
+        let clock = &mut self.whole.course.clock;
+        let (islands, stats) = self.islands.solve(problem, settings, warmstart, clock);
         self.stats.combine(&stats);
         for island in islands {
-            let iterate = &island.work.iterate;
+            let iterate = &island.work.course.iterate;
             for (local, &dof) in island.dofs.iter().enumerate() {
                 self.qacc[dof as usize] = iterate.qacc[local];
                 self.qfrc_constraint[dof as usize] = iterate.qfrc_constraint[local];
@@ -144,7 +170,12 @@ impl<T: Real> Solver<T> {
             qfrc_constraint: &mut self.qfrc_constraint,
             stats: &mut self.stats,
         };
-        (0..T::LANES).try_for_each(|k| lane.solve(problem, k, settings, warmstart, &mut results))
+        let clock = &mut self.whole.course.clock;
+        std::mem::swap(lane.clock(), clock);
+        let done = (0..T::LANES)
+            .try_for_each(|k| lane.solve(problem, k, settings, warmstart, &mut results));
+        std::mem::swap(lane.clock(), clock);
+        done
     }
 
     /// The minimiser: generalized acceleration, length nv.
@@ -168,6 +199,10 @@ impl<T: Real> Solver<T> {
         } else {
             &[]
         }
+    }
+    /// Where the time of solves goes once it runs, by [`SolvePart`].
+    pub fn clock(&mut self) -> &mut SolveClock {
+        &mut self.whole.course.clock
     }
     /// Statistics of the last solve.
     pub fn stats(&self) -> &SolveStats<T> {

@@ -2,9 +2,7 @@
 
 use crate::cg::Cg;
 use crate::costs::Pyramid;
-use crate::descent::{minimise, trace};
-use crate::iterate::Iterate;
-use crate::line_search::Ray;
+use crate::descent::{Course, minimise, trace};
 use crate::newton::Newton;
 use crate::noslip::Noslip;
 use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats};
@@ -13,11 +11,9 @@ use clench_math::{Real, kernel};
 /// Memory for problems solved as a whole.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace<T: Real> {
-    pub iterate: Iterate<T>,
+    pub course: Course<T>,
     /// Edge forces of pyramids, at the index of their pieces.
     pub edges: Vec<T>,
-    pub stats: SolveStats<T>,
-    ray: Ray<T>,
     newton: Newton<T>,
     cg: Cg<T>,
     noslip: Noslip<T>,
@@ -27,24 +23,18 @@ impl<T: Real> Workspace<T> {
     /// Minimises, then removes slip where the settings ask for it.
     #[kernel]
     pub fn run(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
-        self.stats = SolveStats {
+        let Workspace {
+            course, newton, cg, ..
+        } = self;
+        course.stats = SolveStats {
             islands: T::ONE,
             ..SolveStats::default()
         };
-        let Workspace {
-            iterate,
-            ray,
-            newton,
-            cg,
-            stats,
-            ..
-        } = self;
         match settings.constraint_solver {
-            ConstraintSolver::Newton => {
-                minimise(problem, settings, warmstart, iterate, ray, newton, stats)
-            }
-            ConstraintSolver::Cg => minimise(problem, settings, warmstart, iterate, ray, cg, stats),
+            ConstraintSolver::Newton => minimise(problem, settings, warmstart, newton, course),
+            ConstraintSolver::Cg => minimise(problem, settings, warmstart, cg, course),
         }
+        let Course { iterate, stats, .. } = course;
         self.edges.resize(problem.npiece, T::ZERO);
         for b in problem
             .jacobian
@@ -53,18 +43,12 @@ impl<T: Real> Workspace<T> {
             .filter(|b| b.cost == Cost::Pyramid)
         {
             let edges = &mut self.edges[b.piece..b.piece + 2 * (b.dim - 1)];
-            Pyramid::edge_forces(problem.rows(b), &self.iterate.residual[b.rows()], edges);
+            Pyramid::edge_forces(problem.rows(b), &iterate.residual[b.rows()], edges);
         }
         if settings.noslip_iterations > 0 {
             let scale = T::ONE / trace(problem);
-            self.noslip.run(
-                problem,
-                settings,
-                scale,
-                &mut self.iterate,
-                &mut self.edges,
-                &mut self.stats,
-            );
+            self.noslip
+                .run(problem, settings, scale, iterate, &mut self.edges, stats);
         }
     }
 }

@@ -19,6 +19,7 @@ pub use softness::Softness;
 
 use crate::contact::Contact;
 use crate::model::{EqualityTarget, Model, Params};
+use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::{Positions, Velocities, Workspace};
@@ -73,12 +74,14 @@ pub fn constraint_stage<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     assemble(model, params, settings, state, ws);
+    ws.clock.lap(Stage::Assembly as usize);
     let warmstart = Some(&state.qacc_warmstart[..]);
     (ws.solver.solve(&ws.problem, &settings.solver, warmstart))
         .expect("the arrays of a state and a workspace have the model's lengths");
     ws.qacc.copy_from_slice(ws.solver.qacc());
     ws.qfrc_constraint
         .copy_from_slice(ws.solver.qfrc_constraint());
+    ws.clock.lap(Stage::Solve as usize);
 }
 
 /// Replaces the problem's blocks by those of the configuration.

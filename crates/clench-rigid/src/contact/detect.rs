@@ -4,6 +4,7 @@ use super::reach::{self, Reach, may_touch};
 use super::select::{explicit, geoms_may_collide};
 use super::{Candidate, Contact, candidates, contact_params, contact_range};
 use crate::model::{Model, Params};
+use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::workspace::{Positions, Workspace};
 use clench_collide::{Bound, Contacts, Pose, Shape, Sweep, collide};
@@ -94,11 +95,14 @@ pub fn detect<T: Real>(
         if !may_touch(&candidate, &collision.reaches, pos, range).any() {
             continue;
         }
+        ws.clock.lap(Stage::BroadPhase as usize);
         narrow(model, params, pos, &candidate, &mut collision.points);
         if !collision.points.as_slice().is_empty() {
             list(model, params, settings, &candidate, collision, contacts);
         }
+        ws.clock.lap(Stage::NarrowPhase as usize);
     }
+    ws.clock.lap(Stage::BroadPhase as usize);
 }
 
 /// The points of one candidate.

@@ -13,6 +13,7 @@ use crate::dynamics::integrate::{
     Integration, Rates, add_scaled, advance_activations, integrate_positions,
 };
 use crate::model::{JointKind, Model, Params};
+use crate::profile::Stage;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Real, Vec3, kernel};
@@ -47,6 +48,7 @@ pub fn rk4<T: Real>(
         add_scaled(&mut state.qvel, &rate.velocity, step);
         add_scaled(&mut state.act, &rate.activation, step);
         state.time = time + step;
+        ws.clock.lap(Stage::Integration as usize);
         let singular = ws.singular;
         forward(state, ws);
         ws.singular |= singular;

@@ -1,0 +1,92 @@
+//! Where the time of a step goes.
+
+use clench_solver::{SolveClock, SolvePart, Stopwatch};
+use std::time::Duration;
+
+/// A part of a step that the workspace's clock tells apart; the solver's clock tells apart those of a solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Poses, centres of mass, tendons, transmissions.
+    Kinematics,
+    /// Mass matrix.
+    Inertia,
+    /// Its factorization.
+    MassFactorization,
+    /// Pairs of geoms that may touch.
+    BroadPhase,
+    /// Where they do, and with what parameters.
+    NarrowPhase,
+    /// Velocities, passive and bias forces.
+    Velocity,
+    /// Actuators, the sum of all smooth forces, and their acceleration.
+    Force,
+    /// Constraints become blocks of the problem.
+    Assembly,
+    /// The solve; its parts are listed in its place.
+    Solve,
+    /// From acceleration to the next state.
+    Integration,
+    /// Rows in and out of lanes, and checks.
+    Rows,
+}
+
+impl Stage {
+    /// How many there are.
+    pub const COUNT: usize = 11;
+}
+
+/// Times the stages of steps.
+pub type StepClock = Stopwatch<{ Stage::COUNT }>;
+
+/// Time spent by stage, in the order of a step.
+#[derive(Clone, Debug, Default)]
+pub struct Profile {
+    /// Name and time of each stage; the parts of the solve count as stages.
+    pub stages: Vec<(&'static str, Duration)>,
+}
+
+impl Profile {
+    /// What the clocks of steps and of their solves say.
+    pub fn new(steps: &StepClock, solves: &SolveClock) -> Self {
+        let step = |name, stage| (name, steps.spent()[stage as usize]);
+        let part = |name, part| (name, solves.spent()[part as usize]);
+        let parts: Duration = solves.spent().iter().sum();
+        let rest = steps.spent()[Stage::Solve as usize].saturating_sub(parts);
+        let stages = vec![
+            step("kinematics", Stage::Kinematics),
+            step("inertia", Stage::Inertia),
+            step("mass factorization", Stage::MassFactorization),
+            step("collision broad", Stage::BroadPhase),
+            step("collision narrow", Stage::NarrowPhase),
+            step("velocity", Stage::Velocity),
+            step("forces", Stage::Force),
+            step("assembly", Stage::Assembly),
+            part("solve start", SolvePart::Start),
+            part("hessian", SolvePart::Hessian),
+            part("factorization", SolvePart::Factorization),
+            part("direction", SolvePart::Direction),
+            part("line search", SolvePart::LineSearch),
+            part("evaluation", SolvePart::Evaluation),
+            ("solve rest", rest),
+            step("integration", Stage::Integration),
+            step("rows and checks", Stage::Rows),
+        ];
+        Profile { stages }
+    }
+
+    /// Adds another's times, stage by stage.
+    pub fn add(&mut self, other: &Profile) {
+        if self.stages.is_empty() {
+            self.stages.clone_from(&other.stages);
+            return;
+        }
+        for (mine, theirs) in self.stages.iter_mut().zip(&other.stages) {
+            mine.1 += theirs.1;
+        }
+    }
+
+    /// All stages together.
+    pub fn total(&self) -> Duration {
+        self.stages.iter().map(|s| s.1).sum()
+    }
+}

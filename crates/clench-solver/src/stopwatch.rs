@@ -1,0 +1,64 @@
+//! Where the time goes: a stopwatch that is compiled in and costs a branch a lap while it does not run.
+
+use std::time::{Duration, Instant};
+
+/// Time spent in each of `N` parts.
+#[derive(Clone, Debug)]
+pub struct Stopwatch<const N: usize> {
+    /// The last lap's end, if it runs.
+    since: Option<Instant>,
+    running: bool,
+    spent: [Duration; N],
+}
+
+impl<const N: usize> Default for Stopwatch<N> {
+    fn default() -> Self {
+        Stopwatch {
+            since: None,
+            running: false,
+            spent: [Duration::ZERO; N],
+        }
+    }
+}
+
+impl<const N: usize> Stopwatch<N> {
+    /// Lets it run, or not; the times spent so far stay.
+    pub fn run(&mut self, running: bool) {
+        self.running = running;
+        self.since = None;
+    }
+
+    /// Begins a first lap.
+    #[inline(always)]
+    pub fn start(&mut self) {
+        if self.running {
+            self.since = Some(Instant::now());
+        }
+    }
+
+    /// Ends a lap, whose time goes to `part`, and begins the next.
+    #[inline(always)]
+    pub fn lap(&mut self, part: usize) {
+        if self.running {
+            self.end_lap(part);
+        }
+    }
+
+    #[cold]
+    fn end_lap(&mut self, part: usize) {
+        let now = Instant::now();
+        if let Some(since) = self.since.replace(now) {
+            self.spent[part] += now - since;
+        }
+    }
+
+    /// The time spent in each part.
+    pub fn spent(&self) -> &[Duration; N] {
+        &self.spent
+    }
+
+    /// Forgets the times spent.
+    pub fn reset(&mut self) {
+        self.spent = [Duration::ZERO; N];
+    }
+}
