@@ -1,33 +1,50 @@
 //! The attribute `#[kernel]`, which compiles a numerical function for the instruction set that its lanes are made of.
-//! Nothing else lives here: a procedural macro needs a crate of its own.
+//! Nothing else lives here, for a procedural macro needs a crate of its own; it is used, and explained by examples, as
+//! `clench_math::kernel`.
 
 use proc_macro::{Delimiter, Group, TokenStream, TokenTree};
 
-/// Compiles a function for the instruction set of its number type, which must be called `T`.
+/// Compiles a function for the instruction set of its number type, a generic parameter of the function or of its `impl`
+/// that must be called `T`.
 ///
 /// The body moves into `T::vectorize(...)`, and what it calls must either be inlined into it (`#[inline(always)]`) or be a
 /// kernel itself: a plain function in between would be compiled for the oldest processor of its architecture, and every
-/// operation on lanes in it would be a call. For `f64` and `f32` the attribute changes nothing.
+/// operation on lanes in it would be a call. That costs speed, never correctness. For `f64` and `f32` the attribute changes
+/// nothing.
+///
+/// The same goes for closures: those that hold operations on lanes need `#[inline(always)]`, which Rust accepts where a
+/// closure is an argument, or give way to a loop.
 ///
 /// Mark as kernels the functions that are worth a call: a stage, a product, a factorization. Mark `#[inline(always)]`
-/// what is small beside its call.
+/// what is small beside its call. Each kernel is compiled for every instruction set that it is used with.
 #[proc_macro_attribute]
-pub fn kernel(_: TokenStream, function: TokenStream) -> TokenStream {
+pub fn kernel(arguments: TokenStream, function: TokenStream) -> TokenStream {
+    if !arguments.is_empty() {
+        return error("#[kernel] takes no arguments");
+    }
     let mut tokens: Vec<TokenTree> = function.into_iter().collect();
-    let Some(TokenTree::Group(body)) = tokens.pop() else {
-        return "compile_error!(\"#[kernel] belongs on a function with a body\");"
-            .parse()
-            .unwrap_or_default();
+    let is_function = tokens
+        .iter()
+        .any(|token| matches!(token, TokenTree::Ident(word) if word.to_string() == "fn"));
+    let Some(TokenTree::Group(body)) = tokens.pop().filter(|_| is_function) else {
+        return error("#[kernel] belongs on a function with a body");
     };
-    let mut call: TokenStream = "<T as ::clench_math::Real>::vectorize"
-        .parse()
-        .unwrap_or_default();
-    let mut closure: TokenStream = "#[inline(always)] move ||".parse().unwrap_or_default();
+    let mut closure = source("#[inline(always)] move ||");
     closure.extend([TokenTree::Group(body)]);
-    call.extend([TokenTree::Group(Group::new(
-        Delimiter::Parenthesis,
-        closure,
-    ))]);
-    tokens.push(TokenTree::Group(Group::new(Delimiter::Brace, call)));
+    let mut call = source("<T as ::clench_math::Real>::vectorize");
+    call.extend([group(Delimiter::Parenthesis, closure)]);
+    tokens.push(group(Delimiter::Brace, call));
     tokens.into_iter().collect()
+}
+
+fn source(text: &str) -> TokenStream {
+    text.parse().unwrap_or_default()
+}
+
+fn group(delimiter: Delimiter, content: TokenStream) -> TokenTree {
+    TokenTree::Group(Group::new(delimiter, content))
+}
+
+fn error(message: &str) -> TokenStream {
+    source(&format!("compile_error!({message:?});"))
 }

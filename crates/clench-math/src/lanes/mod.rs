@@ -1,8 +1,12 @@
 //! `Real` for N environments side by side.
 //!
 //! [`Lanes`] gives the registers of an instruction set the operations of a number; [`Registers`] is what an instruction
-//! set must provide. A set other than [`Portable`] can be had only through [`Instructions`], which knows what the processor
-//! has: so every value of such lanes is proof that its instructions exist, and the `unsafe` that this needs stays here.
+//! set must provide.
+//!
+//! All `unsafe` of the crate is here, for two reasons. Intrinsics, and functions compiled for an instruction set, must not
+//! run where the processor lacks it: sets other than [`Portable`] have no name outside, and `dispatch` gives lanes of
+//! them to a [`LaneTask`] only after the processor has said that it has them. And lanes are looked at as the plain numbers
+//! that they are.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -260,7 +264,7 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> LaneMask<S, N, I> {
     }
 
     /// The bits of a mask that is true everywhere.
-    const FULL: u32 = ((1_u64 << N) - 1) as u32;
+    const FULL: u32 = u32::MAX >> (32 - N);
 
     #[inline(always)]
     fn bits(self) -> u32 {

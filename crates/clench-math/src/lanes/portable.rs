@@ -4,7 +4,7 @@ use super::registers::Registers;
 use crate::real::Scalar;
 use std::array::from_fn;
 
-/// No particular instruction set: plain arrays of any width.
+/// No particular instruction set: plain arrays of any width from 1 to 32.
 #[derive(Clone, Copy, Debug)]
 pub struct Portable;
 
@@ -105,10 +105,12 @@ unsafe impl<S: Scalar, const N: usize> Registers<S, N> for Portable {
 
     #[inline(always)]
     fn mask_bits(mask: [bool; N]) -> u32 {
+        const { assert!(0 < N && N <= 32, "there are 1 to 32 lanes") }
         (0..N).fold(0, |bits, i| bits | u32::from(mask[i]) << i)
     }
     #[inline(always)]
     fn mask_from_bits(bits: u32) -> [bool; N] {
+        const { assert!(0 < N && N <= 32, "there are 1 to 32 lanes") }
         from_fn(|i| bits >> i & 1 != 0)
     }
     #[inline(always)]

@@ -7,8 +7,11 @@ use crate::real::Scalar;
 /// Lane by lane each operation equals that of the scalar, to the bit (see [`Real`](crate::Real)).
 ///
 /// # Safety
-/// `Vector` is `N` numbers one after the other, and nothing else. Other than for `Portable`, whoever names an implementor
-/// has made sure that the processor has its instructions.
+/// `Vector` is `N` numbers one after the other, and nothing else, and any numbers make one.
+///
+/// Methods run instructions that the processor may lack, though they are safe to call. So an implementor other than
+/// `Portable` must have no name outside this module, which hands it to tasks only after detection
+/// ([`Scalar::in_lanes`](crate::Scalar::in_lanes)): whoever can call a method is running on a processor that has it.
 pub unsafe trait Registers<S: Scalar, const N: usize>: Copy + Send + Sync + 'static {
     /// `N` numbers.
     type Vector: Copy + Send + Sync + 'static;
