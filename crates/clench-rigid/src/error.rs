@@ -33,6 +33,36 @@ pub enum SimError {
         /// What it may be.
         range: &'static str,
     },
+    /// A parameter that cannot be.
+    #[error("{field}[{index}] is {value}, but must be {range}")]
+    Parameter {
+        /// Which field of the parameters.
+        field: &'static str,
+        /// Where in it.
+        index: usize,
+        /// To what it was set.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
+    /// A parameter that cannot be set because it follows from another.
+    #[error("{field} follows from {other}: set that")]
+    Follows {
+        /// What was set.
+        field: &'static str,
+        /// What to set instead.
+        other: &'static str,
+    },
+    /// A name that nothing has.
+    #[error("there is no {kind} \"{name}\"{hint}")]
+    Unknown {
+        /// Kind of thing.
+        kind: &'static str,
+        /// The name asked for.
+        name: String,
+        /// The nearest name, or all that there are.
+        hint: String,
+    },
     /// An element that the model does not have.
     #[error("there is no {kind} {index}: the model has {count}")]
     NoSuchElement {
@@ -68,6 +98,28 @@ pub enum SimError {
     /// A state that cannot be stepped from, or a step that led nowhere.
     #[error(transparent)]
     Fault(#[from] Fault),
+}
+
+impl SimError {
+    /// Nothing of this kind is called `name`; `names` are those that there are.
+    pub(crate) fn unknown<'a>(
+        kind: &'static str,
+        name: &str,
+        names: impl Iterator<Item = &'a str> + Clone,
+    ) -> Self {
+        let distance = |known: &str| strsim::damerau_levenshtein(known, name);
+        let nearest = names.clone().min_by_key(|known| distance(known));
+        let hint = match nearest.filter(|known| distance(known) <= known.len().max(name.len()) / 3)
+        {
+            Some(known) => format!("; did you mean \"{known}\"?"),
+            None => format!(": there are {}", Vec::from_iter(names).join(", ")),
+        };
+        SimError::Unknown {
+            kind,
+            name: name.to_owned(),
+            hint,
+        }
+    }
 }
 
 /// Why an environment cannot go on. Fields of the state are named, and their numbers counted, as in the rows of a

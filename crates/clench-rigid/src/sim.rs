@@ -4,7 +4,8 @@ use crate::check::{self, check_contact, check_values};
 use crate::contact::{Contact, check_supported};
 use crate::dynamics::energy::{Energy, energy};
 use crate::error::SimError;
-use crate::model::{Model, Params};
+use crate::model::{Model, ParamField, Params};
+use crate::output::{Output, Source};
 use crate::pipeline;
 use crate::settings::StepSettings;
 use crate::state::State;
@@ -187,20 +188,29 @@ impl<T: Scalar> Sim<T> {
         Ok(())
     }
 
+    /// Replaces the numbers of a field of [`params`](Self::params), element after element, and computes what follows from
+    /// them: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. The
+    /// inverse inertias `*_invweight0`, by which constraints are scaled, stay as they are unless they are set themselves.
+    ///
+    /// # Errors
+    /// A name that no field has, a field that follows from another, a wrong number of numbers, or numbers that the field
+    /// cannot have. The parameters are then as before.
+    pub fn set_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
+        let field = ParamField::settable(field)?;
+        let mut row = values.to_vec();
+        field.admit(&self.model, &mut row)?;
+        Model::loosen(&mut self.model, field, &row);
+        self.params.write_lane(field, 0, &row);
+        self.params.derive(&self.model, field);
+        Ok(())
+    }
+
     /// Sets the time step, s.
     ///
     /// # Errors
     /// A time step that is not positive and finite.
     pub fn set_timestep(&mut self, timestep: f64) -> Result<(), SimError> {
-        if !(timestep > 0.0 && timestep.is_finite()) {
-            return Err(SimError::OutOfRange {
-                field: "timestep",
-                value: timestep,
-                range: "positive and finite",
-            });
-        }
-        self.params.timestep = T::new(timestep);
-        Ok(())
+        self.set_param("timestep", &[T::new(timestep)])
     }
 
     /// The model.
@@ -211,8 +221,8 @@ impl<T: Scalar> Sim<T> {
     pub fn params(&self) -> &Params<T> {
         &self.params
     }
-    /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is derived
-    /// anew: who changes a mass or a size changes what follows from it (`body_subtreemass`, `geom_rbound`, `*_invweight0`).
+    /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is checked or
+    /// derived anew, as [`set_param`](Self::set_param) does.
     pub fn params_mut(&mut self) -> &mut Params<T> {
         &mut self.params
     }
@@ -239,6 +249,25 @@ impl<T: Scalar> Sim<T> {
     /// Whether the last step or forward found more contacts than the options allow, and left some out.
     pub fn contact_overflow(&self) -> bool {
         self.ws.collision.overflow
+    }
+
+    /// An output of the last step or forward, by its name in [`Output`]. `energy` replaces the positions in the
+    /// [`workspace`](Self::workspace), as [`energy`](Self::energy) does.
+    ///
+    /// # Errors
+    /// A name that no output has; a state as [`step`](Self::step) refuses it.
+    pub fn output(&mut self, name: &str) -> Result<Vec<T>, SimError> {
+        let output = Output::find(name)?;
+        self.check_state()?;
+        let mut source = Source {
+            model: &self.model,
+            params: &self.params,
+            state: &self.state,
+            ws: &mut self.ws,
+        };
+        let mut values = Vec::new();
+        output.read(&mut source, &mut values);
+        Ok(values)
     }
 
     /// The mechanical energy of the state, J. Computes the positions that follow from the state.

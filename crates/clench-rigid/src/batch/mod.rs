@@ -3,7 +3,9 @@
 mod cells;
 mod divergence;
 mod options;
+mod parameters;
 mod precision;
+mod record;
 mod rows;
 mod snapshot;
 mod state_rows;
@@ -12,18 +14,22 @@ mod stepper;
 pub use divergence::Divergence;
 pub use options::BatchOptions;
 pub use precision::Precision;
+pub use record::{Controls, Recording};
 pub use rows::Rows;
 pub use snapshot::Snapshot;
 pub use state_rows::StateRows;
 
+use crate::check::check_length;
 use crate::contact::check_supported;
 use crate::error::{Fault, SimError};
 use crate::model::Model;
 use crate::settings::StepSettings;
 use crate::sim::{Sim, no_such};
 use crate::state::State;
+use parameters::ParamRows;
 use rayon::ThreadPool;
 use rayon::prelude::*;
+use record::{OutputRows, row_bytes, targets};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use stepper::{Job, Stepper};
@@ -46,6 +52,9 @@ pub struct Summary {
     pub running: usize,
 }
 
+/// After so many steps of a call environments are grouped anew.
+const STEPS_A_GROUP: usize = 8;
+
 /// Many environments of one model.
 ///
 /// Environment i moves as a [`Sim`] alone would in the same precision, to the bit: whatever instructions, threads,
@@ -58,6 +67,8 @@ pub struct Batch<S: Precision = f64> {
     options: BatchOptions,
     settings: StepSettings,
     status: Vec<EnvStatus>,
+    params: Vec<ParamRows<S>>,
+    outputs: Vec<OutputRows<S>>,
     initial: State<S>,
     scratch: State<S>,
     signatures: Vec<AtomicU64>,
@@ -104,6 +115,8 @@ impl<S: Precision> Batch<S> {
             state,
             settings,
             status: vec![EnvStatus::Running; count],
+            params: Vec::new(),
+            outputs: Vec::new(),
             scratch: initial.clone(),
             initial,
             signatures: (0..count).map(|_| AtomicU64::new(0)).collect(),
@@ -129,7 +142,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
-        self.run(true, steps)
+        self.run(true, steps, Controls::Held, &mut [])
     }
 
     /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
@@ -138,38 +151,45 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<Summary, SimError> {
-        self.run(false, 1)
+        self.run(false, 1, Controls::Held, &mut [])
     }
 
-    fn run(&mut self, advance: bool, steps: usize) -> Result<Summary, SimError> {
+    /// Does `steps` steps, or one forward pass, of every running environment.
+    fn run(
+        &mut self,
+        advance: bool,
+        steps: usize,
+        controls: Controls<S>,
+        trace: &mut [OutputRows<S>],
+    ) -> Result<Summary, SimError> {
         self.state.check_shapes(&self.model, self.count())?;
-        self.regroup();
-        let (motion, inputs) = self.state.share();
-        let job = Job {
-            model: &self.model,
-            settings: &self.settings,
-            motion,
-            inputs,
-            signatures: &self.signatures,
-            advance,
-            steps,
+        let mut summary = Summary {
+            failed: 0,
+            running: 0,
         };
-        let (next, order) = (AtomicUsize::new(0), &self.order[..]);
-        let work = |stepper: &mut Box<dyn Stepper<S>>| {
-            let lanes = stepper.lanes();
-            // Groups are claimed one by one, so that threads end together though groups take unlike times.
-            while let Some(group) = order.chunks(lanes).nth(next.fetch_add(1, Relaxed)) {
-                stepper.run(group, &job);
-            }
-        };
-        match &self.pool {
-            None => self.steppers.iter_mut().for_each(work),
-            Some(pool) => {
-                let steppers = &mut self.steppers;
-                pool.install(|| steppers.par_iter_mut().with_max_len(1).for_each(work));
-            }
+        for first in (0..steps).step_by(STEPS_A_GROUP) {
+            self.regroup();
+            let (motion, inputs) = self.state.share();
+            let job = Job {
+                model: &self.model,
+                settings: &self.settings,
+                motion,
+                inputs,
+                params: &self.params,
+                targets: targets(&mut self.outputs, trace),
+                signatures: &self.signatures,
+                advance,
+                controls,
+                first,
+                end: steps.min(first + STEPS_A_GROUP),
+                steps,
+            };
+            spread(&mut self.steppers, self.pool.as_ref(), &self.order, &job);
+            summary.failed += self.settle();
         }
-        Ok(self.settle())
+        let running = |status: &&EnvStatus| **status == EnvStatus::Running;
+        summary.running = self.status.iter().filter(running).count();
+        Ok(summary)
     }
 
     /// Lists the environments that run, those of like contacts side by side.
@@ -184,8 +204,8 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Takes over what the steppers have to report.
-    fn settle(&mut self) -> Summary {
+    /// Takes over what the steppers have to report; how many environments failed.
+    fn settle(&mut self) -> usize {
         let mut failed = 0;
         for stepper in &mut self.steppers {
             let tally = stepper.tally();
@@ -195,8 +215,7 @@ impl<S: Precision> Batch<S> {
             }
             self.divergence += std::mem::take(&mut tally.divergence);
         }
-        let running = self.order.len() - failed;
-        Summary { failed, running }
+        failed
     }
 
     /// Environment `env` back to the model's initial state, running.
@@ -226,6 +245,16 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
+    /// As [`reset`](Self::reset), for every environment where `mask` is true.
+    ///
+    /// # Errors
+    /// A mask of another length than there are environments.
+    pub fn reset_mask(&mut self, mask: &[bool]) -> Result<(), SimError> {
+        check_length("mask", mask.len(), self.count())?;
+        let mut masked = (0..self.count()).filter(|&env| mask[env]);
+        masked.try_for_each(|env| self.reset(env))
+    }
+
     /// Lets environment `env` run on from the state in its rows.
     ///
     /// # Errors
@@ -244,6 +273,9 @@ impl<S: Precision> Batch<S> {
         self.check_env(env)?;
         let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
         self.state.read(env, &mut sim.state);
+        for own in &self.params {
+            own.read(env, 0, sim.params_mut());
+        }
         Ok(sim)
     }
 
@@ -258,10 +290,13 @@ impl<S: Precision> Batch<S> {
         envs.iter().try_for_each(|&env| self.check_env(env))
     }
 
-    /// Bytes that an environment takes: its rows, whether it runs, and its place in groups.
+    /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept, whether it runs,
+    /// and its place in groups.
     pub fn bytes_per_env(&self) -> usize {
         let groups = size_of::<AtomicU64>() + size_of::<u32>();
-        self.state.row_bytes() + size_of::<EnvStatus>() + groups
+        let params: usize = self.params.iter().map(ParamRows::row_bytes).sum();
+        let rows = self.state.row_bytes() + params + row_bytes(&self.outputs);
+        rows + size_of::<EnvStatus>() + groups
     }
 
     /// How many environments there are.
@@ -302,5 +337,26 @@ impl<S: Precision> Batch<S> {
     /// Begins the figures of [`divergence`](Self::divergence) anew.
     pub fn clear_divergence(&mut self) {
         self.divergence = Divergence::default();
+    }
+}
+
+/// Does a job for all environments in `order`. Groups are claimed one by one, so that threads end together though groups take
+/// unlike times.
+fn spread<S: Precision>(
+    steppers: &mut [Box<dyn Stepper<S>>],
+    pool: Option<&ThreadPool>,
+    order: &[u32],
+    job: &Job<S>,
+) {
+    let next = AtomicUsize::new(0);
+    let work = |stepper: &mut Box<dyn Stepper<S>>| {
+        let lanes = stepper.lanes();
+        while let Some(group) = order.chunks(lanes).nth(next.fetch_add(1, Relaxed)) {
+            stepper.run(group, job);
+        }
+    };
+    match pool {
+        None => steppers.iter_mut().for_each(work),
+        Some(pool) => pool.install(|| steppers.par_iter_mut().with_max_len(1).for_each(work)),
     }
 }

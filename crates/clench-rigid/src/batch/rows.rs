@@ -39,6 +39,16 @@ impl<E: Copy> Rows<E> {
             width,
         })
     }
+
+    /// `count` rows that are each a copy of `row`; `filler` may be anything.
+    ///
+    /// # Errors
+    /// More memory than there is.
+    pub(crate) fn repeat(count: usize, row: &[E], filler: E) -> Result<Self, SimError> {
+        let mut rows = Rows::new(count, row.len(), filler)?;
+        (0..count).for_each(|i| rows.row_mut(i).copy_from_slice(row));
+        Ok(rows)
+    }
 }
 
 impl<E> Rows<E> {

@@ -6,6 +6,7 @@ use super::{Precision, Rows};
 use crate::check::check_length;
 use crate::error::SimError;
 use crate::model::Model;
+use crate::model::flat::{set_lane, write_quats, write_vectors};
 use crate::state::State;
 use clench_math::{Mask, Real, write_lane};
 use std::slice::{from_mut, from_ref};
@@ -257,25 +258,12 @@ impl<S: Lanewise> Inputs<'_, S> {
                 &mut angular.y,
                 &mut angular.z,
             ];
-            set_lanes(axes, lane, row);
+            set_lane(axes, lane, row);
         }
-        let positions = self.mocap_pos.row(env).chunks_exact(3);
-        for (p, row) in state.mocap_pos.iter_mut().zip(positions) {
-            set_lanes([&mut p.x, &mut p.y, &mut p.z], lane, row);
-        }
-        let turns = self.mocap_quat.row(env).chunks_exact(4);
-        for (q, row) in state.mocap_quat.iter_mut().zip(turns) {
-            set_lanes([&mut q.w, &mut q.x, &mut q.y, &mut q.z], lane, row);
-        }
+        write_vectors(self.mocap_pos.row(env), lane, &mut state.mocap_pos);
+        write_quats(self.mocap_quat.row(env), lane, &mut state.mocap_quat);
         for (switch, &on) in state.eq_active.iter_mut().zip(self.eq_active.row(env)) {
             switch.set_lane(lane, on);
         }
-    }
-}
-
-#[inline(always)]
-fn set_lanes<T: Real, const N: usize>(to: [&mut T; N], lane: usize, row: &[T::Scalar]) {
-    for (to, &value) in to.into_iter().zip(row) {
-        T::as_scalars_mut(from_mut(to))[lane] = value;
     }
 }

@@ -1,16 +1,19 @@
 //! A thread's scratch: environments come in by groups, are stepped side by side, and go out again.
 
 use super::divergence::Divergence;
+use super::parameters::ParamRows;
 use super::precision::Lanewise;
+use super::record::{Controls, Targets};
 use super::state_rows::{Inputs, Motion};
 use crate::check;
 use crate::error::Fault;
 use crate::model::{Model, Params};
+use crate::output::{Output, Source};
 use crate::pipeline;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{LaneTask, Mask, Real, Scalar};
+use clench_math::{LaneTask, Mask, Real, Scalar, write_lane};
 use clench_solver::MaxContacts;
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -24,10 +27,18 @@ pub struct Job<'a, S: Lanewise> {
     pub settings: &'a StepSettings,
     pub motion: Motion<'a, S>,
     pub inputs: Inputs<'a, S>,
+    /// Parameters that environments have for themselves.
+    pub params: &'a [ParamRows<S>],
     /// Which contacts each environment had in its last step, for grouping.
     pub signatures: &'a [AtomicU64],
     /// Whether states advance, or stay and only what follows from them is computed.
     pub advance: bool,
+    /// Where outputs go.
+    pub targets: Targets<'a, S>,
+    pub controls: Controls<'a, S>,
+    /// Of all steps of the call, these are done now.
+    pub first: usize,
+    pub end: usize,
     pub steps: usize,
 }
 
@@ -65,6 +76,8 @@ pub struct LaneStepper<T: Real> {
     state: State<T>,
     params: Params<T>,
     ws: Workspace<T>,
+    /// The output that is being copied.
+    output: Vec<T>,
     tally: Tally,
 }
 
@@ -118,6 +131,7 @@ where
             state: State::new(model),
             params: model.params.broadcast(),
             ws: Workspace::new(model),
+            output: Vec::new(),
             tally: Tally::default(),
         }
     }
@@ -126,6 +140,19 @@ where
         for (lane, env) in group.fill() {
             job.motion.read(env, lane, &mut self.state);
             job.inputs.read(env, lane, &mut self.state);
+            for own in job.params {
+                own.read(env, lane, &mut self.params);
+            }
+        }
+    }
+
+    /// Puts the controls of a rollout's step into the lanes.
+    fn control(&mut self, group: &Group<T>, step: usize, job: &Job<T::Scalar>) {
+        let nu = self.state.ctrl.len();
+        for (lane, env) in group.fill() {
+            if let Some(row) = job.controls.row(env, step, job.steps, nu) {
+                write_lane(row, lane, &mut self.state.ctrl);
+            }
         }
     }
 
@@ -142,7 +169,7 @@ where
 
     /// One step of all lanes. Environments that fail in it leave the group and keep the rows that they have. Whether all
     /// stay.
-    fn step(&mut self, group: &mut Group<T>, job: &Job<T::Scalar>) -> bool {
+    fn step(&mut self, group: &mut Group<T>, step: usize, job: &Job<T::Scalar>) -> bool {
         let (model, settings) = (job.model, job.settings);
         let time = self.state.time;
         let (state, params, ws) = (&mut self.state, &self.params, &mut self.ws);
@@ -155,6 +182,7 @@ where
         let finite = check::good_results(state, ws);
         let good = finite & !overflow;
         self.scatter(group, good, job);
+        self.record(group, good, step, job);
         if !good.all() {
             let (state, ws, most) = (&self.state, &self.ws, settings.solver.max_contacts);
             report(group, good, &mut self.tally.faults, |lane| {
@@ -188,6 +216,34 @@ where
         }
         self.tally.divergence.count(&self.ws, group.len);
     }
+
+    /// Copies what a step gave out to where it is wanted.
+    fn record(&mut self, group: &Group<T>, good: T::Mask, step: usize, job: &Job<T::Scalar>) {
+        let last = step + 1 == job.steps;
+        for (&output, target) in Output::ALL.iter().zip(&job.targets) {
+            let kept = target.last.as_ref().filter(|_| last);
+            if kept.is_none() && target.trace.is_none() {
+                continue;
+            }
+            let mut source = Source {
+                model: job.model,
+                params: &self.params,
+                state: &self.state,
+                ws: &mut self.ws,
+            };
+            self.output.clear();
+            output.read(&mut source, &mut self.output);
+            let start = step * self.output.len();
+            for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
+                if let Some(cells) = kept {
+                    cells.write(env, lane, &self.output);
+                }
+                if let Some(cells) = &target.trace {
+                    cells.write_part(env, start, lane, &self.output);
+                }
+            }
+        }
+    }
 }
 
 /// Notes the faults of the lanes that are not good, and lets them go.
@@ -220,15 +276,17 @@ where
 
     fn run(&mut self, envs: &[u32], job: &Job<T::Scalar>) {
         let mut group = Group::new(envs);
-        let mut step = 0;
-        while step < job.steps && group.len > 0 {
+        let mut step = job.first;
+        while step < job.end && group.len > 0 {
             self.gather(&group, job);
-            while step < job.steps && group.len > 0 {
+            while step < job.end && group.len > 0 {
+                self.control(&group, step, job);
                 if !self.admit(&mut group) {
                     break;
                 }
+                let whole = self.step(&mut group, step, job);
                 step += 1;
-                if !self.step(&mut group, job) {
+                if !whole {
                     break;
                 }
             }

@@ -4,11 +4,13 @@
 //! joint is a hinge, which geoms may collide. Numbers (masses, lengths, stiffnesses) live in [`Params`], so that a
 //! batch can give each environment its own.
 
+mod fields;
+pub(crate) mod flat;
 mod lookup;
 mod params;
 mod structure;
 
-pub use params::Params;
+pub use params::{ParamField, Params};
 pub use structure::{
     Actuator, BiasKind, Body, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom,
     Integrator, Joint, JointKind, Keyframe, Pair, Site, Tendon, Transmission,

@@ -1,45 +1,11 @@
 //! Every number of a model, one array a field, in any precision or width.
 
+use super::fields::Rule;
+use super::flat::{Broadcast, Flat, FlatMut, Numbers};
 use clench_math::{Quat, Real, Vec3};
 
-/// A number, vector or array that can be broadcast to another kind of number.
-trait Broadcast<T> {
-    type Output;
-    fn broadcast(&self) -> Self::Output;
-}
-impl<T: Real> Broadcast<T> for f64 {
-    type Output = T;
-    fn broadcast(&self) -> T {
-        T::new(*self)
-    }
-}
-impl<T: Real> Broadcast<T> for Vec3<f64> {
-    type Output = Vec3<T>;
-    fn broadcast(&self) -> Vec3<T> {
-        Vec3::from_f64(self.to_array())
-    }
-}
-impl<T: Real> Broadcast<T> for Quat<f64> {
-    type Output = Quat<T>;
-    fn broadcast(&self) -> Quat<T> {
-        Quat::from_f64(self.to_array())
-    }
-}
-impl<T: Real, const N: usize> Broadcast<T> for [f64; N] {
-    type Output = [T; N];
-    fn broadcast(&self) -> [T; N] {
-        self.map(T::new)
-    }
-}
-impl<T, A: Broadcast<T>> Broadcast<T> for Vec<A> {
-    type Output = Vec<A::Output>;
-    fn broadcast(&self) -> Vec<A::Output> {
-        self.iter().map(|a| a.broadcast()).collect()
-    }
-}
-
 macro_rules! params {
-    ($($(#[$doc:meta])* $name:ident: $kind:ty,)*) => {
+    ($($(#[$doc:meta])* $name:ident: $kind:ty, $rule:expr;)*) => {
         /// Every number of a model, one array a field (the index is that of the element).
         ///
         /// Units are SI; `solref` and `solimp` as in MuJoCo.
@@ -47,186 +13,235 @@ macro_rules! params {
         pub struct Params<T> {
             $($(#[$doc])* pub $name: $kind,)*
         }
+
+        /// A field of [`Params`].
+        #[allow(non_camel_case_types)] // Named as the fields are.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum ParamField {
+            $($(#[$doc])* $name,)*
+        }
+
+        impl ParamField {
+            /// Every field.
+            pub const ALL: &[ParamField] = &[$(ParamField::$name),*];
+
+            /// The name of the field.
+            pub fn name(self) -> &'static str {
+                match self { $(ParamField::$name => stringify!($name),)* }
+            }
+
+            /// What its numbers must be.
+            pub(super) fn rule(self) -> Rule {
+                use Rule::*;
+                match self { $(ParamField::$name => $rule,)* }
+            }
+        }
+
         impl Params<f64> {
             /// The same numbers in every lane of `T`.
             pub fn broadcast<T: Real>(&self) -> Params<T> {
                 Params { $($name: self.$name.broadcast(),)* }
             }
         }
+
+        impl<T: Real> Params<T> {
+            fn flat(&self, field: ParamField) -> Flat<'_, T> {
+                match field { $(ParamField::$name => self.$name.flat(),)* }
+            }
+
+            fn flat_mut(&mut self, field: ParamField) -> FlatMut<'_, T> {
+                match field { $(ParamField::$name => self.$name.flat_mut(),)* }
+            }
+        }
     };
+}
+
+impl<T: Real> Params<T> {
+    /// How many numbers a field has.
+    pub fn width(&self, field: ParamField) -> usize {
+        self.flat(field).len()
+    }
+    /// The numbers of a field in lane `lane`, element after element.
+    pub fn read_lane(&self, field: ParamField, lane: usize) -> Vec<T::Scalar> {
+        self.flat(field).read_lane(lane)
+    }
+    /// Replaces the numbers of a field in lane `lane` by as many others.
+    pub fn write_lane(&mut self, field: ParamField, lane: usize, row: &[T::Scalar]) {
+        self.flat_mut(field).write_lane(lane, row);
+    }
 }
 
 params! {
     /// Seconds a step.
-    timestep: T,
+    timestep: T, Positive;
     /// Acceleration of gravity.
-    gravity: Vec3<T>,
+    gravity: Vec3<T>, Finite;
     /// Velocity of the medium.
-    wind: Vec3<T>,
+    wind: Vec3<T>, Finite;
     /// Density of the medium.
-    density: T,
+    density: T, NotNegative;
     /// Viscosity of the medium.
-    viscosity: T,
+    viscosity: T, NotNegative;
     /// Margin of every contact, with `Model::override_contacts`.
-    override_margin: T,
+    override_margin: T, Finite;
     /// Reference dynamics of every contact, likewise.
-    override_solref: [T; 2],
+    override_solref: [T; 2], Finite;
     /// Impedance of every contact, likewise.
-    override_solimp: [T; 5],
+    override_solimp: [T; 5], Finite;
     /// Friction of every contact, likewise.
-    override_friction: [T; 5],
+    override_friction: [T; 5], NotNegative;
 
     /// Initial position coordinates (nq).
-    qpos0: Vec<T>,
+    qpos0: Vec<T>, Finite;
     /// Position coordinates at which springs rest (nq).
-    qpos_spring: Vec<T>,
+    qpos_spring: Vec<T>, Finite;
 
     /// Position in the parent's frame.
-    body_pos: Vec<Vec3<T>>,
+    body_pos: Vec<Vec3<T>>, Finite;
     /// Orientation in the parent's frame.
-    body_quat: Vec<Quat<T>>,
+    body_quat: Vec<Quat<T>>, Quaternion;
     /// Centre of mass in the body frame.
-    body_ipos: Vec<Vec3<T>>,
+    body_ipos: Vec<Vec3<T>>, Finite;
     /// Orientation of the inertial frame in the body frame.
-    body_iquat: Vec<Quat<T>>,
+    body_iquat: Vec<Quat<T>>, Quaternion;
     /// Mass.
-    body_mass: Vec<T>,
+    body_mass: Vec<T>, AsModel;
     /// Mass of the body and all below it.
-    body_subtreemass: Vec<T>,
+    body_subtreemass: Vec<T>, Follows("body_mass");
     /// Principal moments.
-    body_inertia: Vec<Vec3<T>>,
+    body_inertia: Vec<Vec3<T>>, AsModel;
     /// Share of the weight that is lifted.
-    body_gravcomp: Vec<T>,
+    body_gravcomp: Vec<T>, Finite;
     /// Mean inverse inertia at qpos0: translation, rotation.
-    body_invweight0: Vec<[T; 2]>,
+    body_invweight0: Vec<[T; 2]>, NotNegative;
 
     /// Anchor in the body frame.
-    jnt_pos: Vec<Vec3<T>>,
+    jnt_pos: Vec<Vec3<T>>, Finite;
     /// Unit axis in the body frame.
-    jnt_axis: Vec<Vec3<T>>,
+    jnt_axis: Vec<Vec3<T>>, Axis;
     /// Spring stiffness.
-    jnt_stiffness: Vec<T>,
+    jnt_stiffness: Vec<T>, Finite;
     /// Allowed positions.
-    jnt_range: Vec<[T; 2]>,
+    jnt_range: Vec<[T; 2]>, Range;
     /// Distance at which the limit appears.
-    jnt_margin: Vec<T>,
+    jnt_margin: Vec<T>, Finite;
     /// Limits of the total actuator force.
-    jnt_actfrcrange: Vec<[T; 2]>,
+    jnt_actfrcrange: Vec<[T; 2]>, Range;
     /// Limit reference dynamics.
-    jnt_solref: Vec<[T; 2]>,
+    jnt_solref: Vec<[T; 2]>, Finite;
     /// Limit impedance.
-    jnt_solimp: Vec<[T; 5]>,
+    jnt_solimp: Vec<[T; 5]>, Finite;
 
     /// Added inertia.
-    dof_armature: Vec<T>,
+    dof_armature: Vec<T>, NotNegative;
     /// Damping.
-    dof_damping: Vec<T>,
+    dof_damping: Vec<T>, Finite;
     /// Dry friction.
-    dof_frictionloss: Vec<T>,
+    dof_frictionloss: Vec<T>, NotNegative;
     /// Dry-friction reference dynamics.
-    dof_solref: Vec<[T; 2]>,
+    dof_solref: Vec<[T; 2]>, Finite;
     /// Dry-friction impedance.
-    dof_solimp: Vec<[T; 5]>,
+    dof_solimp: Vec<[T; 5]>, Finite;
     /// Inverse inertia at qpos0 (averaged over the dofs of ball and free joints as MuJoCo does).
-    dof_invweight0: Vec<T>,
+    dof_invweight0: Vec<T>, NotNegative;
 
     /// Position in the body frame.
-    geom_pos: Vec<Vec3<T>>,
+    geom_pos: Vec<Vec3<T>>, Finite;
     /// Orientation in the body frame.
-    geom_quat: Vec<Quat<T>>,
+    geom_quat: Vec<Quat<T>>, Quaternion;
     /// Sizes.
-    geom_size: Vec<Vec3<T>>,
+    geom_size: Vec<Vec3<T>>, AsModel;
     /// Radius of the bounding sphere (infinite planes: 0).
-    geom_rbound: Vec<T>,
+    geom_rbound: Vec<T>, Follows("geom_size");
     /// Slide, spin and roll friction.
-    geom_friction: Vec<[T; 3]>,
+    geom_friction: Vec<[T; 3]>, NotNegative;
     /// Margin.
-    geom_margin: Vec<T>,
+    geom_margin: Vec<T>, Finite;
     /// Gap.
-    geom_gap: Vec<T>,
+    geom_gap: Vec<T>, Finite;
     /// Weight in mixing.
-    geom_solmix: Vec<T>,
+    geom_solmix: Vec<T>, Finite;
     /// Reference dynamics.
-    geom_solref: Vec<[T; 2]>,
+    geom_solref: Vec<[T; 2]>, Finite;
     /// Impedance.
-    geom_solimp: Vec<[T; 5]>,
+    geom_solimp: Vec<[T; 5]>, Finite;
 
     /// Position in the body frame.
-    site_pos: Vec<Vec3<T>>,
+    site_pos: Vec<Vec3<T>>, Finite;
     /// Orientation in the body frame.
-    site_quat: Vec<Quat<T>>,
+    site_quat: Vec<Quat<T>>, Quaternion;
 
     /// Coefficients of fixed tendons, tendon after tendon.
-    wrap_coef: Vec<T>,
+    wrap_coef: Vec<T>, Finite;
     /// Spring stiffness.
-    tendon_stiffness: Vec<T>,
+    tendon_stiffness: Vec<T>, Finite;
     /// Damping.
-    tendon_damping: Vec<T>,
+    tendon_damping: Vec<T>, Finite;
     /// Dead band of the spring.
-    tendon_lengthspring: Vec<[T; 2]>,
+    tendon_lengthspring: Vec<[T; 2]>, Range;
     /// Length at qpos0.
-    tendon_length0: Vec<T>,
+    tendon_length0: Vec<T>, Finite;
     /// Inverse inertia at qpos0.
-    tendon_invweight0: Vec<T>,
+    tendon_invweight0: Vec<T>, NotNegative;
     /// Allowed lengths.
-    tendon_range: Vec<[T; 2]>,
+    tendon_range: Vec<[T; 2]>, Range;
     /// Distance at which the limit appears.
-    tendon_margin: Vec<T>,
+    tendon_margin: Vec<T>, Finite;
     /// Limits of the total actuator force.
-    tendon_actfrcrange: Vec<[T; 2]>,
+    tendon_actfrcrange: Vec<[T; 2]>, Range;
     /// Dry friction.
-    tendon_frictionloss: Vec<T>,
+    tendon_frictionloss: Vec<T>, NotNegative;
     /// Limit reference dynamics.
-    tendon_solref_lim: Vec<[T; 2]>,
+    tendon_solref_lim: Vec<[T; 2]>, Finite;
     /// Limit impedance.
-    tendon_solimp_lim: Vec<[T; 5]>,
+    tendon_solimp_lim: Vec<[T; 5]>, Finite;
     /// Dry-friction reference dynamics.
-    tendon_solref_fri: Vec<[T; 2]>,
+    tendon_solref_fri: Vec<[T; 2]>, Finite;
     /// Dry-friction impedance.
-    tendon_solimp_fri: Vec<[T; 5]>,
+    tendon_solimp_fri: Vec<[T; 5]>, Finite;
 
     /// Scaling of the force onto the transmission's axes.
-    actuator_gear: Vec<[T; 6]>,
+    actuator_gear: Vec<[T; 6]>, Finite;
     /// Parameters of the dynamics.
-    actuator_dynprm: Vec<[T; 10]>,
+    actuator_dynprm: Vec<[T; 10]>, Finite;
     /// Parameters of the gain.
-    actuator_gainprm: Vec<[T; 10]>,
+    actuator_gainprm: Vec<[T; 10]>, Finite;
     /// Parameters of the bias.
-    actuator_biasprm: Vec<[T; 10]>,
+    actuator_biasprm: Vec<[T; 10]>, Finite;
     /// Allowed controls.
-    actuator_ctrlrange: Vec<[T; 2]>,
+    actuator_ctrlrange: Vec<[T; 2]>, Range;
     /// Allowed forces.
-    actuator_forcerange: Vec<[T; 2]>,
+    actuator_forcerange: Vec<[T; 2]>, Range;
     /// Allowed activations.
-    actuator_actrange: Vec<[T; 2]>,
+    actuator_actrange: Vec<[T; 2]>, Range;
 
     /// Anchor (connect) or weld point in the first body's frame.
-    eq_anchor1: Vec<Vec3<T>>,
+    eq_anchor1: Vec<Vec3<T>>, Finite;
     /// Anchor (connect) or weld point in the second body's frame.
-    eq_anchor2: Vec<Vec3<T>>,
+    eq_anchor2: Vec<Vec3<T>>, Finite;
     /// Weld: orientation of the first body's weld frame in the first body.
-    eq_quat1: Vec<Quat<T>>,
+    eq_quat1: Vec<Quat<T>>, Quaternion;
     /// Weld: orientation of the second body's weld frame in the second body.
-    eq_quat2: Vec<Quat<T>>,
+    eq_quat2: Vec<Quat<T>>, Quaternion;
     /// Weld: length that scales rotations.
-    eq_torquescale: Vec<T>,
+    eq_torquescale: Vec<T>, NotNegative;
     /// Joint and tendon equality: coefficients, constant first.
-    eq_polycoef: Vec<[T; 5]>,
+    eq_polycoef: Vec<[T; 5]>, Finite;
     /// Reference dynamics.
-    eq_solref: Vec<[T; 2]>,
+    eq_solref: Vec<[T; 2]>, Finite;
     /// Impedance.
-    eq_solimp: Vec<[T; 5]>,
+    eq_solimp: Vec<[T; 5]>, Finite;
 
     /// Friction of a pair: two slides, spin, two rolls.
-    pair_friction: Vec<[T; 5]>,
+    pair_friction: Vec<[T; 5]>, NotNegative;
     /// Reference dynamics.
-    pair_solref: Vec<[T; 2]>,
+    pair_solref: Vec<[T; 2]>, Finite;
     /// Reference dynamics of the friction dimensions; both zero: as `pair_solref`.
-    pair_solreffriction: Vec<[T; 2]>,
+    pair_solreffriction: Vec<[T; 2]>, Finite;
     /// Impedance.
-    pair_solimp: Vec<[T; 5]>,
+    pair_solimp: Vec<[T; 5]>, Finite;
     /// Margin.
-    pair_margin: Vec<T>,
+    pair_margin: Vec<T>, Finite;
     /// Gap.
-    pair_gap: Vec<T>,
+    pair_gap: Vec<T>, Finite;
 }

@@ -1,0 +1,101 @@
+//! Parameters that each environment has for itself.
+
+use super::precision::Lanewise;
+use super::{Batch, Precision, Rows};
+use crate::check::check_length;
+use crate::error::SimError;
+use crate::model::{Model, ParamField, Params};
+use clench_math::Real;
+
+/// A field of the parameters, a row an environment.
+pub struct ParamRows<S> {
+    field: ParamField,
+    rows: Rows<S>,
+}
+
+impl<S: Lanewise> ParamRows<S> {
+    /// Copies the row of an environment into lane `lane`.
+    pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, params: &mut Params<T>) {
+        params.write_lane(self.field, lane, self.rows.row(env));
+    }
+    /// Bytes that a row takes.
+    pub fn row_bytes(&self) -> usize {
+        self.rows.row_bytes()
+    }
+}
+
+impl<S: Precision> Batch<S> {
+    /// Gives environments numbers of their own in place of the model's. `field` is a field of
+    /// [`Params`](crate::model::Params), by its name; `values` are, for each of `envs` in turn, all numbers of the field,
+    /// element after element.
+    ///
+    /// What follows directly is computed with it: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`.
+    /// Quaternions and axes are normalized. The inverse inertias `*_invweight0`, by which constraints are scaled, stay the
+    /// model's unless they are set themselves (as in MuJoCo without `mj_setConst`). An environment costs memory only for
+    /// the fields that were set in any, and keeps its numbers when it is reset or restored.
+    ///
+    /// # Errors
+    /// A name that no field has, a field that follows from another, environments that the batch does not have, a wrong
+    /// number of numbers, or numbers that the field cannot have. All parameters are then as before.
+    pub fn randomize(&mut self, field: &str, envs: &[usize], values: &[S]) -> Result<(), SimError> {
+        let field = ParamField::settable(field)?;
+        self.check_envs(envs)?;
+        let width = self.model.params.width(field);
+        check_length(field.name(), values.len(), width * envs.len())?;
+        let mut values = values.to_vec();
+        let mut rows = values.chunks_mut(width.max(1));
+        rows.try_for_each(|row| field.admit(&self.model, row))?;
+        self.param_rows(field)?;
+        if let Some(follower) = field.follower() {
+            self.param_rows(follower)?;
+        }
+        let mut params = self.model.params.broadcast::<S>();
+        for (&env, row) in envs.iter().zip(values.chunks(width.max(1))) {
+            Model::loosen(&mut self.model, field, row);
+            self.param_rows(field)?.row_mut(env).copy_from_slice(row);
+            if let Some(follower) = field.follower() {
+                params.write_lane(field, 0, row);
+                params.derive(&self.model, field);
+                let row = params.read_lane(follower, 0);
+                self.param_rows(follower)?
+                    .row_mut(env)
+                    .copy_from_slice(&row);
+            }
+        }
+        Ok(())
+    }
+
+    /// The numbers of a field of the parameters, by its name, as environment `env` has them.
+    ///
+    /// # Errors
+    /// A name that no field has; an environment that the batch does not have.
+    pub fn param(&self, field: &str, env: usize) -> Result<Vec<S>, SimError> {
+        let field = ParamField::find(field)?;
+        self.check_env(env)?;
+        let own = self.params.iter().find(|own| own.field == field);
+        Ok(match own {
+            Some(own) => own.rows.row(env).to_vec(),
+            None => model_row(&self.model, field),
+        })
+    }
+
+    /// The rows of a field, which hold the model's numbers when they are new.
+    fn param_rows(&mut self, field: ParamField) -> Result<&mut Rows<S>, SimError> {
+        let index = match self.params.iter().position(|own| own.field == field) {
+            Some(index) => index,
+            None => {
+                let row = model_row(&self.model, field);
+                let rows = Rows::repeat(self.count(), &row, S::ZERO)?;
+                self.params.push(ParamRows { field, rows });
+                self.params.len() - 1
+            }
+        };
+        Ok(&mut self.params[index].rows)
+    }
+}
+
+/// The model's numbers of a field.
+fn model_row<S: Precision>(model: &Model, field: ParamField) -> Vec<S> {
+    let numbers = model.params.read_lane(field, 0);
+    numbers.into_iter().map(S::new).collect()
+}

@@ -1,0 +1,160 @@
+//! Outputs that a batch keeps, and rollouts that record them step by step.
+
+use super::cells::Cells;
+use super::precision::Lanewise;
+use super::{Batch, Precision, Rows, Summary};
+use crate::check::check_length;
+use crate::error::SimError;
+use crate::output::Output;
+use std::array::from_fn;
+
+/// An output of every environment.
+pub struct OutputRows<S> {
+    output: Output,
+    rows: Rows<S>,
+}
+
+/// Where an output goes.
+pub struct Target<'a, S: Lanewise> {
+    /// What it was in the last forward pass of a call.
+    pub last: Option<Cells<'a, S>>,
+    /// What it was after each step of a rollout.
+    pub trace: Option<Cells<'a, S>>,
+}
+
+/// Where each output goes, in the order of [`Output::ALL`].
+pub type Targets<'a, S> = [Target<'a, S>; Output::COUNT];
+
+/// Shares the tables of outputs with threads.
+pub fn targets<'a, S: Lanewise>(
+    last: &'a mut [OutputRows<S>],
+    trace: &'a mut [OutputRows<S>],
+) -> Targets<'a, S> {
+    let mut targets = from_fn(|_| Target {
+        last: None,
+        trace: None,
+    });
+    for own in last {
+        targets[own.output as usize].last = Some(Cells::new(&mut own.rows));
+    }
+    for own in trace {
+        targets[own.output as usize].trace = Some(Cells::new(&mut own.rows));
+    }
+    targets
+}
+
+/// The controls of a rollout.
+#[derive(Clone, Copy, Debug)]
+pub enum Controls<'a, S> {
+    /// Those in [`StateRows::ctrl`](super::StateRows::ctrl), all the time.
+    Held,
+    /// The same for all environments (steps, nu).
+    Shared(&'a [S]),
+    /// Its own for each environment (n, steps, nu).
+    Each(&'a [S]),
+}
+
+impl<S> Controls<'_, S> {
+    /// The controls of an environment in a step, if they are not held.
+    pub(super) fn row(&self, env: usize, step: usize, steps: usize, nu: usize) -> Option<&[S]> {
+        match self {
+            Controls::Held => None,
+            Controls::Shared(values) => Some(&values[step * nu..][..nu]),
+            Controls::Each(values) => Some(&values[(env * steps + step) * nu..][..nu]),
+        }
+    }
+}
+
+/// What a rollout recorded.
+pub struct Recording<S> {
+    outputs: Vec<OutputRows<S>>,
+    steps: usize,
+    /// What the rollout did.
+    pub summary: Summary,
+}
+
+impl<S> Recording<S> {
+    /// A recorded output (n, steps × width), after each step; steps that an environment did not do are NaN. `None` if it
+    /// was not recorded.
+    pub fn get(&self, name: &str) -> Option<&Rows<S>> {
+        find(&self.outputs, name)
+    }
+    /// How many steps were recorded.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+}
+
+fn find<'a, S>(outputs: &'a [OutputRows<S>], name: &str) -> Option<&'a Rows<S>> {
+    let own = outputs.iter().find(|own| own.output.name() == name);
+    own.map(|own| &own.rows)
+}
+
+impl<S: Precision> Batch<S> {
+    /// Keeps these outputs, by the names in [`Output`], from now on, and no others. Every step and forward leaves them as of its
+    /// last forward pass, in rows that [`output`](Self::output) shows; for environments that do not run, and those that fail,
+    /// rows stay as they are. Tables of outputs that were kept before stay where they are.
+    ///
+    /// # Errors
+    /// A name that no output has; more memory than there is. What is kept is then as before.
+    pub fn record(&mut self, names: &[&str]) -> Result<(), SimError> {
+        let wanted = names.iter().map(|name| Output::find(name));
+        let wanted = wanted.collect::<Result<Vec<_>, _>>()?;
+        let mut new = Vec::new();
+        for (i, &output) in wanted.iter().enumerate() {
+            let kept = self.outputs.iter().any(|own| own.output == output);
+            if !kept && !wanted[..i].contains(&output) {
+                let rows = Rows::new(self.count(), output.width(&self.model), S::ZERO)?;
+                new.push(OutputRows { output, rows });
+            }
+        }
+        self.outputs.retain(|own| wanted.contains(&own.output));
+        self.outputs.extend(new);
+        Ok(())
+    }
+
+    /// An output that is kept (n, width), zero before the first step; `None` if it is not.
+    pub fn output(&self, name: &str) -> Option<&Rows<S>> {
+        find(&self.outputs, name)
+    }
+
+    /// Advances every running environment by `steps` time steps and records outputs, by the names in [`Output`], after each.
+    /// The controls go before those in [`state`](Self::state), which stay as they are.
+    ///
+    /// # Errors
+    /// A name that no output has, a wrong number of controls, tables of `state` that are not those of this batch, more
+    /// memory than there is.
+    pub fn rollout(
+        &mut self,
+        steps: usize,
+        controls: Controls<S>,
+        record: &[&str],
+    ) -> Result<Recording<S>, SimError> {
+        let (n, nu) = (self.count(), self.model.nu());
+        match controls {
+            Controls::Held => {}
+            Controls::Shared(values) => check_length("ctrl", values.len(), steps * nu)?,
+            Controls::Each(values) => check_length("ctrl", values.len(), n * steps * nu)?,
+        }
+        let mut outputs: Vec<OutputRows<S>> = Vec::new();
+        for name in record {
+            let output = Output::find(name)?;
+            if outputs.iter().all(|own| own.output != output) {
+                let width = steps.saturating_mul(output.width(&self.model));
+                let rows = Rows::new(n, width, S::new(f64::NAN))?;
+                outputs.push(OutputRows { output, rows });
+            }
+        }
+        let summary = self.run(true, steps, controls, &mut outputs)?;
+        Ok(Recording {
+            outputs,
+            steps,
+            summary,
+        })
+    }
+}
+
+/// Bytes that the rows of an environment take.
+pub(super) fn row_bytes<S>(outputs: &[OutputRows<S>]) -> usize {
+    outputs.iter().map(|own| own.rows.row_bytes()).sum()
+}

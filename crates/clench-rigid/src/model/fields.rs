@@ -1,0 +1,207 @@
+//! The fields of [`Params`] by name: what their numbers must be, and what follows from them.
+
+use super::{Model, ParamField, Params};
+use crate::check::check_length;
+use crate::error::SimError;
+use clench_collide::{Shape, ShapeKind, bounding_radius};
+use clench_math::{Real, Scalar};
+use std::sync::Arc;
+
+/// Shorter axes and quaternions say no direction.
+const SHORTEST: f64 = 1e-7;
+
+/// What the numbers of a field must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rule {
+    /// Finite.
+    Finite,
+    /// Positive and finite.
+    Positive,
+    /// Finite, zero or more.
+    NotNegative,
+    /// Finite, positive where the model's number is, else zero or more.
+    AsModel,
+    /// Pairs that do not fall, infinite if need be.
+    Range,
+    /// Quaternions, which are made unit ones.
+    Quaternion,
+    /// Directions, which are made unit vectors.
+    Axis,
+    /// It cannot be set: it follows from another field.
+    Follows(&'static str),
+}
+
+impl ParamField {
+    /// The field of that name.
+    ///
+    /// # Errors
+    /// A name that no field has.
+    pub(crate) fn find(name: &str) -> Result<Self, SimError> {
+        let all = ParamField::ALL.iter();
+        let found = all.clone().find(|field| field.name() == name);
+        found
+            .copied()
+            .ok_or_else(|| SimError::unknown("parameter", name, all.map(|field| field.name())))
+    }
+
+    /// The field of that name, to be set.
+    ///
+    /// # Errors
+    /// A name that no field has, and a field that follows from another.
+    pub(crate) fn settable(name: &str) -> Result<Self, SimError> {
+        let found = ParamField::find(name)?;
+        let field = found.name();
+        match found.rule() {
+            Rule::Follows(other) => Err(SimError::Follows { field, other }),
+            _ => Ok(found),
+        }
+    }
+
+    /// The field that follows from this one, and changes with it.
+    pub(crate) fn follower(self) -> Option<ParamField> {
+        match self {
+            ParamField::body_mass => Some(ParamField::body_subtreemass),
+            ParamField::geom_size => Some(ParamField::geom_rbound),
+            _ => None,
+        }
+    }
+
+    /// Checks the numbers of this field for one environment, and gives unit length to what must have it.
+    ///
+    /// # Errors
+    /// A wrong number of numbers, or the first that cannot be.
+    pub(crate) fn admit<S: Scalar>(self, model: &Model, row: &mut [S]) -> Result<(), SimError> {
+        let field = self.name();
+        let rule = self.rule();
+        let of_model = model.params.read_lane(self, 0);
+        check_length(field, row.len(), of_model.len())?;
+        for (index, (&value, &of_model)) in row.iter().zip(&of_model).enumerate() {
+            if let Some(range) = rule.refuses(value, of_model) {
+                let value = value.to_f64();
+                return Err(SimError::Parameter {
+                    field,
+                    index,
+                    value,
+                    range,
+                });
+            }
+        }
+        let size = match rule {
+            Rule::Quaternion => 4,
+            Rule::Axis => 3,
+            Rule::Range => return require_rising(field, row),
+            _ => return Ok(()),
+        };
+        (row.chunks_exact_mut(size).enumerate())
+            .try_for_each(|(i, direction)| normalize(field, size * i, direction))
+    }
+}
+
+impl Rule {
+    /// What a number must be, if it is not.
+    fn refuses<S: Scalar>(self, x: S, of_model: f64) -> Option<&'static str> {
+        let positive = self == Rule::Positive || self == Rule::AsModel && of_model > 0.0;
+        let not_negative = matches!(self, Rule::NotNegative | Rule::AsModel);
+        let (holds, range) = match self {
+            Rule::Range => (x == x, "a number, or infinite"),
+            _ if positive => (x > S::ZERO && x.is_finite(), "positive and finite"),
+            _ if not_negative => (x >= S::ZERO && x.is_finite(), "finite, zero or more"),
+            _ => (x.is_finite(), "finite"),
+        };
+        (!holds).then_some(range)
+    }
+}
+
+fn require_rising<S: Scalar>(field: &'static str, row: &[S]) -> Result<(), SimError> {
+    let falls = |pair: &[S]| pair[0] > pair[1];
+    match row.chunks_exact(2).position(falls) {
+        None => Ok(()),
+        Some(i) => Err(SimError::Parameter {
+            field,
+            index: 2 * i + 1,
+            value: row[2 * i + 1].to_f64(),
+            range: "at least the number before it",
+        }),
+    }
+}
+
+fn normalize<S: Scalar>(
+    field: &'static str,
+    index: usize,
+    direction: &mut [S],
+) -> Result<(), SimError> {
+    let squared = (direction.iter()).fold(S::ZERO, |sum, &x| sum + x * x);
+    let norm = Real::sqrt(squared);
+    if !(norm > S::new(SHORTEST) && norm.is_finite()) {
+        return Err(SimError::Parameter {
+            field,
+            index,
+            value: direction[0].to_f64(),
+            range: "part of a direction, neither too short nor too long",
+        });
+    }
+    direction.iter_mut().for_each(|x| *x = *x / norm);
+    Ok(())
+}
+
+impl<T: Real> Params<T> {
+    /// Computes what follows directly from a field: the masses of subtrees from those of bodies, the bounding radii of geoms
+    /// from their sizes. The inverse inertias `*_invweight0`, by which constraints are scaled, stay as they are.
+    pub fn derive(&mut self, model: &Model, field: ParamField) {
+        match field {
+            ParamField::body_mass => {
+                self.body_subtreemass.clone_from(&self.body_mass);
+                for b in (1..model.nbody()).rev() {
+                    let mass = self.body_subtreemass[b];
+                    self.body_subtreemass[model.bodies[b].parent] += mass;
+                }
+            }
+            ParamField::geom_size => {
+                self.geom_rbound.clear();
+                let shapes = model.geoms.iter().zip(&self.geom_size);
+                self.geom_rbound
+                    .extend(shapes.map(|(geom, &size)| match geom.kind {
+                        ShapeKind::Plane => T::ZERO,
+                        kind => bounding_radius(&Shape { kind, size }),
+                    }));
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Model {
+    /// Takes back what the model's structure says of numbers that are no longer the model's: that a dof or tendon is without
+    /// dry friction, that a body's inertial frame is its own. The model is copied at most once, when that changes anything.
+    pub(crate) fn loosen<S: Scalar>(model: &mut Arc<Model>, field: ParamField, row: &[S]) {
+        let lossy = |i: usize| row[i] > S::ZERO;
+        match field {
+            ParamField::dof_frictionloss => {
+                if (model.dofs.iter().enumerate()).any(|(i, dof)| !dof.frictionloss && lossy(i)) {
+                    let dofs = Arc::make_mut(model).dofs.iter_mut().enumerate();
+                    dofs.for_each(|(i, dof)| dof.frictionloss |= lossy(i));
+                }
+            }
+            ParamField::tendon_frictionloss => {
+                let mut tendons = model.tendons.iter().enumerate();
+                if tendons.any(|(i, tendon)| !tendon.frictionloss && lossy(i)) {
+                    let tendons = Arc::make_mut(model).tendons.iter_mut().enumerate();
+                    tendons.for_each(|(i, tendon)| tendon.frictionloss |= lossy(i));
+                }
+            }
+            ParamField::body_ipos | ParamField::body_iquat => {
+                let same = |b: usize| match field {
+                    ParamField::body_ipos => row[3 * b..][..3].iter().all(|&x| x == S::ZERO),
+                    _ => row[4 * b + 1..][..3].iter().all(|&x| x == S::ZERO),
+                };
+                let moved: Vec<usize> = (0..model.nbody())
+                    .filter(|&b| model.bodies[b].simple_inertia && !same(b))
+                    .collect();
+                for b in moved {
+                    Arc::make_mut(model).bodies[b].simple_inertia = false;
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Forces on bodies from outside their tree of joints: applied ones, contacts, connects and welds.
+//!
+//! A force F at a point p with a couple Q has the moment Q + (p − o) × F about o. The second body of a contact takes its
+//! force, the first its negative; a connect or weld pulls its first body along its rows, and the second against them.
+
+use super::Source;
+use crate::constraint::ConstraintSource;
+use crate::model::EqualityTarget;
+use crate::workspace::Workspace;
+use clench_math::{Force, Real, Vec3};
+
+/// A force and a couple in world axes, and where the force acts.
+struct Wrench<T> {
+    force: Vec3<T>,
+    couple: Vec3<T>,
+    at: Vec3<T>,
+}
+
+impl<T: Real> Wrench<T> {
+    /// As a spatial force about `origin`.
+    fn about(&self, origin: Vec3<T>) -> Force<T> {
+        let moment = self.couple + (self.at - origin).cross(self.force);
+        Force::new(moment, self.force)
+    }
+}
+
+/// Appends what acts on each body from outside, about the centre of mass of its tree: torque, force.
+pub(super) fn external<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
+    let start = out.len();
+    let pos = &s.ws.position;
+    let com = |body: usize| pos.subtree_com[s.model.bodies[body].root];
+    for (b, applied) in s.state.xfrc_applied.iter().enumerate() {
+        let wrench = Wrench {
+            force: applied.linear,
+            couple: applied.angular,
+            at: pos.xipos[b],
+        };
+        let force = if b == 0 {
+            Force::ZERO
+        } else {
+            wrench.about(com(b))
+        };
+        out.extend(force.to_array());
+    }
+    let mut add = |body: usize, sign: T, wrench: &Wrench<T>| {
+        if body != 0 {
+            let force = wrench.about(com(body)) * sign;
+            accumulate(&mut out[start + 6 * body..], force.to_array());
+        }
+    };
+    each_contact(s, |bodies, wrench| {
+        add(bodies[0], -T::ONE, &wrench);
+        add(bodies[1], T::ONE, &wrench);
+    });
+    each_joint_of_bodies(s, |bodies, wrenches| {
+        add(bodies[0], T::ONE, &wrenches[0]);
+        add(bodies[1], -T::ONE, &wrenches[1]);
+    });
+}
+
+/// Appends the force and torque of contacts on each body, at its centre of mass.
+pub(super) fn of_contacts<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
+    let start = out.len();
+    out.resize(start + 6 * s.model.nbody(), T::ZERO);
+    each_contact(s, |bodies, wrench| {
+        for (body, sign) in [(bodies[0], -T::ONE), (bodies[1], T::ONE)] {
+            let force = wrench.about(s.ws.position.xipos[body]) * sign;
+            let row = &mut out[start + 6 * body..];
+            accumulate(row, force.linear.to_array());
+            accumulate(&mut row[3..], force.angular.to_array());
+        }
+    });
+}
+
+fn accumulate<T: Real, const N: usize>(row: &mut [T], values: [T; N]) {
+    for (sum, value) in row.iter_mut().zip(values) {
+        *sum += value;
+    }
+}
+
+/// The forces of a block's rows, zero in the lanes that do not have it.
+fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
+    let active = ws.record.blocks[block].active;
+    let mut forces = [T::ZERO; 6];
+    let found = &ws.solver.force()[ws.problem.block(block).rows()];
+    for (force, &found) in forces.iter_mut().zip(found) {
+        *force = T::select(active, found, T::ZERO);
+    }
+    forces
+}
+
+/// Shows every contact that is a constraint: its bodies, and the force on the second.
+fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<T>)) {
+    for contact in &s.ws.contacts {
+        let Some(block) = contact.block else { continue };
+        let [n, t1, t2, spin, roll1, roll2] = rows(s.ws, block);
+        let world = |v: Vec3<T>| contact.frame.transpose_mul(v);
+        let wrench = Wrench {
+            force: world(Vec3::new(n, t1, t2)),
+            couple: world(Vec3::new(spin, roll1, roll2)),
+            at: contact.pos,
+        };
+        show(contact.geoms.map(|g| s.model.geoms[g].body), wrench);
+    }
+}
+
+/// Shows every connect and weld: its bodies, and its rows as a force at the anchor of each.
+fn each_joint_of_bodies<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], [Wrench<T>; 2])) {
+    let (pos, params) = (&s.ws.position, s.params);
+    for (block, record) in s.ws.record.blocks.iter().enumerate() {
+        let ConstraintSource::Equality(e) = record.source else {
+            continue;
+        };
+        let (EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 }) =
+            s.model.equalities[e].target
+        else {
+            continue;
+        };
+        let [x, y, z, turn_x, turn_y, turn_z] = rows(s.ws, block);
+        let at = |body: usize, anchor: Vec3<T>| Wrench {
+            force: Vec3::new(x, y, z),
+            couple: Vec3::new(turn_x, turn_y, turn_z),
+            at: pos.xpos[body] + pos.xmat[body] * anchor,
+        };
+        let wrenches = [
+            at(body1, params.eq_anchor1[e]),
+            at(body2, params.eq_anchor2[e]),
+        ];
+        show([body1, body2], wrenches);
+    }
+}

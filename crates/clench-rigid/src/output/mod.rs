@@ -1,0 +1,181 @@
+//! What can be read of an environment by name, as a row of numbers.
+//!
+//! Names, order and frames are MuJoCo's where it has the same thing.
+
+mod forces;
+
+use crate::dynamics::energy::energy;
+use crate::error::SimError;
+use crate::model::{Model, Params};
+use crate::pipeline::position_stage;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Inertia, Mat3, Motion, Quat, Real, Vec3};
+
+/// All that outputs are read from.
+pub(crate) struct Source<'a, T: Real> {
+    pub model: &'a Model,
+    pub params: &'a Params<T>,
+    pub state: &'a State<T>,
+    pub ws: &'a mut Workspace<T>,
+}
+
+macro_rules! outputs {
+    ($m:ident, $s:ident, $out:ident; $($(#[$doc:meta])* $name:ident ($width:expr) => $read:expr;)*) => {
+        /// A row of numbers that every environment has.
+        #[allow(non_camel_case_types)] // Named as users name them.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Output {
+            $($(#[$doc])* $name,)*
+        }
+
+        impl Output {
+            /// Every output.
+            pub const ALL: &[Output] = &[$(Output::$name),*];
+            pub(crate) const COUNT: usize = Output::ALL.len();
+
+            /// The name of the output.
+            pub fn name(self) -> &'static str {
+                match self { $(Output::$name => stringify!($name),)* }
+            }
+
+            /// How many numbers it has.
+            pub fn width(self, $m: &Model) -> usize {
+                match self { $(Output::$name => $width,)* }
+            }
+
+            /// Appends its numbers to `out`. [`energy`](Self::energy) replaces the positions in the workspace by those of the
+            /// state: it comes last.
+            pub(crate) fn read<T: Real>(self, $s: &mut Source<T>, $out: &mut Vec<T>) {
+                match self { $(Output::$name => $read,)* }
+            }
+        }
+    };
+}
+
+outputs! {
+    m, s, out;
+    /// Time of the state, s.
+    time (1) => out.push(s.state.time);
+    /// Position coordinates of the state (nq).
+    qpos (m.nq) => out.extend_from_slice(&s.state.qpos);
+    /// Velocities of the state (nv).
+    qvel (m.nv) => out.extend_from_slice(&s.state.qvel);
+    /// Activations of the state (na).
+    act (m.na) => out.extend_from_slice(&s.state.act);
+
+    /// Accelerations (nv).
+    qacc (m.nv) => out.extend_from_slice(&s.ws.qacc);
+    /// Positions of bodies, m (nbody, 3).
+    xpos (3 * m.nbody()) => vectors(&s.ws.position.xpos, out);
+    /// Orientations of bodies (nbody, 4).
+    xquat (4 * m.nbody()) => quats(&s.ws.position.xquat, out);
+    /// The same as matrices, row by row (nbody, 9).
+    xmat (9 * m.nbody()) => matrices(&s.ws.position.xmat, out);
+    /// Centres of mass of bodies, m (nbody, 3).
+    xipos (3 * m.nbody()) => vectors(&s.ws.position.xipos, out);
+    /// Orientations of inertial frames, row by row (nbody, 9).
+    ximat (9 * m.nbody()) => matrices(&s.ws.position.ximat, out);
+    /// Joint anchors, m (njnt, 3).
+    xanchor (3 * m.joints.len()) => vectors(&s.ws.position.xanchor, out);
+    /// Joint axes (njnt, 3).
+    xaxis (3 * m.joints.len()) => vectors(&s.ws.position.xaxis, out);
+    /// Positions of geoms, m (ngeom, 3).
+    geom_xpos (3 * m.geoms.len()) => vectors(&s.ws.position.geom_xpos, out);
+    /// Orientations of geoms, row by row (ngeom, 9).
+    geom_xmat (9 * m.geoms.len()) => matrices(&s.ws.position.geom_xmat, out);
+    /// Positions of sites, m (nsite, 3).
+    site_xpos (3 * m.sites.len()) => vectors(&s.ws.position.site_xpos, out);
+    /// Orientations of sites, row by row (nsite, 9).
+    site_xmat (9 * m.sites.len()) => matrices(&s.ws.position.site_xmat, out);
+    /// Centre of mass of each body and all below it, m (nbody, 3).
+    subtree_com (3 * m.nbody()) => vectors(&s.ws.position.subtree_com, out);
+    /// Inertia of each body about the centre of mass of its tree: xx, yy, zz, xy, xz, yz, mass times offset, mass
+    /// (nbody, 10).
+    cinert (10 * m.nbody()) => inertias(&s.ws.position.cinert, out);
+    /// Velocity of each body, angular, then linear at the centre of mass of its tree (nbody, 6).
+    cvel (6 * m.nbody()) => motions(&s.ws.velocity.cvel, out);
+    /// Motion of each dof at unit velocity, likewise (nv, 6).
+    cdof (6 * m.nv) => motions(&s.ws.position.cdof, out);
+    /// Lengths of tendons (ntendon).
+    ten_length (m.tendons.len()) => out.extend_from_slice(&s.ws.position.ten_length);
+    /// Velocities of tendons (ntendon).
+    ten_velocity (m.tendons.len()) => out.extend_from_slice(&s.ws.velocity.ten_velocity);
+    /// Lengths of actuators (nu).
+    actuator_length (m.nu()) => out.extend_from_slice(&s.ws.position.actuator_length);
+    /// Velocities of actuators (nu).
+    actuator_velocity (m.nu()) => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
+    /// Forces of actuators (nu).
+    actuator_force (m.nu()) => out.extend_from_slice(&s.ws.force.actuator_force);
+    /// Forces of actuators along dofs (nv).
+    qfrc_actuator (m.nv) => out.extend_from_slice(&s.ws.force.qfrc_actuator);
+    /// Passive forces along dofs (nv).
+    qfrc_passive (m.nv) => out.extend_from_slice(&s.ws.force.qfrc_passive);
+    /// Coriolis, centrifugal and gravitational forces along dofs, on the left of the equation of motion (nv).
+    qfrc_bias (m.nv) => out.extend_from_slice(&s.ws.force.qfrc_bias);
+    /// All forces along dofs but those of constraints (nv).
+    qfrc_smooth (m.nv) => out.extend_from_slice(&s.ws.force.qfrc_smooth);
+    /// Constraint forces along dofs (nv).
+    qfrc_constraint (m.nv) => out.extend_from_slice(&s.ws.qfrc_constraint);
+    /// What acts on each body from outside: applied forces, contacts, connects and welds. Torque, then force, about the
+    /// centre of mass of its tree (nbody, 6). As in MuJoCo, a weld's rotational rows count as its torque.
+    cfrc_ext (6 * m.nbody()) => forces::external(s, out);
+    /// Force and torque of contacts on each body at its centre of mass, world axes (nbody, 6), in the form of `xfrc_applied`.
+    contact_force (6 * m.nbody()) => forces::of_contacts(s, out);
+    /// How many contacts there are.
+    contact_count (1) => out.push(count_contacts(s.ws));
+    /// Iterations of the constraint solver.
+    solver_iterations (1) => out.push(s.ws.solver.stats().iterations);
+    /// Potential and kinetic energy of the state, J.
+    energy (2) => read_energy(s, out);
+}
+
+impl Output {
+    /// The output of that name.
+    ///
+    /// # Errors
+    /// A name that no output has.
+    pub fn find(name: &str) -> Result<Self, SimError> {
+        let all = Output::ALL.iter();
+        let found = all.clone().find(|output| output.name() == name);
+        found
+            .copied()
+            .ok_or_else(|| SimError::unknown("output", name, all.map(|output| output.name())))
+    }
+}
+
+fn vectors<T: Real>(values: &[Vec3<T>], out: &mut Vec<T>) {
+    out.extend(values.iter().flat_map(|v| v.to_array()));
+}
+
+fn quats<T: Real>(values: &[Quat<T>], out: &mut Vec<T>) {
+    out.extend(values.iter().flat_map(|q| q.to_array()));
+}
+
+fn matrices<T: Real>(values: &[Mat3<T>], out: &mut Vec<T>) {
+    values.iter().for_each(|m| vectors(&m.rows, out));
+}
+
+fn motions<T: Real>(values: &[Motion<T>], out: &mut Vec<T>) {
+    out.extend(values.iter().flat_map(|v| v.to_array()));
+}
+
+fn inertias<T: Real>(values: &[Inertia<T>], out: &mut Vec<T>) {
+    for inertia in values {
+        out.extend_from_slice(&inertia.rotational);
+        out.extend_from_slice(&inertia.moment.to_array());
+        out.push(inertia.mass);
+    }
+}
+
+fn count_contacts<T: Real>(ws: &Workspace<T>) -> T {
+    let one = |contact: &crate::contact::Contact<T>| T::select(contact.active, T::ONE, T::ZERO);
+    ws.contacts.iter().map(one).fold(T::ZERO, |a, b| a + b)
+}
+
+fn read_energy<T: Real>(s: &mut Source<T>, out: &mut Vec<T>) {
+    position_stage(s.model, s.params, s.state, s.ws);
+    let (pos, mass) = (&s.ws.position, &s.ws.problem.mass);
+    let energy = energy(s.model, s.params, pos, mass, &s.state.qpos, &s.state.qvel);
+    out.extend([energy.potential, energy.kinetic]);
+}
