@@ -1,16 +1,15 @@
 //! A simulation of one environment.
 
+use crate::Precision;
 use crate::check::{self, check_contact, check_values};
 use crate::contact::{Contact, check_supported};
 use crate::dynamics::energy::{Energy, energy};
 use crate::error::SimError;
 use crate::model::{Model, ParamField, Params};
 use crate::output::{Output, Source};
-use crate::pipeline;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::Scalar;
 use clench_solver::{LaneStats, RigidOptions};
 use std::sync::Arc;
 
@@ -20,7 +19,7 @@ use std::sync::Arc;
 /// used, so bad input is an error and never a panic. What a step or [`forward`](Self::forward) computed is read from
 /// [`workspace`](Self::workspace), or in MuJoCo's terms from [`readout`](crate::readout).
 #[derive(Debug)]
-pub struct Sim<T: Scalar = f64> {
+pub struct Sim<T: Precision = f64> {
     /// What the next step depends on.
     pub state: State<T>,
     model: Arc<Model>,
@@ -32,7 +31,7 @@ pub struct Sim<T: Scalar = f64> {
     last_good: State<T>,
 }
 
-impl<T: Scalar> Sim<T> {
+impl<T: Precision> Sim<T> {
     /// A simulation in the model's initial state, with the model's options.
     ///
     /// # Errors
@@ -71,7 +70,7 @@ impl<T: Scalar> Sim<T> {
     pub fn step(&mut self) -> Result<(), SimError> {
         self.check_state()?;
         self.last_good.copy_from(&self.state);
-        pipeline::step(
+        T::step(
             &self.model,
             &self.params,
             &self.settings,
@@ -91,7 +90,7 @@ impl<T: Scalar> Sim<T> {
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<(), SimError> {
         self.check_state()?;
-        pipeline::forward(
+        T::forward(
             &self.model,
             &self.params,
             &self.settings,
@@ -277,7 +276,7 @@ impl<T: Scalar> Sim<T> {
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
         self.check_state()?;
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
-        pipeline::position_stage(model, params, &self.state, ws);
+        T::position_stage(model, params, &self.state, ws);
         let mass = &ws.problem.mass;
         let (qpos, qvel) = (&self.state.qpos, &self.state.qvel);
         Ok(energy(model, params, &ws.position, mass, qpos, qvel))

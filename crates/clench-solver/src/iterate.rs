@@ -53,17 +53,22 @@ impl<T: Real> Iterate<T> {
         self.qacc.extend_from_slice(&problem.qacc_smooth);
         problem.jacobian.mul(&self.qacc, &mut self.residual);
         subtract(&mut self.residual, &problem.aref);
-        let mut tally = self.evaluate(problem);
-        if let Some(warm) = warmstart {
-            self.take_if_better(problem, warm, tally.cost, ray);
-            tally = self.evaluate(problem);
+        let tally = self.evaluate(problem);
+        match warmstart {
+            Some(warm) => self.better_of(problem, warm, tally, ray),
+            None => tally,
         }
-        tally
     }
 
-    /// Moves to `warm` in the lanes where it costs less than `cost`.
+    /// Moves to `warm` in the lanes where it costs less than here, where `tally` was taken; returns the tally.
     #[kernel]
-    fn take_if_better(&mut self, problem: &Problem<T>, warm: &[T], cost: T, ray: &mut Ray<T>) {
+    fn better_of(
+        &mut self,
+        problem: &Problem<T>,
+        warm: &[T],
+        tally: Tally<T>,
+        ray: &mut Ray<T>,
+    ) -> Tally<T> {
         // The ray from here to there: its end is the candidate.
         ray.direction.clear();
         ray.direction
@@ -76,12 +81,16 @@ impl<T: Real> Iterate<T> {
         problem.jacobian.mul(warm, &mut ray.rows);
         subtract(&mut ray.rows, &problem.aref);
         self.residual.swap_with_slice(&mut ray.rows);
-        let warm_cost =
-            self.evaluate(problem).cost + T::new(0.5) * dot(&ray.direction, &ray.mass_direction);
-        let better = warm_cost.lt(cost);
+        let warm_tally = self.evaluate(problem);
+        let inertial = T::new(0.5) * dot(&ray.direction, &ray.mass_direction);
+        let better = (warm_tally.cost + inertial).lt(tally.cost);
         blend(better, &mut self.qacc, warm);
         blend(better, &mut self.inertial, &ray.mass_direction);
+        if better.all() {
+            return warm_tally;
+        }
         blend(!better, &mut self.residual, &ray.rows);
+        self.evaluate(problem)
     }
 
     /// Computes M (a − a_unc) and J a − aref anew in the lanes of `mask`, without the rounding that steps have added up.

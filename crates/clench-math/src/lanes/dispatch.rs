@@ -1,8 +1,10 @@
 //! Which instructions the processor has, and running a task in lanes of them.
 
+use super::Lanes;
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+use super::Portable;
 #[cfg(target_arch = "aarch64")]
 use super::neon::Neon;
-use super::{Lanes, Portable};
 #[cfg(target_arch = "x86_64")]
 use super::{avx2::Avx2, avx512::Avx512};
 use crate::real::{Real, Scalar};
@@ -12,7 +14,8 @@ use crate::real::{Real, Scalar};
 pub enum Instructions {
     /// One environment at a time.
     Scalar,
-    /// Plain arrays: 2 × `f64`, 4 × `f32`, whatever the processor.
+    /// Plain arrays, 2 × `f64`, 4 × `f32`, on architectures whose registers have no lanes of ours. (On the others they would be
+    /// slower than the sets below, and as much code to compile; x86-64 without AVX2 goes one environment at a time.)
     Portable,
     /// 2 × `f64`, 4 × `f32` on ARM.
     Neon,
@@ -35,7 +38,10 @@ impl Instructions {
     /// Whether this processor has them.
     pub fn available(self) -> bool {
         match self {
-            Instructions::Scalar | Instructions::Portable => true,
+            Instructions::Scalar => true,
+            Instructions::Portable => {
+                cfg!(not(any(target_arch = "x86_64", target_arch = "aarch64")))
+            }
             Instructions::Neon => cfg!(target_arch = "aarch64"),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => Avx2::detected(),
@@ -86,10 +92,8 @@ macro_rules! in_lanes {
             instructions: Instructions,
             task: K,
         ) -> Option<K::Output> {
-            if !instructions.available() {
-                return None;
-            }
             Some(match instructions {
+                _ if !instructions.available() => return None,
                 Instructions::Scalar => task.run::<$scalar>(),
                 #[cfg(target_arch = "aarch64")]
                 Instructions::Neon => task.run::<Lanes<$scalar, $narrow, Neon>>(),
@@ -97,7 +101,9 @@ macro_rules! in_lanes {
                 Instructions::Avx2 => task.run::<Lanes<$scalar, $medium, Avx2>>(),
                 #[cfg(target_arch = "x86_64")]
                 Instructions::Avx512 => task.run::<Lanes<$scalar, $wide, Avx512>>(),
-                _ => task.run::<Lanes<$scalar, $narrow, Portable>>(),
+                #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+                Instructions::Portable => task.run::<Lanes<$scalar, $narrow, Portable>>(),
+                _ => return None,
             })
         }
     };

@@ -1,7 +1,11 @@
 //! The number types of batches.
 
 use super::stepper::{MakeStepper, Stepper};
-use crate::model::Model;
+use crate::model::{Model, Params};
+use crate::pipeline;
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
 use clench_math::{Instructions, Scalar};
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
@@ -23,6 +27,29 @@ pub trait Lanewise: Scalar {
     /// A thread's scratch in lanes of these instructions; `None` if the processor lacks them. Not generic, so that stepping in
     /// lanes is compiled with this crate and not with each of its users.
     fn stepper(instructions: Instructions, model: &Model) -> Option<Box<dyn Stepper<Self>>>;
+    /// [`pipeline::step`] of one environment, likewise compiled once.
+    fn step(
+        model: &Model,
+        params: &Params<Self>,
+        settings: &StepSettings,
+        state: &mut State<Self>,
+        ws: &mut Workspace<Self>,
+    );
+    /// [`pipeline::forward`] of one environment.
+    fn forward(
+        model: &Model,
+        params: &Params<Self>,
+        settings: &StepSettings,
+        state: &State<Self>,
+        ws: &mut Workspace<Self>,
+    );
+    /// [`pipeline::position_stage`] of one environment.
+    fn position_stage(
+        model: &Model,
+        params: &Params<Self>,
+        state: &State<Self>,
+        ws: &mut Workspace<Self>,
+    );
 }
 
 macro_rules! lanewise {
@@ -46,6 +73,32 @@ macro_rules! lanewise {
                 model: &Model,
             ) -> Option<Box<dyn Stepper<$scalar>>> {
                 $scalar::in_lanes(instructions, MakeStepper { model })
+            }
+            fn step(
+                model: &Model,
+                params: &Params<$scalar>,
+                settings: &StepSettings,
+                state: &mut State<$scalar>,
+                ws: &mut Workspace<$scalar>,
+            ) {
+                pipeline::step(model, params, settings, state, ws);
+            }
+            fn forward(
+                model: &Model,
+                params: &Params<$scalar>,
+                settings: &StepSettings,
+                state: &State<$scalar>,
+                ws: &mut Workspace<$scalar>,
+            ) {
+                pipeline::forward(model, params, settings, state, ws);
+            }
+            fn position_stage(
+                model: &Model,
+                params: &Params<$scalar>,
+                state: &State<$scalar>,
+                ws: &mut Workspace<$scalar>,
+            ) {
+                pipeline::position_stage(model, params, state, ws);
             }
         }
     };

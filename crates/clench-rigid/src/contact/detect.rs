@@ -23,6 +23,8 @@ pub struct Collision<T: Real> {
     pub overflow: T::Mask,
     /// Pairs to look at, in canonical order.
     candidates: Vec<Candidate>,
+    /// Those of them that may touch now.
+    near: Vec<u32>,
     /// Finds the candidates of a large model anew each step; those of a small one never change.
     sweep: Option<Box<SweepState<T>>>,
     reaches: Vec<Reach<T>>,
@@ -48,6 +50,7 @@ impl<T: Real> Collision<T> {
             overflow: T::Mask::splat(false),
             candidates: if large { Vec::new() } else { candidates(model) },
             sweep: large.then(|| Box::new(SweepState::new())),
+            near: Vec::new(),
             reaches: Vec::new(),
             points: Contacts::new(),
             count: T::ZERO,
@@ -89,20 +92,22 @@ pub fn detect<T: Real>(
         sweep.find(model, params, pos, &mut collision.candidates);
     }
     reach::update(model, params, pos, &mut collision.reaches);
-    for index in 0..collision.candidates.len() {
-        let candidate = collision.candidates[index];
-        let range = || contact_range(model, params, &candidate).1;
-        if !may_touch(&candidate, &collision.reaches, pos, range).any() {
-            continue;
+    collision.near.clear();
+    for (index, candidate) in collision.candidates.iter().enumerate() {
+        let range = || contact_range(model, params, candidate).1;
+        if may_touch(candidate, &collision.reaches, pos, range).any() {
+            collision.near.push(index as u32);
         }
-        ws.clock.lap(Stage::BroadPhase as usize);
+    }
+    ws.clock.lap(Stage::BroadPhase as usize);
+    for near in 0..collision.near.len() {
+        let candidate = collision.candidates[collision.near[near] as usize];
         narrow(model, params, pos, &candidate, &mut collision.points);
         if !collision.points.as_slice().is_empty() {
             list(model, params, settings, &candidate, collision, contacts);
         }
-        ws.clock.lap(Stage::NarrowPhase as usize);
     }
-    ws.clock.lap(Stage::BroadPhase as usize);
+    ws.clock.lap(Stage::NarrowPhase as usize);
 }
 
 /// The points of one candidate.
