@@ -7,6 +7,7 @@ use crate::dynamics::energy::{Energy, energy};
 use crate::error::SimError;
 use crate::model::{Model, ParamField, Params};
 use crate::output::{Output, Source};
+use crate::profile::{Profile, Stage};
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -68,8 +69,10 @@ impl<T: Precision> Sim<T> {
     /// A state of wrong lengths or with numbers that are not finite; a motion that diverges or a mass matrix that is
     /// singular. The state is then as before the step.
     pub fn step(&mut self) -> Result<(), SimError> {
+        self.ws.clock.start();
         self.check_state()?;
         self.last_good.copy_from(&self.state);
+        self.ws.clock.lap(Stage::Rows as usize);
         T::step(
             &self.model,
             &self.params,
@@ -81,6 +84,7 @@ impl<T: Precision> Sim<T> {
         if result.is_err() {
             self.state.copy_from(&self.last_good);
         }
+        self.ws.clock.lap(Stage::Rows as usize);
         result
     }
 
@@ -267,6 +271,15 @@ impl<T: Precision> Sim<T> {
         let mut values = Vec::new();
         output.read(&mut source, &mut values);
         Ok(values)
+    }
+
+    /// Lets the clocks of a step's stages run, or not.
+    pub fn run_clocks(&mut self, running: bool) {
+        self.ws.run_clocks(running);
+    }
+    /// Where the time of steps went while the clocks ran.
+    pub fn profile(&mut self) -> Profile {
+        self.ws.profile()
     }
 
     /// The mechanical energy of the state, J. Computes the positions that follow from the state.

@@ -5,6 +5,7 @@ mod divergence;
 mod options;
 mod parameters;
 mod precision;
+mod quality;
 mod record;
 mod rows;
 mod snapshot;
@@ -14,6 +15,7 @@ mod stepper;
 pub use divergence::Divergence;
 pub use options::BatchOptions;
 pub use precision::Precision;
+pub use quality::Quality;
 pub use record::{Controls, Recording};
 pub use rows::Rows;
 pub use snapshot::Snapshot;
@@ -77,6 +79,7 @@ pub struct Batch<S: Precision = f64> {
     steppers: Vec<Box<dyn Stepper<S>>>,
     pool: Option<ThreadPool>,
     divergence: Divergence,
+    quality: Quality,
 }
 
 impl<S: Precision> Batch<S> {
@@ -124,6 +127,7 @@ impl<S: Precision> Batch<S> {
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
             pool: (threads > 1).then(|| options.pool(threads)).transpose()?,
             divergence: Divergence::default(),
+            quality: Quality::default(),
             options,
             model,
         })
@@ -214,6 +218,7 @@ impl<S: Precision> Batch<S> {
                 failed += 1;
             }
             self.divergence += std::mem::take(&mut tally.divergence);
+            self.quality += std::mem::take(&mut tally.quality);
         }
         failed
     }
@@ -330,13 +335,18 @@ impl<S: Precision> Batch<S> {
     pub fn status(&self, env: usize) -> EnvStatus {
         self.status[env]
     }
-    /// How unlike the environments of groups were since the last [`clear_divergence`](Self::clear_divergence).
+    /// How unlike the environments of groups were since the last [`clear_figures`](Self::clear_figures).
     pub fn divergence(&self) -> Divergence {
         self.divergence
     }
-    /// Begins the figures of [`divergence`](Self::divergence) anew.
-    pub fn clear_divergence(&mut self) {
+    /// How well steps went since then.
+    pub fn quality(&self) -> Quality {
+        self.quality
+    }
+    /// Begins the figures of [`divergence`](Self::divergence) and [`quality`](Self::quality) anew.
+    pub fn clear_figures(&mut self) {
         self.divergence = Divergence::default();
+        self.quality = Quality::default();
     }
 }
 

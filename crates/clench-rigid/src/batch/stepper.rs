@@ -3,6 +3,7 @@
 use super::divergence::Divergence;
 use super::parameters::ParamRows;
 use super::precision::Lanewise;
+use super::quality::Quality;
 use super::record::{Controls, Targets};
 use super::state_rows::{Inputs, Motion};
 use crate::check;
@@ -48,6 +49,7 @@ pub struct Tally {
     /// Environments that cannot go on, and why.
     pub faults: Vec<(u32, Fault)>,
     pub divergence: Divergence,
+    pub quality: Quality,
 }
 
 /// A thread's scratch in lanes of some width.
@@ -215,6 +217,7 @@ where
             job.signatures[env].store(signatures[lane], Relaxed);
         }
         self.tally.divergence.count(&self.ws, group.len);
+        self.tally.quality.count(&self.ws, group.len);
     }
 
     /// Copies what a step gave out to where it is wanted.

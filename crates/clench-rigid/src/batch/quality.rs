@@ -1,0 +1,51 @@
+//! How well the steps of a batch went: what a run is judged by.
+
+use crate::workspace::Workspace;
+use clench_math::{Mask, Real, Scalar};
+use clench_solver::Status;
+use std::ops::AddAssign;
+
+/// Sums and extremes over steps (and forward passes) of environments.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quality {
+    /// Steps in which constraints acted.
+    pub constrained: u64,
+    /// Steps whose solve stopped at the iteration limit.
+    pub unconverged: u64,
+    /// Largest duality gap: how far a solution's cost may lie above the minimum.
+    pub gap_max: f64,
+    /// Most contacts.
+    pub contacts_max: u64,
+    /// Deepest penetration, m; 0 where nothing penetrates.
+    pub penetration_max: f64,
+}
+
+impl Quality {
+    /// Takes in a step of a group, in whose first `len` lanes environments are.
+    pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize) {
+        let stats = ws.solver.stats();
+        for lane in 0..len {
+            let status = stats.status(lane);
+            self.constrained += u64::from(status != Status::Unconstrained);
+            self.unconverged += u64::from(status == Status::IterationLimit);
+            self.gap_max = self.gap_max.max(stats.gap.lane(lane).to_f64());
+            let mut contacts = 0;
+            for contact in ws.contacts.iter().filter(|c| c.active.lane(lane)) {
+                contacts += 1;
+                let depth = -contact.dist.lane(lane).to_f64();
+                self.penetration_max = self.penetration_max.max(depth);
+            }
+            self.contacts_max = self.contacts_max.max(contacts);
+        }
+    }
+}
+
+impl AddAssign for Quality {
+    fn add_assign(&mut self, other: Self) {
+        self.constrained += other.constrained;
+        self.unconverged += other.unconverged;
+        self.gap_max = self.gap_max.max(other.gap_max);
+        self.contacts_max = self.contacts_max.max(other.contacts_max);
+        self.penetration_max = self.penetration_max.max(other.penetration_max);
+    }
+}
