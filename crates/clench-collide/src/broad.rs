@@ -1,7 +1,7 @@
 //! Broad phase: which pairs of shapes are near enough to be worth asking about.
 
 use crate::{Pose, Shape, ShapeKind, bounding_radius};
-use clench_math::{Mask, Real, Scalar};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// By how much bounding radii are enlarged, a hair more than 1, so that rounding never rejects a pair in which the narrow
 /// phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
@@ -21,6 +21,7 @@ pub struct Bound<T> {
 
 impl<T: Real> Bound<T> {
     /// The bound of a shape: [`bounding_radius`] with its [`allowance`].
+    #[inline(always)]
     pub fn new(shape: &Shape<T>) -> Self {
         Bound {
             radius: bounding_radius(shape) * allowance(),
@@ -69,6 +70,7 @@ impl Sweep {
 
     /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
     /// environment with the margin `margins[i] + margins[j]`.
+    #[kernel]
     pub fn pairs<T: Real>(
         &mut self,
         bounds: &[Bound<T>],

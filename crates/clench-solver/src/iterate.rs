@@ -71,8 +71,8 @@ impl<T: Real> Iterate<T> {
     ) -> Tally<T> {
         // The ray from here to there: its end is the candidate.
         ray.direction.clear();
-        ray.direction
-            .extend(warm.iter().zip(&self.qacc).map(|(&w, &a)| w - a));
+        ray.direction.extend_from_slice(warm);
+        subtract(&mut ray.direction, &self.qacc);
         ray.mass_direction.resize(problem.nv(), T::ZERO);
         problem
             .mass
@@ -97,12 +97,8 @@ impl<T: Real> Iterate<T> {
     #[kernel]
     pub fn refresh(&mut self, problem: &Problem<T>, mask: T::Mask, ray: &mut Ray<T>) {
         ray.direction.clear();
-        ray.direction.extend(
-            self.qacc
-                .iter()
-                .zip(&problem.qacc_smooth)
-                .map(|(&a, &b)| a - b),
-        );
+        ray.direction.extend_from_slice(&self.qacc);
+        subtract(&mut ray.direction, &problem.qacc_smooth);
         problem
             .mass
             .mul(problem.tree(), &ray.direction, &mut ray.mass_direction);
@@ -194,8 +190,11 @@ impl<T: Real> Iterate<T> {
 /// The lanes in which all of `x` is finite.
 #[inline(always)]
 pub(crate) fn all_finite<T: Real>(x: &[T]) -> T::Mask {
-    x.iter()
-        .fold(T::Mask::splat(true), |mask, x| mask & x.is_finite())
+    let mut finite = T::Mask::splat(true);
+    for x in x {
+        finite &= x.is_finite();
+    }
+    finite
 }
 
 /// x·y.

@@ -92,7 +92,10 @@ impl<T: Real> Direction<T> for Newton<T> {
         }
         clock.lap(SolvePart::Factorization as usize);
         ray.direction.clear();
-        ray.direction.extend(iterate.gradient.iter().map(|&g| -g));
+        ray.direction.extend_from_slice(&iterate.gradient);
+        for x in &mut ray.direction {
+            *x = -*x;
+        }
         self.hessian.solve(&mut ray.direction);
     }
 }

@@ -271,7 +271,10 @@ fn on_ellipse<T: Real>(
     let mut open = presses;
     for _ in 0..MULTIPLIER_STEPS {
         let (point, squared, slope) = shifted_minimum(&b, &c, lambda, floor, n);
-        g = std::array::from_fn(|i| T::select(open, point[i], g[i]));
+        g = std::array::from_fn(
+            #[inline(always)]
+            |i| T::select(open, point[i], g[i]),
+        );
         let length = squared.sqrt();
         // Newton's step for 1/r − 1/|g(λ)|; λ only grows, so a step back means that the root is reached.
         let step = squared / slope * (length - radius) / radius;
@@ -284,13 +287,16 @@ fn on_ellipse<T: Real>(
     // Exactly onto the ball what rounding left outside.
     let length = dot(&g[..n], &g[..n]).sqrt();
     let shrink = T::select(length.gt(radius), radius / length, T::ONE);
-    std::array::from_fn(|i| {
-        if i < n {
-            T::select(presses, g[i] * shrink * mu[i], T::ZERO)
-        } else {
-            T::ZERO
-        }
-    })
+    std::array::from_fn(
+        #[inline(always)]
+        |i| {
+            if i < n {
+                T::select(presses, g[i] * shrink * mu[i], T::ZERO)
+            } else {
+                T::ZERO
+            }
+        },
+    )
 }
 
 /// g = −(B + λ I)⁻¹ c, with |g|² and −½ d|g|²/dλ = gᵀ (B + λ I)⁻¹ g.
@@ -329,7 +335,10 @@ fn shifted_minimum<T: Real>(
             x[i] /= l[i][i];
         }
     };
-    let mut g: [T; MAX_DIM] = std::array::from_fn(|i| -c[i]);
+    let mut g: [T; MAX_DIM] = c.map(
+        #[inline(always)]
+        |c| -c,
+    );
     forward(&mut g);
     for i in (0..n).rev() {
         for k in i + 1..n {

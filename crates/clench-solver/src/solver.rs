@@ -6,7 +6,7 @@ use crate::iterate::all_finite;
 use crate::lane::{Lane, Results};
 use crate::workspace::Workspace;
 use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Status, Stopwatch, Switch, Tree};
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// What a solve spends its time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,6 +94,7 @@ impl<T: Real> Solver<T> {
     }
 
     /// The results of a problem without constraints.
+    #[kernel]
     fn reset(&mut self, problem: &Problem<T>) {
         let finite = all_finite(&problem.qacc_smooth);
         let status = T::select(

@@ -30,6 +30,7 @@ impl Status {
         Status::NonFinite,
     ];
 
+    #[inline(always)]
     pub(crate) fn code<T: Real>(self) -> T {
         T::new(f64::from(self as u8))
     }

@@ -123,7 +123,10 @@ impl<T: Real> Nearest<T> {
         for along in [-T::ONE, T::ONE] {
             let end = center + half * along;
             let point = clamp(end, size);
-            let limit = [0, 1, 2].map(|i| end[i].abs().gt(size[i]));
+            let limit = [0, 1, 2].map(
+                #[inline(always)]
+                |i| end[i].abs().gt(size[i]),
+            );
             let [x, y, z] = limit;
             let over_face = !((x & y) | (x & z) | (y & z));
             let squared_distance = (point - end).norm_squared();
@@ -216,8 +219,14 @@ impl<T: Real> Nearest<T> {
     #[inline(always)]
     fn second(&self, half: Vec3<T>, size: Vec3<T>) -> (T, T::Mask) {
         let limit = self.limit;
-        let forward = [0, 1, 2].map(|i| half[i].gt(T::ZERO));
-        let inward = [0, 1, 2].map(|i| differ(forward[i], self.point[i].gt(T::ZERO)));
+        let forward = [0, 1, 2].map(
+            #[inline(always)]
+            |i| half[i].gt(T::ZERO),
+        );
+        let inward = [0, 1, 2].map(
+            #[inline(always)]
+            |i| differ(forward[i], self.point[i].gt(T::ZERO)),
+        );
         let sign = |mask: T::Mask| T::select(mask, T::ONE, -T::ONE);
         let mut way = T::ZERO;
         let mut walls = [T::Mask::splat(false); 3];

@@ -31,13 +31,16 @@ pub(super) fn push<T: Real>(
     let bias = anchors.bias[0].linear - anchors.bias[1].linear;
     let (soft, block) = scene.equality(equality, violation.norm());
     let a0 = bodies.map(|b| scene.params.body_invweight0[b][0]);
-    let rows: [Row<T>; 3] = std::array::from_fn(|i| {
-        let row = Row::new(&soft, violation[i], T::ZERO, a0[0] + a0[1]);
-        Row {
-            aref: row.aref - bias[i],
-            ..row
-        }
-    });
+    let rows: [Row<T>; 3] = std::array::from_fn(
+        #[inline(always)]
+        |i| {
+            let row = Row::new(&soft, violation[i], T::ZERO, a0[0] + a0[1]);
+            Row {
+                aref: row.aref - bias[i],
+                ..row
+            }
+        },
+    );
     out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
         anchors.fill_translation(scene, &chains, jacobian);
     });
@@ -58,11 +61,20 @@ impl<T: Real> Anchors<T> {
     pub fn new(scene: &Scene<T>, equality: usize, bodies: [usize; 2]) -> Self {
         let (pos, params) = (scene.position, scene.params);
         let local = [params.eq_anchor1[equality], params.eq_anchor2[equality]];
-        let world = [0, 1].map(|i| pos.xpos[bodies[i]] + pos.xmat[bodies[i]] * local[i]);
-        let moving = [0, 1].map(|i| BodyPoint::new(scene, bodies[i], world[i]));
+        let world = [0, 1].map(
+            #[inline(always)]
+            |i| pos.xpos[bodies[i]] + pos.xmat[bodies[i]] * local[i],
+        );
+        let moving = [0, 1].map(
+            #[inline(always)]
+            |i| BodyPoint::new(scene, bodies[i], world[i]),
+        );
         Anchors {
             separation: world[0] - world[1],
-            bias: moving.map(|point| point.bias_acceleration(scene)),
+            bias: moving.map(
+                #[inline(always)]
+                |point| point.bias_acceleration(scene),
+            ),
             offsets: moving.map(|point| point.offset),
         }
     }

@@ -75,7 +75,7 @@ impl<T: Real> Softness<T> {
 
 #[inline(always)]
 fn is_mixed<T: Real>(solref: [T; 2]) -> T::Mask {
-    let [a, b] = solref.map(|x| x.gt(T::ZERO));
+    let (a, b) = (solref[0].gt(T::ZERO), solref[1].gt(T::ZERO));
     (a & !b) | (!a & b)
 }
 

@@ -184,6 +184,7 @@ impl<T: Real> SweepState<T> {
     }
 
     /// Replaces `candidates` by the explicit pairs and those that are near in any lane.
+    #[kernel]
     fn find(
         &mut self,
         model: &Model,
@@ -197,13 +198,13 @@ impl<T: Real> SweepState<T> {
             size: params.geom_size[g],
         };
         self.bounds.clear();
-        self.bounds
-            .extend((0..ngeom).map(|g| Bound::new(&shape(g))));
         self.poses.clear();
-        self.poses.extend((0..ngeom).map(|g| pose(pos, g)));
         self.margins.clear();
-        self.margins
-            .extend((0..ngeom).map(|g| reach::own_margin(model, params, g)));
+        for g in 0..ngeom {
+            self.bounds.push(Bound::new(&shape(g)));
+            self.poses.push(pose(pos, g));
+            self.margins.push(reach::own_margin(model, params, g));
+        }
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
         let hits = &mut self.hits;
         self.sweep

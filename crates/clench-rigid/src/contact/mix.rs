@@ -69,7 +69,9 @@ pub fn contact_params<T: Real>(
         mixed.solimp = params.override_solimp;
         mixed.friction = params.override_friction;
     }
-    mixed.friction = mixed.friction.map(|mu| mu.max(T::new(MIN_FRICTION)));
+    for mu in &mut mixed.friction {
+        *mu = mu.max(T::new(MIN_FRICTION));
+    }
     mixed
 }
 

@@ -26,15 +26,15 @@ pub(super) fn update<T: Real>(
 ) {
     let allowance = allowance::<T>();
     reaches.clear();
-    reaches.extend(pos.geom_xpos.iter().enumerate().map(|(g, &center)| {
+    for (g, &center) in pos.geom_xpos.iter().enumerate() {
         let radius = params.geom_rbound[g] * allowance;
         let margin = own_margin(model, params, g);
-        Reach {
+        reaches.push(Reach {
             center,
             radius,
             reach: radius + margin,
-        }
-    }));
+        });
+    }
 }
 
 /// A geom's share of the distance within which contacts are listed.

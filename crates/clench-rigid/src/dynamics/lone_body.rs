@@ -15,7 +15,6 @@
 use crate::model::{JointKind, Model, Params};
 use crate::workspace::{Positions, Workspace};
 use clench_math::{Real, Vec3, kernel};
-use std::array::from_fn;
 
 /// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
 #[inline(always)]
@@ -37,9 +36,13 @@ pub fn solve_lone_body<T: Real>(
 ) {
     let dof = model.joints[j].dof;
     let matrix = &ws.integration.matrix;
-    let entry = |r: usize, c: usize| matrix.row(&model.tree, dof + r.max(c))[r.min(c)];
-    let right_side = |r: usize| ws.force.qfrc_smooth[dof + r] + ws.qfrc_constraint[dof + r];
-    let mut rows = from_fn(|r| from_fn(|c| if c < 6 { entry(r, c) } else { right_side(r) }));
+    let mut rows = [[T::ZERO; 7]; 6];
+    for (r, row) in rows.iter_mut().enumerate() {
+        for (c, entry) in row[..6].iter_mut().enumerate() {
+            *entry = matrix.row(&model.tree, dof + r.max(c))[r.min(c)];
+        }
+        row[6] = ws.force.qfrc_smooth[dof + r] + ws.qfrc_constraint[dof + r];
+    }
     add_bias_slope(model, params, j, qvel, &ws.position, &mut rows);
     let x = solve6(rows);
     ws.integration.qacc[dof..dof + 6].copy_from_slice(&x);
