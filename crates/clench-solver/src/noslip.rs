@@ -271,10 +271,9 @@ fn on_ellipse<T: Real>(
     let mut open = presses;
     for _ in 0..MULTIPLIER_STEPS {
         let (point, squared, slope) = shifted_minimum(&b, &c, lambda, floor, n);
-        g = std::array::from_fn(
-            #[inline(always)]
-            |i| T::select(open, point[i], g[i]),
-        );
+        for (g, &point) in g.iter_mut().zip(&point) {
+            *g = T::select(open, point, *g);
+        }
         let length = squared.sqrt();
         // Newton's step for 1/r − 1/|g(λ)|; λ only grows, so a step back means that the root is reached.
         let step = squared / slope * (length - radius) / radius;
@@ -287,16 +286,11 @@ fn on_ellipse<T: Real>(
     // Exactly onto the ball what rounding left outside.
     let length = dot(&g[..n], &g[..n]).sqrt();
     let shrink = T::select(length.gt(radius), radius / length, T::ONE);
-    std::array::from_fn(
-        #[inline(always)]
-        |i| {
-            if i < n {
-                T::select(presses, g[i] * shrink * mu[i], T::ZERO)
-            } else {
-                T::ZERO
-            }
-        },
-    )
+    let mut force = [T::ZERO; MAX_DIM];
+    for i in 0..n {
+        force[i] = T::select(presses, g[i] * shrink * mu[i], T::ZERO);
+    }
+    force
 }
 
 /// g = −(B + λ I)⁻¹ c, with |g|² and −½ d|g|²/dλ = gᵀ (B + λ I)⁻¹ g.
@@ -335,10 +329,10 @@ fn shifted_minimum<T: Real>(
             x[i] /= l[i][i];
         }
     };
-    let mut g: [T; MAX_DIM] = c.map(
-        #[inline(always)]
-        |c| -c,
-    );
+    let mut g = *c;
+    for g in &mut g {
+        *g = -*g;
+    }
     forward(&mut g);
     for i in (0..n).rev() {
         for k in i + 1..n {

@@ -123,15 +123,13 @@ impl<T: Real> Nearest<T> {
         for along in [-T::ONE, T::ONE] {
             let end = center + half * along;
             let point = clamp(end, size);
-            let limit = [0, 1, 2].map(
-                #[inline(always)]
-                |i| end[i].abs().gt(size[i]),
-            );
-            let [x, y, z] = limit;
+            let x = end.x.abs().gt(size.x);
+            let y = end.y.abs().gt(size.y);
+            let z = end.z.abs().gt(size.z);
             let over_face = !((x & y) | (x & z) | (y & z));
             let squared_distance = (point - end).norm_squared();
             let nearer = over_face & squared_distance.lt(best.squared_distance);
-            best.take(nearer, along, point, limit, squared_distance);
+            best.take(nearer, along, point, [x, y, z], squared_distance);
         }
         for axis in 0..3 {
             for corner in 0..4 {
@@ -219,14 +217,10 @@ impl<T: Real> Nearest<T> {
     #[inline(always)]
     fn second(&self, half: Vec3<T>, size: Vec3<T>) -> (T, T::Mask) {
         let limit = self.limit;
-        let forward = [0, 1, 2].map(
-            #[inline(always)]
-            |i| half[i].gt(T::ZERO),
-        );
-        let inward = [0, 1, 2].map(
-            #[inline(always)]
-            |i| differ(forward[i], self.point[i].gt(T::ZERO)),
-        );
+        let mut inward = [T::Mask::splat(false); 3];
+        for (i, inward) in inward.iter_mut().enumerate() {
+            *inward = differ(half[i].gt(T::ZERO), self.point[i].gt(T::ZERO));
+        }
         let sign = |mask: T::Mask| T::select(mask, T::ONE, -T::ONE);
         let mut way = T::ZERO;
         let mut walls = [T::Mask::splat(false); 3];

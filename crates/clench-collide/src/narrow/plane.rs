@@ -49,10 +49,7 @@ pub(super) fn plane_capsule<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out:
     let (normal, above) = height(a, b);
     let rise = normal.dot(axis) * half_length;
     let distances = [above + rise - radius, above - rise - radius];
-    let active = distances.map(
-        #[inline(always)]
-        |distance| distance.le(margin),
-    );
+    let active = [distances[0].le(margin), distances[1].le(margin)];
     if !(active[0] | active[1]).any() {
         return;
     }

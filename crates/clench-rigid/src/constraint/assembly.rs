@@ -48,7 +48,7 @@ pub struct ConstraintRecord<T: Real> {
 }
 
 /// One row of a block to be: everything but its Jacobian.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row<T> {
     /// Position.
     pub pos: T,

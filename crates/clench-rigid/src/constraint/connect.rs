@@ -31,16 +31,11 @@ pub(super) fn push<T: Real>(
     let bias = anchors.bias[0].linear - anchors.bias[1].linear;
     let (soft, block) = scene.equality(equality, violation.norm());
     let a0 = bodies.map(|b| scene.params.body_invweight0[b][0]);
-    let rows: [Row<T>; 3] = std::array::from_fn(
-        #[inline(always)]
-        |i| {
-            let row = Row::new(&soft, violation[i], T::ZERO, a0[0] + a0[1]);
-            Row {
-                aref: row.aref - bias[i],
-                ..row
-            }
-        },
-    );
+    let mut rows = [Row::default(); 3];
+    for (i, row) in rows.iter_mut().enumerate() {
+        *row = Row::new(&soft, violation[i], T::ZERO, a0[0] + a0[1]);
+        row.aref -= bias[i];
+    }
     out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
         anchors.fill_translation(scene, &chains, jacobian);
     });
@@ -60,22 +55,18 @@ impl<T: Real> Anchors<T> {
     #[inline(always)]
     pub fn new(scene: &Scene<T>, equality: usize, bodies: [usize; 2]) -> Self {
         let (pos, params) = (scene.position, scene.params);
-        let local = [params.eq_anchor1[equality], params.eq_anchor2[equality]];
-        let world = [0, 1].map(
-            #[inline(always)]
-            |i| pos.xpos[bodies[i]] + pos.xmat[bodies[i]] * local[i],
-        );
-        let moving = [0, 1].map(
-            #[inline(always)]
-            |i| BodyPoint::new(scene, bodies[i], world[i]),
-        );
+        let [body1, body2] = bodies;
+        let world1 = pos.xpos[body1] + pos.xmat[body1] * params.eq_anchor1[equality];
+        let world2 = pos.xpos[body2] + pos.xmat[body2] * params.eq_anchor2[equality];
+        let first = BodyPoint::new(scene, body1, world1);
+        let second = BodyPoint::new(scene, body2, world2);
         Anchors {
-            separation: world[0] - world[1],
-            bias: moving.map(
-                #[inline(always)]
-                |point| point.bias_acceleration(scene),
-            ),
-            offsets: moving.map(|point| point.offset),
+            separation: world1 - world2,
+            bias: [
+                first.bias_acceleration(scene),
+                second.bias_acceleration(scene),
+            ],
+            offsets: [first.offset, second.offset],
         }
     }
 

@@ -40,21 +40,16 @@ pub(super) fn push<T: Real>(
     let bias_rotation = relative.bias(scene, bodies, [bias1.angular, bias2.angular]);
     let length = (translation.norm_squared() + rotation.norm_squared()).sqrt();
     let (soft, block) = scene.equality(equality, length);
-    let rows: [Row<T>; 6] = std::array::from_fn(
-        #[inline(always)]
-        |i| {
-            let (pos, bias, part) = match i {
-                0..3 => (translation[i], bias_translation[i], 0),
-                _ => (rotation[i - 3], bias_rotation[i - 3], 1),
-            };
-            let a0 = bodies.map(|b| scene.params.body_invweight0[b][part]);
-            let row = Row::new(&soft, pos, T::ZERO, a0[0] + a0[1]);
-            Row {
-                aref: row.aref - bias,
-                ..row
-            }
-        },
-    );
+    let mut rows = [Row::default(); 6];
+    for (i, row) in rows.iter_mut().enumerate() {
+        let (pos, bias, part) = match i {
+            0..3 => (translation[i], bias_translation[i], 0),
+            _ => (rotation[i - 3], bias_rotation[i - 3], 1),
+        };
+        let a0 = bodies.map(|b| scene.params.body_invweight0[b][part]);
+        *row = Row::new(&soft, pos, T::ZERO, a0[0] + a0[1]);
+        row.aref -= bias;
+    }
     out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
         let (upper, lower) = jacobian.split_at_mut(jacobian.len() / 2);
         anchors.fill_translation(scene, &chains, upper);
