@@ -12,8 +12,9 @@ use proc_macro::{Delimiter, Group, TokenStream, TokenTree};
 /// operation on lanes in it would be a call. That costs speed, never correctness. For `f64` and `f32` the attribute changes
 /// nothing.
 ///
-/// The same goes for closures: those that hold operations on lanes need `#[inline(always)]`, which Rust accepts where a
-/// closure is an argument, or give way to a loop.
+/// The same goes for closures and what they are passed to. Where they hold operations on lanes, prefer a loop: iterator
+/// adaptors, `std::array::from_fn` and an array's `map` are functions in between when the closure is large. A closure
+/// passed to a function that is always inlined takes the attribute itself: `f(#[inline(always)] |x| x + x)`.
 ///
 /// Mark as kernels the functions that are worth a call: a stage, a product, a factorization. Mark `#[inline(always)]`
 /// what is small beside its call. Each kernel is compiled for every instruction set that it is used with.
