@@ -1,13 +1,14 @@
 //! The factorization LᵀDL in the pattern of a tree.
 //!
 //! With U = D L, row i is `U_i = A_i − Σ_k L_ki U_k` over the descendants k of i, of whose rows it takes the beginning. A few
-//! columns at a time stay in registers while the sum runs. Every entry sums in the same order, and an entry that is zero
-//! contributes an exact zero, **so that a larger pattern gives the same bits**.
+//! rows and columns at a time stay in registers while the sum runs. Every entry sums in the same order, from the last
+//! descendant to the first, and an entry that is zero contributes an exact zero, **so that a larger pattern gives the same
+//! bits**.
 
-use super::{Tree, TreeMatrix};
-use clench_math::{Mask, Real, Scalar, kernel};
+use super::{Strand, Tree, TreeMatrix, with_len};
+use clench_math::{Mask, Real, Scalar, array, kernel};
 
-/// Columns summed at a time: one or a few registers.
+/// Columns summed at a time.
 const WIDTH: usize = 4;
 
 /// The factorization A = LᵀDL of a [`TreeMatrix`], L unit lower triangular in the same pattern.
@@ -54,50 +55,83 @@ impl<T: Real> TreeFactor<T> {
     fn factor_above(&mut self, tree: &Tree, matrix: &TreeMatrix<T>, floor: T) -> T::Mask {
         self.resize(tree);
         let mut positive = T::Mask::splat(true);
-        for i in (0..tree.nv()).rev() {
-            self.sum_row(tree, i, &matrix.values);
-            let row = tree.starts[i]..tree.starts[i + 1];
-            let pivot = self.scaled[row.end - 1];
-            positive &= pivot.gt(T::ZERO) & pivot.is_finite();
-            let diagonal = matrix.values[row.end - 1];
-            let pivot = T::select(pivot.gt(floor * diagonal), pivot, diagonal);
-            let inverse = T::ONE / pivot;
-            self.diagonal[i] = pivot;
-            self.inverse[i] = inverse;
-            for (l, &u) in self.lower[row.clone()].iter_mut().zip(&self.scaled[row]) {
-                *l = u * inverse;
-            }
+        for &Strand { first, len } in tree.strands.iter().rev() {
+            positive &=
+                with_len!(len, LEN => self.factor_strand::<LEN>(tree, first, matrix, floor));
         }
         positive
     }
 
-    /// Computes row `i` of U. Windows of columns may overlap: each starts from `values`, which
-    /// stay as they are.
+    /// Computes the rows of a strand, of whose descendants it is done.
     #[inline(always)]
-    fn sum_row(&mut self, tree: &Tree, i: usize, values: &[T]) {
-        let (start, end) = (tree.starts[i], tree.starts[i + 1]);
-        let (done, below) = self.scaled.split_at_mut(end);
-        let sum = RowSum {
-            values: &values[start..end],
-            lower: &self.lower[end..tree.nnz()],
-            scaled: &below[..tree.nnz() - end],
-            descendants: tree.descendants(i),
+    fn factor_strand<const LEN: usize>(
+        &mut self,
+        tree: &Tree,
+        first: usize,
+        matrix: &TreeMatrix<T>,
+        floor: T,
+    ) -> T::Mask {
+        let depth = tree.depth(first);
+        let starts: [usize; LEN] = std::array::from_fn(|m| tree.starts[first + m]);
+        let end = tree.starts[first + LEN];
+        let (lower, lower_below) = self.lower.split_at_mut(end);
+        let (scaled, scaled_below) = self.scaled.split_at_mut(end);
+        let below = Below {
+            lower: &lower_below[..tree.nnz() - end],
+            scaled: &scaled_below[..tree.nnz() - end],
+            rows: tree.descendants(first + LEN - 1),
             offset: end,
         };
-        let row = &mut done[start..];
-        match row.len() {
-            1 => sum.window::<1>(row, 0),
-            2 => sum.window::<2>(row, 0),
-            3 => sum.window::<3>(row, 0),
-            len => {
-                for column in (0..=len - WIDTH).step_by(WIDTH) {
-                    sum.window::<WIDTH>(row, column);
+        let rows: [&[T]; LEN] = tree.strand_rows(&matrix.values, first);
+
+        // What the rows of the strand have in the columns of the strand: pivots, and multipliers between its rows.
+        let mut block = below.block(depth, &rows);
+        let mut inverse = [T::ZERO; LEN];
+        let mut positive = T::Mask::splat(true);
+        for m in (0..LEN).rev() {
+            for k in (m + 1..LEN).rev() {
+                let multiplier = block[k][m] * inverse[k];
+                for j in 0..=m {
+                    block[m][j] -= multiplier * block[k][j];
                 }
-                if !len.is_multiple_of(WIDTH) {
-                    sum.window::<WIDTH>(row, len - WIDTH);
+            }
+            let (pivot, diagonal) = (block[m][m], rows[m][depth + m]);
+            positive &= pivot.gt(T::ZERO) & pivot.is_finite();
+            let pivot = T::select(pivot.gt(floor * diagonal), pivot, diagonal);
+            inverse[m] = T::ONE / pivot;
+            self.diagonal[first + m] = pivot;
+            self.inverse[first + m] = inverse[m];
+            for j in 0..=m {
+                scaled[starts[m] + depth + j] = block[m][j];
+                lower[starts[m] + depth + j] = block[m][j] * inverse[m];
+            }
+        }
+
+        let mut out = Columns {
+            depth,
+            starts,
+            block: &block,
+            inverse: &inverse,
+            lower,
+            scaled,
+        };
+        match depth {
+            0 => {}
+            1 => out.write::<1>(0, below.window(depth, 0, &rows)),
+            2 => out.write::<2>(0, below.window(depth, 0, &rows)),
+            3 => out.write::<3>(0, below.window(depth, 0, &rows)),
+            _ => {
+                for column in (0..=depth - WIDTH).step_by(WIDTH) {
+                    out.write::<WIDTH>(column, below.window(depth, column, &rows));
+                }
+                // The last columns, some perhaps once more.
+                if !depth.is_multiple_of(WIDTH) {
+                    let column = depth - WIDTH;
+                    out.write::<WIDTH>(column, below.window(depth, column, &rows));
                 }
             }
         }
+        positive
     }
 
     /// Turns the factor of A into that of A + σ x xᵀ, x given along the path to dof `last` and
@@ -182,18 +216,29 @@ impl<T: Real> TreeFactor<T> {
         for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
             *x *= inverse;
         }
-        for k in 0..tree.nv() {
-            let (first, lead, others) = tree.split_row(k);
-            let row = &self.lower[tree.starts[k]..];
-            let mut sum = x[k];
-            for (&l, &x) in row.iter().zip(&x[first..first + lead]) {
-                sum -= l * x;
-            }
-            for (&l, &c) in row[lead..].iter().zip(others) {
-                sum -= l * x[c as usize];
-            }
-            x[k] = sum;
+        for &Strand { first, len } in &tree.strands {
+            with_len!(len, LEN => self.solve_strand::<LEN>(tree, first, x));
         }
+    }
+
+    /// `x ← L⁻¹ x` in the rows of a strand, of whose ancestors it is done.
+    #[inline(always)]
+    fn solve_strand<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
+        let shared = &tree.row(first)[..tree.depth(first)];
+        let rows: [&[T]; LEN] = tree.strand_rows(&self.lower, first);
+        let mut sums: [T; LEN] = array(|m| x[first + m]);
+        for (k, &c) in shared.iter().enumerate() {
+            let x = x[c as usize];
+            for m in 0..LEN {
+                sums[m] -= rows[m][k] * x;
+            }
+        }
+        for m in 1..LEN {
+            for j in 0..m {
+                sums[m] -= rows[m][shared.len() + j] * sums[j];
+            }
+        }
+        x[first..first + LEN].copy_from_slice(&sums);
     }
 
     /// `x ← D^(-1/2) L^(-T) x`: afterwards `x·y` is the product `xᵀA⁻¹y` of what was given.
@@ -205,53 +250,126 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
+    /// `x ← L^(-T) x`.
     #[inline(always)]
     fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
-        for k in (0..tree.nv()).rev() {
-            let (first, lead, others) = tree.split_row(k);
-            let row = &self.lower[tree.starts[k]..];
-            let xk = x[k];
-            for (&l, x) in row.iter().zip(&mut x[first..first + lead]) {
-                *x -= l * xk;
+        for &Strand { first, len } in tree.strands.iter().rev() {
+            with_len!(len, LEN => self.solve_transposed_strand::<LEN>(tree, first, x));
+        }
+    }
+
+    /// What the rows of a strand, of whose descendants it is done, do to their ancestors.
+    #[inline(always)]
+    fn solve_transposed_strand<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
+        let shared = &tree.row(first)[..tree.depth(first)];
+        let rows: [&[T]; LEN] = tree.strand_rows(&self.lower, first);
+        let mut own: [T; LEN] = array(|m| x[first + m]);
+        for m in (1..LEN).rev() {
+            for j in 0..m {
+                own[j] -= rows[m][shared.len() + j] * own[m];
             }
-            for (&l, &c) in row[lead..].iter().zip(others) {
-                x[c as usize] -= l * xk;
+        }
+        x[first..first + LEN].copy_from_slice(&own);
+        for (k, &c) in shared.iter().enumerate() {
+            let mut value = x[c as usize];
+            for m in (0..LEN).rev() {
+                value -= rows[m][k] * own[m];
             }
+            x[c as usize] = value;
         }
     }
 }
 
-/// The sum that makes a row of U.
-struct RowSum<'a, T> {
-    /// The row of A.
-    values: &'a [T],
-    /// L and U from the row's end on.
+/// The descendants of a strand, whose rows are done.
+struct Below<'a, T> {
+    /// L and U from the strand's end on.
     lower: &'a [T],
     scaled: &'a [T],
     /// Where the rows of the descendants start, from `offset` on.
-    descendants: &'a [u32],
+    rows: &'a [u32],
     offset: usize,
 }
 
-impl<T: Real> RowSum<'_, T> {
-    /// Computes `N` columns.
+impl<T: Real> Below<'_, T> {
+    /// `N` columns of the strand's rows of A, from `column` on, less what the descendants take off.
     #[inline(always)]
-    fn window<const N: usize>(&self, row: &mut [T], column: usize) {
-        let depth = row.len() - 1;
-        let mut sum: [T; N] = std::array::from_fn(|c| self.values[column + c]);
-        for &start in self.descendants {
+    fn window<const LEN: usize, const N: usize>(
+        &self,
+        depth: usize,
+        column: usize,
+        rows: &[&[T]; LEN],
+    ) -> [[T; N]; LEN] {
+        let mut sums = [[T::ZERO; N]; LEN];
+        for m in 0..LEN {
+            sums[m].copy_from_slice(&rows[m][column..column + N]);
+        }
+        for &start in self.rows.iter().rev() {
             let start = start as usize - self.offset;
-            debug_assert!(start + depth < self.lower.len() && column + N <= depth + 1);
-            // SAFETY: `start` is where the row of a descendant starts, which holds more than
-            // `depth` entries: a tree is built so, and `lower` and `scaled` reach to its end.
+            debug_assert!(start + depth + LEN <= self.lower.len() && column + N <= depth);
+            // SAFETY: `start` is where the row of a descendant of the strand starts, which holds more than
+            // `depth + LEN` entries: a tree is built so, and `lower` and `scaled` reach to its end.
             // The checks were half of the instructions of this loop, the hottest of all.
             unsafe {
-                let multiplier = *self.lower.get_unchecked(start + depth);
-                for c in 0..N {
-                    sum[c] -= multiplier * *self.scaled.get_unchecked(start + column + c);
+                for m in 0..LEN {
+                    let multiplier = *self.lower.get_unchecked(start + depth + m);
+                    for c in 0..N {
+                        sums[m][c] -= multiplier * *self.scaled.get_unchecked(start + column + c);
+                    }
                 }
             }
         }
-        row[column..column + N].copy_from_slice(&sum);
+        sums
+    }
+
+    /// The same for the columns of the strand itself, of which row m has the first m + 1.
+    #[inline(always)]
+    fn block<const LEN: usize>(&self, depth: usize, rows: &[&[T]; LEN]) -> [[T; LEN]; LEN] {
+        let mut sums = [[T::ZERO; LEN]; LEN];
+        for m in 0..LEN {
+            for j in 0..=m {
+                sums[m][j] = rows[m][depth + j];
+            }
+        }
+        for &start in self.rows.iter().rev() {
+            let start = start as usize - self.offset + depth;
+            let (lower, scaled) = (&self.lower[start..][..LEN], &self.scaled[start..][..LEN]);
+            for m in 0..LEN {
+                for j in 0..=m {
+                    sums[m][j] -= lower[m] * scaled[j];
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// Where the columns of a strand's ancestors go, and what of its rows is known already.
+struct Columns<'a, T, const LEN: usize> {
+    depth: usize,
+    starts: [usize; LEN],
+    block: &'a [[T; LEN]; LEN],
+    inverse: &'a [T; LEN],
+    lower: &'a mut [T],
+    scaled: &'a mut [T],
+}
+
+impl<T: Real, const LEN: usize> Columns<'_, T, LEN> {
+    /// Takes off what the strand's later rows take off, and writes `N` columns from `column` on.
+    #[inline(always)]
+    fn write<const N: usize>(&mut self, column: usize, mut sums: [[T; N]; LEN]) {
+        for m in (0..LEN).rev() {
+            for k in (m + 1..LEN).rev() {
+                let multiplier = self.block[k][m] * self.inverse[k];
+                for c in 0..N {
+                    sums[m][c] -= multiplier * sums[k][c];
+                }
+            }
+            let start = self.starts[m] + column;
+            debug_assert!(column + N <= self.depth);
+            for (c, &sum) in sums[m].iter().enumerate() {
+                self.scaled[start + c] = sum;
+                self.lower[start + c] = sum * self.inverse[m];
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! A symmetric matrix in the pattern of a tree.
 
-use super::Tree;
-use clench_math::{Real, kernel};
+use super::{Strand, Tree, with_len};
+use clench_math::{Real, array, kernel};
 
 /// A symmetric matrix in the pattern of a [`Tree`]: its lower triangle, row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,25 +30,32 @@ impl<T: Real> TreeMatrix<T> {
     /// `out = A x`.
     #[kernel]
     pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
-        for i in 0..tree.nv() {
-            let (first, lead, others) = tree.split_row(i);
-            let row = self.row(tree, i);
-            let xi = x[i];
-            let mut sum = row[row.len() - 1] * xi;
-            for ((&v, &x), out) in row
-                .iter()
-                .zip(&x[first..first + lead])
-                .zip(&mut out[first..first + lead])
-            {
-                sum += v * x;
-                *out += v * xi;
-            }
-            for (&v, &c) in row[lead..].iter().zip(others) {
-                sum += v * x[c as usize];
-                out[c as usize] += v * xi;
-            }
-            out[i] = sum;
+        for &Strand { first, len } in &tree.strands {
+            with_len!(len, LEN => self.mul_strand::<LEN>(tree, first, x, out));
         }
+    }
+    #[inline(always)]
+    fn mul_strand<const LEN: usize>(&self, tree: &Tree, first: usize, x: &[T], out: &mut [T]) {
+        let shared = &tree.row(first)[..tree.depth(first)];
+        let rows: [&[T]; LEN] = tree.strand_rows(&self.values, first);
+        let own: [T; LEN] = array(|m| x[first + m]);
+        let mut sums: [T; LEN] = array(|m| rows[m][shared.len() + m] * own[m]);
+        for (k, &c) in shared.iter().enumerate() {
+            let (x, mut sum) = (x[c as usize], out[c as usize]);
+            for m in 0..LEN {
+                sums[m] += rows[m][k] * x;
+                sum += rows[m][k] * own[m];
+            }
+            out[c as usize] = sum;
+        }
+        for m in 1..LEN {
+            for j in 0..m {
+                let value = rows[m][shared.len() + j];
+                sums[m] += value * own[j];
+                sums[j] += value * own[m];
+            }
+        }
+        out[first..first + LEN].copy_from_slice(&sums);
     }
     /// All nv × nv entries, row-major.
     pub fn to_dense(&self, tree: &Tree) -> Vec<T> {

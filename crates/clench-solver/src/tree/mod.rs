@@ -27,12 +27,50 @@ pub struct Tree {
     columns: Vec<u32>,
     trees: Vec<u32>,
     ntree: usize,
-    /// How many columns at the beginning of each row follow one another without a gap, the diagonal left out.
-    leads: Vec<u32>,
+    /// All dofs in strands, ascending.
+    strands: Vec<Strand>,
     /// For each dof, where the rows of its descendants start, in ascending order.
     descendants: Vec<u32>,
     descendant_starts: Vec<usize>,
 }
+
+/// A few dofs of which each is the only child of the one before. Their rows share all columns but the last few, and what
+/// lies below the last lies below all of them, so that kernels run over several rows at once: a column is looked up once, and sums that would wait for themselves run side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Strand {
+    /// The first dof; the others follow.
+    pub first: usize,
+    /// How many there are: 1 to [`LONGEST_STRAND`].
+    pub len: usize,
+}
+
+/// As many rows as fit into registers together with what they meet.
+pub(crate) const LONGEST_STRAND: usize = 4;
+
+/// Runs an expression with the constant `$len` standing for the length of a strand.
+macro_rules! with_len {
+    ($value:expr, $len:ident => $body:expr) => {
+        match $value {
+            1 => {
+                const $len: usize = 1;
+                $body
+            }
+            2 => {
+                const $len: usize = 2;
+                $body
+            }
+            3 => {
+                const $len: usize = 3;
+                $body
+            }
+            _ => {
+                const $len: usize = $crate::tree::LONGEST_STRAND;
+                $body
+            }
+        }
+    };
+}
+pub(crate) use with_len;
 
 impl Tree {
     /// A forest from the parent of each dof.
@@ -85,18 +123,33 @@ impl Tree {
             self.columns.push(dof as u32);
             self.starts.push(self.columns.len());
         }
-        self.leads.clear();
-        for i in 0..nv {
-            let before = &self.columns[self.starts[i]..self.starts[i + 1] - 1];
-            let lead = before
-                .iter()
-                .zip(before.first().copied().unwrap_or(0)..)
-                .take_while(|(c, k)| **c == *k)
-                .count();
-            self.leads.push(lead as u32);
-        }
         self.list_descendants();
+        self.find_strands();
         Ok(())
+    }
+
+    fn find_strands(&mut self) {
+        self.strands.clear();
+        for dof in 0..self.nv() {
+            let only_child = self.parent(dof).is_some_and(|parent| {
+                let below = self.descendants(dof).len();
+                parent + 1 == dof && self.descendants(parent).len() == below + 1
+            });
+            match self.strands.last_mut() {
+                Some(last) if last.len < LONGEST_STRAND && only_child => last.len += 1,
+                _ => self.strands.push(Strand { first: dof, len: 1 }),
+            }
+        }
+    }
+
+    /// The values of the rows of a strand: row m has depth + m + 1.
+    #[inline(always)]
+    pub(crate) fn strand_rows<'a, T, const LEN: usize>(
+        &self,
+        values: &'a [T],
+        first: usize,
+    ) -> [&'a [T]; LEN] {
+        std::array::from_fn(|m| &values[self.starts[first + m]..self.starts[first + m + 1]])
     }
 
     fn list_descendants(&mut self) {
@@ -171,19 +224,6 @@ impl Tree {
         }
         let ascending = self.rebuild(nv, |i| parents[i]);
         debug_assert!(ascending.is_ok(), "a dof hangs on one of lower number");
-    }
-
-    /// Row `i` left of the diagonal, split where its columns first leave a gap: the first column and the number of those
-    /// without, and the other columns.
-    #[inline(always)]
-    pub(crate) fn split_row(&self, i: usize) -> (usize, usize, &[u32]) {
-        let lead = self.leads[i] as usize;
-        let start = self.starts[i];
-        (
-            self.columns[start] as usize,
-            lead,
-            &self.columns[start + lead..self.starts[i + 1] - 1],
-        )
     }
 
     /// Where the rows of the descendants of dof `i` start.
