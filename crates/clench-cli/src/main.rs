@@ -1,19 +1,24 @@
 //! The `clench` program: `simulate`, `forward` and `inspect` a robot file.
 //!
-//! One file a subcommand, plus what they share: options that override the file (`options`), the JSON of states and
-//! results (`protocol`), recorded arrays (`record`), figures of a run (`summary`), tables for people (`table`). Physics lives in the library.
+//! One module a subcommand, plus what they share: options that override the file (`options`), the JSON of states and
+//! results (`protocol`), NumPy's files (`npy`), tables for people (`table`). Physics lives in the library.
 
 mod forward;
 mod inspect;
+mod npy;
 mod options;
 mod protocol;
-mod record;
 mod simulate;
-mod summary;
 mod table;
 
+use cap::Cap;
 use clap::{Parser, Subcommand};
+use std::alloc::System;
 use std::process::ExitCode;
+
+/// The system's allocator, which also tells how much is allocated: what a batch takes beside its rows is measured.
+#[global_allocator]
+static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
 
 /// Exit code of bad input: a model, a state or an option that cannot be used.
 const BAD_INPUT: u8 = 2;
@@ -32,6 +37,8 @@ Examples:
       step a robot for two seconds and summarise what happened
   clench simulate models/pendulum.xml --steps 500 --record swing.npz --every 5
       keep every fifth state as NumPy arrays
+  clench simulate models/humanoid.xml --envs 1024 --noise 0.01 --precision 32
+      step many robots side by side, in single precision
   echo '{}' | clench forward models/quadruped.xml
       accelerations, contacts and constraint forces of the initial state, as JSON
   clench inspect models/four_bar.xml --steps 100

@@ -1,6 +1,6 @@
 //! What all subcommands share: the model, and options that override the file's.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use clench::prelude::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
 use clench::{Model, RigidOptions, Sim};
@@ -11,6 +11,7 @@ use std::sync::Arc;
 #[derive(Args)]
 pub struct ModelArguments {
     /// Model file (MJCF)
+    #[arg(help_heading = "Arguments")]
     pub model: PathBuf,
 
     #[command(flatten)]
@@ -98,17 +99,26 @@ impl From<SwitchName> for Switch {
 }
 
 impl ModelArguments {
-    /// Loads the model, applies the overrides, and says on standard error what the loader wants known.
-    pub fn sim(&self) -> Result<Sim> {
-        let model: Model = clench::load(&self.model)?;
+    /// Loads the model, and says on standard error what the loader wants known.
+    pub fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
+        let mut model: Model = clench::load(&self.model)?;
         for note in &model.notes {
             eprintln!("note: {note}");
         }
-        let mut sim = Sim::with_options(Arc::new(model), self.overrides.options())?;
         if let Some(timestep) = self.overrides.timestep {
-            sim.set_timestep(timestep)?;
+            ensure!(
+                timestep > 0.0 && timestep.is_finite(),
+                "--timestep: {timestep} is not a positive number of seconds"
+            );
+            model.params.timestep = timestep;
         }
-        Ok(sim)
+        Ok((Arc::new(model), self.overrides.options()))
+    }
+
+    /// A simulation of one environment.
+    pub fn sim(&self) -> Result<Sim> {
+        let (model, options) = self.load()?;
+        Ok(Sim::with_options(model, options)?)
     }
 }
 

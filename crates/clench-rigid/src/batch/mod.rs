@@ -25,6 +25,7 @@ use crate::check::check_length;
 use crate::contact::check_supported;
 use crate::error::{Fault, SimError};
 use crate::model::Model;
+use crate::profile::Profile;
 use crate::settings::StepSettings;
 use crate::sim::{Sim, no_such};
 use crate::state::State;
@@ -128,7 +129,11 @@ impl<S: Precision> Batch<S> {
             pool: (threads > 1).then(|| options.pool(threads)).transpose()?,
             divergence: Divergence::default(),
             quality: Quality::default(),
-            options,
+            options: BatchOptions {
+                instructions: Some(instructions),
+                threads: Some(threads),
+                ..options
+            },
             model,
         })
     }
@@ -312,6 +317,10 @@ impl<S: Precision> Batch<S> {
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
+    /// How it is stepped, decided.
+    pub fn options(&self) -> BatchOptions {
+        self.options
+    }
     /// All options, decided.
     pub fn settings(&self) -> &StepSettings {
         &self.settings
@@ -342,6 +351,20 @@ impl<S: Precision> Batch<S> {
     /// How well steps went since then.
     pub fn quality(&self) -> Quality {
         self.quality
+    }
+    /// Lets clocks run in every thread, or not.
+    pub fn run_clocks(&mut self, running: bool) {
+        for stepper in &mut self.steppers {
+            stepper.run_clocks(running);
+        }
+    }
+    /// Where the time of all threads went while the clocks ran.
+    pub fn profile(&mut self) -> Profile {
+        let mut profile = Profile::default();
+        for stepper in &mut self.steppers {
+            profile.add(&stepper.profile());
+        }
+        profile
     }
     /// Begins the figures of [`divergence`](Self::divergence) and [`quality`](Self::quality) anew.
     pub fn clear_figures(&mut self) {

@@ -1,7 +1,8 @@
 //! How well the steps of a batch went: what a run is judged by.
 
+use crate::contact::Contact;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, Scalar};
+use clench_math::{Real, Scalar, kernel};
 use clench_solver::Status;
 use std::ops::AddAssign;
 
@@ -24,20 +25,28 @@ impl Quality {
     /// Takes in a step of a group, in whose first `len` lanes environments are.
     pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize) {
         let stats = ws.solver.stats();
+        let (contacts, depth) = extent(&ws.contacts);
         for lane in 0..len {
             let status = stats.status(lane);
+            let value = |x: T| x.lane(lane).to_f64();
             self.constrained += u64::from(status != Status::Unconstrained);
             self.unconverged += u64::from(status == Status::IterationLimit);
-            self.gap_max = self.gap_max.max(stats.gap.lane(lane).to_f64());
-            let mut contacts = 0;
-            for contact in ws.contacts.iter().filter(|c| c.active.lane(lane)) {
-                contacts += 1;
-                let depth = -contact.dist.lane(lane).to_f64();
-                self.penetration_max = self.penetration_max.max(depth);
-            }
-            self.contacts_max = self.contacts_max.max(contacts);
+            self.gap_max = self.gap_max.max(value(stats.gap));
+            self.contacts_max = self.contacts_max.max(value(contacts) as u64);
+            self.penetration_max = self.penetration_max.max(value(depth));
         }
     }
+}
+
+/// How many contacts there are, and how deep the deepest is.
+#[kernel]
+fn extent<T: Real>(contacts: &[Contact<T>]) -> (T, T) {
+    let (mut count, mut depth) = (T::ZERO, T::ZERO);
+    for contact in contacts {
+        count += T::select(contact.active, T::ONE, T::ZERO);
+        depth = T::select(contact.active, -contact.dist, depth).max(depth);
+    }
+    (count, depth)
 }
 
 impl AddAssign for Quality {

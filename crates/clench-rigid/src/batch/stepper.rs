@@ -11,6 +11,7 @@ use crate::error::Fault;
 use crate::model::{Model, Params};
 use crate::output::{Output, Source};
 use crate::pipeline;
+use crate::profile::{Profile, Stage};
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -60,6 +61,10 @@ pub trait Stepper<S: Lanewise>: Send {
     fn run(&mut self, group: &[u32], job: &Job<S>);
     /// What happened since it was last cleared.
     fn tally(&mut self) -> &mut Tally;
+    /// Lets its clocks run, or not.
+    fn run_clocks(&mut self, running: bool);
+    /// Where the time went while they ran.
+    fn profile(&mut self) -> Profile;
 }
 
 /// Makes a stepper in lanes picked at run time.
@@ -281,13 +286,16 @@ where
         let mut group = Group::new(envs);
         let mut step = job.first;
         while step < job.end && group.len > 0 {
+            self.ws.clock.start();
             self.gather(&group, job);
             while step < job.end && group.len > 0 {
                 self.control(&group, step, job);
                 if !self.admit(&mut group) {
                     break;
                 }
+                self.ws.clock.lap(Stage::Rows as usize);
                 let whole = self.step(&mut group, step, job);
+                self.ws.clock.lap(Stage::Rows as usize);
                 step += 1;
                 if !whole {
                     break;
@@ -298,5 +306,13 @@ where
 
     fn tally(&mut self) -> &mut Tally {
         &mut self.tally
+    }
+
+    fn run_clocks(&mut self, running: bool) {
+        self.ws.run_clocks(running);
+    }
+
+    fn profile(&mut self) -> Profile {
+        self.ws.profile()
     }
 }

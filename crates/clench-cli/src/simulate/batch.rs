@@ -1,0 +1,272 @@
+//! A run of many environments side by side.
+
+use super::record::{BATCH_OUTPUTS, BatchRecorder};
+use super::report::{BatchReport, DivergenceReport, Failure, Report, stages};
+use super::summary::{is_conservative, status};
+use super::{Arguments, Run};
+use crate::ALLOCATOR;
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+use clench::math::{Instructions, Scalar};
+use clench::rigid::batch::Controls;
+use clench::rigid::{EnvStatus, Precision};
+use clench::{Batch, BatchOptions, RigidOptions};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Steps that a batch takes at a call where nothing is to be seen in between.
+const STEPS_A_CALL: usize = 50;
+/// How many failed environments a report names.
+const NAMED_FAILURES: usize = 10;
+
+/// How many environments there are, and how they are stepped.
+#[derive(Args)]
+#[command(next_help_heading = "Many environments")]
+pub struct BatchArguments {
+    /// Step so many environments as a batch
+    #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
+    pub envs: Option<u32>,
+    /// Threads of a batch [default: as many as processors]; one environment alone uses one
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// How the environments of a batch lie side by side [default: what is fastest here]
+    #[arg(long, ignore_case = true, requires = "envs")]
+    instructions: Option<InstructionsName>,
+    /// Leave the environments of a batch in order, where those of like contacts would be put side by side
+    #[arg(long, requires = "envs")]
+    no_grouping: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum InstructionsName {
+    Scalar,
+    Portable,
+    Neon,
+    Avx2,
+    Avx512,
+}
+
+fn name(instructions: Instructions) -> &'static str {
+    match instructions {
+        Instructions::Scalar => "scalar",
+        Instructions::Portable => "portable",
+        Instructions::Neon => "neon",
+        Instructions::Avx2 => "avx2",
+        Instructions::Avx512 => "avx512",
+    }
+}
+
+impl BatchArguments {
+    fn options(&self, options: RigidOptions) -> BatchOptions {
+        BatchOptions {
+            options,
+            instructions: self.instructions.map(|name| match name {
+                InstructionsName::Scalar => Instructions::Scalar,
+                InstructionsName::Portable => Instructions::Portable,
+                InstructionsName::Neon => Instructions::Neon,
+                InstructionsName::Avx2 => Instructions::Avx2,
+                InstructionsName::Avx512 => Instructions::Avx512,
+            }),
+            threads: self.threads.map(usize::from),
+            grouping: !self.no_grouping,
+        }
+    }
+}
+
+/// Steps many environments side by side.
+pub fn run<S: Precision>(
+    arguments: &Arguments,
+    run: &Run,
+    envs: u32,
+    options: RigidOptions,
+) -> Result<Report> {
+    let mut heap = Heap::default();
+    let options = arguments.batch.options(options);
+    let model = Arc::clone(&run.model);
+    let mut batch = heap.taken_by(|| Batch::<S>::with_options(model, envs as usize, options))?;
+    start(&mut batch, run)?;
+    let energies = energies(&mut batch, &mut heap)?;
+    let record = arguments.record.as_ref();
+    let mut recorder = record.map(|path| BatchRecorder::create(path)).transpose()?;
+    if recorder.is_some() {
+        heap.taken_by(|| batch.record(&BATCH_OUTPUTS))?;
+    }
+    let steps_a_call = recorder.as_ref().map_or(STEPS_A_CALL, |_| arguments.every);
+    let controls = run.controls.as_ref().map(|rows| narrow(rows.values()));
+    let nu = run.model.nu();
+    batch.clear_figures();
+    batch.run_clocks(arguments.profile);
+    let progress = run.progress();
+    let mut spent = Duration::ZERO;
+    let (mut steps, mut running) = (0, batch.count());
+    while steps < run.steps && running > 0 {
+        let end = run.steps.min(steps + steps_a_call);
+        let ctrl = controls.as_ref().map(|rows| &rows[steps * nu..end * nu]);
+        let controls = ctrl.map_or(Controls::Held, Controls::Shared);
+        let begin = Instant::now();
+        let recording = heap.taken_by(|| batch.rollout(end - steps, controls, &[]))?;
+        spent += begin.elapsed();
+        (steps, running) = (end, recording.summary.running);
+        if let Some(recorder) = &mut recorder
+            && steps.is_multiple_of(arguments.every)
+        {
+            let held = batch.state.ctrl.row(0);
+            recorder.after_step(&batch, ctrl.map_or(held, |rows| &rows[rows.len() - nu..]));
+        }
+        progress.set_position(steps as u64);
+    }
+    progress.finish_and_clear();
+    batch.run_clocks(false);
+    if let Some(recorder) = recorder {
+        recorder.write(&run.model, batch.count())?;
+    }
+    let mut report = report(&batch, steps, spent, &heap);
+    report.energy_drift = match report.failure {
+        None if batch.quality().constrained == 0 => drift(&mut batch, &mut heap, energies)?,
+        _ => None,
+    };
+    let env_steps = batch.divergence().env_steps;
+    let total = spent * batch.threads() as u32;
+    let profile = arguments.profile.then(|| batch.profile());
+    report.profile = profile.map(|profile| stages(&profile, total, env_steps));
+    Ok(report)
+}
+
+/// What a batch takes of the heap, in bytes.
+#[derive(Default)]
+struct Heap {
+    taken: usize,
+    given_back: usize,
+}
+
+impl Heap {
+    /// Does something and notes what it took, or gave back.
+    fn taken_by<R>(&mut self, work: impl FnOnce() -> R) -> R {
+        let before = ALLOCATOR.allocated();
+        let result = work();
+        let after = ALLOCATOR.allocated();
+        self.taken += after.saturating_sub(before);
+        self.given_back += before.saturating_sub(after);
+        result
+    }
+}
+
+fn narrow<S: Scalar>(values: &[f64]) -> Vec<S> {
+    values.iter().map(|&x| S::new(x)).collect()
+}
+
+fn widen<S: Scalar>(values: &[S]) -> Vec<f64> {
+    values.iter().map(|x| x.to_f64()).collect()
+}
+
+fn start<S: Precision>(batch: &mut Batch<S>, run: &Run) -> Result<()> {
+    for env in 0..batch.count() {
+        if let Some(key) = run.starts.keyframe() {
+            batch.reset_to_keyframe(env, key)?;
+        }
+        if run.starts.moved() {
+            let state = &mut batch.state;
+            let (qpos, qvel) = (state.qpos.row_mut(env), state.qvel.row_mut(env));
+            let (mut positions, mut velocities) = (widen(qpos), widen(qvel));
+            run.starts.place(env, &mut positions, &mut velocities);
+            qpos.copy_from_slice(&narrow(&positions));
+            qvel.copy_from_slice(&narrow(&velocities));
+        }
+    }
+    Ok(())
+}
+
+/// The mechanical energy of each environment, J; `None` where it means nothing.
+fn energies<S: Precision>(batch: &mut Batch<S>, heap: &mut Heap) -> Result<Option<Vec<f64>>> {
+    if !is_conservative(batch.model()) {
+        return Ok(None);
+    }
+    batch.record(&["energy"])?;
+    heap.taken_by(|| batch.forward())?;
+    let energies = batch.output("energy").map(|rows| {
+        let total = |parts: &[S]| parts.iter().map(|x| x.to_f64()).sum();
+        rows.iter().map(total).collect()
+    });
+    batch.record(&[])?;
+    Ok(energies)
+}
+
+/// The largest change of energy since the environments had these.
+fn drift<S: Precision>(
+    batch: &mut Batch<S>,
+    heap: &mut Heap,
+    start: Option<Vec<f64>>,
+) -> Result<Option<f64>> {
+    let Some((start, end)) = start.zip(energies(batch, heap)?) else {
+        return Ok(None);
+    };
+    let changes = end.iter().zip(&start).map(|(end, start)| end - start);
+    Ok(changes.max_by(|a, b| a.abs().total_cmp(&b.abs())))
+}
+
+/// The figures of a run of so many steps.
+fn report<S: Precision>(batch: &Batch<S>, steps: usize, spent: Duration, heap: &Heap) -> Report {
+    let (divergence, quality) = (batch.divergence(), batch.quality());
+    let seconds = spent.as_secs_f64();
+    let rate = |amount: f64| amount / seconds.max(f64::MIN_POSITIVE);
+    let timestep = batch.model().params.timestep;
+    let failures = failures(batch);
+    let rows = batch.count() * batch.bytes_per_env();
+    let scratch = heap.taken.saturating_sub(heap.given_back + rows);
+    Report {
+        status: status(!failures.is_empty(), 0, quality.unconverged),
+        seconds,
+        steps,
+        envs: batch.count(),
+        threads: batch.threads(),
+        precision: 8 * size_of::<S>(),
+        instructions: batch.options().instructions.map_or("scalar", name),
+        nv: batch.model().nv,
+        simulated_time: steps as f64 * timestep,
+        steps_per_second: rate(divergence.env_steps as f64),
+        real_time_factor: rate(divergence.env_steps as f64 * timestep),
+        iterations_mean: divergence.iterations_per_env(),
+        contacts_mean: divergence.contacts_per_env(),
+        contacts_max: quality.contacts_max,
+        gap_max: quality.gap_max,
+        penetration_max: quality.penetration_max,
+        unconverged_steps: quality.unconverged,
+        overflow_steps: 0,
+        energy_drift: None,
+        failure: failures.first().map(|first| {
+            let (failed, count) = (failures.len(), batch.count());
+            let Failure { env, reason } = first;
+            format!("{failed} of {count} environments failed; environment {env}: {reason}")
+        }),
+        batch: Some(BatchReport {
+            lanes: batch.lanes(),
+            bytes_per_env: batch.bytes_per_env(),
+            scratch_bytes_per_thread: scratch / batch.threads(),
+            failed_envs: failures.len(),
+            failures: failures.into_iter().take(NAMED_FAILURES).collect(),
+            divergence: DivergenceReport {
+                live_share: divergence.live_share(),
+                iterations_per_group: divergence.iterations_per_group(),
+                slots_per_group: divergence.slots_per_group(),
+            },
+        }),
+        profile: None,
+    }
+}
+
+/// The environments that cannot go on.
+fn failures<S: Precision>(batch: &Batch<S>) -> Vec<Failure> {
+    let failed = |(env, status): (usize, &EnvStatus)| match status {
+        EnvStatus::Running => None,
+        EnvStatus::Failed(fault) => Some(Failure {
+            env,
+            reason: fault.to_string(),
+        }),
+    };
+    batch
+        .statuses()
+        .iter()
+        .enumerate()
+        .filter_map(failed)
+        .collect()
+}

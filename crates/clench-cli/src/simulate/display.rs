@@ -1,0 +1,138 @@
+//! The figures of a run for people.
+
+use super::report::{BatchReport, Report, StageReport};
+use crate::table::Table;
+use std::fmt::{self, Display, Formatter};
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        if let Some(batch) = &self.batch {
+            let lanes = format!("{} side by side ({})", batch.lanes, self.instructions);
+            let threads = match self.threads {
+                1 => "1 thread".into(),
+                n => format!("{n} threads"),
+            };
+            let envs = self.envs;
+            line(
+                f,
+                "environments",
+                format_args!("{envs}, {lanes} on {threads}"),
+            )?;
+        }
+        let (time, steps) = (self.simulated_time, self.steps);
+        let (speed, factor) = (self.steps_per_second, self.real_time_factor);
+        let contacts = (self.contacts_mean, self.contacts_max);
+        line(
+            f,
+            "simulated time",
+            format_args!("{time:.4} s in {steps} steps, {} bit", self.precision),
+        )?;
+        line(
+            f,
+            "speed",
+            format_args!("{speed:.0} steps/s, {factor:.1} × real time"),
+        )?;
+        line(
+            f,
+            "contacts",
+            format_args!("{:.1} a step, at most {}", contacts.0, contacts.1),
+        )?;
+        line(
+            f,
+            "solver",
+            format_args!("{:.1} iterations a step", self.iterations_mean),
+        )?;
+        line(
+            f,
+            "worst duality gap",
+            format_args!("{:.1e} (cost above the minimum)", self.gap_max),
+        )?;
+        line(
+            f,
+            "worst penetration",
+            format_args!("{:.3} mm", 1e3 * self.penetration_max),
+        )?;
+        if let Some(drift) = self.energy_drift {
+            line(f, "energy drift", format_args!("{drift:.1e} J"))?;
+        }
+        if let Some(batch) = &self.batch {
+            batch.fmt(f)?;
+        }
+        if self.unconverged_steps > 0 {
+            let steps = self.unconverged_steps;
+            line(
+                f,
+                "not converged",
+                format_args!("{steps} steps stopped at the iteration limit"),
+            )?;
+        }
+        if self.overflow_steps > 0 {
+            let steps = self.overflow_steps;
+            line(
+                f,
+                "contacts left out",
+                format_args!("in {steps} steps, by --max-contacts"),
+            )?;
+        }
+        line(f, "status", self.status)?;
+        match &self.profile {
+            Some(stages) => write!(f, "\n{}", table(stages)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Display for BatchReport {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let kilobytes = |bytes: usize| bytes as f64 / 1e3;
+        let divergence = &self.divergence;
+        line(
+            f,
+            "side by side",
+            format_args!(
+                "{:.1} iterations and {:.1} contact slots a step, {:.0}% of lanes at work",
+                divergence.iterations_per_group,
+                divergence.slots_per_group,
+                100.0 * divergence.live_share
+            ),
+        )?;
+        line(
+            f,
+            "memory",
+            format_args!(
+                "{:.1} kB an environment, {:.0} kB a thread",
+                kilobytes(self.bytes_per_env),
+                kilobytes(self.scratch_bytes_per_thread)
+            ),
+        )?;
+        if self.failed_envs > 0 {
+            let failed = self.failed_envs;
+            line(f, "failed", format_args!("{failed} environments"))?;
+        }
+        for failure in &self.failures {
+            writeln!(f, "    environment {}: {}", failure.env, failure.reason)?;
+        }
+        if self.failed_envs > self.failures.len() {
+            writeln!(f, "    ...")?;
+        }
+        Ok(())
+    }
+}
+
+fn line(f: &mut Formatter, name: &str, value: impl Display) -> fmt::Result {
+    writeln!(f, "  {name:<20} {value}")
+}
+
+fn table(stages: &[StageReport]) -> Table {
+    let mut table = Table::new(&["stage", "µs a step", "percent"]);
+    for stage in stages {
+        table.row(vec![
+            stage.stage.into(),
+            format!("{:9.3}", stage.microseconds),
+            format!("{:7.1}", stage.percent),
+        ]);
+    }
+    let total: f64 = stages.iter().map(|s| s.microseconds).sum();
+    table.row(vec!["total".into(), format!("{total:9.3}"), String::new()]);
+    table
+}

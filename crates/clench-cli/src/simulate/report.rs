@@ -1,0 +1,105 @@
+//! The figures of a run, as text and as JSON.
+
+use clench::rigid::profile::Profile;
+use serde::Serialize;
+use std::time::Duration;
+
+/// The figures of a finished run. Means and counts are over steps of environments.
+#[derive(Serialize)]
+pub struct Report {
+    /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out) or
+    /// `failed`.
+    pub status: &'static str,
+    /// Wall time of stepping alone, s.
+    pub seconds: f64,
+    /// Steps of the run, which every environment that did not fail has done.
+    pub steps: usize,
+    pub envs: usize,
+    pub threads: usize,
+    /// Bits of a number.
+    pub precision: usize,
+    /// How environments lie side by side.
+    pub instructions: &'static str,
+    pub nv: usize,
+    /// Seconds that an environment went through.
+    pub simulated_time: f64,
+    /// Steps of environments in a second of wall time.
+    pub steps_per_second: f64,
+    pub real_time_factor: f64,
+    pub iterations_mean: f64,
+    pub contacts_mean: f64,
+    pub contacts_max: u64,
+    pub gap_max: f64,
+    pub penetration_max: f64,
+    /// Steps whose solve stopped at the iteration limit.
+    pub unconverged_steps: u64,
+    /// Steps that found more contacts than the options allow, and went on. An environment of a batch fails instead.
+    pub overflow_steps: u64,
+    /// Change of the mechanical energy over the run, J, the largest of all environments; only where nothing adds or removes
+    /// energy.
+    pub energy_drift: Option<f64>,
+    #[serde(flatten)]
+    pub batch: Option<BatchReport>,
+    /// Where the time went, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Vec<StageReport>>,
+    /// What went wrong, if something did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+}
+
+/// What only a batch has.
+#[derive(Serialize)]
+pub struct BatchReport {
+    /// Environments that a thread steps side by side.
+    pub lanes: usize,
+    pub bytes_per_env: usize,
+    /// What a thread needs beside, whatever the number of environments.
+    pub scratch_bytes_per_thread: usize,
+    /// How many environments failed.
+    pub failed_envs: usize,
+    /// The first of them.
+    pub failures: Vec<Failure>,
+    pub divergence: DivergenceReport,
+}
+
+/// An environment that could not go on.
+#[derive(Serialize)]
+pub struct Failure {
+    pub env: usize,
+    pub reason: String,
+}
+
+/// How unlike environments side by side were.
+#[derive(Serialize)]
+pub struct DivergenceReport {
+    /// The share of lanes at work in an iteration of the solver.
+    pub live_share: f64,
+    pub iterations_per_group: f64,
+    pub slots_per_group: f64,
+}
+
+/// The time of a stage.
+#[derive(Serialize)]
+pub struct StageReport {
+    pub stage: &'static str,
+    /// Processor time a step and environment.
+    pub microseconds: f64,
+    /// Of the time of all stages.
+    pub percent: f64,
+}
+
+/// The stages of a profile of so many steps of environments. What threads spent outside of steps, out of `total`, comes
+/// last.
+pub fn stages(profile: &Profile, total: Duration, env_steps: u64) -> Vec<StageReport> {
+    let elsewhere = total.saturating_sub(profile.total());
+    let whole = (profile.total() + elsewhere).as_secs_f64();
+    let all = profile.stages.iter().copied();
+    all.chain([("between steps", elsewhere)])
+        .map(|(stage, time)| StageReport {
+            stage,
+            microseconds: 1e6 * time.as_secs_f64() / env_steps.max(1) as f64,
+            percent: 100.0 * time.as_secs_f64() / whole.max(f64::MIN_POSITIVE),
+        })
+        .collect()
+}

@@ -1,0 +1,132 @@
+//! The states that a run starts from: the model's or a keyframe, then given positions and velocities, then noise.
+
+use crate::npy::{Rows, read_rows};
+use anyhow::{Result, bail, ensure};
+use clap::Args;
+use clench::Model;
+use clench::rigid::dynamics::integrate::integrate_positions;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use std::path::PathBuf;
+
+/// Where a run starts.
+#[derive(Args)]
+#[command(next_help_heading = "Initial states")]
+pub struct StartArguments {
+    /// Start from this keyframe (name or index)
+    #[arg(long, value_name = "K")]
+    keyframe: Option<String>,
+    /// Positions and velocities as a NumPy array (envs, nq + nv): a row an environment, qpos then qvel
+    #[arg(long, value_name = "FILE.npy")]
+    states: Option<PathBuf>,
+    /// Move each dof's position (m, rad) and velocity (m/s, rad/s) by a number drawn uniformly from -S to S
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    noise: f64,
+    /// Seed of the noise; environment e gets the same whatever others there are
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+}
+
+/// The states that the environments of a run start from.
+pub struct Starts<'a> {
+    model: &'a Model,
+    keyframe: Option<usize>,
+    states: Option<Rows>,
+    noise: f64,
+    seed: u64,
+}
+
+impl StartArguments {
+    /// Looks everything up for a run of so many environments.
+    pub fn starts<'a>(&self, model: &'a Model, envs: usize) -> Result<Starts<'a>> {
+        ensure!(
+            self.noise.is_finite() && self.noise >= 0.0,
+            "--noise: {} is not a number that states can be moved by",
+            self.noise
+        );
+        let keyframe = self.keyframe.as_ref();
+        let states = self.states.as_ref();
+        let width = model.nq + model.nv;
+        let states = states.map(|path| read_rows("--states", path, width));
+        let states = states.transpose()?;
+        if let Some(rows) = &states {
+            let count = rows.count();
+            ensure!(
+                count == envs,
+                "--states: {count} rows for {envs} environments"
+            );
+        }
+        Ok(Starts {
+            model,
+            keyframe: keyframe.map(|key| find_keyframe(model, key)).transpose()?,
+            states,
+            noise: self.noise,
+            seed: self.seed,
+        })
+    }
+}
+
+impl Starts<'_> {
+    /// The keyframe to start from, where one is asked for.
+    pub fn keyframe(&self) -> Option<usize> {
+        self.keyframe
+    }
+
+    /// Whether environments start elsewhere than in the model's initial state or a keyframe.
+    pub fn moved(&self) -> bool {
+        self.states.is_some() || self.noise > 0.0
+    }
+
+    /// Positions and velocities of environment `env`, whose state is that of the model or the keyframe.
+    pub fn place(&self, env: usize, qpos: &mut [f64], qvel: &mut [f64]) {
+        if let Some(rows) = &self.states {
+            let (positions, velocities) = rows.row(env).split_at(self.model.nq);
+            qpos.copy_from_slice(positions);
+            qvel.copy_from_slice(velocities);
+        }
+        if self.noise > 0.0 {
+            let nv = self.model.nv;
+            let mut noise = Noise::new(self.seed, env * 2 * nv);
+            let mut draw = || self.noise * noise.draw();
+            let shift: Vec<f64> = (0..nv).map(|_| draw()).collect();
+            integrate_positions(self.model, qpos, &shift, 1.0);
+            qvel.iter_mut().for_each(|v| *v += draw());
+        }
+    }
+}
+
+/// Numbers drawn uniformly from -1 to 1, by PCG-XSL-RR 128/64.
+struct Noise(Pcg64);
+
+impl Noise {
+    /// The stream of a seed, from its number `start` on.
+    fn new(seed: u64, start: usize) -> Self {
+        let mut generator = Pcg64::seed_from_u64(seed);
+        generator.advance(start as u128);
+        Noise(generator)
+    }
+
+    fn draw(&mut self) -> f64 {
+        let bits = self.0.next_u64() >> (u64::BITS - f64::MANTISSA_DIGITS);
+        bits as f64 * f64::EPSILON - 1.0
+    }
+}
+
+fn find_keyframe(model: &Model, key: &str) -> Result<usize> {
+    let keyframes = &model.keyframes;
+    if let Some(k) = keyframes.iter().position(|k| k.name == key) {
+        return Ok(k);
+    }
+    match key.parse::<usize>() {
+        Ok(k) if k < keyframes.len() => Ok(k),
+        _ if keyframes.is_empty() => bail!("--keyframe {key}: the model has no keyframes"),
+        _ => {
+            let names: Vec<_> = keyframes.iter().map(|k| k.name.as_str()).collect();
+            bail!(
+                "--keyframe {key}: not a name or an index of the model's {} keyframes ({})",
+                names.len(),
+                names.join(", ")
+            )
+        }
+    }
+}
