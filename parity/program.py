@@ -20,10 +20,10 @@ class Failure(Exception):
     """The program ended where it should have answered; the message is its standard error."""
 
 
-def run(*args, stdin=""):
+def run(*args, stdin="", **options):
     """Runs the program to its end and returns the completed process, its output as text."""
     words = [str(CLENCH), *map(str, args)]
-    return subprocess.run(words, input=stdin, capture_output=True, text=True, timeout=300)
+    return subprocess.run(words, input=stdin, capture_output=True, text=True, timeout=300, **options)
 
 
 def simulate(model, *flags):

@@ -89,13 +89,13 @@ pub struct StageReport {
     pub percent: f64,
 }
 
-/// The stages of a profile of so many steps of environments. What threads spent outside of steps, out of `total`, comes
-/// last.
+/// The stages of a profile of so many steps of environments. The rest of what threads spent, `total`, comes last:
+/// between steps, or idle.
 pub fn stages(profile: &Profile, total: Duration, env_steps: u64) -> Vec<StageReport> {
     let elsewhere = total.saturating_sub(profile.total());
     let whole = (profile.total() + elsewhere).as_secs_f64();
     let all = profile.stages.iter().copied();
-    all.chain([("between steps", elsewhere)])
+    all.chain([("elsewhere", elsewhere)])
         .map(|(stage, time)| StageReport {
             stage,
             microseconds: 1e6 * time.as_secs_f64() / env_steps.max(1) as f64,
