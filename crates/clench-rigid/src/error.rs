@@ -64,7 +64,7 @@ pub enum SimError {
         hint: String,
     },
     /// An element that the model does not have.
-    #[error("there is no {kind} {index}: the model has {count}")]
+    #[error("there is no {kind} {index}: there are {count}")]
     NoSuchElement {
         /// Kind of element.
         kind: &'static str,

@@ -2,13 +2,10 @@
 
 mod scenes;
 
-use clench_collide::ShapeKind;
-use clench_math::Vec3;
 use clench_rigid::Sim;
-use clench_rigid::builder::{ActuatorSpec, GeomSpec, JointSpec, ModelBuilder, TransmissionSpec};
-use clench_rigid::model::{Integrator, JointKind};
+use clench_rigid::model::Integrator;
 use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
-use scenes::{add, everything, free, geom, joint, model, plane, shake, sphere, world};
+use scenes::{add, everything, free, humanoid, model, plane, shake, sphere, world};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -39,70 +36,6 @@ unsafe impl GlobalAlloc for Counting {
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
-
-/// A torso with a head and four limbs of two links, on the floor.
-fn humanoid() -> ModelBuilder {
-    let mut b = world();
-    b.bodies[0].geoms.push(plane());
-    let limb = |from: [f64; 3], to: [f64; 3]| GeomSpec {
-        pos: Vec3::from_f64([0, 1, 2].map(|i| 0.5 * (from[i] + to[i]))),
-        ..geom(ShapeKind::Capsule, [0.05, 0.15, 0.0])
-    };
-    let hinge = |name: &str, axis| JointSpec {
-        range: [-1.0, 1.0],
-        damping: 0.5,
-        armature: 0.02,
-        ..joint(JointKind::Hinge, name, axis)
-    };
-    let torso = add(
-        &mut b,
-        0,
-        "torso",
-        [0.0, 0.0, 1.0],
-        free(),
-        vec![sphere(0.12)],
-    );
-    add(
-        &mut b,
-        torso,
-        "head",
-        [0.0, 0.0, 0.25],
-        vec![hinge("neck", [0.0, 1.0, 0.0])],
-        vec![sphere(0.1)],
-    );
-    for (i, (x, z)) in [(0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (-0.1, -0.2)]
-        .into_iter()
-        .enumerate()
-    {
-        let (first, second, knee) = (format!("hip_x{i}"), format!("hip_y{i}"), format!("knee{i}"));
-        let joints = vec![
-            hinge(&first, [1.0, 0.0, 0.0]),
-            hinge(&second, [0.0, 1.0, 0.0]),
-        ];
-        let end = [0.0, 0.0, -0.35];
-        let upper = add(
-            &mut b,
-            torso,
-            &format!("upper{i}"),
-            [x, 0.0, z],
-            joints,
-            vec![limb([0.0; 3], end)],
-        );
-        add(
-            &mut b,
-            upper,
-            &format!("lower{i}"),
-            end,
-            vec![hinge(&knee, [0.0, 1.0, 0.0])],
-            vec![limb([0.0; 3], end)],
-        );
-        b.actuators.extend(
-            [first, second, knee]
-                .map(|joint| ActuatorSpec::motor("", TransmissionSpec::Joint(joint), 8.0)),
-        );
-    }
-    b
-}
 
 /// Steps twice through the same trajectory and counts the allocations of the second.
 fn allocations_of_a_replay(sim: &mut Sim, steps: usize) -> (usize, usize) {

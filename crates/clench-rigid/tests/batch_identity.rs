@@ -1,143 +1,129 @@
 //! Each environment of a batch moves as a simulation alone, to the bit, however the batch is stepped.
 
-mod scenes;
+mod batches;
 
+use batches::*;
 use clench_math::Instructions;
-use clench_rigid::builder::{GeomSpec, ModelBuilder};
-use clench_rigid::model::JointKind;
-use clench_rigid::{Batch, BatchOptions, Model, Precision, Sim, State};
-use clench_solver::RigidOptions;
-use scenes::{Numbers, add, cuboid, free, joint, plane, sphere, world};
-use std::sync::Arc;
+use clench_rigid::builder::ModelBuilder;
+use clench_rigid::model::Integrator;
+use clench_rigid::{EnvStatus, Precision};
+use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
 
-/// A jointed pair, a ball and a box above a floor.
-fn loose_parts() -> ModelBuilder {
-    let mut b = world();
-    b.options = RigidOptions::new().constraint_timeconst(0.0);
-    b.bodies[0].geoms.push(plane());
-    let base = add(
-        &mut b,
-        0,
-        "base",
-        [0.0, 0.0, 0.15],
-        free(),
-        vec![sphere(0.1)],
-    );
-    let mut hinge = joint(JointKind::Hinge, "hinge", [0.0, 1.0, 0.0]);
-    hinge.range = [-0.6, 0.3];
-    hinge.frictionloss = 0.1;
-    add(
-        &mut b,
-        base,
-        "link",
-        [0.25, 0.0, 0.0],
-        vec![hinge],
-        vec![sphere(0.08)],
-    );
-    let rolling = GeomSpec {
-        condim: 6,
-        ..sphere(0.1)
-    };
-    add(&mut b, 0, "ball", [0.3, 0.1, 0.3], free(), vec![rolling]);
-    add(
-        &mut b,
-        0,
-        "box",
-        [-0.3, 0.1, 0.2],
-        free(),
-        vec![cuboid([0.1, 0.08, 0.06])],
-    );
-    b
-}
+/// Environments: no multiple of any width, and more than one group of the widest.
+const ENVS: usize = 19;
 
-/// The initial state of environment `env`: thrown in a direction of its own.
-fn throw<S: Precision>(env: usize, qvel: &mut [S]) {
-    let mut numbers = Numbers(env as u64);
-    for v in qvel {
-        *v = S::new(1.5 * numbers.next());
-    }
-}
-
-fn bits<S: Precision>(values: &[S]) -> Vec<u64> {
-    values.iter().map(|x| x.to_f64().to_bits()).collect()
-}
-
-/// What simulations alone do: the state of each environment at the end, and its contacts on the way.
-fn alone<S: Precision>(
-    model: &Arc<Model>,
-    options: RigidOptions,
-    envs: usize,
-    steps: usize,
-) -> Vec<State<S>> {
+/// Steps `ENVS` environments alone, then together in every way, and compares the ends. How many contacts each had per step.
+fn compare<S: Precision>(builder: &ModelBuilder, options: RigidOptions, steps: usize) -> f64 {
+    let model = model(builder);
+    let envs: Vec<usize> = (0..ENVS).collect();
     let mut contacts = 0;
-    let states = (0..envs).map(|env| {
-        let mut sim = Sim::<S>::with_options(model.clone(), options).expect("valid");
-        throw(env, &mut sim.state.qvel);
-        for _ in 0..steps {
-            sim.step().expect("finite");
-            contacts += sim.contacts().len();
-        }
-        sim.state.clone()
-    });
-    let states: Vec<_> = states.collect();
-    assert!(contacts > envs * steps, "they touch: {contacts}");
-    states
-}
-
-fn assert_same<S: Precision>(batch: &Batch<S>, expected: &[State<S>], what: &str) {
-    for (env, state) in expected.iter().enumerate() {
-        for (field, found, expected) in [
-            ("qpos", &batch.state.qpos, &state.qpos),
-            ("qvel", &batch.state.qvel, &state.qvel),
-            ("act", &batch.state.act, &state.act),
-            (
-                "qacc_warmstart",
-                &batch.state.qacc_warmstart,
-                &state.qacc_warmstart,
-            ),
-        ] {
-            assert_eq!(
-                bits(found.row(env)),
-                bits(expected),
-                "{what}: {field} of {env}: {:?} alone {expected:?}",
-                found.row(env)
-            );
-        }
-        assert_eq!(batch.state.time.row(env)[0].to_f64(), state.time.to_f64());
-    }
-}
-
-fn compare<S: Precision>(builder: &ModelBuilder, options: RigidOptions, envs: usize, steps: usize) {
-    let model = scenes::model(builder);
-    let expected = alone::<S>(&model, options, envs, steps);
-    for instructions in Instructions::all_available() {
-        for threads in [1, 2, 3] {
-            let grouping = threads != 2;
-            let batch_options = BatchOptions {
-                options,
-                instructions: Some(instructions),
-                threads: Some(threads),
-                grouping,
-            };
-            let mut batch =
-                Batch::<S>::with_options(model.clone(), envs, batch_options).expect("valid");
-            for env in 0..envs {
-                throw(env, batch.state.qvel.row_mut(env));
+    let ends: Vec<_> = (envs.iter())
+        .map(|&env| {
+            let mut sim = alone::<S>(&model, options, env);
+            for step in 0..steps {
+                drive_alone(&mut sim, env, step);
+                sim.step().expect("finite");
+                contacts += sim.contacts().len();
             }
-            for _ in 0..steps {
-                let summary = batch.step().expect("valid");
-                assert_eq!((summary.failed, summary.running), (0, envs));
+            sim
+        })
+        .collect();
+    for (i, instructions) in Instructions::all_available().enumerate() {
+        let threads = 1 + i % 3;
+        // The neighbours change too: half the environments, in another order.
+        for some in [&envs[..], &[17, 3, 8, 1, 0, 12, 5, 9, 4]] {
+            let mut batch = batch::<S>(&model, some, with(instructions, threads, options));
+            for step in 0..steps {
+                drive(&mut batch, some, step);
+                batch.step().expect("valid");
             }
-            assert_same(
-                &batch,
-                &expected,
-                &format!("{instructions:?}, {threads} threads"),
-            );
+            for (row, &env) in some.iter().enumerate() {
+                assert_eq!(batch.status(row), EnvStatus::Running);
+                let what = || format!("{instructions:?}, {threads} threads");
+                assert_state(&batch, row, &ends[env].state, &what);
+            }
         }
     }
+    contacts as f64 / (ENVS * steps) as f64
+}
+
+fn options(solver: ConstraintSolver, cone: FrictionCone) -> RigidOptions {
+    RigidOptions::new()
+        .constraint_solver(solver)
+        .friction_cone(cone)
 }
 
 #[test]
 fn newton_with_pyramids() {
-    compare::<f64>(&loose_parts(), RigidOptions::new(), 11, 300);
+    let options = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
+}
+
+#[test]
+fn newton_with_elliptic_cones() {
+    let options = options(ConstraintSolver::Newton, FrictionCone::Elliptic).impratio(3.0);
+    assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
+}
+
+#[test]
+fn conjugate_gradients_with_pyramids() {
+    let options = options(ConstraintSolver::Cg, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
+}
+
+#[test]
+fn conjugate_gradients_with_elliptic_cones() {
+    let options = options(ConstraintSolver::Cg, FrictionCone::Elliptic).noslip_iterations(2);
+    assert!(compare::<f64>(&loose_parts(), options, 300) > 3.0);
+}
+
+#[test]
+fn a_humanoid_with_pyramids() {
+    let options = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&walker(), options, 1000) > 1.0);
+}
+
+#[test]
+fn a_humanoid_with_elliptic_cones() {
+    let options = options(ConstraintSolver::Newton, FrictionCone::Elliptic);
+    assert!(compare::<f64>(&walker(), options, 1000) > 1.0);
+}
+
+#[test]
+fn single_precision() {
+    let newton = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
+    assert!(compare::<f32>(&walker(), newton, 1000) > 1.0);
+    let cg = options(ConstraintSolver::Cg, FrictionCone::Elliptic);
+    assert!(compare::<f32>(&loose_parts(), cg, 300) > 3.0);
+}
+
+#[test]
+fn every_kind_of_constraint_with_every_integrator() {
+    for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {
+        let mut builder = everything();
+        builder.options = RigidOptions::new();
+        builder.physics.integrator = integrator;
+        compare::<f64>(&builder, RigidOptions::new(), 100);
+    }
+}
+
+#[test]
+fn many_steps_in_a_call_are_single_steps() {
+    let model = model(&loose_parts());
+    let envs: Vec<usize> = (0..ENVS).collect();
+    let options = with(Instructions::widest(), 2, RigidOptions::new());
+    let (mut one, mut many) = (
+        batch::<f64>(&model, &envs, options),
+        batch::<f64>(&model, &envs, options),
+    );
+    for _ in 0..150 {
+        one.step().expect("valid");
+    }
+    many.step_n(149).expect("valid");
+    many.step_n(0).expect("valid");
+    many.step_n(1).expect("valid");
+    for env in envs {
+        let end = one.sim(env).expect("it exists").state;
+        assert_state(&many, env, &end, &|| "150 steps".into());
+    }
 }

@@ -108,6 +108,46 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Step thousands at once
+//!
+//! A [`Batch`] steps many environments of one model side by side, on all processors. States and outputs are plain rows, one an
+//! environment; each environment moves as a `Sim` alone would, to the bit, and can have parameters of its own. One that cannot
+//! go on keeps its last good state and says why, until it is reset; its neighbours do not notice.
+//!
+//! ```
+//! # use clench::prelude::*;
+//! # use std::sync::Arc;
+//! # let model = Arc::new(load_str(
+//! #     "<mujoco>
+//! #        <worldbody>
+//! #          <geom name='floor' type='plane' size='1 1 1'/>
+//! #          <body name='ball' pos='0 0 0.2'>
+//! #            <freejoint/>
+//! #            <geom size='0.1' mass='2'/>
+//! #          </body>
+//! #        </worldbody>
+//! #      </mujoco>",
+//! # )?);
+//! let mut batch = Batch::<f32>::new(model, 1000)?;
+//! batch.record(&["contact_force"])?;
+//! for env in 0..batch.count() {
+//!     // Each ball is thrown in its own way, and weighs what it weighs.
+//!     batch.state.qvel.row_mut(env)[0] = 0.001 * env as f32;
+//!     batch.randomize("body_mass", &[env], &[0.0, 1.0 + 0.001 * env as f32])?;
+//! }
+//! batch.state.qpos.row_mut(7)[2] = f32::NAN;
+//! let summary = batch.step_n(1000)?;
+//! assert_eq!((summary.failed, summary.running), (1, 999));
+//! assert!(matches!(batch.status(7), EnvStatus::Failed(Fault::NotFinite { field: "qpos", index: 2, .. })));
+//! batch.reset(7)?;
+//!
+//! // Six numbers a body: the floor carries the ball's weight.
+//! let forces = batch.output("contact_force").expect("it is recorded");
+//! let weight = 9.81 * (1.0 + 0.001 * 500.0);
+//! assert!((forces.row(500)[6 + 2] - weight).abs() < 0.01 * weight);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # When something is wrong
 //!
 //! A mistake in a file is an error that says where it is, and bad input never panics.
@@ -125,7 +165,7 @@
 //! | [`math`] | numbers, lanes, vectors, quaternions |
 //! | [`solver`] | the convex problem and its solvers, without any body in sight |
 //! | [`collide`] | shapes in, contact points out |
-//! | [`rigid`] | models, dynamics, constraints, the simulation |
+//! | [`rigid`] | models, dynamics, constraints, simulations and batches |
 //! | [`formats`] | model files |
 
 pub use clench_collide as collide;
@@ -135,7 +175,9 @@ pub use clench_rigid as rigid;
 pub use clench_solver as solver;
 
 pub use clench_formats::{LoadError, load, load_str};
-pub use clench_rigid::{Batch, BatchOptions, Model, Sim, SimError, State};
+pub use clench_rigid::{
+    Batch, BatchOptions, EnvStatus, Fault, Model, Output, Precision, Sim, SimError, State,
+};
 pub use clench_solver::RigidOptions;
 
 #[cfg(doctest)]
@@ -145,7 +187,8 @@ struct Readme;
 /// What most programs need: `use clench::prelude::*`.
 pub mod prelude {
     pub use crate::{
-        Batch, BatchOptions, LoadError, Model, RigidOptions, Sim, SimError, State, load, load_str,
+        Batch, BatchOptions, EnvStatus, Fault, LoadError, Model, RigidOptions, Sim, SimError,
+        State, load, load_str,
     };
     pub use clench_math::{Quat, Vec3};
     pub use clench_solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};

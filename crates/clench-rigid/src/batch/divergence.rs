@@ -1,10 +1,11 @@
 //! How unlike the environments of a group are: what lanes lose.
 
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, Scalar};
 use std::ops::AddAssign;
+use std::slice::from_ref;
 
-/// Sums over steps of groups, by which the loss to divergence can be judged. A group goes on as long as one of its
+/// Sums over steps (and forward passes) of groups, by which the loss to divergence can be judged. A group goes on as long as one of its
 /// environments needs it, and has a slot for every contact that any of them has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Divergence {
@@ -53,13 +54,14 @@ impl Divergence {
 
     /// Takes in a step of a group, in whose first `len` lanes environments are.
     pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize) {
-        let iterations = |lane| ws.solver.stats().lane(lane).iterations as u64;
-        let most = (0..len).map(iterations).max().unwrap_or(0);
+        let iterations = &T::as_scalars(from_ref(&ws.solver.stats().iterations))[..len];
+        let iterations = iterations.iter().map(|x| x.to_f64() as u64);
+        let most = iterations.clone().max().unwrap_or(0);
         self.group_steps += 1;
         self.env_steps += len as u64;
         self.lane_steps += T::LANES as u64;
         self.group_iterations += most;
-        self.env_iterations += (0..len).map(iterations).sum::<u64>();
+        self.env_iterations += iterations.sum::<u64>();
         self.lane_iterations += most * T::LANES as u64;
         self.contact_slots += ws.contacts.len() as u64;
         for contact in &ws.contacts {

@@ -33,6 +33,8 @@ use parameters::ParamRows;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use record::{OutputRows, row_bytes, targets};
+use rows::per_env;
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use stepper::{Job, Stepper};
@@ -74,13 +76,25 @@ pub struct Batch<S: Precision = f64> {
     outputs: Vec<OutputRows<S>>,
     initial: State<S>,
     scratch: State<S>,
-    signatures: Vec<AtomicU64>,
+    /// Where each environment stands among all by its last contacts.
+    places: Vec<AtomicU64>,
     /// The environments that run, those of like contacts together.
     order: Vec<u32>,
     steppers: Vec<Box<dyn Stepper<S>>>,
     pool: Option<ThreadPool>,
     divergence: Divergence,
     quality: Quality,
+}
+
+impl<S: Precision> fmt::Debug for Batch<S> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("Batch")
+            .field("model", &self.model.name)
+            .field("count", &self.count())
+            .field("lanes", &self.lanes())
+            .field("threads", &self.threads())
+            .finish_non_exhaustive()
+    }
 }
 
 impl<S: Precision> Batch<S> {
@@ -106,7 +120,14 @@ impl<S: Precision> Batch<S> {
         if settings.flags.constraint && settings.flags.contact {
             check_supported(&model)?;
         }
-        let threads = options.threads()?;
+        if u32::try_from(count).is_err() {
+            return Err(SimError::OutOfRange {
+                field: "count",
+                value: count as f64,
+                range: "less than 2^32",
+            });
+        }
+        let threads = options.threads(count)?;
         let instructions = options.instructions::<S>(count, threads)?;
         let stepper = || S::stepper(instructions, &model);
         let steppers = (0..threads).map(|_| stepper()).collect::<Option<Vec<_>>>();
@@ -118,13 +139,13 @@ impl<S: Precision> Batch<S> {
         Ok(Batch {
             state,
             settings,
-            status: vec![EnvStatus::Running; count],
+            status: per_env(count, || EnvStatus::Running)?,
             params: Vec::new(),
             outputs: Vec::new(),
             scratch: initial.clone(),
             initial,
-            signatures: (0..count).map(|_| AtomicU64::new(0)).collect(),
-            order: Vec::with_capacity(count),
+            places: per_env(count, || AtomicU64::new(0))?,
+            order: per_env(count, || 0)?,
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
             pool: (threads > 1).then(|| options.pool(threads)).transpose()?,
             divergence: Divergence::default(),
@@ -186,11 +207,11 @@ impl<S: Precision> Batch<S> {
                 inputs,
                 params: &self.params,
                 targets: targets(&mut self.outputs, trace),
-                signatures: &self.signatures,
+                places: &self.places,
                 advance,
                 controls,
                 first,
-                end: steps.min(first + STEPS_A_GROUP),
+                end: steps.min(first.saturating_add(STEPS_A_GROUP)),
                 steps,
             };
             spread(&mut self.steppers, self.pool.as_ref(), &self.order, &job);
@@ -208,8 +229,8 @@ impl<S: Precision> Batch<S> {
         let envs = 0..self.status.len() as u32;
         self.order.extend(envs.filter(running));
         if self.options.grouping {
-            let signature = |env: &u32| self.signatures[*env as usize].load(Relaxed);
-            self.order.sort_unstable_by_key(signature);
+            let place = |env: &u32| self.places[*env as usize].load(Relaxed);
+            self.order.sort_unstable_by_key(place);
         }
     }
 

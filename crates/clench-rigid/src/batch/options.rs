@@ -18,7 +18,7 @@ pub struct BatchOptions {
     pub options: RigidOptions,
     /// How environments lie side by side; by default as suits their number and the processor.
     pub instructions: Option<Instructions>,
-    /// How many threads step; by default as many as there are processors.
+    /// How many threads step; by default as many as there are processors, or environments.
     pub threads: Option<usize>,
     /// Whether environments of like contacts are put side by side, which makes steps faster; by default they are.
     pub grouping: bool,
@@ -36,7 +36,7 @@ impl Default for BatchOptions {
 }
 
 impl BatchOptions {
-    pub(super) fn threads(&self) -> Result<usize, SimError> {
+    pub(super) fn threads(&self, count: usize) -> Result<usize, SimError> {
         match self.threads {
             Some(0) => Err(SimError::OutOfRange {
                 field: "threads",
@@ -44,7 +44,9 @@ impl BatchOptions {
                 range: "at least 1",
             }),
             Some(threads) => Ok(threads),
-            None => Ok(available_parallelism().map_or(1, usize::from)),
+            None => Ok(available_parallelism()
+                .map_or(1, usize::from)
+                .min(count.max(1))),
         }
     }
 

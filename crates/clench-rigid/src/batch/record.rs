@@ -9,6 +9,7 @@ use crate::output::Output;
 use std::array::from_fn;
 
 /// An output of every environment.
+#[derive(Debug)]
 pub struct OutputRows<S> {
     output: Output,
     rows: Rows<S>,
@@ -66,6 +67,7 @@ impl<S> Controls<'_, S> {
 }
 
 /// What a rollout recorded.
+#[derive(Debug)]
 pub struct Recording<S> {
     outputs: Vec<OutputRows<S>>,
     steps: usize,
@@ -130,11 +132,11 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         record: &[&str],
     ) -> Result<Recording<S>, SimError> {
-        let (n, nu) = (self.count(), self.model.nu());
+        let (n, row) = (self.count(), steps.saturating_mul(self.model.nu()));
         match controls {
             Controls::Held => {}
-            Controls::Shared(values) => check_length("ctrl", values.len(), steps * nu)?,
-            Controls::Each(values) => check_length("ctrl", values.len(), n * steps * nu)?,
+            Controls::Shared(values) => check_length("ctrl", values.len(), row)?,
+            Controls::Each(values) => check_length("ctrl", values.len(), n.saturating_mul(row))?,
         }
         let mut outputs: Vec<OutputRows<S>> = Vec::new();
         for name in record {

@@ -98,3 +98,16 @@ impl<E: fmt::Debug> fmt::Debug for Rows<E> {
         f.debug_list().entries(self.iter()).finish()
     }
 }
+
+/// A number for each of `count` environments that users do not see.
+///
+/// # Errors
+/// More memory than there is.
+pub(super) fn per_env<E>(count: usize, value: impl FnMut() -> E) -> Result<Vec<E>, SimError> {
+    let mut values = Vec::new();
+    if values.try_reserve_exact(count).is_err() {
+        return Err(SimError::OutOfMemory { count, width: 1 });
+    }
+    values.resize_with(count, value);
+    Ok(values)
+}

@@ -103,7 +103,7 @@ impl Rule {
         let positive = self == Rule::Positive || self == Rule::AsModel && of_model > 0.0;
         let not_negative = matches!(self, Rule::NotNegative | Rule::AsModel);
         let (holds, range) = match self {
-            Rule::Range => (x == x, "a number, or infinite"),
+            Rule::Range => (!x.to_f64().is_nan(), "a number, or infinite"),
             _ if positive => (x > S::ZERO && x.is_finite(), "positive and finite"),
             _ if not_negative => (x >= S::ZERO && x.is_finite(), "finite, zero or more"),
             _ => (x.is_finite(), "finite"),
@@ -140,7 +140,7 @@ fn normalize<S: Scalar>(
             range: "part of a direction, neither too short nor too long",
         });
     }
-    direction.iter_mut().for_each(|x| *x = *x / norm);
+    direction.iter_mut().for_each(|x| *x /= norm);
     Ok(())
 }
 
@@ -174,34 +174,34 @@ impl Model {
     /// Takes back what the model's structure says of numbers that are no longer the model's: that a dof or tendon is without
     /// dry friction, that a body's inertial frame is its own. The model is copied at most once, when that changes anything.
     pub(crate) fn loosen<S: Scalar>(model: &mut Arc<Model>, field: ParamField, row: &[S]) {
-        let lossy = |i: usize| row[i] > S::ZERO;
-        match field {
-            ParamField::dof_frictionloss => {
-                if (model.dofs.iter().enumerate()).any(|(i, dof)| !dof.frictionloss && lossy(i)) {
-                    let dofs = Arc::make_mut(model).dofs.iter_mut().enumerate();
-                    dofs.for_each(|(i, dof)| dof.frictionloss |= lossy(i));
-                }
+        let nonzero = |numbers: &[S]| numbers.iter().any(|&x| x != S::ZERO);
+        let bodies = || model.bodies.iter().enumerate();
+        let changes: Vec<usize> = match field {
+            ParamField::dof_frictionloss => (model.dofs.iter().enumerate())
+                .filter(|&(i, dof)| !dof.frictionloss && nonzero(&row[i..=i]))
+                .map(|(i, _)| i)
+                .collect(),
+            ParamField::tendon_frictionloss => (model.tendons.iter().enumerate())
+                .filter(|&(i, tendon)| !tendon.frictionloss && nonzero(&row[i..=i]))
+                .map(|(i, _)| i)
+                .collect(),
+            ParamField::body_ipos => bodies()
+                .filter(|&(b, body)| body.simple_inertia && nonzero(&row[3 * b..][..3]))
+                .map(|(b, _)| b)
+                .collect(),
+            ParamField::body_iquat => bodies()
+                .filter(|&(b, body)| body.simple_inertia && nonzero(&row[4 * b + 1..][..3]))
+                .map(|(b, _)| b)
+                .collect(),
+            _ => return,
+        };
+        for i in changes {
+            let model = Arc::make_mut(model);
+            match field {
+                ParamField::dof_frictionloss => model.dofs[i].frictionloss = true,
+                ParamField::tendon_frictionloss => model.tendons[i].frictionloss = true,
+                _ => model.bodies[i].simple_inertia = false,
             }
-            ParamField::tendon_frictionloss => {
-                let mut tendons = model.tendons.iter().enumerate();
-                if tendons.any(|(i, tendon)| !tendon.frictionloss && lossy(i)) {
-                    let tendons = Arc::make_mut(model).tendons.iter_mut().enumerate();
-                    tendons.for_each(|(i, tendon)| tendon.frictionloss |= lossy(i));
-                }
-            }
-            ParamField::body_ipos | ParamField::body_iquat => {
-                let same = |b: usize| match field {
-                    ParamField::body_ipos => row[3 * b..][..3].iter().all(|&x| x == S::ZERO),
-                    _ => row[4 * b + 1..][..3].iter().all(|&x| x == S::ZERO),
-                };
-                let moved: Vec<usize> = (0..model.nbody())
-                    .filter(|&b| model.bodies[b].simple_inertia && !same(b))
-                    .collect();
-                for b in moved {
-                    Arc::make_mut(model).bodies[b].simple_inertia = false;
-                }
-            }
-            _ => {}
         }
     }
 }

@@ -8,8 +8,8 @@ use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 use clench_rigid::Sim;
 use clench_rigid::builder::{
-    BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomMass, GeomSpec, JointSpec,
-    ModelBuilder, TendonSpec,
+    ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
+    JointSpec, ModelBuilder, TendonSpec, TransmissionSpec,
 };
 use clench_rigid::constraint::softness::impedance;
 use clench_rigid::model::JointKind;
@@ -273,4 +273,68 @@ pub fn shake(sim: &mut Sim, seed: u64) {
     let mut numbers = Numbers(seed);
     turn(sim, &mut numbers, 0.5);
     numbers.fill(&mut sim.state.qvel, 1.0);
+}
+
+/// A torso with a head and four limbs of two links, on the floor.
+pub fn humanoid() -> ModelBuilder {
+    let mut b = world();
+    b.bodies[0].geoms.push(plane());
+    let limb = |from: [f64; 3], to: [f64; 3]| GeomSpec {
+        pos: Vec3::from_f64([0, 1, 2].map(|i| 0.5 * (from[i] + to[i]))),
+        ..geom(ShapeKind::Capsule, [0.05, 0.15, 0.0])
+    };
+    let hinge = |name: &str, axis| JointSpec {
+        range: [-1.0, 1.0],
+        damping: 0.5,
+        armature: 0.02,
+        ..joint(JointKind::Hinge, name, axis)
+    };
+    let torso = add(
+        &mut b,
+        0,
+        "torso",
+        [0.0, 0.0, 1.0],
+        free(),
+        vec![sphere(0.12)],
+    );
+    add(
+        &mut b,
+        torso,
+        "head",
+        [0.0, 0.0, 0.25],
+        vec![hinge("neck", [0.0, 1.0, 0.0])],
+        vec![sphere(0.1)],
+    );
+    for (i, (x, z)) in [(0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (-0.1, -0.2)]
+        .into_iter()
+        .enumerate()
+    {
+        let (first, second, knee) = (format!("hip_x{i}"), format!("hip_y{i}"), format!("knee{i}"));
+        let joints = vec![
+            hinge(&first, [1.0, 0.0, 0.0]),
+            hinge(&second, [0.0, 1.0, 0.0]),
+        ];
+        let end = [0.0, 0.0, -0.35];
+        let upper = add(
+            &mut b,
+            torso,
+            &format!("upper{i}"),
+            [x, 0.0, z],
+            joints,
+            vec![limb([0.0; 3], end)],
+        );
+        add(
+            &mut b,
+            upper,
+            &format!("lower{i}"),
+            end,
+            vec![hinge(&knee, [0.0, 1.0, 0.0])],
+            vec![limb([0.0; 3], end)],
+        );
+        b.actuators.extend(
+            [first, second, knee]
+                .map(|joint| ActuatorSpec::motor("", TransmissionSpec::Joint(joint), 8.0)),
+        );
+    }
+    b
 }

@@ -1,0 +1,272 @@
+//! What a batch keeps of its environments is what simulations alone show; rollouts are steps.
+
+#![allow(clippy::duplicate_mod)] // Scenes and machines each bring what they share.
+
+mod batches;
+#[path = "machines/mod.rs"]
+mod machines;
+
+use batches::*;
+use clench_math::{Instructions, Vec3};
+use clench_rigid::batch::Controls;
+use clench_rigid::builder::ModelBuilder;
+use clench_rigid::model::Integrator;
+use clench_rigid::{Batch, EnvStatus, Output, Precision, Sim, SimError};
+use clench_solver::{FrictionCone, RigidOptions};
+
+fn names() -> Vec<&'static str> {
+    Output::ALL.iter().map(|output| output.name()).collect()
+}
+
+/// Steps together and alone and compares every output after each step and a forward.
+fn compare<S: Precision>(builder: &ModelBuilder, instructions: Instructions, steps: usize) {
+    let (model, options) = (model(builder), RigidOptions::new());
+    let envs: Vec<usize> = (0..11).collect();
+    let mut batch = batch::<S>(&model, &envs, with(instructions, 1, options));
+    let mut alone: Vec<Sim<S>> = envs.iter().map(|&e| alone(&model, options, e)).collect();
+    batch.record(&names()).expect("known");
+    let assert_same = |batch: &Batch<S>, alone: &mut [Sim<S>], step: usize| {
+        for name in names() {
+            let rows = batch.output(name).expect("it is kept");
+            for (env, sim) in alone.iter_mut().enumerate() {
+                let expected = sim.output(name).expect("known");
+                let what = || format!("{name} of {env}, step {step}, {instructions:?}");
+                assert_bits(rows.row(env), &expected, &what);
+            }
+        }
+    };
+    for step in 0..steps {
+        drive(&mut batch, &envs, step);
+        for (env, sim) in alone.iter_mut().enumerate() {
+            drive_alone(sim, env, step);
+            sim.step().expect("finite");
+        }
+        batch.step().expect("valid");
+        assert_same(&batch, &mut alone, step);
+    }
+    batch.forward().expect("valid");
+    alone
+        .iter_mut()
+        .for_each(|sim| sim.forward().expect("finite"));
+    assert_same(&batch, &mut alone, steps);
+}
+
+#[test]
+fn outputs_are_those_of_simulations() {
+    for instructions in Instructions::all_available() {
+        compare::<f64>(&loose_parts(), instructions, 40);
+    }
+    for integrator in [Integrator::Euler, Integrator::Rk4] {
+        let mut constraints = everything();
+        constraints.options = RigidOptions::new();
+        constraints.physics.integrator = integrator;
+        compare::<f64>(&constraints, Instructions::widest(), 20);
+        compare::<f64>(&machines::everything(), Instructions::widest(), 20);
+    }
+    compare::<f32>(&walker(), Instructions::widest(), 100);
+}
+
+#[test]
+fn contact_forces_carry_what_rests() {
+    for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
+        let model = model(&loose_parts());
+        let options = with(
+            Instructions::widest(),
+            1,
+            RigidOptions::new().friction_cone(cone),
+        );
+        let mut batch = Batch::<f64>::with_options(model.clone(), 3, options).expect("valid");
+        batch
+            .record(&["contact_force", "cfrc_ext", "contact_count"])
+            .expect("known");
+        batch.step_n(3000).expect("valid");
+        for env in 0..3 {
+            let forces = batch.output("contact_force").expect("kept").row(env);
+            let external = batch.output("cfrc_ext").expect("kept").row(env);
+            let (mut total, mut weight) = (Vec3::ZERO, 0.0);
+            for b in 1..model.nbody() {
+                total += Vec3::from_slice(&forces[6 * b..]);
+                weight += model.params.body_mass[b] * G;
+                // The same force, about another point.
+                for axis in 0..3 {
+                    assert!((forces[6 * b + axis] - external[6 * b + 3 + axis]).abs() < 1e-9);
+                }
+            }
+            assert!(
+                (total.z - weight).abs() < 1e-3 * weight,
+                "{} for {weight}",
+                total.z
+            );
+            assert!(total.x.hypot(total.y) < 1e-3 * weight);
+            let floor = Vec3::from_slice(forces);
+            assert!((floor + total).norm() < 1e-9, "action and reaction");
+            assert!(batch.output("contact_count").expect("kept").row(env)[0] >= 7.0);
+        }
+    }
+}
+
+#[test]
+fn applied_forces_and_loops_count_as_external() {
+    // A weld holds a box against a push: together with the push it leaves what gravity needs.
+    let mut builder = loose_parts();
+    builder.equalities[0].active = true;
+    let model = model(&builder);
+    let mut batch = Batch::<f64>::new(model.clone(), 2).expect("valid");
+    let b = model.body("box").expect("it exists");
+    let push = [1.0, 2.0, 3.0, 0.1, 0.2, -0.1];
+    batch.state.xfrc_applied.row_mut(1)[6 * b..][..6].copy_from_slice(&push);
+    batch
+        .record(&["cfrc_ext", "xipos", "subtree_com"])
+        .expect("known");
+    batch.step_n(2000).expect("valid");
+    let weight = model.params.body_mass[b] * G;
+    for env in 0..2 {
+        let force = &batch.output("cfrc_ext").expect("kept").row(env)[6 * b..][..6];
+        for (axis, expected) in [0.0, 0.0, weight].into_iter().enumerate() {
+            assert!(
+                (force[3 + axis] - expected).abs() < 1e-6,
+                "{env}: {force:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rollouts_are_steps() {
+    const STEPS: usize = 37;
+    let model = model(&walker());
+    let options = with(Instructions::widest(), 2, RigidOptions::new());
+    let envs: Vec<usize> = (0..13).collect();
+    let (mut stepped, mut rolled) = (
+        batch::<f64>(&model, &envs, options),
+        batch::<f64>(&model, &envs, options),
+    );
+    let (n, nu) = (envs.len(), model.nu());
+    let mut controls = vec![0.0; n * STEPS * nu];
+    for (k, ctrl) in controls.iter_mut().enumerate() {
+        *ctrl = control(k / (STEPS * nu), k / nu % STEPS, k % nu);
+    }
+    let record = ["qpos", "qvel", "time", "xpos", "energy", "qacc", "qpos"];
+    stepped.record(&record).expect("known");
+    rolled.record(&["xpos"]).expect("known");
+    let recording = rolled
+        .rollout(STEPS, Controls::Each(&controls), &record)
+        .expect("valid");
+    assert_eq!(
+        (recording.summary.failed, recording.summary.running),
+        (0, n)
+    );
+    assert!(recording.get("xmat").is_none());
+    for step in 0..STEPS {
+        drive(&mut stepped, &envs, step);
+        stepped.step().expect("valid");
+        for name in record {
+            let rows = stepped.output(name).expect("kept");
+            let recorded = recording.get(name).expect("recorded");
+            for env in 0..n {
+                let found = &recorded.row(env)[step * rows.width()..][..rows.width()];
+                assert_bits(found, rows.row(env), &|| {
+                    format!("{name} of {env}, step {step}")
+                });
+            }
+        }
+    }
+    for env in 0..n {
+        let end = stepped.sim(env).expect("it exists").state;
+        assert_bits(rolled.state.qpos.row(env), &end.qpos, &|| "end".into());
+        assert_eq!(
+            rolled.state.ctrl.row(env),
+            vec![0.0; nu],
+            "left as they were"
+        );
+        let (last, kept) = (rolled.output("xpos"), stepped.output("xpos"));
+        assert_eq!(last.expect("kept").row(env), kept.expect("kept").row(env));
+    }
+}
+
+#[test]
+fn controls_are_shared_or_held() {
+    let model = model(&walker());
+    let (n, steps, nu) = (5, 9, model.nu());
+    let shared: Vec<f64> = (0..steps * nu).map(|k| (k as f64).sin()).collect();
+    let each = shared.repeat(n);
+    let end = |controls: Controls<f64>, held: f64| {
+        let mut batch = Batch::<f64>::new(model.clone(), n).expect("valid");
+        batch.state.ctrl.as_mut_slice().fill(held);
+        batch.rollout(steps, controls, &[]).expect("valid");
+        batch.state.qpos.as_slice().to_vec()
+    };
+    assert_eq!(
+        end(Controls::Shared(&shared), 0.3),
+        end(Controls::Each(&each), 0.3)
+    );
+    assert_eq!(
+        end(Controls::Held, 0.3),
+        end(Controls::Shared(&vec![0.3; steps * nu]), 0.0)
+    );
+    assert_ne!(end(Controls::Held, 0.3), end(Controls::Held, 0.0));
+    let mut batch = Batch::<f64>::new(model.clone(), n).expect("valid");
+    for (controls, expected) in [
+        (Controls::Shared(&each[..]), steps * nu),
+        (Controls::Each(&shared[..]), n * steps * nu),
+    ] {
+        let error = batch
+            .rollout(steps, controls, &[])
+            .expect_err("too many or too few");
+        let SimError::WrongLength {
+            expected: found, ..
+        } = error
+        else {
+            panic!("{error}");
+        };
+        assert_eq!(found, expected);
+    }
+    assert!(batch.rollout(steps, Controls::Held, &["xpose"]).is_err());
+}
+
+#[test]
+fn a_rollout_says_nothing_of_steps_that_were_not_done() {
+    let model = model(&walker());
+    let (n, steps, nu) = (9, 12, model.nu());
+    let mut controls = vec![0.1; n * steps * nu];
+    controls[(4 * steps + 7) * nu] = f64::NAN;
+    let mut batch = Batch::<f64>::new(model, n).expect("valid");
+    let recording = batch
+        .rollout(steps, Controls::Each(&controls), &["qvel"])
+        .expect("valid");
+    assert_eq!(
+        (recording.summary.failed, recording.summary.running),
+        (1, n - 1)
+    );
+    assert!(matches!(batch.status(4), EnvStatus::Failed(_)));
+    let rows = recording.get("qvel").expect("recorded");
+    let nv = rows.width() / steps;
+    for env in 0..n {
+        let done = if env == 4 { 7 } else { steps };
+        let (good, rest) = rows.row(env).split_at(done * nv);
+        assert!(good.iter().all(|x| x.is_finite()) && rest.iter().all(|x| x.is_nan()));
+        assert_eq!(good[(done - 1) * nv..], *batch.state.qvel.row(env));
+    }
+}
+
+#[test]
+fn what_is_kept_can_change() {
+    let mut batch = Batch::<f64>::new(model(&walker()), 4).expect("valid");
+    batch.record(&["xpos", "qacc"]).expect("known");
+    let place = batch.output("xpos").expect("kept").as_slice().as_ptr();
+    assert!((place as usize).is_multiple_of(64), "aligned");
+    batch.record(&["cvel", "xpos", "xpos"]).expect("known");
+    assert_eq!(
+        batch.output("xpos").expect("kept").as_slice().as_ptr(),
+        place
+    );
+    assert!(batch.output("qacc").is_none() && batch.output("cvel").is_some());
+    let error = batch
+        .record(&["xpos", "contact_forces"])
+        .expect_err("unknown");
+    assert_eq!(
+        error.to_string(),
+        "there is no output \"contact_forces\"; did you mean \"contact_force\"?"
+    );
+    assert!(batch.output("cvel").is_some(), "as before");
+}

@@ -1,0 +1,175 @@
+//! What the tests of batches share: scenes in which environments go their own ways, and comparison to the bit.
+#![allow(dead_code)] // Each test file uses some of these.
+
+#[path = "../scenes/mod.rs"]
+mod scenes;
+
+use clench_math::Instructions;
+use clench_rigid::builder::{EqualityKind, EqualitySpec, GeomSpec, KeyframeSpec, ModelBuilder};
+use clench_rigid::model::JointKind;
+use clench_rigid::{Batch, BatchOptions, Model, Precision, Sim, State};
+use clench_solver::RigidOptions;
+pub use scenes::*;
+use std::sync::Arc;
+
+/// A jointed pair, a ball and a box above a floor; the box can be welded to the world.
+pub fn loose_parts() -> ModelBuilder {
+    let mut b = world();
+    b.options = RigidOptions::new().constraint_timeconst(0.0);
+    b.bodies[0].geoms.push(plane());
+    let pair = add(
+        &mut b,
+        0,
+        "pair",
+        [0.0, 0.0, 0.15],
+        free(),
+        vec![sphere(0.1)],
+    );
+    let mut hinge = joint(JointKind::Hinge, "hinge", [0.0, 1.0, 0.0]);
+    hinge.range = [-0.6, 0.3];
+    hinge.frictionloss = 0.1;
+    add(
+        &mut b,
+        pair,
+        "link",
+        [0.25, 0.0, 0.0],
+        vec![hinge],
+        vec![sphere(0.08)],
+    );
+    let rolling = GeomSpec {
+        condim: 6,
+        ..sphere(0.1)
+    };
+    add(&mut b, 0, "ball", [0.3, 0.1, 0.3], free(), vec![rolling]);
+    let box_geom = cuboid([0.1, 0.08, 0.06]);
+    add(&mut b, 0, "box", [-0.3, 0.1, 0.2], free(), vec![box_geom]);
+    let kind = EqualityKind::Weld {
+        anchor: bodies("box", "", [0.0; 3]),
+        relpose: None,
+        torquescale: 1.0,
+    };
+    b.equalities.push(EqualitySpec::new("grip", kind));
+    b.equalities[0].active = false;
+    b.keyframes.push(KeyframeSpec {
+        name: "thrown".into(),
+        time: 2.0,
+        qvel: Some(vec![1.0, 0.0, 3.0, 0.0, 0.0, 0.0]),
+        ..KeyframeSpec::default()
+    });
+    b
+}
+
+/// The humanoid, solved as a user would.
+pub fn walker() -> ModelBuilder {
+    let mut b = humanoid();
+    b.options = RigidOptions::new();
+    b
+}
+
+/// How environment `env` begins: thrown in a direction of its own; every fifth has its equalities the other way.
+pub fn begin<S: Precision>(env: usize, state: &mut State<S>) {
+    let mut numbers = Numbers(env as u64 + 1);
+    for v in &mut state.qvel {
+        *v = S::new(1.5 * numbers.next());
+    }
+    for on in &mut state.eq_active {
+        *on ^= env % 5 == 4;
+    }
+}
+
+/// The control `i` of environment `env` in a step.
+pub fn control<S: Precision>(env: usize, step: usize, i: usize) -> S {
+    let phase = 0.05 * step as f64 + 1.3 * i as f64 + 0.7 * env as f64;
+    S::new(phase.sin())
+}
+
+/// A simulation of environment `env` at its beginning.
+pub fn alone<S: Precision>(model: &Arc<Model>, options: RigidOptions, env: usize) -> Sim<S> {
+    let mut sim = Sim::with_options(model.clone(), options).expect("valid");
+    begin(env, &mut sim.state);
+    sim
+}
+
+/// Sets the controls of a step.
+pub fn drive_alone<S: Precision>(sim: &mut Sim<S>, env: usize, step: usize) {
+    for (i, ctrl) in sim.state.ctrl.iter_mut().enumerate() {
+        *ctrl = control(env, step, i);
+    }
+}
+
+/// A batch whose row k is environment `envs[k]` at its beginning.
+pub fn batch<S: Precision>(model: &Arc<Model>, envs: &[usize], options: BatchOptions) -> Batch<S> {
+    let mut batch = Batch::with_options(model.clone(), envs.len(), options).expect("valid");
+    let mut state = State::new(model);
+    for (row, &env) in envs.iter().enumerate() {
+        begin(env, &mut state);
+        batch.state.qvel.row_mut(row).copy_from_slice(&state.qvel);
+        batch
+            .state
+            .eq_active
+            .row_mut(row)
+            .copy_from_slice(&state.eq_active);
+        state = State::new(model);
+    }
+    batch
+}
+
+/// Sets the controls of a step, where row k is environment `envs[k]`.
+pub fn drive<S: Precision>(batch: &mut Batch<S>, envs: &[usize], step: usize) {
+    for (row, &env) in envs.iter().enumerate() {
+        for (i, ctrl) in batch.state.ctrl.row_mut(row).iter_mut().enumerate() {
+            *ctrl = control(env, step, i);
+        }
+    }
+}
+
+pub fn with(instructions: Instructions, threads: usize, options: RigidOptions) -> BatchOptions {
+    BatchOptions {
+        options,
+        instructions: Some(instructions),
+        threads: Some(threads),
+        grouping: threads != 2,
+    }
+}
+
+/// Asserts that numbers are equal to the bit.
+pub fn assert_bits<S: Precision>(found: &[S], expected: &[S], what: &dyn Fn() -> String) {
+    let bits = |x: S| x.to_f64().to_bits();
+    let same = found.len() == expected.len()
+        && found
+            .iter()
+            .zip(expected)
+            .all(|(&a, &b)| bits(a) == bits(b));
+    assert!(
+        same,
+        "{}: {found:?} where {expected:?} was expected",
+        what()
+    );
+}
+
+/// Asserts that a row of a batch holds this state, to the bit.
+pub fn assert_state<S: Precision>(
+    batch: &Batch<S>,
+    row: usize,
+    expected: &State<S>,
+    what: &dyn Fn() -> String,
+) {
+    let rows = &batch.state;
+    for (field, found, expected) in [
+        ("time", &rows.time, &vec![expected.time]),
+        ("qpos", &rows.qpos, &expected.qpos),
+        ("qvel", &rows.qvel, &expected.qvel),
+        ("act", &rows.act, &expected.act),
+        ("ctrl", &rows.ctrl, &expected.ctrl),
+        ("qfrc_applied", &rows.qfrc_applied, &expected.qfrc_applied),
+        (
+            "qacc_warmstart",
+            &rows.qacc_warmstart,
+            &expected.qacc_warmstart,
+        ),
+    ] {
+        let what = || format!("{}, row {row}: {field}", what());
+        assert_bits(found.row(row), expected, &what);
+    }
+    assert_eq!(rows.eq_active.row(row), expected.eq_active);
+}
