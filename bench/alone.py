@@ -1,0 +1,65 @@
+"""One environment, one thread: Clench and MuJoCo's rollout from the model's initial state."""
+
+import sys
+import time
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+
+from program import Clench
+from scene import NEWTON, PGS, describe, load, smooth_controls
+from timing import alternate, table
+
+
+def compare(path, args):
+    """Times all engines on one model, prints its table and returns its rows."""
+    model = mujoco.MjModel.from_xml_path(str(path))
+    controls = smooth_controls(model, args.steps)
+    steps = ["--steps", args.steps]
+    engines = {
+        "mujoco newton": Rollout(path, NEWTON, controls),
+        "clench": Clench(path, {"ctrl": controls}, [*steps, *args.clench.split()]),
+    }
+    if model.opt.solver == PGS:
+        engines["mujoco pgs"] = Rollout(path, PGS, controls)
+    seconds = alternate(engines, args.repeat)
+    print(f"\n{describe(model, path)}; one environment, {args.steps} steps")
+    rows = table(engines, seconds, "mujoco newton", args.steps)
+    return [{"model": path.stem, "envs": 1, "threads": 1, "steps": args.steps} | row for row in rows]
+
+
+class Rollout:
+    """MuJoCo's rollout module on the calling thread."""
+
+    def __init__(self, path, solver, controls):
+        self.model = load(path, solver)
+        self.data = mujoco.MjData(self.model)
+        self.controls = controls[None]
+        size = mujoco.mj_stateSize(self.model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+        self.start = np.empty((1, size))
+        mujoco.mj_getState(self.model, self.data, self.start[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
+        self.states = np.empty((1, len(controls), size))
+        self.sensors = np.empty((1, len(controls), self.model.nsensordata))
+        self.pool = rollout.Rollout(nthread=0)
+        self.contacts, self.iterations = self.statistics(controls)
+
+    def statistics(self, controls):
+        """Mean contacts and iterations a step (a Runge–Kutta step reports its last stage), and a sanity check."""
+        data, contacts, iterations = mujoco.MjData(self.model), 0, 0
+        for control in controls:
+            data.ctrl[:] = control
+            mujoco.mj_step(self.model, data)
+            contacts += data.ncon
+            iterations += int(data.solver_niter[: max(1, data.nisland)].sum())
+        if any(w.number for w in data.warning):
+            sys.exit("MuJoCo warns of an unstable motion: these controls measure nothing")
+        return contacts / len(controls), iterations / len(controls)
+
+    def run(self):
+        begin = time.perf_counter()
+        self.pool.rollout(
+            [self.model], [self.data], self.start, self.controls, skip_checks=True, nstep=self.controls.shape[1],
+            state=self.states, sensordata=self.sensors,
+        )  # fmt: skip
+        return time.perf_counter() - begin

@@ -1,0 +1,90 @@
+"""Many environments, one thread: Clench's batch in both precisions and MuJoCo's own, from the same states, with the same controls.
+
+MuJoCo's batch is used in the way that was measured to be fastest: one `rollout` call for the whole run, which takes the
+controls of every step and keeps a simulation on its thread from the first step to the last, with one MjData a thread
+(`persistent` makes it slower) and nothing recorded. Clench steps likewise in calls of many steps, but goes on to the next
+environments after a few. Contacts and iterations of MuJoCo come from a run of their own that records them for every
+environment and step, and is not timed.
+"""
+
+import os
+import sys
+import time
+
+import numpy as np
+from mujoco import batch as mujoco_batch
+
+from program import Clench
+from scene import describe, load, perturbed_states, smooth_controls
+from timing import alternate, ratio, table
+
+BASELINE = "mujoco batch"
+
+
+def compare(path, args):
+    """Times all engines on one model, prints its table and returns its rows."""
+    model = load(path)
+    arrays = {
+        "ctrl": smooth_controls(model, args.batch_steps),
+        "states": perturbed_states(model, args.envs, args.noise),
+    }
+    engines = {BASELINE: Batch(model, **arrays)}
+    threads = {BASELINE: 1}
+    for bits in (64, 32):
+        for count in sorted({1, args.threads}):
+            name = f"clench f{bits}" + (f", {count} threads" if count > 1 else "")
+            flags = ["--envs", args.envs, "--threads", count, "--precision", bits, *args.clench.split()]
+            engines[name], threads[name] = Clench(path, arrays, flags), count
+    seconds = alternate(engines, args.repeat)
+    print(f"\n{describe(model, path)}; {args.envs} environments, {args.batch_steps} steps, one thread where not said")
+    rows = table(engines, seconds, BASELINE, args.envs * args.batch_steps)
+    for bits in (64, 32):
+        print_lanes(bits, engines[f"clench f{bits}"].summary)
+        if args.threads > 1:
+            one, more = f"clench f{bits}", f"clench f{bits}, {args.threads} threads"
+            print(f"  f{bits}: {args.threads} threads are {ratio(seconds[one], seconds[more]):.2f} times as fast as one")
+    common = {"model": path.stem, "envs": args.envs, "steps": args.batch_steps}
+    return [common | {"threads": threads[row["engine"]]} | row for row in rows]
+
+
+def print_lanes(bits, summary):
+    """What lanes lose to environments that differ."""
+    divergence = summary["divergence"]
+    print(
+        f"  f{bits}: {summary['lanes']} side by side ({summary['instructions']}) need "
+        f"{divergence['iterations_per_group']:.1f} iterations and {divergence['slots_per_group']:.1f} contact slots a step; "
+        f"{100 * divergence['live_share']:.0f}% of lanes at work"
+    )
+
+
+class Batch:
+    """MuJoCo's batch on the calling thread."""
+
+    def __init__(self, model, ctrl, states):
+        self.batch = mujoco_batch.Batch(model, nsim=len(states), nthread=1)
+        self.batch.qpos = states[:, : model.nq]
+        self.batch.qvel = states[:, model.nq :]
+        self.start = self.batch.state.copy()
+        self.steps = len(ctrl)
+        self.ctrl = np.ascontiguousarray(np.broadcast_to(ctrl, (len(states), *ctrl.shape)))
+        self.contacts, self.iterations = self.statistics()
+
+    def statistics(self):
+        """Mean contacts and iterations a step (a Runge–Kutta step reports its last stage), and a sanity check."""
+        records = self.batch.rollout(self.steps, self.ctrl, record=("ncon", "solver_niter", "nisland"))
+        if self.batch.warning.any():
+            sys.exit("MuJoCo warns of an unstable motion: these controls measure nothing")
+        parts = np.maximum(records["nisland"], 1)[..., None]
+        solved = np.arange(records["solver_niter"].shape[-1]) < parts
+        return records["ncon"].mean(), (records["solver_niter"] * solved).sum(axis=-1).mean()
+
+    def run(self):
+        self.batch.state[:] = self.start
+        begin = time.perf_counter()
+        self.batch.rollout(self.steps, self.ctrl, record=())
+        return time.perf_counter() - begin
+
+
+def processors():
+    """How many this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
