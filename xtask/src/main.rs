@@ -1,4 +1,5 @@
-//! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed.
+//! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed, `cargo xtask soak`
+//! steps many environments for long.
 
 mod python;
 mod run;
@@ -22,6 +23,8 @@ Commands:
                       parity   `clench` against MuJoCo, with pytest
   bench [ARG...]    Build the release `clench` and time it against MuJoCo.
                     Arguments go to bench/speed.py; try `cargo xtask bench --help`.
+  soak [SEED]       Step 10,000 environments 1,000 times under random controls, resets and poison: none may be
+                    lost, disturb another, or leak. `test` runs a short form.
 
 Needs Python 3.11 or later with venv, and a package index on the first run.";
 
@@ -30,6 +33,7 @@ fn main() -> ExitCode {
     let outcome = match args.first().map(String::as_str) {
         Some("test") => stages::test(&args[1..]),
         Some("bench") => stages::bench(&args[1..]),
+        Some("soak") => stages::soak(&args[1..]),
         Some("help" | "-h" | "--help") => {
             println!("{HELP}");
             Ok(())

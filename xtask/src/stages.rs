@@ -1,4 +1,4 @@
-//! The stages of `cargo xtask test`, in order, and `cargo xtask bench`.
+//! The stages of `cargo xtask test`, in order, and what takes longer: `cargo xtask bench` and `soak`.
 
 use crate::python;
 use crate::run::{cargo, clench, command, run};
@@ -96,6 +96,24 @@ pub fn bench(args: &[String]) -> Result<(), String> {
     let mut script = command(python::interpreter(), &["bench/speed.py"]);
     script.args(args).env("CLENCH", clench());
     run(script)
+}
+
+/// Steps many environments for long under random controls, resets and poison; `args` may hold a seed.
+///
+/// # Errors
+/// An argument that is no seed, or what the soak found.
+pub fn soak(args: &[String]) -> Result<(), String> {
+    let seed = match args {
+        [] => 1,
+        [seed] => seed
+            .parse::<u64>()
+            .map_err(|_| format!("`{seed}` is not a seed: give a whole number"))?,
+        _ => return Err("soak takes at most one argument, a seed".into()),
+    };
+    let mut test = cargo(&["test", "--release", "--package", "clench", "--test", "soak"]);
+    test.args(["--", "--ignored", "--nocapture"]);
+    test.env("SOAK_SEED", seed.to_string());
+    run(test)
 }
 
 fn fmt() -> Result<(), String> {

@@ -1,0 +1,192 @@
+//! Many environments for long, under random controls, random resets and random poison: none is lost, none disturbs another,
+//! nothing leaks.
+//!
+//! The short form is an ordinary test; `cargo xtask soak` runs the long one. `SOAK_SEED` chooses other random numbers.
+
+mod dice;
+mod ledger;
+mod poison;
+mod watch;
+
+use cap::Cap;
+use clench::rigid::{EnvStatus, Precision};
+use clench::solver::MaxContacts;
+use clench::{Batch, BatchOptions, RigidOptions};
+use dice::Dice;
+use ledger::{Expectation, Ledger};
+use poison::poison;
+use std::alloc::System;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+use watch::Watch;
+
+#[global_allocator]
+static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
+
+/// What is soaked, and how.
+struct Plan {
+    model: &'static str,
+    /// A capacity that some poses exceed.
+    max_contacts: usize,
+    envs: usize,
+    steps: usize,
+    /// Environments that are also stepped alone, without poison.
+    watched: usize,
+}
+
+/// A step resets one environment in so many, one in so many of those that failed, and poisons one in so many.
+const RESETS: u64 = 1000;
+const COMEBACKS: u64 = 20;
+const POISONS: u64 = 400;
+
+/// How much the heap may grow once a quarter of the steps is done: buffers still meet groups with more contacts than any
+/// before. A byte a step of each environment would be more than three times as much in the long form.
+const GROWTH: usize = 1 << 21;
+
+#[test]
+fn short() {
+    let size = |model, max_contacts| Plan {
+        model,
+        max_contacts,
+        envs: 200,
+        steps: 300,
+        watched: 200,
+    };
+    soak::<f64>(&size("humanoid", 8));
+    soak::<f32>(&size("quadruped", 5));
+}
+
+#[test]
+#[ignore = "takes minutes: cargo xtask soak"]
+fn long() {
+    let size = |model, max_contacts| Plan {
+        model,
+        max_contacts,
+        envs: 10_000,
+        steps: 1_000,
+        watched: 200,
+    };
+    soak::<f64>(&size("humanoid", 8));
+    soak::<f32>(&size("quadruped", 5));
+}
+
+fn seed() -> u64 {
+    let text = std::env::var("SOAK_SEED").unwrap_or("1".into());
+    text.parse().expect("SOAK_SEED is a whole number")
+}
+
+fn soak<S: Precision>(plan: &Plan) {
+    let mut batch = batch::<S>(plan);
+    let mut watch = Watch::new(&batch, plan.watched);
+    let mut ledger = Ledger::new(&batch);
+    let mut dice = Dice::new(seed());
+    let begin = Instant::now();
+    let mut warm = 0;
+    for step in 0..plan.steps {
+        if step == plan.steps / 4 {
+            warm = ALLOCATOR.allocated();
+        }
+        control(&mut batch, &mut dice);
+        reset(&mut batch, &mut ledger, &mut watch, &mut dice);
+        watch.copy_controls(&batch);
+        give_poison(&mut batch, &mut ledger, &mut watch, &mut dice);
+        ledger.before_step(&batch);
+        let summary = batch.step().expect("tables of the right shapes");
+        ledger.after_step(&batch, summary);
+        watch.step(&batch);
+    }
+    let (end, seconds) = (ALLOCATOR.allocated(), begin.elapsed().as_secs_f64());
+    let (model, bits, seed) = (plan.model, 8 * size_of::<S>(), seed());
+    let (envs, steps) = (plan.envs, plan.steps);
+    let megabytes = [warm, end].map(|bytes| bytes as f64 / 1e6);
+    println!(
+        "{model}, {bits} bit: {envs} environments × {steps} steps, seed {seed}: {seconds:.0} s"
+    );
+    println!("  {ledger}\n  {watch}");
+    println!(
+        "  heap: {:.3} MB after a quarter of the steps, {:.3} MB at the end",
+        megabytes[0], megabytes[1]
+    );
+    ledger.check_everything_happened();
+    watch.check_everything_happened();
+    assert!(end <= warm + GROWTH, "the heap has grown");
+    all_come_back(&mut batch);
+}
+
+fn batch<S: Precision>(plan: &Plan) -> Batch<S> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let file = folder.join(plan.model).with_extension("xml");
+    let model = clench::load(file).expect("our own model loads");
+    let options = BatchOptions {
+        options: RigidOptions {
+            max_contacts: Some(MaxContacts::Limit(plan.max_contacts)),
+            ..RigidOptions::new()
+        },
+        ..BatchOptions::default()
+    };
+    Batch::with_options(Arc::new(model), plan.envs, options).expect("a batch of our own model")
+}
+
+/// New controls for one environment in ten.
+fn control<S: Precision>(batch: &mut Batch<S>, dice: &mut Dice) {
+    for env in 0..batch.count() {
+        if dice.one_in(10) {
+            let ctrl = batch.state.ctrl.row_mut(env);
+            ctrl.fill_with(|| S::new(dice.unit()));
+        }
+    }
+}
+
+/// Resets some environments, most often such as failed, to the initial state or a keyframe.
+fn reset<S: Precision>(
+    batch: &mut Batch<S>,
+    ledger: &mut Ledger<S>,
+    watch: &mut Watch<S>,
+    dice: &mut Dice,
+) {
+    let keyframes = batch.model().keyframes.len();
+    for env in 0..batch.count() {
+        let running = batch.status(env) == EnvStatus::Running;
+        if dice.one_in(if running { RESETS } else { COMEBACKS }) {
+            let key = Some(dice.below(keyframes + 1)).filter(|&key| key < keyframes);
+            match key {
+                Some(key) => batch.reset_to_keyframe(env, key),
+                None => batch.reset(env),
+            }
+            .expect("an environment and a keyframe that are there");
+            watch.reset(env, key);
+            ledger.expect(env).runs = true;
+            ledger.resets += 1;
+        }
+    }
+}
+
+/// Poisons some of the environments that run.
+fn give_poison<S: Precision>(
+    batch: &mut Batch<S>,
+    ledger: &mut Ledger<S>,
+    watch: &mut Watch<S>,
+    dice: &mut Dice,
+) {
+    for env in 0..batch.count() {
+        if batch.status(env) == EnvStatus::Running && dice.one_in(POISONS) {
+            let poison = poison(&mut batch.state, env, dice);
+            watch.poisoned(env);
+            *ledger.expect(env) = Expectation {
+                runs: false,
+                not_finite: Some(poison.field).filter(|_| !poison.finite),
+            };
+            ledger.poisoned += 1;
+        }
+    }
+}
+
+/// None is lost: after a reset every environment runs.
+fn all_come_back<S: Precision>(batch: &mut Batch<S>) {
+    for env in 0..batch.count() {
+        batch.reset(env).expect("an environment that is there");
+    }
+    let summary = batch.step().expect("tables of the right shapes");
+    assert_eq!((summary.failed, summary.running), (0, batch.count()));
+}
