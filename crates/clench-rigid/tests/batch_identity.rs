@@ -127,3 +127,23 @@ fn many_steps_in_a_call_are_single_steps() {
         assert_state(&many, env, &end, &|| "150 steps".into());
     }
 }
+
+/// Slots that a neighbour fills hold for a far-away environment numbers whose squares overflow.
+#[test]
+fn what_is_far_away_moves_as_alone() {
+    let model = model(&loose_parts());
+    let envs: Vec<usize> = (0..ENVS).collect();
+    for far in [1e12, 1e100, 1e200, 1e300] {
+        let options = with(Instructions::widest(), 1, RigidOptions::new());
+        let mut batch = batch::<f64>(&model, &envs, options);
+        batch.step_n(100).expect("valid");
+        batch.state.qpos.row_mut(3)[0] = far;
+        let mut sim = batch.sim(3).expect("it exists");
+        for _ in 0..30 {
+            batch.step().expect("valid");
+            sim.step().expect("finite");
+            assert_eq!(batch.status(3), EnvStatus::Running);
+            assert_state(&batch, 3, &sim.state, &|| format!("{far:e} m away"));
+        }
+    }
+}

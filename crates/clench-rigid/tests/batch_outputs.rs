@@ -8,10 +8,10 @@ mod machines;
 
 use batches::*;
 use clench_math::{Instructions, Vec3};
-use clench_rigid::batch::Controls;
+use clench_rigid::batch::{Controls, Divergence};
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::Integrator;
-use clench_rigid::{Batch, EnvStatus, Output, Precision, Sim, SimError};
+use clench_rigid::{Batch, BatchOptions, EnvStatus, Output, Precision, Sim, SimError};
 use clench_solver::{FrictionCone, RigidOptions};
 
 fn names() -> Vec<&'static str> {
@@ -269,4 +269,51 @@ fn what_is_kept_can_change() {
         "there is no output \"contact_forces\"; did you mean \"contact_force\"?"
     );
     assert!(batch.output("cvel").is_some(), "as before");
+}
+
+#[test]
+fn figures_of_divergence_count_what_environments_do() {
+    let (model, options) = (model(&walker()), RigidOptions::new());
+    let envs: Vec<usize> = (0..40).collect();
+    let mut alone: Vec<Sim> = envs.iter().map(|&e| alone(&model, options, e)).collect();
+    let (mut iterations, mut contacts) = (0, 0);
+    let mut together = [false, true].map(|grouping| {
+        let options = BatchOptions {
+            grouping,
+            ..with(Instructions::widest(), 1, options)
+        };
+        batch::<f64>(&model, &envs, options)
+    });
+    for step in 0..300 {
+        for (env, sim) in alone.iter_mut().enumerate() {
+            drive_alone(sim, env, step);
+            sim.step().expect("finite");
+            iterations += sim.stats().iterations as u64;
+            contacts += sim.contacts().len() as u64;
+        }
+        for batch in &mut together {
+            drive(batch, &envs, step);
+            batch.step().expect("valid");
+        }
+    }
+    let lanes = together[0].lanes() as u64;
+    for figures in together.each_ref().map(Batch::divergence) {
+        assert_eq!(figures.env_steps, 300 * 40);
+        assert_eq!(figures.group_steps, 300 * 40_u64.div_ceil(lanes));
+        assert_eq!(figures.lane_steps, lanes * figures.group_steps);
+        assert_eq!(
+            (figures.env_iterations, figures.contacts),
+            (iterations, contacts)
+        );
+        assert!(figures.group_iterations <= iterations && figures.live_share() <= 1.0);
+        assert!(figures.contact_slots <= contacts, "slots are shared");
+        assert!(figures.slots_per_group() >= figures.contacts_per_env());
+    }
+    let [apart, grouped] = together.each_ref().map(|b| b.divergence().contact_slots);
+    assert!(
+        lanes == 1 || grouped < apart,
+        "{grouped} slots, ungrouped {apart}"
+    );
+    together[0].clear_figures();
+    assert_eq!(together[0].divergence(), Divergence::default());
 }

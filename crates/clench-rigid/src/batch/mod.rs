@@ -2,12 +2,15 @@
 
 mod cells;
 mod divergence;
+mod group;
 mod options;
 mod parameters;
 mod precision;
 mod quality;
 mod record;
+mod reset;
 mod rows;
+mod run;
 mod snapshot;
 mod state_rows;
 mod stepper;
@@ -18,26 +21,25 @@ pub use precision::Precision;
 pub use quality::Quality;
 pub use record::{Controls, Recording};
 pub use rows::Rows;
+pub use run::Summary;
 pub use snapshot::Snapshot;
 pub use state_rows::StateRows;
 
-use crate::check::check_length;
 use crate::contact::check_supported;
 use crate::error::{Fault, SimError};
 use crate::model::Model;
 use crate::profile::Profile;
 use crate::settings::StepSettings;
-use crate::sim::{Sim, no_such};
+use crate::sim::no_such;
 use crate::state::State;
 use parameters::ParamRows;
 use rayon::ThreadPool;
-use rayon::prelude::*;
-use record::{OutputRows, row_bytes, targets};
+use record::{OutputRows, row_bytes};
 use rows::per_env;
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
-use stepper::{Job, Stepper};
+use std::sync::atomic::AtomicU64;
+use stepper::Stepper;
 
 /// Whether an environment takes part in steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,21 +50,9 @@ pub enum EnvStatus {
     Failed(Fault),
 }
 
-/// What a call did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Summary {
-    /// Environments that failed in this call.
-    pub failed: usize,
-    /// Environments that run on.
-    pub running: usize,
-}
-
-/// After so many steps of a call environments are grouped anew.
-const STEPS_A_GROUP: usize = 8;
-
 /// Many environments of one model.
 ///
-/// Environment i moves as a [`Sim`] alone would in the same precision, to the bit: whatever instructions, threads,
+/// Environment i moves as a [`Sim`](crate::Sim) alone would in the same precision, to the bit: whatever instructions, threads,
 /// neighbours and groups there are. One that cannot go on keeps its last good state and says why in
 /// [`status`](Self::status); its neighbours do not notice.
 pub struct Batch<S: Precision = f64> {
@@ -159,157 +149,6 @@ impl<S: Precision> Batch<S> {
         })
     }
 
-    /// Advances every running environment by one time step.
-    ///
-    /// # Errors
-    /// Tables of [`state`](Self::state) that are not those of this batch.
-    pub fn step(&mut self) -> Result<Summary, SimError> {
-        self.step_n(1)
-    }
-
-    /// Advances every running environment by `steps` time steps, with the same controls and applied forces.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
-    pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
-        self.run(true, steps, Controls::Held, &mut [])
-    }
-
-    /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
-    /// now on.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
-    pub fn forward(&mut self) -> Result<Summary, SimError> {
-        self.run(false, 1, Controls::Held, &mut [])
-    }
-
-    /// Does `steps` steps, or one forward pass, of every running environment.
-    fn run(
-        &mut self,
-        advance: bool,
-        steps: usize,
-        controls: Controls<S>,
-        trace: &mut [OutputRows<S>],
-    ) -> Result<Summary, SimError> {
-        self.state.check_shapes(&self.model, self.count())?;
-        let mut summary = Summary {
-            failed: 0,
-            running: 0,
-        };
-        for first in (0..steps).step_by(STEPS_A_GROUP) {
-            self.regroup();
-            let (motion, inputs) = self.state.share();
-            let job = Job {
-                model: &self.model,
-                settings: &self.settings,
-                motion,
-                inputs,
-                params: &self.params,
-                targets: targets(&mut self.outputs, trace),
-                places: &self.places,
-                advance,
-                controls,
-                first,
-                end: steps.min(first.saturating_add(STEPS_A_GROUP)),
-                steps,
-            };
-            spread(&mut self.steppers, self.pool.as_ref(), &self.order, &job);
-            summary.failed += self.settle();
-        }
-        let running = |status: &&EnvStatus| **status == EnvStatus::Running;
-        summary.running = self.status.iter().filter(running).count();
-        Ok(summary)
-    }
-
-    /// Lists the environments that run, those of like contacts side by side.
-    fn regroup(&mut self) {
-        let running = |env: &u32| self.status[*env as usize] == EnvStatus::Running;
-        self.order.clear();
-        let envs = 0..self.status.len() as u32;
-        self.order.extend(envs.filter(running));
-        if self.options.grouping {
-            let place = |env: &u32| self.places[*env as usize].load(Relaxed);
-            self.order.sort_unstable_by_key(place);
-        }
-    }
-
-    /// Takes over what the steppers have to report; how many environments failed.
-    fn settle(&mut self) -> usize {
-        let mut failed = 0;
-        for stepper in &mut self.steppers {
-            let tally = stepper.tally();
-            for (env, fault) in tally.faults.drain(..) {
-                self.status[env as usize] = EnvStatus::Failed(fault);
-                failed += 1;
-            }
-            self.divergence += std::mem::take(&mut tally.divergence);
-            self.quality += std::mem::take(&mut tally.quality);
-        }
-        failed
-    }
-
-    /// Environment `env` back to the model's initial state, running.
-    ///
-    /// # Errors
-    /// An environment that the batch does not have.
-    pub fn reset(&mut self, env: usize) -> Result<(), SimError> {
-        self.check_env(env)?;
-        self.state.write(env, &self.initial);
-        self.status[env] = EnvStatus::Running;
-        Ok(())
-    }
-
-    /// Environment `env` to a keyframe of the model, running; what a keyframe does not hold is as in the initial state.
-    ///
-    /// # Errors
-    /// An environment that the batch or a keyframe that the model does not have.
-    pub fn reset_to_keyframe(&mut self, env: usize, key: usize) -> Result<(), SimError> {
-        self.check_env(env)?;
-        let Some(keyframe) = self.model.keyframes.get(key) else {
-            return Err(no_such("keyframe", key, self.model.keyframes.len()));
-        };
-        self.scratch.copy_from(&self.initial);
-        self.scratch.set_keyframe(keyframe);
-        self.state.write(env, &self.scratch);
-        self.status[env] = EnvStatus::Running;
-        Ok(())
-    }
-
-    /// As [`reset`](Self::reset), for every environment where `mask` is true.
-    ///
-    /// # Errors
-    /// A mask of another length than there are environments.
-    pub fn reset_mask(&mut self, mask: &[bool]) -> Result<(), SimError> {
-        check_length("mask", mask.len(), self.count())?;
-        let mut masked = (0..self.count()).filter(|&env| mask[env]);
-        masked.try_for_each(|env| self.reset(env))
-    }
-
-    /// Lets environment `env` run on from the state in its rows.
-    ///
-    /// # Errors
-    /// An environment that the batch does not have.
-    pub fn revive(&mut self, env: usize) -> Result<(), SimError> {
-        self.check_env(env)?;
-        self.status[env] = EnvStatus::Running;
-        Ok(())
-    }
-
-    /// A simulation of one environment, in the state of `env`.
-    ///
-    /// # Errors
-    /// An environment that the batch does not have.
-    pub fn sim(&self, env: usize) -> Result<Sim<S>, SimError> {
-        self.check_env(env)?;
-        let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
-        self.state.read(env, &mut sim.state);
-        for own in &self.params {
-            own.read(env, 0, sim.params_mut());
-        }
-        Ok(sim)
-    }
-
     fn check_env(&self, env: usize) -> Result<(), SimError> {
         if env < self.count() {
             return Ok(());
@@ -391,26 +230,5 @@ impl<S: Precision> Batch<S> {
     pub fn clear_figures(&mut self) {
         self.divergence = Divergence::default();
         self.quality = Quality::default();
-    }
-}
-
-/// Does a job for all environments in `order`. Groups are claimed one by one, so that threads end together though groups take
-/// unlike times.
-fn spread<S: Precision>(
-    steppers: &mut [Box<dyn Stepper<S>>],
-    pool: Option<&ThreadPool>,
-    order: &[u32],
-    job: &Job<S>,
-) {
-    let next = AtomicUsize::new(0);
-    let work = |stepper: &mut Box<dyn Stepper<S>>| {
-        let lanes = stepper.lanes();
-        while let Some(group) = order.chunks(lanes).nth(next.fetch_add(1, Relaxed)) {
-            stepper.run(group, job);
-        }
-    };
-    match pool {
-        None => steppers.iter_mut().for_each(work),
-        Some(pool) => pool.install(|| steppers.par_iter_mut().with_max_len(1).for_each(work)),
     }
 }

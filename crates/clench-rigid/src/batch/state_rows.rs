@@ -154,6 +154,7 @@ impl<S: Precision> StateRows<S> {
             eq_active: &self.eq_active,
         };
         inputs.read(env, 0, state);
+        inputs.read_pushes(env, 0, state);
     }
 
     /// Copies a state of the same model into row `env`.
@@ -243,10 +244,26 @@ pub struct Inputs<'a, S> {
 }
 
 impl<S: Lanewise> Inputs<'_, S> {
-    /// Copies the row of an environment into lane `lane`.
+    /// Copies the row of an environment into lane `lane`, but for the forces on bodies.
     pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
         write_lane(self.ctrl.row(env), lane, &mut state.ctrl);
         write_lane(self.qfrc_applied.row(env), lane, &mut state.qfrc_applied);
+        write_vectors(self.mocap_pos.row(env), lane, &mut state.mocap_pos);
+        write_quats(self.mocap_quat.row(env), lane, &mut state.mocap_quat);
+        for (switch, &on) in state.eq_active.iter_mut().zip(self.eq_active.row(env)) {
+            switch.set_lane(lane, on);
+        }
+    }
+
+    /// Whether forces are applied to any body of an environment.
+    pub fn pushed(&self, env: usize) -> bool {
+        // To the end, so that the loop runs in registers.
+        let row = self.xfrc_applied.row(env).iter();
+        row.fold(false, |pushed, &x| pushed | (x != S::ZERO))
+    }
+
+    /// Copies the forces on bodies of an environment into lane `lane`.
+    pub fn read_pushes<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
         let forces = self.xfrc_applied.row(env).chunks_exact(6);
         for (force, row) in state.xfrc_applied.iter_mut().zip(forces) {
             let (linear, angular) = (&mut force.linear, &mut force.angular);
@@ -259,11 +276,6 @@ impl<S: Lanewise> Inputs<'_, S> {
                 &mut angular.z,
             ];
             set_lane(axes, lane, row);
-        }
-        write_vectors(self.mocap_pos.row(env), lane, &mut state.mocap_pos);
-        write_quats(self.mocap_quat.row(env), lane, &mut state.mocap_quat);
-        for (switch, &on) in state.eq_active.iter_mut().zip(self.eq_active.row(env)) {
-            switch.set_lane(lane, on);
         }
     }
 }

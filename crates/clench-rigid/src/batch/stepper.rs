@@ -1,6 +1,7 @@
 //! A thread's scratch: environments come in by groups, are stepped side by side, and go out again.
 
 use super::divergence::Divergence;
+use super::group::{Group, MOST_LANES};
 use super::parameters::ParamRows;
 use super::precision::Lanewise;
 use super::quality::Quality;
@@ -17,11 +18,7 @@ use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{LaneTask, Mask, Real, Scalar, write_lane};
 use clench_solver::MaxContacts;
-use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
-/// The most lanes that any instruction set has.
-const MOST_LANES: usize = 16;
 
 /// What a call asks of its threads, the same for every group.
 pub struct Job<'a, S: Lanewise> {
@@ -83,50 +80,11 @@ pub struct LaneStepper<T: Real> {
     state: State<T>,
     params: Params<T>,
     ws: Workspace<T>,
+    /// Whether the state holds forces on bodies.
+    pushed: bool,
     /// The output that is being copied.
     output: Vec<T>,
     tally: Tally,
-}
-
-/// The environments in the lanes, the first `len` of them.
-struct Group<T> {
-    envs: [u32; MOST_LANES],
-    len: usize,
-    lanes: PhantomData<T>,
-}
-
-impl<T: Real> Group<T> {
-    fn new(envs: &[u32]) -> Self {
-        let mut group = Group {
-            envs: [0; MOST_LANES],
-            len: envs.len().min(T::LANES),
-            lanes: PhantomData,
-        };
-        group.envs[..group.len].copy_from_slice(&envs[..group.len]);
-        group
-    }
-
-    /// Each environment with its lane.
-    fn iter(&self) -> impl Iterator<Item = (usize, usize)> {
-        (0..self.len).map(|lane| (lane, self.envs[lane] as usize))
-    }
-
-    /// Every lane with an environment: those left over repeat the last.
-    fn fill(&self) -> impl Iterator<Item = (usize, usize)> {
-        (0..T::LANES).map(|lane| (lane, self.envs[lane.min(self.len - 1)] as usize))
-    }
-
-    /// Keeps the environments of some lanes.
-    fn keep(&mut self, lanes: T::Mask) {
-        let mut kept = 0;
-        for lane in 0..self.len {
-            if lanes.lane(lane) {
-                self.envs[kept] = self.envs[lane];
-                kept += 1;
-            }
-        }
-        self.len = kept;
-    }
 }
 
 impl<T: Real> LaneStepper<T>
@@ -138,11 +96,13 @@ where
             state: State::new(model),
             params: model.params.broadcast(),
             ws: Workspace::new(model),
+            pushed: false,
             output: Vec::new(),
             tally: Tally::default(),
         }
     }
 
+    /// Copies the rows of a group into the lanes.
     fn gather(&mut self, group: &Group<T>, job: &Job<T::Scalar>) {
         for (lane, env) in group.fill() {
             job.motion.read(env, lane, &mut self.state);
@@ -151,6 +111,14 @@ where
                 own.read(env, lane, &mut self.params);
             }
         }
+        // Forces on bodies are many numbers, and mostly all zero.
+        let pushed = group.iter().any(|(_, env)| job.inputs.pushed(env));
+        if pushed || self.pushed {
+            for (lane, env) in group.fill() {
+                job.inputs.read_pushes(env, lane, &mut self.state);
+            }
+        }
+        self.pushed = pushed;
     }
 
     /// Puts the controls of a rollout's step into the lanes.

@@ -1,0 +1,70 @@
+//! Environments one by one: reset, revived, taken out as a simulation.
+
+use super::{Batch, EnvStatus, Precision};
+use crate::check::check_length;
+use crate::error::SimError;
+use crate::sim::{Sim, no_such};
+use std::sync::Arc;
+
+impl<S: Precision> Batch<S> {
+    /// Environment `env` back to the model's initial state, running.
+    ///
+    /// # Errors
+    /// An environment that the batch does not have.
+    pub fn reset(&mut self, env: usize) -> Result<(), SimError> {
+        self.check_env(env)?;
+        self.state.write(env, &self.initial);
+        self.status[env] = EnvStatus::Running;
+        Ok(())
+    }
+
+    /// Environment `env` to a keyframe of the model, running; what a keyframe does not hold is as in the initial state.
+    ///
+    /// # Errors
+    /// An environment that the batch or a keyframe that the model does not have.
+    pub fn reset_to_keyframe(&mut self, env: usize, key: usize) -> Result<(), SimError> {
+        self.check_env(env)?;
+        let Some(keyframe) = self.model.keyframes.get(key) else {
+            return Err(no_such("keyframe", key, self.model.keyframes.len()));
+        };
+        self.scratch.copy_from(&self.initial);
+        self.scratch.set_keyframe(keyframe);
+        self.state.write(env, &self.scratch);
+        self.status[env] = EnvStatus::Running;
+        Ok(())
+    }
+
+    /// As [`reset`](Self::reset), for every environment where `mask` is true.
+    ///
+    /// # Errors
+    /// A mask of another length than there are environments.
+    pub fn reset_mask(&mut self, mask: &[bool]) -> Result<(), SimError> {
+        check_length("mask", mask.len(), self.count())?;
+        let mut masked = (0..self.count()).filter(|&env| mask[env]);
+        masked.try_for_each(|env| self.reset(env))
+    }
+
+    /// Lets environment `env` run on from the state in its rows.
+    ///
+    /// # Errors
+    /// An environment that the batch does not have.
+    pub fn revive(&mut self, env: usize) -> Result<(), SimError> {
+        self.check_env(env)?;
+        self.status[env] = EnvStatus::Running;
+        Ok(())
+    }
+
+    /// A simulation of one environment, in the state of `env`.
+    ///
+    /// # Errors
+    /// An environment that the batch does not have.
+    pub fn sim(&self, env: usize) -> Result<Sim<S>, SimError> {
+        self.check_env(env)?;
+        let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
+        self.state.read(env, &mut sim.state);
+        for own in &self.params {
+            own.read(env, 0, sim.params_mut());
+        }
+        Ok(sim)
+    }
+}

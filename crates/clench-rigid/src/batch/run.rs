@@ -1,0 +1,134 @@
+//! Stepping a batch: environments are grouped, threads claim groups, and what went wrong becomes a status.
+
+use super::record::{OutputRows, targets};
+use super::stepper::{Job, Stepper};
+use super::{Batch, Controls, EnvStatus, Precision};
+use crate::error::SimError;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+/// After so many steps of a call environments are grouped anew.
+const STEPS_A_GROUP: usize = 8;
+
+/// What a call did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// Environments that failed in this call.
+    pub failed: usize,
+    /// Environments that run on.
+    pub running: usize,
+}
+
+impl<S: Precision> Batch<S> {
+    /// Advances every running environment by one time step.
+    ///
+    /// # Errors
+    /// Tables of [`state`](Self::state) that are not those of this batch.
+    pub fn step(&mut self) -> Result<Summary, SimError> {
+        self.step_n(1)
+    }
+
+    /// Advances every running environment by `steps` time steps, with the same controls and applied forces.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
+        self.run(true, steps, Controls::Held, &mut [])
+    }
+
+    /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
+    /// now on.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn forward(&mut self) -> Result<Summary, SimError> {
+        self.run(false, 1, Controls::Held, &mut [])
+    }
+
+    /// Does `steps` steps, or one forward pass, of every running environment.
+    pub(super) fn run(
+        &mut self,
+        advance: bool,
+        steps: usize,
+        controls: Controls<S>,
+        trace: &mut [OutputRows<S>],
+    ) -> Result<Summary, SimError> {
+        self.state.check_shapes(&self.model, self.count())?;
+        let mut summary = Summary {
+            failed: 0,
+            running: 0,
+        };
+        for first in (0..steps).step_by(STEPS_A_GROUP) {
+            self.regroup();
+            let (motion, inputs) = self.state.share();
+            let job = Job {
+                model: &self.model,
+                settings: &self.settings,
+                motion,
+                inputs,
+                params: &self.params,
+                targets: targets(&mut self.outputs, trace),
+                places: &self.places,
+                advance,
+                controls,
+                first,
+                end: steps.min(first.saturating_add(STEPS_A_GROUP)),
+                steps,
+            };
+            spread(&mut self.steppers, self.pool.as_ref(), &self.order, &job);
+            summary.failed += self.settle();
+        }
+        let running = |status: &&EnvStatus| **status == EnvStatus::Running;
+        summary.running = self.status.iter().filter(running).count();
+        Ok(summary)
+    }
+
+    /// Lists the environments that run, those of like contacts side by side.
+    fn regroup(&mut self) {
+        let running = |env: &u32| self.status[*env as usize] == EnvStatus::Running;
+        self.order.clear();
+        let envs = 0..self.status.len() as u32;
+        self.order.extend(envs.filter(running));
+        if self.options.grouping {
+            let place = |env: &u32| self.places[*env as usize].load(Relaxed);
+            self.order.sort_unstable_by_key(place);
+        }
+    }
+
+    /// Takes over what the steppers have to report; how many environments failed.
+    fn settle(&mut self) -> usize {
+        let mut failed = 0;
+        for stepper in &mut self.steppers {
+            let tally = stepper.tally();
+            for (env, fault) in tally.faults.drain(..) {
+                self.status[env as usize] = EnvStatus::Failed(fault);
+                failed += 1;
+            }
+            self.divergence += std::mem::take(&mut tally.divergence);
+            self.quality += std::mem::take(&mut tally.quality);
+        }
+        failed
+    }
+}
+
+/// Does a job for all environments in `order`. Groups are claimed one by one, so that threads end together though groups take
+/// unlike times.
+fn spread<S: Precision>(
+    steppers: &mut [Box<dyn Stepper<S>>],
+    pool: Option<&ThreadPool>,
+    order: &[u32],
+    job: &Job<S>,
+) {
+    let next = AtomicUsize::new(0);
+    let work = |stepper: &mut Box<dyn Stepper<S>>| {
+        let lanes = stepper.lanes();
+        while let Some(group) = order.chunks(lanes).nth(next.fetch_add(1, Relaxed)) {
+            stepper.run(group, job);
+        }
+    };
+    match pool {
+        None => steppers.iter_mut().for_each(work),
+        Some(pool) => pool.install(|| steppers.par_iter_mut().with_max_len(1).for_each(work)),
+    }
+}
