@@ -194,3 +194,10 @@ def test_more_environments_than_memory_holds():
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
     done = program.run("simulate", MODELS / "humanoid.xml", "--envs", 4 * 10**9, "--threads", 1, preexec_fn=limit)
     assert done.returncode == 2 and "memory" in done.stderr, done.stderr
+
+
+def test_a_record_larger_than_memory_costs_no_run(tmp_path):
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+    flags = ("--envs", 1000, "--threads", 1, "--steps", 10**9, "--record", tmp_path / "out.npz")
+    done = program.run("simulate", MODELS / "humanoid.xml", *flags, preexec_fn=limit)
+    assert done.returncode == 2 and "out.npz" in done.stderr and "memory" in done.stderr, done.stderr

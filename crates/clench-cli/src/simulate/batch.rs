@@ -87,7 +87,10 @@ pub fn run<S: Precision>(
     start(&mut batch, run)?;
     let energies = energies(&mut batch, &mut heap)?;
     let record = arguments.record.as_ref();
-    let mut recorder = record.map(|path| BatchRecorder::create(path)).transpose()?;
+    let rows = run.steps / arguments.every;
+    let mut recorder = record
+        .map(|path| BatchRecorder::create(path, &run.model, batch.count(), rows))
+        .transpose()?;
     if recorder.is_some() {
         heap.taken_by(|| batch.record(&BATCH_OUTPUTS))?;
     }

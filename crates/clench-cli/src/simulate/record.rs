@@ -127,16 +127,31 @@ pub struct BatchRecorder {
 }
 
 impl BatchRecorder {
-    /// An empty record.
-    pub fn create(path: &Path) -> Result<Self> {
+    /// An empty record with room for `rows` steps of `envs` environments: like a path that cannot be written, a lack of
+    /// memory should not cost the user a run.
+    pub fn create(path: &Path, model: &Model, envs: usize, rows: usize) -> Result<Self> {
+        let target = Target::create(path)?;
+        let room = |width: usize| {
+            let numbers = rows.saturating_mul(envs).saturating_mul(width);
+            let mut values = Vec::new();
+            let outcome = values.try_reserve_exact(numbers);
+            outcome.with_context(|| {
+                let shape = format!("{envs} environments and {rows} steps");
+                format!(
+                    "--record {}: {shape} need more memory than there is",
+                    path.display()
+                )
+            })?;
+            anyhow::Ok(values)
+        };
         Ok(BatchRecorder {
-            time: Vec::new(),
-            qpos: Vec::new(),
-            qvel: Vec::new(),
-            contacts: Vec::new(),
-            iterations: Vec::new(),
+            time: room(1)?,
+            qpos: room(model.nq)?,
+            qvel: room(model.nv)?,
+            contacts: room(1)?,
+            iterations: room(1)?,
             ctrl: Vec::new(),
-            target: Target::create(path)?,
+            target,
         })
     }
 
