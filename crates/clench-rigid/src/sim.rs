@@ -133,6 +133,7 @@ impl<T: Precision> Sim<T> {
         self.ws.contacts.clear();
         self.ws.contacts.extend_from_slice(contacts);
         self.ws.collision.given = true;
+        self.ws.collision.overflow = false;
         let result = self.forward();
         self.ws.collision.given = false;
         result

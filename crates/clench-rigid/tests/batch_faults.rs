@@ -4,7 +4,7 @@ mod batches;
 
 use batches::*;
 use clench_math::Instructions;
-use clench_rigid::model::JointKind;
+use clench_rigid::model::{Integrator, JointKind};
 use clench_rigid::{Batch, EnvStatus, Fault, Precision, Sim, SimError, State};
 use clench_solver::{MaxContacts, RigidOptions};
 
@@ -228,4 +228,56 @@ fn a_massless_dof_is_a_fault() {
     let singular = EnvStatus::Failed(Fault::Singular { time: 0.0 });
     assert_eq!(batch.status(1), singular);
     assert_eq!([batch.status(0), batch.status(2)], [EnvStatus::Running; 2]);
+}
+
+/// Contacts that a stage of Runge–Kutta leaves out are missing from the step, though the last stage leaves out none.
+#[test]
+fn too_many_contacts_in_any_stage_are_a_fault() {
+    let mut b = world();
+    b.physics.integrator = Integrator::Rk4;
+    b.bodies[0].geoms.push(plane());
+    for (name, x) in [("one", 0.0), ("two", 1.0)] {
+        add(&mut b, 0, name, [x, 0.0, 0.0999], free(), vec![sphere(0.1)]);
+    }
+    let model = model(&b);
+    let limit = RigidOptions::new().max_contacts(MaxContacts::Limit(1));
+    let wide = with(Instructions::widest(), 1, limit);
+    let mut batch = Batch::<f64>::with_options(model, 3, wide).expect("valid");
+    // Both leave the floor within half a step.
+    batch.state.qvel.row_mut(1)[2] = 10.0;
+    batch.state.qvel.row_mut(1)[8] = 10.0;
+    // One has left it already.
+    batch.state.qpos.row_mut(2)[2] = 1.0;
+    let mut alone = batch.sim(1).expect("valid");
+    alone.step().expect("finite");
+    assert!(alone.contact_overflow());
+    batch.step().expect("valid");
+    let fault = Fault::ContactOverflow {
+        time: 0.0,
+        limit: 1,
+    };
+    assert_eq!(batch.status(0), EnvStatus::Failed(fault));
+    assert_eq!(batch.status(1), EnvStatus::Failed(fault));
+    assert_eq!(batch.status(2), EnvStatus::Running);
+    assert_eq!(batch.state.qpos.row(1)[2], 0.0999, "as before the step");
+}
+
+#[test]
+fn what_failed_does_not_count_as_quality() {
+    let model = model(&loose_parts());
+    let envs: Vec<usize> = (0..5).collect();
+    let quality = |poison: Option<f64>| {
+        let wide = with(Instructions::widest(), 1, RigidOptions::new());
+        let mut batch = batch::<f64>(&model, &envs, wide);
+        if let Some(poison) = poison {
+            batch.state.qvel.row_mut(4).fill(poison);
+        } else {
+            batch.state.qvel.row_mut(4)[0] = f64::NAN;
+        }
+        batch.step().expect("valid");
+        assert!(matches!(batch.status(4), EnvStatus::Failed(_)));
+        batch.quality()
+    };
+    let (refused, diverged) = (quality(None), quality(Some(1e300)));
+    assert_eq!(diverged, refused);
 }

@@ -2,11 +2,11 @@
 
 use crate::contact::Contact;
 use crate::workspace::Workspace;
-use clench_math::{Real, Scalar, kernel};
+use clench_math::{Mask, Real, Scalar, kernel};
 use clench_solver::Status;
 use std::ops::AddAssign;
 
-/// Sums and extremes over steps (and forward passes) of environments.
+/// Sums and extremes over steps (and forward passes) of environments, but for those in which an environment failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
     /// Steps in which constraints acted.
@@ -22,11 +22,11 @@ pub struct Quality {
 }
 
 impl Quality {
-    /// Takes in a step of a group, in whose first `len` lanes environments are.
-    pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize) {
+    /// Takes in the `good` ones of the first `len` lanes, in which environments are.
+    pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize, good: T::Mask) {
         let stats = ws.solver.stats();
         let (contacts, depth) = extent(&ws.contacts);
-        for lane in 0..len {
+        for lane in (0..len).filter(|&lane| good.lane(lane)) {
             let status = stats.status(lane);
             let value = |x: T| x.lane(lane).to_f64();
             self.constrained += u64::from(status != Status::Unconstrained);

@@ -193,7 +193,7 @@ where
             job.places[env].store(gray_rank(signatures[lane]), Relaxed);
         }
         self.tally.divergence.count(&self.ws, group.len);
-        self.tally.quality.count(&self.ws, group.len);
+        self.tally.quality.count(&self.ws, group.len, good);
     }
 
     /// Copies what a step gave out to where it is wanted.

@@ -49,9 +49,11 @@ pub fn rk4<T: Real>(
         add_scaled(&mut state.act, &rate.activation, step);
         state.time = time + step;
         ws.clock.lap(Stage::Integration as usize);
-        let singular = ws.singular;
+        // What went wrong in one stage went wrong in the step.
+        let (singular, overflow) = (ws.singular, ws.collision.overflow);
         forward(state, ws);
         ws.singular |= singular;
+        ws.collision.overflow |= overflow;
         let weight = T::new(WEIGHTS[stage + 1]);
         collect(model, state, step, weight, ws);
     }
