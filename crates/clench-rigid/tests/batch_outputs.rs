@@ -185,6 +185,69 @@ fn rollouts_are_steps() {
 }
 
 #[test]
+fn rollouts_start_where_they_are_told() {
+    let model = model(&everything());
+    let (n, steps, nq) = (5, 12, model.nq);
+    let mut batch = Batch::<f64>::new(model.clone(), n).expect("valid");
+    // What went before must not show: the solver's start, a failure.
+    batch.state.qvel.row_mut(3).fill(f64::NAN);
+    batch.step_n(4).expect("valid");
+    let mut initial = Vec::new();
+    let mut alone: Vec<Sim> = Vec::new();
+    for env in 0..n {
+        let mut sim = Sim::<f64>::new(model.clone()).expect("valid");
+        begin(env, &mut sim.state);
+        sim.state.eq_active = batch.state.eq_active.row(env).to_vec();
+        sim.state.time = env as f64;
+        sim.state.act.fill(0.1 * env as f64);
+        initial.push(sim.state.time);
+        initial.extend(
+            [&sim.state.qpos, &sim.state.qvel, &sim.state.act]
+                .map(|v| &v[..])
+                .concat(),
+        );
+        alone.push(sim);
+    }
+    let before = batch.state.qpos.as_slice().to_vec();
+    let short = batch.rollout_from(&initial[1..], steps, Controls::Held, &[]);
+    assert!(matches!(
+        short,
+        Err(SimError::WrongLength {
+            field: "initial",
+            ..
+        })
+    ));
+    assert!(
+        batch
+            .rollout_from(&initial, steps, Controls::Held, &["xpose"])
+            .is_err()
+    );
+    assert_eq!(batch.state.qpos.as_slice(), before, "errors change nothing");
+    let recording = batch
+        .rollout_from(&initial, steps, Controls::Held, &["time", "qpos", "act"])
+        .expect("valid");
+    assert_eq!(recording.summary.running, n);
+    let row = |name, env| recording.get(name).expect("recorded").row(env);
+    for (env, sim) in alone.iter_mut().enumerate() {
+        for step in 0..steps {
+            sim.step().expect("finite");
+            let what = || format!("environment {env}, step {step}");
+            assert_bits(&row("qpos", env)[step * nq..][..nq], &sim.state.qpos, &what);
+            assert_bits(&row("time", env)[step..][..1], &[sim.state.time], &what);
+        }
+        assert_state(&batch, env, &sim.state, &|| "end".into());
+    }
+    // An initial number that is none fails its environment alone.
+    let width = initial.len() / n;
+    initial[2 * width + 1] = f64::NAN;
+    let end = batch.state.qpos.row(1).to_vec();
+    let again = batch.rollout_from(&initial, steps, Controls::Held, &[]);
+    let summary = again.expect("valid").summary;
+    assert_eq!((summary.failed, summary.running), (1, n - 1));
+    assert_eq!(batch.state.qpos.row(1), end);
+}
+
+#[test]
 fn controls_are_shared_or_held() {
     let model = model(&walker());
     let (n, steps, nu) = (5, 9, model.nu());

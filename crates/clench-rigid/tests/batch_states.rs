@@ -5,6 +5,7 @@ mod batches;
 use batches::*;
 use clench_math::Instructions;
 use clench_rigid::batch::Controls;
+use clench_rigid::model::JointKind;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, SimError, State};
 use clench_solver::RigidOptions;
 
@@ -181,8 +182,38 @@ fn foreign_tables_are_refused() {
             "{error}"
         );
     }
+    let refused = [
+        batch.reset(0),
+        batch.reset_to_keyframe(0, 0),
+        batch.reset_mask(&[true; ENVS]),
+        batch.sim(0).map(drop),
+        batch.save().map(drop),
+        (batch.rollout_from(&[], 1, Controls::Held, &[])).map(drop),
+    ];
+    for result in refused {
+        assert!(matches!(result, Err(SimError::WrongLength { .. })));
+    }
     std::mem::swap(&mut batch.state.qvel, &mut larger.state.qvel);
     batch.step().expect("all is well again");
+}
+
+/// As many numbers in rows of another width are not those of the batch either.
+#[test]
+fn tables_of_another_width_are_refused() {
+    let mut b = world();
+    for name in ["one", "two"] {
+        let slide = joint(JointKind::Slide, name, [1.0, 0.0, 0.0]);
+        add(&mut b, 0, name, [0.0; 3], vec![slide], vec![sphere(0.1)]);
+    }
+    let two = model(&b);
+    b.bodies.pop();
+    let one = model(&b);
+    let mut wide = Batch::<f64>::new(two, 2).expect("valid");
+    let mut narrow = Batch::<f64>::new(one, 4).expect("valid");
+    std::mem::swap(&mut wide.state.qpos, &mut narrow.state.qpos);
+    for error in [wide.step(), narrow.step()].map(|r| r.expect_err("not its own")) {
+        assert!(matches!(error, SimError::WrongLength { field: "qpos", .. }));
+    }
 }
 
 #[test]
@@ -201,6 +232,12 @@ fn options_that_cannot_be_are_errors() {
         let error = make(count, |_| {}).expect_err("too many");
         assert!(error.to_string().starts_with("count is"), "{error}");
     }
+    let crowd = BatchOptions {
+        threads: Some(usize::MAX),
+        ..BatchOptions::default()
+    };
+    let crowd = Batch::<f64>::with_options(model.clone(), 3, crowd).expect("valid");
+    assert_eq!(crowd.threads(), 3, "one an environment at most");
     let mut batch = Batch::<f64>::new(model.clone(), 3).expect("valid");
     let error = batch.rollout(usize::MAX / 64, Controls::Held, &["xpos"]);
     let error = error.expect_err("too long");

@@ -118,6 +118,9 @@ impl<S: Precision> Batch<S> {
             });
         }
         let threads = options.threads(count)?;
+        let pool = (threads > 1).then(|| options.pool(threads)).transpose()?;
+        // A pool has a bound of its own.
+        let threads = pool.as_ref().map_or(1, ThreadPool::current_num_threads);
         let instructions = options.instructions::<S>(count, threads)?;
         let stepper = || S::stepper(instructions, &model);
         let steppers = (0..threads).map(|_| stepper()).collect::<Option<Vec<_>>>();
@@ -137,7 +140,7 @@ impl<S: Precision> Batch<S> {
             places: per_env(count, || AtomicU64::new(0))?,
             order: per_env(count, || 0)?,
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
-            pool: (threads > 1).then(|| options.pool(threads)).transpose()?,
+            pool,
             divergence: Divergence::default(),
             quality: Quality::default(),
             options: BatchOptions {
@@ -158,6 +161,11 @@ impl<S: Precision> Batch<S> {
 
     fn check_envs(&self, envs: &[usize]) -> Result<(), SimError> {
         envs.iter().try_for_each(|&env| self.check_env(env))
+    }
+
+    /// Tables may have been exchanged, for users can write all of [`state`](Self::state).
+    fn check_state(&self) -> Result<(), SimError> {
+        self.state.check_shapes(&self.model, self.count())
     }
 
     /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept, whether it runs,

@@ -18,7 +18,7 @@ pub struct BatchOptions {
     pub options: RigidOptions,
     /// How environments lie side by side; by default as suits their number and the processor.
     pub instructions: Option<Instructions>,
-    /// How many threads step; by default as many as there are processors, or environments.
+    /// How many threads step, but no more than there are environments; by default as many as there are processors.
     pub threads: Option<usize>,
     /// Whether environments of like contacts are put side by side, which makes steps faster; by default they are.
     pub grouping: bool,
@@ -37,17 +37,18 @@ impl Default for BatchOptions {
 
 impl BatchOptions {
     pub(super) fn threads(&self, count: usize) -> Result<usize, SimError> {
-        match self.threads {
-            Some(0) => Err(SimError::OutOfRange {
-                field: "threads",
-                value: 0.0,
-                range: "at least 1",
-            }),
-            Some(threads) => Ok(threads),
-            None => Ok(available_parallelism()
-                .map_or(1, usize::from)
-                .min(count.max(1))),
-        }
+        let threads = match self.threads {
+            Some(0) => {
+                return Err(SimError::OutOfRange {
+                    field: "threads",
+                    value: 0.0,
+                    range: "at least 1",
+                });
+            }
+            Some(threads) => threads,
+            None => available_parallelism().map_or(1, usize::from),
+        };
+        Ok(threads.min(count.max(1)))
     }
 
     pub(super) fn instructions<S: Scalar>(

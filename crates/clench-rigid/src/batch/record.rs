@@ -2,7 +2,7 @@
 
 use super::cells::Cells;
 use super::precision::Lanewise;
-use super::{Batch, Precision, Rows, Summary};
+use super::{Batch, EnvStatus, Precision, Rows, Summary};
 use crate::check::check_length;
 use crate::error::SimError;
 use crate::output::Output;
@@ -132,6 +132,61 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         record: &[&str],
     ) -> Result<Recording<S>, SimError> {
+        let outputs = self.recorder(steps, controls, record)?;
+        self.recorded(steps, controls, outputs)
+    }
+
+    /// As [`rollout`](Self::rollout), with all environments running from states of which `initial` holds what moves, environment
+    /// after environment (n, 1 + nq + nv + na): time, positions, velocities, activations. The solver starts anew, so that what
+    /// comes out depends on no earlier step; applied forces, mocap poses and switches are those in [`state`](Self::state).
+    ///
+    /// # Errors
+    /// As [`rollout`](Self::rollout), and a wrong number of initial numbers; the states are then as before.
+    pub fn rollout_from(
+        &mut self,
+        initial: &[S],
+        steps: usize,
+        controls: Controls<S>,
+        record: &[&str],
+    ) -> Result<Recording<S>, SimError> {
+        let (nq, nv) = (self.model.nq, self.model.nv);
+        let width = 1 + nq + nv + self.model.na;
+        check_length("initial", initial.len(), self.count() * width)?;
+        self.check_state()?;
+        let outputs = self.recorder(steps, controls, record)?;
+        for (env, row) in initial.chunks_exact(width).enumerate() {
+            let state = &mut self.state;
+            state.time.row_mut(env).copy_from_slice(&row[..1]);
+            state.qpos.row_mut(env).copy_from_slice(&row[1..][..nq]);
+            (state.qvel.row_mut(env)).copy_from_slice(&row[1 + nq..][..nv]);
+            (state.act.row_mut(env)).copy_from_slice(&row[1 + nq + nv..]);
+            state.qacc_warmstart.row_mut(env).fill(S::ZERO);
+        }
+        self.status.fill(EnvStatus::Running);
+        self.recorded(steps, controls, outputs)
+    }
+
+    fn recorded(
+        &mut self,
+        steps: usize,
+        controls: Controls<S>,
+        mut outputs: Vec<OutputRows<S>>,
+    ) -> Result<Recording<S>, SimError> {
+        let summary = self.run(true, steps, controls, &mut outputs)?;
+        Ok(Recording {
+            outputs,
+            steps,
+            summary,
+        })
+    }
+
+    /// Room for what a rollout records, once its controls are as many as they must be.
+    fn recorder(
+        &self,
+        steps: usize,
+        controls: Controls<S>,
+        record: &[&str],
+    ) -> Result<Vec<OutputRows<S>>, SimError> {
         let (n, row) = (self.count(), steps.saturating_mul(self.model.nu()));
         match controls {
             Controls::Held => {}
@@ -147,12 +202,7 @@ impl<S: Precision> Batch<S> {
                 outputs.push(OutputRows { output, rows });
             }
         }
-        let summary = self.run(true, steps, controls, &mut outputs)?;
-        Ok(Recording {
-            outputs,
-            steps,
-            summary,
-        })
+        Ok(outputs)
     }
 }
 

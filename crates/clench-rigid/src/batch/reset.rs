@@ -10,9 +10,10 @@ impl<S: Precision> Batch<S> {
     /// Environment `env` back to the model's initial state, running.
     ///
     /// # Errors
-    /// An environment that the batch does not have.
+    /// An environment that the batch does not have; tables of [`state`](Self::state) that are not those of this batch.
     pub fn reset(&mut self, env: usize) -> Result<(), SimError> {
         self.check_env(env)?;
+        self.check_state()?;
         self.state.write(env, &self.initial);
         self.status[env] = EnvStatus::Running;
         Ok(())
@@ -21,9 +22,10 @@ impl<S: Precision> Batch<S> {
     /// Environment `env` to a keyframe of the model, running; what a keyframe does not hold is as in the initial state.
     ///
     /// # Errors
-    /// An environment that the batch or a keyframe that the model does not have.
+    /// As [`reset`](Self::reset), and a keyframe that the model does not have.
     pub fn reset_to_keyframe(&mut self, env: usize, key: usize) -> Result<(), SimError> {
         self.check_env(env)?;
+        self.check_state()?;
         let Some(keyframe) = self.model.keyframes.get(key) else {
             return Err(no_such("keyframe", key, self.model.keyframes.len()));
         };
@@ -37,7 +39,7 @@ impl<S: Precision> Batch<S> {
     /// As [`reset`](Self::reset), for every environment where `mask` is true.
     ///
     /// # Errors
-    /// A mask of another length than there are environments.
+    /// A mask of another length than there are environments; tables as for [`reset`](Self::reset).
     pub fn reset_mask(&mut self, mask: &[bool]) -> Result<(), SimError> {
         check_length("mask", mask.len(), self.count())?;
         let mut masked = (0..self.count()).filter(|&env| mask[env]);
@@ -54,12 +56,13 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// A simulation of one environment, in the state of `env`.
+    /// A simulation of one environment, in the state and with the parameters of `env`.
     ///
     /// # Errors
-    /// An environment that the batch does not have.
+    /// As [`reset`](Self::reset).
     pub fn sim(&self, env: usize) -> Result<Sim<S>, SimError> {
         self.check_env(env)?;
+        self.check_state()?;
         let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
         self.state.read(env, &mut sim.state);
         for own in &self.params {

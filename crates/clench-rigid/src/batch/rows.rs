@@ -1,5 +1,6 @@
 //! What users see of a batch: plain rows, one an environment, that never move.
 
+use crate::check::check_length;
 use crate::error::SimError;
 use std::fmt;
 
@@ -86,6 +87,19 @@ impl<E> Rows<E> {
     /// The rows in turn.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[E]> {
         (0..self.count).map(|env| self.row(env))
+    }
+    /// A table of `count` rows of `width` numbers.
+    ///
+    /// # Errors
+    /// Another length, or as many numbers in rows of another width.
+    pub(super) fn check_shape(
+        &self,
+        field: &'static str,
+        count: usize,
+        width: usize,
+    ) -> Result<(), SimError> {
+        check_length(field, self.as_slice().len(), count * width)?;
+        check_length(field, self.width, width)
     }
     /// Bytes that a row takes.
     pub(crate) fn row_bytes(&self) -> usize {

@@ -54,7 +54,7 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         trace: &mut [OutputRows<S>],
     ) -> Result<Summary, SimError> {
-        self.state.check_shapes(&self.model, self.count())?;
+        self.check_state()?;
         let mut summary = Summary {
             failed: 0,
             running: 0,

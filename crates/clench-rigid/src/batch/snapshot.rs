@@ -39,7 +39,7 @@ impl<S: Precision> Batch<S> {
     /// memory than there is.
     pub fn save_envs(&self, envs: &[usize]) -> Result<Snapshot<S>, SimError> {
         self.check_envs(envs)?;
-        self.state.check_shapes(self.model(), self.count())?;
+        self.check_state()?;
         let mut state = StateRows::new(self.model(), envs.len())?;
         for (row, &env) in envs.iter().enumerate() {
             state.copy_row(row, &self.state, env);
@@ -65,7 +65,7 @@ impl<S: Precision> Batch<S> {
     /// As [`restore`](Self::restore), and another number of environments than were saved.
     pub fn restore_to(&mut self, snapshot: &Snapshot<S>, envs: &[usize]) -> Result<(), SimError> {
         self.check_envs(envs)?;
-        self.state.check_shapes(self.model(), self.count())?;
+        self.check_state()?;
         snapshot.state.check_shapes(self.model(), envs.len())?;
         for (row, &env) in envs.iter().enumerate() {
             self.state.copy_row(env, &snapshot.state, row);

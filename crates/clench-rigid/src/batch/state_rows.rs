@@ -3,7 +3,6 @@
 use super::cells::Cells;
 use super::precision::Lanewise;
 use super::{Precision, Rows};
-use crate::check::check_length;
 use crate::error::SimError;
 use crate::model::Model;
 use crate::model::flat::{set_lane, write_quats, write_vectors};
@@ -104,7 +103,7 @@ impl<S: Precision> StateRows<S> {
         numbers.iter().sum::<usize>() + self.eq_active.row_bytes()
     }
 
-    /// Tables of the shapes that `like` has.
+    /// Tables for `count` states of this model.
     ///
     /// # Errors
     /// The first of another shape.
@@ -122,10 +121,10 @@ impl<S: Precision> StateRows<S> {
             model.nv,
         ];
         for ((field, rows), width) in self.numbers().into_iter().zip(widths) {
-            check_length(field, rows.as_slice().len(), count * width)?;
+            rows.check_shape(field, count, width)?;
         }
-        let switches = self.eq_active.as_slice().len();
-        check_length("eq_active", switches, count * model.equalities.len())
+        let neq = model.equalities.len();
+        self.eq_active.check_shape("eq_active", count, neq)
     }
 
     /// Takes row `from` of another table as row `to`.
