@@ -56,9 +56,4 @@ impl<const N: usize> Stopwatch<N> {
     pub fn spent(&self) -> &[Duration; N] {
         &self.spent
     }
-
-    /// Forgets the times spent.
-    pub fn reset(&mut self) {
-        self.spent = [Duration::ZERO; N];
-    }
 }
