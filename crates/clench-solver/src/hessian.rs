@@ -23,7 +23,7 @@ pub(crate) struct Hessian<T> {
     /// The vector of a rank-one update, along its path.
     direction: Vec<T>,
     /// What the tree was made from: the model's parents, the couplings that are not within a branch, the choice.
-    parents: Vec<Option<usize>>,
+    parents: Vec<Option<u32>>,
     couplings: Vec<u32>,
     dense: bool,
     /// The couplings of the problem at hand.
@@ -39,16 +39,14 @@ impl<T: Real> Hessian<T> {
         if !dense {
             find_couplings(tree, &problem.jacobian, &mut self.found);
         }
-        let same_tree = self.parents.len() == tree.nv()
-            && (0..tree.nv()).all(|i| self.parents[i] == tree.parent(i));
-        if same_tree && self.dense == dense && self.couplings == self.found {
+        if self.parents == tree.parents() && self.dense == dense && self.couplings == self.found {
             return;
         }
         self.dense = dense;
         self.couplings.clear();
         self.couplings.extend_from_slice(&self.found);
         self.parents.clear();
-        self.parents.extend((0..tree.nv()).map(|i| tree.parent(i)));
+        self.parents.extend_from_slice(tree.parents());
         if dense {
             // The one coupling of a dense Hessian is that of all dofs.
             self.found.push(tree.nv() as u32);

@@ -119,7 +119,11 @@ impl<T: Real> StoredRows<T> {
     #[inline(always)]
     fn rows<const DIM: usize>(&self, b: &BlockIndex) -> [&[T]; DIM] {
         let values = self.values(b);
-        std::array::from_fn(|i| &values[i * b.ndof..(i + 1) * b.ndof])
+        let mut rows = [&values[..0]; DIM];
+        for (i, row) in rows.iter_mut().enumerate() {
+            *row = &values[i * b.ndof..(i + 1) * b.ndof];
+        }
+        rows
     }
 
     #[inline(always)]
@@ -164,7 +168,10 @@ impl<T: Real> StoredRows<T> {
             .is_some_and(|&last| tree.depth(last as usize) + 1 == dofs.len());
         for (k, &dof) in dofs.iter().enumerate() {
             let wj = weigh_column::<T, DIM>(weight, form, &array(|i| rows[i][k]));
-            let rows: [&[T]; DIM] = std::array::from_fn(|i| &rows[i][..=k]);
+            let mut rows = rows;
+            for row in &mut rows {
+                *row = &row[..=k];
+            }
             let start = tree.row_start(dof as usize);
             if whole_path {
                 for (c, h) in hessian[start..=start + k].iter_mut().enumerate() {

@@ -72,7 +72,7 @@ impl<T: Real> TreeFactor<T> {
         floor: T,
     ) -> T::Mask {
         let depth = tree.depth(first);
-        let starts: [usize; LEN] = std::array::from_fn(|m| tree.starts[first + m]);
+        let starts: [usize; LEN] = array(|m| tree.starts[first + m]);
         let end = tree.starts[first + LEN];
         let (lower, lower_below) = self.lower.split_at_mut(end);
         let (scaled, scaled_below) = self.scaled.split_at_mut(end);

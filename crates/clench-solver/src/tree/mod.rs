@@ -149,7 +149,11 @@ impl Tree {
         values: &'a [T],
         first: usize,
     ) -> [&'a [T]; LEN] {
-        std::array::from_fn(|m| &values[self.starts[first + m]..self.starts[first + m + 1]])
+        let mut rows = [&values[..0]; LEN];
+        for (m, row) in rows.iter_mut().enumerate() {
+            *row = &values[self.starts[first + m]..self.starts[first + m + 1]];
+        }
+        rows
     }
 
     fn list_descendants(&mut self) {
@@ -238,22 +242,31 @@ impl Tree {
     }
 
     /// Number of dofs.
+    #[inline(always)]
     pub fn nv(&self) -> usize {
         self.parents.len()
+    }
+    /// The parent of each dof.
+    #[inline(always)]
+    pub(crate) fn parents(&self) -> &[Option<u32>] {
+        &self.parents
     }
     /// The parent of a dof, `None` for a root.
     pub fn parent(&self, dof: usize) -> Option<usize> {
         self.parents[dof].map(|p| p as usize)
     }
     /// Ancestors of dof `i`, ascending, then `i` itself.
+    #[inline(always)]
     pub fn row(&self, i: usize) -> &[u32] {
         &self.columns[self.starts[i]..self.starts[i + 1]]
     }
     /// Where row `i` starts among the stored values; `row_start(nv)` is their number.
+    #[inline(always)]
     pub fn row_start(&self, i: usize) -> usize {
         self.starts[i]
     }
     /// Number of stored values.
+    #[inline(always)]
     pub fn nnz(&self) -> usize {
         self.columns.len()
     }
