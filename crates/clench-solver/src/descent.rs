@@ -151,12 +151,14 @@ impl<T: Real> Progress<T> {
         self.end(!constrained(problem), Status::Unconstrained, stats);
         // Newton is trusted for its forces as well: the gap alone, a bound in cost, would let
         // stiff ones be wrong.
-        let mut proven =
-            (self.scale * gap(problem, iterate, &mut ray.direction)).le(self.tolerance);
+        let mut proven = self.live;
         if D::NEWTON {
             proven &= stats.gradient.le(self.tolerance);
         }
-        self.end(proven, Status::Proven, stats);
+        if proven.any() {
+            let gap = self.scale * gap(problem, iterate, &mut ray.direction);
+            self.end(proven & gap.le(self.tolerance), Status::Proven, stats);
+        }
     }
 
     /// Takes a step into the statistics.
