@@ -1,5 +1,6 @@
 //! Articulated rigid bodies: an immutable [`Model`] and its builder, smooth dynamics, contact selection, and the
-//! constraints that turn a model and a state into the convex problem that `clench-solver` solves.
+//! constraints that turn a model and a state into the convex problem that `clench-solver` solves. A [`Sim`] moves one
+//! environment, a [`Batch`] as many as memory holds.
 //!
 //! Data lives in three kinds of struct: [`Model`] never changes while stepping, [`State`] is what a user saves and
 //! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.

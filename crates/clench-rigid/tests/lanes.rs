@@ -3,66 +3,14 @@
 mod scenes;
 
 use clench_math::{Lanes, Mask, Real};
-use clench_rigid::builder::{EqualityKind, EqualitySpec, GeomSpec, ModelBuilder};
-use clench_rigid::model::{Integrator, JointKind};
+use clench_rigid::model::Integrator;
 use clench_rigid::{Model, Sim, State, StepSettings, Workspace, pipeline};
 use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
-use scenes::{Numbers, add, bodies, cuboid, free, joint, plane, sphere, world};
+use scenes::{Numbers, loose_parts};
 use std::sync::Arc;
 
 const N: usize = 4;
 type L = Lanes<f64, N>;
-
-/// A jointed pair, a ball and a box above a floor; the box can be welded to the world.
-fn scene() -> ModelBuilder {
-    let mut b = world();
-    b.options = RigidOptions::new().constraint_timeconst(0.0);
-    b.bodies[0].geoms.push(plane());
-    let rolls = |g: GeomSpec| GeomSpec { condim: 6, ..g };
-    let base = add(
-        &mut b,
-        0,
-        "base",
-        [0.0, 0.0, 0.15],
-        free(),
-        vec![sphere(0.1)],
-    );
-    let mut hinge = joint(JointKind::Hinge, "hinge", [0.0, 1.0, 0.0]);
-    hinge.range = [-0.6, 0.3];
-    hinge.frictionloss = 0.1;
-    add(
-        &mut b,
-        base,
-        "link",
-        [0.25, 0.0, 0.0],
-        vec![hinge],
-        vec![sphere(0.08)],
-    );
-    add(
-        &mut b,
-        0,
-        "ball",
-        [0.3, 0.1, 0.3],
-        free(),
-        vec![rolls(sphere(0.1))],
-    );
-    add(
-        &mut b,
-        0,
-        "box",
-        [-0.3, 0.1, 0.2],
-        free(),
-        vec![cuboid([0.1, 0.08, 0.06])],
-    );
-    let kind = EqualityKind::Weld {
-        anchor: bodies("box", "", [0.0; 3]),
-        relpose: None,
-        torquescale: 1.0,
-    };
-    b.equalities.push(EqualitySpec::new("grip", kind));
-    b.equalities[0].active = false;
-    b
-}
 
 /// One of the environments: its own velocities, and the weld on in the last.
 fn start(model: &Arc<Model>, options: RigidOptions, lane: usize) -> Sim {
@@ -74,7 +22,7 @@ fn start(model: &Arc<Model>, options: RigidOptions, lane: usize) -> Sim {
 
 /// Steps all environments together and alone; whether any had too many contacts.
 fn compare(options: RigidOptions, integrator: Integrator, steps: usize) -> bool {
-    let mut builder = scene();
+    let mut builder = loose_parts();
     builder.physics.integrator = integrator;
     let model = scenes::model(&builder);
     let mut alone: Vec<Sim> = (0..N).map(|lane| start(&model, options, lane)).collect();

@@ -5,8 +5,9 @@ use clench_math::{Mask, Real, Scalar};
 use std::ops::AddAssign;
 use std::slice::from_ref;
 
-/// Sums over steps (and forward passes) of groups, by which the loss to divergence can be judged. A group goes on as long as one of its
-/// environments needs it, and has a slot for every contact that any of them has.
+/// Sums over steps (and forward passes) of groups, by which the loss to divergence can be judged; those in which an environment
+/// failed cost time too, and count. A group goes on as long as one of its environments needs it, and has a slot for every
+/// contact that any of them has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Divergence {
     /// Steps of groups.

@@ -15,6 +15,7 @@ pub struct Group<T> {
 
 impl<T: Real> Group<T> {
     pub fn new(envs: &[u32]) -> Self {
+        const { assert!(T::LANES <= MOST_LANES) };
         let mut group = Group {
             envs: [0; MOST_LANES],
             len: envs.len().min(T::LANES),

@@ -1,4 +1,8 @@
 //! Many environments of one model, stepped side by side in lanes and spread over threads.
+//!
+//! What users see is in rows, one an environment ([`Rows`], [`StateRows`]). A call (`run.rs`) puts running environments of like
+//! contacts into groups; each thread has a stepper (`stepper.rs`), scratch in lanes, that claims a group, gathers its rows,
+//! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status.
 
 mod cells;
 mod divergence;

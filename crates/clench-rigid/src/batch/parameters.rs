@@ -45,19 +45,21 @@ impl<S: Precision> Batch<S> {
         let mut values = values.to_vec();
         let mut rows = values.chunks_mut(width.max(1));
         rows.try_for_each(|row| field.admit(&self.model, row))?;
+        // What may run out of memory comes before the first change.
         self.param_rows(field)?;
-        if let Some(follower) = field.follower() {
-            self.param_rows(follower)?;
+        let mut follower = None;
+        if let Some(field) = field.follower() {
+            self.param_rows(field)?;
+            follower = Some((field, self.model.params.broadcast::<S>()));
         }
-        let mut params = self.model.params.broadcast::<S>();
         for (&env, row) in envs.iter().zip(values.chunks(width.max(1))) {
             Model::loosen(&mut self.model, field, row);
             self.param_rows(field)?.row_mut(env).copy_from_slice(row);
-            if let Some(follower) = field.follower() {
+            if let Some((follower, params)) = &mut follower {
                 params.write_lane(field, 0, row);
                 params.derive(&self.model, field);
-                let row = params.read_lane(follower, 0);
-                self.param_rows(follower)?
+                let row = params.read_lane(*follower, 0);
+                self.param_rows(*follower)?
                     .row_mut(env)
                     .copy_from_slice(&row);
             }

@@ -9,7 +9,11 @@ use crate::workspace::Workspace;
 use clench_math::{Instructions, Scalar};
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
-/// A number type of batches: `f64` or `f32`.
+/// A number type of simulations and batches: `f64` or `f32`.
+///
+/// From the same state, a step in `f32` leads to accelerations within 1e-3 of the largest of them (or of 1, if all are smaller)
+/// and to positions within 1e-6 (m, rad) of those in `f64`; what rests moves by less than 1e-6 m in a thousand steps. The
+/// tests hold steps of a humanoid and of loose parts, and a stack at rest, to these bounds.
 pub trait Precision: Lanewise {}
 impl Precision for f64 {}
 impl Precision for f32 {}

@@ -54,7 +54,8 @@ impl<S: Precision> Batch<S> {
     /// Brings the environments of a snapshot back to what they were.
     ///
     /// # Errors
-    /// A snapshot of another model or a larger batch.
+    /// A snapshot of states of other sizes or of a larger batch; tables of [`state`](Self::state) that are not those of this
+    /// batch.
     pub fn restore(&mut self, snapshot: &Snapshot<S>) -> Result<(), SimError> {
         self.restore_to(snapshot, &snapshot.envs)
     }

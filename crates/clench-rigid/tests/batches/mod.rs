@@ -5,59 +5,11 @@
 mod scenes;
 
 use clench_math::Instructions;
-use clench_rigid::builder::{EqualityKind, EqualitySpec, GeomSpec, KeyframeSpec, ModelBuilder};
-use clench_rigid::model::JointKind;
+use clench_rigid::builder::ModelBuilder;
 use clench_rigid::{Batch, BatchOptions, Model, Precision, Sim, State};
 use clench_solver::RigidOptions;
 pub use scenes::*;
 use std::sync::Arc;
-
-/// A jointed pair, a ball and a box above a floor; the box can be welded to the world.
-pub fn loose_parts() -> ModelBuilder {
-    let mut b = world();
-    b.options = RigidOptions::new().constraint_timeconst(0.0);
-    b.bodies[0].geoms.push(plane());
-    let pair = add(
-        &mut b,
-        0,
-        "pair",
-        [0.0, 0.0, 0.15],
-        free(),
-        vec![sphere(0.1)],
-    );
-    let mut hinge = joint(JointKind::Hinge, "hinge", [0.0, 1.0, 0.0]);
-    hinge.range = [-0.6, 0.3];
-    hinge.frictionloss = 0.1;
-    add(
-        &mut b,
-        pair,
-        "link",
-        [0.25, 0.0, 0.0],
-        vec![hinge],
-        vec![sphere(0.08)],
-    );
-    let rolling = GeomSpec {
-        condim: 6,
-        ..sphere(0.1)
-    };
-    add(&mut b, 0, "ball", [0.3, 0.1, 0.3], free(), vec![rolling]);
-    let box_geom = cuboid([0.1, 0.08, 0.06]);
-    add(&mut b, 0, "box", [-0.3, 0.1, 0.2], free(), vec![box_geom]);
-    let kind = EqualityKind::Weld {
-        anchor: bodies("box", "", [0.0; 3]),
-        relpose: None,
-        torquescale: 1.0,
-    };
-    b.equalities.push(EqualitySpec::new("grip", kind));
-    b.equalities[0].active = false;
-    b.keyframes.push(KeyframeSpec {
-        name: "thrown".into(),
-        time: 2.0,
-        qvel: Some(vec![1.0, 0.0, 3.0, 0.0, 0.0, 0.0]),
-        ..KeyframeSpec::default()
-    });
-    b
-}
 
 /// The humanoid, solved as a user would.
 pub fn walker() -> ModelBuilder {
