@@ -89,6 +89,20 @@ fn a_humanoid_with_elliptic_cones() {
     assert!(compare::<f64>(&walker(), options, 1000) > 1.0);
 }
 
+/// So many geoms that pairs are swept for, over the lanes together.
+#[test]
+fn a_field_of_bumps() {
+    let mut bumpy = loose_parts();
+    for k in 0..144 {
+        let place = [0.1 * (k % 12) as f64 - 0.5, 0.1 * (k / 12) as f64 - 0.5];
+        let bump = sphere(0.05).at([place[0], place[1], -0.03]);
+        bumpy.bodies[0].geoms.push(bump);
+    }
+    let options = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&bumpy, options, 200) > 3.0);
+    assert!(compare::<f32>(&bumpy, options, 200) > 3.0);
+}
+
 #[test]
 fn single_precision() {
     let newton = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);

@@ -145,6 +145,11 @@
 //! let forces = batch.output("contact_force").expect("it is recorded");
 //! let weight = 9.81 * (1.0 + 0.001 * 500.0);
 //! assert!((forces.row(500)[6 + 2] - weight).abs() < 0.01 * weight);
+//!
+//! // A rollout keeps what every step brought: here the seven coordinates of each ball, twenty times.
+//! let recording = batch.rollout(20, Controls::Held, &["qpos"])?;
+//! let paths = recording.get("qpos").expect("it was recorded");
+//! assert_eq!(paths.row(500)[19 * 7..], *batch.state.qpos.row(500));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -175,6 +180,7 @@ pub use clench_rigid as rigid;
 pub use clench_solver as solver;
 
 pub use clench_formats::{LoadError, load, load_str};
+pub use clench_rigid::batch::Controls;
 pub use clench_rigid::{
     Batch, BatchOptions, EnvStatus, Fault, Model, Output, Precision, Sim, SimError, State,
 };
@@ -187,8 +193,8 @@ struct Readme;
 /// What most programs need: `use clench::prelude::*`.
 pub mod prelude {
     pub use crate::{
-        Batch, BatchOptions, EnvStatus, Fault, LoadError, Model, RigidOptions, Sim, SimError,
-        State, load, load_str,
+        Batch, BatchOptions, Controls, EnvStatus, Fault, LoadError, Model, RigidOptions, Sim,
+        SimError, State, load, load_str,
     };
     pub use clench_math::{Quat, Vec3};
     pub use clench_solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
