@@ -60,7 +60,7 @@ pub(super) fn may_touch<T: Real>(
     let (first, second) = (&reaches[a], &reaches[b]);
     let reach = match candidate.pair {
         None => first.reach + second.reach,
-        Some(_) => first.radius + second.radius + range(),
+        Some(_) => first.radius + second.radius + range() * allowance(),
     };
     let offset = second.center - first.center;
     if candidate.kinds[0] == ShapeKind::Plane {

@@ -107,7 +107,7 @@ impl<T: Real> TreeFactor<T> {
             }
         }
 
-        let mut out = Columns {
+        let mut columns = Columns {
             depth,
             starts,
             block: &block,
@@ -115,22 +115,7 @@ impl<T: Real> TreeFactor<T> {
             lower,
             scaled,
         };
-        match depth {
-            0 => {}
-            1 => out.write::<1>(0, below.window(depth, 0, &rows)),
-            2 => out.write::<2>(0, below.window(depth, 0, &rows)),
-            3 => out.write::<3>(0, below.window(depth, 0, &rows)),
-            _ => {
-                for column in (0..=depth - WIDTH).step_by(WIDTH) {
-                    out.write::<WIDTH>(column, below.window(depth, column, &rows));
-                }
-                // The last columns, some perhaps once more.
-                if !depth.is_multiple_of(WIDTH) {
-                    let column = depth - WIDTH;
-                    out.write::<WIDTH>(column, below.window(depth, column, &rows));
-                }
-            }
-        }
+        columns.fill(&below, &rows);
         positive
     }
 
@@ -354,6 +339,28 @@ struct Columns<'a, T, const LEN: usize> {
 }
 
 impl<T: Real, const LEN: usize> Columns<'_, T, LEN> {
+    /// Computes them all, a few at a time.
+    #[inline(always)]
+    fn fill(&mut self, below: &Below<T>, rows: &[&[T]; LEN]) {
+        let depth = self.depth;
+        match depth {
+            0 => {}
+            1 => self.write::<1>(0, below.window(depth, 0, rows)),
+            2 => self.write::<2>(0, below.window(depth, 0, rows)),
+            3 => self.write::<3>(0, below.window(depth, 0, rows)),
+            _ => {
+                for column in (0..=depth - WIDTH).step_by(WIDTH) {
+                    self.write::<WIDTH>(column, below.window(depth, column, rows));
+                }
+                // The last columns, some perhaps once more.
+                if !depth.is_multiple_of(WIDTH) {
+                    let column = depth - WIDTH;
+                    self.write::<WIDTH>(column, below.window(depth, column, rows));
+                }
+            }
+        }
+    }
+
     /// Takes off what the strand's later rows take off, and writes `N` columns from `column` on.
     #[inline(always)]
     fn write<const N: usize>(&mut self, column: usize, mut sums: [[T; N]; LEN]) {
