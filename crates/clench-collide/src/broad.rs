@@ -3,8 +3,8 @@
 use crate::{Pose, Shape, ShapeKind, bounding_radius};
 use clench_math::{Mask, Real, Scalar, kernel};
 
-/// By how much bounding radii are enlarged, a hair more than 1, so that rounding never rejects a pair in which the narrow
-/// phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
+/// By how much bounding radii and margins are enlarged, a hair more than 1, so that rounding never rejects a pair in which the
+/// narrow phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
 #[inline(always)]
 pub fn allowance<T: Real>() -> T {
     T::ONE + T::new(1e-6).max(T::splat(T::Scalar::EPSILON) * T::new(64.0))
@@ -41,6 +41,7 @@ pub fn near<T: Real>(
     margin: T,
 ) -> T::Mask {
     let offset = pose_b.position - pose_a.position;
+    let margin = margin * allowance();
     match (a.plane, b.plane) {
         (false, false) => {
             let reach = a.radius + b.radius + margin;

@@ -28,7 +28,7 @@ pub(super) fn update<T: Real>(
     reaches.clear();
     for (g, &center) in pos.geom_xpos.iter().enumerate() {
         let radius = params.geom_rbound[g] * allowance;
-        let margin = own_margin(model, params, g);
+        let margin = own_margin(model, params, g) * allowance;
         reaches.push(Reach {
             center,
             radius,
