@@ -24,9 +24,17 @@ pub(super) fn push_joints<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
         if !joint.limited {
             continue;
         }
+        let margin = params.jnt_margin[i];
+        if let JointKind::Hinge | JointKind::Slide = joint.kind {
+            // Most joints are well within their range.
+            let (q, [low, high]) = (scene.state.qpos[joint.qpos], params.jnt_range[i]);
+            if !((q - low).lt(margin) | (high - q).lt(margin)).any() {
+                continue;
+            }
+        }
         let limit = Limit {
             source: ConstraintSource::JointLimit(i),
-            margin: params.jnt_margin[i],
+            margin,
             solref: &params.jnt_solref[i],
             solimp: &params.jnt_solimp[i],
             a0: params.dof_invweight0[joint.dof],
