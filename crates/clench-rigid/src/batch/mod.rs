@@ -75,7 +75,7 @@ pub struct Batch<S: Precision = f64> {
     /// The environments that run, those of like contacts together.
     order: Vec<u32>,
     steppers: Vec<Box<dyn Stepper<S>>>,
-    pool: Option<ThreadPool>,
+    pool: Option<Arc<ThreadPool>>,
     divergence: Divergence,
     quality: Quality,
 }
@@ -122,9 +122,11 @@ impl<S: Precision> Batch<S> {
             });
         }
         let threads = options.threads(count)?;
-        let pool = (threads > 1).then(|| options.pool(threads)).transpose()?;
+        let pool = (threads > 1)
+            .then(|| options.pool(threads).map(Arc::new))
+            .transpose()?;
         // A pool has a bound of its own.
-        let threads = pool.as_ref().map_or(1, ThreadPool::current_num_threads);
+        let threads = pool.as_ref().map_or(1, |pool| pool.current_num_threads());
         let instructions = options.instructions::<S>(count, threads)?;
         let stepper = || S::stepper(instructions, &model);
         let steppers = (0..threads).map(|_| stepper()).collect::<Option<Vec<_>>>();

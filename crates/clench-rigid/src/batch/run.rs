@@ -4,7 +4,6 @@ use super::record::{OutputRows, targets};
 use super::stepper::{Job, Stepper};
 use super::{Batch, Controls, EnvStatus, Precision};
 use crate::error::SimError;
-use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -55,6 +54,20 @@ impl<S: Precision> Batch<S> {
         trace: &mut [OutputRows<S>],
     ) -> Result<Summary, SimError> {
         self.check_state()?;
+        // All groupings of a call run inside the pool, so that its threads need not be woken for each.
+        Ok(match self.pool.clone() {
+            None => self.run_here(advance, steps, controls, trace),
+            Some(pool) => pool.install(|| self.run_here(advance, steps, controls, trace)),
+        })
+    }
+
+    fn run_here(
+        &mut self,
+        advance: bool,
+        steps: usize,
+        controls: Controls<S>,
+        trace: &mut [OutputRows<S>],
+    ) -> Summary {
         let mut summary = Summary {
             failed: 0,
             running: 0,
@@ -76,12 +89,12 @@ impl<S: Precision> Batch<S> {
                 end: steps.min(first.saturating_add(STEPS_A_GROUP)),
                 steps,
             };
-            spread(&mut self.steppers, self.pool.as_ref(), &self.order, &job);
+            spread(&mut self.steppers, &self.order, &job);
             summary.failed += self.settle();
         }
         let running = |status: &&EnvStatus| **status == EnvStatus::Running;
         summary.running = self.status.iter().filter(running).count();
-        Ok(summary)
+        summary
     }
 
     /// Lists the environments that run, those of like contacts side by side.
@@ -114,12 +127,7 @@ impl<S: Precision> Batch<S> {
 
 /// Does a job for all environments in `order`. Groups are claimed one by one, so that threads end together though groups take
 /// unlike times.
-fn spread<S: Precision>(
-    steppers: &mut [Box<dyn Stepper<S>>],
-    pool: Option<&ThreadPool>,
-    order: &[u32],
-    job: &Job<S>,
-) {
+fn spread<S: Precision>(steppers: &mut [Box<dyn Stepper<S>>], order: &[u32], job: &Job<S>) {
     let next = AtomicUsize::new(0);
     let work = |stepper: &mut Box<dyn Stepper<S>>| {
         let lanes = stepper.lanes();
@@ -127,8 +135,8 @@ fn spread<S: Precision>(
             stepper.run(group, job);
         }
     };
-    match pool {
-        None => steppers.iter_mut().for_each(work),
-        Some(pool) => pool.install(|| steppers.par_iter_mut().with_max_len(1).for_each(work)),
+    match steppers {
+        [alone] => work(alone),
+        _ => steppers.par_iter_mut().with_max_len(1).for_each(work),
     }
 }
