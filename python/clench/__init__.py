@@ -1,0 +1,1 @@
+"""MuJoCo's constraint model, fast: one robot or thousands at once."""
