@@ -1,1 +1,6 @@
 """MuJoCo's constraint model, fast: one robot or thousands at once."""
+
+from clench._core import Model, __version__
+from clench.errors import BusyError, ClenchError, LoadError, SimulationError
+
+__all__ = ["BusyError", "ClenchError", "LoadError", "Model", "SimulationError", "__version__"]

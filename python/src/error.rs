@@ -1,0 +1,48 @@
+//! Errors as exceptions: which class each becomes. The classes themselves are Python's, in `clench/errors.py`.
+
+use clench::{LoadError, SimError};
+use pyo3::PyErr;
+use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
+
+/// The classes of `clench.errors`.
+pub(crate) mod classes {
+    pyo3::import_exception!(clench.errors, ClenchError);
+    pyo3::import_exception!(clench.errors, LoadError);
+    pyo3::import_exception!(clench.errors, SimulationError);
+    pyo3::import_exception!(clench.errors, BusyError);
+}
+
+/// What is wrong with a file.
+pub(crate) fn load_error(error: LoadError) -> PyErr {
+    let LoadError {
+        file,
+        line,
+        element,
+        message,
+    } = error;
+    classes::LoadError::new_err((message, file.to_string(), line, element))
+}
+
+/// What is wrong with a simulation or with what it was given.
+pub(crate) fn sim_error(error: SimError) -> PyErr {
+    let text = error.to_string();
+    match error {
+        SimError::Fault(_) => classes::SimulationError::new_err(text),
+        SimError::NoSuchElement { .. } => PyIndexError::new_err(text),
+        SimError::OutOfMemory { .. } => PyMemoryError::new_err(text),
+        SimError::Instructions(_) | SimError::Threads(_) => classes::ClenchError::new_err(text),
+        SimError::Option(_)
+        | SimError::UnsupportedPair(_)
+        | SimError::WrongLength { .. }
+        | SimError::OutOfRange { .. }
+        | SimError::Parameter { .. }
+        | SimError::Follows { .. }
+        | SimError::Unknown { .. }
+        | SimError::Contact { .. } => PyValueError::new_err(text),
+    }
+}
+
+/// Another thread is using `what`.
+pub(crate) fn busy(what: &str) -> PyErr {
+    classes::BusyError::new_err(format!("another thread is using this {what}"))
+}
