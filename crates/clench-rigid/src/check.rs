@@ -48,18 +48,8 @@ fn first_not_finite<T: Real>(values: &[T], lane: usize) -> Option<(usize, f64)> 
 
 /// A state of the model's lengths.
 pub(crate) fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimError> {
-    for (field, found, expected) in [
-        ("qpos", s.qpos.len(), model.nq),
-        ("qvel", s.qvel.len(), model.nv),
-        ("act", s.act.len(), model.na),
-        ("ctrl", s.ctrl.len(), model.nu()),
-        ("qfrc_applied", s.qfrc_applied.len(), model.nv),
-        ("qacc_warmstart", s.qacc_warmstart.len(), model.nv),
-        ("xfrc_applied", 6 * s.xfrc_applied.len(), 6 * model.nbody()),
-        ("mocap_pos", 3 * s.mocap_pos.len(), 3 * model.nmocap),
-        ("mocap_quat", 4 * s.mocap_quat.len(), 4 * model.nmocap),
-        ("eq_active", s.eq_active.len(), model.equalities.len()),
-    ] {
+    let expected = model.state_lengths();
+    for ((field, found), (_, expected)) in s.lengths().into_iter().zip(expected) {
         check_length(field, found, expected)?;
     }
     Ok(())

@@ -30,6 +30,28 @@ pub struct State<T: Real> {
     pub qacc_warmstart: Vec<T>,
 }
 
+/// How many numbers each field of a state has.
+pub(crate) type Lengths = [(&'static str, usize); 11];
+
+impl Model {
+    /// How many numbers each field of a state has.
+    pub(crate) fn state_lengths(&self) -> Lengths {
+        [
+            ("time", 1),
+            ("qpos", self.nq),
+            ("qvel", self.nv),
+            ("act", self.na),
+            ("ctrl", self.nu()),
+            ("qfrc_applied", self.nv),
+            ("xfrc_applied", 6 * self.nbody()),
+            ("mocap_pos", 3 * self.nmocap),
+            ("mocap_quat", 4 * self.nmocap),
+            ("eq_active", self.equalities.len()),
+            ("qacc_warmstart", self.nv),
+        ]
+    }
+}
+
 impl<T: Real> State<T> {
     /// The initial state of a model.
     pub fn new(model: &Model) -> Self {
@@ -54,6 +76,23 @@ impl<T: Real> State<T> {
                 .collect(),
             qacc_warmstart: vec![T::ZERO; model.nv],
         }
+    }
+
+    /// How many numbers each field has.
+    pub(crate) fn lengths(&self) -> Lengths {
+        [
+            ("time", 1),
+            ("qpos", self.qpos.len()),
+            ("qvel", self.qvel.len()),
+            ("act", self.act.len()),
+            ("ctrl", self.ctrl.len()),
+            ("qfrc_applied", self.qfrc_applied.len()),
+            ("xfrc_applied", 6 * self.xfrc_applied.len()),
+            ("mocap_pos", 3 * self.mocap_pos.len()),
+            ("mocap_quat", 4 * self.mocap_quat.len()),
+            ("eq_active", self.eq_active.len()),
+            ("qacc_warmstart", self.qacc_warmstart.len()),
+        ]
     }
 
     /// Takes over another state of the same model, without allocating.

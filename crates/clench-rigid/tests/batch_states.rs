@@ -4,7 +4,7 @@ mod batches;
 
 use batches::*;
 use clench_math::Instructions;
-use clench_rigid::batch::Controls;
+use clench_rigid::batch::{Controls, StateRows};
 use clench_rigid::model::JointKind;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, SimError, State};
 use clench_solver::RigidOptions;
@@ -161,11 +161,37 @@ fn rows_stay_where_they_are() {
     let saved = batch.save().expect("valid");
     batch.restore(&saved).expect("its own");
     assert_eq!(places(&batch), before);
+    assert_eq!(batch.state.qpos.as_mut_ptr().cast_const(), before[0]);
     assert_eq!(batch.state.qpos.iter().count(), ENVS);
     assert_eq!(
         batch.state.qpos.iter().nth(3),
         Some(batch.state.qpos.row(3))
     );
+}
+
+#[test]
+fn states_go_into_rows_and_out_of_them() {
+    let model = model(&everything());
+    let mut rows = StateRows::<f64>::new(&model, 3).expect("few");
+    assert_eq!(rows.count(), 3);
+    let mut state = State::new(&model);
+    begin(4, &mut state);
+    state.time = 0.5;
+    state.xfrc_applied[1].angular.y = 2.0;
+    rows.write(1, &state).expect("of the model");
+    let mut found = State::new(&model);
+    rows.read(1, &mut found).expect("of the model");
+    assert_eq!(format!("{found:?}"), format!("{state:?}"));
+    rows.read(2, &mut found).expect("of the model");
+    let sum = |state: &State<f64>| state.qpos.iter().map(|x| x.abs()).sum::<f64>();
+    assert_eq!((found.time, sum(&found)), (0.0, 0.0), "new rows are zero");
+    let gone = rows.write(3, &state).expect_err("there are three");
+    assert_eq!(gone.to_string(), "there is no environment 3: there are 3");
+    state.qpos.pop();
+    for error in [rows.read(1, &mut state), rows.write(1, &state)] {
+        let error = error.expect_err("too short");
+        assert!(matches!(error, SimError::WrongLength { field: "qpos", .. }));
+    }
 }
 
 #[test]

@@ -133,7 +133,7 @@ impl<S: Precision> Batch<S> {
         let initial = State::new(&model);
         let mut state = StateRows::new(&model, count)?;
         for env in 0..count {
-            state.write(env, &initial);
+            state.write(env, &initial)?;
         }
         Ok(Batch {
             state,

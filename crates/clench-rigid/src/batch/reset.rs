@@ -14,7 +14,7 @@ impl<S: Precision> Batch<S> {
     pub fn reset(&mut self, env: usize) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;
-        self.state.write(env, &self.initial);
+        self.state.write(env, &self.initial)?;
         self.status[env] = EnvStatus::Running;
         Ok(())
     }
@@ -31,7 +31,7 @@ impl<S: Precision> Batch<S> {
         };
         self.scratch.copy_from(&self.initial);
         self.scratch.set_keyframe(keyframe);
-        self.state.write(env, &self.scratch);
+        self.state.write(env, &self.scratch)?;
         self.status[env] = EnvStatus::Running;
         Ok(())
     }
@@ -64,7 +64,7 @@ impl<S: Precision> Batch<S> {
         self.check_env(env)?;
         self.check_state()?;
         let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
-        self.state.read(env, &mut sim.state);
+        self.state.read(env, &mut sim.state)?;
         for own in &self.params {
             own.read(env, 0, sim.params_mut());
         }

@@ -1,6 +1,5 @@
 //! What users see of a batch: plain rows, one an environment, that never move.
 
-use crate::check::check_length;
 use crate::error::SimError;
 use std::fmt;
 
@@ -69,6 +68,12 @@ impl<E> Rows<E> {
     pub fn as_mut_slice(&mut self) -> &mut [E] {
         &mut self.buffer[self.start..][..self.count * self.width]
     }
+    /// Where the numbers begin, for code that shares them beyond this table's borrows. The pointer stays valid, and the numbers
+    /// stay there, as long as the table lives, wherever it is moved.
+    pub fn as_mut_ptr(&mut self) -> *mut E {
+        // `start` is within the buffer; no reference to the numbers is made on the way.
+        self.buffer.as_mut_ptr().wrapping_add(self.start)
+    }
     /// The row of environment `env`.
     ///
     /// # Panics
@@ -87,19 +92,6 @@ impl<E> Rows<E> {
     /// The rows in turn.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[E]> {
         (0..self.count).map(|env| self.row(env))
-    }
-    /// A table of `count` rows of `width` numbers.
-    ///
-    /// # Errors
-    /// Another length, or as many numbers in rows of another width.
-    pub(super) fn check_shape(
-        &self,
-        field: &'static str,
-        count: usize,
-        width: usize,
-    ) -> Result<(), SimError> {
-        check_length(field, self.as_slice().len(), count * width)?;
-        check_length(field, self.width, width)
     }
     /// Bytes that a row takes.
     pub(crate) fn row_bytes(&self) -> usize {

@@ -3,9 +3,11 @@
 use super::cells::Cells;
 use super::precision::Lanewise;
 use super::{Precision, Rows};
+use crate::check::check_length;
 use crate::error::SimError;
 use crate::model::Model;
 use crate::model::flat::{set_lane, write_quats, write_vectors};
+use crate::sim::no_such;
 use crate::state::State;
 use clench_math::{Mask, Real, write_lane};
 use std::slice::{from_mut, from_ref};
@@ -40,11 +42,11 @@ pub struct StateRows<S> {
 }
 
 impl<S: Precision> StateRows<S> {
-    /// Room for `count` states of a model, all zero.
+    /// Room for `count` states of a model, all zero: [`write`](Self::write) puts states in.
     ///
     /// # Errors
     /// More memory than there is.
-    pub(super) fn new(model: &Model, count: usize) -> Result<Self, SimError> {
+    pub fn new(model: &Model, count: usize) -> Result<Self, SimError> {
         let rows = |width| Rows::new(count, width, S::ZERO);
         Ok(StateRows {
             time: rows(1)?,
@@ -61,19 +63,19 @@ impl<S: Precision> StateRows<S> {
         })
     }
 
-    /// The tables of numbers, each with its name.
-    fn numbers(&self) -> [(&'static str, &Rows<S>); 10] {
+    /// The tables of numbers.
+    fn numbers(&self) -> [&Rows<S>; 10] {
         [
-            ("time", &self.time),
-            ("qpos", &self.qpos),
-            ("qvel", &self.qvel),
-            ("act", &self.act),
-            ("ctrl", &self.ctrl),
-            ("qfrc_applied", &self.qfrc_applied),
-            ("xfrc_applied", &self.xfrc_applied),
-            ("mocap_pos", &self.mocap_pos),
-            ("mocap_quat", &self.mocap_quat),
-            ("qacc_warmstart", &self.qacc_warmstart),
+            &self.time,
+            &self.qpos,
+            &self.qvel,
+            &self.act,
+            &self.ctrl,
+            &self.qfrc_applied,
+            &self.xfrc_applied,
+            &self.mocap_pos,
+            &self.mocap_quat,
+            &self.qacc_warmstart,
         ]
     }
 
@@ -99,8 +101,18 @@ impl<S: Precision> StateRows<S> {
 
     /// Bytes that a state takes.
     pub(super) fn row_bytes(&self) -> usize {
-        let numbers = self.numbers().map(|(_, rows)| rows.row_bytes());
+        let numbers = self.numbers().map(Rows::row_bytes);
         numbers.iter().sum::<usize>() + self.eq_active.row_bytes()
+    }
+
+    /// How many rows each table has, and of how many numbers.
+    fn shapes(&self) -> [(usize, usize); 11] {
+        macro_rules! shapes {
+            ($($field:ident)*) => { [$((self.$field.count(), self.$field.width())),*] };
+        }
+        shapes! {
+            time qpos qvel act ctrl qfrc_applied xfrc_applied mocap_pos mocap_quat eq_active qacc_warmstart
+        }
     }
 
     /// Tables for `count` states of this model.
@@ -108,28 +120,29 @@ impl<S: Precision> StateRows<S> {
     /// # Errors
     /// The first of another shape.
     pub(super) fn check_shapes(&self, model: &Model, count: usize) -> Result<(), SimError> {
-        let widths = [
-            1,
-            model.nq,
-            model.nv,
-            model.na,
-            model.nu(),
-            model.nv,
-            6 * model.nbody(),
-            3 * model.nmocap,
-            4 * model.nmocap,
-            model.nv,
-        ];
-        for ((field, rows), width) in self.numbers().into_iter().zip(widths) {
-            rows.check_shape(field, count, width)?;
+        let shapes = self.shapes().into_iter();
+        for ((rows, width), (field, expected)) in shapes.zip(model.state_lengths()) {
+            check_length(field, rows * width, count * expected)?;
+            check_length(field, width, expected)?;
         }
-        let neq = model.equalities.len();
-        self.eq_active.check_shape("eq_active", count, neq)
+        Ok(())
+    }
+
+    /// Tables that have row `env`, as long as the fields of this state.
+    fn check_row(&self, env: usize, state: &State<S>) -> Result<(), SimError> {
+        let shapes = self.shapes().into_iter();
+        for ((rows, width), (field, length)) in shapes.zip(state.lengths()) {
+            if env >= rows {
+                return Err(no_such("environment", env, rows));
+            }
+            check_length(field, length, width)?;
+        }
+        Ok(())
     }
 
     /// Takes row `from` of another table as row `to`.
     pub(super) fn copy_row(&mut self, to: usize, other: &Self, from: usize) {
-        for (rows, (_, other)) in self.numbers_mut().into_iter().zip(other.numbers()) {
+        for (rows, other) in self.numbers_mut().into_iter().zip(other.numbers()) {
             rows.row_mut(to).copy_from_slice(other.row(from));
         }
         let switches = other.eq_active.row(from);
@@ -137,7 +150,11 @@ impl<S: Precision> StateRows<S> {
     }
 
     /// Copies row `env` into a state of the same model.
-    pub(super) fn read(&self, env: usize, state: &mut State<S>) {
+    ///
+    /// # Errors
+    /// A row that there is not; a state of other lengths, which is then as before.
+    pub fn read(&self, env: usize, state: &mut State<S>) -> Result<(), SimError> {
+        self.check_row(env, state)?;
         write_lane(self.time.row(env), 0, from_mut(&mut state.time));
         write_lane(self.qpos.row(env), 0, &mut state.qpos);
         write_lane(self.qvel.row(env), 0, &mut state.qvel);
@@ -154,10 +171,15 @@ impl<S: Precision> StateRows<S> {
         };
         inputs.read(env, 0, state);
         inputs.read_pushes(env, 0, state);
+        Ok(())
     }
 
     /// Copies a state of the same model into row `env`.
-    pub(super) fn write(&mut self, env: usize, state: &State<S>) {
+    ///
+    /// # Errors
+    /// A row that there is not; a state of other lengths. The row is then as before.
+    pub fn write(&mut self, env: usize, state: &State<S>) -> Result<(), SimError> {
+        self.check_row(env, state)?;
         self.time.row_mut(env)[0] = state.time;
         self.qpos.row_mut(env).copy_from_slice(&state.qpos);
         self.qvel.row_mut(env).copy_from_slice(&state.qvel);
@@ -179,6 +201,7 @@ impl<S: Precision> StateRows<S> {
         }
         (self.eq_active.row_mut(env)).copy_from_slice(&state.eq_active);
         (self.qacc_warmstart.row_mut(env)).copy_from_slice(&state.qacc_warmstart);
+        Ok(())
     }
 
     /// The tables as a step sees them.
