@@ -67,6 +67,30 @@ fn outputs_are_those_of_simulations() {
 }
 
 #[test]
+fn shapes_are_those_of_the_model() {
+    let model = model(&everything());
+    let mut sim = Sim::<f64>::new(model.clone()).expect("valid");
+    sim.forward().expect("finite");
+    for &output in Output::ALL {
+        let shape = output.shape(&model);
+        let values = sim.output(output.name()).expect("known");
+        assert_eq!(shape.iter().product::<usize>(), values.len(), "{output:?}");
+        assert_eq!(output.width(&model), values.len());
+        assert_eq!(Output::find(output.name()), Ok(output));
+    }
+    let (nbody, nv) = (model.nbody(), model.nv);
+    for (output, shape) in [
+        (Output::time, vec![]),
+        (Output::energy, vec![2]),
+        (Output::qacc, vec![nv]),
+        (Output::cdof, vec![nv, 6]),
+        (Output::cinert, vec![nbody, 10]),
+    ] {
+        assert_eq!(output.shape(&model), shape);
+    }
+}
+
+#[test]
 fn contact_forces_carry_what_rests() {
     for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
         let model = model(&loose_parts());
