@@ -91,6 +91,68 @@ fn shapes_are_those_of_the_model() {
 }
 
 #[test]
+fn a_masked_forward_leaves_the_others_alone() {
+    let model = model(&everything());
+    let envs: Vec<usize> = (0..21).collect();
+    let options = with(Instructions::widest(), 3, RigidOptions::new());
+    let [mut masked, mut whole] = [0, 1].map(|_| {
+        let mut batch = batch::<f64>(&model, &envs, options);
+        batch.record(&names()).expect("known");
+        batch.state.time.row_mut(9)[0] = f64::NAN;
+        batch.step_n(3).expect("valid");
+        batch
+    });
+    let kept = |batch: &Batch<f64>, name: &str, env: usize| {
+        let rows = batch.output(name).expect("kept");
+        rows.row(env).to_vec()
+    };
+    let before: Vec<_> = (names().iter())
+        .map(|name| Vec::from_iter(envs.iter().map(|&env| kept(&masked, name, env))))
+        .collect();
+    let mask: Vec<bool> = envs.iter().map(|env| env % 3 == 0 || *env == 7).collect();
+    masked.clear_figures();
+    let summary = masked.forward_mask(&mask).expect("as long");
+    assert_eq!((summary.failed, summary.running), (0, 20));
+    assert_eq!(
+        masked.divergence().env_steps,
+        7,
+        "eight, of which one failed"
+    );
+    whole.forward().expect("valid");
+    let mut changed = 0;
+    for (name, before) in names().iter().zip(&before) {
+        for &env in &envs {
+            let found = kept(&masked, name, env);
+            if mask[env] && env != 9 {
+                let expected = kept(&whole, name, env);
+                assert_bits(&found, &expected, &|| format!("{name} of {env}"));
+                changed += usize::from(found != before[env]);
+            } else {
+                assert_bits(&found, &before[env], &|| format!("{name} of {env}"));
+            }
+        }
+    }
+    assert!(changed > 7 * 10, "most outputs follow the state");
+    for &env in &envs {
+        let expected = whole.sim(env).expect("it exists").state;
+        assert_state(&masked, env, &expected, &|| "states stay".into());
+    }
+    // Who fails is who was asked for.
+    masked.state.qvel.row_mut(3)[0] = f64::NAN;
+    masked.state.qvel.row_mut(4)[0] = f64::NAN;
+    let summary = masked.forward_mask(&mask).expect("as long");
+    assert_eq!((summary.failed, summary.running), (1, 19));
+    assert_eq!(masked.status(4), EnvStatus::Running);
+    for length in [0, 20, 22] {
+        let error = masked.forward_mask(&vec![true; length]);
+        assert!(matches!(
+            error,
+            Err(SimError::WrongLength { field: "mask", .. })
+        ));
+    }
+}
+
+#[test]
 fn contact_forces_carry_what_rests() {
     for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
         let model = model(&loose_parts());

@@ -172,7 +172,7 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         mut outputs: Vec<OutputRows<S>>,
     ) -> Result<Recording<S>, SimError> {
-        let summary = self.run(true, steps, controls, &mut outputs)?;
+        let summary = self.run(true, steps, controls, None, &mut outputs)?;
         Ok(Recording {
             outputs,
             steps,

@@ -3,6 +3,7 @@
 use super::record::{OutputRows, targets};
 use super::stepper::{Job, Stepper};
 use super::{Batch, Controls, EnvStatus, Precision};
+use crate::check::check_length;
 use crate::error::SimError;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -33,7 +34,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
-        self.run(true, steps, Controls::Held, &mut [])
+        self.run(true, steps, Controls::Held, None, &mut [])
     }
 
     /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
@@ -42,22 +43,33 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<Summary, SimError> {
-        self.run(false, 1, Controls::Held, &mut [])
+        self.run(false, 1, Controls::Held, None, &mut [])
     }
 
-    /// Does `steps` steps, or one forward pass, of every running environment.
+    /// As [`forward`](Self::forward), only for the running environments where `mask` is true. Of the others nothing changes:
+    /// their outputs stay as they are.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), and a mask of another length than there are environments.
+    pub fn forward_mask(&mut self, mask: &[bool]) -> Result<Summary, SimError> {
+        check_length("mask", mask.len(), self.count())?;
+        self.run(false, 1, Controls::Held, Some(mask), &mut [])
+    }
+
+    /// Does `steps` steps, or one forward pass, of every running environment that is not masked out.
     pub(super) fn run(
         &mut self,
         advance: bool,
         steps: usize,
         controls: Controls<S>,
+        mask: Option<&[bool]>,
         trace: &mut [OutputRows<S>],
     ) -> Result<Summary, SimError> {
         self.check_state()?;
         // All groupings of a call run inside the pool, so that its threads need not be woken for each.
         Ok(match self.pool.clone() {
-            None => self.run_here(advance, steps, controls, trace),
-            Some(pool) => pool.install(|| self.run_here(advance, steps, controls, trace)),
+            None => self.run_here(advance, steps, controls, mask, trace),
+            Some(pool) => pool.install(|| self.run_here(advance, steps, controls, mask, trace)),
         })
     }
 
@@ -66,6 +78,7 @@ impl<S: Precision> Batch<S> {
         advance: bool,
         steps: usize,
         controls: Controls<S>,
+        mask: Option<&[bool]>,
         trace: &mut [OutputRows<S>],
     ) -> Summary {
         let mut summary = Summary {
@@ -73,7 +86,7 @@ impl<S: Precision> Batch<S> {
             running: 0,
         };
         for first in (0..steps).step_by(STEPS_A_GROUP) {
-            self.regroup();
+            self.regroup(mask);
             let (motion, inputs) = self.state.share();
             let job = Job {
                 model: &self.model,
@@ -97,12 +110,13 @@ impl<S: Precision> Batch<S> {
         summary
     }
 
-    /// Lists the environments that run, those of like contacts side by side.
-    fn regroup(&mut self) {
+    /// Lists the environments that run and are not masked out, those of like contacts side by side.
+    fn regroup(&mut self, mask: Option<&[bool]>) {
         let running = |env: &u32| self.status[*env as usize] == EnvStatus::Running;
+        let wanted = |env: &u32| mask.is_none_or(|mask| mask[*env as usize]);
         self.order.clear();
         let envs = 0..self.status.len() as u32;
-        self.order.extend(envs.filter(running));
+        (self.order).extend(envs.filter(|env| running(env) && wanted(env)));
         if self.options.grouping {
             let place = |env: &u32| self.places[*env as usize].load(Relaxed);
             self.order.sort_unstable_by_key(place);
