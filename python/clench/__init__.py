@@ -1,6 +1,15 @@
 """MuJoCo's constraint model, fast: one robot or thousands at once."""
 
-from clench._core import Model, __version__
+from clench._core import Model, RigidOptions, SolverStats, __version__
 from clench.errors import BusyError, ClenchError, LoadError, SimulationError
 
-__all__ = ["BusyError", "ClenchError", "LoadError", "Model", "SimulationError", "__version__"]
+__all__ = [
+    "BusyError",
+    "ClenchError",
+    "LoadError",
+    "Model",
+    "RigidOptions",
+    "SimulationError",
+    "SolverStats",
+    "__version__",
+]

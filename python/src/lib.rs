@@ -1,7 +1,11 @@
 //! The compiled part of the Python package `clench`.
 
+mod arrays;
 mod error;
 mod model;
+mod option_values;
+mod options;
+mod stats;
 
 use pyo3::prelude::*;
 
@@ -9,6 +13,10 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::model::Model;
+    #[pymodule_export]
+    use crate::options::RigidOptions;
+    #[pymodule_export]
+    use crate::stats::SolverStats;
     #[pymodule_export]
     #[allow(non_upper_case_globals)] // Python's name.
     const __version__: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,190 @@
+//! The values of options: read from Python, checked, and shown again.
+
+use clench::solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyString};
+
+/// Most iterations, sweeps or contacts that can be asked for.
+const MOST: usize = i32::MAX as usize;
+
+pub(crate) fn not_negative(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    match number(name, value)? {
+        x if x >= 0.0 && x.is_finite() => Ok(x),
+        _ => Err(out_of_range(name, value, "finite and not negative")),
+    }
+}
+
+pub(crate) fn positive(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    match number(name, value)? {
+        x if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err(out_of_range(name, value, "finite and positive")),
+    }
+}
+
+fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    if value.is_instance_of::<PyBool>() {
+        return Err(wrong_type(name, value, "a number"));
+    }
+    value
+        .extract()
+        .map_err(|error| explain(error, name, value, "a number", "finite"))
+}
+
+pub(crate) fn count(name: &str, value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let range = format!("from 0 to {MOST}");
+    if value.is_instance_of::<PyBool>() {
+        return Err(wrong_type(name, value, "an integer"));
+    }
+    match value.extract::<i64>() {
+        Ok(n) => usize::try_from(n)
+            .ok()
+            .filter(|&n| n <= MOST)
+            .ok_or_else(|| out_of_range(name, value, &range)),
+        Err(error) => Err(explain(error, name, value, "an integer", &range)),
+    }
+}
+
+pub(crate) fn boolean(name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    value
+        .extract()
+        .map_err(|_| wrong_type(name, value, "a bool"))
+}
+
+pub(crate) fn switch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Switch> {
+    if value.is_instance_of::<PyString>() {
+        return choose(name, value, &[("auto", Switch::Auto)]);
+    }
+    match value.extract() {
+        Ok(true) => Ok(Switch::On),
+        Ok(false) => Ok(Switch::Off),
+        Err(_) => Err(wrong_type(name, value, "a bool or \"auto\"")),
+    }
+}
+
+pub(crate) fn limit(name: &str, value: &Bound<'_, PyAny>) -> PyResult<MaxContacts> {
+    if value.is_instance_of::<PyString>() {
+        return choose(name, value, &[("auto", MaxContacts::Auto)]);
+    }
+    count(name, value).map(MaxContacts::Limit)
+}
+
+pub(crate) fn algorithm(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ConstraintSolver> {
+    choose(name, value, &ALGORITHMS)
+}
+
+pub(crate) fn cone(name: &str, value: &Bound<'_, PyAny>) -> PyResult<FrictionCone> {
+    choose(name, value, &CONES)
+}
+
+const ALGORITHMS: [(&str, ConstraintSolver); 2] = [
+    ("Newton", ConstraintSolver::Newton),
+    ("CG", ConstraintSolver::Cg),
+];
+const CONES: [(&str, FrictionCone); 2] = [
+    ("pyramidal", FrictionCone::Pyramidal),
+    ("elliptic", FrictionCone::Elliptic),
+];
+
+fn choose<T: Copy>(name: &str, value: &Bound<'_, PyAny>, choices: &[(&str, T)]) -> PyResult<T> {
+    let Ok(text) = value.cast::<PyString>() else {
+        return Err(wrong_type(name, value, "a str"));
+    };
+    match choices.iter().find(|(choice, _)| text == choice) {
+        Some(&(_, chosen)) => Ok(chosen),
+        None => {
+            let names = choices.iter().map(|(choice, _)| format!("\"{choice}\""));
+            Err(out_of_range(
+                name,
+                value,
+                &Vec::from_iter(names).join(" or "),
+            ))
+        }
+    }
+}
+
+fn explain(error: PyErr, name: &str, value: &Bound<'_, PyAny>, what: &str, range: &str) -> PyErr {
+    let py = value.py();
+    if error.is_instance_of::<PyOverflowError>(py) {
+        out_of_range(name, value, range)
+    } else if error.is_instance_of::<PyTypeError>(py) {
+        wrong_type(name, value, what)
+    } else {
+        error
+    }
+}
+
+fn out_of_range(name: &str, value: &Bound<'_, PyAny>, range: &str) -> PyErr {
+    match value.repr() {
+        Ok(shown) => {
+            PyValueError::new_err(format!("option {name} is {shown}, but must be {range}"))
+        }
+        Err(error) => error,
+    }
+}
+
+fn wrong_type(name: &str, value: &Bound<'_, PyAny>, what: &str) -> PyErr {
+    match value.get_type().name() {
+        Ok(found) => PyTypeError::new_err(format!("option {name} must be {what}, not {found}")),
+        Err(error) => error,
+    }
+}
+
+/// An option's value as Python has it.
+pub(crate) trait Show {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>>;
+}
+
+impl Show for f64 {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        Ok(self.into_pyobject(py)?.into_any())
+    }
+}
+impl Show for usize {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        Ok(self.into_pyobject(py)?.into_any())
+    }
+}
+impl Show for bool {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        Ok(PyBool::new(py, self).to_owned().into_any())
+    }
+}
+impl Show for &str {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        Ok(PyString::new(py, self).into_any())
+    }
+}
+impl Show for Switch {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        match self {
+            Switch::Auto => "auto".show(py),
+            Switch::On => true.show(py),
+            Switch::Off => false.show(py),
+        }
+    }
+}
+impl Show for MaxContacts {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        match self {
+            MaxContacts::Auto => "auto".show(py),
+            MaxContacts::Limit(most) => most.show(py),
+        }
+    }
+}
+impl Show for ConstraintSolver {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        match self {
+            ConstraintSolver::Newton => "Newton".show(py),
+            ConstraintSolver::Cg => "CG".show(py),
+        }
+    }
+}
+impl Show for FrictionCone {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        match self {
+            FrictionCone::Pyramidal => "pyramidal".show(py),
+            FrictionCone::Elliptic => "elliptic".show(py),
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! `clench.SolverStats`.
+
+use clench::solver::{LaneStats, Status};
+use pyo3::prelude::*;
+
+/// How the last solve went.
+///
+/// Norms and costs are over mean inertia times nv, unless said otherwise.
+#[pyclass(frozen, get_all, module = "clench")]
+pub(crate) struct SolverStats {
+    /// How it ended: "unconstrained" (no constraint acted), "proven" (the starting point was good enough), "converged",
+    /// "no_progress" (the working precision allows no more), "iteration_limit" or "non_finite". Over islands, the worst.
+    status: &'static str,
+    /// Iterations; over islands, the most.
+    iterations: usize,
+    /// Norm of the gradient; over islands, the largest.
+    gradient: f64,
+    /// Last improvement of the cost; over islands, the largest.
+    improvement: f64,
+    /// The duality gap, an upper bound of cost minus minimum, in the units of the cost.
+    gap: f64,
+    /// How often a constraint changed its piece (a contact began to slip, a limit let go), in all iterations.
+    piece_changes: usize,
+    /// Evaluations of line searches.
+    ls_evaluations: usize,
+    /// Hessians factored from scratch.
+    factorizations: usize,
+    /// Rank-one updates of a factored Hessian.
+    updates: usize,
+    /// Sweeps that removed slip.
+    noslip_iterations: usize,
+    /// Parts that were solved separately; 1 where islands are not used and constraints act.
+    islands: usize,
+}
+
+/// The name of a status.
+pub(crate) fn status_name(status: Status) -> &'static str {
+    match status {
+        Status::Unconstrained => "unconstrained",
+        Status::Proven => "proven",
+        Status::Converged => "converged",
+        Status::NoProgress => "no_progress",
+        Status::IterationLimit => "iteration_limit",
+        Status::NonFinite => "non_finite",
+    }
+}
+
+impl From<LaneStats> for SolverStats {
+    fn from(stats: LaneStats) -> Self {
+        SolverStats {
+            status: status_name(stats.status),
+            iterations: stats.iterations,
+            gradient: stats.gradient,
+            improvement: stats.improvement,
+            gap: stats.gap,
+            piece_changes: stats.piece_changes,
+            ls_evaluations: stats.ls_evaluations,
+            factorizations: stats.factorizations,
+            updates: stats.updates,
+            noslip_iterations: stats.noslip_iterations,
+            islands: stats.islands,
+        }
+    }
+}
+
+#[pymethods]
+impl SolverStats {
+    fn __repr__(&self) -> String {
+        format!(
+            "SolverStats(status='{}', iterations={}, gradient={:.1e}, improvement={:.1e}, gap={:.1e})",
+            self.status, self.iterations, self.gradient, self.improvement, self.gap
+        )
+    }
+}
