@@ -77,12 +77,12 @@ pub enum SimError {
     #[error("this processor has no {0:?} instructions")]
     Instructions(Instructions),
     /// More memory than there is.
-    #[error("there is no memory for {count} rows of {width} numbers")]
+    #[error("there is no memory for {count} rows of {bytes} bytes")]
     OutOfMemory {
         /// How many rows.
         count: usize,
-        /// How many numbers in each.
-        width: usize,
+        /// How many bytes in each.
+        bytes: usize,
     },
     /// Threads that cannot be started.
     #[error("threads cannot be started: {0}")]

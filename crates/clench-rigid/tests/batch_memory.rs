@@ -4,22 +4,27 @@ mod batches;
 
 use batches::*;
 use clench_math::Instructions;
-use clench_rigid::Batch;
+use clench_rigid::batch::Controls;
+use clench_rigid::{Batch, Output, SimError};
 use clench_solver::RigidOptions;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering::SeqCst};
 use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
-/// Counts the allocations of all threads, and the bytes that they hold.
+/// Counts the allocations of all threads, and the bytes that they hold, and refuses those above a limit.
 struct Counting;
 
+static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 static BYTES: AtomicIsize = AtomicIsize::new(0);
 
-// SAFETY: every call goes on to the system's allocator unchanged.
+// SAFETY: every call goes on to the system's allocator unchanged, or fails.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if layout.size() > LIMIT.load(SeqCst) {
+            return std::ptr::null_mut();
+        }
         COUNT.fetch_add(1, SeqCst);
         BYTES.fetch_add(layout.size() as isize, SeqCst);
         // SAFETY: the caller keeps the contract of `alloc`.
@@ -58,6 +63,14 @@ fn bytes() -> isize {
         before = now;
         std::thread::sleep(Duration::from_millis(50));
     }
+}
+
+/// What a task gives where no allocation may have more than `limit` bytes.
+fn limited<R>(limit: usize, task: impl FnOnce() -> R) -> R {
+    LIMIT.store(limit, SeqCst);
+    let result = task();
+    LIMIT.store(usize::MAX, SeqCst);
+    result
 }
 
 /// Steps several times through the same motion, with faults and resets on the way, and counts the allocations of the best
@@ -131,6 +144,44 @@ fn an_environment_takes_the_bytes_that_the_batch_says() {
             "{each} bytes an environment, off by {off} in all"
         );
     }
+}
+
+#[test]
+fn tables_are_refused_if_memory_does_not_hold_all_of_them() {
+    let _turn = alone();
+    let model = model(&walker());
+    let make = |count: usize| {
+        let options = with(Instructions::widest(), 1, RigidOptions::new());
+        Batch::<f64>::with_options(model.clone(), count, options)
+    };
+    let each = make(1).expect("few").bytes_per_env();
+    let refused = |count: usize, bytes: usize| SimError::OutOfMemory { count, bytes };
+    let count = 5000;
+    // A batch.
+    let error = limited(count * each - 1, || make(count).err());
+    assert_eq!(error, Some(refused(count, each)));
+    let most = u32::MAX as usize;
+    let error = limited(1 << 40, || make(most).err());
+    assert_eq!(error, Some(refused(most, each)));
+    let mut batch = limited(count * each, || make(count)).expect("just enough");
+    // What it keeps, and what a rollout records.
+    let names = ["xpos", "qpos", "xpos", "cinert"];
+    let widths = ["xpos", "qpos", "cinert"].map(|name| {
+        let output = Output::find(name).expect("known");
+        output.width(&model)
+    });
+    let bytes = 8 * widths.iter().sum::<usize>();
+    let error = limited(count * bytes - 1, || batch.record(&names).err());
+    assert_eq!(error, Some(refused(count, bytes)));
+    assert!(batch.output("xpos").is_none(), "as before");
+    limited(count * bytes, || batch.record(&names)).expect("just enough");
+    let mut few = make(50).expect("few");
+    let mut rollout = |limit: usize| {
+        let result = limited(limit, || few.rollout(10, Controls::Held, &names));
+        result.map(|recording| recording.steps())
+    };
+    assert_eq!(rollout(50 * 10 * bytes - 1), Err(refused(50, 10 * bytes)));
+    assert_eq!(rollout(50 * 10 * bytes), Ok(10));
 }
 
 #[test]

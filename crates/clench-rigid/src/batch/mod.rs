@@ -39,11 +39,14 @@ use crate::state::State;
 use parameters::ParamRows;
 use rayon::ThreadPool;
 use record::{OutputRows, row_bytes};
-use rows::per_env;
+use rows::{per_env, rehearse};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use stepper::Stepper;
+
+/// Bytes that an environment takes besides its rows: whether it runs, and its place in groups.
+const BESIDES: usize = size_of::<EnvStatus>() + size_of::<AtomicU64>() + size_of::<u32>();
 
 /// Whether an environment takes part in steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,6 +124,7 @@ impl<S: Precision> Batch<S> {
                 range: "less than 2^32",
             });
         }
+        rehearse(count, StateRows::<S>::row_bytes(&model) + BESIDES)?;
         let threads = options.threads(count)?;
         let pool = (threads > 1)
             .then(|| options.pool(threads).map(Arc::new))
@@ -177,10 +181,9 @@ impl<S: Precision> Batch<S> {
     /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept, whether it runs,
     /// and its place in groups.
     pub fn bytes_per_env(&self) -> usize {
-        let groups = size_of::<AtomicU64>() + size_of::<u32>();
+        let state = StateRows::<S>::row_bytes(&self.model);
         let params: usize = self.params.iter().map(ParamRows::row_bytes).sum();
-        let rows = self.state.row_bytes() + params + row_bytes(&self.outputs);
-        rows + size_of::<EnvStatus>() + groups
+        state + params + row_bytes(&self.outputs) + BESIDES
     }
 
     /// How many environments there are.

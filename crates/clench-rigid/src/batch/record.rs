@@ -2,6 +2,7 @@
 
 use super::cells::Cells;
 use super::precision::Lanewise;
+use super::rows::rehearse;
 use super::{Batch, EnvStatus, Precision, Rows, Summary};
 use crate::check::check_length;
 use crate::error::SimError;
@@ -100,16 +101,10 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// A name that no output has; more memory than there is. What is kept is then as before.
     pub fn record(&mut self, names: &[&str]) -> Result<(), SimError> {
-        let wanted = names.iter().map(|name| Output::find(name));
-        let wanted = wanted.collect::<Result<Vec<_>, _>>()?;
-        let mut new = Vec::new();
-        for (i, &output) in wanted.iter().enumerate() {
-            let kept = self.outputs.iter().any(|own| own.output == output);
-            if !kept && !wanted[..i].contains(&output) {
-                let rows = Rows::new(self.count(), output.width(&self.model), S::ZERO)?;
-                new.push(OutputRows { output, rows });
-            }
-        }
+        let wanted = each_once(names)?;
+        let mut new = wanted.clone();
+        new.retain(|output| self.outputs.iter().all(|own| own.output != *output));
+        let new = self.tables(&new, 1, S::ZERO)?;
         self.outputs.retain(|own| wanted.contains(&own.output));
         self.outputs.extend(new);
         Ok(())
@@ -193,17 +188,40 @@ impl<S: Precision> Batch<S> {
             Controls::Shared(values) => check_length("ctrl", values.len(), row)?,
             Controls::Each(values) => check_length("ctrl", values.len(), n.saturating_mul(row))?,
         }
-        let mut outputs: Vec<OutputRows<S>> = Vec::new();
-        for name in record {
-            let output = Output::find(name)?;
-            if outputs.iter().all(|own| own.output != output) {
-                let width = steps.saturating_mul(output.width(&self.model));
-                let rows = Rows::new(n, width, S::new(f64::NAN))?;
-                outputs.push(OutputRows { output, rows });
-            }
-        }
-        Ok(outputs)
+        self.tables(&each_once(record)?, steps, S::new(f64::NAN))
     }
+
+    /// Tables for outputs, where a row has room for `steps` steps.
+    fn tables(
+        &self,
+        outputs: &[Output],
+        steps: usize,
+        filler: S,
+    ) -> Result<Vec<OutputRows<S>>, SimError> {
+        let n = self.count();
+        let width = |output: Output| steps.saturating_mul(output.width(&self.model));
+        let bytes = outputs
+            .iter()
+            .map(|&o| width(o).saturating_mul(size_of::<S>()));
+        rehearse(n, bytes.fold(0, usize::saturating_add))?;
+        let table = |&output: &Output| {
+            let rows = Rows::new(n, width(output), filler)?;
+            Ok(OutputRows { output, rows })
+        };
+        outputs.iter().map(table).collect()
+    }
+}
+
+/// The outputs of these names, each once.
+fn each_once(names: &[&str]) -> Result<Vec<Output>, SimError> {
+    let mut outputs = Vec::new();
+    for name in names {
+        let output = Output::find(name)?;
+        if !outputs.contains(&output) {
+            outputs.push(output);
+        }
+    }
+    Ok(outputs)
 }
 
 /// Bytes that the rows of an environment take.

@@ -2,6 +2,7 @@
 
 use crate::error::SimError;
 use std::fmt;
+use std::hint::black_box;
 
 /// Bytes to which rows are aligned: a cache line, the widest register, and what other array libraries ask for.
 const ALIGNMENT: usize = 64;
@@ -29,7 +30,10 @@ impl<E: Copy> Rows<E> {
         let mut buffer = Vec::new();
         match room.map(|room| buffer.try_reserve_exact(room)) {
             Some(Ok(())) => {}
-            _ => return Err(SimError::OutOfMemory { count, width }),
+            _ => {
+                let bytes = width.saturating_mul(size_of::<E>());
+                return Err(SimError::OutOfMemory { count, bytes });
+            }
         }
         buffer.resize(len.unwrap_or(0) + spare, value);
         Ok(Rows {
@@ -112,8 +116,25 @@ impl<E: fmt::Debug> fmt::Debug for Rows<E> {
 pub(super) fn per_env<E>(count: usize, value: impl FnMut() -> E) -> Result<Vec<E>, SimError> {
     let mut values = Vec::new();
     if values.try_reserve_exact(count).is_err() {
-        return Err(SimError::OutOfMemory { count, width: 1 });
+        let bytes = size_of::<E>();
+        return Err(SimError::OutOfMemory { count, bytes });
     }
     values.resize_with(count, value);
     Ok(values)
+}
+
+/// Asks for the memory of `count` rows of `bytes` bytes, and gives it back at once. Before many tables are made: a system that
+/// grants each of them may still have too little for all, and ends the process when they are written.
+///
+/// # Errors
+/// More memory than there is.
+pub(super) fn rehearse(count: usize, bytes: usize) -> Result<(), SimError> {
+    let mut room = Vec::<u8>::new();
+    let reserved = (count.checked_mul(bytes)).map(|total| room.try_reserve_exact(total));
+    // Or the compiler would see that nobody uses it, and not ask.
+    black_box(&room);
+    match reserved {
+        Some(Ok(())) => Ok(()),
+        _ => Err(SimError::OutOfMemory { count, bytes }),
+    }
 }

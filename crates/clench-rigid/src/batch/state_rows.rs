@@ -2,6 +2,7 @@
 
 use super::cells::Cells;
 use super::precision::Lanewise;
+use super::rows::rehearse;
 use super::{Precision, Rows};
 use crate::check::check_length;
 use crate::error::SimError;
@@ -47,6 +48,7 @@ impl<S: Precision> StateRows<S> {
     /// # Errors
     /// More memory than there is.
     pub fn new(model: &Model, count: usize) -> Result<Self, SimError> {
+        rehearse(count, Self::row_bytes(model))?;
         let rows = |width| Rows::new(count, width, S::ZERO);
         Ok(StateRows {
             time: rows(1)?,
@@ -100,9 +102,10 @@ impl<S: Precision> StateRows<S> {
     }
 
     /// Bytes that a state takes.
-    pub(super) fn row_bytes(&self) -> usize {
-        let numbers = self.numbers().map(Rows::row_bytes);
-        numbers.iter().sum::<usize>() + self.eq_active.row_bytes()
+    pub(super) fn row_bytes(model: &Model) -> usize {
+        let all: usize = model.state_lengths().iter().map(|(_, length)| length).sum();
+        let switches = model.equalities.len();
+        (all - switches) * size_of::<S>() + switches
     }
 
     /// How many rows each table has, and of how many numbers.
