@@ -209,6 +209,15 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
+    /// The numbers of a field of [`params`](Self::params), by its name, element after element.
+    ///
+    /// # Errors
+    /// A name that no field has.
+    pub fn param(&self, field: &str) -> Result<Vec<T>, SimError> {
+        let field = ParamField::find(field)?;
+        Ok(self.params.read_lane(field, 0))
+    }
+
     /// Sets the time step, s.
     ///
     /// # Errors

@@ -268,6 +268,12 @@ fn rollouts_are_steps() {
         let (last, kept) = (rolled.output("xpos"), stepped.output("xpos"));
         assert_eq!(last.expect("kept").row(env), kept.expect("kept").row(env));
     }
+    let times = Vec::from(recording.get("time").expect("recorded").as_slice());
+    let mut tables = recording.into_rows();
+    assert_eq!(tables.next().expect("six").0, Output::qpos);
+    let (output, rows) = tables.nth(1).expect("six");
+    assert_eq!((output, rows.as_slice()), (Output::time, &times[..]));
+    assert_eq!(tables.count(), 3);
 }
 
 #[test]

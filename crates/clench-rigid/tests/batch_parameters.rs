@@ -83,6 +83,7 @@ fn scale_all<S: Precision>(builder: &ModelBuilder, instructions: Instructions, s
             let numbers = found.read_lane(*field, 0);
             assert_eq!(numbers, expected.read_lane(*field, 0), "{}", field.name());
             assert_eq!(numbers, batch.param(field.name(), env).expect("known"));
+            assert_eq!(numbers, sim.param(field.name()).expect("known"));
         }
         copy.step().expect("finite");
         sim.step().expect("finite");
@@ -102,6 +103,27 @@ fn every_number_can_differ() {
     }
     scale_all::<f64>(&walker(), Instructions::widest(), 200);
     scale_all::<f32>(&walker(), Instructions::widest(), 200);
+}
+
+#[test]
+fn shapes_are_those_of_the_model() {
+    let model = model(&machines::everything());
+    for &field in ParamField::ALL {
+        let width = field.shape(&model).iter().product::<usize>();
+        assert_eq!(width, model.params.width(field), "{field:?}");
+        assert_eq!(ParamField::find(field.name()), Ok(field));
+    }
+    for (field, shape) in [
+        (ParamField::timestep, vec![]),
+        (ParamField::gravity, vec![3]),
+        (ParamField::override_solimp, vec![5]),
+        (ParamField::body_mass, vec![model.nbody()]),
+        (ParamField::body_inertia, vec![model.nbody(), 3]),
+        (ParamField::geom_quat, vec![model.geoms.len(), 4]),
+        (ParamField::actuator_gear, vec![model.nu(), 6]),
+    ] {
+        assert_eq!(field.shape(&model), shape, "{field:?}");
+    }
 }
 
 #[test]
@@ -232,6 +254,8 @@ fn bad_parameters_are_errors_and_change_nothing() {
         masses[b] = m;
         masses
     };
+    assert_eq!(sim.param("bodymass"), batch.param("bodymass", 0));
+    assert!(sim.param("bodymass").is_err());
     let range = |low: f64, high: f64| [low, high].repeat(njnt);
     for (field, values, message) in [
         (

@@ -161,6 +161,7 @@ fn rows_stay_where_they_are() {
     let saved = batch.save().expect("valid");
     batch.restore(&saved).expect("its own");
     assert_eq!(places(&batch), before);
+    assert_eq!(batch.state.qpos.as_ptr(), before[0]);
     assert_eq!(batch.state.qpos.as_mut_ptr().cast_const(), before[0]);
     assert_eq!(batch.state.qpos.iter().count(), ENVS);
     assert_eq!(

@@ -82,6 +82,11 @@ impl<S> Recording<S> {
     pub fn get(&self, name: &str) -> Option<&Rows<S>> {
         find(&self.outputs, name)
     }
+    /// What was recorded, each output with its table as [`get`](Self::get) shows it.
+    pub fn into_rows(self) -> impl Iterator<Item = (Output, Rows<S>)> {
+        let outputs = self.outputs.into_iter();
+        outputs.map(|own| (own.output, own.rows))
+    }
     /// How many steps were recorded.
     pub fn steps(&self) -> usize {
         self.steps

@@ -74,8 +74,12 @@ impl<E> Rows<E> {
     }
     /// Where the numbers begin, for code that shares them beyond this table's borrows. The pointer stays valid, and the numbers
     /// stay there, as long as the table lives, wherever it is moved.
-    pub fn as_mut_ptr(&mut self) -> *mut E {
+    pub fn as_ptr(&self) -> *const E {
         // `start` is within the buffer; no reference to the numbers is made on the way.
+        self.buffer.as_ptr().wrapping_add(self.start)
+    }
+    /// As [`as_ptr`](Self::as_ptr), to be written.
+    pub fn as_mut_ptr(&mut self) -> *mut E {
         self.buffer.as_mut_ptr().wrapping_add(self.start)
     }
     /// The row of environment `env`.

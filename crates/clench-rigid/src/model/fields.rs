@@ -36,12 +36,17 @@ impl ParamField {
     ///
     /// # Errors
     /// A name that no field has.
-    pub(crate) fn find(name: &str) -> Result<Self, SimError> {
+    pub fn find(name: &str) -> Result<Self, SimError> {
         let all = ParamField::ALL.iter();
         let found = all.clone().find(|field| field.name() == name);
         found
             .copied()
             .ok_or_else(|| SimError::unknown("parameter", name, all.map(|field| field.name())))
+    }
+
+    /// Its shape in a model, such as (nbody, 3) for `body_inertia`; empty for a single number.
+    pub fn shape(self, model: &Model) -> Vec<usize> {
+        model.params.shape(self)
     }
 
     /// The field of that name, to be set.

@@ -108,13 +108,18 @@ pub(crate) fn set_lane<T: Real, const N: usize>(to: [&mut T; N], lane: usize, ro
 
 /// Something made of numbers of type `T`.
 pub(super) trait Numbers<T> {
+    /// Elements, numbers of each. What is no array, or a plain number, has no axis for it.
+    fn shape(&self) -> Vec<usize>;
     fn flat(&self) -> Flat<'_, T>;
     fn flat_mut(&mut self) -> FlatMut<'_, T>;
 }
 
 macro_rules! numbers {
-    ($($kind:ident: $element:ty;)*) => {$(
+    ($($kind:ident: $element:ty $(, $size:expr)?;)*) => {$(
         impl<T: Real> Numbers<T> for $element {
+            fn shape(&self) -> Vec<usize> {
+                vec![$($size)?]
+            }
             fn flat(&self) -> Flat<'_, T> {
                 Flat::$kind(from_ref(self))
             }
@@ -123,6 +128,9 @@ macro_rules! numbers {
             }
         }
         impl<T: Real> Numbers<T> for Vec<$element> {
+            fn shape(&self) -> Vec<usize> {
+                vec![self.len() $(, $size)?]
+            }
             fn flat(&self) -> Flat<'_, T> {
                 Flat::$kind(self)
             }
@@ -134,11 +142,14 @@ macro_rules! numbers {
 }
 numbers! {
     Numbers: T;
-    Vectors: Vec3<T>;
-    Quats: Quat<T>;
+    Vectors: Vec3<T>, 3;
+    Quats: Quat<T>, 4;
 }
 
 impl<T: Real, const N: usize> Numbers<T> for [T; N] {
+    fn shape(&self) -> Vec<usize> {
+        vec![N]
+    }
     fn flat(&self) -> Flat<'_, T> {
         Flat::Numbers(self)
     }
@@ -147,6 +158,9 @@ impl<T: Real, const N: usize> Numbers<T> for [T; N] {
     }
 }
 impl<T: Real, const N: usize> Numbers<T> for Vec<[T; N]> {
+    fn shape(&self) -> Vec<usize> {
+        vec![self.len(), N]
+    }
     fn flat(&self) -> Flat<'_, T> {
         Flat::Numbers(self.as_flattened())
     }

@@ -45,6 +45,11 @@ macro_rules! params {
         }
 
         impl<T: Real> Params<T> {
+            /// The shape of a field: elements, numbers of each. What is no array, or a plain number, has no axis for it.
+            pub(super) fn shape(&self, field: ParamField) -> Vec<usize> {
+                match field { $(ParamField::$name => self.$name.shape(),)* }
+            }
+
             fn flat(&self, field: ParamField) -> Flat<'_, T> {
                 match field { $(ParamField::$name => self.$name.flat(),)* }
             }
