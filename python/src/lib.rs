@@ -1,8 +1,12 @@
 //! The compiled part of the Python package `clench`.
 
 mod arrays;
+mod element;
 mod error;
+mod fields;
+mod kind;
 mod model;
+mod names;
 mod option_values;
 mod options;
 mod stats;
@@ -11,6 +15,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use crate::element::Element;
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]

@@ -1,11 +1,27 @@
 //! `clench.Model`.
 
+use crate::element::Element;
 use crate::error::load_error;
+use crate::fields;
+use crate::kind::Kind;
+use crate::names::no_attribute;
+use crate::options::RigidOptions;
+use clench::rigid::model::Integrator;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A model: what never changes while stepping, shared by the simulations of it.
+///
+/// Its numbers and structure are attributes with MuJoCo's names, such as `body_mass`, `jnt_range` or `geom_bodyid`, given
+/// as arrays that cannot be written to; ``dir(model)`` lists all. Types are MuJoCo's integer codes, and -1 is the index of
+/// nothing. Units are SI.
+///
+/// Examples
+/// --------
+/// >>> model = clench.Model.from_file("models/humanoid.xml")
+/// >>> model.nv, model.body("torso").mass, model.geom_size.shape
+/// (27, 14.357497305925833, (19, 3))
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Model(Arc<clench::Model>);
 
@@ -16,9 +32,48 @@ impl Model {
     }
 }
 
+impl From<Arc<clench::Model>> for Model {
+    fn from(model: Arc<clench::Model>) -> Self {
+        Model(model)
+    }
+}
+
+/// What is said of each method that finds an element.
+macro_rules! named {
+    ($kind:literal) => {
+        concat!(
+            "The ",
+            $kind,
+            " of that name or index.\n\n",
+            "Parameters\n----------\n",
+            "which : str or int\n    Its name or index.\n\n",
+            "Returns\n-------\nElement\n\n",
+            "Raises\n------\n",
+            "ValueError\n    A name that no ",
+            $kind,
+            " has.\n",
+            "IndexError\n    An index that is negative or too large.",
+        )
+    };
+}
+
 #[pymethods]
 impl Model {
     /// Load a model from an MJCF file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     The file. What it includes is found from its folder.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// LoadError
+    ///     A file that cannot be read, is not well-formed, or asks for something that cannot be.
     #[staticmethod]
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let model = py.detach(|| clench::load(&path)).map_err(load_error)?;
@@ -26,9 +81,201 @@ impl Model {
     }
 
     /// Load a model from the text of an MJCF file.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     What the file would contain. What it includes is found from the working directory.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// LoadError
+    ///     A text that is not well-formed, or asks for something that cannot be.
     #[staticmethod]
     fn from_xml(py: Python<'_>, text: &str) -> PyResult<Self> {
         let model = py.detach(|| clench::load_str(text)).map_err(load_error)?;
         Ok(Model(Arc::new(model)))
+    }
+
+    /// Name of the model.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+    /// What the loader thinks worth telling, such as elements without effect that it left out.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.0.notes.clone()
+    }
+    /// The options that the file sets, over the defaults of its format.
+    #[getter]
+    fn options(&self) -> RigidOptions {
+        RigidOptions(self.0.options)
+    }
+    /// How time advances: "Euler", "implicitfast" or "RK4".
+    #[getter]
+    fn integrator(&self) -> &'static str {
+        match self.0.integrator {
+            Integrator::Euler => "Euler",
+            Integrator::ImplicitFast => "implicitfast",
+            Integrator::Rk4 => "RK4",
+        }
+    }
+    /// Number of position coordinates.
+    #[getter]
+    fn nq(&self) -> usize {
+        self.0.nq
+    }
+    /// Number of degrees of freedom.
+    #[getter]
+    fn nv(&self) -> usize {
+        self.0.nv
+    }
+    /// Number of controls, one an actuator.
+    #[getter]
+    fn nu(&self) -> usize {
+        self.0.nu()
+    }
+    /// Number of activations.
+    #[getter]
+    fn na(&self) -> usize {
+        self.0.na
+    }
+    /// Number of bodies, the world included.
+    #[getter]
+    fn nbody(&self) -> usize {
+        self.0.nbody()
+    }
+    /// Number of joints.
+    #[getter]
+    fn njnt(&self) -> usize {
+        self.0.joints.len()
+    }
+    /// Number of geoms.
+    #[getter]
+    fn ngeom(&self) -> usize {
+        self.0.geoms.len()
+    }
+    /// Number of sites.
+    #[getter]
+    fn nsite(&self) -> usize {
+        self.0.sites.len()
+    }
+    /// Number of tendons.
+    #[getter]
+    fn ntendon(&self) -> usize {
+        self.0.tendons.len()
+    }
+    /// Number of equality constraints.
+    #[getter]
+    fn neq(&self) -> usize {
+        self.0.equalities.len()
+    }
+    /// Number of keyframes.
+    #[getter]
+    fn nkey(&self) -> usize {
+        self.0.keyframes.len()
+    }
+    /// Number of mocap bodies.
+    #[getter]
+    fn nmocap(&self) -> usize {
+        self.0.nmocap
+    }
+    /// Number of explicit geom pairs.
+    #[getter]
+    fn npair(&self) -> usize {
+        self.0.pairs.len()
+    }
+
+    /// Names of all elements of a kind.
+    ///
+    /// Parameters
+    /// ----------
+    /// kind : {"body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair"}
+    ///     What to name.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///     In the order of their indices; empty where an element has no name.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Another kind.
+    fn names(&self, kind: &str) -> PyResult<Vec<&str>> {
+        Ok(Kind::of_name(kind)?.names(&self.0))
+    }
+
+    #[doc = named!("body")]
+    fn body(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Body, which)
+    }
+    #[doc = named!("joint")]
+    fn joint(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Joint, which)
+    }
+    #[doc = named!("geom")]
+    fn geom(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Geom, which)
+    }
+    #[doc = named!("site")]
+    fn site(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Site, which)
+    }
+    #[doc = named!("tendon")]
+    fn tendon(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Tendon, which)
+    }
+    #[doc = named!("actuator")]
+    fn actuator(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Actuator, which)
+    }
+    #[doc = named!("equality constraint")]
+    fn equality(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Equality, which)
+    }
+    #[doc = named!("keyframe")]
+    fn keyframe(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Keyframe, which)
+    }
+    #[doc = named!("explicit geom pair")]
+    fn pair(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Pair, which)
+    }
+
+    fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        match fields::find(&self.0, name) {
+            Some(field) => field.show(py),
+            None => Err(no_attribute(
+                "Model",
+                name,
+                &Vec::from_iter(fields::names()),
+            )),
+        }
+    }
+
+    fn __dir__(slf: &Bound<'_, Self>) -> PyResult<Vec<String>> {
+        let mut names: Vec<String> = slf.get_type().dir()?.extract()?;
+        names.extend(fields::names().map(str::to_owned));
+        Ok(names)
+    }
+
+    fn __repr__(&self) -> String {
+        let m = &self.0;
+        format!(
+            "<clench.Model \"{}\": nbody={}, njnt={}, ngeom={}, nq={}, nv={}, nu={}>",
+            m.name,
+            m.nbody(),
+            m.joints.len(),
+            m.geoms.len(),
+            m.nq,
+            m.nv,
+            m.nu()
+        )
     }
 }

@@ -1,0 +1,290 @@
+//! The fields of a model by name: its parameters, and the structure in MuJoCo's names and codes.
+
+use clench::Model;
+use clench::collide::ShapeKind;
+use clench::rigid::model::{
+    BiasKind, DynamicsKind, EqualityTarget, GainKind, JointKind, Keyframe, ParamField, Transmission,
+};
+use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::{Element, PyArrayDyn, PyArrayMethods};
+use pyo3::prelude::*;
+use std::ops::Range;
+
+/// Some numbers, and how many along each axis.
+pub(crate) struct Field {
+    shape: Vec<usize>,
+    numbers: Numbers,
+}
+
+enum Numbers {
+    Real(Vec<f64>),
+    Code(Vec<i32>),
+    Flag(Vec<bool>),
+}
+
+/// The names of all fields.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    let structure = STRUCTURE.iter().map(|(name, _)| *name);
+    ParamField::ALL
+        .iter()
+        .map(|field| field.name())
+        .chain(structure)
+}
+
+/// The field of that name.
+pub(crate) fn find(model: &Model, name: &str) -> Option<Field> {
+    let param = ParamField::ALL.iter().find(|field| field.name() == name);
+    let param = param.map(|&field| Field {
+        shape: field.shape(model),
+        numbers: Numbers::Real(model.params.read_lane(field, 0)),
+    });
+    param.or_else(|| {
+        let (_, read) = STRUCTURE.iter().find(|(known, _)| *known == name)?;
+        Some(read(model))
+    })
+}
+
+impl Field {
+    /// A float if it is a single number, else an array that cannot be written to.
+    pub(crate) fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        match self.numbers {
+            Numbers::Real(numbers) if self.shape.is_empty() => {
+                Ok(numbers[0].into_pyobject(py)?.into_any())
+            }
+            Numbers::Real(numbers) => read_only(py, &self.shape, numbers),
+            Numbers::Code(numbers) => read_only(py, &self.shape, numbers),
+            Numbers::Flag(numbers) => read_only(py, &self.shape, numbers),
+        }
+    }
+}
+
+/// A new array that cannot be written to.
+fn read_only<'py, T: Element>(
+    py: Python<'py>,
+    shape: &[usize],
+    numbers: Vec<T>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = ArrayD::from_shape_vec(IxDyn(shape), numbers).expect("shapes say how many");
+    let array = PyArrayDyn::from_owned_array(py, array);
+    array.try_readwrite()?.make_nonwriteable();
+    Ok(array.into_any())
+}
+
+/// Structure, read from the records of the model. Where there is nothing to point at, the index is −1.
+const STRUCTURE: &[(&str, fn(&Model) -> Field)] = &[
+    ("body_parentid", |m| codes(&m.bodies, |b| id(b.parent))),
+    ("body_rootid", |m| codes(&m.bodies, |b| id(b.root))),
+    ("body_weldid", |m| codes(&m.bodies, |b| id(b.weld))),
+    ("body_mocapid", |m| {
+        codes(&m.bodies, |b| id_or_none(b.mocap))
+    }),
+    ("body_jntnum", |m| codes(&m.bodies, |b| id(b.joints.len()))),
+    ("body_jntadr", |m| codes(&m.bodies, |b| first(&b.joints))),
+    ("body_dofnum", |m| codes(&m.bodies, |b| id(b.dofs.len()))),
+    ("body_dofadr", |m| codes(&m.bodies, |b| first(&b.dofs))),
+    ("body_geomnum", |m| codes(&m.bodies, |b| id(b.geoms.len()))),
+    ("body_geomadr", |m| codes(&m.bodies, |b| first(&b.geoms))),
+    ("jnt_type", |m| codes(&m.joints, |j| joint_type(j.kind))),
+    ("jnt_bodyid", |m| codes(&m.joints, |j| id(j.body))),
+    ("jnt_qposadr", |m| codes(&m.joints, |j| id(j.qpos))),
+    ("jnt_dofadr", |m| codes(&m.joints, |j| id(j.dof))),
+    ("jnt_group", |m| codes(&m.joints, |j| j.group)),
+    ("jnt_limited", |m| flags(&m.joints, |j| j.limited)),
+    ("jnt_actfrclimited", |m| {
+        flags(&m.joints, |j| j.actfrclimited)
+    }),
+    ("jnt_actgravcomp", |m| flags(&m.joints, |j| j.actgravcomp)),
+    ("dof_bodyid", |m| codes(&m.dofs, |d| id(d.body))),
+    ("dof_jntid", |m| codes(&m.dofs, |d| id(d.joint))),
+    ("dof_parentid", |m| codes(&m.dofs, |d| id_or_none(d.parent))),
+    ("geom_type", |m| codes(&m.geoms, |g| geom_type(g.kind))),
+    ("geom_bodyid", |m| codes(&m.geoms, |g| id(g.body))),
+    ("geom_contype", |m| {
+        codes(&m.geoms, |g| g.contype.cast_signed())
+    }),
+    ("geom_conaffinity", |m| {
+        codes(&m.geoms, |g| g.conaffinity.cast_signed())
+    }),
+    ("geom_condim", |m| {
+        codes(&m.geoms, |g| g.condim.cast_signed())
+    }),
+    ("geom_priority", |m| codes(&m.geoms, |g| g.priority)),
+    ("geom_group", |m| codes(&m.geoms, |g| g.group)),
+    ("site_bodyid", |m| codes(&m.sites, |s| id(s.body))),
+    ("tendon_num", |m| codes(&m.tendons, |t| id(t.coefs.len()))),
+    ("tendon_adr", |m| codes(&m.tendons, |t| first(&t.coefs))),
+    ("tendon_limited", |m| flags(&m.tendons, |t| t.limited)),
+    ("tendon_actfrclimited", |m| {
+        flags(&m.tendons, |t| t.actfrclimited)
+    }),
+    ("wrap_objid", wrapped_joints),
+    ("actuator_trntype", |m| {
+        codes(&m.actuators, |a| transmission(a.transmission).0)
+    }),
+    ("actuator_trnid", transmission_targets),
+    ("actuator_dyntype", |m| {
+        codes(&m.actuators, |a| dynamics_type(a.dynamics))
+    }),
+    ("actuator_gaintype", |m| {
+        codes(&m.actuators, |a| gain_type(a.gain))
+    }),
+    ("actuator_biastype", |m| {
+        codes(&m.actuators, |a| bias_type(a.bias))
+    }),
+    ("actuator_actadr", |m| {
+        codes(&m.actuators, |a| id_or_none(a.act))
+    }),
+    ("actuator_group", |m| codes(&m.actuators, |a| a.group)),
+    ("actuator_ctrllimited", |m| {
+        flags(&m.actuators, |a| a.ctrllimited)
+    }),
+    ("actuator_forcelimited", |m| {
+        flags(&m.actuators, |a| a.forcelimited)
+    }),
+    ("actuator_actlimited", |m| {
+        flags(&m.actuators, |a| a.actlimited)
+    }),
+    ("actuator_actearly", |m| flags(&m.actuators, |a| a.actearly)),
+    ("eq_type", |m| {
+        codes(&m.equalities, |e| equality(e.target).0)
+    }),
+    ("eq_obj1id", |m| {
+        codes(&m.equalities, |e| equality(e.target).1)
+    }),
+    ("eq_obj2id", |m| {
+        codes(&m.equalities, |e| equality(e.target).2)
+    }),
+    ("eq_active0", |m| flags(&m.equalities, |e| e.active0)),
+    ("pair_dim", |m| codes(&m.pairs, |p| p.condim.cast_signed())),
+    ("pair_geom1", |m| codes(&m.pairs, |p| id(p.geoms[0]))),
+    ("pair_geom2", |m| codes(&m.pairs, |p| id(p.geoms[1]))),
+    ("key_time", |m| {
+        stored(m, &[], |k| std::slice::from_ref(&k.time))
+    }),
+    ("key_qpos", |m| stored(m, &[m.nq], |k| &k.qpos)),
+    ("key_qvel", |m| stored(m, &[m.nv], |k| &k.qvel)),
+    ("key_act", |m| stored(m, &[m.na], |k| &k.act)),
+    ("key_ctrl", |m| stored(m, &[m.nu()], |k| &k.ctrl)),
+    ("key_mpos", |m| stored(m, &[m.nmocap, 3], |k| &k.mocap_pos)),
+    ("key_mquat", |m| {
+        stored(m, &[m.nmocap, 4], |k| &k.mocap_quat)
+    }),
+];
+
+fn codes<E>(elements: &[E], code: impl Fn(&E) -> i32) -> Field {
+    Field {
+        shape: vec![elements.len()],
+        numbers: Numbers::Code(elements.iter().map(code).collect()),
+    }
+}
+
+fn flags<E>(elements: &[E], flag: impl Fn(&E) -> bool) -> Field {
+    Field {
+        shape: vec![elements.len()],
+        numbers: Numbers::Flag(elements.iter().map(flag).collect()),
+    }
+}
+
+/// Numbers of keyframes, each of shape `shape`.
+fn stored(model: &Model, shape: &[usize], numbers: impl Fn(&Keyframe) -> &[f64]) -> Field {
+    let keyframes = &model.keyframes;
+    Field {
+        shape: [&[keyframes.len()], shape].concat(),
+        numbers: Numbers::Real(keyframes.iter().flat_map(numbers).copied().collect()),
+    }
+}
+
+/// The joint of each coefficient of each tendon.
+fn wrapped_joints(model: &Model) -> Field {
+    let joints: Vec<usize> = (model.tendons.iter())
+        .flat_map(|tendon| tendon.joints.iter().copied())
+        .collect();
+    codes(&joints, |&joint| id(joint))
+}
+
+/// What each actuator pulls on; the second index is for transmissions between two things.
+fn transmission_targets(model: &Model) -> Field {
+    let targets = (model.actuators.iter()).flat_map(|a| [transmission(a.transmission).1, NONE]);
+    Field {
+        shape: vec![model.nu(), 2],
+        numbers: Numbers::Code(targets.collect()),
+    }
+}
+
+/// The index of nothing.
+const NONE: i32 = -1;
+
+/// Indices and counts are far below 2³¹: no memory holds so many elements.
+fn id(index: usize) -> i32 {
+    index as i32
+}
+
+fn id_or_none(index: Option<usize>) -> i32 {
+    index.map_or(NONE, id)
+}
+
+fn first(range: &Range<usize>) -> i32 {
+    id_or_none(Some(range.start).filter(|_| !range.is_empty()))
+}
+
+fn joint_type(kind: JointKind) -> i32 {
+    match kind {
+        JointKind::Free => 0,
+        JointKind::Ball => 1,
+        JointKind::Slide => 2,
+        JointKind::Hinge => 3,
+    }
+}
+
+fn geom_type(kind: ShapeKind) -> i32 {
+    match kind {
+        ShapeKind::Plane => 0,
+        ShapeKind::Sphere => 2,
+        ShapeKind::Capsule => 3,
+        ShapeKind::Ellipsoid => 4,
+        ShapeKind::Cylinder => 5,
+        ShapeKind::Box => 6,
+    }
+}
+
+fn dynamics_type(kind: DynamicsKind) -> i32 {
+    match kind {
+        DynamicsKind::None => 0,
+        DynamicsKind::Integrator => 1,
+        DynamicsKind::Filter => 2,
+        DynamicsKind::FilterExact => 3,
+    }
+}
+
+fn gain_type(kind: GainKind) -> i32 {
+    match kind {
+        GainKind::Fixed => 0,
+        GainKind::Affine => 1,
+    }
+}
+
+fn bias_type(kind: BiasKind) -> i32 {
+    match kind {
+        BiasKind::None => 0,
+        BiasKind::Affine => 1,
+    }
+}
+
+/// Type, and what is pulled on.
+fn transmission(transmission: Transmission) -> (i32, i32) {
+    match transmission {
+        Transmission::Joint(joint) => (0, id(joint)),
+        Transmission::JointInParent(joint) => (1, id(joint)),
+        Transmission::Tendon(tendon) => (3, id(tendon)),
+    }
+}
+
+/// Type, and what is held.
+fn equality(target: EqualityTarget) -> (i32, i32, i32) {
+    match target {
+        EqualityTarget::Connect { body1, body2 } => (0, id(body1), id(body2)),
+        EqualityTarget::Weld { body1, body2 } => (1, id(body1), id(body2)),
+        EqualityTarget::Joint { joint1, joint2 } => (2, id(joint1), id_or_none(joint2)),
+        EqualityTarget::Tendon { tendon1, tendon2 } => (3, id(tendon1), id_or_none(tendon2)),
+    }
+}

@@ -1,0 +1,117 @@
+//! The kinds of element that a model has, and how one is found.
+
+use crate::names::unknown;
+use clench::Model;
+use pyo3::exceptions::{PyIndexError, PyOverflowError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+/// What an element is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Body,
+    Joint,
+    Geom,
+    Site,
+    Tendon,
+    Actuator,
+    Equality,
+    Keyframe,
+    Pair,
+}
+
+impl Kind {
+    const ALL: [Kind; 9] = [
+        Kind::Body,
+        Kind::Joint,
+        Kind::Geom,
+        Kind::Site,
+        Kind::Tendon,
+        Kind::Actuator,
+        Kind::Equality,
+        Kind::Keyframe,
+        Kind::Pair,
+    ];
+
+    /// The kind of that name.
+    pub(crate) fn of_name(name: &str) -> PyResult<Kind> {
+        let found = Kind::ALL.into_iter().find(|kind| kind.name() == name);
+        found.ok_or_else(|| unknown("kind of element", name, &Kind::ALL.map(Kind::name)))
+    }
+
+    /// What one is called.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Kind::Body => "body",
+            Kind::Joint => "joint",
+            Kind::Geom => "geom",
+            Kind::Site => "site",
+            Kind::Tendon => "tendon",
+            Kind::Actuator => "actuator",
+            Kind::Equality => "equality",
+            Kind::Keyframe => "keyframe",
+            Kind::Pair => "pair",
+        }
+    }
+
+    /// How the names of its fields begin.
+    pub(crate) fn prefix(self) -> &'static str {
+        match self {
+            Kind::Body => "body_",
+            Kind::Joint => "jnt_",
+            Kind::Geom => "geom_",
+            Kind::Site => "site_",
+            Kind::Tendon => "tendon_",
+            Kind::Actuator => "actuator_",
+            Kind::Equality => "eq_",
+            Kind::Keyframe => "key_",
+            Kind::Pair => "pair_",
+        }
+    }
+
+    /// The names of all elements of this kind, some of them possibly empty.
+    pub(crate) fn names(self, model: &Model) -> Vec<&str> {
+        match self {
+            Kind::Body => model.bodies.iter().map(|e| &*e.name).collect(),
+            Kind::Joint => model.joints.iter().map(|e| &*e.name).collect(),
+            Kind::Geom => model.geoms.iter().map(|e| &*e.name).collect(),
+            Kind::Site => model.sites.iter().map(|e| &*e.name).collect(),
+            Kind::Tendon => model.tendons.iter().map(|e| &*e.name).collect(),
+            Kind::Actuator => model.actuators.iter().map(|e| &*e.name).collect(),
+            Kind::Equality => model.equalities.iter().map(|e| &*e.name).collect(),
+            Kind::Keyframe => model.keyframes.iter().map(|e| &*e.name).collect(),
+            Kind::Pair => model.pairs.iter().map(|e| &*e.name).collect(),
+        }
+    }
+
+    /// The index of the element that a user names or counts.
+    ///
+    /// # Errors
+    /// ValueError for a name that nothing has, IndexError for a number that is negative or too large, TypeError for what is
+    /// neither name nor number.
+    pub(crate) fn find(self, model: &Model, which: &Bound<'_, PyAny>) -> PyResult<usize> {
+        let names = self.names(model);
+        let kind = self.name();
+        if let Ok(name) = which.cast::<PyString>() {
+            let name = name.to_str()?;
+            let found = names
+                .iter()
+                .position(|&known| known == name && !name.is_empty());
+            return found.ok_or_else(|| unknown(kind, name, &names));
+        }
+        let count = names.len();
+        let index = match which.extract::<i64>() {
+            Ok(index) => usize::try_from(index).ok().filter(|&index| index < count),
+            Err(error) if error.is_instance_of::<PyOverflowError>(which.py()) => None,
+            Err(_) => {
+                let found = which.get_type().name()?;
+                return Err(PyTypeError::new_err(format!(
+                    "a {kind} is chosen by a str or an int, not by {found}"
+                )));
+            }
+        };
+        index.ok_or_else(|| {
+            PyIndexError::new_err(format!("there is no {kind} {which}: there are {count}"))
+        })
+    }
+}
