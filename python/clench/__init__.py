@@ -1,15 +1,63 @@
-"""MuJoCo's constraint model, fast: one robot or thousands at once."""
+"""MuJoCo's constraint model, fast: one robot or thousands at once.
 
-from clench._core import Model, RigidOptions, SolverStats, __version__
+Load a model, move one environment of it with `Sim` or many with `Batch`:
+
+>>> import clench
+>>> model = clench.Model.from_xml('''
+... <mujoco>
+...   <worldbody>
+...     <geom name="floor" type="plane" size="1 1 1"/>
+...     <body name="ball" pos="0 0 0.2"><freejoint/><geom size="0.1" mass="2"/></body>
+...   </worldbody>
+... </mujoco>''')
+>>> sim = clench.Sim(model)
+>>> sim.step(2000)
+>>> round(sim.qpos[2], 2), round(sim.contacts.force[0, 0], 2)
+(0.1, 19.62)
+
+>>> batch = clench.Batch(model, 1000, precision="32")
+>>> batch.qvel[:, 0] = range(1000)
+>>> batch.step(10)
+0
+
+Names, units, layouts and defaults are MuJoCo's. `clench.gymnasium` has vector environments.
+"""
+
+from clench._core import (
+    OUTPUTS,
+    PARAMETERS,
+    Batch,
+    Constraints,
+    Contacts,
+    Element,
+    Model,
+    RigidOptions,
+    Sim,
+    SolverStats,
+    StateViews,
+    __version__,
+)
+from clench._state import State
+from clench._status import EnvStatus
 from clench.errors import BusyError, ClenchError, LoadError, SimulationError
 
 __all__ = [
+    "OUTPUTS",
+    "PARAMETERS",
+    "Batch",
     "BusyError",
     "ClenchError",
+    "Constraints",
+    "Contacts",
+    "Element",
+    "EnvStatus",
     "LoadError",
     "Model",
     "RigidOptions",
+    "Sim",
     "SimulationError",
     "SolverStats",
+    "State",
+    "StateViews",
     "__version__",
 ]

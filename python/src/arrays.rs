@@ -1,8 +1,8 @@
 //! Arrays out of what Python gives: anything that NumPy takes for an array, of the kind that is meant.
 
 use numpy::{
-    Element, PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
-    PyUntypedArray, PyUntypedArrayMethods, dtype,
+    Element, PyArray1, PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods,
+    PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods, dtype,
 };
 use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::intern;
@@ -132,4 +132,16 @@ fn contiguous<'py, S: Element>(
     }
     let array = numpy(py)?.call_method1("require", (array, dtype::<S>(py), "CA"))?;
     Ok(array.cast_into::<PyArrayDyn<S>>()?.try_readonly()?)
+}
+
+/// An array over rows, of what `read` takes from each: as many numbers as `shape` says.
+pub(crate) fn column<Row, E: Element, const N: usize, Part: IntoIterator<Item = E>>(
+    py: Python<'_>,
+    rows: &[Row],
+    shape: [usize; N],
+    read: impl Fn(&Row) -> Part,
+) -> PyResult<Py<PyAny>> {
+    let array = PyArray1::from_vec(py, rows.iter().flat_map(read).collect());
+    let shape = [&[rows.len()], &shape[..]].concat();
+    Ok(array.reshape(shape)?.into_any().unbind())
 }

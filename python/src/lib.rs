@@ -1,6 +1,12 @@
-//! The compiled part of the Python package `clench`.
+//! The compiled part of the Python package `clench`: the classes and functions that `clench/__init__.py` offers. Numbers are
+//! computed in the crates; here they are only shown, checked and handed on.
 
 mod arrays;
+mod batch;
+mod busy;
+mod constraints;
+mod contacts;
+mod count;
 mod element;
 mod error;
 mod fields;
@@ -9,12 +15,27 @@ mod model;
 mod names;
 mod option_values;
 mod options;
+mod precision;
+mod sim;
+mod state_views;
 mod stats;
+mod view;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    use clench::Output;
+    use clench::rigid::model::ParamField;
+    use pyo3::prelude::*;
+    use pyo3::types::PyTuple;
+
+    #[pymodule_export]
+    use crate::batch::Batch;
+    #[pymodule_export]
+    use crate::constraints::Constraints;
+    #[pymodule_export]
+    use crate::contacts::Contacts;
     #[pymodule_export]
     use crate::element::Element;
     #[pymodule_export]
@@ -22,8 +43,20 @@ mod _core {
     #[pymodule_export]
     use crate::options::RigidOptions;
     #[pymodule_export]
+    use crate::sim::Sim;
+    #[pymodule_export]
+    use crate::state_views::StateViews;
+    #[pymodule_export]
     use crate::stats::SolverStats;
     #[pymodule_export]
     #[allow(non_upper_case_globals)] // Python's name.
     const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    #[pymodule_init]
+    fn names(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let outputs = Output::ALL.iter().map(|output| output.name());
+        let parameters = ParamField::ALL.iter().map(|field| field.name());
+        module.add("OUTPUTS", PyTuple::new(module.py(), outputs)?)?;
+        module.add("PARAMETERS", PyTuple::new(module.py(), parameters)?)
+    }
 }

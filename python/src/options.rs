@@ -58,7 +58,7 @@ use pyo3::types::{PyDict, PyTuple};
 /// >>> clench.RigidOptions(iterations=20, friction_cone="elliptic")
 /// RigidOptions(iterations=20, friction_cone='elliptic')
 #[pyclass(frozen, eq, module = "clench")]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct RigidOptions(pub(crate) clench::RigidOptions);
 
 macro_rules! options {

@@ -2,10 +2,12 @@
 //! matrices. For looking at, not for stepping: everything here allocates.
 
 use crate::constraint::ConstraintSource;
+use crate::contact::Contact;
 use crate::model::Model;
 use crate::workspace::Workspace;
-use clench_math::{Real, Scalar};
+use clench_math::{Mask, Real, Scalar};
 use clench_solver::{Block, Cost};
+use std::array::from_fn;
 
 /// One constraint row as MuJoCo's `efc` arrays have it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +117,52 @@ pub fn contact_force<T: Real>(ws: &Workspace<T>, contact: usize, lane: usize) ->
     force
 }
 
+/// A contact in plain numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRow {
+    /// The geoms; the normal points from the first to the second.
+    pub geoms: [usize; 2],
+    /// Dimensions: 1, 3, 4 or 6.
+    pub dim: usize,
+    /// Signed distance, negative in penetration, m.
+    pub dist: f64,
+    /// Midpoint between the surfaces, m.
+    pub pos: [f64; 3],
+    /// Rows: normal, first tangent, second tangent.
+    pub frame: [[f64; 3]; 3],
+    /// The constraint exists where `dist` is less, m.
+    pub includemargin: f64,
+    /// Two slides, spin, two rolls.
+    pub friction: [f64; 5],
+    /// See [`contact_force`].
+    pub force: [f64; 6],
+    /// The same in world axes: force (N), torque about `pos` (N m).
+    pub wrench: [f64; 6],
+}
+
+/// The contacts of lane `lane` that the last collision stage found.
+pub fn contact_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ContactRow> {
+    let found = (ws.contacts.iter().enumerate()).filter(|(_, c)| c.active.lane(lane));
+    let number = |x: T| x.lane(lane).to_f64();
+    let row = |(index, contact): (usize, &Contact<T>)| {
+        let frame = contact.frame.rows.map(|axis| axis.to_array().map(number));
+        let force = contact_force(ws, index, lane);
+        let turned = |along: &[f64], axis: usize| (0..3).map(|i| frame[i][axis] * along[i]).sum();
+        ContactRow {
+            geoms: contact.geoms,
+            dim: contact.dim,
+            dist: number(contact.dist),
+            pos: contact.pos.to_array().map(number),
+            frame,
+            includemargin: number(contact.includemargin),
+            friction: contact.friction.map(number),
+            force,
+            wrench: from_fn(|i| turned(&force[i / 3 * 3..], i % 3)),
+        }
+    };
+    found.map(row).collect()
+}
+
 impl ConstraintSource {
     /// Kind of constraint, as MuJoCo groups them.
     pub fn kind(self) -> &'static str {
@@ -158,7 +206,6 @@ fn active_blocks<T: Real>(
     ws: &Workspace<T>,
     lane: usize,
 ) -> impl Iterator<Item = (usize, Block<'_, T>)> {
-    use clench_math::Mask;
     let blocks = ws.problem.blocks().enumerate();
     blocks.filter(move |&(i, _)| ws.record.blocks[i].active.lane(lane))
 }

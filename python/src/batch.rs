@@ -1,0 +1,663 @@
+//! `clench.Batch`.
+
+use crate::arrays::{indices, mask, numbers, require_shape, shaped};
+use crate::busy::{in_portions, lock};
+use crate::count::Count;
+use crate::error::sim_error;
+use crate::kind::Kind;
+use crate::model::Model;
+use crate::names::no_attribute;
+use crate::options::RigidOptions;
+use crate::precision::Bits;
+use crate::sim::{AnySim, Sim};
+use crate::state_views::StateViews;
+use crate::view::{Keeper, read_only, view};
+use clench::rigid::model::ParamField;
+use clench::{BatchOptions, Controls, EnvStatus, Fault, Output, Precision};
+use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyAttributeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::sync::{Arc, Mutex};
+
+/// A batch in either precision.
+enum AnyBatch {
+    F64(clench::Batch<f64>),
+    F32(clench::Batch<f32>),
+}
+
+/// Evaluates an expression about a batch of whichever precision.
+macro_rules! each {
+    ($any:expr, $batch:ident => $value:expr) => {
+        match $any {
+            AnyBatch::F64($batch) => $value,
+            AnyBatch::F32($batch) => $value,
+        }
+    };
+}
+
+/// Many environments of one model, stepped side by side on all processors.
+///
+/// Environment i moves as a `Sim` alone would in the same precision, to the bit. One that cannot go on keeps its last good state
+/// and says why in `status` and `fault`; its neighbours do not notice.
+///
+/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) have the environments as their first axis, and are live: a step works on their
+/// very memory. Outputs that are recorded are live too, and can be read by their names: ``batch.cvel``.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The model of all environments.
+/// n_envs : int
+///     How many environments.
+/// precision : {"64", "32"}
+///     Bits of every number.
+/// threads : int, optional
+///     How many threads step; by default as many as there are processors. Results do not depend on it.
+/// options : RigidOptions, optional
+///     Options that go before those of the model.
+/// record : sequence of str
+///     Outputs to keep, see `record`.
+///
+/// Raises
+/// ------
+/// ValueError
+///     Options out of range, shapes that may meet and cannot be collided, names that no output has.
+/// MemoryError
+///     More environments than memory holds.
+#[pyclass(frozen, extends = StateViews, module = "clench")]
+pub(crate) struct Batch {
+    inner: Arc<Mutex<AnyBatch>>,
+    keeper: Py<Keeper>,
+    /// Views of the outputs that are recorded; none is ever taken back, so that views stay valid.
+    outputs: Mutex<Vec<(Output, Py<PyAny>)>>,
+    model: Py<Model>,
+    options: RigidOptions,
+    n_envs: usize,
+    precision: Bits,
+    threads: usize,
+    lanes: usize,
+}
+
+#[pymethods]
+impl Batch {
+    #[new]
+    #[pyo3(signature = (model, n_envs, precision = Bits::B64, threads = None, *, options = None, record = Vec::new()),
+           text_signature = "(model, n_envs, precision='64', threads=None, *, options=None, record=())")]
+    fn new(
+        model: &Bound<'_, Model>,
+        n_envs: Count,
+        precision: Bits,
+        threads: Option<Count>,
+        options: Option<&RigidOptions>,
+        record: Vec<String>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let py = model.py();
+        let options = options.copied().unwrap_or_default();
+        let own = BatchOptions {
+            options: options.0,
+            threads: threads.map(|count| count.0),
+            ..BatchOptions::default()
+        };
+        let make = Arc::clone(model.get().inner());
+        let inner = py.detach(|| {
+            Ok(match precision {
+                Bits::B64 => AnyBatch::F64(clench::Batch::with_options(make, n_envs.0, own)?),
+                Bits::B32 => AnyBatch::F32(clench::Batch::with_options(make, n_envs.0, own)?),
+            })
+        });
+        let inner = Arc::new(Mutex::new(inner.map_err(sim_error)?));
+        let keeper = Keeper::new(py, inner.clone())?;
+        let batch = {
+            let mut guard = lock(&inner, "batch")?;
+            each!(&mut *guard, batch => {
+                let views = StateViews::new(&keeper, &mut batch.state, model.get().inner(), false);
+                (views, batch.threads(), batch.lanes())
+            })
+        };
+        let (views, threads, lanes) = batch;
+        let batch = Batch {
+            inner,
+            keeper: keeper.unbind(),
+            outputs: Mutex::default(),
+            model: model.clone().unbind(),
+            options,
+            n_envs: n_envs.0,
+            precision,
+            threads,
+            lanes,
+        };
+        batch.keep(py, &record)?;
+        Ok(PyClassInitializer::from(views).add_subclass(batch))
+    }
+
+    /// Advances every running environment.
+    ///
+    /// Other Python threads run meanwhile; what they write to the arrays of this batch meets the step half-way.
+    ///
+    /// Parameters
+    /// ----------
+    /// n : int
+    ///     How many time steps, with the same controls and applied forces.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     How many environments failed in this call.
+    ///
+    /// Raises
+    /// ------
+    /// BusyError
+    ///     While another thread is in a call of this batch.
+    #[pyo3(signature = (n = Count(1)), text_signature = "($self, n=1)")]
+    fn step(&self, py: Python<'_>, n: Count) -> PyResult<usize> {
+        let mut guard = lock(&self.inner, "batch")?;
+        let any = &mut *guard;
+        let mut failed = 0;
+        in_portions(py, n.0, |steps| {
+            let summary = each!(any, batch => batch.step_n(steps));
+            failed += summary.map_err(sim_error)?.failed;
+            Ok(())
+        })?;
+        Ok(failed)
+    }
+
+    /// Computes the recorded outputs that follow from the states, and leaves the states alone.
+    ///
+    /// Parameters
+    /// ----------
+    /// mask : array_like of bool, optional
+    ///     Which environments (n); by default all. The outputs of the others stay as they are.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     How many environments failed in this call.
+    #[pyo3(signature = (mask = None))]
+    fn forward(&self, py: Python<'_>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+        let chosen = self.mask(mask)?;
+        let mut guard = lock(&self.inner, "batch")?;
+        let any = &mut *guard;
+        let summary = py.detach(|| each!(any, batch => batch.forward_mask(&chosen)));
+        Ok(summary.map_err(sim_error)?.failed)
+    }
+
+    /// Puts environments into their initial state, or that of a keyframe, and lets them run.
+    ///
+    /// Parameters
+    /// ----------
+    /// mask : array_like of bool, optional
+    ///     Which environments (n); by default all.
+    /// keyframe : str or int, optional
+    ///     A keyframe of the model, by name or index.
+    #[pyo3(signature = (mask = None, keyframe = None))]
+    fn reset(
+        &self,
+        py: Python<'_>,
+        mask: Option<&Bound<'_, PyAny>>,
+        keyframe: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let chosen = self.mask(mask)?;
+        let find = |which| Kind::Keyframe.find(self.model.get().inner(), which);
+        let key = keyframe.map(find).transpose()?;
+        let mut guard = lock(&self.inner, "batch")?;
+        let any = &mut *guard;
+        let envs = (0..self.n_envs).filter(|&env| chosen[env]);
+        let done = py.detach(|| {
+            each!(any, batch => envs.into_iter().try_for_each(|env| match key {
+                None => batch.reset(env),
+                Some(key) => batch.reset_to_keyframe(env, key),
+            }))
+        });
+        done.map_err(sim_error)
+    }
+
+    /// Lets environments run on from the states in their rows.
+    ///
+    /// Parameters
+    /// ----------
+    /// mask : array_like of bool, optional
+    ///     Which environments (n); by default all.
+    #[pyo3(signature = (mask = None))]
+    fn revive(&self, mask: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let chosen = self.mask(mask)?;
+        let mut guard = lock(&self.inner, "batch")?;
+        let mut envs = (0..self.n_envs).filter(|&env| chosen[env]);
+        each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
+    }
+
+    /// numpy.ndarray : Whether each environment runs (n), and if not why: codes of `EnvStatus`, int8. A copy.
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let guard = lock(&self.inner, "batch")?;
+        let codes = each!(&*guard, batch => batch.statuses().iter().map(code));
+        Ok(PyArray1::from_iter(py, codes))
+    }
+
+    /// numpy.ndarray : Which environments run (n), bool. A copy.
+    #[getter]
+    fn running<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let guard = lock(&self.inner, "batch")?;
+        let statuses = each!(&*guard, batch => batch.statuses());
+        let runs = statuses.iter().map(|status| *status == EnvStatus::Running);
+        Ok(PyArray1::from_iter(py, runs))
+    }
+
+    /// Why an environment cannot go on.
+    ///
+    /// Parameters
+    /// ----------
+    /// env : int
+    ///     Which environment.
+    ///
+    /// Returns
+    /// -------
+    /// str or None
+    ///     None if it runs.
+    fn fault(&self, env: Count) -> PyResult<Option<String>> {
+        self.check_env(env)?;
+        let guard = lock(&self.inner, "batch")?;
+        Ok(match each!(&*guard, batch => batch.status(env.0)) {
+            EnvStatus::Running => None,
+            EnvStatus::Failed(fault) => Some(fault.to_string()),
+        })
+    }
+
+    /// Gives environments numbers of their own in place of the model's.
+    ///
+    /// What follows directly is computed with it (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from ``geom_size``);
+    /// quaternions and axes are normalized. The numbers stay when an environment is reset.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : str
+    ///     A parameter of the model, such as ``"body_mass"`` or ``"geom_friction"``; see `clench.PARAMETERS`.
+    /// values : array_like
+    ///     The whole field for each environment: its shape in the model after an axis over environments.
+    /// envs : array_like of int, optional
+    ///     Which environments; by default all.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A name that no parameter has, a wrong shape, or numbers that the field cannot have. All is then as before.
+    #[pyo3(signature = (field, values, envs = None))]
+    fn randomize(
+        &self,
+        field: &str,
+        values: &Bound<'_, PyAny>,
+        envs: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let envs = match envs {
+            Some(envs) => indices("envs", envs, self.n_envs)?,
+            None => Vec::from_iter(0..self.n_envs),
+        };
+        let shape = self.param_shape(field)?;
+        let mut guard = lock(&self.inner, "batch")?;
+        each!(&mut *guard, batch => {
+            let values = shaped(field, values, &[&[envs.len()], &shape[..]].concat())?;
+            batch.randomize(field, &envs, values.as_slice()?).map_err(sim_error)
+        })
+    }
+
+    /// The numbers of a parameter as each environment has them.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : str
+    ///     A parameter of the model.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     A copy: the field's shape in the model after an axis over environments.
+    fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
+        let shape = self.param_shape(field)?;
+        let guard = lock(&self.inner, "batch")?;
+        each!(&*guard, batch => {
+            let mut all = Vec::new();
+            for env in 0..self.n_envs {
+                all.append(&mut batch.param(field, env).map_err(sim_error)?);
+            }
+            let shape = [&[self.n_envs], &shape[..]].concat();
+            Ok(PyArray1::from_vec(py, all).reshape(shape)?.into_any())
+        })
+    }
+
+    /// Keeps outputs from now on, beside those that are kept already.
+    ///
+    /// Every step and forward leaves them as of its last forward pass, as MuJoCo leaves its fields: those that follow from
+    /// positions are of the start of the last time step (with the Runge-Kutta integrator, of its last stage). They are zero
+    /// before the first step. Rows of environments that do not run stay as they are.
+    ///
+    /// Parameters
+    /// ----------
+    /// *names : str
+    ///     Names of outputs, see `clench.OUTPUTS`.
+    #[pyo3(signature = (*names))]
+    fn record(&self, py: Python<'_>, names: Vec<String>) -> PyResult<()> {
+        self.keep(py, &names)
+    }
+
+    /// tuple of str : The outputs that are recorded.
+    #[getter]
+    fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let outputs = lock(&self.outputs, "batch")?;
+        PyTuple::new(py, outputs.iter().map(|(output, _)| output.name()))
+    }
+
+    /// A recorded output.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Its name.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     A live view that cannot be written, with environments as first axis.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     An output that is not recorded.
+    fn output(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
+        let output = Output::find(name).map_err(sim_error)?;
+        self.view(py, output)
+            .ok_or_else(|| PyValueError::new_err(not_recorded(name)))
+    }
+
+    fn __getattr__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
+        let Ok(output) = Output::find(name) else {
+            let known = Vec::from_iter(Output::ALL.iter().map(|output| output.name()));
+            return Err(no_attribute("Batch", name, &known));
+        };
+        self.view(py, output)
+            .ok_or_else(|| PyAttributeError::new_err(not_recorded(name)))
+    }
+
+    /// Steps all running environments and records outputs after each step.
+    ///
+    /// Parameters
+    /// ----------
+    /// initial : array_like, optional
+    ///     States to start from (n, 1 + nq + nv + na): time, positions, velocities, activations. All environments then run, and
+    ///     the solver starts anew, so that what comes out depends on no earlier step. By default they go on from where they are.
+    /// ctrl : array_like, optional
+    ///     Controls of each step, for all (steps, nu) or each (n, steps, nu) environment. By default those in `ctrl`, which
+    ///     stay as they are in any case.
+    /// record : sequence of str
+    ///     Outputs to record, see `clench.OUTPUTS`.
+    /// steps : int, optional
+    ///     How many steps; needed only without `ctrl`.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to numpy.ndarray
+    ///     Each output (n, steps, ...). Steps that an environment did not do are NaN.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Wrong shapes; names that no output has. The states are then as before.
+    #[pyo3(signature = (initial = None, ctrl = None, record = None, steps = None),
+           text_signature = "($self, initial=None, ctrl=None, record=('qpos', 'qvel'), steps=None)")]
+    fn rollout<'py>(
+        &self,
+        py: Python<'py>,
+        initial: Option<&Bound<'py, PyAny>>,
+        ctrl: Option<&Bound<'py, PyAny>>,
+        record: Option<Vec<String>>,
+        steps: Option<Count>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let record = record.unwrap_or_else(|| vec!["qpos".into(), "qvel".into()]);
+        let steps = steps.map(|count| count.0);
+        let mut guard = lock(&self.inner, "batch")?;
+        each!(&mut *guard, batch => rollout(py, batch, initial, ctrl, &record, steps))
+    }
+
+    /// A simulation of one environment, in its state and with its parameters.
+    ///
+    /// Parameters
+    /// ----------
+    /// env : int
+    ///     Which environment.
+    ///
+    /// Returns
+    /// -------
+    /// Sim
+    ///     It goes its own way: no memory is shared.
+    fn sim<'py>(&self, py: Python<'py>, env: Count) -> PyResult<Bound<'py, Sim>> {
+        self.check_env(env)?;
+        let guard = lock(&self.inner, "batch")?;
+        let (model, options) = (self.model.clone_ref(py), self.options);
+        let sim = match &*guard {
+            AnyBatch::F64(batch) => batch.sim(env.0).and_then(AnySim::f64),
+            AnyBatch::F32(batch) => batch.sim(env.0).and_then(AnySim::f32),
+        };
+        Bound::new(py, Sim::wrap(py, sim.map_err(sim_error)?, model, options)?)
+    }
+
+    /// State : A copy of what the next step of every environment depends on, parameters apart.
+    ///
+    /// Assigning one brings all environments there, to the bit, and lets all of them run.
+    #[getter]
+    fn state<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let _guard = lock(&this.get().inner, "batch")?;
+        this.as_super().get().copy(this.py())
+    }
+
+    #[setter]
+    fn set_state(this: &Bound<'_, Self>, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        let own = this.get();
+        let mut guard = lock(&own.inner, "batch")?;
+        this.as_super().get().take_over(state)?;
+        let mut envs = 0..own.n_envs;
+        each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
+    }
+
+    /// Model : The model, without the numbers that environments have for themselves.
+    #[getter]
+    fn model(&self, py: Python<'_>) -> Py<Model> {
+        self.model.clone_ref(py)
+    }
+
+    /// RigidOptions : The options that were given.
+    #[getter]
+    fn options(&self) -> RigidOptions {
+        self.options
+    }
+
+    /// int : How many environments there are.
+    #[getter]
+    fn n_envs(&self) -> usize {
+        self.n_envs
+    }
+
+    /// str : Bits of every number, "64" or "32".
+    #[getter]
+    fn precision(&self) -> &'static str {
+        self.precision.name()
+    }
+
+    /// int : How many threads step.
+    #[getter]
+    fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// int : How many environments a thread steps side by side.
+    #[getter]
+    fn lanes(&self) -> usize {
+        self.lanes
+    }
+
+    /// int : Bytes that an environment takes: its state, parameters of its own, recorded outputs.
+    #[getter]
+    fn bytes_per_env(&self) -> PyResult<usize> {
+        let guard = lock(&self.inner, "batch")?;
+        Ok(each!(&*guard, batch => batch.bytes_per_env()))
+    }
+
+    fn __len__(&self) -> usize {
+        self.n_envs
+    }
+
+    fn __repr__(&self) -> String {
+        let name = &self.model.get().inner().name;
+        format!(
+            "<clench.Batch of {} x {name:?}, {} bits, {} lanes, {} threads>",
+            self.n_envs,
+            self.precision.name(),
+            self.lanes,
+            self.threads
+        )
+    }
+}
+
+impl Batch {
+    fn check_env(&self, env: Count) -> PyResult<()> {
+        if env.0 < self.n_envs {
+            return Ok(());
+        }
+        Err(pyo3::exceptions::PyIndexError::new_err(format!(
+            "there is no environment {}: there are {}",
+            env.0, self.n_envs
+        )))
+    }
+
+    /// All environments, where no mask is given.
+    fn mask(&self, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<bool>> {
+        given.map_or_else(
+            || Ok(vec![true; self.n_envs]),
+            |given| mask("mask", given, self.n_envs),
+        )
+    }
+
+    fn param_shape(&self, field: &str) -> PyResult<Vec<usize>> {
+        let field = ParamField::find(field).map_err(sim_error)?;
+        Ok(field.shape(self.model.get().inner()))
+    }
+
+    fn view(&self, py: Python<'_>, output: Output) -> Option<Py<PyAny>> {
+        let outputs = self
+            .outputs
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let found = outputs.iter().find(|(kept, _)| *kept == output);
+        found.map(|(_, array)| array.clone_ref(py))
+    }
+
+    /// Records outputs beside those that are recorded already.
+    fn keep(&self, py: Python<'_>, names: &[String]) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "batch")?;
+        let mut outputs = lock(&self.outputs, "batch")?;
+        let mut all = Vec::from_iter(outputs.iter().map(|(output, _)| *output));
+        for name in names {
+            let output = Output::find(name).map_err(sim_error)?;
+            if !all.contains(&output) {
+                all.push(output);
+            }
+        }
+        let names = Vec::from_iter(all.iter().map(|output| output.name()));
+        each!(&mut *guard, batch => {
+            batch.record(&names).map_err(sim_error)?;
+            for &output in &all[outputs.len()..] {
+                let array = output_view(self.keeper.bind(py), batch, output)?;
+                outputs.push((output, array));
+            }
+        });
+        Ok(())
+    }
+}
+
+fn not_recorded(name: &str) -> String {
+    format!("the output \"{name}\" is not recorded: call record(\"{name}\") first")
+}
+
+/// A live view of an output that `batch` records.
+fn output_view<S: Precision + Element>(
+    keeper: &Bound<'_, Keeper>,
+    batch: &clench::Batch<S>,
+    output: Output,
+) -> PyResult<Py<PyAny>> {
+    let Some(rows) = batch.output(output.name()) else {
+        return Err(PyValueError::new_err(not_recorded(output.name())));
+    };
+    let shape = [&[batch.count()], &output.shape(batch.model())[..]].concat();
+    // SAFETY: the table has this shape, lives in the batch that `keeper` keeps, and is never taken back.
+    let array = unsafe { view(keeper, rows.as_ptr(), &shape) };
+    Ok(read_only(array)?.into_any().unbind())
+}
+
+/// `Batch.rollout` in one precision.
+fn rollout<'py, S: Precision + Element>(
+    py: Python<'py>,
+    batch: &mut clench::Batch<S>,
+    initial: Option<&Bound<'py, PyAny>>,
+    ctrl: Option<&Bound<'py, PyAny>>,
+    record: &[String],
+    steps: Option<usize>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (n, model) = (batch.count(), Arc::clone(batch.model()));
+    let ctrl = ctrl
+        .map(|values| numbers::<S>("ctrl", values))
+        .transpose()?;
+    let steps = match (&ctrl, steps) {
+        (None, None) => return Err(PyValueError::new_err("rollout needs ctrl or steps")),
+        (None, Some(steps)) => steps,
+        (Some(values), steps) => match (values.shape(), steps) {
+            (&[own, _] | &[_, own, _], None) => own,
+            (_, Some(steps)) => steps,
+            (shape, None) => {
+                require_shape("ctrl", shape, &[n, 0, model.nu()])?;
+                0
+            }
+        },
+    };
+    let controls = match &ctrl {
+        None => Controls::Held,
+        Some(values) if values.ndim() == 2 => {
+            require_shape("ctrl", values.shape(), &[steps, model.nu()])?;
+            Controls::Shared(values.as_slice()?)
+        }
+        Some(values) => {
+            require_shape("ctrl", values.shape(), &[n, steps, model.nu()])?;
+            Controls::Each(values.as_slice()?)
+        }
+    };
+    let needed = [n, 1 + model.nq + model.nv + model.na];
+    let initial = initial
+        .map(|values| shaped::<S>("initial", values, &needed))
+        .transpose()?;
+    let start = initial
+        .as_ref()
+        .map(|values| values.as_slice())
+        .transpose()?;
+    let names = Vec::from_iter(record.iter().map(String::as_str));
+    let recording = py.detach(|| match start {
+        None => batch.rollout(steps, controls, &names),
+        Some(initial) => batch.rollout_from(initial, steps, controls, &names),
+    });
+    let arrays = PyDict::new(py);
+    for (output, mut rows) in recording.map_err(sim_error)?.into_rows() {
+        let start = rows.as_mut_ptr();
+        let keeper = Keeper::new(py, Arc::new(rows))?;
+        let shape = [&[n, steps], &output.shape(&model)[..]].concat();
+        // SAFETY: the table has this shape, and `keeper` has it.
+        arrays.set_item(output.name(), unsafe { view(&keeper, start, &shape) })?;
+    }
+    Ok(arrays)
+}
+
+/// The code of `clench.EnvStatus`.
+fn code(status: &EnvStatus) -> i8 {
+    match status {
+        EnvStatus::Running => 0,
+        EnvStatus::Failed(Fault::NotFinite { .. }) => 1,
+        EnvStatus::Failed(Fault::Singular { .. }) => 2,
+        EnvStatus::Failed(Fault::Diverged { .. }) => 3,
+        EnvStatus::Failed(Fault::ContactOverflow { .. }) => 4,
+    }
+}

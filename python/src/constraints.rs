@@ -1,0 +1,93 @@
+//! The constraint rows of a simulation, as arrays.
+
+use crate::arrays::column;
+use clench::Precision;
+use clench::rigid::readout::{self, ConstraintRow};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+
+/// Constraint rows, as MuJoCo's ``efc`` fields: entry i of each array belongs to row i, edges of a pyramid counted one by one. All
+/// are copies, in float64.
+#[pyclass(frozen, module = "clench")]
+pub(crate) struct Constraints {
+    /// list of str : Kind of constraint: "equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon" or
+    /// "contact".
+    #[pyo3(get)]
+    kind: Vec<&'static str>,
+    /// numpy.ndarray : Number of the constraint among those of its kind (nefc), int64: the equality, dof, joint, tendon or
+    /// contact.
+    #[pyo3(get)]
+    id: Py<PyAny>,
+    /// list of str : Its name, of the joint for a dof; empty where it has none and for contacts.
+    #[pyo3(get)]
+    name: Vec<String>,
+    /// numpy.ndarray : Violation of an equality, signed distance of a limit or contact, zero for friction (nefc).
+    #[pyo3(get)]
+    pos: Py<PyAny>,
+    /// numpy.ndarray : Distance at which it begins to act (nefc).
+    #[pyo3(get)]
+    margin: Py<PyAny>,
+    /// numpy.ndarray : Rate of change of the position (nefc).
+    #[pyo3(get)]
+    vel: Py<PyAny>,
+    /// numpy.ndarray : Acceleration that it asks for (nefc).
+    #[pyo3(get)]
+    aref: Py<PyAny>,
+    /// numpy.ndarray : Weight of its cost (nefc), the inverse of its regularization R.
+    #[pyo3(get, name = "D")]
+    d: Py<PyAny>,
+    /// numpy.ndarray : Impedance (nefc).
+    #[pyo3(get)]
+    impedance: Py<PyAny>,
+    /// numpy.ndarray : Dry friction, zero for all else (nefc).
+    #[pyo3(get)]
+    frictionloss: Py<PyAny>,
+    /// numpy.ndarray : Force (nefc).
+    #[pyo3(get)]
+    force: Py<PyAny>,
+    /// numpy.ndarray : Jacobian, dense (nefc, nv).
+    #[pyo3(get, name = "J")]
+    jacobian: Py<PyAny>,
+}
+
+impl Constraints {
+    /// Those of the last step or forward.
+    pub(crate) fn of<'py, S: Precision>(
+        py: Python<'py>,
+        sim: &clench::Sim<S>,
+    ) -> PyResult<Bound<'py, Self>> {
+        let (model, ws) = (sim.model(), sim.workspace());
+        let rows = readout::constraint_rows(ws, 0);
+        let of = |read: fn(&ConstraintRow) -> f64| column(py, &rows, [], |row| [read(row)]);
+        let jacobian = PyArray1::from_vec(py, readout::jacobian(ws, 0));
+        let constraints = Constraints {
+            kind: rows.iter().map(|row| row.source.kind()).collect(),
+            id: column(py, &rows, [], |row| [row.source.index() as i64])?,
+            name: (rows.iter().map(|row| row.source.name(model).to_owned())).collect(),
+            pos: of(|row| row.pos)?,
+            margin: of(|row| row.margin)?,
+            vel: of(|row| row.vel)?,
+            aref: of(|row| row.aref)?,
+            d: of(|row| row.d)?,
+            impedance: of(|row| row.impedance)?,
+            frictionloss: of(|row| row.frictionloss)?,
+            force: of(|row| row.force)?,
+            jacobian: jacobian
+                .reshape([rows.len(), model.nv])?
+                .into_any()
+                .unbind(),
+        };
+        Bound::new(py, constraints)
+    }
+}
+
+#[pymethods]
+impl Constraints {
+    fn __len__(&self) -> usize {
+        self.kind.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<clench.Constraints: {} rows>", self.kind.len())
+    }
+}

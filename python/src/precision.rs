@@ -1,0 +1,34 @@
+//! Bits of a number, as users name them.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// `"64"` or `"32"`.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Bits {
+    B64,
+    B32,
+}
+
+impl Bits {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Bits::B64 => "64",
+            Bits::B32 => "32",
+        }
+    }
+}
+
+impl FromPyObject<'_, '_> for Bits {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        match object.extract()? {
+            "64" => Ok(Bits::B64),
+            "32" => Ok(Bits::B32),
+            other => Err(PyValueError::new_err(format!(
+                "precision is \"{other}\", but must be \"64\" or \"32\""
+            ))),
+        }
+    }
+}

@@ -1,0 +1,418 @@
+//! `clench.Sim`.
+
+use crate::arrays::shaped;
+use crate::busy::{in_portions, lock};
+use crate::constraints::Constraints;
+use crate::contacts::Contacts;
+use crate::count::Count;
+use crate::error::sim_error;
+use crate::kind::Kind;
+use crate::model::Model;
+use crate::names::no_attribute;
+use crate::options::RigidOptions;
+use crate::precision::Bits;
+use crate::state_views::StateViews;
+use crate::stats::SolverStats;
+use crate::view::{Keeper, read_only};
+use clench::math::Scalar;
+use clench::rigid::batch::StateRows;
+use clench::rigid::model::ParamField;
+use clench::rigid::readout;
+use clench::{Output, Precision, SimError};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use std::sync::{Arc, Mutex};
+
+/// A simulation beside the rows that Python sees: rows go in before each call, and come out after steps.
+pub(crate) struct RowSim<S: Precision> {
+    rows: StateRows<S>,
+    sim: clench::Sim<S>,
+}
+
+impl<S: Precision> RowSim<S> {
+    fn new(sim: clench::Sim<S>) -> Result<Self, SimError> {
+        let mut rows = StateRows::new(sim.model(), 1)?;
+        rows.write(0, &sim.state)?;
+        Ok(RowSim { rows, sim })
+    }
+
+    /// The simulation, in the state that the rows hold.
+    fn current(&mut self) -> Result<&mut clench::Sim<S>, SimError> {
+        self.rows.read(0, &mut self.sim.state)?;
+        Ok(&mut self.sim)
+    }
+
+    /// Steps up to the first that fails, whose state is the one before it.
+    fn step(&mut self, steps: usize) -> Result<(), SimError> {
+        let sim = self.current()?;
+        let done = (0..steps).try_for_each(|_| sim.step());
+        self.rows.write(0, &self.sim.state)?;
+        done
+    }
+
+    fn reset(&mut self, keyframe: Option<usize>) -> Result<(), SimError> {
+        match keyframe {
+            None => self.sim.reset(),
+            Some(index) => self.sim.reset_to_keyframe(index)?,
+        }
+        self.rows.write(0, &self.sim.state)
+    }
+}
+
+/// A simulation in either precision.
+pub(crate) enum AnySim {
+    F64(Box<RowSim<f64>>),
+    F32(Box<RowSim<f32>>),
+}
+
+/// Evaluates an expression about a simulation of whichever precision.
+macro_rules! each {
+    ($any:expr, $own:ident => $value:expr) => {
+        match $any {
+            AnySim::F64($own) => $value,
+            AnySim::F32($own) => $value,
+        }
+    };
+}
+
+/// A model in motion: one environment.
+///
+/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) are live: write them between steps. What a step or `forward` computed is read
+/// as copies: outputs by their names, such as ``sim.xpos`` (see `clench.OUTPUTS`), and `contacts`, `constraints`,
+/// `solver_stats`. As in MuJoCo, what follows from positions is after a step that of the step's start.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The model.
+/// options : RigidOptions, optional
+///     Options that go before those of the model.
+/// precision : {"64", "32"}
+///     Bits of every number.
+///
+/// Raises
+/// ------
+/// ValueError
+///     Options out of range; shapes that may meet and cannot be collided.
+#[pyclass(frozen, extends = StateViews, module = "clench")]
+pub(crate) struct Sim {
+    inner: Arc<Mutex<AnySim>>,
+    model: Py<Model>,
+    options: RigidOptions,
+    precision: Bits,
+}
+
+impl AnySim {
+    /// A simulation in double precision.
+    pub(crate) fn f64(sim: clench::Sim<f64>) -> Result<Self, SimError> {
+        RowSim::new(sim).map(|sim| AnySim::F64(Box::new(sim)))
+    }
+    /// A simulation in single precision.
+    pub(crate) fn f32(sim: clench::Sim<f32>) -> Result<Self, SimError> {
+        RowSim::new(sim).map(|sim| AnySim::F32(Box::new(sim)))
+    }
+
+    fn precision(&self) -> Bits {
+        match self {
+            AnySim::F64(_) => Bits::B64,
+            AnySim::F32(_) => Bits::B32,
+        }
+    }
+}
+
+impl Sim {
+    /// The Python object of a simulation.
+    pub(crate) fn wrap(
+        py: Python<'_>,
+        sim: AnySim,
+        model: Py<Model>,
+        options: RigidOptions,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let precision = sim.precision();
+        let inner = Arc::new(Mutex::new(sim));
+        let keeper = Keeper::new(py, inner.clone())?;
+        let views = {
+            let mut guard = lock(&inner, "simulation")?;
+            let of = model.get().inner();
+            each!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, of, true))
+        };
+        Ok(PyClassInitializer::from(views).add_subclass(Sim {
+            inner,
+            model,
+            options,
+            precision,
+        }))
+    }
+}
+
+#[pymethods]
+impl Sim {
+    #[new]
+    #[pyo3(signature = (model, options = None, *, precision = Bits::B64),
+           text_signature = "(model, options=None, *, precision='64')")]
+    fn new(
+        model: &Bound<'_, Model>,
+        options: Option<&RigidOptions>,
+        precision: Bits,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let options = options.copied().unwrap_or_default();
+        let (py, own) = (model.py(), model.clone().unbind());
+        let (inner, given) = (Arc::clone(model.get().inner()), options.0);
+        let sim = match precision {
+            Bits::B64 => clench::Sim::with_options(inner, given).and_then(AnySim::f64),
+            Bits::B32 => clench::Sim::with_options(inner, given).and_then(AnySim::f32),
+        };
+        Sim::wrap(py, sim.map_err(sim_error)?, own, options)
+    }
+
+    /// Advances the state.
+    ///
+    /// Other Python threads run meanwhile.
+    ///
+    /// Parameters
+    /// ----------
+    /// n : int
+    ///     How many time steps, with the same controls and applied forces.
+    ///
+    /// Raises
+    /// ------
+    /// SimulationError
+    ///     Numbers that are not finite in the state; a motion that diverges; a singular mass matrix. The state is then as before
+    ///     the step that failed.
+    /// BusyError
+    ///     While another thread is in a call of this simulation.
+    #[pyo3(signature = (n = Count(1)), text_signature = "($self, n=1)")]
+    fn step(&self, py: Python<'_>, n: Count) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        let any = &mut *guard;
+        in_portions(py, n.0, |steps| {
+            each!(any, own => own.step(steps)).map_err(sim_error)
+        })
+    }
+
+    /// Computes everything that follows from the state, and leaves the state alone.
+    ///
+    /// Raises
+    /// ------
+    /// SimulationError
+    ///     As `step`.
+    fn forward(&self, py: Python<'_>) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        let any = &mut *guard;
+        py.detach(|| each!(any, own => own.current()?.forward()))
+            .map_err(sim_error)
+    }
+
+    /// Back to the initial state, or to a keyframe.
+    ///
+    /// Parameters
+    /// ----------
+    /// keyframe : str or int, optional
+    ///     A keyframe of the model, by name or index. What it does not hold is as in the initial state.
+    #[pyo3(signature = (keyframe = None))]
+    fn reset(&self, keyframe: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let find = |which| Kind::Keyframe.find(self.model.get().inner(), which);
+        let key = keyframe.map(find).transpose()?;
+        let mut guard = lock(&self.inner, "simulation")?;
+        each!(&mut *guard, own => own.reset(key)).map_err(sim_error)
+    }
+
+    /// Replaces the numbers of a parameter for this simulation alone.
+    ///
+    /// What follows directly is computed with it (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from ``geom_size``);
+    /// quaternions and axes are normalized.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : str
+    ///     A parameter of the model, such as ``"body_mass"``; see `clench.PARAMETERS`.
+    /// values : array_like
+    ///     The whole field, in its shape in the model.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A name that no parameter has, a wrong shape, or numbers that the field cannot have. All is then as before.
+    fn set_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
+        let shape = self.param_shape(field)?;
+        let mut guard = lock(&self.inner, "simulation")?;
+        each!(&mut *guard, own => {
+            let values = shaped(field, values, &shape)?;
+            own.sim.set_param(field, values.as_slice()?).map_err(sim_error)
+        })
+    }
+
+    /// The numbers of a parameter as this simulation uses them.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : str
+    ///     A parameter of the model.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     A copy in the shape that the field has in the model.
+    fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
+        let shape = self.param_shape(field)?;
+        let guard = lock(&self.inner, "simulation")?;
+        each!(&*guard, own => {
+            let values = own.sim.param(field).map_err(sim_error)?;
+            Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any())
+        })
+    }
+
+    /// An output of the last step or forward, or of the state.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Its name, see `clench.OUTPUTS`.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray or float
+    ///     A copy that cannot be written.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A name that no output has.
+    fn output<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let output = Output::find(name).map_err(sim_error)?;
+        let shape = output.shape(self.model.get().inner());
+        let mut guard = lock(&self.inner, "simulation")?;
+        each!(&mut *guard, own => {
+            let values = own.current().and_then(|sim| sim.output(name)).map_err(sim_error)?;
+            if shape.is_empty() {
+                return Ok(values[0].to_f64().into_pyobject(py)?.into_any());
+            }
+            let array = PyArray1::from_vec(py, values).reshape(shape)?;
+            Ok(read_only(array)?.into_any())
+        })
+    }
+
+    fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        if Output::find(name).is_err() {
+            let known = Vec::from_iter(Output::ALL.iter().map(|output| output.name()));
+            return Err(no_attribute("Sim", name, &known));
+        }
+        self.output(py, name)
+    }
+
+    fn __dir__<'py>(this: &Bound<'py, Self>) -> PyResult<Vec<String>> {
+        let class = this.get_type().call_method0("mro")?;
+        let mut names = Vec::new();
+        for base in class.try_iter()? {
+            let own = base?.getattr("__dict__")?;
+            for name in own.try_iter()? {
+                names.push(name?.extract()?);
+            }
+        }
+        names.extend(Output::ALL.iter().map(|output| output.name().to_owned()));
+        Ok(names)
+    }
+
+    /// Contacts : The contacts of the last step or forward.
+    #[getter]
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Contacts>> {
+        let guard = lock(&self.inner, "simulation")?;
+        each!(&*guard, own => Contacts::of(py, &own.sim))
+    }
+
+    /// Constraints : The constraint rows of the last step or forward, with their forces.
+    #[getter]
+    fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Constraints>> {
+        let guard = lock(&self.inner, "simulation")?;
+        each!(&*guard, own => Constraints::of(py, &own.sim))
+    }
+
+    /// SolverStats : How the last solve went; with the Runge-Kutta integrator, that of the last stage.
+    #[getter]
+    fn solver_stats(&self) -> PyResult<SolverStats> {
+        let guard = lock(&self.inner, "simulation")?;
+        Ok(each!(&*guard, own => own.sim.stats()).into())
+    }
+
+    /// bool : Whether the last step or forward found more contacts than `max_contacts` allows, and left some out.
+    #[getter]
+    fn contact_overflow(&self) -> PyResult<bool> {
+        let guard = lock(&self.inner, "simulation")?;
+        Ok(each!(&*guard, own => own.sim.contact_overflow()))
+    }
+
+    /// The joint-space mass matrix of the last step or forward.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Dense (nv, nv), float64.
+    fn mass_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let guard = lock(&self.inner, "simulation")?;
+        let values = each!(&*guard, own => readout::mass_matrix(own.sim.workspace(), 0));
+        let nv = self.model.get().inner().nv;
+        Ok(PyArray1::from_vec(py, values).reshape([nv, nv])?.into_any())
+    }
+
+    /// Switches an equality constraint on or off.
+    ///
+    /// Parameters
+    /// ----------
+    /// which : str or int
+    ///     The equality, by name or index.
+    /// active : bool
+    ///     Whether it acts. `eq_active` shows all switches.
+    fn set_equality(
+        this: &Bound<'_, Self>,
+        which: &Bound<'_, PyAny>,
+        active: bool,
+    ) -> PyResult<()> {
+        let index = Kind::Equality.find(this.get().model.get().inner(), which)?;
+        this.getattr("eq_active")?.set_item(index, active)
+    }
+
+    /// State : A copy of what the next step depends on, parameters apart.
+    ///
+    /// Assigning one brings the simulation there, to the bit.
+    #[getter]
+    fn state<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let _guard = lock(&this.get().inner, "simulation")?;
+        this.as_super().get().copy(this.py())
+    }
+
+    #[setter]
+    fn set_state(this: &Bound<'_, Self>, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        let _guard = lock(&this.get().inner, "simulation")?;
+        this.as_super().get().take_over(state)
+    }
+
+    /// Model : The model.
+    #[getter]
+    fn model(&self, py: Python<'_>) -> Py<Model> {
+        self.model.clone_ref(py)
+    }
+
+    /// RigidOptions : The options that were given.
+    #[getter]
+    fn options(&self) -> RigidOptions {
+        self.options
+    }
+
+    /// str : Bits of every number, "64" or "32".
+    #[getter]
+    fn precision(&self) -> &'static str {
+        self.precision.name()
+    }
+
+    fn __repr__(&self) -> String {
+        let name = &self.model.get().inner().name;
+        format!("<clench.Sim of {name:?}, {} bits>", self.precision.name())
+    }
+}
+
+impl Sim {
+    fn param_shape(&self, field: &str) -> PyResult<Vec<usize>> {
+        let field = ParamField::find(field).map_err(sim_error)?;
+        Ok(field.shape(self.model.get().inner()))
+    }
+}

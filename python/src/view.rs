@@ -1,0 +1,52 @@
+//! Rows of numbers as NumPy arrays, without a copy. The only unsafe code of the package stands here.
+//!
+//! A table of `clench` keeps its numbers in one place as long as it lives. A view is a NumPy array over that place whose base
+//! is a [`Keeper`]: as long as anyone holds the view, the table lives. Rust touches the numbers only inside calls, Python only
+//! outside of them; who writes from another thread while a call steps gets numbers that are partly old and partly new, since a
+//! step copies each row into scratch of its own, checks it there, and copies results back.
+
+use numpy::ndarray::{ArrayViewD, IxDyn};
+use numpy::{Element, PyArrayDyn, PyArrayMethods};
+use pyo3::prelude::*;
+use std::any::Any;
+use std::sync::Arc;
+
+/// What views have as their base: it keeps the memory that they show.
+#[pyclass(frozen, module = "clench._core")]
+pub(crate) struct Keeper {
+    _kept: Arc<dyn Any + Send + Sync>,
+}
+
+impl Keeper {
+    /// A keeper of what owns the numbers.
+    pub(crate) fn new(
+        py: Python<'_>,
+        kept: Arc<dyn Any + Send + Sync>,
+    ) -> PyResult<Bound<'_, Self>> {
+        Bound::new(py, Keeper { _kept: kept })
+    }
+}
+
+/// A writable array over the numbers that begin at `start`.
+///
+/// # Safety
+/// As many numbers as `shape` says lie there, row after row, as long as `keeper` lives, and do not move.
+pub(crate) unsafe fn view<'py, E: Element>(
+    keeper: &Bound<'py, Keeper>,
+    start: *const E,
+    shape: &[usize],
+) -> Bound<'py, PyArrayDyn<E>> {
+    // SAFETY: by the caller's promise. NumPy is given the pointer; the reference ends with this function.
+    unsafe {
+        let numbers = ArrayViewD::from_shape_ptr(IxDyn(shape), start);
+        PyArrayDyn::borrow_from_array(&numbers, keeper.clone().into_any())
+    }
+}
+
+/// The same array, which Python can no longer write.
+pub(crate) fn read_only<'py, E: Element>(
+    array: Bound<'py, PyArrayDyn<E>>,
+) -> PyResult<Bound<'py, PyArrayDyn<E>>> {
+    array.try_readwrite()?.make_nonwriteable();
+    Ok(array)
+}
