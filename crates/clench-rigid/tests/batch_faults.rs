@@ -281,3 +281,30 @@ fn what_failed_does_not_count_as_quality() {
     let (refused, diverged) = (quality(None), quality(Some(1e300)));
     assert_eq!(diverged, refused);
 }
+
+/// Who writes rows by their address can leave bytes in switches that are neither false nor true.
+#[test]
+fn a_switch_is_on_whatever_byte_says_so() {
+    let model = model(&everything());
+    let envs: Vec<usize> = (0..21).collect();
+    for instructions in Instructions::all_available() {
+        let end = |on: u8| {
+            let options = with(instructions, 1, RigidOptions::new());
+            let mut batch = batch::<f64>(&model, &envs, options);
+            let switches = &mut batch.state.eq_active;
+            let (start, width) = (switches.as_mut_ptr().cast::<u8>(), switches.width());
+            assert!(width > 0);
+            for switch in (0..width).map(|i| 3 * width + i) {
+                // SAFETY: within the table, whose bytes only the batch reads.
+                unsafe { start.add(switch).write(on) };
+            }
+            assert_eq!(batch.step_n(5).expect("valid").failed, 0);
+            let one = batch.sim(3).expect("it exists").state.eq_active;
+            (batch.state.qpos.as_slice().to_vec(), one)
+        };
+        let [off, on, odd, all] = [0, 1, 2, 255].map(end);
+        assert_ne!(off, on);
+        assert_eq!(odd, on, "{instructions:?}");
+        assert_eq!(all, on, "{instructions:?}");
+    }
+}

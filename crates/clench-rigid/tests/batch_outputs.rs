@@ -218,6 +218,33 @@ fn applied_forces_and_loops_count_as_external() {
 }
 
 #[test]
+fn forces_on_bodies_come_and_go() {
+    let (model, options) = (model(&loose_parts()), RigidOptions::new());
+    let envs: Vec<usize> = (0..11).collect();
+    for instructions in Instructions::all_available() {
+        let mut batch = batch::<f64>(&model, &envs, with(instructions, 1, options));
+        let mut alone: Vec<Sim> = envs.iter().map(|&e| alone(&model, options, e)).collect();
+        batch.record(&["cfrc_ext"]).expect("known");
+        // None, some, a zero with a sign, none again.
+        for (step, push) in [0.0, 3.0, -0.0, 0.0].into_iter().enumerate() {
+            for (env, sim) in alone.iter_mut().enumerate() {
+                let push = if env % 2 == 0 { push } else { 0.0 };
+                batch.state.xfrc_applied.row_mut(env)[8] = push;
+                sim.state.xfrc_applied[1].linear.z = push;
+                sim.step().expect("finite");
+            }
+            batch.step().expect("valid");
+            for (env, sim) in alone.iter_mut().enumerate() {
+                let what = || format!("environment {env}, step {step}, {instructions:?}");
+                assert_state(&batch, env, &sim.state, &what);
+                let found = batch.output("cfrc_ext").expect("kept").row(env);
+                assert_bits(found, &sim.output("cfrc_ext").expect("known"), &what);
+            }
+        }
+    }
+}
+
+#[test]
 fn rollouts_are_steps() {
     const STEPS: usize = 37;
     let model = model(&walker());

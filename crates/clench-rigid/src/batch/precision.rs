@@ -8,6 +8,7 @@ use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Instructions, Scalar};
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+use zerocopy::{Immutable, IntoBytes};
 
 /// A number type of simulations and batches: `f64` or `f32`.
 ///
@@ -19,7 +20,7 @@ impl Precision for f64 {}
 impl Precision for f32 {}
 
 /// What a batch needs of a number type; outside this crate only its name is known.
-pub trait Lanewise: Scalar {
+pub trait Lanewise: Scalar + IntoBytes + Immutable {
     /// The same number where several threads write.
     type Cell: Sync;
     /// Numbers as cells.

@@ -12,6 +12,7 @@ use crate::sim::no_such;
 use crate::state::State;
 use clench_math::{Mask, Real, write_lane};
 use std::slice::{from_mut, from_ref};
+use zerocopy::IntoBytes;
 
 /// The states of the environments of a batch, field by field, a row an environment. To be read and written between steps;
 /// what a step reads is checked first.
@@ -275,16 +276,18 @@ impl<S: Lanewise> Inputs<'_, S> {
         write_lane(self.qfrc_applied.row(env), lane, &mut state.qfrc_applied);
         write_vectors(self.mocap_pos.row(env), lane, &mut state.mocap_pos);
         write_quats(self.mocap_quat.row(env), lane, &mut state.mocap_quat);
-        for (switch, &on) in state.eq_active.iter_mut().zip(self.eq_active.row(env)) {
-            switch.set_lane(lane, on);
+        // As bytes: who writes them by their address may leave others than those of false and true.
+        let switches = self.eq_active.row(env).as_bytes();
+        for (switch, &on) in state.eq_active.iter_mut().zip(switches) {
+            switch.set_lane(lane, on != 0);
         }
     }
 
-    /// Whether forces are applied to any body of an environment.
+    /// Whether forces are applied to any body of an environment; those of −0 count, for outputs show them.
     pub fn pushed(&self, env: usize) -> bool {
         // To the end, so that the loop runs in registers.
-        let row = self.xfrc_applied.row(env).iter();
-        row.fold(false, |pushed, &x| pushed | (x != S::ZERO))
+        let row = self.xfrc_applied.row(env).as_bytes().iter();
+        row.fold(0, |bits, byte| bits | byte) != 0
     }
 
     /// Copies the forces on bodies of an environment into lane `lane`.

@@ -16,7 +16,7 @@ use crate::profile::{Profile, Stage};
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{LaneTask, Mask, Real, Scalar, write_lane};
+use clench_math::{Force, LaneTask, Mask, Real, Scalar, write_lane};
 use clench_solver::MaxContacts;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -102,7 +102,8 @@ where
         }
     }
 
-    /// Copies the rows of a group into the lanes.
+    /// Copies the rows of a group into the lanes. Whatever a step uses of the rows is read here, once, and checked afterwards:
+    /// who holds pointers to rows and writes them meanwhile gets mixed numbers, and nothing worse.
     fn gather(&mut self, group: &Group<T>, job: &Job<T::Scalar>) {
         for (lane, env) in group.fill() {
             job.motion.read(env, lane, &mut self.state);
@@ -113,10 +114,12 @@ where
         }
         // Forces on bodies are many numbers, and mostly all zero.
         let pushed = group.iter().any(|(_, env)| job.inputs.pushed(env));
-        if pushed || self.pushed {
+        if pushed {
             for (lane, env) in group.fill() {
                 job.inputs.read_pushes(env, lane, &mut self.state);
             }
+        } else if self.pushed {
+            self.state.xfrc_applied.fill(Force::ZERO);
         }
         self.pushed = pushed;
     }
