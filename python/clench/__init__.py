@@ -27,15 +27,18 @@ from clench._core import (
     OUTPUTS,
     PARAMETERS,
     Batch,
+    Block,
     Constraints,
     Contacts,
     Element,
     Model,
     RigidOptions,
     Sim,
+    Solution,
     SolverStats,
     StateViews,
     __version__,
+    solve,
 )
 from clench._state import State
 from clench._status import EnvStatus
@@ -45,6 +48,7 @@ __all__ = [
     "OUTPUTS",
     "PARAMETERS",
     "Batch",
+    "Block",
     "BusyError",
     "ClenchError",
     "Constraints",
@@ -56,8 +60,10 @@ __all__ = [
     "RigidOptions",
     "Sim",
     "SimulationError",
+    "Solution",
     "SolverStats",
     "State",
     "StateViews",
     "__version__",
+    "solve",
 ]

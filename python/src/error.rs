@@ -1,5 +1,6 @@
 //! Errors as exceptions: which class each becomes. The classes themselves are Python's, in `clench/errors.py`.
 
+use clench::solver::ProblemError;
 use clench::{LoadError, SimError};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
@@ -40,6 +41,15 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         | SimError::Unknown { .. }
         | SimError::Contact { .. } => PyValueError::new_err(text),
     }
+}
+
+/// What is wrong with a bare problem.
+pub(crate) fn problem_error(error: ProblemError) -> PyErr {
+    PyValueError::new_err(match error {
+        ProblemError::MassNotPositiveDefinite { .. } => "M is not positive definite".to_owned(),
+        ProblemError::Block { block, reason } => format!("blocks[{block}]: {reason}"),
+        other => other.to_string(),
+    })
 }
 
 /// Another thread is using `what`.

@@ -3,6 +3,7 @@
 
 mod arrays;
 mod batch;
+mod block;
 mod busy;
 mod constraints;
 mod contacts;
@@ -17,6 +18,7 @@ mod option_values;
 mod options;
 mod precision;
 mod sim;
+mod solve;
 mod state_views;
 mod stats;
 mod view;
@@ -33,6 +35,8 @@ mod _core {
     #[pymodule_export]
     use crate::batch::Batch;
     #[pymodule_export]
+    use crate::block::Block;
+    #[pymodule_export]
     use crate::constraints::Constraints;
     #[pymodule_export]
     use crate::contacts::Contacts;
@@ -44,6 +48,8 @@ mod _core {
     use crate::options::RigidOptions;
     #[pymodule_export]
     use crate::sim::Sim;
+    #[pymodule_export]
+    use crate::solve::{Solution, solve};
     #[pymodule_export]
     use crate::state_views::StateViews;
     #[pymodule_export]

@@ -33,8 +33,19 @@ pub(crate) struct SolverStats {
     islands: usize,
 }
 
-/// The name of a status.
-pub(crate) fn status_name(status: Status) -> &'static str {
+impl SolverStats {
+    /// How it ended.
+    pub(crate) fn status(&self) -> &'static str {
+        self.status
+    }
+
+    /// The duality gap.
+    pub(crate) fn gap(&self) -> f64 {
+        self.gap
+    }
+}
+
+fn status_name(status: Status) -> &'static str {
     match status {
         Status::Unconstrained => "unconstrained",
         Status::Proven => "proven",

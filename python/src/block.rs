@@ -1,0 +1,185 @@
+//! `clench.Block`.
+
+use crate::arrays::{numbers, require_finite, require_shape, shape_text};
+use crate::names::unknown;
+use clench::solver::{Cost, PlainBlock};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+const COSTS: [(&str, Cost); 5] = [
+    ("quadratic", Cost::Quadratic),
+    ("one_sided", Cost::OneSided),
+    ("huber", Cost::Huber),
+    ("pyramid", Cost::Pyramid),
+    ("elliptic", Cost::Elliptic),
+];
+
+/// One constraint of a bare convex problem: what it costs that ``y = jacobian @ qacc - aref`` is what it is.
+///
+/// Parameters
+/// ----------
+/// cost : {"quadratic", "one_sided", "huber", "pyramid", "elliptic"}
+///     With ``D = 1 / R``: "quadratic" is ``D y**2 / 2`` always (an equality), "one_sided" the same where ``y < 0`` (a
+///     limit, a contact without friction), "huber" the same as long as the force is below `shape` and linear beyond (dry
+///     friction), "pyramid" one-sided on each edge ``y[0] +- shape[j] y[j]`` (a contact with friction), "elliptic" the
+///     exact friction cone as MuJoCo defines it.
+/// jacobian : array_like, (dim, nv), or (nv,) for one row
+///     How the rows move with the accelerations; 1 to 6 rows, of a contact the normal first.
+/// aref : array_like, (dim,), or a number for all rows
+///     The acceleration along each row that the constraint asks for.
+/// R : array_like, (dim,), or a number for all rows
+///     Softness of each row, positive. The rows of a pyramid have one R; those of an elliptic cone
+///     ``R[j] = R[0] (shape[0] / shape[j])**2``.
+/// shape : array_like, (dim,), or a number for all rows, optional
+///     Of "huber" the greatest force of each row. Of "pyramid" the friction coefficient of each row, where the first is
+///     unused. Of "elliptic" likewise, where the first is the regularized coefficient ``shape[1] * sqrt(R[1] / R[0])``.
+///     The others have none.
+///
+/// Raises
+/// ------
+/// ValueError
+///     A shape that does not fit, a number that is not finite, an R that is not positive.
+///
+/// Examples
+/// --------
+/// >>> clench.Block("one_sided", [1.0, 0.0], aref=0.0, R=1e-3)
+/// Block(cost='one_sided', dim=1, nv=2)
+#[pyclass(frozen, module = "clench")]
+pub(crate) struct Block {
+    plain: PlainBlock<f64>,
+    nv: usize,
+}
+
+impl Block {
+    /// Its numbers.
+    pub(crate) fn plain(&self) -> &PlainBlock<f64> {
+        &self.plain
+    }
+
+    /// Degrees of freedom of the problem that it belongs to.
+    pub(crate) fn nv(&self) -> usize {
+        self.nv
+    }
+}
+
+#[pymethods]
+impl Block {
+    #[new]
+    #[pyo3(signature = (cost, jacobian, aref, R, shape=None))]
+    #[allow(non_snake_case)] // R, as in the formulas.
+    fn new(
+        cost: &str,
+        jacobian: &Bound<'_, PyAny>,
+        aref: &Bound<'_, PyAny>,
+        R: &Bound<'_, PyAny>,
+        shape: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let found = COSTS.iter().find(|(name, _)| *name == cost);
+        let Some(&(_, kind)) = found else {
+            return Err(unknown("cost", cost, &COSTS.map(|(name, _)| name)));
+        };
+        let (jacobian, dim, nv) = matrix(jacobian)?;
+        let r = rows("R", R, dim)?;
+        if let Some(&refused) = r.iter().find(|&&r| !(r > 0.0 && (1.0 / r).is_finite())) {
+            let text = format!("R has {refused:e}, but must be positive, its inverse finite");
+            return Err(PyValueError::new_err(text));
+        }
+        let shapeless = matches!(kind, Cost::Quadratic | Cost::OneSided);
+        let shape = match shape {
+            Some(shape) if !shapeless => rows("shape", shape, dim)?,
+            None if shapeless => Vec::new(),
+            Some(_) => return Err(PyValueError::new_err(format!("a {cost} cost has no shape"))),
+            None => {
+                return Err(PyValueError::new_err(format!(
+                    "a {cost} cost needs a shape"
+                )));
+            }
+        };
+        let plain = PlainBlock {
+            cost: kind,
+            jacobian,
+            aref: rows("aref", aref, dim)?,
+            r,
+            shape,
+        };
+        Ok(Block { plain, nv })
+    }
+
+    /// Which cost.
+    #[getter]
+    fn cost(&self) -> &'static str {
+        let found = COSTS.iter().find(|(_, cost)| *cost == self.plain.cost);
+        found.expect("every cost has a name").0
+    }
+
+    /// Number of rows.
+    #[getter]
+    fn dim(&self) -> usize {
+        self.plain.aref.len()
+    }
+
+    /// How the rows move with the accelerations, (dim, nv).
+    #[getter]
+    fn jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        PyArray1::from_slice(py, &self.plain.jacobian).reshape([self.dim(), self.nv])
+    }
+
+    /// The acceleration along each row that the constraint asks for, (dim,).
+    #[getter]
+    fn aref<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.plain.aref)
+    }
+
+    /// Softness of each row, (dim,).
+    #[getter(R)]
+    fn r<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.plain.r)
+    }
+
+    /// Greatest forces or friction coefficients, (dim,); None where the cost has none.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let shape = &self.plain.shape;
+        (!shape.is_empty()).then(|| PyArray1::from_slice(py, shape))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Block(cost='{}', dim={}, nv={})",
+            self.cost(),
+            self.dim(),
+            self.nv
+        )
+    }
+}
+
+/// The rows of a Jacobian one after the other, how many, and how long each is.
+fn matrix(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, usize, usize)> {
+    let array = numbers::<f64>("jacobian", value)?;
+    let (dim, nv) = match *array.shape() {
+        [nv] => (1, nv),
+        [dim, nv] => (dim, nv),
+        ref other => {
+            return Err(PyValueError::new_err(format!(
+                "jacobian has shape {}, but must have (dim, nv), or (nv,) for one row",
+                shape_text(other)
+            )));
+        }
+    };
+    let values = array.as_slice()?;
+    require_finite("jacobian", values)?;
+    Ok((values.to_vec(), dim, nv))
+}
+
+/// A number for each of `dim` rows.
+fn rows(name: &str, value: &Bound<'_, PyAny>, dim: usize) -> PyResult<Vec<f64>> {
+    let array = numbers::<f64>(name, value)?;
+    let values = array.as_slice()?;
+    require_finite(name, values)?;
+    if array.ndim() == 0 {
+        return Ok(vec![values[0]; dim]);
+    }
+    require_shape(name, array.shape(), &[dim])?;
+    Ok(values.to_vec())
+}
