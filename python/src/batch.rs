@@ -1,6 +1,6 @@
 //! `clench.Batch`.
 
-use crate::arrays::{indices, mask, numbers, require_shape, shaped};
+use crate::arrays::{indices, mask, shaped};
 use crate::busy::{in_portions, lock};
 use crate::count::Count;
 use crate::error::sim_error;
@@ -9,12 +9,14 @@ use crate::model::Model;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use crate::precision::Bits;
-use crate::sim::{AnySim, Sim};
+use crate::rollout::rollout;
+use crate::row_sim::AnySim;
+use crate::sim::Sim;
 use crate::state_views::StateViews;
 use crate::view::{Keeper, read_only, view};
 use clench::rigid::model::ParamField;
-use clench::{BatchOptions, Controls, EnvStatus, Fault, Output, Precision};
-use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use clench::{BatchOptions, EnvStatus, Fault, Output, Precision};
+use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -589,66 +591,6 @@ fn output_view<S: Precision + Element>(
     // SAFETY: the table has this shape, lives in the batch that `keeper` keeps, and is never taken back.
     let array = unsafe { view(keeper, rows.as_ptr(), &shape) };
     Ok(read_only(array)?.into_any().unbind())
-}
-
-/// `Batch.rollout` in one precision.
-fn rollout<'py, S: Precision + Element>(
-    py: Python<'py>,
-    batch: &mut clench::Batch<S>,
-    initial: Option<&Bound<'py, PyAny>>,
-    ctrl: Option<&Bound<'py, PyAny>>,
-    record: &[String],
-    steps: Option<usize>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (n, model) = (batch.count(), Arc::clone(batch.model()));
-    let ctrl = ctrl
-        .map(|values| numbers::<S>("ctrl", values))
-        .transpose()?;
-    let steps = match (&ctrl, steps) {
-        (None, None) => return Err(PyValueError::new_err("rollout needs ctrl or steps")),
-        (None, Some(steps)) => steps,
-        (Some(values), steps) => match (values.shape(), steps) {
-            (&[own, _] | &[_, own, _], None) => own,
-            (_, Some(steps)) => steps,
-            (shape, None) => {
-                require_shape("ctrl", shape, &[n, 0, model.nu()])?;
-                0
-            }
-        },
-    };
-    let controls = match &ctrl {
-        None => Controls::Held,
-        Some(values) if values.ndim() == 2 => {
-            require_shape("ctrl", values.shape(), &[steps, model.nu()])?;
-            Controls::Shared(values.as_slice()?)
-        }
-        Some(values) => {
-            require_shape("ctrl", values.shape(), &[n, steps, model.nu()])?;
-            Controls::Each(values.as_slice()?)
-        }
-    };
-    let needed = [n, 1 + model.nq + model.nv + model.na];
-    let initial = initial
-        .map(|values| shaped::<S>("initial", values, &needed))
-        .transpose()?;
-    let start = initial
-        .as_ref()
-        .map(|values| values.as_slice())
-        .transpose()?;
-    let names = Vec::from_iter(record.iter().map(String::as_str));
-    let recording = py.detach(|| match start {
-        None => batch.rollout(steps, controls, &names),
-        Some(initial) => batch.rollout_from(initial, steps, controls, &names),
-    });
-    let arrays = PyDict::new(py);
-    for (output, mut rows) in recording.map_err(sim_error)?.into_rows() {
-        let start = rows.as_mut_ptr();
-        let keeper = Keeper::new(py, Arc::new(rows))?;
-        let shape = [&[n, steps], &output.shape(&model)[..]].concat();
-        // SAFETY: the table has this shape, and `keeper` has it.
-        arrays.set_item(output.name(), unsafe { view(&keeper, start, &shape) })?;
-    }
-    Ok(arrays)
 }
 
 /// The code of `clench.EnvStatus`.

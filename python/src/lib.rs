@@ -17,6 +17,8 @@ mod names;
 mod option_values;
 mod options;
 mod precision;
+mod rollout;
+mod row_sim;
 mod sim;
 mod solve;
 mod state_views;

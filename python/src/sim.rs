@@ -11,69 +11,17 @@ use crate::model::Model;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use crate::precision::Bits;
+use crate::row_sim::{AnySim, each_sim};
 use crate::state_views::StateViews;
 use crate::stats::SolverStats;
 use crate::view::{Keeper, read_only};
+use clench::Output;
 use clench::math::Scalar;
-use clench::rigid::batch::StateRows;
 use clench::rigid::model::ParamField;
 use clench::rigid::readout;
-use clench::{Output, Precision, SimError};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex};
-
-/// A simulation beside the rows that Python sees: rows go in before each call, and come out after steps.
-pub(crate) struct RowSim<S: Precision> {
-    rows: StateRows<S>,
-    sim: clench::Sim<S>,
-}
-
-impl<S: Precision> RowSim<S> {
-    fn new(sim: clench::Sim<S>) -> Result<Self, SimError> {
-        let mut rows = StateRows::new(sim.model(), 1)?;
-        rows.write(0, &sim.state)?;
-        Ok(RowSim { rows, sim })
-    }
-
-    /// The simulation, in the state that the rows hold.
-    fn current(&mut self) -> Result<&mut clench::Sim<S>, SimError> {
-        self.rows.read(0, &mut self.sim.state)?;
-        Ok(&mut self.sim)
-    }
-
-    /// Steps up to the first that fails, whose state is the one before it.
-    fn step(&mut self, steps: usize) -> Result<(), SimError> {
-        let sim = self.current()?;
-        let done = (0..steps).try_for_each(|_| sim.step());
-        self.rows.write(0, &self.sim.state)?;
-        done
-    }
-
-    fn reset(&mut self, keyframe: Option<usize>) -> Result<(), SimError> {
-        match keyframe {
-            None => self.sim.reset(),
-            Some(index) => self.sim.reset_to_keyframe(index)?,
-        }
-        self.rows.write(0, &self.sim.state)
-    }
-}
-
-/// A simulation in either precision.
-pub(crate) enum AnySim {
-    F64(Box<RowSim<f64>>),
-    F32(Box<RowSim<f32>>),
-}
-
-/// Evaluates an expression about a simulation of whichever precision.
-macro_rules! each {
-    ($any:expr, $own:ident => $value:expr) => {
-        match $any {
-            AnySim::F64($own) => $value,
-            AnySim::F32($own) => $value,
-        }
-    };
-}
 
 /// A model in motion: one environment.
 ///
@@ -102,24 +50,6 @@ pub(crate) struct Sim {
     precision: Bits,
 }
 
-impl AnySim {
-    /// A simulation in double precision.
-    pub(crate) fn f64(sim: clench::Sim<f64>) -> Result<Self, SimError> {
-        RowSim::new(sim).map(|sim| AnySim::F64(Box::new(sim)))
-    }
-    /// A simulation in single precision.
-    pub(crate) fn f32(sim: clench::Sim<f32>) -> Result<Self, SimError> {
-        RowSim::new(sim).map(|sim| AnySim::F32(Box::new(sim)))
-    }
-
-    fn precision(&self) -> Bits {
-        match self {
-            AnySim::F64(_) => Bits::B64,
-            AnySim::F32(_) => Bits::B32,
-        }
-    }
-}
-
 impl Sim {
     /// The Python object of a simulation.
     pub(crate) fn wrap(
@@ -134,7 +64,7 @@ impl Sim {
         let views = {
             let mut guard = lock(&inner, "simulation")?;
             let of = model.get().inner();
-            each!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, of, true))
+            each_sim!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, of, true))
         };
         Ok(PyClassInitializer::from(views).add_subclass(Sim {
             inner,
@@ -186,7 +116,7 @@ impl Sim {
         let mut guard = lock(&self.inner, "simulation")?;
         let any = &mut *guard;
         in_portions(py, n.0, |steps| {
-            each!(any, own => own.step(steps)).map_err(sim_error)
+            each_sim!(any, own => own.step(steps)).map_err(sim_error)
         })
     }
 
@@ -199,7 +129,7 @@ impl Sim {
     fn forward(&self, py: Python<'_>) -> PyResult<()> {
         let mut guard = lock(&self.inner, "simulation")?;
         let any = &mut *guard;
-        py.detach(|| each!(any, own => own.current()?.forward()))
+        py.detach(|| each_sim!(any, own => own.current()?.forward()))
             .map_err(sim_error)
     }
 
@@ -214,7 +144,7 @@ impl Sim {
         let find = |which| Kind::Keyframe.find(self.model.get().inner(), which);
         let key = keyframe.map(find).transpose()?;
         let mut guard = lock(&self.inner, "simulation")?;
-        each!(&mut *guard, own => own.reset(key)).map_err(sim_error)
+        each_sim!(&mut *guard, own => own.reset(key)).map_err(sim_error)
     }
 
     /// Replaces the numbers of a parameter for this simulation alone.
@@ -236,7 +166,7 @@ impl Sim {
     fn set_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let shape = self.param_shape(field)?;
         let mut guard = lock(&self.inner, "simulation")?;
-        each!(&mut *guard, own => {
+        each_sim!(&mut *guard, own => {
             let values = shaped(field, values, &shape)?;
             own.sim.set_param(field, values.as_slice()?).map_err(sim_error)
         })
@@ -256,7 +186,7 @@ impl Sim {
     fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
         let shape = self.param_shape(field)?;
         let guard = lock(&self.inner, "simulation")?;
-        each!(&*guard, own => {
+        each_sim!(&*guard, own => {
             let values = own.sim.param(field).map_err(sim_error)?;
             Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any())
         })
@@ -282,7 +212,7 @@ impl Sim {
         let output = Output::find(name).map_err(sim_error)?;
         let shape = output.shape(self.model.get().inner());
         let mut guard = lock(&self.inner, "simulation")?;
-        each!(&mut *guard, own => {
+        each_sim!(&mut *guard, own => {
             let values = own.current().and_then(|sim| sim.output(name)).map_err(sim_error)?;
             if shape.is_empty() {
                 return Ok(values[0].to_f64().into_pyobject(py)?.into_any());
@@ -317,28 +247,28 @@ impl Sim {
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Contacts>> {
         let guard = lock(&self.inner, "simulation")?;
-        each!(&*guard, own => Contacts::of(py, &own.sim))
+        each_sim!(&*guard, own => Contacts::of(py, &own.sim))
     }
 
     /// Constraints : The constraint rows of the last step or forward, with their forces.
     #[getter]
     fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Constraints>> {
         let guard = lock(&self.inner, "simulation")?;
-        each!(&*guard, own => Constraints::of(py, &own.sim))
+        each_sim!(&*guard, own => Constraints::of(py, &own.sim))
     }
 
     /// SolverStats : How the last solve went; with the Runge-Kutta integrator, that of the last stage.
     #[getter]
     fn solver_stats(&self) -> PyResult<SolverStats> {
         let guard = lock(&self.inner, "simulation")?;
-        Ok(each!(&*guard, own => own.sim.stats()).into())
+        Ok(each_sim!(&*guard, own => own.sim.stats()).into())
     }
 
     /// bool : Whether the last step or forward found more contacts than `max_contacts` allows, and left some out.
     #[getter]
     fn contact_overflow(&self) -> PyResult<bool> {
         let guard = lock(&self.inner, "simulation")?;
-        Ok(each!(&*guard, own => own.sim.contact_overflow()))
+        Ok(each_sim!(&*guard, own => own.sim.contact_overflow()))
     }
 
     /// The joint-space mass matrix of the last step or forward.
@@ -349,7 +279,7 @@ impl Sim {
     ///     Dense (nv, nv), float64.
     fn mass_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let guard = lock(&self.inner, "simulation")?;
-        let values = each!(&*guard, own => readout::mass_matrix(own.sim.workspace(), 0));
+        let values = each_sim!(&*guard, own => readout::mass_matrix(own.sim.workspace(), 0));
         let nv = self.model.get().inner().nv;
         Ok(PyArray1::from_vec(py, values).reshape([nv, nv])?.into_any())
     }
