@@ -1,0 +1,60 @@
+"""Gymnasium environments over one batch.
+
+Importing this module registers gymnasium's eleven MuJoCo v5 tasks under names of ours. As vector environments all of
+their copies live in one :class:`clench.Batch`::
+
+    import clench.gymnasium
+    import gymnasium
+
+    envs = gymnasium.make_vec("clench/Humanoid-v5", num_envs=1024)
+    observations, infos = envs.reset(seed=0)
+    observations, rewards, terminations, truncations, infos = envs.step(envs.action_space.sample())
+
+    env = gymnasium.make("clench/Humanoid-v5")
+
+Observations, rewards, infos, random initial states and keyword arguments are gymnasium's. The model files are read from
+the installed gymnasium package; its own ``mujoco`` extra is not needed. Beyond gymnasium's arguments each task takes
+those of :class:`BatchEnv`: ``precision``, ``threads``, ``options`` and ``autoreset_mode``. Nothing is drawn:
+``render_mode`` is None.
+
+A task of your own is a class that says over all environments at once what is observed, what it is worth, and when it is
+over::
+
+    import numpy as np
+    from clench.gymnasium import BatchEnv
+
+    class Balance(BatchEnv):
+        model = "cart_pole.xml"
+        frame_skip = 2
+        max_episode_steps = 500
+
+        def observe(self):
+            return np.concatenate([self.batch.qpos, self.batch.qvel], axis=1)
+
+        def reward(self, action):
+            return 1.0 - self.batch.qpos[:, 1] ** 2 - 0.01 * np.square(action).sum(axis=1)
+
+        def terminated(self):
+            return np.abs(self.batch.qpos[:, 1]) > 0.5
+
+        def initial_state(self, rng):
+            return self.init_qpos + rng.normal(0.0, 0.02, self.init_qpos.shape), self.init_qvel
+
+    envs = Balance(num_envs=256)
+
+Spaces follow from the model and from what ``observe`` returns. Derived quantities, such as positions of bodies, are
+named in ``outputs`` and read from ``self.batch``; :class:`BatchEnv` has the rest. A single environment of the same task
+is two lines, and names of your own are given as gymnasium does it, with
+``gymnasium.register(..., vector_entry_point=Balance)``::
+
+    class BalanceEnv(clench.gymnasium.SingleEnv):
+        task = Balance
+"""
+
+from clench.gymnasium.batch_env import BatchEnv
+from clench.gymnasium.registration import register_tasks
+from clench.gymnasium.single_env import SingleEnv
+
+__all__ = ["BatchEnv", "SingleEnv", "register_tasks"]
+
+register_tasks()

@@ -1,0 +1,419 @@
+"""A vector environment over one batch: the base class of tasks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any, Literal
+
+import numpy as np
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.spaces import Box, Space
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from clench import Batch, Model, RigidOptions, SimulationError
+from clench.gymnasium import infos as vector_infos
+from clench.gymnasium.checks import checked_action, checked_mask, checked_seeds, one_each, rows
+from clench.gymnasium.models import action_space, loaded
+
+Array = NDArray[Any]
+
+
+class BatchEnv(VectorEnv[Array, Array, Array]):
+    """Many environments of one model, stepped together.
+
+    A task derives from this class, names a model, and says over all environments at once what is observed
+    (:meth:`observe`), what it is worth (:meth:`reward`) and when it is over (:meth:`terminated`), from the arrays of
+    :attr:`batch`. What these methods return is copied: they may return views.
+
+    Each parameter can also be an attribute of the derived class; what is given here wins.
+
+    Parameters
+    ----------
+    num_envs : int
+        How many environments.
+    model : clench.Model or str or os.PathLike
+        The model, the path of its file, or the text of an MJCF file.
+    frame_skip : int
+        Steps of the simulator in a step of the environment.
+    max_episode_steps : int, optional
+        After how many steps an episode is truncated; None or -1 for no such limit.
+    outputs : sequence of str
+        Derived quantities that the task reads from :attr:`batch`, such as ``"xpos"``: see ``clench.OUTPUTS``.
+    precision : {"64", "32"}
+        Bits of the numbers that the simulator computes with.
+    threads : int, optional
+        Threads that the environments are spread over; as many as the machine has unless given.
+    options : clench.RigidOptions, optional
+        Options that win over those of the model's file.
+    autoreset_mode : gymnasium.vector.AutoresetMode or str
+        When an environment whose episode ended starts anew: with the next step, in the same step, or only by
+        :meth:`reset`.
+    render_mode : None
+        Nothing is drawn: any other value is an error.
+
+    Attributes
+    ----------
+    batch : clench.Batch
+        The environments. States are live, ``batch.qpos`` is (n, nq); outputs are as of the last forward pass, that is
+        of the start of the last step of the simulator (with RK4 its last stage), or of the reset.
+    fresh : ndarray
+        Booleans (n,): environments that no step followed yet since their reset.
+    timestep, dt : float
+        Seconds that a step of the simulator, and one of the environment, takes.
+    init_qpos, init_qvel : ndarray
+        The state that the model starts from, (nq,) and (nv,).
+    failure_reward : float
+        The reward of a step in which the simulation of an environment failed.
+
+    Notes
+    -----
+    An environment whose simulation fails, because a number overflows or a control is absurd, ends its episode: it is
+    ``terminated``, its observation is that of the last good state, and ``info`` has ``failed`` (True) and ``fault``
+    (why).
+
+    Every environment has a random generator of its own, seeded as ``gymnasium.vector.SyncVectorEnv`` does it. So what
+    happens in one never depends on the others.
+    """
+
+    model: Model | str | PathLike[str]
+    frame_skip: int = 1
+    max_episode_steps: int | None = None
+    outputs: Sequence[str] = ()
+    precision: Literal["64", "32"] = "64"
+    threads: int | None = None
+    options: RigidOptions | None = None
+    autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP
+    failure_reward: float = 0.0
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        model: Model | str | PathLike[str] | None = None,
+        frame_skip: int | None = None,
+        max_episode_steps: int | None = None,
+        outputs: Sequence[str] | None = None,
+        precision: Literal["64", "32"] | None = None,
+        threads: int | None = None,
+        options: RigidOptions | None = None,
+        autoreset_mode: AutoresetMode | str | None = None,
+        render_mode: None = None,
+    ) -> None:
+        if render_mode is not None:
+            raise ValueError(f"{self._name}: nothing is drawn, so render_mode must be None, not {render_mode!r}")
+        given = {
+            "model": model,
+            "frame_skip": frame_skip,
+            "max_episode_steps": max_episode_steps,
+            "outputs": outputs,
+            "precision": precision,
+            "threads": threads,
+            "options": options,
+            "autoreset_mode": autoreset_mode,
+        }
+        for name, value in given.items():
+            if value is not None:
+                setattr(self, name, value)
+        if not hasattr(self, "model"):
+            raise TypeError(f"{type(self).__name__} needs a model: an argument or an attribute of the class")
+        if self.frame_skip < 1:
+            raise ValueError(f"frame_skip must be at least 1, not {self.frame_skip}")
+        if self.max_episode_steps is not None and self.max_episode_steps < 1 and self.max_episode_steps != -1:
+            raise ValueError(f"max_episode_steps must be at least 1, or -1 for no limit, not {self.max_episode_steps}")
+        self._mode = AutoresetMode(self.autoreset_mode)
+        self.metadata = {**self.metadata, "render_modes": [], "autoreset_mode": self._mode}
+
+        self.num_envs = num_envs
+        self.batch = Batch(
+            loaded(self.model),
+            num_envs,
+            self.precision,
+            self.threads,
+            options=self.options,
+            record=tuple(self.outputs),
+        )
+        self.timestep = float(self.batch.model.timestep)
+        self.dt = self.timestep * self.frame_skip
+        self.init_qpos = self.batch.qpos[0].copy()
+        self.init_qvel = self.batch.qvel[0].copy()
+        self.single_action_space = action_space(self.batch.model)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+
+        self.fresh = np.zeros(num_envs, dtype=np.bool_)
+        self.started = False
+        self._done = np.zeros(num_envs, dtype=np.bool_)
+        self._elapsed = np.zeros(num_envs, dtype=np.int64)
+        self._generators: list[np.random.Generator | None] = [None] * num_envs
+        self._seeds: list[int | None] = [None] * num_envs
+
+    # What a task says.
+
+    def observe(self) -> Array:
+        """What is observed, (n, ...), as a function of the arrays of :attr:`batch` alone."""
+        raise NotImplementedError(f"{type(self).__name__} must define observe()")
+
+    def reward(self, action: Array) -> Array:
+        """What the step was worth, (n,).
+
+        Called once a step, when the simulator is done, before :meth:`terminated` and :meth:`info`: they may use what
+        was worked out here.
+
+        Parameters
+        ----------
+        action : ndarray
+            The actions as float64, (n, nu). Not to be written to.
+        """
+        raise NotImplementedError(f"{type(self).__name__} must define reward(action)")
+
+    def terminated(self) -> Array:
+        """Whose episode is over, (n,) booleans. Nobody's unless defined."""
+        return np.zeros(self.num_envs, dtype=np.bool_)
+
+    def info(self) -> Mapping[str, Array]:
+        """More about the step: arrays (n, ...) by name. Nothing unless defined."""
+        return {}
+
+    def reset_info(self) -> Mapping[str, Array]:
+        """The same about the states that resets lead to."""
+        return {}
+
+    def before_step(self) -> None:
+        """Called with the controls set, before the simulator steps: the place to keep what the step will change."""
+
+    def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Where an episode starts. The initial state of the model unless defined.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            The generator of the environment that is reset.
+
+        Returns
+        -------
+        qpos, qvel : ndarray
+            Positions (nq,) and velocities (nv,).
+        """
+        return self.init_qpos, self.init_qvel
+
+    # What gymnasium asks.
+
+    @property
+    def single_observation_space(self) -> Space[Any]:
+        """The space of one observation: no bounds, the shape and dtype of what :meth:`observe` returns."""
+        if self._single_observation_space is None:
+            if not self.started and self.batch.outputs:
+                self.batch.forward()
+            sample = self.observation()
+            self._single_observation_space = Box(-np.inf, np.inf, sample.shape[1:], sample.dtype.type)
+        return self._single_observation_space
+
+    @single_observation_space.setter
+    def single_observation_space(self, space: Space[Any]) -> None:
+        self._single_observation_space = space
+
+    @property
+    def observation_space(self) -> Space[Any]:
+        """The space of the observations of all environments."""
+        if self._observation_space is None:
+            self._observation_space = batch_space(self.single_observation_space, self.num_envs)
+        return self._observation_space
+
+    @observation_space.setter
+    def observation_space(self, space: Space[Any]) -> None:
+        self._observation_space = space
+
+    # Worked out when first asked for, since a task may set what observe() needs after this class is initialised.
+    _single_observation_space: Space[Any] | None = None
+    _observation_space: Space[Any] | None = None
+
+    # As in gymnasium's SyncVectorEnv there is one generator an environment; the base class knows one for all.
+
+    @property  # type: ignore[override]
+    def np_random(self) -> tuple[np.random.Generator, ...]:
+        """The random generators, one an environment."""
+        return tuple(self._generator(env) for env in range(self.num_envs))
+
+    @np_random.setter  # type: ignore[override]
+    def np_random(self, generators: Sequence[np.random.Generator]) -> None:
+        if len(generators) != self.num_envs:
+            raise ValueError(f"expected {self.num_envs} generators, one an environment, got {len(generators)}")
+        self._generators, self._seeds = list(generators), [None] * self.num_envs
+
+    @property
+    def np_random_seed(self) -> tuple[int | None, ...]:  # type: ignore[override]
+        """What they were seeded with."""
+        self.np_random
+        return tuple(self._seeds)
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Starts episodes.
+
+        Parameters
+        ----------
+        seed : int or sequence of int, optional
+            Environment ``i`` is seeded with ``seed + i`` or ``seed[i]``. Where there is none, generators go on; those
+            that have never been seeded take a seed from the system.
+        options : dict, optional
+            ``reset_mask``: booleans (n,), which environments to reset. All of them unless given.
+
+        Returns
+        -------
+        observations : ndarray
+            Of all environments.
+        infos : dict
+            Of those that were reset.
+
+        Raises
+        ------
+        clench.SimulationError
+            An initial state that cannot be simulated.
+        """
+        self._check_open()
+        mask = checked_mask(options, self.num_envs)
+        if not self.started and not mask.all():
+            raise ResetNeeded(f"{self._name}: the first reset must be of all environments")
+        seeds = checked_seeds(seed, self.num_envs)
+        for env in np.flatnonzero(mask).tolist():
+            if seeds[env] is not None:
+                self._generators[env], self._seeds[env] = seeding.np_random(seeds[env])
+        infos: dict[str, Any] = {}
+        vector_infos.add(infos, self._restart(mask), mask)
+        self.started = True
+        return self.observation(), infos
+
+    def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
+        """Steps every environment.
+
+        Parameters
+        ----------
+        actions : array_like
+            Controls (n, nu). They are clamped as the model says, and not otherwise.
+
+        Returns
+        -------
+        observations : ndarray
+            (n, ...)
+        rewards : ndarray
+            (n,) float64.
+        terminations, truncations : ndarray
+            (n,) bool.
+        infos : dict
+            As in every vector environment of gymnasium, with ``failed`` and ``fault`` where a simulation failed.
+
+        Raises
+        ------
+        ValueError
+            Actions of another shape or dtype, or not finite.
+        gymnasium.error.ResetNeeded
+            Before the first reset; without autoreset, also when an environment is over.
+        """
+        self._check_ready()
+        action = checked_action(actions, (self.num_envs, self.batch.model.nu), self._name)
+        over = self._done
+        if self._mode is AutoresetMode.DISABLED and over.any():
+            first = int(np.flatnonzero(over)[0])
+            raise ResetNeeded(f"{self._name}: the episode of environment {first} is over, and autoreset is disabled")
+
+        rewards, terminations, truncations, about = self.advance(action)
+        infos: dict[str, Any] = {}
+        if self._mode is AutoresetMode.NEXT_STEP and over.any():
+            rewards[over], terminations[over], truncations[over] = 0.0, False, False
+            for values, mask in about:
+                vector_infos.add(infos, values, mask & ~over)
+            vector_infos.add(infos, self._restart(over), over)
+            self._done = terminations | truncations
+            return self.observation(), rewards, terminations, truncations, infos
+
+        done = terminations | truncations
+        if self._mode is AutoresetMode.SAME_STEP and done.any():
+            vector_infos.add_final(infos, self.observation(), about, done)
+            for values, mask in about:
+                vector_infos.add(infos, values, mask & ~done)
+            vector_infos.add(infos, self._restart(done), done)
+        else:
+            for values, mask in about:
+                vector_infos.add(infos, values, mask)
+            self._done = done
+        return self.observation(), rewards, terminations, truncations, infos
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Lets go of the batch, its threads and its memory."""
+        del self.batch
+
+    # How it works.
+
+    @property
+    def _name(self) -> str:
+        return type(self).__name__ if self.spec is None else self.spec.id
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError(f"{self._name} is closed")
+
+    def _check_ready(self) -> None:
+        self._check_open()
+        if not self.started:
+            raise ResetNeeded(f"{self._name}: call reset() before step()")
+
+    def _generator(self, env: int) -> np.random.Generator:
+        generator = self._generators[env]
+        if generator is None:
+            generator, self._seeds[env] = seeding.np_random()
+            self._generators[env] = generator
+        return generator
+
+    def _restart(self, mask: Array) -> Mapping[str, Array]:
+        """Puts the environments in ``mask`` at the start of an episode; the reset's infos over all environments."""
+        batch, qpos, qvel = self.batch, self.batch.qpos, self.batch.qvel
+        batch.reset(mask)
+        for env in np.flatnonzero(mask).tolist():
+            qpos[env], qvel[env] = self.initial_state(self._generator(env))
+        if batch.outputs and batch.forward(mask):
+            env = int(np.flatnonzero(mask & ~batch.running)[0])
+            raise SimulationError(f"{self._name}: environment {env} cannot start: {batch.fault(env)}")
+        self.fresh |= mask
+        self._done = self._done & ~mask
+        self._elapsed[mask] = 0
+        return self._checked_info(self.reset_info())
+
+    def advance(self, action: Array) -> tuple[Array, Array, Array, list[vector_infos.Group]]:
+        """A step of every environment, without resets: rewards, terminations, truncations, and infos."""
+        batch, n = self.batch, self.num_envs
+        batch.ctrl[...] = action
+        self.before_step()
+        batch.step(self.frame_skip)
+        self._elapsed += 1
+        self.fresh[:] = False
+
+        rewards = one_each(self.reward(action), n, np.float64, f"{self._name}: reward()")
+        terminations = one_each(self.terminated(), n, np.bool_, f"{self._name}: terminated()")
+        limit = self.max_episode_steps
+        truncations = np.zeros(n, dtype=np.bool_) if limit is None or limit == -1 else self._elapsed >= limit
+        about: list[vector_infos.Group] = [(self._checked_info(self.info()), np.ones(n, dtype=np.bool_))]
+
+        running = batch.running
+        if not running.all():
+            failed = ~running
+            rewards[failed], terminations[failed] = self.failure_reward, True
+            faults = np.full(n, None, dtype=np.object_)
+            for env in np.flatnonzero(failed).tolist():
+                faults[env] = batch.fault(env)
+            about.append(({"failed": failed, "fault": faults}, failed))
+        return rewards, terminations, truncations, about
+
+    def observation(self) -> Array:
+        """What is observed, in an array of its own."""
+        observation = rows(self.observe(), self.num_envs, f"{self._name}: observe()").copy()
+        if observation.ndim < 2:
+            raise ValueError(f"{self._name}: observe() must give each environment an array, not one number")
+        return observation if observation.dtype in (np.float64, np.float32) else observation.astype(np.float64)
+
+
+    def _checked_info(self, info: Mapping[str, Array]) -> Mapping[str, Array]:
+        return {key: rows(value, self.num_envs, f"{self._name}: info `{key}`") for key, value in info.items()}

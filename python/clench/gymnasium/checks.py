@@ -1,0 +1,102 @@
+"""What comes in from outside, checked: actions, seeds, reset options, and what tasks return."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+
+def checked_action(action: Any, shape: tuple[int, ...], name: str) -> Array:
+    """The action as finite float64 of that shape.
+
+    Parameters
+    ----------
+    action : array_like
+        One row of controls an environment, or a single row.
+    shape : tuple of int
+        The shape that it must have.
+    name : str
+        How messages call the environment.
+
+    Returns
+    -------
+    ndarray
+        The same numbers; the array itself where it is float64 already.
+
+    Raises
+    ------
+    ValueError
+        Another shape, a dtype that holds no real numbers, or a number that is not finite.
+    """
+    try:
+        array = np.asarray(action)
+    except ValueError as error:
+        raise ValueError(f"{name}: the action is no array: {error}") from error
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{name}: an action of dtype {array.dtype}, expected real numbers")
+    if array.shape != shape:
+        raise ValueError(f"{name}: an action of shape {array.shape}, expected {shape}")
+    array = array.astype(np.float64, copy=False)
+    finite = np.isfinite(array)
+    if not finite.all():
+        first = tuple(int(index) for index in np.argwhere(~finite)[0])
+        where = f"actuator {first[-1]}" + (f" of environment {first[0]}" if len(first) > 1 else "")
+        raise ValueError(f"{name}: an action that is not finite: {array[first]} for {where}")
+    return array
+
+
+def checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
+    """A seed an environment, as ``gymnasium.vector.SyncVectorEnv`` spreads them: ``seed``, ``seed + 1``, ..."""
+    if seed is None:
+        return [None] * count
+    if isinstance(seed, (int, np.integer)):
+        return [int(seed) + env for env in range(count)]
+    seeds = [None if one is None else int(one) for one in seed]
+    if len(seeds) != count:
+        raise ValueError(f"expected {count} seeds, one an environment, got {len(seeds)}")
+    return seeds
+
+
+def check_options(options: Mapping[str, Any] | None, known: Sequence[str]) -> None:
+    """Refuses reset options that nothing would look at."""
+    for name in options or ():
+        if name not in known:
+            raise ValueError(f"no reset option `{name}`; there is {', '.join(known) if known else 'none'}")
+
+
+def checked_mask(options: Mapping[str, Any] | None, count: int) -> Array:
+    """Which environments ``options["reset_mask"]`` names; all where there is none."""
+    check_options(options, ("reset_mask",))
+    if options is None or "reset_mask" not in options:
+        return np.ones(count, dtype=np.bool_)
+    mask = options["reset_mask"]
+    if not isinstance(mask, np.ndarray):
+        raise TypeError(f"options['reset_mask'] must be a NumPy array, got {type(mask).__name__}")
+    if mask.dtype != np.bool_:
+        raise TypeError(f"options['reset_mask'] must have dtype bool, got {mask.dtype}")
+    if mask.shape != (count,):
+        raise ValueError(f"options['reset_mask'] must have shape ({count},), got {mask.shape}")
+    if not mask.any():
+        raise ValueError("options['reset_mask'] names no environment")
+    return mask.copy()
+
+
+def rows(values: Any, count: int, what: str) -> Array:
+    """The values as an array with a row an environment."""
+    array = np.asarray(values)
+    if array.shape[:1] != (count,):
+        raise ValueError(f"{what} is an array of shape {array.shape}, expected ({count}, ...)")
+    return array
+
+
+def one_each(values: Any, count: int, dtype: type[np.generic], what: str) -> Array:
+    """A copy of the values, one an environment, of that dtype."""
+    array = np.array(values, dtype=dtype)
+    if array.shape != (count,):
+        raise ValueError(f"{what} is an array of shape {array.shape}, expected ({count},)")
+    return array

@@ -1,0 +1,66 @@
+"""Infos in the form of gymnasium's vector environments.
+
+Each key holds an array with a row an environment, and the key with an underscore before it a mask: which rows mean
+anything. Rows without a meaning are zero, or None among objects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+Group: TypeAlias = tuple[Mapping[str, Array], Array]
+"""Arrays over all environments by name, and the mask of the environments that they are about."""
+
+
+def add(infos: dict[str, Any], values: Mapping[str, Array], mask: Array) -> None:
+    """Puts the rows in ``mask`` of each array into ``infos``, over what is there; nothing where ``mask`` is empty.
+
+    Parameters
+    ----------
+    infos : dict
+        What is added to. It holds copies afterwards, never the arrays themselves.
+    values : mapping of str to ndarray
+        Arrays (n, ...) over all environments.
+    mask : ndarray
+        Booleans (n,).
+    """
+    if mask.all():
+        for key, value in values.items():
+            infos[key], infos[f"_{key}"] = value.copy(), mask.copy()
+    elif mask.any():
+        for key, value in values.items():
+            if key not in infos:
+                infos[key] = np.full_like(value, None if value.dtype == np.object_ else 0)
+                infos[f"_{key}"] = np.zeros_like(mask)
+            infos[key][mask] = value[mask]
+            infos[f"_{key}"] |= mask
+
+
+def add_final(infos: dict[str, Any], observation: Array, groups: list[Group], done: Array) -> None:
+    """Adds how the episodes in ``done`` ended: ``final_obs`` and ``final_info``.
+
+    Parameters
+    ----------
+    infos : dict
+        What is added to.
+    observation : ndarray
+        The last observations (n, ...); rows of it are given out, so it must belong to nobody else.
+    groups : list of Group
+        The infos of the last steps.
+    done : ndarray
+        Booleans (n,): whose episode ended.
+    """
+    last = np.full(done.shape, None, dtype=np.object_)
+    for env in np.flatnonzero(done).tolist():
+        last[env] = observation[env]
+    final: dict[str, Any] = {}
+    for values, mask in groups:
+        add(final, values, mask & done)
+    infos["final_obs"], infos["_final_obs"] = last, done.copy()
+    infos["final_info"], infos["_final_info"] = final, done.copy()

@@ -1,0 +1,104 @@
+"""One environment of a task, as ``gymnasium.make`` gives it out."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+
+from clench.gymnasium.batch_env import BatchEnv
+from clench.gymnasium.checks import check_options, checked_action
+
+Array = NDArray[Any]
+
+
+class SingleEnv(gymnasium.Env[Array, Array]):
+    """A vector environment of one, seen as a single environment.
+
+    A derived class names the :attr:`task`; that is all it has to do.
+
+    Parameters
+    ----------
+    **kwargs
+        What the task takes. ``threads`` is 1 unless given.
+
+    Attributes
+    ----------
+    task : type of BatchEnv
+        The task.
+    vector : BatchEnv
+        The vector environment behind it, with ``num_envs`` 1.
+    dt : float
+        Seconds that a step takes.
+    """
+
+    task: ClassVar[type[BatchEnv]]
+    metadata: dict[str, Any] = {"render_modes": []}
+
+    def __init__(self, **kwargs: Any) -> None:
+        kwargs.setdefault("threads", 1)
+        self.vector = self.task(1, autoreset_mode=AutoresetMode.DISABLED, **kwargs)
+        self.action_space = self.vector.single_action_space
+        self.observation_space = self.vector.single_observation_space
+        self.dt = self.vector.dt
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Starts an episode.
+
+        Parameters
+        ----------
+        seed : int, optional
+            Seeds the random generator; it goes on where there is none.
+        options : dict, optional
+            None is known.
+
+        Returns
+        -------
+        observation : ndarray
+        info : dict
+        """
+        check_options(options, ())
+        super().reset(seed=seed)
+        self.vector.np_random = (self.np_random,)
+        observation, infos = self.vector.reset()
+        return observation[0], {key: value[0] for key, value in infos.items() if f"_{key}" in infos}
+
+    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+        """Steps the environment.
+
+        Parameters
+        ----------
+        action : array_like
+            Controls (nu,). They are clamped as the model says, and not otherwise.
+
+        Returns
+        -------
+        observation : ndarray
+        reward : float
+        terminated, truncated : bool
+        info : dict
+            With ``failed`` and ``fault`` where the simulation failed.
+
+        Raises
+        ------
+        ValueError
+            An action of another shape or dtype, or not finite.
+        gymnasium.error.ResetNeeded
+            Before the first reset.
+        """
+        if self.vector.closed:
+            raise ClosedEnvironmentError(f"{self} is closed")
+        if not self.vector.started:
+            raise ResetNeeded(f"{self}: call reset() before step()")
+        row = checked_action(action, (self.vector.batch.model.nu,), str(self))
+        rewards, terminations, truncations, about = self.vector.advance(row[np.newaxis])
+        info = {key: value.copy()[0] for values, mask in about if mask[0] for key, value in values.items()}
+        return self.vector.observation()[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), info
+
+    def close(self) -> None:
+        """Lets go of the batch."""
+        self.vector.close()
