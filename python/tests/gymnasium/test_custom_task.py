@@ -1,0 +1,158 @@
+"""A task of one's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.error import ResetNeeded
+from gymnasium.spaces import Box
+from tasks_of_tests import CART, Cart, CartEnv
+
+from clench import Model
+from clench.gymnasium import BatchEnv
+
+
+class Short(BatchEnv):
+    frame_skip = 2
+
+    def observe(self) -> Any:
+        return self.batch.qpos
+
+    def reward(self, action: Any) -> Any:
+        return self.batch.qvel[:, 0]
+
+
+def test_ten_lines() -> None:
+    """A model and two methods are enough."""
+    envs = Short(num_envs=3, model=CART)
+    assert envs.single_observation_space == Box(-np.inf, np.inf, (2,), np.float64)
+    assert envs.observation_space.shape == (3, 2)
+    assert envs.action_space.shape == (3, 2)
+    assert envs.dt == 0.02
+    observations, infos = envs.reset(seed=0)
+    assert infos == {}
+    np.testing.assert_array_equal(observations, np.zeros((3, 2)))
+    observations, rewards, terminations, truncations, infos = envs.step(np.tile([1.0, 0.0], (3, 1)))
+    assert (rewards > 0).all() and not terminations.any() and not truncations.any()
+
+
+def test_ways_to_say_the_model(tmp_path: Path) -> None:
+    path = tmp_path / "cart.xml"
+    path.write_text(CART)
+    actions = np.ones((2, 2))
+    results = []
+    for model in (CART, "  \n" + CART, path, str(path), Model.from_xml(CART)):
+        envs = Short(2, model=model)
+        envs.reset(seed=0)
+        results.append(envs.step(actions)[0])
+    for result in results[1:]:
+        np.testing.assert_array_equal(result, results[0])
+    with pytest.raises(TypeError, match="Short needs a model"):
+        Short(2)
+
+
+def test_action_space() -> None:
+    """The ranges of the controls, and no bound where there is none."""
+    space = Cart(2).single_action_space
+    assert isinstance(space, Box)
+    np.testing.assert_array_equal(space.low, np.float32([-3.0, -np.inf]))
+    np.testing.assert_array_equal(space.high, np.float32([3.0, np.inf]))
+
+
+def test_nothing_is_shared() -> None:
+    """What steps return stays as it is, though observe() and info() return views."""
+    envs = Short(2, model=CART)
+
+    class Views(Short):
+        def info(self) -> Any:
+            return {"qvel": self.batch.qvel}
+
+    envs = Views(2, model=CART)
+    envs.reset(seed=0)
+    first = envs.step(np.ones((2, 2)))
+    kept = first[0].copy(), first[1].copy(), first[4]["qvel"].copy()
+    envs.step(np.ones((2, 2)))
+    envs.reset()
+    for now, then in zip((first[0], first[1], first[4]["qvel"]), kept, strict=True):
+        np.testing.assert_array_equal(now, then)
+
+
+def test_attributes_and_arguments() -> None:
+    """What is given to one environment wins over the class, and stays its own."""
+    assert Cart(1).frame_skip == 2
+    assert Cart(1, frame_skip=5).frame_skip == 5
+    assert Cart.frame_skip == 2
+    assert Cart(1, outputs=("xpos", "energy")).batch.energy.shape == (1, 2)
+    assert Cart(2, precision="32").reset(seed=0)[0].dtype == np.float32
+    for wrong in ({"frame_skip": 0}, {"max_episode_steps": 0}, {"outputs": ("xpso",)}, {"precision": "16"}):
+        with pytest.raises(ValueError):
+            Cart(1, **wrong)  # type: ignore[arg-type]
+
+
+def test_truncation() -> None:
+    envs = Short(3, model=CART, max_episode_steps=4)
+    envs.reset(seed=0)
+    envs.reset(options={"reset_mask": np.array([True, False, False])})
+    ends = np.array([envs.step(np.zeros((3, 2)))[3] for _ in range(9)])
+    np.testing.assert_array_equal(np.flatnonzero(ends[:, 0]), [3, 8])
+    for unlimited in (None, -1):
+        envs = Short(1, model=CART, max_episode_steps=unlimited)
+        envs.reset()
+        assert not any(envs.step(np.zeros((1, 2)))[3] for _ in range(9))
+
+
+def test_setting_up_in_any_order() -> None:
+    """observe() may use what the constructor sets after the base class's own."""
+
+    class Scaled(Short):
+        def __init__(self, num_envs: int, scale: float) -> None:
+            super().__init__(num_envs, model=CART, outputs=("xpos",))
+            self.scale = scale
+
+        def observe(self) -> Any:
+            return self.batch.xpos * self.scale
+
+    assert Scaled(2, 2.0).observation_space.shape == (2, 3, 3)
+    envs = Scaled(2, 2.0)
+    np.testing.assert_array_equal(envs.reset()[0][:, 2, 2], 0.2)
+
+
+def test_registered() -> None:
+    gymnasium.register(id="test/Cart-v0", entry_point=CartEnv, vector_entry_point=Cart, max_episode_steps=7)
+    envs = gymnasium.make_vec("test/Cart-v0", num_envs=3)
+    assert envs.spec is not None and envs.unwrapped.max_episode_steps == 7
+    assert repr(envs) == "Cart(test/Cart-v0, num_envs=3)"
+    with pytest.raises(ResetNeeded, match="test/Cart-v0"):
+        envs.step(envs.action_space.sample())
+    env = gymnasium.make("test/Cart-v0")
+    np.testing.assert_array_equal(env.reset(seed=4)[0], envs.reset(seed=4)[0][0])
+
+
+@pytest.mark.parametrize(
+    ("method", "value", "message"),
+    [
+        ("observe", np.zeros(3), r"observe\(\) must give each environment an array"),
+        ("observe", np.zeros((2, 2)), r"observe\(\) is an array of shape \(2, 2\)"),
+        ("reward", 1.0, r"reward\(\) is an array of shape \(\), expected \(3,\)"),
+        ("reward", np.zeros((3, 1)), r"reward\(\) is an array of shape \(3, 1\)"),
+        ("terminated", np.zeros(2, dtype=bool), r"terminated\(\) is an array of shape \(2,\)"),
+        ("info", {"x": np.zeros(2)}, r"info `x` is an array of shape \(2,\), expected \(3, ...\)"),
+    ],
+)
+def test_wrong_shapes(method: str, value: Any, message: str) -> None:
+    wrong = type("Wrong", (Short,), {method: lambda self, *_: value})
+    envs = wrong(3, model=CART)
+    with pytest.raises(ValueError, match=f"Wrong: {message}"):
+        envs.reset()
+        envs.step(np.zeros((3, 2)))
+
+
+def test_what_is_missing() -> None:
+    for method, call in (("observe", lambda e: e.reset()), ("reward", lambda e: (e.reset(), e.step(np.zeros((1, 2)))))):
+        missing = type("Missing", (Short,), {method: getattr(BatchEnv, method)})
+        with pytest.raises(NotImplementedError, match=f"Missing must define {method}"):
+            call(missing(1, model=CART))
