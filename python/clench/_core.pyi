@@ -1,8 +1,8 @@
 """Types of the compiled part of :mod:`clench`."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from os import PathLike
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Final, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from clench._state import State
 
 _Precision: TypeAlias = Literal["64", "32"]
+_Kind: TypeAlias = Literal["body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair"]
+_Cost: TypeAlias = Literal["quadratic", "one_sided", "huber", "pyramid", "elliptic"]
+_Status: TypeAlias = Literal["unconstrained", "proven", "converged", "no_progress", "iteration_limit", "non_finite"]
+_Floats: TypeAlias = NDArray[np.float64]
+_Codes: TypeAlias = NDArray[np.int32]
+_Flags: TypeAlias = NDArray[np.bool_]
 
 __version__: str
 OUTPUTS: tuple[str, ...]
@@ -25,6 +31,10 @@ class Model:
     def name(self) -> str: ...
     @property
     def notes(self) -> list[str]: ...
+    @property
+    def options(self) -> RigidOptions: ...
+    @property
+    def integrator(self) -> Literal["Euler", "implicitfast", "RK4"]: ...
     @property
     def nq(self) -> int: ...
     @property
@@ -51,7 +61,7 @@ class Model:
     def nmocap(self) -> int: ...
     @property
     def npair(self) -> int: ...
-    def names(self, kind: str) -> list[str]: ...
+    def names(self, kind: _Kind) -> list[str]: ...
     def body(self, which: str | int) -> Element: ...
     def joint(self, which: str | int) -> Element: ...
     def geom(self, which: str | int) -> Element: ...
@@ -60,18 +70,272 @@ class Model:
     def actuator(self, which: str | int) -> Element: ...
     def equality(self, which: str | int) -> Element: ...
     def keyframe(self, which: str | int) -> Element: ...
-    # Fields by their names, such as `body_mass` (nbody,), `geom_size` (ngeom, 3), `jnt_type`, `timestep` ().
-    def __getattr__(self, field: str) -> NDArray[Any]: ...
+    def pair(self, which: str | int) -> Element: ...
+
+    # Fields. Arrays cannot be written to; lengths and times are in SI units; quaternions are w, x, y, z.
+    timestep: Final[float]  # Seconds a step.
+    gravity: Final[_Floats]  # (3,) Acceleration of gravity.
+    wind: Final[_Floats]  # (3,) Velocity of the medium.
+    density: Final[float]  # Density of the medium.
+    viscosity: Final[float]  # Viscosity of the medium.
+    override_margin: Final[float]  # Margin of every contact, with the flag override.
+    override_solref: Final[_Floats]  # (2,) Reference dynamics of every contact, likewise.
+    override_solimp: Final[_Floats]  # (5,) Impedance of every contact, likewise.
+    override_friction: Final[_Floats]  # (5,) Friction of every contact, likewise.
+    qpos0: Final[_Floats]  # (nq,) Initial position coordinates.
+    qpos_spring: Final[_Floats]  # (nq,) Position coordinates at which springs rest.
+
+    body_pos: Final[_Floats]  # (nbody, 3) Position in the parent's frame.
+    body_quat: Final[_Floats]  # (nbody, 4) Orientation in the parent's frame.
+    body_ipos: Final[_Floats]  # (nbody, 3) Centre of mass in the body frame.
+    body_iquat: Final[_Floats]  # (nbody, 4) Orientation of the inertial frame in the body frame.
+    body_mass: Final[_Floats]  # (nbody,) Mass.
+    body_subtreemass: Final[_Floats]  # (nbody,) Mass of the body and all below it.
+    body_inertia: Final[_Floats]  # (nbody, 3) Principal moments.
+    body_gravcomp: Final[_Floats]  # (nbody,) Share of the weight that is lifted.
+    body_invweight0: Final[_Floats]  # (nbody, 2) Mean inverse inertia at qpos0: of translation, of rotation.
+    body_parentid: Final[_Codes]  # (nbody,) The parent; the world is its own.
+    body_rootid: Final[_Codes]  # (nbody,) The ancestor below the world.
+    body_weldid: Final[_Codes]  # (nbody,) The ancestor that it cannot move against.
+    body_mocapid: Final[_Codes]  # (nbody,) Index among mocap bodies, or -1.
+    body_jntnum: Final[_Codes]  # (nbody,) How many joints.
+    body_jntadr: Final[_Codes]  # (nbody,) The first of them, or -1.
+    body_dofnum: Final[_Codes]  # (nbody,) How many degrees of freedom.
+    body_dofadr: Final[_Codes]  # (nbody,) The first of them, or -1.
+    body_geomnum: Final[_Codes]  # (nbody,) How many geoms.
+    body_geomadr: Final[_Codes]  # (nbody,) The first of them, or -1.
+
+    jnt_pos: Final[_Floats]  # (njnt, 3) Anchor in the body frame.
+    jnt_axis: Final[_Floats]  # (njnt, 3) Unit axis in the body frame.
+    jnt_stiffness: Final[_Floats]  # (njnt,) Spring stiffness.
+    jnt_range: Final[_Floats]  # (njnt, 2) Allowed positions.
+    jnt_margin: Final[_Floats]  # (njnt,) Distance at which the limit appears.
+    jnt_actfrcrange: Final[_Floats]  # (njnt, 2) Limits of the total actuator force.
+    jnt_solref: Final[_Floats]  # (njnt, 2) Limit reference dynamics.
+    jnt_solimp: Final[_Floats]  # (njnt, 5) Limit impedance.
+    jnt_type: Final[_Codes]  # (njnt,) 0 free, 1 ball, 2 slide, 3 hinge.
+    jnt_bodyid: Final[_Codes]  # (njnt,) The body that it moves.
+    jnt_qposadr: Final[_Codes]  # (njnt,) The first of its position coordinates.
+    jnt_dofadr: Final[_Codes]  # (njnt,) The first of its degrees of freedom.
+    jnt_group: Final[_Codes]  # (njnt,) Group.
+    jnt_limited: Final[_Flags]  # (njnt,) Whether its range is a limit.
+    jnt_actfrclimited: Final[_Flags]  # (njnt,) Whether the force of its actuators is limited.
+    jnt_actgravcomp: Final[_Flags]  # (njnt,) Whether gravity compensation counts as actuation.
+
+    dof_armature: Final[_Floats]  # (nv,) Added inertia.
+    dof_damping: Final[_Floats]  # (nv,) Damping.
+    dof_frictionloss: Final[_Floats]  # (nv,) Dry friction.
+    dof_solref: Final[_Floats]  # (nv, 2) Dry-friction reference dynamics.
+    dof_solimp: Final[_Floats]  # (nv, 5) Dry-friction impedance.
+    dof_invweight0: Final[_Floats]  # (nv,) Mean inverse inertia at qpos0.
+    dof_bodyid: Final[_Codes]  # (nv,) The body that it moves.
+    dof_jntid: Final[_Codes]  # (nv,) The joint that it belongs to.
+    dof_parentid: Final[_Codes]  # (nv,) The one before it on the way to the root, or -1.
+
+    geom_pos: Final[_Floats]  # (ngeom, 3) Position in the body frame.
+    geom_quat: Final[_Floats]  # (ngeom, 4) Orientation in the body frame.
+    geom_size: Final[_Floats]  # (ngeom, 3) Sizes.
+    geom_rbound: Final[_Floats]  # (ngeom,) Radius of the bounding sphere; 0 for planes.
+    geom_friction: Final[_Floats]  # (ngeom, 3) Slide, spin and roll friction.
+    geom_margin: Final[_Floats]  # (ngeom,) Margin.
+    geom_gap: Final[_Floats]  # (ngeom,) Gap.
+    geom_solmix: Final[_Floats]  # (ngeom,) Weight in mixing.
+    geom_solref: Final[_Floats]  # (ngeom, 2) Reference dynamics.
+    geom_solimp: Final[_Floats]  # (ngeom, 5) Impedance.
+    geom_type: Final[_Codes]  # (ngeom,) 0 plane, 2 sphere, 3 capsule, 4 ellipsoid, 5 cylinder, 6 box.
+    geom_bodyid: Final[_Codes]  # (ngeom,) The body that carries it.
+    geom_contype: Final[_Codes]  # (ngeom,) Bits of its contact type.
+    geom_conaffinity: Final[_Codes]  # (ngeom,) Bits of the types that it collides with.
+    geom_condim: Final[_Codes]  # (ngeom,) Dimensions of its contacts.
+    geom_priority: Final[_Codes]  # (ngeom,) Whose parameters win.
+    geom_group: Final[_Codes]  # (ngeom,) Group.
+
+    site_pos: Final[_Floats]  # (nsite, 3) Position in the body frame.
+    site_quat: Final[_Floats]  # (nsite, 4) Orientation in the body frame.
+    site_bodyid: Final[_Codes]  # (nsite,) The body that carries it.
+
+    wrap_coef: Final[_Floats]  # (nwrap,) Coefficients of tendons, one after the other.
+    wrap_objid: Final[_Codes]  # (nwrap,) The joint of each coefficient.
+
+    tendon_stiffness: Final[_Floats]  # (ntendon,) Spring stiffness.
+    tendon_damping: Final[_Floats]  # (ntendon,) Damping.
+    tendon_lengthspring: Final[_Floats]  # (ntendon, 2) Dead band of the spring.
+    tendon_length0: Final[_Floats]  # (ntendon,) Length at qpos0.
+    tendon_invweight0: Final[_Floats]  # (ntendon,) Inverse inertia at qpos0.
+    tendon_range: Final[_Floats]  # (ntendon, 2) Allowed lengths.
+    tendon_margin: Final[_Floats]  # (ntendon,) Distance at which the limit appears.
+    tendon_actfrcrange: Final[_Floats]  # (ntendon, 2) Limits of the total actuator force.
+    tendon_frictionloss: Final[_Floats]  # (ntendon,) Dry friction.
+    tendon_solref_lim: Final[_Floats]  # (ntendon, 2) Limit reference dynamics.
+    tendon_solimp_lim: Final[_Floats]  # (ntendon, 5) Limit impedance.
+    tendon_solref_fri: Final[_Floats]  # (ntendon, 2) Dry-friction reference dynamics.
+    tendon_solimp_fri: Final[_Floats]  # (ntendon, 5) Dry-friction impedance.
+    tendon_num: Final[_Codes]  # (ntendon,) How many joints.
+    tendon_adr: Final[_Codes]  # (ntendon,) The first of its coefficients, or -1.
+    tendon_limited: Final[_Flags]  # (ntendon,) Whether its range is a limit.
+    tendon_actfrclimited: Final[_Flags]  # (ntendon,) Whether the force of its actuators is limited.
+
+    actuator_gear: Final[_Floats]  # (nu, 6) Scaling of the force onto the transmission's axes.
+    actuator_dynprm: Final[_Floats]  # (nu, 10) Parameters of the dynamics.
+    actuator_gainprm: Final[_Floats]  # (nu, 10) Parameters of the gain.
+    actuator_biasprm: Final[_Floats]  # (nu, 10) Parameters of the bias.
+    actuator_ctrlrange: Final[_Floats]  # (nu, 2) Allowed controls.
+    actuator_forcerange: Final[_Floats]  # (nu, 2) Allowed forces.
+    actuator_actrange: Final[_Floats]  # (nu, 2) Allowed activations.
+    actuator_trntype: Final[_Codes]  # (nu,) 0 joint, 1 joint in the parent's frame, 3 tendon.
+    actuator_trnid: Final[_Codes]  # (nu, 2) What it pulls on, and -1.
+    actuator_dyntype: Final[_Codes]  # (nu,) 0 none, 1 integrator, 2 filter, 3 filterexact.
+    actuator_gaintype: Final[_Codes]  # (nu,) 0 fixed, 1 affine.
+    actuator_biastype: Final[_Codes]  # (nu,) 0 none, 1 affine.
+    actuator_actadr: Final[_Codes]  # (nu,) Its activation, or -1.
+    actuator_group: Final[_Codes]  # (nu,) Group.
+    actuator_ctrllimited: Final[_Flags]  # (nu,) Whether its control is clamped.
+    actuator_forcelimited: Final[_Flags]  # (nu,) Whether its force is clamped.
+    actuator_actlimited: Final[_Flags]  # (nu,) Whether its activation is clamped.
+    actuator_actearly: Final[_Flags]  # (nu,) Whether the activation as of the end of the step acts.
+
+    eq_anchor1: Final[_Floats]  # (neq, 3) Anchor or weld point in the first body's frame.
+    eq_anchor2: Final[_Floats]  # (neq, 3) Anchor or weld point in the second body's frame.
+    eq_quat1: Final[_Floats]  # (neq, 4) Weld frame in the first body.
+    eq_quat2: Final[_Floats]  # (neq, 4) Weld frame in the second body.
+    eq_torquescale: Final[_Floats]  # (neq,) Weld: length that scales rotations.
+    eq_polycoef: Final[_Floats]  # (neq, 5) Coefficients, constant first.
+    eq_solref: Final[_Floats]  # (neq, 2) Reference dynamics.
+    eq_solimp: Final[_Floats]  # (neq, 5) Impedance.
+    eq_type: Final[_Codes]  # (neq,) 0 connect, 1 weld, 2 joint, 3 tendon.
+    eq_obj1id: Final[_Codes]  # (neq,) The first body, joint or tendon.
+    eq_obj2id: Final[_Codes]  # (neq,) The second, or -1.
+    eq_active0: Final[_Flags]  # (neq,) Whether it is on at first.
+
+    pair_friction: Final[_Floats]  # (npair, 5) Friction of a pair: two slides, spin, two rolls.
+    pair_solref: Final[_Floats]  # (npair, 2) Reference dynamics.
+    pair_solreffriction: Final[_Floats]  # (npair, 2) Likewise of friction; zeros: as pair_solref.
+    pair_solimp: Final[_Floats]  # (npair, 5) Impedance.
+    pair_margin: Final[_Floats]  # (npair,) Margin.
+    pair_gap: Final[_Floats]  # (npair,) Gap.
+    pair_dim: Final[_Codes]  # (npair,) Dimensions of the contact.
+    pair_geom1: Final[_Codes]  # (npair,) The geom whose type has the smaller code.
+    pair_geom2: Final[_Codes]  # (npair,) The other.
+
+    key_time: Final[_Floats]  # (nkey,) Time, s.
+    key_qpos: Final[_Floats]  # (nkey, nq) Position coordinates.
+    key_qvel: Final[_Floats]  # (nkey, nv) Velocities.
+    key_act: Final[_Floats]  # (nkey, na) Activations.
+    key_ctrl: Final[_Floats]  # (nkey, nu) Controls.
+    key_mpos: Final[_Floats]  # (nkey, nmocap, 3) Positions of mocap bodies.
+    key_mquat: Final[_Floats]  # (nkey, nmocap, 4) Orientations of mocap bodies.
 
 @final
 class Element:
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> _Kind: ...
     @property
     def id(self) -> int: ...
     @property
     def name(self) -> str: ...
-    def __getattr__(self, field: str) -> Any: ...
+
+    # Fields of the model, less the kind, in this element's row: its shape, and the kinds that have it.
+    act: Final[_Floats]  # (na,) keyframe
+    actadr: Final[int]  # actuator
+    actearly: Final[bool]  # actuator
+    actfrclimited: Final[bool]  # joint, tendon
+    actfrcrange: Final[_Floats]  # (2,) joint, tendon
+    actgravcomp: Final[bool]  # joint
+    active0: Final[bool]  # equality
+    actlimited: Final[bool]  # actuator
+    actrange: Final[_Floats]  # (2,) actuator
+    adr: Final[int]  # tendon
+    anchor1: Final[_Floats]  # (3,) equality
+    anchor2: Final[_Floats]  # (3,) equality
+    axis: Final[_Floats]  # (3,) joint
+    biasprm: Final[_Floats]  # (10,) actuator
+    biastype: Final[int]  # actuator
+    bodyid: Final[int]  # joint, geom, site
+    conaffinity: Final[int]  # geom
+    condim: Final[int]  # geom
+    contype: Final[int]  # geom
+    ctrl: Final[_Floats]  # (nu,) keyframe
+    ctrllimited: Final[bool]  # actuator
+    ctrlrange: Final[_Floats]  # (2,) actuator
+    damping: Final[float]  # tendon
+    dim: Final[int]  # pair
+    dofadr: Final[int]  # body, joint
+    dofnum: Final[int]  # body
+    dynprm: Final[_Floats]  # (10,) actuator
+    dyntype: Final[int]  # actuator
+    forcelimited: Final[bool]  # actuator
+    forcerange: Final[_Floats]  # (2,) actuator
+    friction: Final[_Floats]  # geom, pair
+    frictionloss: Final[float]  # tendon
+    gainprm: Final[_Floats]  # (10,) actuator
+    gaintype: Final[int]  # actuator
+    gap: Final[float]  # geom, pair
+    gear: Final[_Floats]  # (6,) actuator
+    geom1: Final[int]  # pair
+    geom2: Final[int]  # pair
+    geomadr: Final[int]  # body
+    geomnum: Final[int]  # body
+    gravcomp: Final[float]  # body
+    group: Final[int]  # joint, geom, actuator
+    inertia: Final[_Floats]  # (3,) body
+    invweight0: Final[Any]  # body, tendon
+    ipos: Final[_Floats]  # (3,) body
+    iquat: Final[_Floats]  # (4,) body
+    jntadr: Final[int]  # body
+    jntnum: Final[int]  # body
+    length0: Final[float]  # tendon
+    lengthspring: Final[_Floats]  # (2,) tendon
+    limited: Final[bool]  # joint, tendon
+    margin: Final[float]  # joint, geom, tendon, pair
+    mass: Final[float]  # body
+    mocapid: Final[int]  # body
+    mpos: Final[_Floats]  # (nmocap, 3) keyframe
+    mquat: Final[_Floats]  # (nmocap, 4) keyframe
+    num: Final[int]  # tendon
+    obj1id: Final[int]  # equality
+    obj2id: Final[int]  # equality
+    parentid: Final[int]  # body
+    polycoef: Final[_Floats]  # (5,) equality
+    pos: Final[_Floats]  # (3,) body, joint, geom, site
+    priority: Final[int]  # geom
+    qpos: Final[_Floats]  # (nq,) keyframe
+    qposadr: Final[int]  # joint
+    quat: Final[_Floats]  # (4,) body, geom, site
+    quat1: Final[_Floats]  # (4,) equality
+    quat2: Final[_Floats]  # (4,) equality
+    qvel: Final[_Floats]  # (nv,) keyframe
+    range: Final[_Floats]  # (2,) joint, tendon
+    rbound: Final[float]  # geom
+    rootid: Final[int]  # body
+    size: Final[_Floats]  # (3,) geom
+    solimp: Final[_Floats]  # (5,) joint, geom, equality, pair
+    solimp_fri: Final[_Floats]  # (5,) tendon
+    solimp_lim: Final[_Floats]  # (5,) tendon
+    solmix: Final[float]  # geom
+    solref: Final[_Floats]  # (2,) joint, geom, equality, pair
+    solref_fri: Final[_Floats]  # (2,) tendon
+    solref_lim: Final[_Floats]  # (2,) tendon
+    solreffriction: Final[_Floats]  # (2,) pair
+    stiffness: Final[float]  # joint, tendon
+    subtreemass: Final[float]  # body
+    time: Final[float]  # keyframe
+    torquescale: Final[float]  # equality
+    trnid: Final[_Codes]  # (2,) actuator
+    trntype: Final[int]  # actuator
+    type: Final[int]  # joint, geom, equality
+    weldid: Final[int]  # body
+    # Of a joint: rows of its degrees of freedom, and its position coordinates.
+    dof_armature: Final[_Floats]  # (nv,)
+    dof_damping: Final[_Floats]  # (nv,)
+    dof_frictionloss: Final[_Floats]  # (nv,)
+    dof_solref: Final[_Floats]  # (nv, 2)
+    dof_solimp: Final[_Floats]  # (nv, 5)
+    dof_invweight0: Final[_Floats]  # (nv,)
+    dof_bodyid: Final[_Codes]  # (nv,)
+    dof_jntid: Final[_Codes]  # (nv,)
+    dof_parentid: Final[_Codes]  # (nv,)
+    qpos0: Final[_Floats]  # (nq,)
+    qpos_spring: Final[_Floats]  # (nq,)
 
 @final
 class RigidOptions:
@@ -95,7 +359,38 @@ class RigidOptions:
         islands: bool | Literal["auto"] | None = None,
         warmstart: bool | None = None,
     ) -> None: ...
-    # one read-only property an option; None where it was not set
+    @property
+    def constraint_solver(self) -> Literal["Newton", "CG"] | None: ...
+    @property
+    def iterations(self) -> int | None: ...
+    @property
+    def tolerance(self) -> float | None: ...
+    @property
+    def ls_iterations(self) -> int | None: ...
+    @property
+    def ls_tolerance(self) -> float | None: ...
+    @property
+    def constraint_timeconst(self) -> float | None: ...
+    @property
+    def enable_joint_limit(self) -> bool | None: ...
+    @property
+    def disable_constraint(self) -> bool | None: ...
+    @property
+    def sparse_solve(self) -> bool | Literal["auto"] | None: ...
+    @property
+    def noslip_iterations(self) -> int | None: ...
+    @property
+    def noslip_tolerance(self) -> float | None: ...
+    @property
+    def max_contacts(self) -> int | Literal["auto"] | None: ...
+    @property
+    def friction_cone(self) -> Literal["pyramidal", "elliptic"] | None: ...
+    @property
+    def impratio(self) -> float | None: ...
+    @property
+    def islands(self) -> bool | Literal["auto"] | None: ...
+    @property
+    def warmstart(self) -> bool | None: ...
 
 class StateViews:
     """The arrays of a state, live: what Sim and Batch share. In a batch each has the environments as first axis."""
@@ -179,15 +474,67 @@ class Constraints:
 
 @final
 class SolverStats:
-    """status, iterations, gradient, improvement, gap, piece_changes, ls_evaluations, factorizations, updates,
-    noslip_iterations, islands."""
+    @property
+    def status(self) -> _Status: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def gradient(self) -> float: ...
+    @property
+    def improvement(self) -> float: ...
+    @property
+    def gap(self) -> float: ...
+    @property
+    def piece_changes(self) -> int: ...
+    @property
+    def ls_evaluations(self) -> int: ...
+    @property
+    def factorizations(self) -> int: ...
+    @property
+    def updates(self) -> int: ...
+    @property
+    def noslip_iterations(self) -> int: ...
+    @property
+    def islands(self) -> int: ...
 
 @final
 class Block:
-    def __init__(self, cost: str, jacobian: ArrayLike, aref: ArrayLike, R: ArrayLike, shape: ArrayLike | None = None) -> None: ...
+    def __init__(
+        self,
+        cost: _Cost,
+        jacobian: ArrayLike,
+        aref: ArrayLike,
+        R: ArrayLike,
+        shape: ArrayLike | None = None,
+    ) -> None: ...
+    @property
+    def cost(self) -> _Cost: ...
+    @property
+    def dim(self) -> int: ...
+    @property
+    def jacobian(self) -> _Floats: ...  # (dim, nv)
+    @property
+    def aref(self) -> _Floats: ...  # (dim,)
+    @property
+    def R(self) -> _Floats: ...  # (dim,)
+    @property
+    def shape(self) -> _Floats | None: ...  # (dim,)
 
 @final
 class Solution:
-    """qacc (nv,), forces: list of (dim,), qfrc_constraint (nv,), status, certificate (the duality gap), stats."""
+    @property
+    def qacc(self) -> _Floats: ...  # (nv,)
+    @property
+    def forces(self) -> list[_Floats]: ...  # (dim,) each
+    @property
+    def qfrc_constraint(self) -> _Floats: ...  # (nv,)
+    @property
+    def status(self) -> _Status: ...
+    @property
+    def certificate(self) -> float: ...
+    @property
+    def stats(self) -> SolverStats: ...
 
-def solve(M: ArrayLike, a_unc: ArrayLike, blocks: Sequence[Block], options: RigidOptions | None = None) -> Solution: ...
+def solve(
+    M: ArrayLike, a_unc: ArrayLike, blocks: Iterable[Block], options: RigidOptions | None = None
+) -> Solution: ...

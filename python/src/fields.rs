@@ -70,8 +70,11 @@ fn read_only<'py, T: Element>(
     Ok(array.into_any())
 }
 
+/// The name of a field, and how it is read.
+type Reader = (&'static str, fn(&Model) -> Field);
+
 /// Structure, read from the records of the model. Where there is nothing to point at, the index is −1.
-const STRUCTURE: &[(&str, fn(&Model) -> Field)] = &[
+const STRUCTURE: &[Reader] = &[
     ("body_parentid", |m| codes(&m.bodies, |b| id(b.parent))),
     ("body_rootid", |m| codes(&m.bodies, |b| id(b.root))),
     ("body_weldid", |m| codes(&m.bodies, |b| id(b.weld))),
