@@ -120,6 +120,8 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
                 setattr(self, name, value)
         if not hasattr(self, "model"):
             raise TypeError(f"{type(self).__name__} needs a model: an argument or an attribute of the class")
+        if num_envs < 1:
+            raise ValueError(f"num_envs must be at least 1, not {num_envs}")
         if self.frame_skip < 1:
             raise ValueError(f"frame_skip must be at least 1, not {self.frame_skip}")
         if self.max_episode_steps is not None and self.max_episode_steps < 1 and self.max_episode_steps != -1:
@@ -343,8 +345,8 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         return self.observation(), rewards, terminations, truncations, infos
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Lets go of the batch, its threads and its memory."""
-        del self.batch
+        """Lets go of the batch, its threads and its memory; a constructor that failed has none."""
+        self.__dict__.pop("batch", None)
 
     # How it works.
 

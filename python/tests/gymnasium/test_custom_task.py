@@ -65,7 +65,6 @@ def test_action_space() -> None:
 
 def test_nothing_is_shared() -> None:
     """What steps return stays as it is, though observe() and info() return views."""
-    envs = Short(2, model=CART)
 
     class Views(Short):
         def info(self) -> Any:
@@ -88,9 +87,26 @@ def test_attributes_and_arguments() -> None:
     assert Cart.frame_skip == 2
     assert Cart(1, outputs=("xpos", "energy")).batch.energy.shape == (1, 2)
     assert Cart(2, precision="32").reset(seed=0)[0].dtype == np.float32
-    for wrong in ({"frame_skip": 0}, {"max_episode_steps": 0}, {"outputs": ("xpso",)}, {"precision": "16"}):
-        with pytest.raises(ValueError):
-            Cart(1, **wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"num_envs": 0}, "num_envs must be at least 1"),
+        ({"num_envs": -3}, "num_envs must be at least 1"),
+        ({"frame_skip": 0}, "frame_skip must be at least 1"),
+        ({"max_episode_steps": 0}, "max_episode_steps must be at least 1"),
+        ({"outputs": ("xpso",)}, "xpos"),
+        ({"precision": "16"}, "precision"),
+        ({"threads": 0}, "threads"),
+        ({"autoreset_mode": "never"}, "never"),
+        ({"model": "<mujoco"}, "XML"),
+        ({"model": "no_such_file.xml"}, "no_such_file.xml"),
+    ],
+)
+def test_wrong_arguments(wrong: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Cart(**wrong)
 
 
 def test_truncation() -> None:
