@@ -44,11 +44,12 @@ over::
 
 Spaces follow from the model and from what ``observe`` returns. Derived quantities, such as positions of bodies, are
 named in ``outputs`` and read from ``self.batch``; :class:`BatchEnv` has the rest. A single environment of the same task
-is two lines, and names of your own are given as gymnasium does it, with
-``gymnasium.register(..., vector_entry_point=Balance)``::
+is two lines, and names are given as gymnasium does it::
 
     class BalanceEnv(clench.gymnasium.SingleEnv):
         task = Balance
+
+    gymnasium.register("Balance-v0", "my_tasks:BalanceEnv", vector_entry_point="my_tasks:Balance", max_episode_steps=500)
 """
 
 from clench.gymnasium.batch_env import BatchEnv

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import gymnasium
-import mujoco
+import mujoco  # type: ignore[import-untyped]
 import numpy as np
 
 TASKS = (
@@ -106,13 +106,13 @@ OTHER_ARGUMENTS: dict[str, dict[str, Any]] = {
 }
 
 
-def gymnasium_env(task: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
+def gymnasium_env(task: str, **kwargs: Any) -> Any:
     """Gymnasium's own environment. Where its file asks for PGS it gets Newton, whose minimum is the same, and reached.
 
     There it also solves to the end: at its default tolerance MuJoCo's contact forces on the humanoids differ from its
     own converged ones by up to 6e-6 of their size, ours by 5e-12.
     """
-    env = gymnasium.make(f"{task}-v5", **kwargs)
+    env: Any = gymnasium.make(f"{task}-v5", **kwargs)
     options = env.unwrapped.model.opt
     if options.solver == mujoco.mjtSolver.mjSOL_PGS:
         options.solver = mujoco.mjtSolver.mjSOL_NEWTON
@@ -120,7 +120,7 @@ def gymnasium_env(task: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
     return env
 
 
-def copy_state(env: gymnasium.Env[Any, Any], batch: Any, row: int) -> None:
+def copy_state(env: Any, batch: Any, row: int) -> None:
     """Puts what MuJoCo steps from next into a row of a batch."""
     data = env.unwrapped.data
     batch.qpos[row], batch.qvel[row], batch.qacc_warmstart[row] = data.qpos, data.qvel, data.qacc_warmstart

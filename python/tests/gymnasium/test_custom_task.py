@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.error import ResetNeeded
 from gymnasium.spaces import Box
-from tasks_of_tests import CART, Cart, CartEnv
+from tasks_of_tests import CART, Cart
 
 from clench import Model
 from clench.gymnasium import BatchEnv
@@ -59,8 +59,8 @@ def test_action_space() -> None:
     """The ranges of the controls, and no bound where there is none."""
     space = Cart(2).single_action_space
     assert isinstance(space, Box)
-    np.testing.assert_array_equal(space.low, np.float32([-3.0, -np.inf]))
-    np.testing.assert_array_equal(space.high, np.float32([3.0, np.inf]))
+    np.testing.assert_array_equal(space.low, np.array([-3.0, -np.inf], dtype=np.float32))
+    np.testing.assert_array_equal(space.high, np.array([3.0, np.inf], dtype=np.float32))
 
 
 def test_nothing_is_shared() -> None:
@@ -138,8 +138,13 @@ def test_setting_up_in_any_order() -> None:
 
 
 def test_registered() -> None:
-    gymnasium.register(id="test/Cart-v0", entry_point=CartEnv, vector_entry_point=Cart, max_episode_steps=7)
-    envs = gymnasium.make_vec("test/Cart-v0", num_envs=3)
+    gymnasium.register(
+        id="test/Cart-v0",
+        entry_point="tasks_of_tests:CartEnv",
+        vector_entry_point="tasks_of_tests:Cart",
+        max_episode_steps=7,
+    )
+    envs: Any = gymnasium.make_vec("test/Cart-v0", num_envs=3)
     assert envs.spec is not None and envs.unwrapped.max_episode_steps == 7
     assert repr(envs) == "Cart(test/Cart-v0, num_envs=3)"
     with pytest.raises(ResetNeeded, match="test/Cart-v0"):

@@ -165,6 +165,7 @@ def test_out_of_turn(make: Any) -> None:
 
 
 def test_nothing_is_drawn() -> None:
-    for make in (lambda **kwargs: gymnasium.make_vec("clench/Ant-v5", 2, **kwargs), Cart, CartEnv):
+    makers: list[Any] = [lambda **kwargs: gymnasium.make_vec("clench/Ant-v5", 2, **kwargs), Cart, CartEnv]
+    for make in makers:
         with pytest.raises(ValueError, match="render_mode"):
             make(render_mode="human")

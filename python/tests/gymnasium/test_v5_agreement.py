@@ -66,7 +66,7 @@ def test_steps(task: str, kwargs: dict[str, Any]) -> None:
         if done.any():
             resets += int(done.sum())
             observations, infos = ours.reset(options={"reset_mask": done})
-            for row in np.flatnonzero(done):
+            for row in np.flatnonzero(done).tolist():
                 observation, info = theirs[row].reset()
                 compare(ours, row, observations, infos, observation, info)
     assert resets >= ENVS * (STEPS // EPISODE)
@@ -90,7 +90,8 @@ def test_free_running(task: str) -> None:
 
 @pytest.mark.parametrize("task", reference.TASKS)
 def test_spaces(task: str) -> None:
-    theirs, ours = reference.gymnasium_env(task), gymnasium.make(f"clench/{task}-v5")
+    theirs: Any = reference.gymnasium_env(task)
+    ours: Any = gymnasium.make(f"clench/{task}-v5")
     assert ours.observation_space == theirs.observation_space
     assert ours.action_space == theirs.action_space
     assert ours.spec.reward_threshold == theirs.spec.reward_threshold
@@ -101,8 +102,8 @@ def test_spaces(task: str) -> None:
 @pytest.mark.parametrize("task", reference.TASKS)
 def test_every_argument(task: str) -> None:
     """The arguments that gymnasium's class takes, and their defaults."""
-    theirs = inspect.signature(load_env_creator(gymnasium.spec(f"{task}-v5").entry_point)).parameters
-    ours = inspect.signature(load_env_creator(gymnasium.spec(f"clench/{task}-v5").vector_entry_point)).parameters
+    names = gymnasium.spec(f"{task}-v5").entry_point, gymnasium.spec(f"clench/{task}-v5").vector_entry_point
+    theirs, ours = (inspect.signature(load_env_creator(str(name))).parameters for name in names)
     for name, parameter in theirs.items():
         if name in ("default_camera_config", "kwargs"):
             continue

@@ -22,7 +22,7 @@ def assert_same(ours: Any, theirs: Any) -> None:
 @pytest.mark.parametrize("precision", ["64", "32"])
 def test_vector_of_singles(task: str, precision: str) -> None:
     envs = gymnasium.make_vec(f"clench/{task}-v5", ENVS, max_episode_steps=EPISODE, precision=precision, threads=2)
-    singles = [
+    singles: list[Any] = [
         gymnasium.make(f"clench/{task}-v5", max_episode_steps=EPISODE, precision=precision) for _ in range(ENVS)
     ]
     envs.action_space.seed(1)
@@ -61,7 +61,8 @@ def episode(envs: Any, seed: Any) -> Any:
 
 
 def test_seeds() -> None:
-    envs, again = (gymnasium.make_vec("clench/Hopper-v5", 4, max_episode_steps=4) for _ in range(2))
+    envs: Any = gymnasium.make_vec("clench/Hopper-v5", 4, max_episode_steps=4)
+    again: Any = gymnasium.make_vec("clench/Hopper-v5", 4, max_episode_steps=4)
     first = episode(envs, 5)
     assert_same(first, episode(again, 5))
     assert_same(first, episode(envs, [5, 6, 7, 8]))
@@ -73,7 +74,7 @@ def test_seeds() -> None:
 
 def test_seeds_of_some() -> None:
     """None among seeds lets a generator go on; a mask leaves those of the others alone."""
-    envs = gymnasium.make_vec("clench/Hopper-v5", 3)
+    envs: Any = gymnasium.make_vec("clench/Hopper-v5", 3)
     start = envs.reset(seed=5)[0]
     later = envs.reset(seed=[None, 6, None])[0]
     assert_same(later[1], start[1])
@@ -85,7 +86,7 @@ def test_seeds_of_some() -> None:
 
 def test_unseeded() -> None:
     """Without a seed the system gives one, which can be read and used again."""
-    envs = gymnasium.make_vec("clench/Hopper-v5", 3)
+    envs: Any = gymnasium.make_vec("clench/Hopper-v5", 3)
     first = envs.reset()[0]
     assert_same(envs.reset(seed=envs.np_random_seed)[0], first)
     assert not np.array_equal(gymnasium.make_vec("clench/Hopper-v5", 3).reset()[0], first)
