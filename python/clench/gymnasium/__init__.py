@@ -49,7 +49,7 @@ is two lines, and names are given as gymnasium does it::
     class BalanceEnv(clench.gymnasium.SingleEnv):
         task = Balance
 
-    gymnasium.register("Balance-v0", "my_tasks:BalanceEnv", vector_entry_point="my_tasks:Balance", max_episode_steps=500)
+    gymnasium.register("Balance-v0", "my_tasks:BalanceEnv", vector_entry_point="my_tasks:Balance")
 """
 
 from clench.gymnasium.batch_env import BatchEnv
