@@ -1,18 +1,40 @@
 """Types of the compiled part of :mod:`clench`."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Self, disjoint_base
 
 from clench._state import State
+
+__all__ = [
+    "OUTPUTS",
+    "PARAMETERS",
+    "Batch",
+    "Block",
+    "Constraints",
+    "Contacts",
+    "Element",
+    "Model",
+    "RigidOptions",
+    "Sim",
+    "Solution",
+    "SolverStats",
+    "StateViews",
+    "__version__",
+    "solve",
+]
 
 _Precision: TypeAlias = Literal["64", "32"]
 _Kind: TypeAlias = Literal["body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair"]
 _Cost: TypeAlias = Literal["quadratic", "one_sided", "huber", "pyramid", "elliptic"]
 _Status: TypeAlias = Literal["unconstrained", "proven", "converged", "no_progress", "iteration_limit", "non_finite"]
+_Source: TypeAlias = Literal[
+    "equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon", "contact"
+]
 _Floats: TypeAlias = NDArray[np.float64]
 _Codes: TypeAlias = NDArray[np.int32]
 _Flags: TypeAlias = NDArray[np.bool_]
@@ -339,8 +361,8 @@ class Element:
 
 @final
 class RigidOptions:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         *,
         constraint_solver: Literal["Newton", "CG"] | None = None,
         iterations: int | None = None,
@@ -358,7 +380,7 @@ class RigidOptions:
         impratio: float | None = None,
         islands: bool | Literal["auto"] | None = None,
         warmstart: bool | None = None,
-    ) -> None: ...
+    ) -> Self: ...
     @property
     def constraint_solver(self) -> Literal["Newton", "CG"] | None: ...
     @property
@@ -391,40 +413,130 @@ class RigidOptions:
     def islands(self) -> bool | Literal["auto"] | None: ...
     @property
     def warmstart(self) -> bool | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
 
+@disjoint_base
 class StateViews:
-    """The arrays of a state, live: what Sim and Batch share. In a batch each has the environments as first axis."""
-
+    # Numbers are float64, or float32 in a simulation of precision "32". In a batch environments are the first axis.
     @property
-    def qpos(self) -> NDArray[Any]: ...
-    # likewise qvel, act, ctrl, qfrc_applied, xfrc_applied (nbody, 6), mocap_pos (nmocap, 3), mocap_quat (nmocap, 4),
-    # eq_active (bool), qacc_warmstart; each also settable (copies values in)
+    def time(self) -> float | NDArray[Any]: ...
+    @time.setter
+    def time(self, values: ArrayLike) -> None: ...
+    @property
+    def qpos(self) -> NDArray[Any]: ...  # (nq,)
+    @qpos.setter
+    def qpos(self, values: ArrayLike) -> None: ...
+    @property
+    def qvel(self) -> NDArray[Any]: ...  # (nv,)
+    @qvel.setter
+    def qvel(self, values: ArrayLike) -> None: ...
+    @property
+    def act(self) -> NDArray[Any]: ...  # (na,)
+    @act.setter
+    def act(self, values: ArrayLike) -> None: ...
+    @property
+    def ctrl(self) -> NDArray[Any]: ...  # (nu,)
+    @ctrl.setter
+    def ctrl(self, values: ArrayLike) -> None: ...
+    @property
+    def qfrc_applied(self) -> NDArray[Any]: ...  # (nv,)
+    @qfrc_applied.setter
+    def qfrc_applied(self, values: ArrayLike) -> None: ...
+    @property
+    def xfrc_applied(self) -> NDArray[Any]: ...  # (nbody, 6)
+    @xfrc_applied.setter
+    def xfrc_applied(self, values: ArrayLike) -> None: ...
+    @property
+    def mocap_pos(self) -> NDArray[Any]: ...  # (nmocap, 3)
+    @mocap_pos.setter
+    def mocap_pos(self, values: ArrayLike) -> None: ...
+    @property
+    def mocap_quat(self) -> NDArray[Any]: ...  # (nmocap, 4)
+    @mocap_quat.setter
+    def mocap_quat(self, values: ArrayLike) -> None: ...
+    @property
+    def eq_active(self) -> _Flags: ...  # (neq,)
+    @eq_active.setter
+    def eq_active(self, values: ArrayLike) -> None: ...
+    @property
+    def qacc_warmstart(self) -> NDArray[Any]: ...  # (nv,)
+    @qacc_warmstart.setter
+    def qacc_warmstart(self, values: ArrayLike) -> None: ...
+
+class _Outputs(StateViews):
+    # What the last step or forward computed: copies for a simulation; for a batch, views of those that are recorded, with the
+    # environments as first axis. None can be written.
+    qacc: Final[NDArray[Any]]  # (nv,) Accelerations.
+    xpos: Final[NDArray[Any]]  # (nbody, 3) Positions of bodies.
+    xquat: Final[NDArray[Any]]  # (nbody, 4) Orientations of bodies.
+    xmat: Final[NDArray[Any]]  # (nbody, 9) The same as matrices, row by row.
+    xipos: Final[NDArray[Any]]  # (nbody, 3) Centres of mass of bodies.
+    ximat: Final[NDArray[Any]]  # (nbody, 9) Orientations of inertial frames.
+    xanchor: Final[NDArray[Any]]  # (njnt, 3) Joint anchors.
+    xaxis: Final[NDArray[Any]]  # (njnt, 3) Joint axes.
+    geom_xpos: Final[NDArray[Any]]  # (ngeom, 3) Positions of geoms.
+    geom_xmat: Final[NDArray[Any]]  # (ngeom, 9) Orientations of geoms.
+    site_xpos: Final[NDArray[Any]]  # (nsite, 3) Positions of sites.
+    site_xmat: Final[NDArray[Any]]  # (nsite, 9) Orientations of sites.
+    subtree_com: Final[NDArray[Any]]  # (nbody, 3) Centre of mass of each body and all below it.
+    cinert: Final[NDArray[Any]]  # (nbody, 10) Inertias about the centre of mass of the tree.
+    cvel: Final[NDArray[Any]]  # (nbody, 6) Velocities there, angular first.
+    cdof: Final[NDArray[Any]]  # (nv, 6) Motion of each dof at unit velocity, likewise.
+    ten_length: Final[NDArray[Any]]  # (ntendon,) Lengths of tendons.
+    ten_velocity: Final[NDArray[Any]]  # (ntendon,) Velocities of tendons.
+    actuator_length: Final[NDArray[Any]]  # (nu,) Lengths of actuators.
+    actuator_velocity: Final[NDArray[Any]]  # (nu,) Velocities of actuators.
+    actuator_force: Final[NDArray[Any]]  # (nu,) Forces of actuators.
+    qfrc_actuator: Final[NDArray[Any]]  # (nv,) The same along dofs.
+    qfrc_passive: Final[NDArray[Any]]  # (nv,) Springs, dampers, gravity compensation, fluid.
+    qfrc_bias: Final[NDArray[Any]]  # (nv,) Coriolis, centrifugal and gravitational forces.
+    qfrc_smooth: Final[NDArray[Any]]  # (nv,) All forces but those of constraints.
+    qfrc_constraint: Final[NDArray[Any]]  # (nv,) Constraint forces.
+    cfrc_ext: Final[NDArray[Any]]  # (nbody, 6) What acts from outside, about the centre of mass of the tree, torque first.
+    contact_force: Final[NDArray[Any]]  # (nbody, 6) Contacts, at the body's centre of mass, force first.
+    energy: Final[NDArray[Any]]  # (2,) Potential and kinetic energy of the state.
 
 @final
-class Sim(StateViews):
-    def __init__(self, model: Model, options: RigidOptions | None = None, *, precision: _Precision = "64") -> None: ...
-    model: Model
-    options: RigidOptions
-    precision: _Precision
-    time: float  # settable
-    state: State  # a copy; settable
+class Sim(_Outputs):
+    def __new__(cls, model: Model, options: RigidOptions | None = None, *, precision: _Precision = "64") -> Self: ...
+    @property
+    def model(self) -> Model: ...
+    @property
+    def options(self) -> RigidOptions: ...
+    @property
+    def precision(self) -> _Precision: ...
+    @property
+    def time(self) -> float: ...
+    @time.setter
+    def time(self, values: ArrayLike) -> None: ...
+    @property
+    def state(self) -> State: ...
+    @state.setter
+    def state(self, state: State) -> None: ...
     def step(self, n: int = 1) -> None: ...
     def forward(self) -> None: ...
     def reset(self, keyframe: str | int | None = None) -> None: ...
     def set_equality(self, which: str | int, active: bool) -> None: ...
     def set_param(self, field: str, values: ArrayLike) -> None: ...
     def param(self, field: str) -> NDArray[Any]: ...
-    def output(self, name: str) -> NDArray[Any]: ...  # a copy; also by attribute: sim.xpos
-    contacts: Contacts
-    constraints: Constraints
-    solver_stats: SolverStats
-    contact_overflow: bool
-    def mass_matrix(self) -> NDArray[Any]: ...
+    def output(self, name: str) -> Any: ...  # an array, or a float where an output is a single number
+    @property
+    def contacts(self) -> Contacts: ...
+    @property
+    def constraints(self) -> Constraints: ...
+    @property
+    def solver_stats(self) -> SolverStats: ...
+    @property
+    def contact_overflow(self) -> bool: ...
+    def mass_matrix(self) -> _Floats: ...  # (nv, nv)
+
+    contact_count: Final[float]
+    solver_iterations: Final[float]
 
 @final
-class Batch(StateViews):
-    def __init__(
-        self,
+class Batch(_Outputs):
+    def __new__(
+        cls,
         model: Model,
         n_envs: int,
         precision: _Precision = "64",
@@ -432,45 +544,108 @@ class Batch(StateViews):
         *,
         options: RigidOptions | None = None,
         record: Sequence[str] = (),
-    ) -> None: ...
-    model: Model
-    options: RigidOptions
-    n_envs: int
-    precision: _Precision
-    threads: int
-    lanes: int
-    bytes_per_env: int
-    time: NDArray[Any]  # (n,) live view; settable
-    state: State  # a copy; settable: all environments run
-    def step(self, n: int = 1) -> int: ...  # how many environments failed in this call
+    ) -> Self: ...
+    @property
+    def model(self) -> Model: ...
+    @property
+    def options(self) -> RigidOptions: ...
+    @property
+    def n_envs(self) -> int: ...
+    @property
+    def precision(self) -> _Precision: ...
+    @property
+    def threads(self) -> int: ...
+    @property
+    def lanes(self) -> int: ...
+    @property
+    def bytes_per_env(self) -> int: ...
+    @property
+    def time(self) -> NDArray[Any]: ...  # (n,)
+    @time.setter
+    def time(self, values: ArrayLike) -> None: ...
+    @property
+    def state(self) -> State: ...
+    @state.setter
+    def state(self, state: State) -> None: ...
+    def step(self, n: int = 1) -> int: ...
     def forward(self, mask: ArrayLike | None = None) -> int: ...
     def reset(self, mask: ArrayLike | None = None, keyframe: str | int | None = None) -> None: ...
     def revive(self, mask: ArrayLike | None = None) -> None: ...
-    status: NDArray[np.int8]  # (n,), codes of clench.EnvStatus
-    running: NDArray[np.bool_]  # (n,)
+    @property
+    def status(self) -> NDArray[np.int8]: ...  # (n,), codes of clench.EnvStatus
+    @property
+    def running(self) -> _Flags: ...  # (n,)
     def fault(self, env: int) -> str | None: ...
     def randomize(self, field: str, values: ArrayLike, envs: ArrayLike | None = None) -> None: ...
-    def param(self, field: str) -> NDArray[Any]: ...  # (n, ...) a copy
-    def record(self, *names: str) -> None: ...  # adds to what is kept, as of the last forward pass
-    outputs: tuple[str, ...]
-    def output(self, name: str) -> NDArray[Any]: ...  # live read-only view; also by attribute: batch.cvel
+    def param(self, field: str) -> NDArray[Any]: ...  # (n, ...)
+    def record(self, *names: str) -> None: ...
+    @property
+    def outputs(self) -> tuple[str, ...]: ...
+    def output(self, name: str) -> NDArray[Any]: ...  # (n, ...)
     def rollout(
         self,
         initial: ArrayLike | None = None,  # (n, 1 + nq + nv + na): time, qpos, qvel, act
-        ctrl: ArrayLike | None = None,  # (steps, nu) for all or (n, steps, nu)
+        ctrl: ArrayLike | None = None,  # (steps, nu) or (n, steps, nu)
         record: Sequence[str] = ("qpos", "qvel"),
         steps: int | None = None,
-    ) -> dict[str, NDArray[Any]]: ...  # each (n, steps, ...)
+    ) -> dict[str, NDArray[Any]]: ...  # (n, steps, ...) each
     def sim(self, env: int) -> Sim: ...
+    def __len__(self) -> int: ...
+
+    contact_count: Final[NDArray[Any]]  # (n,)
+    solver_iterations: Final[NDArray[Any]]  # (n,)
 
 @final
 class Contacts:
-    """Arrays over contacts: geom (ncon, 2), dim, dist, pos (ncon, 3), frame (ncon, 3, 3), includemargin, friction (ncon, 5),
-    force (ncon, 6) in the contact frame, wrench (ncon, 6) world axes at pos, on the second geom; len(); geom_names."""
+    @property
+    def geom_names(self) -> list[tuple[str, str]]: ...
+    @property
+    def geom(self) -> NDArray[np.int64]: ...  # (ncon, 2)
+    @property
+    def dim(self) -> NDArray[np.int64]: ...  # (ncon,)
+    @property
+    def dist(self) -> _Floats: ...  # (ncon,)
+    @property
+    def pos(self) -> _Floats: ...  # (ncon, 3)
+    @property
+    def frame(self) -> _Floats: ...  # (ncon, 3, 3)
+    @property
+    def includemargin(self) -> _Floats: ...  # (ncon,)
+    @property
+    def friction(self) -> _Floats: ...  # (ncon, 5)
+    @property
+    def force(self) -> _Floats: ...  # (ncon, 6) in the contact frame
+    @property
+    def wrench(self) -> _Floats: ...  # (ncon, 6) in world axes, on the second geom
+    def __len__(self) -> int: ...
 
 @final
 class Constraints:
-    """Arrays over rows: kind, id, name (lists), pos, margin, vel, aref, D, impedance, frictionloss, force, J (nefc, nv); len()."""
+    @property
+    def kind(self) -> list[_Source]: ...
+    @property
+    def id(self) -> NDArray[np.int64]: ...  # (nefc,)
+    @property
+    def name(self) -> list[str]: ...
+    @property
+    def pos(self) -> _Floats: ...  # (nefc,)
+    @property
+    def margin(self) -> _Floats: ...  # (nefc,)
+    @property
+    def vel(self) -> _Floats: ...  # (nefc,)
+    @property
+    def aref(self) -> _Floats: ...  # (nefc,)
+    @property
+    def D(self) -> _Floats: ...  # (nefc,)
+    @property
+    def impedance(self) -> _Floats: ...  # (nefc,)
+    @property
+    def frictionloss(self) -> _Floats: ...  # (nefc,)
+    @property
+    def force(self) -> _Floats: ...  # (nefc,)
+    @property
+    def J(self) -> _Floats: ...  # (nefc, nv)
+    def __len__(self) -> int: ...
 
 @final
 class SolverStats:
@@ -499,14 +674,14 @@ class SolverStats:
 
 @final
 class Block:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         cost: _Cost,
         jacobian: ArrayLike,
         aref: ArrayLike,
         R: ArrayLike,
         shape: ArrayLike | None = None,
-    ) -> None: ...
+    ) -> Self: ...
     @property
     def cost(self) -> _Cost: ...
     @property
