@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from os import PathLike
-from typing import Any, Final, Literal, TypeAlias, final
+from typing import Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,15 +84,15 @@ class Model:
     @property
     def npair(self) -> int: ...
     def names(self, kind: _Kind) -> list[str]: ...
-    def body(self, which: str | int) -> Element: ...
-    def joint(self, which: str | int) -> Element: ...
-    def geom(self, which: str | int) -> Element: ...
-    def site(self, which: str | int) -> Element: ...
-    def tendon(self, which: str | int) -> Element: ...
-    def actuator(self, which: str | int) -> Element: ...
-    def equality(self, which: str | int) -> Element: ...
-    def keyframe(self, which: str | int) -> Element: ...
-    def pair(self, which: str | int) -> Element: ...
+    def body(self, which: str | SupportsIndex) -> Element: ...
+    def joint(self, which: str | SupportsIndex) -> Element: ...
+    def geom(self, which: str | SupportsIndex) -> Element: ...
+    def site(self, which: str | SupportsIndex) -> Element: ...
+    def tendon(self, which: str | SupportsIndex) -> Element: ...
+    def actuator(self, which: str | SupportsIndex) -> Element: ...
+    def equality(self, which: str | SupportsIndex) -> Element: ...
+    def keyframe(self, which: str | SupportsIndex) -> Element: ...
+    def pair(self, which: str | SupportsIndex) -> Element: ...
 
     # Fields. Arrays cannot be written to; lengths and times are in SI units; quaternions are w, x, y, z.
     timestep: Final[float]  # Seconds a step.
@@ -225,7 +225,7 @@ class Model:
     eq_solref: Final[_Floats]  # (neq, 2) Reference dynamics.
     eq_solimp: Final[_Floats]  # (neq, 5) Impedance.
     eq_type: Final[_Codes]  # (neq,) 0 connect, 1 weld, 2 joint, 3 tendon.
-    eq_obj1id: Final[_Codes]  # (neq,) The first body, joint or tendon.
+    eq_obj1id: Final[_Codes]  # (neq,) The first body, joint or tendon; of a site, its body.
     eq_obj2id: Final[_Codes]  # (neq,) The second, or -1.
     eq_active0: Final[_Flags]  # (neq,) Whether it is on at first.
 
@@ -365,21 +365,21 @@ class RigidOptions:
         cls,
         *,
         constraint_solver: Literal["Newton", "CG"] | None = None,
-        iterations: int | None = None,
-        tolerance: float | None = None,
-        ls_iterations: int | None = None,
-        ls_tolerance: float | None = None,
-        constraint_timeconst: float | None = None,
-        enable_joint_limit: bool | None = None,
-        disable_constraint: bool | None = None,
-        sparse_solve: bool | Literal["auto"] | None = None,
-        noslip_iterations: int | None = None,
-        noslip_tolerance: float | None = None,
-        max_contacts: int | Literal["auto"] | None = None,
+        iterations: SupportsIndex | None = None,
+        tolerance: SupportsFloat | None = None,
+        ls_iterations: SupportsIndex | None = None,
+        ls_tolerance: SupportsFloat | None = None,
+        constraint_timeconst: SupportsFloat | None = None,
+        enable_joint_limit: bool | np.bool_ | None = None,
+        disable_constraint: bool | np.bool_ | None = None,
+        sparse_solve: bool | np.bool_ | Literal["auto"] | None = None,
+        noslip_iterations: SupportsIndex | None = None,
+        noslip_tolerance: SupportsFloat | None = None,
+        max_contacts: SupportsIndex | Literal["auto"] | None = None,
         friction_cone: Literal["pyramidal", "elliptic"] | None = None,
-        impratio: float | None = None,
-        islands: bool | Literal["auto"] | None = None,
-        warmstart: bool | None = None,
+        impratio: SupportsFloat | None = None,
+        islands: bool | np.bool_ | Literal["auto"] | None = None,
+        warmstart: bool | np.bool_ | None = None,
     ) -> Self: ...
     @property
     def constraint_solver(self) -> Literal["Newton", "CG"] | None: ...

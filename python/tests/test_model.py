@@ -1,0 +1,297 @@
+"""Models: their fields are MuJoCo's, their elements are found by name, and mistakes are said where they are."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import clench
+import mujoco  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+from models import EXAMPLES, FEATURES, ROOT
+
+HUMANOID = ROOT / "models/humanoid.xml"
+STUB = Path(clench.__file__).with_name("_core.pyi")
+
+KINDS = {
+    "body": "body_",
+    "joint": "jnt_",
+    "geom": "geom_",
+    "site": "site_",
+    "tendon": "tendon_",
+    "actuator": "actuator_",
+    "equality": "eq_",
+    "keyframe": "key_",
+    "pair": "pair_",
+}
+SIZES = ["nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ntendon", "neq", "nkey", "nmocap", "npair"]
+
+# What MuJoCo keeps in its options, by its name there.
+OPTIONS = {
+    "timestep": "timestep",
+    "gravity": "gravity",
+    "wind": "wind",
+    "density": "density",
+    "viscosity": "viscosity",
+    "override_margin": "o_margin",
+    "override_solref": "o_solref",
+    "override_solimp": "o_solimp",
+    "override_friction": "o_friction",
+}
+# What it keeps in another form: these have a test of their own.
+OURS = {"wrap_coef", "eq_anchor1", "eq_anchor2", "eq_quat1", "eq_quat2", "eq_torquescale", "eq_polycoef"}
+
+
+def field_names() -> list[str]:
+    """The fields that every model has."""
+    return [name for name in dir(clench.Model.from_xml("<mujoco/>")) if not hasattr(clench.Model, name)]
+
+
+@pytest.fixture(scope="module")
+def humanoid() -> clench.Model:
+    return clench.Model.from_file(HUMANOID)
+
+
+@pytest.fixture(params=EXAMPLES + FEATURES, ids=lambda path: path.stem)
+def both(request: pytest.FixtureRequest) -> tuple[clench.Model, mujoco.MjModel]:
+    """The same file, loaded here and by MuJoCo."""
+    return clench.Model.from_file(request.param), mujoco.MjModel.from_xml_path(str(request.param))
+
+
+def expected_field(theirs: mujoco.MjModel, name: str) -> np.ndarray:
+    """A field as MuJoCo has it, in our shape."""
+    value = np.asarray(getattr(theirs.opt, OPTIONS[name]) if name in OPTIONS else getattr(theirs, name))
+    if name in ("key_mpos", "key_mquat"):
+        return value.reshape(theirs.nkey, theirs.nmocap, 3 if name == "key_mpos" else 4)
+    if name in ("eq_obj1id", "eq_obj2id"):
+        # MuJoCo names the sites that an equality holds together, we the bodies that carry them.
+        sites = theirs.eq_objtype == int(mujoco.mjtObj.mjOBJ_SITE)
+        value = value.copy()
+        value[sites] = theirs.site_bodyid[value[sites]]
+    return value
+
+
+def test_fields_are_those_of_mujoco(both: tuple[clench.Model, mujoco.MjModel]) -> None:
+    ours, theirs = both
+    for name in field_names():
+        if name in OURS:
+            continue
+        found, expected = np.asarray(getattr(ours, name)), expected_field(theirs, name)
+        assert (found.shape, found.dtype) == (expected.shape, expected.dtype), name
+        if found.dtype == np.float64:
+            np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12, err_msg=name)
+        else:
+            np.testing.assert_array_equal(found, expected, err_msg=name)
+
+
+def test_fields_that_mujoco_packs(both: tuple[clench.Model, mujoco.MjModel]) -> None:
+    ours, theirs = both
+    np.testing.assert_array_equal(ours.wrap_coef, theirs.wrap_prm)
+    of_bodies = theirs.eq_objtype == int(mujoco.mjtObj.mjOBJ_BODY)
+    connect, weld = (of_bodies & (theirs.eq_type == code) for code in (0, 1))
+    scalar = theirs.eq_type >= 2
+    data = theirs.eq_data
+    for found, rows, expected in [
+        (ours.eq_anchor1, connect, data[:, 0:3]),
+        (ours.eq_anchor2, connect, data[:, 3:6]),
+        (ours.eq_anchor2, weld, data[:, 0:3]),
+        (ours.eq_anchor1, weld, data[:, 3:6]),
+        (ours.eq_quat1, weld, data[:, 6:10]),
+        (ours.eq_torquescale, weld, data[:, 10]),
+        (ours.eq_polycoef, scalar, data[:, :5]),
+    ]:
+        np.testing.assert_allclose(found[rows], expected[rows], rtol=1e-9, atol=1e-12)
+    np.testing.assert_array_equal(ours.eq_quat2[weld], np.tile([1.0, 0.0, 0.0, 0.0], (weld.sum(), 1)))
+
+
+def test_sizes_and_names(both: tuple[clench.Model, mujoco.MjModel]) -> None:
+    ours: Any
+    ours, theirs = both
+    for size in SIZES:
+        assert getattr(ours, size) == getattr(theirs, size), size
+    objects = {"joint": "jnt", "equality": "eq", "keyframe": "key"}
+    for kind in KINDS:
+        count = getattr(theirs, f"n{'u' if kind == 'actuator' else objects.get(kind, kind)}")
+        assert ours.names(kind) == [getattr(theirs, objects.get(kind, kind))(i).name for i in range(count)], kind
+
+
+def test_every_field_of_an_element_is_a_row(both: tuple[clench.Model, mujoco.MjModel]) -> None:
+    model: Any
+    model, _ = both
+    for kind, prefix in KINDS.items():
+        for i, name in enumerate(model.names(kind)):
+            element = getattr(model, kind)(i)
+            assert (element.kind, element.id, element.name) == (kind, i, name)
+            if name:
+                assert getattr(model, kind)(name).id == i
+            for field in field_names():
+                if field.startswith(prefix):
+                    np.testing.assert_array_equal(getattr(element, field[len(prefix) :]), getattr(model, field)[i])
+
+
+def test_elements_give_plain_numbers(humanoid: clench.Model) -> None:
+    torso = humanoid.body("torso")
+    assert (type(torso.mass), type(torso.parentid)) == (float, int)
+    assert torso.mass == humanoid.body_mass[torso.id]
+    assert humanoid.joint("right_knee").limited is True
+    assert humanoid.body(np.int64(torso.id)).name == "torso"
+    assert repr(torso) == '<clench.Element: body 1, "torso">'
+    standing = humanoid.keyframe("standing")
+    np.testing.assert_array_equal(standing.qpos, humanoid.key_qpos[standing.id])
+
+
+def test_joints_have_rows_of_their_dofs(humanoid: clench.Model) -> None:
+    root, knee = humanoid.joint("root"), humanoid.joint("right_knee")
+    assert root.dof_damping.shape == (6,) and root.dof_solimp.shape == (6, 5)
+    np.testing.assert_array_equal(knee.dof_armature, humanoid.dof_armature[knee.dofadr : knee.dofadr + 1])
+    np.testing.assert_array_equal(root.qpos0, humanoid.qpos0[:7])
+    assert not hasattr(humanoid.body("torso"), "dof_damping")
+
+
+def test_fields_cannot_be_written_to(humanoid: clench.Model) -> None:
+    for name in field_names():
+        value = getattr(humanoid, name)
+        if isinstance(value, np.ndarray):
+            assert not value.flags.writeable, name
+            assert value.flags.c_contiguous and value.flags.aligned, name
+    assert not humanoid.joint("root").range.flags.writeable
+    assert not humanoid.joint("root").dof_damping.flags.writeable
+    with pytest.raises(ValueError, match="read-only"):
+        humanoid.body_mass[1] = 0.0
+    with pytest.raises(AttributeError):
+        humanoid.body_mass = 0.0  # type: ignore[misc, assignment]
+
+
+def test_stubs_list_what_there_is(humanoid: clench.Model) -> None:
+    classes = {node.name: node for node in ast.parse(STUB.read_text()).body if isinstance(node, ast.ClassDef)}
+
+    def declared(name: str) -> set[str]:
+        body = classes[name].body
+        fields = {ast.unparse(node.target) for node in body if isinstance(node, ast.AnnAssign)}
+        methods = {node.name for node in body if isinstance(node, ast.FunctionDef)}
+        return {name for name in fields | methods if not name.startswith("__")}
+
+    def found(thing: object) -> set[str]:
+        return {name for name in dir(thing) if not name.startswith("__")}
+
+    assert declared("Model") == found(humanoid)
+    everything = clench.Model.from_xml(
+        """<mujoco>
+             <worldbody>
+               <body name="a"><joint name="a"/><geom name="a" size="1"/><site name="a"/></body>
+               <body name="b"><joint name="b"/><geom name="b" size="1"/></body>
+             </worldbody>
+             <tendon><fixed name="a"><joint joint="a" coef="1"/></fixed></tendon>
+             <actuator><motor name="a" joint="a"/></actuator>
+             <equality><connect name="a" body1="a" anchor="0 0 0"/></equality>
+             <contact><pair name="a" geom1="a" geom2="b"/></contact>
+             <keyframe><key name="a"/></keyframe>
+           </mujoco>"""
+    )
+    assert declared("Element") == set().union(*(found(getattr(everything, kind)("a")) for kind in KINDS))
+    # What is in the stub of a class without fields of its own.
+    for name in ["RigidOptions", "SolverStats", "Block", "Solution"]:
+        assert declared(name) == found(getattr(clench, name)), name
+
+
+def test_options_and_integrator_of_a_file() -> None:
+    model = clench.Model.from_xml(
+        "<mujoco model='m'><option integrator='implicitfast' iterations='7' cone='elliptic' impratio='2'/></mujoco>"
+    )
+    assert model.name == "m" and model.integrator == "implicitfast"
+    assert model.options.iterations == 7 and model.options.friction_cone == "elliptic" and model.options.impratio == 2.0
+    assert model.options.noslip_tolerance is None
+    assert clench.Model.from_xml("<mujoco/>").integrator == "Euler"
+    assert repr(model) == '<clench.Model "m": nbody=1, njnt=0, ngeom=0, nq=0, nv=0, nu=0>'
+
+
+def test_notes_tell_what_is_done_otherwise() -> None:
+    assert clench.Model.from_xml("<mujoco/>").notes == []
+    (note,) = clench.Model.from_xml("<mujoco><option solver='PGS'/></mujoco>").notes
+    assert "PGS" in note
+
+
+@pytest.mark.parametrize(
+    ("access", "error", "words"),
+    [
+        (lambda m: m.body("tors"), ValueError, 'there is no body "tors"; did you mean "torso"?'),
+        (lambda m: m.joint("zzzzzzzzzzzz"), ValueError, "root, waist_z"),
+        (lambda m: m.site("any"), ValueError, 'there is no site "any"'),
+        (lambda m: m.geom(""), ValueError, 'there is no geom ""'),
+        (lambda m: m.body(-1), IndexError, "there is no body -1: there are 13"),
+        (lambda m: m.body(13), IndexError, "there is no body 13: there are 13"),
+        (lambda m: m.body(2**80), IndexError, "there are 13"),
+        (lambda m: m.body(1.0), TypeError, "a body is chosen by a str or an int, not by float"),
+        (lambda m: m.body(None), TypeError, "NoneType"),
+        (lambda m: m.body("\ud800"), UnicodeEncodeError, "surrogates"),
+        (lambda m: m.names("bdy"), ValueError, 'did you mean "body"?'),
+        (lambda m: m.names(3), TypeError, "str"),
+        (lambda m: m.body_mas, AttributeError, 'Model has no attribute "body_mas"; did you mean "body_mass"?'),
+        (lambda m: m.mass, AttributeError, 'did you mean "body_mass"?'),
+        (lambda m: m.body(1).mas, AttributeError, 'kind "body" has no attribute "mas"; did you mean "mass"?'),
+        (lambda m: m.joint(1).damping, AttributeError, 'did you mean "dof_damping"?'),
+        (lambda m: m.xyzzy, AttributeError, 'Model has no attribute "xyzzy"'),
+        (lambda m: type(m)(), TypeError, "cannot create"),
+        (lambda m: m.from_xml(b"<mujoco/>"), TypeError, "str"),
+        (lambda m: m.from_file(3), TypeError, "PathLike"),
+    ],
+)
+def test_mistakes(
+    humanoid: clench.Model, access: Callable[[Any], object], error: type[Exception], words: str
+) -> None:
+    with pytest.raises(error) as raised:
+        access(humanoid)
+    assert words in str(raised.value)
+
+
+def test_load_errors_know_their_place(tmp_path: Path) -> None:
+    path = tmp_path / "robot.xml"
+    body = "<body name='arm'>\n<joint name='knee' range='1'/>\n</body>"
+    path.write_text(f"<mujoco>\n<worldbody>\n{body}\n</worldbody>\n</mujoco>")
+    with pytest.raises(clench.LoadError) as raised:
+        clench.Model.from_file(path)
+    error = raised.value
+    assert isinstance(error, clench.ClenchError) and isinstance(error, ValueError)
+    assert (error.file, error.line, error.element) == (str(path), 4, 'joint "knee"')
+    assert str(error) == f'{path}:4: joint "knee": {error.message}'
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.line) == (str(error), 4)
+    # Without a file there is no name of one, and without an element none.
+    with pytest.raises(clench.LoadError) as raised:
+        clench.Model.from_xml("<mujoco>\n<mujoco>")
+    assert raised.value.file == "" and raised.value.element is None
+    assert str(raised.value).startswith(f"{raised.value.line}: ")
+    missing = tmp_path / "missing.xml"
+    with pytest.raises(clench.LoadError) as raised:
+        clench.Model.from_file(str(missing))
+    assert (raised.value.file, raised.value.line, raised.value.element) == (str(missing), None, None)
+    assert str(raised.value).startswith(f"{missing}: cannot read the file")
+
+
+def test_models_load_in_many_threads() -> None:
+    masses: list[float] = []
+    threads = [Thread(target=lambda: masses.append(clench.Model.from_file(HUMANOID).body_mass.sum())) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(masses) == 8 and len(set(masses)) == 1
+
+
+def test_everything_says_what_it_is_for() -> None:
+    for thing in [clench.Model, clench.Element, clench.RigidOptions, clench.SolverStats, clench.Block, clench.Solution]:
+        assert inspect.getdoc(thing), thing
+        for name, member in vars(thing).items():
+            if not name.startswith("_"):
+                assert inspect.getdoc(member), f"{thing.__name__}.{name}"
+    for function in [clench.solve, clench.Model.from_file, clench.Model.from_xml, clench.Model.body]:
+        text = inspect.getdoc(function) or ""
+        assert all(section in text for section in ("Parameters\n---", "Returns\n---", "Raises\n---"))
+    assert list(inspect.signature(clench.Model.from_file).parameters) == ["path"]
+    assert list(inspect.signature(clench.solve).parameters) == ["M", "a_unc", "blocks", "options"]
