@@ -106,38 +106,38 @@ impl Block {
         Ok(Block { plain, nv })
     }
 
-    /// Which cost.
+    /// str : Which cost.
     #[getter]
     fn cost(&self) -> &'static str {
         let found = COSTS.iter().find(|(_, cost)| *cost == self.plain.cost);
         found.expect("every cost has a name").0
     }
 
-    /// Number of rows.
+    /// int : Number of rows.
     #[getter]
     fn dim(&self) -> usize {
         self.plain.aref.len()
     }
 
-    /// How the rows move with the accelerations, (dim, nv).
+    /// numpy.ndarray : How the rows move with the accelerations (dim, nv). A copy.
     #[getter]
     fn jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         PyArray1::from_slice(py, &self.plain.jacobian).reshape([self.dim(), self.nv])
     }
 
-    /// The acceleration along each row that the constraint asks for, (dim,).
+    /// numpy.ndarray : The acceleration along each row that the constraint asks for (dim). A copy.
     #[getter]
     fn aref<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.plain.aref)
     }
 
-    /// Softness of each row, (dim,).
+    /// numpy.ndarray : Softness of each row (dim). A copy.
     #[getter(R)]
     fn r<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.plain.r)
     }
 
-    /// Greatest forces or friction coefficients, (dim,); None where the cost has none.
+    /// numpy.ndarray or None : Greatest forces or friction coefficients (dim), if the cost has them. A copy.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let shape = &self.plain.shape;

@@ -64,19 +64,19 @@ impl Element {
 
 #[pymethods]
 impl Element {
-    /// What it is, such as "body".
+    /// str : What it is, such as "body".
     #[getter]
     fn kind(&self) -> &'static str {
         self.kind.name()
     }
 
-    /// Its index among the elements of its kind.
+    /// int : Its index among the elements of its kind.
     #[getter]
     fn id(&self) -> usize {
         self.id
     }
 
-    /// Its name, possibly empty.
+    /// str : Its name, possibly empty.
     #[getter]
     fn name(&self) -> &str {
         self.kind.names(&self.model)[self.id]

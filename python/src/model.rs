@@ -101,22 +101,22 @@ impl Model {
         Ok(Model(Arc::new(model)))
     }
 
-    /// Name of the model.
+    /// str : Name of the model.
     #[getter]
     fn name(&self) -> &str {
         &self.0.name
     }
-    /// What the loader thinks worth telling, such as elements without effect that it left out.
+    /// list of str : What the loader thinks worth telling, such as a solver that it replaced.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.0.notes.clone()
     }
-    /// The options that the file sets, over the defaults of its format.
+    /// RigidOptions : The options that the file sets, over the defaults of its format.
     #[getter]
     fn options(&self) -> RigidOptions {
         RigidOptions(self.0.options)
     }
-    /// How time advances: "Euler", "implicitfast" or "RK4".
+    /// str : How time advances: "Euler", "implicitfast" or "RK4".
     #[getter]
     fn integrator(&self) -> &'static str {
         match self.0.integrator {
@@ -125,67 +125,67 @@ impl Model {
             Integrator::Rk4 => "RK4",
         }
     }
-    /// Number of position coordinates.
+    /// int : Number of position coordinates.
     #[getter]
     fn nq(&self) -> usize {
         self.0.nq
     }
-    /// Number of degrees of freedom.
+    /// int : Number of degrees of freedom.
     #[getter]
     fn nv(&self) -> usize {
         self.0.nv
     }
-    /// Number of controls, one an actuator.
+    /// int : Number of controls, one an actuator.
     #[getter]
     fn nu(&self) -> usize {
         self.0.nu()
     }
-    /// Number of activations.
+    /// int : Number of activations.
     #[getter]
     fn na(&self) -> usize {
         self.0.na
     }
-    /// Number of bodies, the world included.
+    /// int : Number of bodies, the world included.
     #[getter]
     fn nbody(&self) -> usize {
         self.0.nbody()
     }
-    /// Number of joints.
+    /// int : Number of joints.
     #[getter]
     fn njnt(&self) -> usize {
         self.0.joints.len()
     }
-    /// Number of geoms.
+    /// int : Number of geoms.
     #[getter]
     fn ngeom(&self) -> usize {
         self.0.geoms.len()
     }
-    /// Number of sites.
+    /// int : Number of sites.
     #[getter]
     fn nsite(&self) -> usize {
         self.0.sites.len()
     }
-    /// Number of tendons.
+    /// int : Number of tendons.
     #[getter]
     fn ntendon(&self) -> usize {
         self.0.tendons.len()
     }
-    /// Number of equality constraints.
+    /// int : Number of equality constraints.
     #[getter]
     fn neq(&self) -> usize {
         self.0.equalities.len()
     }
-    /// Number of keyframes.
+    /// int : Number of keyframes.
     #[getter]
     fn nkey(&self) -> usize {
         self.0.keyframes.len()
     }
-    /// Number of mocap bodies.
+    /// int : Number of mocap bodies.
     #[getter]
     fn nmocap(&self) -> usize {
         self.0.nmocap
     }
-    /// Number of explicit geom pairs.
+    /// int : Number of explicit geom pairs.
     #[getter]
     fn npair(&self) -> usize {
         self.0.pairs.len()

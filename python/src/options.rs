@@ -111,36 +111,36 @@ macro_rules! options {
 }
 
 options! {
-    /// Algorithm that minimises: "Newton" or "CG".
+    /// str or None : Algorithm that minimises: "Newton" or "CG".
     constraint_solver: algorithm;
-    /// Most iterations of a solve.
+    /// int or None : Most iterations of a solve.
     iterations: count;
-    /// Where a solve stops.
+    /// float or None : Where a solve stops.
     tolerance: not_negative;
-    /// Most evaluations of a line search.
+    /// int or None : Most evaluations of a line search.
     ls_iterations: count;
-    /// Precision of a line search relative to `tolerance`.
+    /// float or None : Precision of a line search relative to `tolerance`.
     ls_tolerance: not_negative;
-    /// Shortest time constant (s) that a constraint may have.
+    /// float or None : Shortest time constant (s) that a constraint may have.
     constraint_timeconst: not_negative;
-    /// Whether joint limits act.
+    /// bool or None : Whether joint limits act.
     enable_joint_limit: boolean;
-    /// Whether all constraints are left out.
+    /// bool or None : Whether all constraints are left out.
     disable_constraint: boolean;
-    /// Whether the Hessian is kept sparse: True, False or "auto".
+    /// bool or str or None : Whether the Hessian is kept sparse: True, False or "auto".
     sparse_solve: switch;
-    /// Most sweeps that remove the slip of friction after a solve.
+    /// int or None : Most sweeps that remove the slip of friction after a solve.
     noslip_iterations: count;
-    /// Where sweeps stop.
+    /// float or None : Where sweeps stop.
     noslip_tolerance: not_negative;
-    /// Most contacts of a step: a number or "auto".
+    /// int or str or None : Most contacts of a step: a number or "auto".
     max_contacts: limit;
-    /// Shape of frictional contacts: "pyramidal" or "elliptic".
+    /// str or None : Shape of frictional contacts: "pyramidal" or "elliptic".
     friction_cone: cone;
-    /// Ratio of friction to normal impedance in elliptic contacts.
+    /// float or None : Ratio of friction to normal impedance in elliptic contacts.
     impratio: positive;
-    /// Whether uncoupled parts are solved separately: True, False or "auto".
+    /// bool or str or None : Whether uncoupled parts are solved separately: True, False or "auto".
     islands: switch;
-    /// Whether a solve starts from the last acceleration.
+    /// bool or None : Whether a solve starts from the last acceleration.
     warmstart: boolean;
 }

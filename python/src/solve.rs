@@ -86,17 +86,17 @@ fn minimise(
 /// What :func:`clench.solve` found.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct Solution {
-    /// The accelerations that minimise, (nv,).
+    /// numpy.ndarray : The accelerations that minimise (nv).
     qacc: Py<PyArray1<f64>>,
-    /// The force of each block along its rows, (dim,) each: the negative gradient of its cost.
+    /// list of numpy.ndarray : The force of each block along its rows (dim): the negative gradient of its cost.
     forces: Vec<Py<PyArray1<f64>>>,
-    /// All forces along the degrees of freedom, (nv,): the sum of ``jacobian.T @ force``.
+    /// numpy.ndarray : All forces along the degrees of freedom (nv): the sum of ``jacobian.T @ force``.
     qfrc_constraint: Py<PyArray1<f64>>,
-    /// How the solve ended; see :attr:`SolverStats.status`. After "non_finite" the numbers are not usable.
+    /// str : How the solve ended; see :attr:`SolverStats.status`. After "non_finite" the numbers are not usable.
     status: &'static str,
-    /// The duality gap: the cost exceeds its minimum by at most this. With noslip, of the solution before its sweeps.
+    /// float : The duality gap: the cost exceeds its minimum by at most this. With noslip, of the solution before its sweeps.
     certificate: f64,
-    /// How the solve went.
+    /// SolverStats : How the solve went.
     stats: Py<SolverStats>,
 }
 

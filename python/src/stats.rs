@@ -8,28 +8,28 @@ use pyo3::prelude::*;
 /// Norms and costs are over mean inertia times nv, unless said otherwise.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct SolverStats {
-    /// How it ended: "unconstrained" (no constraint acted), "proven" (the starting point was good enough), "converged",
+    /// str : How it ended: "unconstrained" (no constraint acted), "proven" (the starting point was good enough), "converged",
     /// "no_progress" (the working precision allows no more), "iteration_limit" or "non_finite". Over islands, the worst.
     status: &'static str,
-    /// Iterations; over islands, the most.
+    /// int : Iterations; over islands, the most.
     iterations: usize,
-    /// Norm of the gradient; over islands, the largest.
+    /// float : Norm of the gradient; over islands, the largest.
     gradient: f64,
-    /// Last improvement of the cost; over islands, the largest.
+    /// float : Last improvement of the cost; over islands, the largest.
     improvement: f64,
-    /// The duality gap, an upper bound of cost minus minimum, in the units of the cost.
+    /// float : The duality gap, an upper bound of cost minus minimum, in the units of the cost.
     gap: f64,
-    /// How often a constraint changed its piece (a contact began to slip, a limit let go), in all iterations.
+    /// int : How often a constraint changed its piece (a contact began to slip, a limit let go), in all iterations.
     piece_changes: usize,
-    /// Evaluations of line searches.
+    /// int : Evaluations of line searches.
     ls_evaluations: usize,
-    /// Hessians factored from scratch.
+    /// int : Hessians factored from scratch.
     factorizations: usize,
-    /// Rank-one updates of a factored Hessian.
+    /// int : Rank-one updates of a factored Hessian.
     updates: usize,
-    /// Sweeps that removed slip.
+    /// int : Sweeps that removed slip.
     noslip_iterations: usize,
-    /// Parts that were solved separately; 1 where islands are not used and constraints act.
+    /// int : Parts that were solved separately; 1 where islands are not used and constraints act.
     islands: usize,
 }
 
