@@ -32,12 +32,6 @@ impl Model {
     }
 }
 
-impl From<Arc<clench::Model>> for Model {
-    fn from(model: Arc<clench::Model>) -> Self {
-        Model(model)
-    }
-}
-
 /// What is said of each method that finds an element.
 macro_rules! named {
     ($kind:literal) => {
