@@ -95,6 +95,16 @@ impl Model {
         Ok(Model(Arc::new(model)))
     }
 
+    /// Itself: a model never changes.
+    fn __copy__(this: Py<Self>) -> Py<Self> {
+        this
+    }
+    /// Itself: a model never changes.
+    #[pyo3(signature = (_memo, /))]
+    fn __deepcopy__(this: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        this
+    }
+
     /// str : Name of the model.
     #[getter]
     fn name(&self) -> &str {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 import inspect
 import pickle
 from collections.abc import Callable
@@ -295,3 +296,9 @@ def test_everything_says_what_it_is_for() -> None:
         assert all(section in text for section in ("Parameters\n---", "Returns\n---", "Raises\n---"))
     assert list(inspect.signature(clench.Model.from_file).parameters) == ["path"]
     assert list(inspect.signature(clench.solve).parameters) == ["M", "a_unc", "blocks", "options"]
+
+
+def test_copies_of_a_model_are_the_model() -> None:
+    model = clench.Model.from_xml("<mujoco><worldbody/></mujoco>")
+    assert copy.copy(model) is model
+    assert copy.deepcopy({"model": model})["model"] is model
