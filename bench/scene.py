@@ -3,11 +3,12 @@
 import pathlib
 import sys
 
+import gymnasium
 import mujoco
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-GYMNASIUM = ROOT / ".cache/gymnasium-1.4.0/gymnasium/envs/mujoco/assets"
+GYMNASIUM = pathlib.Path(gymnasium.__file__).parent / "envs/mujoco/assets"
 NEWTON, PGS = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtSolver.mjSOL_PGS
 
 
@@ -15,7 +16,7 @@ def find(name):
     """The file of one of gymnasium's models, or the file of that name."""
     path = pathlib.Path(name) if name.endswith(".xml") else GYMNASIUM / f"{name}.xml"
     if not path.is_file():
-        sys.exit(f"{path} is missing; `cargo xtask test python` fetches gymnasium's models")
+        sys.exit(f"there is no {path}")
     return path
 
 

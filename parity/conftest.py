@@ -2,12 +2,13 @@
 
 import pathlib
 
+import gymnasium
 import pytest
 
 import program
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-GYMNASIUM = ROOT / ".cache/gymnasium-1.4.0/gymnasium/envs/mujoco/assets"
+GYMNASIUM = pathlib.Path(gymnasium.__file__).parent / "envs/mujoco/assets"
 
 
 def models():
@@ -23,7 +24,7 @@ def pytest_sessionstart(session):
     if not program.CLENCH.is_file():
         pytest.exit(f"{program.CLENCH} is missing: run `cargo build --release -p clench-cli`", returncode=2)
     if len(list(GYMNASIUM.glob("*.xml"))) != 14:
-        pytest.exit(f"expected 14 models in {GYMNASIUM}: run `cargo xtask test python`", returncode=2)
+        pytest.exit(f"expected 14 models in {GYMNASIUM}: is that gymnasium 1.4.0?", returncode=2)
 
 
 def pytest_generate_tests(metafunc):

@@ -1,6 +1,7 @@
 //! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed, `cargo xtask soak`
 //! steps many environments for long.
 
+mod package;
 mod python;
 mod run;
 mod stages;
@@ -19,14 +20,16 @@ Commands:
                       unit     all Rust tests
                       doc      rustdoc without warnings
                       build    the release `clench` program
-                      python   .venv with MuJoCo, and the public models in .cache
+                      python   .venv with MuJoCo and gymnasium
+                      package  the Python package, built and installed in .venv by pip; its types
+                      pytest   its tests, every example in a short form among them
                       parity   `clench` against MuJoCo, with pytest
   bench [ARG...]    Build the release `clench` and time it against MuJoCo.
                     Arguments go to bench/speed.py; try `cargo xtask bench --help`.
   soak [SEED]       Step 10,000 environments 1,000 times under random controls, resets and poison: none may be
                     lost, disturb another, or leak. `test` runs a short form.
 
-Needs Python 3.11 or later with venv, and a package index on the first run.";
+Needs Python 3.11 or later with venv. A package index must be reachable on the first run, and for the stage `package`.";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

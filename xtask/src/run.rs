@@ -9,12 +9,17 @@ pub fn root() -> PathBuf {
     here.parent().unwrap_or(here).to_path_buf()
 }
 
+/// The folder that cargo builds in.
+pub fn target() -> PathBuf {
+    let chosen =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+    root().join(chosen)
+}
+
 /// The release `clench` program, where cargo puts it.
 pub fn clench() -> PathBuf {
-    let target =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     let name = format!("clench{}", std::env::consts::EXE_SUFFIX);
-    root().join(target).join("release").join(name)
+    target().join("release").join(name)
 }
 
 /// A command that will run in the workspace's root.

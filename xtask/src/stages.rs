@@ -1,5 +1,6 @@
 //! The stages of `cargo xtask test`, in order, and what takes longer: `cargo xtask bench` and `soak`.
 
+use crate::package;
 use crate::python;
 use crate::run::{cargo, clench, command, run};
 use std::time::Instant;
@@ -42,6 +43,16 @@ const STAGES: &[Stage] = &[
         name: "python",
         remedy: "see the message above",
         check: python::prepare,
+    },
+    Stage {
+        name: "package",
+        remedy: "see the message above",
+        check: package::install,
+    },
+    Stage {
+        name: "pytest",
+        remedy: "run one case alone with `.venv/bin/python -m pytest python/tests -k NAME`",
+        check: package::test,
     },
     Stage {
         name: "parity",
@@ -142,14 +153,13 @@ fn doc() -> Result<(), String> {
     run(doc)
 }
 
+/// The program alone; but with the Python package named beside it, both share what they are built of. Else a dependency of
+/// both would have other features in each, and the kernels would be compiled twice.
 fn build() -> Result<(), String> {
-    run(cargo(&[
-        "build",
-        "--quiet",
-        "--release",
-        "--package",
-        "clench-cli",
-    ]))
+    let packages = ["--package", "clench-cli", "--package", "clench-python"];
+    let mut build = cargo(&["build", "--quiet", "--release", "--bin", "clench"]);
+    build.args(packages);
+    run(build)
 }
 
 fn parity() -> Result<(), String> {

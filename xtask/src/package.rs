@@ -1,0 +1,41 @@
+//! The Python package, as its users get it: built and installed by pip, its types checked, its tests run.
+
+use crate::python::interpreter;
+use crate::run::{command, run, target};
+
+/// Builds the package and installs it in `.venv`, then holds its types to what was installed.
+///
+/// # Errors
+/// What failed, and what to check.
+pub fn install() -> Result<(), String> {
+    println!("building the package and installing it in .venv");
+    let mut install = command(
+        interpreter(),
+        &["-m", "pip", "install", "--quiet", "./python[gymnasium]"],
+    );
+    // A relative one would mean another folder there, as pip builds in `python`.
+    install.env("CARGO_TARGET_DIR", target());
+    run(install).map_err(|e| {
+        format!("{e}\nBesides cargo this needs a package index: pip fetches maturin, which builds the package, every time.")
+    })?;
+
+    let sources = ["python/clench", "python/examples", "python/tests"];
+    let mut types = command(
+        interpreter(),
+        &["-m", "mypy", "--config-file", "python/pyproject.toml"],
+    );
+    types.args(sources);
+    run(types)?;
+    run(command(interpreter(), &["-m", "mypy.stubtest", "clench"]))
+}
+
+/// Runs the tests of the package, and with them every example in its short form.
+///
+/// # Errors
+/// That a test failed.
+pub fn test() -> Result<(), String> {
+    run(command(
+        interpreter(),
+        &["-m", "pytest", "--quiet", "python/tests"],
+    ))
+}
