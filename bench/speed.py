@@ -4,7 +4,8 @@ First one environment: each repetition steps every engine from the model's defau
 (which reports the time of stepping alone) and MuJoCo through its own rollout in C. Then many environments at once; the top
 of batch.py says how. Times are medians over repetitions; a ratio is the median of what each repetition gave. Both engines
 read the same file with its integrator, tolerance and iterations; where the file asks for PGS, MuJoCo is timed with Newton,
-which is what Clench uses, and in one environment with PGS as well.
+which is what Clench uses, and in one environment with PGS as well. Last come what Python's calls cost beyond Rust's (calls.py), and
+vector environments beside gymnasium's (vector.py).
 """
 
 import argparse
@@ -15,9 +16,12 @@ import sys
 
 import alone
 import batch
+import calls
+import vector
 from scene import find
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
+DEFAULT_TASKS = ["HalfCheetah-v5", "Humanoid-v5"]
 
 
 def main():
@@ -25,15 +29,20 @@ def main():
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0
     if load > 0.5:
         print(f"other programs are running (load {load:.1f}): expect figures that a quiet machine would not give")
-    comparisons = {"one": alone.compare, "batch": batch.compare}
+    models = [find(model) for model in args.models]
     results = []
-    for name, compare in comparisons.items():
+    for name, (compare, subjects) in {
+        "one": (alone.compare, models),
+        "batch": (batch.compare, models),
+        "calls": (calls.compare, models),
+        "vector": (vector.compare, args.tasks),
+    }.items():
         if args.only in (None, name):
-            results += [row for model in args.models for row in compare(find(model), args)]
+            results += [row for subject in subjects for row in compare(subject, args)]
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps(results, indent=2) + "\n")
     print(f"\nratio: MuJoCo's time with Newton over this engine's; medians of {args.repeat} runs")
-    slower = {r["model"] for r in results if r["engine"].startswith("clench") and r["ratio"] < 1}
+    slower = {r.get("model", r.get("task")) for r in results if r["engine"].startswith("clench") and r["ratio"] < 1}
     if slower:
         print(f"slower than MuJoCo on: {', '.join(sorted(slower))}")
     sys.exit(1 if slower and args.check else 0)
@@ -42,10 +51,12 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch"], help="one environment alone, or the batch alone")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector"], help="one of the comparisons")
     parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
     parser.add_argument("--batch-steps", type=int, default=500, help="steps a run of the batch (default: %(default)s)")
+    parser.add_argument("--tasks", nargs="*", default=DEFAULT_TASKS, help="vector environments (default: %(default)s)")
+    parser.add_argument("--vector-steps", type=int, default=100, help="steps a run of these (default: %(default)s)")
     parser.add_argument("--noise", type=float, default=0.1, help="how far starts are moved apart (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=min(2, batch.processors()), help="threads of Clench's batch beside one")
     parser.add_argument("--repeat", type=int, default=7, help="runs of each engine (default: %(default)s)")
