@@ -18,7 +18,12 @@ pub fn target() -> PathBuf {
 
 /// The release `clench` program, where cargo puts it.
 pub fn clench() -> PathBuf {
-    let name = format!("clench{}", std::env::consts::EXE_SUFFIX);
+    released("clench")
+}
+
+/// A release program, where cargo puts it.
+pub fn released(name: &str) -> PathBuf {
+    let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
     target().join("release").join(name)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::package;
 use crate::python;
-use crate::run::{cargo, clench, command, run};
+use crate::run::{cargo, clench, command, released, run};
 use std::time::Instant;
 
 /// One check: its name on the command line, what to do when it fails, and how to run it.
@@ -103,9 +103,15 @@ pub fn test(names: &[String]) -> Result<(), String> {
 /// What could not be built, installed or run.
 pub fn bench(args: &[String]) -> Result<(), String> {
     build()?;
+    let example = ["build", "--quiet", "--release", "--package", "clench"];
+    run(cargo(
+        &[&example[..], &["--example", "batch_step"]].concat(),
+    ))?;
     python::prepare()?;
+    package::install()?;
     let mut script = command(python::interpreter(), &["bench/speed.py"]);
     script.args(args).env("CLENCH", clench());
+    script.env("BATCH_STEP", released("examples/batch_step"));
     run(script)
 }
 
