@@ -66,7 +66,7 @@ class State:
             A NumPy ``.npz`` archive with an array a field and the number of its format, ``version``.
         """
         buffer = io.BytesIO()
-        np.savez(buffer, allow_pickle=False, version=np.int64(_VERSION), **vars(self))
+        np.savez(buffer, version=np.int64(_VERSION), **vars(self))
         return buffer.getvalue()
 
     @staticmethod
