@@ -151,6 +151,8 @@ impl Batch {
     /// ------
     /// BusyError
     ///     While another thread is in a call of this batch.
+    /// ClenchError
+    ///     In a process forked from the one that made this batch, if it has several threads: a fork does not copy them.
     #[pyo3(signature = (n = Count(1)), text_signature = "($self, n=1)")]
     fn step(&self, py: Python<'_>, n: Count) -> PyResult<usize> {
         let mut guard = lock(&self.inner, "batch")?;
@@ -377,6 +379,13 @@ impl Batch {
         };
         self.view(py, output)
             .ok_or_else(|| PyAttributeError::new_err(not_recorded(name)))
+    }
+
+    fn __dir__(this: &Bound<'_, Self>) -> PyResult<Vec<String>> {
+        let mut names: Vec<String> = this.get_type().dir()?.extract()?;
+        let outputs = lock(&this.get().outputs, "batch")?;
+        names.extend(outputs.iter().map(|(output, _)| output.name().to_owned()));
+        Ok(names)
     }
 
     /// Steps all running environments and records outputs after each step.

@@ -31,7 +31,9 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         SimError::Fault(_) => classes::SimulationError::new_err(text),
         SimError::NoSuchElement { .. } => PyIndexError::new_err(text),
         SimError::OutOfMemory { .. } => PyMemoryError::new_err(text),
-        SimError::Instructions(_) | SimError::Threads(_) => classes::ClenchError::new_err(text),
+        SimError::Instructions(_) | SimError::Threads(_) | SimError::Forked => {
+            classes::ClenchError::new_err(text)
+        }
         SimError::Option(_)
         | SimError::UnsupportedPair(_)
         | SimError::WrongLength { .. }

@@ -87,6 +87,11 @@ pub enum SimError {
     /// Threads that cannot be started.
     #[error("threads cannot be started: {0}")]
     Threads(String),
+    /// A batch of several threads in a process that was forked from the one that made it: a fork does not copy threads.
+    #[error(
+        "the threads of this batch are of the process that it was made in, which forked: make a batch in each process"
+    )]
+    Forked,
     /// A given contact that makes no sense.
     #[error("given contact {index}: {reason}")]
     Contact {

@@ -79,6 +79,8 @@ pub struct Batch<S: Precision = f64> {
     order: Vec<u32>,
     steppers: Vec<Box<dyn Stepper<S>>>,
     pool: Option<Arc<ThreadPool>>,
+    /// The process that the threads are of.
+    process: u32,
     divergence: Divergence,
     quality: Quality,
 }
@@ -151,6 +153,7 @@ impl<S: Precision> Batch<S> {
             order: per_env(count, || 0)?,
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
             pool,
+            process: std::process::id(),
             divergence: Divergence::default(),
             quality: Quality::default(),
             options: BatchOptions {
@@ -176,6 +179,14 @@ impl<S: Precision> Batch<S> {
     /// Tables may have been exchanged, for users can write all of [`state`](Self::state).
     fn check_state(&self) -> Result<(), SimError> {
         self.state.check_shapes(&self.model, self.count())
+    }
+
+    /// Without its threads a call would wait for ever.
+    fn check_threads(&self) -> Result<(), SimError> {
+        match self.pool {
+            Some(_) if self.process != std::process::id() => Err(SimError::Forked),
+            _ => Ok(()),
+        }
     }
 
     /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept, whether it runs,

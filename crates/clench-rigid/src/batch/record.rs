@@ -153,6 +153,7 @@ impl<S: Precision> Batch<S> {
         let width = 1 + nq + nv + self.model.na;
         check_length("initial", initial.len(), self.count() * width)?;
         self.check_state()?;
+        self.check_threads()?;
         let outputs = self.recorder(steps, controls, record)?;
         for (env, row) in initial.chunks_exact(width).enumerate() {
             let state = &mut self.state;

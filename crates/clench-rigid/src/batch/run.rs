@@ -24,7 +24,7 @@ impl<S: Precision> Batch<S> {
     /// Advances every running environment by one time step.
     ///
     /// # Errors
-    /// Tables of [`state`](Self::state) that are not those of this batch.
+    /// Tables of [`state`](Self::state) that are not those of this batch; a batch of several threads after a fork.
     pub fn step(&mut self) -> Result<Summary, SimError> {
         self.step_n(1)
     }
@@ -66,6 +66,7 @@ impl<S: Precision> Batch<S> {
         trace: &mut [OutputRows<S>],
     ) -> Result<Summary, SimError> {
         self.check_state()?;
+        self.check_threads()?;
         // All groupings of a call run inside the pool, so that its threads need not be woken for each.
         Ok(match self.pool.clone() {
             None => self.run_here(advance, steps, controls, mask, trace),

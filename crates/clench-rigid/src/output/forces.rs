@@ -35,11 +35,11 @@ pub(super) fn external<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
             couple: applied.angular,
             at: pos.xipos[b],
         };
-        let force = if b == 0 {
-            Force::ZERO
-        } else {
-            wrench.about(com(b))
-        };
+        // From 0 on, which no force of −0 turns into −0: contacts of other lanes, which add 0, then change nothing.
+        let mut force = Force::ZERO;
+        if b != 0 {
+            force += wrench.about(com(b));
+        }
         out.extend(force.to_array());
     }
     let mut add = |body: usize, sign: T, wrench: &Wrench<T>| {
