@@ -12,8 +12,8 @@ Load a model, move one environment of it with `Sim` or many with `Batch`:
 ... </mujoco>''')
 >>> sim = clench.Sim(model)
 >>> sim.step(2000)
->>> round(sim.qpos[2], 2), round(sim.contacts.force[0, 0], 2)
-(0.1, 19.62)
+>>> print(sim.qpos[2].round(2), sim.contacts.force[0, 0].round(2))
+0.1 19.62
 
 >>> batch = clench.Batch(model, 1000, precision="32")
 >>> batch.qvel[:, 0] = range(1000)

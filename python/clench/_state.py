@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import io
-import zipfile
-from dataclasses import dataclass
+import operator
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -49,13 +49,18 @@ class State:
     qacc_warmstart: NDArray[Any]
 
     def __post_init__(self) -> None:
-        """Check the types."""
+        self._arrays()
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        """The fields by name, their types checked: fields can be replaced."""
+        arrays = {field.name: getattr(self, field.name) for field in fields(self)}
         numbers = np.dtype(np.float32 if getattr(self.qpos, "dtype", None) == np.float32 else np.float64)
-        for name, array in vars(self).items():
+        for name, array in arrays.items():
             wanted = np.dtype(np.bool_) if name == "eq_active" else numbers
             found = getattr(array, "dtype", type(array).__name__)
             if not isinstance(array, np.ndarray) or found != wanted:
                 raise TypeError(f"{name} of a state must be an array of {wanted}, not {found}")
+        return arrays
 
     def to_bytes(self) -> bytes:
         """Pack the state into bytes.
@@ -66,7 +71,7 @@ class State:
             A NumPy ``.npz`` archive with an array a field and the number of its format, ``version``.
         """
         buffer = io.BytesIO()
-        np.savez(buffer, version=np.int64(_VERSION), **vars(self))
+        np.savez(buffer, allow_pickle=False, version=np.int64(_VERSION), **self._arrays())
         return buffer.getvalue()
 
     @staticmethod
@@ -87,15 +92,18 @@ class State:
         ------
         ValueError
             Bytes that are damaged, of something else, or of a later version.
+        TypeError
+            What is not bytes.
         """
+        stream = io.BytesIO(data)
         try:
-            with np.load(io.BytesIO(data), allow_pickle=False) as archive:
+            with np.load(stream, allow_pickle=False) as archive:
                 arrays = dict(archive)
-            version = int(arrays.pop("version"))
-        except (AttributeError, EOFError, KeyError, OSError, TypeError, ValueError, zipfile.BadZipFile) as error:
+            version = operator.index(arrays.pop("version")[()])
+        except Exception as error:  # Readers of damaged archives raise whatever they stumble over.
             raise ValueError(f"these bytes hold no state: {error}") from error
-        if version > _VERSION:
-            raise ValueError(f"this state has version {version}, and this clench reads versions up to {_VERSION}")
+        if not 1 <= version <= _VERSION:
+            raise ValueError(f"this state has version {version}, and this clench reads versions 1 to {_VERSION}")
         try:
             return State(**arrays)
         except TypeError as error:

@@ -34,9 +34,16 @@ pub(crate) fn shaped<'py, S: Element>(
 /// As many booleans as there are elements, `n`.
 pub(crate) fn mask(name: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec<bool>> {
     let array = as_array(value)?;
-    require_kind(name, &array, b"b", "booleans")?;
+    // An empty list is an array of floats to NumPy.
+    if !array.is_empty() {
+        require_kind(name, &array, b"b", "booleans")?;
+    }
     require_shape(name, array.shape(), &[n])?;
-    Ok(contiguous::<bool>(&array)?.as_slice()?.to_vec())
+    // As bytes: NumPy's booleans may be any byte, Rust's only 0 and 1.
+    let bytes = numpy(value.py())?.call_method1("require", (array, dtype::<bool>(value.py())))?;
+    let bytes = bytes.call_method1("view", ("u1",))?.cast_into()?;
+    let bytes = contiguous::<u8>(&bytes)?;
+    Ok(bytes.as_slice()?.iter().map(|&byte| byte != 0).collect())
 }
 
 /// Indices of some of `n` elements, each counted from zero.

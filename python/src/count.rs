@@ -16,10 +16,7 @@ impl FromPyObject<'_, '_> for Count {
             if !error.is_instance_of::<PyOverflowError>(py) {
                 return error;
             }
-            PyValueError::new_err(format!(
-                "a count must be 0 or more, and less than 2^64, not {}",
-                *object
-            ))
+            PyValueError::new_err("a count must be 0 or more, and less than 2^64")
         })
     }
 }

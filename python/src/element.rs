@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Examples
 /// --------
 /// >>> model.joint("right_knee").range
-/// array([-2.0,  0.1])
+/// array([-0.03490659,  2.61799388])
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Element {
     model: Arc<Model>,

@@ -100,18 +100,23 @@ impl Kind {
             return found.ok_or_else(|| unknown(kind, name, &names));
         }
         let count = names.len();
-        let index = match which.extract::<i64>() {
-            Ok(index) => usize::try_from(index).ok().filter(|&index| index < count),
-            Err(error) if error.is_instance_of::<PyOverflowError>(which.py()) => None,
+        let none = |which: &str| {
+            PyIndexError::new_err(format!("there is no {kind} {which}: there are {count}"))
+        };
+        match which.extract::<i64>() {
+            Ok(index) => match usize::try_from(index) {
+                Ok(found) if found < count => Ok(found),
+                _ => Err(none(&index.to_string())),
+            },
+            Err(error) if error.is_instance_of::<PyOverflowError>(which.py()) => {
+                Err(none("of an index so large"))
+            }
             Err(_) => {
                 let found = which.get_type().name()?;
-                return Err(PyTypeError::new_err(format!(
+                Err(PyTypeError::new_err(format!(
                     "a {kind} is chosen by a str or an int, not by {found}"
-                )));
+                )))
             }
-        };
-        index.ok_or_else(|| {
-            PyIndexError::new_err(format!("there is no {kind} {which}: there are {count}"))
-        })
+        }
     }
 }

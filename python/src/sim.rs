@@ -230,15 +230,8 @@ impl Sim {
         self.output(py, name)
     }
 
-    fn __dir__<'py>(this: &Bound<'py, Self>) -> PyResult<Vec<String>> {
-        let class = this.get_type().call_method0("mro")?;
-        let mut names = Vec::new();
-        for base in class.try_iter()? {
-            let own = base?.getattr("__dict__")?;
-            for name in own.try_iter()? {
-                names.push(name?.extract()?);
-            }
-        }
+    fn __dir__(this: &Bound<'_, Self>) -> PyResult<Vec<String>> {
+        let mut names: Vec<String> = this.get_type().dir()?.extract()?;
         names.extend(Output::ALL.iter().map(|output| output.name().to_owned()));
         Ok(names)
     }

@@ -4,7 +4,8 @@ use crate::view::{Keeper, view};
 use clench::rigid::batch::StateRows;
 use clench::{Model, Precision};
 use numpy::Element;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
@@ -123,37 +124,46 @@ impl StateViews {
 
     /// A copy of all arrays, as a `clench.State`.
     pub(crate) fn copy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        static STATE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-        let class = STATE.import(py, "clench._state", "State")?;
         let copies = PyDict::new(py);
         for (name, array) in self.named() {
             copies.set_item(name, array.call_method0(py, "copy")?)?;
         }
-        class.call((), Some(&copies))
+        state_class(py)?.call((), Some(&copies))
     }
 
     /// Takes over a `clench.State` of the same shapes.
     ///
     /// # Errors
-    /// Another shape; the arrays are then as before.
+    /// Another shape or type; the arrays are then as before.
     pub(crate) fn take_over(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = state.py();
+        if !state.is_instance(state_class(py)?)? {
+            let found = state.get_type().name()?;
+            return Err(PyTypeError::new_err(format!(
+                "a state must be a clench.State, not {found}"
+            )));
+        }
+        let values = state.call_method0(intern!(py, "_arrays"))?;
         let mut pairs = Vec::new();
         for (name, array) in self.named() {
-            let value = state.getattr(name).map_err(|_| {
-                PyValueError::new_err(format!("a state is needed, and it must have {name}"))
-            })?;
-            let (found, needed) = (value.getattr("shape")?, array.bind(py).getattr("shape")?);
+            let (to, from) = (array.bind(py), values.get_item(name)?);
+            let (found, needed) = (from.getattr("shape")?, to.getattr("shape")?);
             if !found.eq(&needed)? {
                 return Err(PyValueError::new_err(format!(
                     "{name} of the state has shape {found} where {needed} is needed: is it of another model, or of another \
                      number of environments?"
                 )));
             }
-            pairs.push((array.bind(py), value));
+            pairs.push((to, from));
         }
         pairs.iter().try_for_each(|(to, from)| copy_to(to, from))
     }
+}
+
+/// `clench.State`.
+fn state_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
+    static STATE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    STATE.import(py, "clench._state", "State")
 }
 
 /// Copies values into an array as NumPy would, but only numbers of the same kind.
