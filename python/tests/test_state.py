@@ -1,0 +1,258 @@
+"""`clench.State`: states that are kept, in memory and as bytes."""
+
+import io
+import pathlib
+import pickle
+import random
+import subprocess
+import sys
+import zipfile
+
+import numpy as np
+import pytest
+
+import clench
+from scenes import FIELDS, PUPPET, example, puppet, same_bits, same_state
+
+CONTINUE = """
+import pathlib, sys
+import clench
+folder = pathlib.Path(sys.argv[1])
+model = clench.Model.from_xml((folder / "model.xml").read_text())
+state = clench.State.from_bytes((folder / "before").read_bytes())
+if state.qpos.ndim == 1:
+    own = clench.Sim(model, precision=sys.argv[2])
+else:
+    own = clench.Batch(model, len(state.qpos), sys.argv[2])
+own.state = state
+own.step(100)
+(folder / "after").write_bytes(own.state.to_bytes())
+"""
+
+
+def moving(kind, precision="64", model=None):
+    """In the middle of things: every field has something of its own."""
+    model = model or puppet()
+    own = clench.Sim(model, precision=precision) if kind == "sim" else clench.Batch(model, 3, precision)
+    own.reset(keyframe="bent")
+    own.eq_active[..., 1] = True
+    own.qfrc_applied[..., 2] = 0.3
+    own.xfrc_applied[..., 1, 4] = 0.2
+    own.mocap_quat[..., 0, :] = [0.8, 0, 0.6, 0]
+    if kind == "batch":
+        own.qvel += np.arange(3)[:, None]
+    own.step(50)
+    return own
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_bytes_survive_a_restart(kind, precision, tmp_path):
+    own = moving(kind, precision)
+    (tmp_path / "model.xml").write_text(PUPPET)
+    (tmp_path / "before").write_bytes(own.state.to_bytes())
+    own.step(100)
+    subprocess.run([sys.executable, "-c", CONTINUE, str(tmp_path), precision], check=True, timeout=60)
+    assert same_state(clench.State.from_bytes((tmp_path / "after").read_bytes()), own.state)
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_assigning_brings_it_back(kind, precision):
+    own = moving(kind, precision)
+    state = own.state
+    assert same_state(own.state, state) and own.state is not state
+    for name in FIELDS:
+        assert not np.shares_memory(getattr(state, name), getattr(own, name)), name
+    own.step(30)
+    after = own.state
+    own.reset()
+    own.xfrc_applied[..., 0] = 9
+    own.state = state
+    assert same_state(own.state, state)
+    own.step(30)
+    assert same_state(own.state, after)
+    again = clench.State.from_bytes(state.to_bytes())
+    own.state = again
+    own.step(30)
+    assert same_state(own.state, after)
+
+
+def test_it_can_be_changed_and_made():
+    sim = moving("sim")
+    state = sim.state
+    state.qvel[:] = 0.25
+    state.eq_active = np.array([False, False])
+    sim.state = state
+    assert (sim.qvel == 0.25).all() and not sim.eq_active.any()
+    made = clench.State(**{name: np.array(getattr(sim, name)) for name in FIELDS})
+    assert same_state(made, sim.state)
+    assert repr(made) == "<clench.State, float64>"
+    assert repr(moving("batch", "32").state) == "<clench.State of 3 environments, float32>"
+
+
+def test_it_can_be_pickled():
+    state = moving("batch").state
+    assert same_state(pickle.loads(pickle.dumps(state)), state)
+
+
+def test_numbers_that_are_not_finite_are_kept():
+    sim = moving("sim")
+    sim.qpos[:3] = [np.nan, np.inf, -0.0]
+    assert same_state(clench.State.from_bytes(sim.state.to_bytes()), sim.state)
+
+
+def test_states_of_others():
+    sim, batch = moving("sim"), moving("batch")
+    before = sim.state, batch.state
+    for state in (batch.state, clench.Sim(example("quadruped")).state):
+        with pytest.raises(ValueError, match="shape"):
+            sim.state = state
+    for state in (sim.state, clench.Batch(puppet(), 2).state):
+        with pytest.raises(ValueError, match="shape"):
+            batch.state = state
+    for state in (None, 3, "state", {}, sim.state.to_bytes(), sim):
+        if state is not sim:
+            with pytest.raises((TypeError, ValueError)):
+                sim.state = state
+    assert same_state(sim.state, before[0]) and same_state(batch.state, before[1])
+
+
+@pytest.mark.parametrize("name", FIELDS)
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_states_that_were_spoilt(kind, name):
+    own = moving(kind)
+    before = own.state
+    own.step(10)
+    after = own.state
+    for spoilt in (np.zeros(99), "text", None, before.qpos.astype(complex), np.array([object()]), 1j):
+        state = own.state
+        for other in FIELDS:
+            setattr(state, other, getattr(before, other))
+        setattr(state, name, spoilt)
+        with pytest.raises((TypeError, ValueError)):
+            own.state = state
+        assert same_state(own.state, after)
+
+
+def test_arguments_that_make_no_sense():
+    good = vars(moving("sim").state)
+    for name in FIELDS:
+        for bad in (None, 1.0, [1.0], "x", np.zeros(3, int), np.zeros(3, complex), np.array(["x"])):
+            with pytest.raises(TypeError, match=name):
+                clench.State(**(good | {name: bad}))
+        with pytest.raises(TypeError):
+            clench.State(**{key: value for key, value in good.items() if key != name})
+    with pytest.raises(TypeError, match="qvel"):
+        clench.State(**(good | {"qvel": good["qvel"].astype(np.float32)}))
+    with pytest.raises(TypeError):
+        clench.State(**good, energy=np.zeros(2))
+
+
+def test_precision_follows_the_simulation():
+    single, double = moving("sim", "32"), moving("sim")
+    single.state = double.state
+    assert single.qpos.dtype == np.float32
+    np.testing.assert_array_equal(single.qpos, double.qpos.astype(np.float32))
+    double.state = single.state
+    np.testing.assert_array_equal(single.qpos, double.qpos)
+
+
+def repacked(data, **changes):
+    """The same archive with some arrays changed, or left out where None."""
+    arrays = dict(np.load(io.BytesIO(data), allow_pickle=False)) | changes
+    buffer = io.BytesIO()
+    np.savez(buffer, allow_pickle=True, **{name: array for name, array in arrays.items() if array is not None})
+    return buffer.getvalue()
+
+
+def foreign():
+    """Bytes that hold no state."""
+    data = moving("sim").state.to_bytes()
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr("qpos.npy", b"not an array")
+        file.writestr("version", b"1")
+    array = io.BytesIO()
+    np.save(array, np.zeros(3))
+    huge = io.BytesIO()
+    with zipfile.ZipFile(huge, "w") as file:
+        file.writestr("qpos.npy", np.lib.format.magic(1, 0) + b"\x76\x00" + header(10**15))
+    return {
+        "nothing": b"",
+        "zeros": bytes(1000),
+        "text": b"hello",
+        "half": data[: len(data) // 2],
+        "but one": data[:-1],
+        "without its start": data[1:],
+        "an array": array.getvalue(),
+        "a pickle": pickle.dumps([1, 2, 3]),
+        "an archive": archive.getvalue(),
+        "an array larger than memory": huge.getvalue(),
+        "later": repacked(data, version=np.int64(2)),
+        "much later": repacked(data, version=np.float64(1e300)),
+        "never": repacked(data, version=np.float64(np.nan)),
+        "without version": repacked(data, version=None),
+        "versions": repacked(data, version=np.arange(3)),
+        "version in words": repacked(data, version=np.array("one")),
+        "before the first": repacked(data, version=np.int64(0)),
+        "half a version": repacked(data, version=np.float64(1.5)),
+        "incomplete": repacked(data, qvel=None),
+        "more": repacked(data, energy=np.zeros(2)),
+        "objects": repacked(data, qpos=np.array([object()])),
+        "text within": repacked(data, qpos=np.array(["x"])),
+        "other numbers": repacked(data, qpos=np.zeros(9, complex)),
+        "switches as numbers": repacked(data, eq_active=np.zeros(2)),
+    }
+
+
+def header(count):
+    text = f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({count},), }}".encode()
+    return text.ljust(0x75) + b"\n"
+
+
+@pytest.mark.parametrize("name", foreign())
+def test_bytes_of_something_else(name):
+    with pytest.raises(ValueError):
+        clench.State.from_bytes(foreign()[name])
+
+
+def test_later_versions_say_so():
+    with pytest.raises(ValueError, match="version 2"):
+        clench.State.from_bytes(foreign()["later"])
+
+
+@pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])
+def test_what_is_not_bytes(bad):
+    with pytest.raises((TypeError, ValueError)):
+        clench.State.from_bytes(bad)
+
+
+def test_damaged_bytes():
+    """Flipped bits and cuts end in an error, or leave a state that is whole."""
+    state = moving("sim", model=puppet()).state
+    data, rng = state.to_bytes(), random.Random(1)
+    sim, taken = clench.Sim(puppet()), 0
+    for _ in range(600):
+        bytes_ = bytearray(data)
+        for _ in range(rng.choice((1, 1, 1, 4, 30))):
+            bytes_[rng.randrange(len(bytes_))] ^= 1 << rng.randrange(8)
+        if rng.random() < 0.1:
+            del bytes_[rng.randrange(len(bytes_)) :]
+        try:
+            read = clench.State.from_bytes(bytes(bytes_))
+        except ValueError:
+            continue
+        taken += 1
+        assert all(isinstance(getattr(read, name), np.ndarray) for name in FIELDS)
+        # Each array has a checksum: what is read is what was written, in some places under another name or not at all.
+        assert same_state(read, state)
+        sim.state = read
+        sim.step()
+    assert 0 < taken < 300
+
+
+def test_same_bits_knows_the_difference():
+    assert same_bits(np.array([np.nan, 0.0]), np.array([np.nan, 0.0]))
+    assert not same_bits(np.array([0.0]), np.array([-0.0]))
+    assert not same_bits(np.array([0.0]), np.array([0.0], np.float32))

@@ -1,0 +1,320 @@
+"""Several threads, signals, processes: one at a time in a batch, and nobody waits or is lost."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import clench
+from scenes import ROOT, ball, example, same_state
+
+ENVS = 16
+
+
+def humanoids(threads=1):
+    batch = clench.Batch(example("humanoid"), ENVS, threads=threads)
+    batch.reset(keyframe="crouched")
+    batch.qvel += np.linspace(-0.2, 0.2, batch.qvel.size).reshape(batch.qvel.shape)
+    return batch
+
+
+def humanoid():
+    sim = clench.Sim(example("humanoid"))
+    sim.reset("crouched")
+    return sim
+
+
+class Meanwhile:
+    """A call in a thread of its own, beside what the block does."""
+
+    def __init__(self, call, *args):
+        self.failure = None
+
+        def run():
+            try:
+                call(*args)
+            except Exception as error:
+                self.failure = error
+
+        self.thread = threading.Thread(target=run, daemon=True)
+
+    def __enter__(self):
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.thread.join()
+
+    @property
+    def running(self):
+        return self.thread.is_alive()
+
+
+def steps_of(seconds, make):
+    """About how many steps take so long."""
+    own, steps, start = make(), 0, time.perf_counter()
+    while time.perf_counter() - start < 0.05:
+        own.step(10)
+        steps += 10
+    return int(steps * seconds / 0.05)
+
+
+def refused(call):
+    try:
+        call()
+    except clench.BusyError as error:
+        assert isinstance(error, clench.ClenchError) and "thread" in str(error)
+        return True
+    except ValueError:
+        pass
+    return False
+
+
+# Each changes nothing where it is let through.
+OF_BOTH = {
+    "step": lambda own: own.step(0),
+    "param": lambda own: own.param("body_mass"),
+    "state": lambda own: own.state,
+    "set state": lambda own: setattr(own, "state", clench.Sim(ball()).state),
+}
+OF_SIM = OF_BOTH | {
+    "forward": lambda sim: sim.forward(),
+    "contacts": lambda sim: sim.contacts,
+    "constraints": lambda sim: sim.constraints,
+    "solver_stats": lambda sim: sim.solver_stats,
+    "contact_overflow": lambda sim: sim.contact_overflow,
+    "mass_matrix": lambda sim: sim.mass_matrix(),
+    "set_param": lambda sim: sim.set_param("timestep", -1),
+    "output": lambda sim: sim.output("xpos"),
+    "attribute": lambda sim: sim.xpos,
+}
+NOBODY = np.zeros(ENVS, bool)
+OF_BATCH = OF_BOTH | {
+    "forward": lambda batch: batch.forward(NOBODY),
+    "reset": lambda batch: batch.reset(NOBODY),
+    "revive": lambda batch: batch.revive(NOBODY),
+    "status": lambda batch: batch.status,
+    "running": lambda batch: batch.running,
+    "fault": lambda batch: batch.fault(0),
+    "sim": lambda batch: batch.sim(0),
+    "randomize": lambda batch: batch.randomize("timestep", [], []),
+    "rollout": lambda batch: batch.rollout(steps=0),
+    "record": lambda batch: batch.record(),
+    "bytes_per_env": lambda batch: batch.bytes_per_env,
+}
+
+
+@pytest.mark.parametrize(
+    ("make", "calls"), [pytest.param(humanoid, OF_SIM, id="sim"), pytest.param(humanoids, OF_BATCH, id="batch")]
+)
+def test_a_second_thread_is_told_so(make, calls):
+    own, alone, steps = make(), make(), steps_of(0.3, make)
+    left = set(calls)
+    with Meanwhile(own.step, steps) as other:
+        while other.running and left:
+            for name in list(left):
+                if refused(lambda name=name: calls[name](own)):
+                    left.remove(name)
+    assert other.failure is None and not left
+    alone.step(steps)
+    assert same_state(own.state, alone.state)
+
+
+def test_one_of_two_steps_is_done():
+    batch, alone, steps = humanoids(), humanoids(), steps_of(0.2, humanoids)
+    failures = []
+    with Meanwhile(batch.step, steps) as other:
+        while other.running:
+            try:
+                batch.step(0)
+            except clench.BusyError as error:
+                failures.append(error)
+    alone.step(steps)
+    assert other.failure is None and len(failures) > 10
+    assert same_state(batch.state, alone.state)
+
+
+@pytest.mark.parametrize("call", ["step", "rollout", "forward"])
+def test_python_goes_on_meanwhile(call):
+    batch = humanoids()
+    steps = steps_of(0.3, humanoids)
+    calls = {
+        "step": lambda: batch.step(steps),
+        "rollout": lambda: batch.rollout(steps=steps, record=["time"]),
+        "forward": lambda: [big.forward() for _ in range(3)],
+    }
+    big = clench.Batch(example("humanoid"), 4000, threads=1) if call == "forward" else None
+    count = 0
+    with Meanwhile(calls[call]) as other:
+        while other.running:
+            count += 1
+    assert other.failure is None
+    # Where the interpreter were held, this thread would hardly run before the end.
+    assert count > 10_000
+
+
+def test_batches_step_side_by_side():
+    steps = steps_of(0.3, humanoids)
+    batches, alone = [humanoids(), humanoids(2)], humanoids()
+    both = False
+    with Meanwhile(batches[0].step, steps) as first, Meanwhile(batches[1].step, steps) as second:
+        end = steps * alone.model.timestep
+        while first.running and second.running:
+            both |= all((0 < batch.time[0] < 0.99 * end) for batch in batches)
+    assert both and first.failure is None and second.failure is None
+    alone.step(steps)
+    for batch in batches:
+        assert same_state(batch.state, alone.state)
+
+
+def test_many_threads_with_batches_of_their_own():
+    model, found, expected = example("quadruped"), {}, clench.Batch(example("quadruped"), 5)
+    expected.step(100)
+
+    def work(index):
+        batch = clench.Batch(model, 5, threads=1 + index % 3)
+        for _ in range(10):
+            batch.step(10)
+        found[index] = batch.state
+
+    threads = [threading.Thread(target=work, args=(index,)) for index in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 8
+    assert all(same_state(state, expected.state) for state in found.values())
+
+
+def test_writers_from_other_threads_cannot_break_a_step():
+    """What they write meets a step half-way: numbers may be odd, environments may fail, and nothing else happens."""
+    batch, fresh = humanoids(2), humanoids()
+    batch.record("cfrc_ext", "contact_force")
+    stop, rng = threading.Event(), np.random.default_rng(7)
+    noise = rng.choice([0.0, 1.0, -3.0, np.nan, np.inf, 1e300, -1e300, 5e-324], (50, *batch.qpos.shape))
+
+    def write():
+        views = [batch.qpos, batch.qvel, batch.ctrl, batch.qacc_warmstart, batch.xfrc_applied[:, 0], batch.time]
+        switches = batch.eq_active.view(np.uint8)
+        while not stop.is_set():
+            for numbers in noise:
+                for view in views:
+                    view[...] = numbers[:, : view.shape[1]] if view.ndim == 2 else numbers[:, 0]
+                switches[...] = 7
+
+    with Meanwhile(write) as other:
+        end = time.perf_counter() + 0.5
+        while time.perf_counter() < end:
+            batch.step(3)
+            batch.forward()
+            batch.rollout(steps=2, record=["cvel", "energy"])
+            batch.reset()
+        stop.set()
+    assert other.failure is None
+    batch.state = fresh.state
+    assert batch.step(20) == 0
+    fresh.step(20)
+    assert same_state(batch.state, fresh.state)
+
+
+def interrupt_soon(number=signal.SIGINT):
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), number))
+    timer.start()
+    return timer
+
+
+@pytest.mark.parametrize("make", [humanoid, humanoids, lambda: humanoids(2)], ids=["sim", "batch", "two threads"])
+def test_control_c_ends_a_long_step(make):
+    own = make()
+    interrupt_soon()
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        own.step(10**12)
+    assert time.perf_counter() - start < 20
+    # As if as many steps had been asked for as were done.
+    done = round(np.max(own.time) / own.model.timestep)
+    assert done > 0
+    alone = make()
+    alone.step(done)
+    assert same_state(own.state, alone.state)
+    own.step(10)
+    alone.step(10)
+    assert same_state(own.state, alone.state)
+
+
+def test_control_c_ends_a_step_of_environments_that_failed():
+    batch = clench.Batch(ball(), 2)
+    batch.qvel[:] = np.nan
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        batch.step(2**63)
+
+
+def test_handlers_run_meanwhile():
+    batch, calls = humanoids(), []
+
+    def handle(*_):
+        calls.append(refused(lambda: batch.step(1)))
+
+    before = signal.signal(signal.SIGUSR1, handle)
+    try:
+        interrupt_soon(signal.SIGUSR1)
+        batch.step(steps_of(0.5, humanoids))
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+    assert calls == [True]
+
+
+def python(program, *args):
+    return subprocess.run([sys.executable, "-c", program, *args], capture_output=True, text=True, timeout=120)
+
+
+def test_the_interpreter_may_end_during_a_step():
+    program = """
+import sys, threading, time
+import clench
+model = clench.Model.from_file(sys.argv[1])
+batch = clench.Batch(model, 64, threads=2)
+thread = threading.Thread(target=batch.step, args=(10**12,), daemon=True)
+thread.start()
+while batch.time[0] == 0:
+    time.sleep(0.001)
+"""
+    done = python(program, str(ROOT / "models/humanoid.xml"))
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+def test_processes_that_fork():
+    """A child of a fork has no threads but the one that forked. Batches that it makes itself have theirs."""
+    program = """
+import os, sys
+import numpy as np
+import clench
+model = clench.Model.from_file(sys.argv[1])
+sim, alone, threaded = clench.Sim(model), clench.Batch(model, 20, threads=1), clench.Batch(model, 20, threads=2)
+for own in (sim, alone, threaded):
+    own.step(5)
+child = os.fork()
+if child == 0:
+    sim.step(5), alone.step(5)
+    own = clench.Batch(model, 20, threads=2)
+    own.step(10)
+    ok = np.array_equal(own.qpos, alone.qpos) and np.array_equal(own.qpos[0], sim.qpos)
+    try:
+        threaded.step(5)
+        ok = False
+    except clench.ClenchError as error:
+        ok = ok and "fork" in str(error)
+    os._exit(0 if ok else 1)
+threaded.step(5)
+_, status = os.waitpid(child, 0)
+sys.exit(os.waitstatus_to_exitcode(status))
+"""
+    done = python(program, str(ROOT / "models/quadruped.xml"))
+    assert done.returncode == 0, done.stderr
