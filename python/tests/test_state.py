@@ -162,7 +162,7 @@ def repacked(data, **changes):
     """The same archive with some arrays changed, or left out where None."""
     arrays = dict(np.load(io.BytesIO(data), allow_pickle=False)) | changes
     buffer = io.BytesIO()
-    np.savez(buffer, allow_pickle=True, **{name: array for name, array in arrays.items() if array is not None})
+    np.savez(buffer, **{name: array for name, array in arrays.items() if array is not None})
     return buffer.getvalue()
 
 
