@@ -1,13 +1,27 @@
 //! The Python package, as its users get it: built and installed by pip, its types checked, its tests run.
 
-use crate::python::interpreter;
+use crate::python::{interpreter, prepare};
 use crate::run::{command, run, target};
 
-/// Builds the package and installs it in `.venv`, then holds its types to what was installed.
+/// Installs the package, and holds its types to what was installed.
+///
+/// # Errors
+/// What failed, and what to check.
+pub fn check() -> Result<(), String> {
+    install()?;
+    let mypy = ["-m", "mypy", "--config-file", "python/pyproject.toml"];
+    let mut types = command(interpreter(), &mypy);
+    types.args(["python/clench", "python/examples", "python/tests"]);
+    run(types)?;
+    run(command(interpreter(), &["-m", "mypy.stubtest", "clench"]))
+}
+
+/// Builds the package and installs it in `.venv`, which is made if need be.
 ///
 /// # Errors
 /// What failed, and what to check.
 pub fn install() -> Result<(), String> {
+    prepare()?;
     println!("building the package and installing it in .venv");
     let mut install = command(
         interpreter(),
@@ -17,16 +31,7 @@ pub fn install() -> Result<(), String> {
     install.env("CARGO_TARGET_DIR", target());
     run(install).map_err(|e| {
         format!("{e}\nBesides cargo this needs a package index: pip fetches maturin, which builds the package, every time.")
-    })?;
-
-    let sources = ["python/clench", "python/examples", "python/tests"];
-    let mut types = command(
-        interpreter(),
-        &["-m", "mypy", "--config-file", "python/pyproject.toml"],
-    );
-    types.args(sources);
-    run(types)?;
-    run(command(interpreter(), &["-m", "mypy.stubtest", "clench"]))
+    })
 }
 
 /// Runs the tests of the package, and with them every example in its short form.

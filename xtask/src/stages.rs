@@ -47,7 +47,7 @@ const STAGES: &[Stage] = &[
     Stage {
         name: "package",
         remedy: "see the message above",
-        check: package::install,
+        check: package::check,
     },
     Stage {
         name: "pytest",
@@ -103,11 +103,7 @@ pub fn test(names: &[String]) -> Result<(), String> {
 /// What could not be built, installed or run.
 pub fn bench(args: &[String]) -> Result<(), String> {
     build()?;
-    let example = ["build", "--quiet", "--release", "--package", "clench"];
-    run(cargo(
-        &[&example[..], &["--example", "batch_step"]].concat(),
-    ))?;
-    python::prepare()?;
+    release("clench", ["--example", "batch_step"])?;
     package::install()?;
     let mut script = command(python::interpreter(), &["bench/speed.py"]);
     script.args(args).env("CLENCH", clench());
@@ -159,12 +155,16 @@ fn doc() -> Result<(), String> {
     run(doc)
 }
 
-/// The program alone; but with the Python package named beside it, both share what they are built of. Else a dependency of
-/// both would have other features in each, and the kernels would be compiled twice.
 fn build() -> Result<(), String> {
-    let packages = ["--package", "clench-cli", "--package", "clench-python"];
-    let mut build = cargo(&["build", "--quiet", "--release", "--bin", "clench"]);
-    build.args(packages);
+    release("clench-cli", ["--bin", "clench"])
+}
+
+/// Builds a target of a package alone; but with the Python package named beside it, both share what they are built of. Else a
+/// dependency of both would have other features in each, and the kernels would be compiled twice.
+fn release(package: &str, target: [&str; 2]) -> Result<(), String> {
+    let packages = ["--package", package, "--package", "clench-python"];
+    let mut build = cargo(&["build", "--quiet", "--release"]);
+    build.args(packages).args(target);
     run(build)
 }
 
