@@ -71,7 +71,8 @@ class State:
             A NumPy ``.npz`` archive with an array a field and the number of its format, ``version``.
         """
         buffer = io.BytesIO()
-        np.savez(buffer, version=np.int64(_VERSION), **self._arrays())
+        arrays: dict[str, Any] = {"version": np.int64(_VERSION), **self._arrays()}
+        np.savez(buffer, **arrays)
         return buffer.getvalue()
 
     @staticmethod
