@@ -1,0 +1,43 @@
+"""What stubtest cannot see of the stubs: attributes that are looked up by name."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import clench
+import pytest
+from scenes import puppet
+
+STUB = Path(clench.__file__).with_name("_core.pyi").read_text()
+STATE = {"time", "qpos", "qvel", "act"}
+
+
+def attributes(name: str) -> dict[str, str]:
+    """The annotated names of a class, with what their comments begin with: a shape, or nothing."""
+    (found,) = (node for node in ast.parse(STUB).body if isinstance(node, ast.ClassDef) and node.name == name)
+    lines = STUB.splitlines()
+    result = {}
+    for node in found.body:
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            shape = re.search(r"# \((.*?)\)", lines[node.lineno - 1])
+            result[node.target.id] = shape[1] if shape else ""
+    return result
+
+
+@pytest.mark.parametrize("name", ["Sim", "Batch"])
+def test_outputs_of_stub_are_those_of_module(name: str) -> None:
+    assert {*attributes("_Outputs"), *attributes(name)} | STATE == set(clench.OUTPUTS)
+
+
+def test_shapes_of_outputs_are_true() -> None:
+    model = puppet()
+    sim, batch = clench.Sim(model), clench.Batch(model, 3, record=clench.OUTPUTS)
+    for name, shape in attributes("_Outputs").items():
+        sizes = tuple(getattr(model, size, None) or int(size) for size in re.findall(r"\w+", shape))
+        assert sim.output(name).shape == sizes, name
+        assert batch.output(name).shape == (3, *sizes), name
+    for name in attributes("Sim"):
+        assert isinstance(getattr(sim, name), float)
+        assert getattr(batch, name).shape == (3,)
