@@ -37,10 +37,10 @@ class Rude:
         return self._answer()
 
     __array__ = __index__ = __int__ = __float__ = __bool__ = __len__ = __iter__ = __getitem__ = __next__ = _reply
-    __str__ = __repr__ = __fspath__ = __eq__ = __hash__ = __dlpack__ = __buffer__ = _reply  # type: ignore[assignment]
+    __str__ = __repr__ = __fspath__ = __eq__ = __hash__ = __dlpack__ = __buffer__ = _reply
 
 
-class Subclass(np.ndarray):  # type: ignore[type-arg]
+class Subclass(np.ndarray):
     """An array of another class."""
 
 
@@ -144,7 +144,7 @@ class Junk:
         if kind == 9:
             return self.rude()
         if kind == 10:
-            others = (
+            others: tuple[Any, ...] = (
                 array.array("d", [1, 2]), memoryview(b"abcdefgh"), pathlib.Path("none"), slice(1), range(3), set(), {"qpos": 1},
                 collections.deque([1.0]), iter([1, 2]), (x for x in (1.0, 2.0)), frozenset(), "\x00", np.random, np.void(b"ab"),
                 np.datetime64("2020"), np.array("x"), np.matrix([[1.0]]),

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import functools
+from typing import Any
 
 import clench
 import numpy as np
-from models import ROOT
+from models import ROOT as ROOT
 from numpy.typing import NDArray
 
 # A ball of 2 kg above a floor, where it comes to rest.
@@ -91,7 +92,7 @@ NUMBERS = (
 FIELDS = (*NUMBERS, "eq_active")
 
 
-def same_bits(a: NDArray, b: NDArray) -> bool:
+def same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:
     """Whether two arrays are the same to the bit, the signs of zeros and NaN included."""
     a, b = np.ascontiguousarray(a), np.ascontiguousarray(b)
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
@@ -101,5 +102,5 @@ def same_state(a: clench.State, b: clench.State) -> bool:
     return all(same_bits(getattr(a, name), getattr(b, name)) for name in FIELDS)
 
 
-def address(array: NDArray) -> int:
-    return array.__array_interface__["data"][0]
+def address(array: NDArray[Any]) -> int:
+    return int(array.__array_interface__["data"][0])

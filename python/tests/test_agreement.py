@@ -1,9 +1,12 @@
 """`Batch` against `Sim`: each environment is what it would be alone, to the bit."""
 
-import numpy as np
-import pytest
+from __future__ import annotations
+
+from typing import Any
 
 import clench
+import numpy as np
+import pytest
 from scenes import FIELDS, example, puppet, same_bits
 
 # More environments than lanes of any instruction set, and not a multiple of their number.
@@ -17,11 +20,11 @@ SCENES = [
 ]
 
 
-def scene(name):
+def scene(name: str) -> clench.Model:
     return puppet() if name == "puppet" else example(name)
 
 
-def scatter(batch, seed):
+def scatter(batch: clench.Batch, seed: int) -> None:
     """Environments in unlike states, with unlike parameters."""
     rng = np.random.default_rng(seed)
     model, n = batch.model, batch.n_envs
@@ -36,14 +39,14 @@ def scatter(batch, seed):
     batch.randomize("geom_friction", model.geom_friction * rng.uniform(0.5, 2, (n, 1, 1)))
 
 
-def push(batch, rng):
+def push(batch: clench.Batch, rng: np.random.Generator) -> None:
     """New controls and forces, for every environment its own."""
     batch.ctrl[:] = rng.uniform(-0.5, 0.5, batch.ctrl.shape)
     batch.qfrc_applied[:] = rng.normal(0, 0.2, batch.qfrc_applied.shape)
     batch.xfrc_applied[:, -1] = rng.normal(0, 2, (batch.n_envs, 6)) * (rng.random((batch.n_envs, 1)) < 0.3)
 
 
-def differences(batch, sims, outputs):
+def differences(batch: clench.Batch, sims: list[clench.Sim], outputs: list[str]) -> list[tuple[str, int]]:
     """What is not the same in environments and their simulations."""
     found = []
     for env, sim in enumerate(sims):
@@ -60,7 +63,7 @@ def differences(batch, sims, outputs):
 
 @pytest.mark.parametrize("precision", ["64", "32"])
 @pytest.mark.parametrize(("name", "steps"), SCENES)
-def test_environments_move_as_if_alone(name, steps, precision):
+def test_environments_move_as_if_alone(name: str, steps: int, precision: Any) -> None:
     # Positions that `energy` reads are those of the state, so that what is read after it is not of the step.
     outputs = [name for name in clench.OUTPUTS if name != "energy"]
     batch = clench.Batch(scene(name), ENVS, precision, threads=2, record=outputs)
@@ -82,8 +85,8 @@ def test_environments_move_as_if_alone(name, steps, precision):
 
 
 @pytest.mark.parametrize("precision", ["64", "32"])
-def test_threads_and_neighbours_do_not_matter(precision):
-    def run(envs, threads):
+def test_threads_and_neighbours_do_not_matter(precision: Any) -> None:
+    def run(envs: list[int], threads: int) -> clench.Batch:
         batch = clench.Batch(example("quadruped"), len(envs), precision, threads=threads, record=["cvel"])
         rng = np.random.default_rng(3)
         velocities = rng.normal(0, 1, (40, batch.qvel.shape[1]))
@@ -106,7 +109,7 @@ def test_threads_and_neighbours_do_not_matter(precision):
         assert same_bits(getattr(fewer, name), getattr(reference, name)[some]), name
 
 
-def test_simulations_of_environments_go_their_own_way():
+def test_simulations_of_environments_go_their_own_way() -> None:
     batch = clench.Batch(example("quadruped"), 3, options=clench.RigidOptions(iterations=9))
     batch.step(10)
     batch.randomize("body_mass", batch.model.body_mass[None] * 2, [1])
@@ -120,12 +123,13 @@ def test_simulations_of_environments_go_their_own_way():
     for name in FIELDS:
         assert same_bits(getattr(batch, name), getattr(before, name)), name
     np.testing.assert_array_equal(batch.param("body_mass")[1], batch.model.body_mass * 2)
-    for bad, error in ((3, IndexError), (-1, ValueError), ("0", TypeError), (2**64, ValueError)):
+    cases: list[tuple[Any, type[Exception]]] = [(3, IndexError), (-1, ValueError), ("0", TypeError), (2**64, ValueError)]
+    for bad, error in cases:
         with pytest.raises(error):
             batch.sim(bad)
 
 
-def test_states_travel_between_both():
+def test_states_travel_between_both() -> None:
     batch = clench.Batch(example("humanoid"), 2)
     batch.reset(keyframe="falling")
     batch.step(100)

@@ -1,15 +1,19 @@
 """`Sim.contacts` and `Sim.constraints`: forces in the frames that they say."""
 
-import numpy as np
-import pytest
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
 
 import clench
+import numpy as np
+import pytest
 from scenes import ball, example, puppet
 
 GRAVITY = 9.81
 
 
-def resting(model, steps, keyframe=None, **options):
+def resting(model: clench.Model, steps: int, keyframe: str | None = None, **options: Any) -> clench.Sim:
     sim = clench.Sim(model, clench.RigidOptions(tolerance=0, iterations=200, **options))
     sim.reset(keyframe)
     sim.step(steps)
@@ -17,7 +21,7 @@ def resting(model, steps, keyframe=None, **options):
     return sim
 
 
-def test_a_resting_ball_weighs_what_it_weighs():
+def test_a_resting_ball_weighs_what_it_weighs() -> None:
     sim = resting(ball(), 2000)
     contacts = sim.contacts
     assert len(contacts) == 1
@@ -34,7 +38,7 @@ def test_a_resting_ball_weighs_what_it_weighs():
 
 
 @pytest.mark.parametrize("name", ["humanoid", "quadruped", "pinch", "box_stack", "rolling_sphere"])
-def test_frames_turn_forces_into_wrenches(name):
+def test_frames_turn_forces_into_wrenches(name: str) -> None:
     sim = clench.Sim(example(name))
     sim.qvel += np.linspace(-0.5, 0.5, sim.model.nv)
     sim.step(150)
@@ -57,7 +61,7 @@ def test_frames_turn_forces_into_wrenches(name):
 
 
 @pytest.mark.parametrize("name", ["humanoid", "quadruped", "pinch", "box_stack"])
-def test_contact_forces_add_up_on_bodies(name):
+def test_contact_forces_add_up_on_bodies(name: str) -> None:
     sim = resting(example(name), 150)
     model, contacts = sim.model, sim.contacts
     total = np.zeros((model.nbody, 6))
@@ -83,7 +87,7 @@ def test_contact_forces_add_up_on_bodies(name):
         pytest.param(puppet, "bent", id="puppet"),
     ],
 )
-def test_rows_make_up_the_constraint_force(make, keyframe):
+def test_rows_make_up_the_constraint_force(make: Callable[[], Any], keyframe: Any) -> None:
     sim = resting(make(), 200, keyframe)
     rows = sim.constraints
     count, nv = len(rows), sim.model.nv
@@ -99,7 +103,7 @@ def test_rows_make_up_the_constraint_force(make, keyframe):
     assert (rows.D > 0).all()
 
 
-def test_rows_of_equalities_and_limits_push_as_their_costs_say():
+def test_rows_of_equalities_and_limits_push_as_their_costs_say() -> None:
     sim = resting(puppet(), 200, "bent")
     rows = sim.constraints
     kinds = np.array(rows.kind)
@@ -127,7 +131,7 @@ def test_rows_of_equalities_and_limits_push_as_their_costs_say():
     assert rows.force[limit] == pytest.approx(-rows.D[limit] * residual, rel=1e-6)
 
 
-def test_pyramids_and_cones_agree_with_contacts():
+def test_pyramids_and_cones_agree_with_contacts() -> None:
     for cone in ("pyramidal", "elliptic"):
         sim = resting(example("box_stack"), 100, "struck", friction_cone=cone)
         rows, contacts = sim.constraints, sim.contacts
@@ -140,7 +144,7 @@ def test_pyramids_and_cones_agree_with_contacts():
             assert contacts.force[index, 0] == pytest.approx(normal, abs=1e-9 * (1 + abs(normal)))
 
 
-def test_arrays_are_copies():
+def test_arrays_are_copies() -> None:
     sim = clench.Sim(example("box_stack"))
     sim.step(20)
     contacts, rows = sim.contacts, sim.constraints
@@ -153,7 +157,7 @@ def test_arrays_are_copies():
     assert (sim.contacts.dist != 7).all()
 
 
-def test_without_any():
+def test_without_any() -> None:
     sim = clench.Sim(ball())
     for _ in range(2):
         assert len(sim.contacts) == len(sim.constraints) == 0
@@ -165,7 +169,7 @@ def test_without_any():
     assert sim.contact_count == 0
 
 
-def test_kinds_of_numbers():
+def test_kinds_of_numbers() -> None:
     sim = clench.Sim(example("quadruped"), precision="32")
     sim.step(10)
     contacts, rows = sim.contacts, sim.constraints

@@ -1,21 +1,24 @@
 """Arrays go to other libraries through DLPack without a copy. Those libraries are not needed by the package: each test runs
 where its library is installed."""
 
-import numpy as np
-import pytest
+from __future__ import annotations
+
+from typing import Any
 
 import clench
+import numpy as np
+import pytest
 from scenes import address, puppet
 
 
-def batch_of(precision="32"):
+def batch_of(precision: Any = "32") -> clench.Batch:
     batch = clench.Batch(puppet(), 16, precision, record=["xpos"])
     batch.step(3)
     return batch
 
 
 @pytest.mark.parametrize("precision", ["64", "32"])
-def test_torch_sees_the_same_memory(precision):
+def test_torch_sees_the_same_memory(precision: Any) -> None:
     torch = pytest.importorskip("torch", reason="PyTorch is not installed")
     batch = batch_of(precision)
     for name in ("qpos", "qvel", "ctrl", "time", "xfrc_applied", "eq_active", "xpos"):
@@ -35,7 +38,7 @@ def test_torch_sees_the_same_memory(precision):
 
 
 @pytest.mark.parametrize("precision", ["64", "32"])
-def test_jax_sees_the_same_memory(precision):
+def test_jax_sees_the_same_memory(precision: Any) -> None:
     jax = pytest.importorskip("jax", reason="JAX is not installed")
     jax.config.update("jax_enable_x64", True)
     batch = batch_of(precision)

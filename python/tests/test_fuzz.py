@@ -1,20 +1,21 @@
 """Random calls of everything: see `fuzz.py`. In a process of its own, so that a crash or a hang is a failure like any other."""
 
+from __future__ import annotations
+
 import inspect
 import pathlib
 import subprocess
 import sys
 
-import pytest
-
 import clench
 import fuzz
+import pytest
 
 CALLS = 10_000
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_nothing_but_exceptions_comes_back(seed):
+def test_nothing_but_exceptions_comes_back(seed: int) -> None:
     program = pathlib.Path(fuzz.__file__)
     done = subprocess.run([sys.executable, program, str(seed), str(CALLS)], capture_output=True, text=True, timeout=280)
     assert (done.returncode, done.stderr) == (0, ""), f"{done.stderr}\nexit code {done.returncode}"
@@ -22,7 +23,7 @@ def test_nothing_but_exceptions_comes_back(seed):
 
 
 @pytest.mark.parametrize("cls", [clench.Model, clench.Sim, clench.Batch, clench.State])
-def test_no_method_is_left_out(cls):
+def test_no_method_is_left_out(cls: type) -> None:
     source = inspect.getsource(fuzz)
     methods = {name for name in dir(cls) if not name.startswith("_") and callable(getattr(cls, name))}
     missing = {name for name in methods if name not in source and name not in fuzz.KINDS}

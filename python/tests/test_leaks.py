@@ -1,15 +1,17 @@
 """A long loop of anything takes no more memory than a short one."""
 
+from __future__ import annotations
+
 import gc
 import os
 import pathlib
 import subprocess
 import sys
-
-import numpy as np
-import pytest
+from collections.abc import Callable
 
 import clench
+import numpy as np
+import pytest
 from scenes import PUPPET, example, puppet
 
 STATM = pathlib.Path("/proc/self/statm")
@@ -21,7 +23,7 @@ pytestmark = pytest.mark.skipif(not STATM.exists(), reason="resident memory is r
 SLACK, OBJECTS = 512 * 1024, 400
 
 
-def resident():
+def resident() -> int:
     """Bytes in memory."""
     gc.collect()
     return int(STATM.read_text().split()[1]) * PAGE
@@ -30,7 +32,7 @@ def resident():
 class Loops:
     """What is done over and over; each leaves things as they were."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.model = puppet()
         self.sim = clench.Sim(self.model)
         self.batch = clench.Batch(self.model, 16, threads=2, record=["cvel"])
@@ -41,70 +43,71 @@ class Loops:
         self.ctrl = np.zeros((4, self.model.nu))
         self.mass = np.broadcast_to(self.model.body_mass, (16, self.model.nbody))
 
-    def step(self):
+    def step(self) -> None:
         self.batch.step()
         self.sim.step()
 
-    def views(self):
+    def views(self) -> None:
         for owner in (self.batch, self.sim):
             owner.qpos, owner.qvel[..., 1:], owner.time, owner.eq_active
             owner.ctrl = self.ctrl[0]
         self.batch.cvel, self.batch.status, self.batch.running
 
-    def outputs(self):
+    def outputs(self) -> None:
         self.sim.xpos, self.sim.output("cinert"), self.sim.mass_matrix()
         self.batch.forward()
 
-    def contacts(self):
+    def contacts(self) -> None:
         contacts, rows = self.stack.contacts, self.stack.constraints
         contacts.force, contacts.geom_names, rows.J, rows.name, self.stack.solver_stats
 
-    def rollouts(self):
+    def rollouts(self) -> None:
         self.batch.rollout(ctrl=self.ctrl, record=["qpos", "cvel"])
         self.batch.rollout(np.zeros((16, 1 + 9 + 8 + 1)) + [0, 0, 0, 1, 1, *[0] * 14], steps=3)
 
-    def parameters(self):
+    def parameters(self) -> None:
         self.batch.randomize("body_mass", self.mass)
         self.batch.param("geom_size")
         self.sim.set_param("body_mass", self.model.body_mass)
         self.sim.param("body_mass")
 
-    def states(self):
+    def states(self) -> None:
         self.batch.state = self.state
         clench.State.from_bytes(self.data).to_bytes()
         self.sim.state = self.sim.state
 
-    def resets(self):
+    def resets(self) -> None:
         self.batch.reset(keyframe="bent")
         self.batch.reset([True, False] * 8)
         self.batch.revive()
         self.sim.reset(0)
 
-    def simulations(self):
+    def simulations(self) -> None:
         sim = clench.Sim(self.model)
         sim.step()
         sim.qpos, sim.contacts
         self.batch.sim(3).step()
 
-    def batches(self):
+    def batches(self) -> None:
         batch = clench.Batch(self.model, 16, threads=2, record=["xpos"])
         batch.step()
         kept = batch.qpos, batch.xpos
         del batch
         kept[0][:] = 0
 
-    def models(self):
+    def models(self) -> None:
         model = clench.Model.from_xml(PUPPET)
         model.body("torso").mass, model.body_mass, model.names("geom")
 
-    def problems(self):
+    def problems(self) -> None:
         limit = clench.Block("one_sided", [0.0, 1.0], aref=0.0, R=0.25)
         clench.solve([[1.0, 0.0], [0.0, 1.0]], [-1.0, -1.0], [limit] * 5).forces
 
-    def exceptions(self):
-        calls = [
-            *(lambda: self.batch.output("nothing"), lambda: self.sim.nothing, lambda: self.batch.step(-1)),
-            *(lambda: self.batch.randomize("body_mass", [1]), lambda: setattr(self.batch, "qpos", "x")),
+    def exceptions(self) -> None:
+        calls: list[Callable[[], object]] = [
+            *(lambda: self.batch.output("nothing"), lambda: getattr(self.sim, "nothing"), lambda: self.batch.step(-1)),
+            lambda: self.batch.randomize("body_mass", [1]),
+            lambda: setattr(self.batch, "qpos", "x"),
             *(lambda: self.batch.rollout(steps=2, record=["x"]), lambda: clench.Batch(self.model, 2, record=["x"])),
             *(lambda: clench.Model.from_xml("<mujoco><worldbody>"), lambda: clench.State.from_bytes(b"x")),
             *(lambda: clench.RigidOptions(iterations=-1), lambda: self.batch.reset([1]), lambda: self.sim.reset("x")),
@@ -113,7 +116,7 @@ class Loops:
             with pytest.raises((ValueError, TypeError, AttributeError)):
                 call()
 
-    def faults(self):
+    def faults(self) -> None:
         self.sim.qpos[0] = np.nan
         with pytest.raises(clench.SimulationError):
             self.sim.step()
@@ -143,7 +146,7 @@ class Loops:
         ("faults", 3000),
     ],
 )
-def test_loops_take_no_memory(name, times):
+def test_loops_take_no_memory(name: str, times: int) -> None:
     loop = getattr(Loops(), name)
     for _ in range(times // 4):
         loop()
@@ -190,7 +193,7 @@ assert resident() - before < size / 20, (before, resident(), size)
 """
 
 
-def test_large_arrays_live_as_long_as_their_views():
+def test_large_arrays_live_as_long_as_their_views() -> None:
     # So that the allocator of the C library keeps none of them for itself.
     environment = os.environ | {"MALLOC_MMAP_THRESHOLD_": "65536"}
     tests = str(pathlib.Path(__file__).parent)

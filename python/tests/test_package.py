@@ -1,27 +1,30 @@
 """The package as a whole: what it needs, what it offers, and that it says so."""
 
+from __future__ import annotations
+
 import doctest
 import inspect
 import pathlib
 import re
 import subprocess
 import sys
-
-import numpy as np
-import pytest
+from collections.abc import Callable
+from typing import Any
 
 import clench
+import numpy as np
+import pytest
 from scenes import ROOT, ball, example, puppet
 
 CLASSES = [getattr(clench, name) for name in clench.__all__ if inspect.isclass(getattr(clench, name))]
 ERRORS = [cls for cls in CLASSES if issubclass(cls, Exception)]
 
 
-def python(program):
+def python(program: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
 
 
-def test_numpy_is_all_that_it_needs():
+def test_numpy_is_all_that_it_needs() -> None:
     program = """
 import sys
 class Refuse:
@@ -44,14 +47,14 @@ else:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_it_is_loaded_quickly():
+def test_it_is_loaded_quickly() -> None:
     program = "import sys, clench; print(*sys.modules)"
     loaded = python(program).stdout.split()
     assert "clench._core" in loaded
     assert not {"gymnasium", "mujoco", "matplotlib", "scipy", "unittest"} & set(loaded)
 
 
-def test_names():
+def test_names() -> None:
     assert set(clench.__all__) <= set(dir(clench))
     assert len(set(clench.__all__)) == len(clench.__all__)
     assert re.fullmatch(r"\d+\.\d+\.\d+.*", clench.__version__)
@@ -62,9 +65,9 @@ def test_names():
     assert offered - modules == set(clench.__all__) - {"__version__"}
 
 
-def members(cls):
+def members(cls: type) -> dict[str, Any]:
     own = [base for base in cls.__mro__ if base.__module__.startswith("clench")]
-    found = {}
+    found: dict[str, Any] = {}
     for base in own:
         for name in vars(base):
             if not name.startswith("_"):
@@ -73,7 +76,7 @@ def members(cls):
 
 
 @pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
-def test_everything_is_documented(cls):
+def test_everything_is_documented(cls: type) -> None:
     assert inspect.getdoc(cls)
     assert cls.__module__.startswith("clench")
     for name, member in members(cls).items():
@@ -83,7 +86,7 @@ def test_everything_is_documented(cls):
 
 
 @pytest.mark.parametrize("cls", [*CLASSES, clench], ids=lambda thing: thing.__name__)
-def test_every_signature_can_be_read(cls):
+def test_every_signature_can_be_read(cls: Any) -> None:
     functions = {name: member for name, member in members(cls).items() if callable(member)} if cls is not clench else {}
     if cls is clench:
         functions = {"solve": clench.solve}
@@ -91,13 +94,13 @@ def test_every_signature_can_be_read(cls):
         functions[cls.__name__] = cls
     for name, function in functions.items():
         signature = inspect.signature(function)
-        doc = inspect.getdoc(function)
+        doc = inspect.getdoc(function) or ""
         for parameter in signature.parameters.values():
             if parameter.name not in ("self", "cls") and parameter.kind is not parameter.VAR_POSITIONAL:
                 assert re.search(rf"^{parameter.name}\b|\b{parameter.name}\b.* : ", doc, re.M), (name, parameter.name)
 
 
-def test_signatures_say_the_defaults():
+def test_signatures_say_the_defaults() -> None:
     batch = inspect.signature(clench.Batch)
     assert list(batch.parameters) == ["model", "n_envs", "precision", "threads", "options", "record"]
     assert batch.parameters["precision"].default == "64" and batch.parameters["threads"].default is None
@@ -107,14 +110,14 @@ def test_signatures_say_the_defaults():
     assert inspect.signature(clench.Batch.rollout).parameters["record"].default == ("qpos", "qvel")
 
 
-def test_errors_are_what_they_say():
+def test_errors_are_what_they_say() -> None:
     assert {cls.__name__ for cls in ERRORS} == {"BusyError", "ClenchError", "LoadError", "SimulationError"}
     assert all(issubclass(cls, clench.ClenchError) for cls in ERRORS)
     assert issubclass(clench.LoadError, ValueError)
     assert issubclass(clench.SimulationError, RuntimeError) and issubclass(clench.BusyError, RuntimeError)
 
 
-def test_status_codes():
+def test_status_codes() -> None:
     assert [(status.name, int(status)) for status in clench.EnvStatus] == [
         ("RUNNING", 0),
         ("NOT_FINITE", 1),
@@ -125,16 +128,17 @@ def test_status_codes():
 
 
 @pytest.mark.parametrize("cls", [clench.Contacts, clench.Constraints, clench.SolverStats, clench.StateViews])
-def test_what_only_simulations_make(cls):
-    for make in (cls, lambda: cls(1), lambda: cls.__new__(cls), lambda: object.__new__(cls)):
+def test_what_only_simulations_make(cls: Any) -> None:
+    makes: list[Callable[[], Any]] = [cls, lambda: cls(1), lambda: cls.__new__(cls), lambda: object.__new__(cls)]
+    for make in makes:
         with pytest.raises(TypeError):
             make()
 
 
-def test_arrays_of_one_kind_have_one_dtype():
+def test_arrays_of_one_kind_have_one_dtype() -> None:
     """Every array is of the precision that was asked for, in C order and native form."""
-    for precision, number in (("64", np.float64), ("32", np.float32)):
-        sim = clench.Sim(puppet(), precision=precision)
+    double, single = clench.Sim(puppet()), clench.Sim(puppet(), precision="32")
+    for sim, number in ((double, np.float64), (single, np.float32)):
         sim.step()
         for name in clench.OUTPUTS:
             output = sim.output(name)
@@ -144,14 +148,14 @@ def test_arrays_of_one_kind_have_one_dtype():
             assert sim.param(name).dtype == number, name
 
 
-def test_examples_in_docstrings_are_true(monkeypatch):
+def test_examples_in_docstrings_are_true(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setitem(sys.modules, "clench.gymnasium", None)
     found = doctest.testmod(clench, extraglobs={"clench": clench, "np": np, "model": example("humanoid")})
     assert found.attempted > 10 and found.failed == 0
 
 
-def test_types_are_shipped():
+def test_types_are_shipped() -> None:
     folder = pathlib.Path(clench.__file__).parent
     assert (folder / "py.typed").is_file() and (folder / "_core.pyi").is_file()
     assert repr(clench.Sim(ball())) == '<clench.Sim of "ball", 64 bits>'

@@ -1,15 +1,20 @@
 """`Batch.rollout`: many steps in one call, recorded."""
 
-import numpy as np
-import pytest
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
 
 import clench
+import numpy as np
+import pytest
+from numpy.typing import NDArray
 from scenes import FIELDS, ball, example, puppet, same_bits, same_state
 
 STEPS = 40
 
 
-def start(batch):
+def start(batch: clench.Batch) -> NDArray[Any]:
     """A state for each environment (n, 1 + nq + nv + na)."""
     rng = np.random.default_rng(5)
     n = batch.n_envs
@@ -17,7 +22,7 @@ def start(batch):
     return np.hstack([rng.random((n, 1)), batch.qpos, qvel, np.full_like(batch.act, 0.3)])
 
 
-def begin(batch, initial):
+def begin(batch: clench.Batch, initial: NDArray[Any]) -> None:
     """Puts environments there by hand."""
     nq, nv = batch.model.nq, batch.model.nv
     batch.time = initial[:, 0]
@@ -31,7 +36,7 @@ def begin(batch, initial):
 @pytest.mark.parametrize("precision", ["64", "32"])
 @pytest.mark.parametrize("controls", ["held", "shared", "each"])
 @pytest.mark.parametrize("make", [lambda: example("quadruped"), puppet], ids=["quadruped", "puppet"])
-def test_as_stepping_by_hand(make, controls, precision):
+def test_as_stepping_by_hand(make: Callable[[], Any], controls: str, precision: Any) -> None:
     record = [name for name in clench.OUTPUTS if name != "energy"]
     batch, hand = (clench.Batch(make(), 5, precision, 2, record=record) for _ in range(2))
     rng, nu = np.random.default_rng(6), batch.model.nu
@@ -62,7 +67,7 @@ def test_as_stepping_by_hand(make, controls, precision):
         assert values.flags.writeable and values.flags.c_contiguous, name
 
 
-def test_goes_on_from_where_environments_are():
+def test_goes_on_from_where_environments_are() -> None:
     batch, other = clench.Batch(example("quadruped"), 3), clench.Batch(example("quadruped"), 3)
     batch.step(7)
     first = batch.rollout(steps=10)
@@ -74,7 +79,7 @@ def test_goes_on_from_where_environments_are():
     np.testing.assert_array_equal(both[:, -1], other.qpos)
 
 
-def test_initial_states_make_earlier_steps_forgotten():
+def test_initial_states_make_earlier_steps_forgotten() -> None:
     fresh, used = clench.Batch(example("humanoid"), 2), clench.Batch(example("humanoid"), 2)
     used.step(50)
     used.qvel[0] = np.nan
@@ -86,7 +91,7 @@ def test_initial_states_make_earlier_steps_forgotten():
     assert used.running.all()
 
 
-def test_failed_environments_record_nothing():
+def test_failed_environments_record_nothing() -> None:
     batch = clench.Batch(ball(), 3)
     batch.qvel[1, 0] = np.nan
     batch.step()
@@ -97,14 +102,14 @@ def test_failed_environments_record_nothing():
     ctrl = np.zeros((3, 6, 12))
     ctrl[1, 2, 0] = np.nan
     batch = clench.Batch(example("quadruped"), 3)
-    recorded = batch.rollout(ctrl=ctrl)["qpos"]
-    assert np.isfinite(recorded[[0, 2]]).all() and np.isfinite(recorded[1, :2]).all()
-    assert np.isnan(recorded[1, 2:]).all()
+    qpos = batch.rollout(ctrl=ctrl)["qpos"]
+    assert np.isfinite(qpos[[0, 2]]).all() and np.isfinite(qpos[1, :2]).all()
+    assert np.isnan(qpos[1, 2:]).all()
     np.testing.assert_array_equal(batch.running, [True, False, True])
-    np.testing.assert_array_equal(batch.qpos[1], recorded[1, 1])
+    np.testing.assert_array_equal(batch.qpos[1], qpos[1, 1])
 
 
-def test_what_is_recorded_lives_on():
+def test_what_is_recorded_lives_on() -> None:
     batch = clench.Batch(ball(), 3)
     first = batch.rollout(steps=5)["qpos"]
     kept = first.copy()
@@ -115,7 +120,7 @@ def test_what_is_recorded_lives_on():
     first[:] = 0
 
 
-def test_nothing_to_do():
+def test_nothing_to_do() -> None:
     batch = clench.Batch(example("quadruped"), 2)
     before = batch.state
     assert batch.rollout(steps=0)["qpos"].shape == (2, 0, 19)
@@ -148,7 +153,7 @@ def test_nothing_to_do():
         ({"record": 3, "steps": 2}, TypeError),
     ],
 )
-def test_rollouts_that_make_no_sense(arguments, error):
+def test_rollouts_that_make_no_sense(arguments: Any, error: type[Exception]) -> None:
     batch = clench.Batch(example("quadruped"), 2)
     batch.step(3)
     before = batch.state
@@ -157,9 +162,9 @@ def test_rollouts_that_make_no_sense(arguments, error):
     assert same_state(batch.state, before)
 
 
-def test_controls_may_come_in_any_form():
+def test_controls_may_come_in_any_form() -> None:
     expected = clench.Batch(example("quadruped"), 2).rollout(ctrl=np.full((3, 12), 0.25))["qpos"]
-    forms = [
+    forms: list[Any] = [
         np.full((3, 12), 0.25, np.float32),
         np.full((3, 12), 0.25, ">f8"),
         np.full((12, 3), 0.25).T,
