@@ -11,7 +11,7 @@ pub fn check() -> Result<(), String> {
     install()?;
     let mypy = ["-m", "mypy", "--config-file", "python/pyproject.toml"];
     let mut types = command(interpreter(), &mypy);
-    types.args(["python/clench", "python/examples"]);
+    types.args(["python/clench", "python/examples", "python/tests"]);
     run(types)?;
     run(command(interpreter(), &["-m", "mypy.stubtest", "clench"]))
 }
