@@ -1,6 +1,6 @@
 //! `clench.SolverStats`.
 
-use clench::solver::{LaneStats, Status};
+use clench::solver::LaneStats;
 use pyo3::prelude::*;
 
 /// How the last solve went.
@@ -45,21 +45,10 @@ impl SolverStats {
     }
 }
 
-fn status_name(status: Status) -> &'static str {
-    match status {
-        Status::Unconstrained => "unconstrained",
-        Status::Proven => "proven",
-        Status::Converged => "converged",
-        Status::NoProgress => "no_progress",
-        Status::IterationLimit => "iteration_limit",
-        Status::NonFinite => "non_finite",
-    }
-}
-
 impl From<LaneStats> for SolverStats {
     fn from(stats: LaneStats) -> Self {
         SolverStats {
-            status: status_name(stats.status),
+            status: stats.status.name(),
             iterations: stats.iterations,
             gradient: stats.gradient,
             improvement: stats.improvement,

@@ -5,7 +5,6 @@ use clench::Sim;
 use clench::math::{Force, Mat3, Quat, Vec3};
 use clench::rigid::contact::Contact;
 use clench::rigid::readout::{self, ConstraintRow};
-use clench::solver::Status;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
@@ -300,7 +299,7 @@ impl<'a> ResultLine<'a> {
                 .map(|row| RowResult::new(sim, row))
                 .collect(),
             solver: SolverResult {
-                status: status_name(stats.status),
+                status: stats.status.name(),
                 iterations: stats.iterations,
                 gradient: stats.gradient,
                 improvement: stats.improvement,
@@ -347,18 +346,6 @@ impl<'a> RowResult<'a> {
             d: row.d,
             force: row.force,
         }
-    }
-}
-
-/// How a solve ended, in the words of the JSON output.
-pub fn status_name(status: Status) -> &'static str {
-    match status {
-        Status::Unconstrained => "unconstrained",
-        Status::Proven => "proven",
-        Status::Converged => "converged",
-        Status::NoProgress => "no_progress",
-        Status::IterationLimit => "iteration_limit",
-        Status::NonFinite => "non_finite",
     }
 }
 

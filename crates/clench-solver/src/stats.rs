@@ -30,6 +30,18 @@ impl Status {
         Status::NonFinite,
     ];
 
+    /// Its name in output, such as "no_progress".
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Unconstrained => "unconstrained",
+            Status::Proven => "proven",
+            Status::Converged => "converged",
+            Status::NoProgress => "no_progress",
+            Status::IterationLimit => "iteration_limit",
+            Status::NonFinite => "non_finite",
+        }
+    }
+
     #[inline(always)]
     pub(crate) fn code<T: Real>(self) -> T {
         T::new(f64::from(self as u8))
