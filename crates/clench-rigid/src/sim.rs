@@ -264,13 +264,16 @@ impl<T: Precision> Sim<T> {
         self.ws.collision.overflow
     }
 
-    /// An output of the last step or forward, by its name in [`Output`]. `energy` replaces the positions in the
-    /// [`workspace`](Self::workspace), as [`energy`](Self::energy) does.
+    /// An output of the last step or forward, by its name in [`Output`].
     ///
     /// # Errors
     /// A name that no output has; a state as [`step`](Self::step) refuses it.
     pub fn output(&mut self, name: &str) -> Result<Vec<T>, SimError> {
         let output = Output::find(name)?;
+        if output == Output::energy {
+            let energy = self.energy()?;
+            return Ok(vec![energy.potential, energy.kinetic]);
+        }
         self.check_state()?;
         let mut source = Source {
             model: &self.model,
@@ -292,17 +295,22 @@ impl<T: Precision> Sim<T> {
         self.ws.profile()
     }
 
-    /// The mechanical energy of the state, J. Computes the positions that follow from the state.
+    /// The mechanical energy of the state, J. The [`workspace`](Self::workspace) is then as before.
     ///
     /// # Errors
     /// As [`step`](Self::step).
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
         self.check_state()?;
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
+        // The positions of the state are worked out where those of the last step stand, which are still to be read.
+        let (position, singular) = (ws.position.clone(), ws.singular);
+        let (mass, factor) = (ws.problem.mass.clone(), ws.problem.mass_factor.clone());
         T::position_stage(model, params, &self.state, ws);
-        let mass = &ws.problem.mass;
         let (qpos, qvel) = (&self.state.qpos, &self.state.qvel);
-        Ok(energy(model, params, &ws.position, mass, qpos, qvel))
+        let energy = energy(model, params, &ws.position, &ws.problem.mass, qpos, qvel);
+        (ws.position, ws.singular) = (position, singular);
+        (ws.problem.mass, ws.problem.mass_factor) = (mass, factor);
+        Ok(energy)
     }
 }
 

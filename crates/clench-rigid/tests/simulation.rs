@@ -285,6 +285,19 @@ fn energy_is_that_of_the_state() {
 }
 
 #[test]
+fn reading_energy_leaves_what_the_last_step_computed() {
+    let mut sim = sim(&ball());
+    sim.state.qvel[2] = 2.0;
+    run(&mut sim, 0.1);
+    let before = sim.output("xpos").expect("known");
+    let energy = sim.output("energy").expect("known");
+    assert_eq!(sim.output("xpos").expect("known"), before);
+    assert_ne!(before[5], sim.state.qpos[2], "of the start of the step");
+    let height = sim.state.qpos[2];
+    assert!((energy[0] - 9.81 * height).abs() < 1e-12, "of its end");
+}
+
+#[test]
 fn single_precision_rests_where_double_does() {
     let mut builder = ball();
     builder.options = RigidOptions::new();

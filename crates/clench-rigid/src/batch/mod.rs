@@ -121,7 +121,7 @@ impl<S: Precision> Batch<S> {
         }
         if u32::try_from(count).is_err() {
             return Err(SimError::OutOfRange {
-                field: "count",
+                field: "number of environments",
                 value: count as f64,
                 range: "less than 2^32",
             });
