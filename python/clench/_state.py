@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import operator
+import zipfile
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -97,6 +98,9 @@ class State:
             What is not bytes.
         """
         stream = io.BytesIO(data)
+        if not zipfile.is_zipfile(stream):
+            raise ValueError("these bytes hold no state: they are no whole archive of NumPy's")
+        stream.seek(0)
         try:
             with np.load(stream, allow_pickle=False) as archive:
                 arrays = dict(archive)

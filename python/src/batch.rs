@@ -6,17 +6,17 @@ use crate::count::Count;
 use crate::error::sim_error;
 use crate::kind::Kind;
 use crate::model::Model;
-use crate::names::no_attribute;
+use crate::names::{Names, no_attribute};
 use crate::options::RigidOptions;
 use crate::precision::Bits;
+use crate::recorded::{Recorded, not_recorded};
 use crate::rollout::rollout;
 use crate::row_sim::AnySim;
 use crate::sim::Sim;
 use crate::state_views::StateViews;
-use crate::view::{Keeper, read_only, view};
-use clench::rigid::model::ParamField;
-use clench::{BatchOptions, EnvStatus, Fault, Output, Precision};
-use numpy::{Element, PyArray1, PyArrayMethods};
+use crate::view::Keeper;
+use clench::{BatchOptions, EnvStatus, Fault, Output};
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -71,8 +71,7 @@ macro_rules! each {
 pub(crate) struct Batch {
     inner: Arc<Mutex<AnyBatch>>,
     keeper: Py<Keeper>,
-    /// Views of the outputs that are recorded; none is ever taken back, so that views stay valid.
-    outputs: Mutex<Vec<(Output, Py<PyAny>)>>,
+    recorded: Recorded,
     model: Py<Model>,
     options: RigidOptions,
     n_envs: usize,
@@ -84,7 +83,7 @@ pub(crate) struct Batch {
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (model, n_envs, precision = Bits::B64, threads = None, *, options = None, record = Vec::new()),
+    #[pyo3(signature = (model, n_envs, precision = Bits::B64, threads = None, *, options = None, record = Names(Vec::new())),
            text_signature = "(model, n_envs, precision='64', threads=None, *, options=None, record=())")]
     fn new(
         model: &Bound<'_, Model>,
@@ -92,7 +91,7 @@ impl Batch {
         precision: Bits,
         threads: Option<Count>,
         options: Option<&RigidOptions>,
-        record: Vec<String>,
+        record: Names,
     ) -> PyResult<PyClassInitializer<Self>> {
         let py = model.py();
         let options = options.copied().unwrap_or_default();
@@ -121,7 +120,7 @@ impl Batch {
         let batch = Batch {
             inner,
             keeper: keeper.unbind(),
-            outputs: Mutex::default(),
+            recorded: Recorded::default(),
             model: model.clone().unbind(),
             options,
             n_envs: n_envs.0,
@@ -129,7 +128,7 @@ impl Batch {
             threads,
             lanes,
         };
-        batch.keep(py, &record)?;
+        batch.keep(py, &record.0)?;
         Ok(PyClassInitializer::from(views).add_subclass(batch))
     }
 
@@ -296,7 +295,7 @@ impl Batch {
             Some(envs) => indices("envs", envs, self.n_envs)?,
             None => Vec::from_iter(0..self.n_envs),
         };
-        let shape = self.param_shape(field)?;
+        let shape = self.model.get().param_shape(field)?;
         let mut guard = lock(&self.inner, "batch")?;
         each!(&mut *guard, batch => {
             let values = shaped(field, values, &[&[envs.len()], &shape[..]].concat())?;
@@ -316,7 +315,7 @@ impl Batch {
     /// numpy.ndarray
     ///     A copy: the field's shape in the model after an axis over environments.
     fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
-        let shape = self.param_shape(field)?;
+        let shape = self.model.get().param_shape(field)?;
         let guard = lock(&self.inner, "batch")?;
         each!(&*guard, batch => {
             let mut all = Vec::new();
@@ -346,8 +345,8 @@ impl Batch {
     /// tuple of str : The outputs that are recorded.
     #[getter]
     fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let outputs = lock(&self.outputs, "batch")?;
-        PyTuple::new(py, outputs.iter().map(|(output, _)| output.name()))
+        let outputs = self.recorded.outputs()?;
+        PyTuple::new(py, outputs.iter().map(|output| output.name()))
     }
 
     /// A recorded output.
@@ -368,8 +367,8 @@ impl Batch {
     ///     An output that is not recorded.
     fn output(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
         let output = Output::find(name).map_err(sim_error)?;
-        self.view(py, output)
-            .ok_or_else(|| PyValueError::new_err(not_recorded(name)))
+        let view = self.recorded.get(py, output)?;
+        view.ok_or_else(|| PyValueError::new_err(not_recorded(name)))
     }
 
     fn __getattr__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
@@ -377,18 +376,20 @@ impl Batch {
             let known = Vec::from_iter(Output::ALL.iter().map(|output| output.name()));
             return Err(no_attribute("Batch", name, &known));
         };
-        self.view(py, output)
-            .ok_or_else(|| PyAttributeError::new_err(not_recorded(name)))
+        let view = self.recorded.get(py, output)?;
+        view.ok_or_else(|| PyAttributeError::new_err(not_recorded(name)))
     }
 
     fn __dir__(this: &Bound<'_, Self>) -> PyResult<Vec<String>> {
         let mut names: Vec<String> = this.get_type().dir()?.extract()?;
-        let outputs = lock(&this.get().outputs, "batch")?;
-        names.extend(outputs.iter().map(|(output, _)| output.name().to_owned()));
+        let outputs = this.get().recorded.outputs()?;
+        names.extend(outputs.iter().map(|output| output.name().to_owned()));
         Ok(names)
     }
 
     /// Steps all running environments and records outputs after each step.
+    ///
+    /// Other Python threads run meanwhile. Ctrl-C is looked at when all steps are done.
     ///
     /// Parameters
     /// ----------
@@ -419,10 +420,10 @@ impl Batch {
         py: Python<'py>,
         initial: Option<&Bound<'py, PyAny>>,
         ctrl: Option<&Bound<'py, PyAny>>,
-        record: Option<Vec<String>>,
+        record: Option<Names>,
         steps: Option<Count>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let record = record.unwrap_or_else(|| vec!["qpos".into(), "qvel".into()]);
+        let record = record.map_or_else(|| vec!["qpos".into(), "qvel".into()], |names| names.0);
         let steps = steps.map(|count| count.0);
         let mut guard = lock(&self.inner, "batch")?;
         each!(&mut *guard, batch => rollout(py, batch, initial, ctrl, &record, steps))
@@ -546,60 +547,12 @@ impl Batch {
         )
     }
 
-    fn param_shape(&self, field: &str) -> PyResult<Vec<usize>> {
-        let field = ParamField::find(field).map_err(sim_error)?;
-        Ok(field.shape(self.model.get().inner()))
-    }
-
-    fn view(&self, py: Python<'_>, output: Output) -> Option<Py<PyAny>> {
-        let outputs = self
-            .outputs
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        let found = outputs.iter().find(|(kept, _)| *kept == output);
-        found.map(|(_, array)| array.clone_ref(py))
-    }
-
     /// Records outputs beside those that are recorded already.
     fn keep(&self, py: Python<'_>, names: &[String]) -> PyResult<()> {
         let mut guard = lock(&self.inner, "batch")?;
-        let mut outputs = lock(&self.outputs, "batch")?;
-        let mut all = Vec::from_iter(outputs.iter().map(|(output, _)| *output));
-        for name in names {
-            let output = Output::find(name).map_err(sim_error)?;
-            if !all.contains(&output) {
-                all.push(output);
-            }
-        }
-        let names = Vec::from_iter(all.iter().map(|output| output.name()));
-        each!(&mut *guard, batch => {
-            batch.record(&names).map_err(sim_error)?;
-            for &output in &all[outputs.len()..] {
-                let array = output_view(self.keeper.bind(py), batch, output)?;
-                outputs.push((output, array));
-            }
-        });
-        Ok(())
+        let keeper = self.keeper.bind(py);
+        each!(&mut *guard, batch => self.recorded.add(keeper, batch, names))
     }
-}
-
-fn not_recorded(name: &str) -> String {
-    format!("the output \"{name}\" is not recorded: call record(\"{name}\") first")
-}
-
-/// A live view of an output that `batch` records.
-fn output_view<S: Precision + Element>(
-    keeper: &Bound<'_, Keeper>,
-    batch: &clench::Batch<S>,
-    output: Output,
-) -> PyResult<Py<PyAny>> {
-    let Some(rows) = batch.output(output.name()) else {
-        return Err(PyValueError::new_err(not_recorded(output.name())));
-    };
-    let shape = [&[batch.count()], &output.shape(batch.model())[..]].concat();
-    // SAFETY: the table has this shape, lives in the batch that `keeper` keeps, and is never taken back.
-    let array = unsafe { view(keeper, rows.as_ptr(), &shape) };
-    Ok(read_only(array)?.into_any().unbind())
 }
 
 /// The code of `clench.EnvStatus`.

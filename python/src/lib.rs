@@ -17,6 +17,7 @@ mod names;
 mod option_values;
 mod options;
 mod precision;
+mod recorded;
 mod rollout;
 mod row_sim;
 mod sim;

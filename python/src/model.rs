@@ -1,12 +1,12 @@
 //! `clench.Model`.
 
 use crate::element::Element;
-use crate::error::load_error;
+use crate::error::{load_error, sim_error};
 use crate::fields;
 use crate::kind::Kind;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
-use clench::rigid::model::Integrator;
+use clench::rigid::model::{Integrator, ParamField};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -29,6 +29,12 @@ impl Model {
     /// The model itself.
     pub(crate) fn inner(&self) -> &Arc<clench::Model> {
         &self.0
+    }
+
+    /// The shape of the parameter of that name.
+    pub(crate) fn param_shape(&self, field: &str) -> PyResult<Vec<usize>> {
+        let field = ParamField::find(field).map_err(sim_error)?;
+        Ok(field.shape(&self.0))
     }
 }
 

@@ -1,10 +1,29 @@
-//! What to say where a name is that nothing has.
+//! Names as users give them, and what to say where nothing has such a name.
 
-use pyo3::PyErr;
-use pyo3::exceptions::{PyAttributeError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 /// Most names that a message lists.
 const LISTED: usize = 10;
+
+/// Several names.
+pub(crate) struct Names(pub(crate) Vec<String>);
+
+impl FromPyObject<'_, '_> for Names {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        // A sequence too, to Python: of letters.
+        if let Ok(name) = object.cast::<PyString>() {
+            let name = name.to_string_lossy();
+            return Err(PyTypeError::new_err(format!(
+                "expected a sequence of names, such as [\"{name}\"], not a str"
+            )));
+        }
+        object.extract().map(Names)
+    }
+}
 
 /// Nothing of this kind is called `name`; `known` are those that are.
 pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> PyErr {

@@ -1,6 +1,6 @@
 //! `Batch.rollout` in one precision: shapes are checked before anything moves, and what was recorded is shown without a copy.
 
-use crate::arrays::{numbers, require_shape, shaped};
+use crate::arrays::{numbers, require_shape, shape_text, shaped};
 use crate::error::sim_error;
 use crate::view::{Keeper, view};
 use clench::{Batch, Controls, Precision};
@@ -26,12 +26,13 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
     let steps = match (&ctrl, steps) {
         (None, None) => return Err(PyValueError::new_err("rollout needs ctrl or steps")),
         (None, Some(steps)) => steps,
-        (Some(values), steps) => match (values.shape(), steps) {
-            (&[own, _] | &[_, own, _], None) => own,
-            (_, Some(steps)) => steps,
-            (shape, None) => {
-                require_shape("ctrl", shape, &[n, 0, model.nu()])?;
-                0
+        (Some(values), steps) => match *values.shape() {
+            [own, _] | [_, own, _] => steps.unwrap_or(own),
+            ref other => {
+                let (found, nu) = (shape_text(other), model.nu());
+                return Err(PyValueError::new_err(format!(
+                    "ctrl has shape {found}, but must have (steps, {nu}) or ({n}, steps, {nu})"
+                )));
             }
         },
     };

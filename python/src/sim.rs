@@ -17,7 +17,6 @@ use crate::stats::SolverStats;
 use crate::view::{Keeper, read_only};
 use clench::Output;
 use clench::math::Scalar;
-use clench::rigid::model::ParamField;
 use clench::rigid::readout;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -164,7 +163,7 @@ impl Sim {
     /// ValueError
     ///     A name that no parameter has, a wrong shape, or numbers that the field cannot have. All is then as before.
     fn set_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
-        let shape = self.param_shape(field)?;
+        let shape = self.model.get().param_shape(field)?;
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => {
             let values = shaped(field, values, &shape)?;
@@ -184,7 +183,7 @@ impl Sim {
     /// numpy.ndarray
     ///     A copy in the shape that the field has in the model.
     fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
-        let shape = self.param_shape(field)?;
+        let shape = self.model.get().param_shape(field)?;
         let guard = lock(&self.inner, "simulation")?;
         each_sim!(&*guard, own => {
             let values = own.sim.param(field).map_err(sim_error)?;
@@ -330,12 +329,5 @@ impl Sim {
     fn __repr__(&self) -> String {
         let name = &self.model.get().inner().name;
         format!("<clench.Sim of {name:?}, {} bits>", self.precision.name())
-    }
-}
-
-impl Sim {
-    fn param_shape(&self, field: &str) -> PyResult<Vec<usize>> {
-        let field = ParamField::find(field).map_err(sim_error)?;
-        Ok(field.shape(self.model.get().inner()))
     }
 }

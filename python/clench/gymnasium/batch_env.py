@@ -136,7 +136,7 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
             self.precision,
             self.threads,
             options=self.options,
-            record=tuple(self.outputs),
+            record=self.outputs,
         )
         self.timestep = float(self.batch.model.timestep)
         self.dt = self.timestep * self.frame_skip
@@ -415,7 +415,6 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         if observation.ndim < 2:
             raise ValueError(f"{self._name}: observe() must give each environment an array, not one number")
         return observation if observation.dtype in (np.float64, np.float32) else observation.astype(np.float64)
-
 
     def _checked_info(self, info: Mapping[str, Array]) -> Mapping[str, Array]:
         return {key: rows(value, self.num_envs, f"{self._name}: info `{key}`") for key, value in info.items()}
