@@ -17,7 +17,7 @@ use crate::state_views::StateViews;
 use crate::view::Keeper;
 use clench::{BatchOptions, EnvStatus, Fault, Output};
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::{PyAttributeError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::{Arc, Mutex};
@@ -112,7 +112,7 @@ impl Batch {
         let batch = {
             let mut guard = lock(&inner, "batch")?;
             each!(&mut *guard, batch => {
-                let views = StateViews::new(&keeper, &mut batch.state, model.get().inner(), false);
+                let views = StateViews::new(&keeper, &mut batch.state, model.get().inner(), false)?;
                 (views, batch.threads(), batch.lanes())
             })
         };
@@ -257,10 +257,10 @@ impl Batch {
     /// -------
     /// str or None
     ///     None if it runs.
-    fn fault(&self, env: Count) -> PyResult<Option<String>> {
-        self.check_env(env)?;
+    fn fault(&self, env: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
+        let env = self.env(env)?;
         let guard = lock(&self.inner, "batch")?;
-        Ok(match each!(&*guard, batch => batch.status(env.0)) {
+        Ok(match each!(&*guard, batch => batch.status(env)) {
             EnvStatus::Running => None,
             EnvStatus::Failed(fault) => Some(fault.to_string()),
         })
@@ -389,7 +389,7 @@ impl Batch {
 
     /// Steps all running environments and records outputs after each step.
     ///
-    /// Other Python threads run meanwhile. Ctrl-C is looked at when all steps are done.
+    /// Other Python threads run meanwhile. Ctrl-C is looked at now and then, and loses what was recorded.
     ///
     /// Parameters
     /// ----------
@@ -440,13 +440,13 @@ impl Batch {
     /// -------
     /// Sim
     ///     It goes its own way: no memory is shared.
-    fn sim<'py>(&self, py: Python<'py>, env: Count) -> PyResult<Bound<'py, Sim>> {
-        self.check_env(env)?;
+    fn sim<'py>(&self, py: Python<'py>, env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Sim>> {
+        let env = self.env(env)?;
         let guard = lock(&self.inner, "batch")?;
         let (model, options) = (self.model.clone_ref(py), self.options);
         let sim = match &*guard {
-            AnyBatch::F64(batch) => batch.sim(env.0).and_then(AnySim::f64),
-            AnyBatch::F32(batch) => batch.sim(env.0).and_then(AnySim::f32),
+            AnyBatch::F64(batch) => batch.sim(env).and_then(AnySim::f64),
+            AnyBatch::F32(batch) => batch.sim(env).and_then(AnySim::f32),
         };
         Bound::new(py, Sim::wrap(py, sim.map_err(sim_error)?, model, options)?)
     }
@@ -529,14 +529,18 @@ impl Batch {
 }
 
 impl Batch {
-    fn check_env(&self, env: Count) -> PyResult<()> {
-        if env.0 < self.n_envs {
-            return Ok(());
-        }
-        Err(pyo3::exceptions::PyIndexError::new_err(format!(
-            "there is no environment {}: there are {}",
-            env.0, self.n_envs
-        )))
+    /// An environment, by its index.
+    fn env(&self, index: &Bound<'_, PyAny>) -> PyResult<usize> {
+        let found = match index.extract::<usize>() {
+            Err(error) if !error.is_instance_of::<PyOverflowError>(index.py()) => {
+                return Err(error);
+            }
+            found => found.ok().filter(|&env| env < self.n_envs),
+        };
+        let most = self.n_envs;
+        let missing =
+            || PyIndexError::new_err(format!("environments go from 0 to {most}, without it"));
+        found.ok_or_else(missing)
     }
 
     /// All environments, where no mask is given.

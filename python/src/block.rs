@@ -92,7 +92,7 @@ impl Block {
             Some(_) => return Err(PyValueError::new_err(format!("a {cost} cost has no shape"))),
             None => {
                 return Err(PyValueError::new_err(format!(
-                    "a {cost} cost needs a shape"
+                    "a cost of kind \"{cost}\" needs a shape"
                 )));
             }
         };

@@ -74,6 +74,6 @@ fn output_view<S: Precision + Element>(
     };
     let shape = [&[batch.count()], &output.shape(batch.model())[..]].concat();
     // SAFETY: the table has this shape, lives in the batch that `keeper` keeps, and is never taken back.
-    let array = unsafe { view(keeper, rows.as_ptr(), &shape) };
+    let array = unsafe { view(keeper, rows.as_ptr(), &shape) }?;
     Ok(read_only(array)?.into_any().unbind())
 }

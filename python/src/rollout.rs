@@ -56,17 +56,22 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
         .map(|values| values.as_slice())
         .transpose()?;
     let names = Vec::from_iter(record.iter().map(String::as_str));
-    let recording = py.detach(|| match start {
-        None => batch.rollout(steps, controls, &names),
-        Some(initial) => batch.rollout_from(initial, steps, controls, &names),
+    let mut interrupt = Ok(());
+    let recording = py.detach(|| {
+        batch.rollout_while(start, steps, controls, &names, || {
+            interrupt = Python::attach(|py| py.check_signals());
+            interrupt.is_ok()
+        })
     });
+    let recording = recording.map_err(sim_error)?;
+    interrupt?;
     let arrays = PyDict::new(py);
-    for (output, mut rows) in recording.map_err(sim_error)?.into_rows() {
+    for (output, mut rows) in recording.into_rows() {
         let start = rows.as_mut_ptr();
         let keeper = Keeper::new(py, Arc::new(rows))?;
         let shape = [&[n, steps], &output.shape(&model)[..]].concat();
         // SAFETY: the table has this shape, and `keeper` has it.
-        arrays.set_item(output.name(), unsafe { view(&keeper, start, &shape) })?;
+        arrays.set_item(output.name(), unsafe { view(&keeper, start, &shape) }?)?;
     }
     Ok(arrays)
 }

@@ -63,7 +63,7 @@ impl Sim {
         let views = {
             let mut guard = lock(&inner, "simulation")?;
             let of = model.get().inner();
-            each_sim!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, of, true))
+            each_sim!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, of, true))?
         };
         Ok(PyClassInitializer::from(views).add_subclass(Sim {
             inner,

@@ -92,7 +92,7 @@ impl StateViews {
         rows: &mut StateRows<S>,
         model: &Model,
         alone: bool,
-    ) -> Self {
+    ) -> PyResult<Self> {
         let count = rows.count();
         let shape = |of_row: &[usize]| {
             let envs = if alone { None } else { Some(count) };
@@ -102,12 +102,12 @@ impl StateViews {
         // SAFETY: the shapes are those of the tables, which `keeper` keeps and nothing replaces.
         macro_rules! array {
             ($field:ident $(, $size:expr)*) => {
-                unsafe { view(keeper, rows.$field.as_mut_ptr(), &shape(&[$($size),*])) }
+                unsafe { view(keeper, rows.$field.as_mut_ptr(), &shape(&[$($size),*])) }?
                     .into_any()
                     .unbind()
             };
         }
-        StateViews {
+        Ok(StateViews {
             time: array!(time),
             qpos: array!(qpos, model.nq),
             qvel: array!(qvel, model.nv),
@@ -119,7 +119,7 @@ impl StateViews {
             mocap_quat: array!(mocap_quat, nmocap, 4),
             eq_active: array!(eq_active, model.equalities.len()),
             qacc_warmstart: array!(qacc_warmstart, model.nv),
-        }
+        })
     }
 
     /// A copy of all arrays, as a `clench.State`.

@@ -5,8 +5,10 @@
 //! outside of them; who writes from another thread while a call steps gets numbers that are partly old and partly new, since a
 //! step copies each row into scratch of its own, checks it there, and copies results back.
 
+use crate::arrays::shape_text;
 use numpy::ndarray::{ArrayViewD, IxDyn};
 use numpy::{Element, PyArrayDyn, PyArrayMethods};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use std::any::Any;
 use std::sync::Arc;
@@ -29,17 +31,30 @@ impl Keeper {
 
 /// A writable array over the numbers that begin at `start`.
 ///
+/// # Errors
+/// A shape that NumPy refuses, as that of an empty table can be.
+///
 /// # Safety
 /// As many numbers as `shape` says lie there, row after row, as long as `keeper` lives, and do not move.
 pub(crate) unsafe fn view<'py, E: Element>(
     keeper: &Bound<'py, Keeper>,
     start: *const E,
     shape: &[usize],
-) -> Bound<'py, PyArrayDyn<E>> {
+) -> PyResult<Bound<'py, PyArrayDyn<E>>> {
+    // NumPy leaves out the axes without entries when it adds up bytes.
+    let mut counts = shape.iter().filter(|&&count| count > 0);
+    let bytes = counts.try_fold(size_of::<E>(), |bytes, &count| bytes.checked_mul(count));
+    if bytes.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
+        let text = format!("NumPy has no arrays of shape {}", shape_text(shape));
+        return Err(PyMemoryError::new_err(text));
+    }
     // SAFETY: by the caller's promise. NumPy is given the pointer; the reference ends with this function.
     unsafe {
         let numbers = ArrayViewD::from_shape_ptr(IxDyn(shape), start);
-        PyArrayDyn::borrow_from_array(&numbers, keeper.clone().into_any())
+        Ok(PyArrayDyn::borrow_from_array(
+            &numbers,
+            keeper.clone().into_any(),
+        ))
     }
 }
 

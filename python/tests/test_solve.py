@@ -245,7 +245,7 @@ any_solve: Any = solve
         (lambda: any_block("quadratic", [1], 0, -1), ValueError, "R has -1e0, but must be positive"),
         (lambda: any_block("quadratic", [1], 0, 1e-310), ValueError, "its inverse finite"),
         (lambda: any_block("quadratic", [1], 0, 1, 1), ValueError, "a quadratic cost has no shape"),
-        (lambda: any_block("huber", [1], 0, 1), ValueError, "a huber cost needs a shape"),
+        (lambda: any_block("huber", [1], 0, 1), ValueError, '"huber" needs a shape'),
         (lambda: any_block("quadratic", [1], 0), TypeError, "R"),
     ],
 )

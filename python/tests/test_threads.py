@@ -255,12 +255,21 @@ def test_control_c_ends_a_long_step(make: Callable[[], Any]) -> None:
     assert same_state(own.state, alone.state)
 
 
-def test_control_c_ends_a_step_of_environments_that_failed() -> None:
+def test_steps_end_where_nobody_runs() -> None:
     batch = clench.Batch(ball(), 2)
     batch.qvel[:] = np.nan
+    assert batch.step(2**63) == 2
+    assert batch.step(2**63) == 0
+    with pytest.raises(MemoryError):
+        clench.Batch(ball(), 0).rollout(steps=2**60)
+
+
+def test_control_c_ends_a_rollout() -> None:
+    batch = clench.Batch(ball(), 2)
     interrupt_soon()
     with pytest.raises(KeyboardInterrupt):
-        batch.step(2**63)
+        batch.rollout(steps=2**50, record=[])
+    assert batch.step() == 0
 
 
 def test_handlers_run_meanwhile() -> None:

@@ -9,6 +9,9 @@ use crate::error::SimError;
 use crate::output::Output;
 use std::array::from_fn;
 
+/// So many steps of environments are done before a rollout asks whether to go on: a fraction of a second.
+const ENV_STEPS_A_PORTION: usize = 1 << 16;
+
 /// An output of every environment.
 #[derive(Debug)]
 pub struct OutputRows<S> {
@@ -132,8 +135,7 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         record: &[&str],
     ) -> Result<Recording<S>, SimError> {
-        let outputs = self.recorder(steps, controls, record)?;
-        self.recorded(steps, controls, outputs)
+        self.rollout_while(None, steps, controls, record, || true)
     }
 
     /// As [`rollout`](Self::rollout), with all environments running from states of which `initial` holds what moves, environment
@@ -149,13 +151,58 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         record: &[&str],
     ) -> Result<Recording<S>, SimError> {
-        let (nq, nv) = (self.model.nq, self.model.nv);
-        let width = 1 + nq + nv + self.model.na;
-        check_length("initial", initial.len(), self.count() * width)?;
+        self.rollout_while(Some(initial), steps, controls, record, || true)
+    }
+
+    /// A [`rollout`](Self::rollout), or one from given states, that goes on only as long as `go_on` says, which is asked every
+    /// now and then. Steps that are not done are NaN.
+    ///
+    /// # Errors
+    /// As [`rollout_from`](Self::rollout_from).
+    pub fn rollout_while(
+        &mut self,
+        initial: Option<&[S]>,
+        steps: usize,
+        controls: Controls<S>,
+        record: &[&str],
+        mut go_on: impl FnMut() -> bool,
+    ) -> Result<Recording<S>, SimError> {
         self.check_state()?;
         self.check_threads()?;
-        let outputs = self.recorder(steps, controls, record)?;
-        for (env, row) in initial.chunks_exact(width).enumerate() {
+        if let Some(initial) = initial {
+            check_length("initial", initial.len(), self.count() * self.moving())?;
+        }
+        let mut outputs = self.recorder(steps, controls, record)?;
+        if let Some(initial) = initial {
+            self.start_from(initial);
+        }
+        let portion = (ENV_STEPS_A_PORTION / self.count().max(1)).max(1);
+        let (mut failed, mut first) = (0, 0_usize);
+        let summary = loop {
+            let range = first..steps.min(first.saturating_add(portion));
+            first = range.end;
+            let part = self.run(true, range, steps, controls, None, &mut outputs)?;
+            failed += part.failed;
+            if first == steps || part.running == 0 || !go_on() {
+                break Summary { failed, ..part };
+            }
+        };
+        Ok(Recording {
+            outputs,
+            steps,
+            summary,
+        })
+    }
+
+    /// How many numbers of an environment's state move.
+    fn moving(&self) -> usize {
+        1 + self.model.nq + self.model.nv + self.model.na
+    }
+
+    /// Lets all environments run from these states, of which [`moving`](Self::moving) numbers are given.
+    fn start_from(&mut self, initial: &[S]) {
+        let (nq, nv) = (self.model.nq, self.model.nv);
+        for (env, row) in initial.chunks_exact(self.moving()).enumerate() {
             let state = &mut self.state;
             state.time.row_mut(env).copy_from_slice(&row[..1]);
             state.qpos.row_mut(env).copy_from_slice(&row[1..][..nq]);
@@ -164,21 +211,6 @@ impl<S: Precision> Batch<S> {
             state.qacc_warmstart.row_mut(env).fill(S::ZERO);
         }
         self.status.fill(EnvStatus::Running);
-        self.recorded(steps, controls, outputs)
-    }
-
-    fn recorded(
-        &mut self,
-        steps: usize,
-        controls: Controls<S>,
-        mut outputs: Vec<OutputRows<S>>,
-    ) -> Result<Recording<S>, SimError> {
-        let summary = self.run(true, steps, controls, None, &mut outputs)?;
-        Ok(Recording {
-            outputs,
-            steps,
-            summary,
-        })
     }
 
     /// Room for what a rollout records, once its controls are as many as they must be.

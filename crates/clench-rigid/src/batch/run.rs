@@ -6,6 +6,7 @@ use super::{Batch, Controls, EnvStatus, Precision};
 use crate::check::check_length;
 use crate::error::SimError;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// After so many steps of a call environments are grouped anew.
@@ -34,7 +35,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
-        self.run(true, steps, Controls::Held, None, &mut [])
+        self.run(true, 0..steps, steps, Controls::Held, None, &mut [])
     }
 
     /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
@@ -43,7 +44,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<Summary, SimError> {
-        self.run(false, 1, Controls::Held, None, &mut [])
+        self.run(false, 0..1, 1, Controls::Held, None, &mut [])
     }
 
     /// As [`forward`](Self::forward), only for the running environments where `mask` is true. Of the others nothing changes:
@@ -53,13 +54,14 @@ impl<S: Precision> Batch<S> {
     /// As [`step`](Self::step), and a mask of another length than there are environments.
     pub fn forward_mask(&mut self, mask: &[bool]) -> Result<Summary, SimError> {
         check_length("mask", mask.len(), self.count())?;
-        self.run(false, 1, Controls::Held, Some(mask), &mut [])
+        self.run(false, 0..1, 1, Controls::Held, Some(mask), &mut [])
     }
 
-    /// Does `steps` steps, or one forward pass, of every running environment that is not masked out.
+    /// Does those in `range` of `steps` steps, or one forward pass, of every running environment that is not masked out.
     pub(super) fn run(
         &mut self,
         advance: bool,
+        range: Range<usize>,
         steps: usize,
         controls: Controls<S>,
         mask: Option<&[bool]>,
@@ -69,14 +71,17 @@ impl<S: Precision> Batch<S> {
         self.check_threads()?;
         // All groupings of a call run inside the pool, so that its threads need not be woken for each.
         Ok(match self.pool.clone() {
-            None => self.run_here(advance, steps, controls, mask, trace),
-            Some(pool) => pool.install(|| self.run_here(advance, steps, controls, mask, trace)),
+            None => self.run_here(advance, range, steps, controls, mask, trace),
+            Some(pool) => {
+                pool.install(|| self.run_here(advance, range, steps, controls, mask, trace))
+            }
         })
     }
 
     fn run_here(
         &mut self,
         advance: bool,
+        range: Range<usize>,
         steps: usize,
         controls: Controls<S>,
         mask: Option<&[bool]>,
@@ -86,8 +91,11 @@ impl<S: Precision> Batch<S> {
             failed: 0,
             running: 0,
         };
-        for first in (0..steps).step_by(STEPS_A_GROUP) {
+        for first in range.clone().step_by(STEPS_A_GROUP) {
             self.regroup(mask);
+            if self.order.is_empty() {
+                break;
+            }
             let (motion, inputs) = self.state.share();
             let job = Job {
                 model: &self.model,
@@ -100,7 +108,7 @@ impl<S: Precision> Batch<S> {
                 advance,
                 controls,
                 first,
-                end: steps.min(first.saturating_add(STEPS_A_GROUP)),
+                end: range.end.min(first.saturating_add(STEPS_A_GROUP)),
                 steps,
             };
             spread(&mut self.steppers, &self.order, &job);
