@@ -257,7 +257,10 @@ fn options_that_cannot_be_are_errors() {
     assert!(make(3, |o| o.options = RigidOptions::new().tolerance(-1.0)).is_err());
     for count in [usize::MAX, 1 << 32] {
         let error = make(count, |_| {}).expect_err("too many");
-        assert!(error.to_string().starts_with("count is"), "{error}");
+        assert!(
+            error.to_string().starts_with("number of environments is"),
+            "{error}"
+        );
     }
     let crowd = BatchOptions {
         threads: Some(usize::MAX),
