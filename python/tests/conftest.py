@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import faulthandler
+import os
+import signal
 from collections.abc import Iterator
+from typing import TextIO
 
 import pytest
 
 DEADLINE = 300  # seconds, for any test on a slow machine
+STDERR = pytest.StashKey[TextIO]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    # Not what a test's own output goes to: that would be lost at the end of the run.
+    config.stash[STDERR] = open(os.dup(2), "w", encoding="utf-8")
+    # A shell's background jobs ignore Ctrl-C, and so would the tests of it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True)
-def deadline() -> Iterator[None]:
-    faulthandler.dump_traceback_later(DEADLINE, exit=True)
+def deadline(request: pytest.FixtureRequest) -> Iterator[None]:
+    faulthandler.dump_traceback_later(DEADLINE, exit=True, file=request.config.stash[STDERR])
     yield
     faulthandler.cancel_dump_traceback_later()
