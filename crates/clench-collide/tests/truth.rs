@@ -48,7 +48,7 @@ fn the_deepest_point_is_the_true_distance() {
             }
         }
         assert!(
-            touching > 50 && apart > 5,
+            touching >= 50 && apart > 5,
             "{kinds:?}: {touching} touch, {apart} are apart"
         );
     }

@@ -3,11 +3,12 @@
 //! Two boxes are apart exactly if some face normal of either, or some cross product of their edges, separates them.
 //! The axis of largest separation decides the contact. A face yields up to eight points, an edge pair one. The rules
 //! that break ties, which decide how a stack rests, follow MuJoCo 4.0's collider, and so do their numbers.
-//!
-//! The decisions branch too much for lanes, so each environment is done on its own.
 
-use super::Placed;
-use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, Shape};
+use super::{
+    Placed,
+    one_by_one::{Points, one_by_one},
+};
+use crate::{Contacts, Pose};
 use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
@@ -23,70 +24,10 @@ pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
     S::new(double).max(S::EPSILON * S::new(units))
 }
 
-/// A contact before it has a frame.
-#[derive(Clone, Copy)]
-pub(super) struct Point<S> {
-    pub position: Vec3<S>,
-    pub normal: Vec3<S>,
-    pub distance: S,
-}
-
-/// The points of one environment.
-pub(super) struct Points<S> {
-    list: [Point<S>; MAX_POINTS],
-    len: usize,
-}
-
-impl<S: Scalar> Points<S> {
-    pub fn push(&mut self, point: Point<S>) {
-        if self.len < MAX_POINTS {
-            self.list[self.len] = point;
-            self.len += 1;
-        }
-    }
-}
-
 pub(super) fn box_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    let mut slots: [ContactPoint<T>; MAX_POINTS] = [ContactPoint::none(); MAX_POINTS];
-    let mut most = 0;
-    for lane in 0..T::LANES {
-        let pair = BoxPair::new(lane_of(a, lane), lane_of(b, lane), margin.lane(lane));
-        let points = pair.collide();
-        most = most.max(points.len);
-        for (slot, point) in slots.iter_mut().zip(&points.list[..points.len]) {
-            let frame = crate::frame_from_normal(point.normal);
-            set_lane(&mut slot.position, lane, point.position);
-            for (row, value) in slot.frame.rows.iter_mut().zip(frame.rows) {
-                set_lane(row, lane, value);
-            }
-            slot.distance.set_lane(lane, point.distance);
-            clench_math::Mask::set_lane(&mut slot.active, lane, true);
-        }
-    }
-    for slot in &slots[..most] {
-        out.push(*slot);
-    }
-}
-
-fn lane_of<T: Real>(p: Placed<T>, lane: usize) -> (Shape<T::Scalar>, Pose<T::Scalar>) {
-    let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
-    let shape = Shape {
-        kind: p.shape.kind,
-        size: vector(p.shape.size),
-    };
-    let pose = Pose {
-        position: vector(p.pose.position),
-        rotation: Mat3 {
-            rows: p.pose.rotation.rows.map(vector),
-        },
-    };
-    (shape, pose)
-}
-
-fn set_lane<T: Real>(v: &mut Vec3<T>, lane: usize, value: Vec3<T::Scalar>) {
-    v.x.set_lane(lane, value.x);
-    v.y.set_lane(lane, value.y);
-    v.z.set_lane(lane, value.z);
+    one_by_one(a, b, margin, out, |a, b, margin, points| {
+        BoxPair::new(a, b, margin).collide(points);
+    });
 }
 
 /// What touches what.
@@ -113,36 +54,30 @@ pub(super) struct BoxPair<S> {
 }
 
 impl<S: Scalar> BoxPair<S> {
-    fn new(a: (Shape<S>, Pose<S>), b: (Shape<S>, Pose<S>), margin: S) -> Self {
-        let rotation = a.1.rotation.transpose() * b.1.rotation;
+    fn new(a: Placed<S>, b: Placed<S>, margin: S) -> Self {
+        let (pose, size) = ([*a.pose, *b.pose], [a.shape.size, b.shape.size]);
+        let rotation = pose[0].rotation.transpose() * pose[1].rotation;
         let extent = |v: Vec3<S>| v.x + v.y + v.z;
-        let slack = tolerance::<S>(1e-13, 8.0) * (extent(a.0.size) + extent(b.0.size));
+        let slack = tolerance::<S>(1e-13, 8.0) * (extent(size[0]) + extent(size[1]));
         BoxPair {
-            pose: [a.1, b.1],
-            size: [a.0.size, b.0.size],
-            offset: [a.1.local(b.1.position), b.1.local(a.1.position)],
+            pose,
+            size,
+            offset: [
+                pose[0].local(pose[1].position),
+                pose[1].local(pose[0].position),
+            ],
             rotation: [rotation, rotation.transpose()],
             margin,
             reach: margin + slack,
         }
     }
 
-    fn collide(&self) -> Points<S> {
-        let nothing = Point {
-            position: Vec3::ZERO,
-            normal: Vec3::ZERO,
-            distance: S::ZERO,
-        };
-        let mut points = Points {
-            list: [nothing; MAX_POINTS],
-            len: 0,
-        };
+    fn collide(&self, points: &mut Points<S>) {
         match self.touching_feature() {
             None => {}
-            Some(Feature::Face { owner, axis }) => self.face_contact(owner, axis, &mut points),
-            Some(Feature::Edges(i, j)) => self.edge_contact(i, j, &mut points),
+            Some(Feature::Face { owner, axis }) => self.face_contact(owner, axis, points),
+            Some(Feature::Edges(i, j)) => self.edge_contact(i, j, points),
         }
-        points
     }
 
     /// The feature of largest separation, or none if that is beyond reach.

@@ -1,55 +1,14 @@
 //! The contact points of two boxes, once it is known which feature of each touches the other.
 
-use super::box_box::{BoxPair, Point, Points, tolerance};
+use super::{
+    box_box::{BoxPair, tolerance},
+    one_by_one::{Point, Points},
+    polygon::Polygon,
+};
 use clench_math::{Scalar, Vec3};
 
-/// Room for a clipped face. Four cuts leave a quadrilateral at most eight corners; rounding may add a few.
-const CAPACITY: usize = 12;
 /// The corners of a face in order around it.
 const AROUND: [(f64, f64); 4] = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
-
-/// A convex polygon in the frame of a face: x and y within its plane, z the height above it.
-struct Polygon<S> {
-    corners: [Vec3<S>; CAPACITY],
-    len: usize,
-}
-
-impl<S: Scalar> Polygon<S> {
-    fn empty() -> Self {
-        Polygon {
-            corners: [Vec3::ZERO; CAPACITY],
-            len: 0,
-        }
-    }
-    fn corners(&self) -> &[Vec3<S>] {
-        &self.corners[..self.len]
-    }
-    fn push(&mut self, corner: Vec3<S>) {
-        if self.len < CAPACITY {
-            self.corners[self.len] = corner;
-            self.len += 1;
-        }
-    }
-    /// The part where `sign` times coordinate `axis` is at most `limit` (Sutherland–Hodgman).
-    fn clip(self, axis: usize, sign: S, limit: S) -> Self {
-        let beyond = |p: Vec3<S>| sign * p[axis] - limit;
-        if self.corners().iter().all(|p| beyond(*p) <= S::ZERO) {
-            return self;
-        }
-        let mut kept = Polygon::empty();
-        for (k, &p) in self.corners().iter().enumerate() {
-            let q = self.corners[(k + 1) % self.len];
-            let (dp, dq) = (beyond(p), beyond(q));
-            if dp <= S::ZERO {
-                kept.push(p);
-            }
-            if (dp < S::ZERO && dq > S::ZERO) || (dp > S::ZERO && dq < S::ZERO) {
-                kept.push(p + (q - p) * (dp / (dp - dq)));
-            }
-        }
-        kept
-    }
-}
 
 impl<S: Scalar> BoxPair<S> {
     /// The face of the other box that most opposes the touching face, clipped to it: each corner near enough is a
@@ -59,12 +18,13 @@ impl<S: Scalar> BoxPair<S> {
         let size = self.size[owner];
         let side = S::ONE.copysign(self.offset[owner][axis]);
         let height = size[axis];
-        let face = self
-            .opposing_face(owner, axis, side)
-            .clip(0, S::ONE, size[x])
-            .clip(0, -S::ONE, size[x])
-            .clip(1, S::ONE, size[y])
-            .clip(1, -S::ONE, size[y]);
+        let mut face = self.opposing_face(owner, axis, side);
+        for sign in [S::ONE, -S::ONE] {
+            face.clip((sign, S::ZERO), size[x]);
+        }
+        for sign in [S::ONE, -S::ONE] {
+            face.clip((S::ZERO, sign), size[y]);
+        }
 
         let pose = &self.pose[owner];
         let out = if owner == 0 { side } else { -side };
@@ -77,6 +37,9 @@ impl<S: Scalar> BoxPair<S> {
             let same = |q: &Vec3<S>| (q.x - p.x).squared() + (q.y - p.y).squared() < apart;
             if p.z > self.margin || accepted.corners().iter().any(same) {
                 continue;
+            }
+            if points.is_full() {
+                break;
             }
             accepted.push(p);
             let mut local = Vec3::ZERO;

@@ -7,8 +7,11 @@ mod box_box;
 mod box_manifold;
 mod box_round;
 mod capsule;
+mod convex;
 mod cylinder;
+mod one_by_one;
 mod plane;
+mod polygon;
 mod segment;
 mod way_out;
 
@@ -28,8 +31,10 @@ pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     matches!(
         (a.min(b), a.max(b)),
         (Plane, Sphere | Capsule | Ellipsoid | Cylinder | Box)
-            | (Sphere, Sphere | Capsule | Cylinder | Box)
-            | (Capsule, Capsule | Cylinder | Box)
+            | (Sphere, Sphere | Capsule | Ellipsoid | Cylinder | Box)
+            | (Capsule, Capsule | Ellipsoid | Cylinder | Box)
+            | (Ellipsoid, Ellipsoid | Cylinder | Box)
+            | (Cylinder, Cylinder | Box)
             | (Box, Box)
     )
 }
@@ -72,6 +77,9 @@ pub fn collide<T: Real>(
         (Capsule, Cylinder) => cylinder::capsule_cylinder(a, b, margin, out),
         (Capsule, Box) => box_round::capsule_box(a, b, margin, out),
         (Box, Box) => box_box::box_box(a, b, margin, out),
+        (Sphere | Capsule | Ellipsoid, Ellipsoid)
+        | (Ellipsoid | Cylinder, Cylinder)
+        | (Ellipsoid | Cylinder, Box) => convex::convex(a, b, margin, out),
         _ => {}
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Placed;
 use crate::{ContactPoint, Contacts, frame_along, frame_from_normal};
-use clench_math::{Mask, Mat3, Real, Vec3, kernel};
+use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
 /// Adds the point of a surface that is `distance` above the plane.
 #[inline(always)]
@@ -75,7 +75,9 @@ pub(super) fn plane_ellipsoid<T: Real>(
     let distance = above - depth;
     let active = distance.le(margin);
     if active.any() {
-        let support = scaled.scale_by(size) * (T::ONE / depth);
+        // A point, where all semi-axes are zero.
+        let length = depth.max(T::splat(T::Scalar::MIN_POSITIVE));
+        let support = scaled.scale_by(size) * (T::ONE / length);
         let surface = b.pose.position - b.pose.rotation * support;
         add(surface, distance, &frame_from_normal(normal), active, out);
     }

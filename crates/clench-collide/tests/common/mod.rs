@@ -9,7 +9,7 @@ use clench_math::{Mat3, Quat, Real, Vec3};
 pub type V = Vec3<f64>;
 
 /// All pairs that can collide.
-pub const PAIRS: [(ShapeKind, ShapeKind); 13] = {
+pub const PAIRS: [(ShapeKind, ShapeKind); 20] = {
     use ShapeKind::*;
     [
         (Plane, Sphere),
@@ -19,11 +19,18 @@ pub const PAIRS: [(ShapeKind, ShapeKind); 13] = {
         (Plane, Box),
         (Sphere, Sphere),
         (Sphere, Capsule),
+        (Sphere, Ellipsoid),
         (Sphere, Cylinder),
         (Sphere, Box),
         (Capsule, Capsule),
+        (Capsule, Ellipsoid),
         (Capsule, Cylinder),
         (Capsule, Box),
+        (Ellipsoid, Ellipsoid),
+        (Ellipsoid, Cylinder),
+        (Ellipsoid, Box),
+        (Cylinder, Cylinder),
+        (Cylinder, Box),
         (Box, Box),
     ]
 };
@@ -110,7 +117,7 @@ impl Random {
         scene
     }
     /// An exact rotation of the cube onto itself.
-    fn quarter_turns(&mut self) -> Mat3<f64> {
+    pub fn quarter_turns(&mut self) -> Mat3<f64> {
         let mut rotation = Mat3::IDENTITY;
         for _ in 0..(self.unit() * 6.0) as usize {
             let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i));
@@ -165,12 +172,16 @@ impl Scene {
         let front = support(&self.a, &self.pose_a, n);
         (back - front).dot(n)
     }
-    /// The signed distance of the shapes, which is the largest gap along any direction, by search: many starts, each
-    /// improved by random steps that shrink when they fail. The gap has creases across the shapes' own axes, so some
-    /// steps go along those.
+    /// The signed distance of the shapes, which is the largest gap along any direction.
     pub fn distance(&self, random: &mut Random) -> f64 {
+        self.optima(random)[0].0
+    }
+    /// The directions of largest gap, by search, best first: many starts, each improved by random steps that shrink when they
+    /// fail. The gap has creases across the shapes' own axes, so some steps go along those.
+    pub fn optima(&self, random: &mut Random) -> Vec<(f64, V)> {
         if self.a.kind == ShapeKind::Plane {
-            return self.gap_along(self.pose_a.axis());
+            let normal = self.pose_a.axis();
+            return vec![(self.gap_along(normal), normal)];
         }
         let axes = [&self.pose_a, &self.pose_b].map(|p| [0, 1, 2].map(|i| p.rotation.column(i)));
         let mut starts: Vec<V> = (0..200).map(|_| random.direction()).collect();
@@ -186,7 +197,7 @@ impl Scene {
         let mut starts: Vec<_> = starts.iter().map(|n| (self.gap_along(*n), *n)).collect();
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
         starts.truncate(8);
-        let mut climb = |&(mut best, mut n): &(f64, V)| {
+        let climb = |&(mut best, mut n): &(f64, V)| {
             let mut step = 0.3;
             while step > 1e-8 {
                 let mut tried = n + random.direction() * step;
@@ -203,12 +214,11 @@ impl Scene {
                     step *= 0.98;
                 }
             }
-            best
+            (best, n)
         };
-        starts
-            .iter()
-            .map(&mut climb)
-            .fold(f64::NEG_INFINITY, f64::max)
+        let mut optima: Vec<_> = starts.iter().map(climb).collect();
+        optima.sort_by(|a, b| b.0.total_cmp(&a.0));
+        optima
     }
 }
 
@@ -223,7 +233,7 @@ pub fn support(shape: &Shape<f64>, pose: &Pose<f64>, n: V) -> V {
         ShapeKind::Capsule => d * s.x + Vec3::new(0.0, 0.0, signed(s.y, d.z)),
         ShapeKind::Ellipsoid => {
             let scaled = d.scale_by(s);
-            scaled.scale_by(s) * (1.0 / scaled.norm())
+            scaled.scale_by(s) * (1.0 / scaled.norm().max(1e-300))
         }
         ShapeKind::Cylinder => {
             let level = d.x.hypot(d.y).max(1e-300);

@@ -1,0 +1,176 @@
+//! Convex bodies by their support functions, as a core plus a radius.
+//!
+//! The support function s(d) of a body is how far it reaches along the unit direction d, its gradient is the point that
+//! reaches so far, and its Hessian says how that point moves as d turns: a matrix whose eigenvalues are radii of curvature.
+//!
+//! ```text
+//! point      0                                  segment   h |d·z|
+//! ellipsoid  |S d|,  S = diag(semi-axes)        cylinder  r |d across z| + h |d·z|
+//! box        Σ hᵢ |dᵢ|
+//! ```
+//!
+//! A ball of radius ρ rolls freely within a body whose radii of curvature are nowhere below ρ (Blaschke's theorem), so the
+//! body is a smaller convex core, s(d) − ρ, plus that ball. A sphere is a point plus a ball, a capsule a segment plus a ball,
+//! an ellipsoid with ρ = (least semi-axis)² / (largest semi-axis) a core plus a ball. As long as only the balls' layers
+//! overlap, the cores are apart and their distance is a convex problem with one solution.
+
+use crate::{Shape, ShapeKind};
+use clench_math::{Scalar, Vec3};
+
+/// A shape in its own frame.
+#[derive(Clone, Copy)]
+pub(super) struct Body<S> {
+    kind: ShapeKind,
+    size: Vec3<S>,
+    /// Of the ball that is added to the core, m.
+    pub radius: S,
+    /// Of a sphere about the origin that holds the body, m.
+    pub reach: S,
+}
+
+impl<S: Scalar> Body<S> {
+    pub fn new(shape: &Shape<S>) -> Self {
+        let size = shape.size;
+        let radius = match shape.kind {
+            ShapeKind::Sphere | ShapeKind::Capsule => size.x,
+            ShapeKind::Ellipsoid => {
+                let least = size.x.min(size.y).min(size.z);
+                let most = size.x.max(size.y).max(size.z);
+                least * (least / most.max(S::MIN_POSITIVE))
+            }
+            _ => S::ZERO,
+        };
+        Body {
+            kind: shape.kind,
+            size,
+            radius,
+            reach: crate::bounding_radius(shape),
+        }
+    }
+
+    /// Whether the core has curved parts.
+    pub fn curved(&self) -> bool {
+        matches!(self.kind, ShapeKind::Ellipsoid | ShapeKind::Cylinder)
+    }
+
+    /// The point of the core that is furthest along the unit direction `d`. Of several corners or ends that are, the one further
+    /// along `side`, which is `d` or next to it.
+    #[inline]
+    pub fn support(&self, d: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
+        let s = self.size;
+        match self.kind {
+            ShapeKind::Capsule => Vec3::new(S::ZERO, S::ZERO, s.y.copysign(side.z)),
+            ShapeKind::Ellipsoid => {
+                let scaled = d.scale_by(s);
+                let length = scaled.norm().max(S::MIN_POSITIVE);
+                scaled.scale_by(s) * (S::ONE / length) - d * self.radius
+            }
+            ShapeKind::Cylinder => {
+                let (x, y) = rim(d);
+                Vec3::new(x * s.x, y * s.x, s.y.copysign(side.z))
+            }
+            ShapeKind::Box => Vec3::new(
+                s.x.copysign(side.x),
+                s.y.copysign(side.y),
+                s.z.copysign(side.z),
+            ),
+            ShapeKind::Plane | ShapeKind::Sphere => Vec3::ZERO,
+        }
+    }
+
+    /// The Hessian of the core's support function at the unit direction `d`.
+    #[inline]
+    pub fn curvature(&self, d: Vec3<S>) -> Curvature<S> {
+        let s = self.size;
+        match self.kind {
+            ShapeKind::Ellipsoid => {
+                let scaled = d.scale_by(s);
+                let inverse = S::ONE / scaled.norm().max(S::MIN_POSITIVE);
+                Curvature::Ellipsoid {
+                    semi_axes: s,
+                    unit: scaled * inverse,
+                    inverse,
+                    radius: self.radius,
+                }
+            }
+            ShapeKind::Cylinder => {
+                let (x, y) = rim(d);
+                let level = (d.x * d.x + d.y * d.y).sqrt().max(S::EPSILON);
+                Curvature::Rim {
+                    along: Vec3::new(-y, x, S::ZERO),
+                    radius: s.x / level,
+                }
+            }
+            _ => Curvature::Corner,
+        }
+    }
+
+    /// Of a point of the core, the part that jumps where the support function has a crease: the corner of a box, the end of
+    /// a segment or of a cylinder's axis. Edges and faces are spanned by differences of these.
+    #[inline]
+    pub fn corner(&self, point: Vec3<S>) -> Vec3<S> {
+        match self.kind {
+            ShapeKind::Ellipsoid => Vec3::ZERO,
+            ShapeKind::Cylinder => Vec3::new(S::ZERO, S::ZERO, point.z),
+            _ => point,
+        }
+    }
+
+    /// The radius of the flat round cap across the z axis, if the body has one.
+    pub fn cap(&self) -> Option<S> {
+        (self.kind == ShapeKind::Cylinder).then_some(self.size.x)
+    }
+
+    pub fn kind(&self) -> ShapeKind {
+        self.kind
+    }
+    pub fn size(&self) -> Vec3<S> {
+        self.size
+    }
+}
+
+/// How the supporting point of a core moves with the direction: a symmetric matrix.
+pub(super) enum Curvature<S> {
+    /// Not at all.
+    Corner,
+    /// (S² − S u uᵀ S) / |S d| − ρ 1 with u = S d / |S d|.
+    Ellipsoid {
+        semi_axes: Vec3<S>,
+        unit: Vec3<S>,
+        inverse: S,
+        radius: S,
+    },
+    /// Along a rim, with its radius over the part of d in its plane.
+    Rim { along: Vec3<S>, radius: S },
+}
+
+impl<S: Scalar> Curvature<S> {
+    /// The matrix between two vectors, uᵀ H v.
+    #[inline]
+    pub fn between(&self, u: Vec3<S>, v: Vec3<S>) -> S {
+        match *self {
+            Curvature::Corner => S::ZERO,
+            Curvature::Ellipsoid {
+                semi_axes,
+                unit,
+                inverse,
+                radius,
+            } => {
+                let (su, sv) = (u.scale_by(semi_axes), v.scale_by(semi_axes));
+                (su.dot(sv) - unit.dot(su) * unit.dot(sv)) * inverse - radius * u.dot(v)
+            }
+            Curvature::Rim { along, radius } => along.dot(u) * along.dot(v) * radius,
+        }
+    }
+}
+
+/// The unit direction of `d` seen along z; x where it points along z.
+#[inline]
+pub(super) fn rim<S: Scalar>(d: Vec3<S>) -> (S, S) {
+    let level = (d.x * d.x + d.y * d.y).sqrt();
+    if level > S::MIN_POSITIVE {
+        (d.x / level, d.y / level)
+    } else {
+        (S::ONE, S::ZERO)
+    }
+}

@@ -1,0 +1,147 @@
+//! How deep two cores overlap: the expanding polytope algorithm (van den Bergen 2001).
+//!
+//! The difference of the cores holds the origin, and its boundary point nearest to the origin is the shortest way out.
+//! A polytope of its vertices grows: the face nearest to the origin is replaced by faces to the vertex that is furthest
+//! along its normal. Any direction m bounds the depth from above by how far the difference reaches along it, the
+//! polytope's nearest face bounds it from below:
+//!
+//! ```text
+//! nearest face  ≤  depth  ≤  m·w(−m).
+//! ```
+//!
+//! Bodies with flat faces end exactly, at a face that cannot be moved. For curved bodies the upper bound comes from
+//! Newton's method, to the last digits, and the lower bound needs only show that no other way out is noticeably shorter.
+
+use super::{
+    pair::{Gap, Pair, Vertex},
+    polytope::{Polytope, VERTICES},
+    refine::{Flats, refine},
+    simplex::Simplex,
+};
+use clench_math::{Mat3, Scalar, Vec3};
+
+/// Rounds until an answer is given, certain or not. Most move a face, some find that it cannot be moved.
+const ROUNDS: usize = 2 * VERTICES;
+/// How far, as a share of the smaller body, another way out of curved bodies may be shorter than the one found.
+const SLACK: f64 = 1e-5;
+/// Newton's method is tried where a face can be moved by less than this share of the smaller body.
+const NEAR: f64 = 0.1;
+
+/// The largest gap of overlapping cores, which is negative, and the face of the difference that it belongs to.
+pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: &Simplex<S>) -> (Gap<S>, Simplex<S>) {
+    match enclose(pair, start.vertices()) {
+        Ok(vertices) => expand(pair, &mut Polytope::new(pair, vertices)),
+        Err(flat) => (flat, *start),
+    }
+}
+
+/// Four vertices with a volume, among them the given ones where these span something. Where the difference has no volume,
+/// it is no way to move across it.
+fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>; 4], Gap<S>> {
+    let least = pair.largest * S::EPSILON * S::new(16.0);
+    let axes = Mat3::IDENTITY.rows;
+    let first = given[0];
+    let from_first = |v: &Vertex<S>| (v.w - first.w).norm();
+    let second = furthest(pair, given, &axes, from_first, least)?;
+
+    let (along, _) = (second.w - first.w).normalize();
+    let side = along.any_perpendicular();
+    let sides = [side, along.cross(side)];
+    let from_line = |v: &Vertex<S>| (v.w - first.w).cross(along).norm();
+    let third = furthest(pair, given, &sides, from_line, least)?;
+
+    let (normal, _) = along.cross(third.w - first.w).normalize();
+    let from_plane = |v: &Vertex<S>| (v.w - first.w).dot(normal).abs();
+    let fourth = furthest(pair, given, &[normal], from_plane, least)?;
+    Ok([first, second, third, fourth])
+}
+
+/// The given vertex that is furthest, or if all are nearer than `least`, the furthest along or against any of the directions.
+fn furthest<S: Scalar>(
+    pair: &Pair<S>,
+    given: &[Vertex<S>],
+    directions: &[Vec3<S>],
+    distance: impl Fn(&Vertex<S>) -> S,
+    least: S,
+) -> Result<Vertex<S>, Gap<S>> {
+    let mut best = (S::ZERO, given[0]);
+    for vertex in given {
+        let reach = distance(vertex);
+        if reach > best.0 {
+            best = (reach, *vertex);
+        }
+    }
+    if best.0 > least {
+        return Ok(best.1);
+    }
+    for &direction in directions {
+        for normal in [direction, -direction] {
+            let vertex = pair.vertex(normal);
+            let reach = distance(&vertex);
+            if reach > best.0 {
+                best = (reach, vertex);
+            }
+        }
+    }
+    if best.0 > least {
+        return Ok(best.1);
+    }
+    let mut gap = pair.gap(directions[0]);
+    gap.improve(pair.gap(-directions[0]), S::ZERO);
+    Err(gap)
+}
+
+/// Grows until the depth is known.
+fn expand<S: Scalar>(pair: &Pair<S>, polytope: &mut Polytope<S>) -> (Gap<S>, Simplex<S>) {
+    let mut best = pair.gap(pair.start());
+    let mut touching = polytope.corners(0);
+    for _ in 0..ROUNDS {
+        let nearest = polytope.nearest();
+        let (outward, distance) = (polytope.normal(nearest), polytope.distance(nearest));
+        // How much shorter a way out over the nearest face may still be.
+        let slack = if best.settled {
+            (pair.smallest * S::new(SLACK)).max(pair.tolerance)
+        } else {
+            pair.tolerance
+        };
+        if polytope.is_full() || -best.gap - distance <= slack {
+            break;
+        }
+        let corners = polytope.corners(nearest);
+        let vertex = pair.vertex(-outward);
+        let raw = Gap {
+            normal: -outward,
+            gap: -outward.dot(vertex.w),
+            settled: false,
+        };
+        let movable = -raw.gap - distance;
+        let better = best.improve(raw, pair.tolerance);
+        if better {
+            touching = corners;
+        }
+        if movable <= pair.tolerance {
+            break;
+        }
+        if !polytope.add(nearest, vertex) {
+            // As far out as rounding lets it be.
+            polytope.retire(nearest);
+        }
+        if better && pair.curved && movable < pair.smallest * S::new(NEAR) {
+            let flats = Flats::of(pair, &corners);
+            best.improve(refine(pair, raw.normal, &flats), pair.tolerance);
+            for vertex in flats.vertices(pair, best.normal) {
+                polytope.add_anywhere(vertex);
+            }
+        }
+    }
+    best.settle(pair, &touching);
+    (best, simplex_of(&touching))
+}
+
+/// What the point nearest to the origin of a triangle is made of.
+fn simplex_of<S: Scalar>(corners: &[Vertex<S>; 3]) -> Simplex<S> {
+    let mut simplex = Simplex::new(corners[0]);
+    simplex.add(corners[1]);
+    simplex.add(corners[2]);
+    simplex
+}

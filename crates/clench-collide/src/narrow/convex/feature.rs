@@ -1,0 +1,131 @@
+//! What of a body lies against a plane: a face, an edge or a corner.
+
+use super::body::{Body, rim};
+use crate::ShapeKind;
+use arrayvec::ArrayVec;
+use clench_math::{Scalar, Vec3};
+
+/// Most corners of a feature. A round cap is a polygon of so many on its rim, but one that is kept for the deepest point.
+pub(super) const MOST_CORNERS: usize = 17;
+/// A face counts as lying against the plane up to this tilt (5°), an edge likewise.
+const FACE_COSINE: f64 = 0.996;
+const EDGE_SINE: f64 = 0.087;
+/// A cap tilted by less has its deepest point at every corner, as far as anyone can tell.
+const TILT: f64 = 5e-6;
+
+/// A face, counter-clockwise seen from outside, an edge (two corners) or a corner of a core.
+pub(super) struct Feature<S> {
+    pub corners: ArrayVec<Vec3<S>, MOST_CORNERS>,
+    /// The outward normal of a face.
+    pub normal: Vec3<S>,
+    /// The radius of a round cap about the z axis, which its corners only stand for.
+    pub radius: Option<S>,
+}
+
+impl<S: Scalar> Feature<S> {
+    /// The feature of a body that is furthest along the unit direction `d`, in the body's frame. Its corners come in an order that
+    /// depends on the feature alone.
+    pub fn new(body: &Body<S>, d: Vec3<S>) -> Self {
+        let mut feature = Feature {
+            corners: ArrayVec::new(),
+            normal: d,
+            radius: None,
+        };
+        let edge = S::new(EDGE_SINE);
+        match body.kind() {
+            ShapeKind::Cylinder if d.z.abs() >= S::new(FACE_COSINE) => feature.cap(body.size(), d),
+            ShapeKind::Cylinder | ShapeKind::Capsule if d.z.abs() <= edge => {
+                feature.edge(body.support(d, d), 2);
+            }
+            ShapeKind::Box => feature.of_box(body.size(), d),
+            _ => feature.corners.push(body.support(d, d)),
+        }
+        feature
+    }
+
+    /// The edge along `axis` through a corner.
+    fn edge(&mut self, mut corner: Vec3<S>, axis: usize) {
+        for sign in [-S::ONE, S::ONE] {
+            corner[axis] = corner[axis].copysign(sign);
+            self.corners.push(corner);
+        }
+    }
+
+    fn of_box(&mut self, size: Vec3<S>, d: Vec3<S>) {
+        let corner = Vec3::new(
+            size.x.copysign(d.x),
+            size.y.copysign(d.y),
+            size.z.copysign(d.z),
+        );
+        if let Some(axis) = (0..3).find(|i| d[*i].abs() >= S::new(FACE_COSINE)) {
+            let sign = S::ONE.copysign(d[axis]);
+            self.normal = Vec3::ZERO;
+            self.normal[axis] = sign;
+            let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+            for (u, v) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+                let mut corner = corner;
+                corner[next] = size[next] * S::new(u) * sign;
+                corner[last] = size[last] * S::new(v);
+                self.corners.push(corner);
+            }
+        } else if let Some(axis) = (0..3).find(|i| d[*i].abs() <= S::new(EDGE_SINE)) {
+            self.edge(corner, axis);
+        } else {
+            self.corners.push(corner);
+        }
+    }
+
+    /// The cap of a cylinder: corners that do not turn with the tilt, so that a standing cylinder stands still, and between
+    /// them the deepest point of the rim.
+    fn cap(&mut self, size: Vec3<S>, d: Vec3<S>) {
+        let up = S::ONE.copysign(d.z);
+        self.normal = Vec3::new(S::ZERO, S::ZERO, up);
+        self.radius = Some(size.x);
+        let height = size.y * up;
+        let tip = rim(d);
+        let mut tilted = (d.x * d.x + d.y * d.y).sqrt() > S::new(TILT);
+        let at = |(x, y): (S, S)| Vec3::new(x * size.x, y * size.x, height);
+        for k in 0..RIM.len() {
+            let (from, to) = (direction::<S>(k, up), direction::<S>(k + 1, up));
+            self.corners.push(at(from));
+            let after = from.0 * tip.1 - from.1 * tip.0;
+            let before = tip.0 * to.1 - tip.1 * to.0;
+            if tilted && after * up >= S::ZERO && before * up > S::ZERO {
+                self.corners.push(at(tip));
+                tilted = false;
+            }
+        }
+    }
+}
+
+/// Sixteen directions round a circle.
+const RIM: [(f64, f64); 16] = {
+    // Cosine and sine of 22.5°, 45° and 67.5°.
+    const C: f64 = 0.923_879_532_511_286_7;
+    const D: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    const S: f64 = 0.382_683_432_365_089_8;
+    [
+        (1.0, 0.0),
+        (C, S),
+        (D, D),
+        (S, C),
+        (0.0, 1.0),
+        (-S, C),
+        (-D, D),
+        (-C, S),
+        (-1.0, 0.0),
+        (-C, -S),
+        (-D, -D),
+        (-S, -C),
+        (0.0, -1.0),
+        (S, -C),
+        (D, -D),
+        (C, -S),
+    ]
+};
+
+/// Direction `k` around, the other way about if `up` is −1.
+fn direction<S: Scalar>(k: usize, up: S) -> (S, S) {
+    let (x, y) = RIM[k % RIM.len()];
+    (S::new(x), S::new(y) * up)
+}

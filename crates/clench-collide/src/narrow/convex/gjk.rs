@@ -1,0 +1,99 @@
+//! Distance of two cores that are apart (Gilbert, Johnson & Keerthi 1988).
+//!
+//! The difference of the cores is a convex set of vectors w from the first to the second, and its point v nearest to the
+//! origin is the way from one to the other. A simplex of its vertices is kept: v is the simplex' nearest point, the vertex
+//! that is furthest against v is added, and so on. For any unit n
+//!
+//! ```text
+//! n·w(n)  ≤  distance  ≤  |v|,
+//! ```
+//!
+//! so the loop knows how far it may be off. Against curved bodies it would take many rounds, each new vertex a little nearer to
+//! the touching point; there Newton's method takes over as soon as the bounds are near each other, and its direction is
+//! confirmed by the same bounds.
+
+use super::{
+    pair::{Gap, Pair},
+    refine::{Flats, refine},
+    simplex::Simplex,
+};
+use clench_math::Scalar;
+
+/// Rounds until an answer is given, certain or not. Five to ten are usual.
+const ROUNDS: usize = 64;
+/// Newton's method is tried once the bounds differ by less than this share of the smaller body.
+const NEAR: f64 = 0.1;
+/// The multiple of √ε, as a share of the larger coordinates, below which the direction of v is noise.
+const NOISE: f64 = 4.0;
+
+/// What is known of two cores.
+pub(super) enum Cores<S> {
+    /// Further apart than the limit.
+    Apart,
+    /// The largest gap, and the simplex that the nearest points are made of.
+    Near(Gap<S>, Simplex<S>),
+    /// They overlap or touch; the simplex holds the origin, but for rounding.
+    Overlap(Simplex<S>),
+}
+
+/// The distance of the cores if it is at most `limit`.
+pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S) -> Cores<S> {
+    let start = pair.start();
+    let first = pair.vertex(start);
+    let mut best = Gap {
+        normal: start,
+        gap: start.dot(first.w),
+        settled: false,
+    };
+    let mut simplex = Simplex::new(first);
+    let mut v = first.w;
+    let touching = pair.smallest * S::EPSILON.sqrt() * S::new(NOISE);
+    for _ in 0..ROUNDS {
+        if best.gap > limit {
+            return Cores::Apart;
+        }
+        let square = v.norm_squared();
+        let length = square.sqrt();
+        if length <= touching {
+            return Cores::Overlap(simplex);
+        }
+        if length - best.gap <= pair.tolerance {
+            break;
+        }
+        let n = v * (S::ONE / length);
+        let vertex = pair.vertex(n);
+        let gap = n.dot(vertex.w);
+        let raw = Gap {
+            normal: n,
+            gap,
+            settled: false,
+        };
+        best.improve(raw, pair.tolerance);
+        if length - gap <= pair.tolerance {
+            break;
+        }
+        let Some(nearest) = simplex.add(vertex) else {
+            return Cores::Overlap(simplex);
+        };
+        if nearest.norm_squared() >= square {
+            // Rounding has the last word.
+            break;
+        }
+        v = nearest;
+        if pair.curved && length - gap < pair.smallest * S::new(NEAR) {
+            let flats = Flats::of(pair, simplex.vertices());
+            let known = best.normal;
+            best.improve(refine(pair, n, &flats), pair.tolerance);
+            if best.normal != known {
+                for vertex in flats.vertices(pair, best.normal) {
+                    match simplex.add(vertex) {
+                        Some(nearest) => v = nearest,
+                        None => return Cores::Overlap(simplex),
+                    }
+                }
+            }
+        }
+    }
+    best.settle(pair, simplex.vertices());
+    Cores::Near(best, simplex)
+}

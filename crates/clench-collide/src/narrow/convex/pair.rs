@@ -1,0 +1,147 @@
+//! Two bodies seen from the first, and the gap between them along a direction.
+//!
+//! Along a unit direction n from the first body to the second the gap is g(n) = n·w(n), where w(n) = b(−n) − a(n) leads from
+//! the point of the first that is furthest along n to that of the second furthest against it. The signed distance of the
+//! bodies is the largest gap. Its gradient on the sphere is the part of w across n, its Hessian there −(H_A + H_B + g 1).
+
+use super::body::Body;
+use crate::narrow::Placed;
+use clench_math::{Mat3, Real, Scalar, Vec3};
+
+/// Two bodies in the frame of the first.
+pub(super) struct Pair<S> {
+    pub a: Body<S>,
+    pub b: Body<S>,
+    /// The axes of the second as columns.
+    pub rotation: Mat3<S>,
+    /// The origin of the second.
+    pub offset: Vec3<S>,
+    /// The smaller of the bodies' sizes, m: what tolerances are shares of.
+    pub smallest: S,
+    /// Coordinates are at most this large, m: what rounding errors are shares of.
+    pub largest: S,
+    /// How exactly the gap is to be found, m.
+    pub tolerance: S,
+    pub curved: bool,
+}
+
+/// A point of the difference of the cores, and the points that it is the difference of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex<S> {
+    /// From the first body to the second.
+    pub w: Vec3<S>,
+    /// On the first, in its frame.
+    pub a: Vec3<S>,
+    /// On the second, in its own frame.
+    pub b: Vec3<S>,
+}
+
+/// A direction and the gap between the cores along it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gap<S> {
+    pub normal: Vec3<S>,
+    pub gap: S,
+    /// Whether it is the largest in its neighbourhood, and the direction exact.
+    pub settled: bool,
+}
+
+impl<S: Scalar> Gap<S> {
+    /// Takes the other if its gap is larger; between equals, to the tolerance, a settled one. Whether it did.
+    pub fn improve(&mut self, other: Gap<S>, tolerance: S) -> bool {
+        let handicap = match (self.settled, other.settled) {
+            (true, false) => tolerance,
+            (false, true) => -tolerance,
+            _ => S::ZERO,
+        };
+        let better = other.gap > self.gap + handicap;
+        if better {
+            *self = other;
+        }
+        better
+    }
+}
+
+impl<S: Scalar> Pair<S> {
+    pub fn new(a: Placed<S>, b: Placed<S>) -> Self {
+        let offset = a.pose.local(b.pose.position);
+        let rotation = a.pose.rotation.transpose() * b.pose.rotation;
+        let (a, b) = (Body::new(a.shape), Body::new(b.shape));
+        let smallest = Real::min(a.reach, b.reach);
+        let largest = a.reach + b.reach + offset.norm();
+        let rounding = largest * S::EPSILON * S::new(64.0);
+        Pair {
+            a,
+            b,
+            rotation,
+            offset,
+            smallest,
+            largest,
+            tolerance: Real::max(rounding, smallest * S::new(1e-9)),
+            curved: a.curved() | b.curved(),
+        }
+    }
+
+    /// The direction between the origins.
+    pub fn start(&self) -> Vec3<S> {
+        self.offset.normalize().0
+    }
+
+    /// The vertex w(n).
+    #[inline]
+    pub fn vertex(&self, normal: Vec3<S>) -> Vertex<S> {
+        let local = -self.rotation.transpose_mul(normal);
+        self.between(self.a.support(normal, normal), self.b.support(local, local))
+    }
+
+    /// Of the vertices w(n) where there are several, the one furthest against `side`, which is next to n.
+    #[inline]
+    pub fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
+        let local = |v| -self.rotation.transpose_mul(v);
+        let b = self.b.support(local(normal), local(side));
+        self.between(self.a.support(normal, side), b)
+    }
+
+    #[inline]
+    fn between(&self, a: Vec3<S>, b: Vec3<S>) -> Vertex<S> {
+        let w = self.offset + self.rotation * b - a;
+        Vertex { w, a, b }
+    }
+
+    /// The gap g(n).
+    #[inline]
+    pub fn gap(&self, normal: Vec3<S>) -> Gap<S> {
+        Gap {
+            normal,
+            gap: normal.dot(self.vertex(normal).w),
+            settled: false,
+        }
+    }
+
+    /// uᵀ (H_A + H_B) v at a direction, for each of some pairs of vectors u, v across it.
+    #[inline]
+    pub fn curvature<const N: usize>(
+        &self,
+        normal: Vec3<S>,
+        vectors: [(Vec3<S>, Vec3<S>); N],
+    ) -> [S; N] {
+        let local = |v| self.rotation.transpose_mul(v);
+        let of_a = self.a.curvature(normal);
+        let of_b = self.b.curvature(local(normal));
+        let mut bends = [S::ZERO; N];
+        for (bend, (u, v)) in bends.iter_mut().zip(vectors) {
+            *bend = of_a.between(u, v) + of_b.between(local(u), local(v));
+        }
+        bends
+    }
+}
+
+/// Two unit vectors that make a right-handed frame with a unit vector after them (Duff et al. 2017).
+#[inline]
+pub(super) fn across<S: Scalar>(n: Vec3<S>) -> (Vec3<S>, Vec3<S>) {
+    let sign = S::ONE.copysign(n.z);
+    let a = -S::ONE / (sign + n.z);
+    let b = n.x * n.y * a;
+    let e = Vec3::new(S::ONE + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    let f = Vec3::new(b, sign + n.y * n.y * a, -n.y);
+    (e, f)
+}

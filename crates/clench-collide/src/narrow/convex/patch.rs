@@ -1,0 +1,178 @@
+//! The points of a contact: where the features of two bodies overlap, seen along the normal.
+//!
+//! At each corner of the overlap the contact's distance is the difference of the features' heights. Of many corners those
+//! are kept that span the largest area, and the deepest.
+
+use super::{
+    feature::Feature,
+    pair::{Gap, Pair, Vertex, across},
+    simplex::Simplex,
+    view::Seen,
+};
+use crate::MAX_POINTS;
+use crate::narrow::{
+    Placed,
+    one_by_one::{Point, Points},
+    polygon::CAPACITY,
+};
+use arrayvec::ArrayVec;
+use clench_math::{Mat3, Scalar, Vec3};
+
+/// Shares of the smaller body: points nearer to each other are one; a patch may miss the deepest point by so much.
+const SAME: f64 = 1e-5;
+const MISSED: f64 = 1e-6;
+/// Areas that differ by less than this share are equal.
+const TIE: f64 = 1e-6;
+
+/// A contact in the view: where it is across the normal, and the heights of both surfaces.
+#[derive(Clone, Copy)]
+struct Spot<S> {
+    x: S,
+    y: S,
+    heights: (S, S),
+}
+
+impl<S: Scalar> Spot<S> {
+    fn distance(&self) -> S {
+        self.heights.1 - self.heights.0
+    }
+}
+
+/// All corners of an overlap, and one more.
+type Spots<S> = ArrayVec<Spot<S>, { CAPACITY + 1 }>;
+
+/// Adds the contacts of a pair whose largest gap is known; `simplex` tells the nearest points of the cores where no feature
+/// does.
+pub(super) fn patch<S: Scalar>(
+    pair: &Pair<S>,
+    a: Placed<S>,
+    best: Gap<S>,
+    simplex: &Simplex<S>,
+    margin: S,
+    points: &mut Points<S>,
+) {
+    let n = best.normal;
+    let feature_a = Feature::new(&pair.a, n);
+    let feature_b = Feature::new(&pair.b, -pair.rotation.transpose_mul(n));
+    let radii = (pair.a.radius, pair.b.radius);
+    let normal = a.pose.rotation * n;
+    let half = best.gap * S::new(0.5);
+    let place = |p| pair.offset + pair.rotation * p;
+    // A corner, or the one point where a curved body touches.
+    let middle = match (&feature_a.corners[..], &feature_b.corners[..]) {
+        (&[p], &[q]) => Some((p + place(q)) * S::new(0.5)),
+        (&[p], _) => Some(p + n * half),
+        (_, &[q]) => Some(place(q) - n * half),
+        _ => None,
+    };
+    if let Some(middle) = middle {
+        let shift = (radii.0 - radii.1) * S::new(0.5);
+        points.push(Point {
+            position: a.pose.point(middle + n * shift),
+            normal,
+            distance: best.gap - radii.0 - radii.1,
+        });
+        return;
+    }
+    let (side, other) = across(n);
+    let view = Mat3::from_rows(side, other, n);
+    let seen_a = Seen::new(&feature_a, Vec3::ZERO, &view, false);
+    let seen_b = Seen::new(
+        &feature_b,
+        view * pair.offset,
+        &(view * pair.rotation),
+        true,
+    );
+
+    let slack = (pair.smallest * S::new(MISSED)).max(pair.tolerance);
+    let mut spots = Spots::new();
+    // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
+    for beyond in [S::ZERO, slack] {
+        spots.clear();
+        for p in seen_a.overlap(&seen_b, beyond).corners() {
+            spots.push(Spot {
+                x: p.x,
+                y: p.y,
+                heights: (seen_a.height(*p), seen_b.height(*p)),
+            });
+        }
+        if spots.iter().any(|s| s.distance() <= best.gap + slack) {
+            break;
+        }
+    }
+    if !spots.iter().any(|s| s.distance() <= best.gap + slack) {
+        spots.insert(0, witness(simplex, pair, &view, best.gap));
+    }
+    spots.retain(|s| s.distance() - radii.0 - radii.1 <= margin);
+    thin_out(&mut spots, pair.smallest * S::new(SAME), pair.tolerance);
+    for spot in spots {
+        let (from, to) = (spot.heights.0 + radii.0, spot.heights.1 - radii.1);
+        let middle = Vec3::new(spot.x, spot.y, (from + to) * S::new(0.5));
+        points.push(Point {
+            position: a.pose.point(view.transpose_mul(middle)),
+            normal,
+            distance: to - from,
+        });
+    }
+}
+
+/// The nearest points of the cores: those that support the normal if they face each other, else as the simplex has them.
+fn witness<S: Scalar>(simplex: &Simplex<S>, pair: &Pair<S>, view: &Mat3<S>, gap: S) -> Spot<S> {
+    let Vertex { w, a, b } = pair.vertex(view.rows[2]);
+    let (mut on_a, mut on_b) = (a, b);
+    if (w - view.rows[2] * gap).norm() > pair.smallest * S::new(MISSED) {
+        (on_a, on_b) = (Vec3::ZERO, Vec3::ZERO);
+        for (vertex, &weight) in simplex.vertices().iter().zip(simplex.weights()) {
+            on_a += vertex.a * weight;
+            on_b += vertex.b * weight;
+        }
+    }
+    let on_b = pair.offset + pair.rotation * on_b;
+    let middle = *view * ((on_a + on_b) * S::new(0.5));
+    let half = gap * S::new(0.5);
+    Spot {
+        x: middle.x,
+        y: middle.y,
+        heights: (middle.z - half, middle.z + half),
+    }
+}
+
+/// Leaves one of points that coincide, and at most [`MAX_POINTS`]: the deepest, and those that span the largest area, by
+/// taking away again and again the corner that spans the smallest triangle with its neighbours.
+fn thin_out<S: Scalar>(spots: &mut Spots<S>, same: S, tolerance: S) {
+    let mut kept = Spots::<S>::new();
+    for spot in spots.iter() {
+        let near = |s: &mut Spot<S>| {
+            let (x, y) = (s.x - spot.x, s.y - spot.y);
+            x * x + y * y <= same * same
+        };
+        match kept.iter_mut().find_map(|s| near(s).then_some(s)) {
+            Some(twin) if spot.distance() < twin.distance() => *twin = *spot,
+            Some(_) => {}
+            None => kept.push(*spot),
+        }
+    }
+    *spots = kept;
+    while spots.len() > MAX_POINTS {
+        let len = spots.len();
+        let deepest = deepest(spots, tolerance);
+        let mut least = (S::INFINITY, deepest);
+        for k in (1..len).map(|k| (deepest + k) % len) {
+            let (p, q, r) = (spots[(k + len - 1) % len], spots[k], spots[(k + 1) % len]);
+            let area = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+            // Rounding must not choose between equals.
+            if area.abs() < least.0 * S::new(1.0 - TIE) {
+                least = (area.abs(), k);
+            }
+        }
+        spots.remove(least.1);
+    }
+}
+
+/// The first of the deepest spots; what the tolerance cannot tell apart is as deep.
+fn deepest<S: Scalar>(spots: &Spots<S>, tolerance: S) -> usize {
+    let distances = spots.iter().map(Spot::distance);
+    let least = distances.fold(S::INFINITY, |least, d| least.min(d)) + tolerance;
+    let first = spots.iter().position(|spot| spot.distance() <= least);
+    first.unwrap_or(0)
+}

@@ -1,0 +1,249 @@
+//! Newton's method for the direction of the largest gap, near it.
+//!
+//! With the gap's gradient w − g n across the direction n and its Hessian −(H_A + H_B + g 1), a step is the t across n with
+//!
+//! ```text
+//! (H_A + H_B + g 1) t = w − g n,      n ← (n + t) / |n + t|.
+//! ```
+//!
+//! Where an edge (or face) of a body is what touches, the support function has a crease there, and n stays across that
+//! edge: one unknown is left, or none. Near the axis of a cylinder the gap of its flat cap is tried as well, since the
+//! support function of a disc comes to a point there.
+//!
+//! Every direction's gap is a lower bound of the signed distance, so whatever is found is compared by its gap alone.
+
+use super::pair::{Gap, Pair, Vertex, across};
+use arrayvec::ArrayVec;
+use clench_math::{Scalar, Vec3};
+
+/// Newton converges quadratically, so more steps than this mean that it does not.
+const STEPS: usize = 12;
+/// How often a step that loses is halved before Newton's method is given up.
+const HALVINGS: usize = 3;
+/// The largest turn of a step, rad.
+const LARGEST_TURN: f64 = 0.3;
+/// The last step turns by less than this in double precision; then the next would turn by about its square.
+const LAST_TURN: f64 = 1e-5;
+
+/// Directions of the edges that touch, orthonormal: none, an edge, or two that span a face (or cross).
+pub(super) struct Flats<S> {
+    directions: ArrayVec<Vec3<S>, 2>,
+}
+
+impl<S: Scalar> Flats<S> {
+    /// The span of the edges between the corners that some vertices are made of.
+    pub fn of(pair: &Pair<S>, vertices: &[Vertex<S>]) -> Self {
+        let mut flats = Flats {
+            directions: ArrayVec::new(),
+        };
+        let corners = |v: &Vertex<S>| (pair.a.corner(v.a), pair.b.corner(v.b));
+        let (a, b) = corners(&vertices[0]);
+        for vertex in &vertices[1..] {
+            let (other_a, other_b) = corners(vertex);
+            flats.extend(other_a - a);
+            flats.extend(pair.rotation * (other_b - b));
+        }
+        flats
+    }
+
+    fn extend(&mut self, edge: Vec3<S>) {
+        let length = edge.norm();
+        if self.directions.is_full() || length <= S::MIN_POSITIVE {
+            return;
+        }
+        let rest = self.across(edge);
+        let left = rest.norm();
+        if left > length * S::EPSILON.sqrt() * S::new(64.0) {
+            self.directions.push(rest * (S::ONE / left));
+        }
+    }
+
+    fn across(&self, v: Vec3<S>) -> Vec3<S> {
+        self.directions.iter().fold(v, |v, &f| v - f * f.dot(v))
+    }
+
+    /// The direction nearest to `n` across the edges; `n` if they leave none.
+    fn project(&self, n: Vec3<S>) -> Vec3<S> {
+        let across = match self.directions[..] {
+            [f, g] => {
+                let normal = f.cross(g);
+                normal * normal.dot(n)
+            }
+            _ => self.across(n),
+        };
+        let length = across.norm();
+        if length > S::new(0.5) {
+            across * (S::ONE / length)
+        } else {
+            n
+        }
+    }
+
+    /// Whether turning off the edge, to either side, would make the gap smaller. (Not asked of two.)
+    fn hold(&self, pair: &Pair<S>, n: Vec3<S>) -> bool {
+        let [f] = self.directions[..] else {
+            return true;
+        };
+        let along = |side: Vec3<S>| side.dot(pair.vertex_beside(n, n + side * S::EPSILON.sqrt()).w);
+        along(f) <= pair.tolerance && along(-f) <= pair.tolerance
+    }
+
+    /// The vertices at the direction `n`: one for each corner of what touches.
+    pub fn vertices(&self, pair: &Pair<S>, n: Vec3<S>) -> ArrayVec<Vertex<S>, 4> {
+        let tilt = S::EPSILON.sqrt();
+        let beside = |side| pair.vertex_beside(n, n + side * tilt);
+        let mut vertices = ArrayVec::new();
+        match self.directions[..] {
+            [] => vertices.push(pair.vertex(n)),
+            [f] => vertices.extend([f, -f].map(beside)),
+            [f, g, ..] => vertices.extend([f + g, g - f, -f - g, f - g].map(beside)),
+        }
+        vertices
+    }
+}
+
+impl<S: Scalar> Gap<S> {
+    /// Makes the direction exact, if it is not, where a curved body touches with the feature that some vertices span.
+    pub fn settle(&mut self, pair: &Pair<S>, vertices: &[Vertex<S>]) {
+        if pair.curved && !self.settled {
+            let flats = Flats::of(pair, vertices);
+            self.improve(refine(pair, self.normal, &flats), pair.tolerance);
+        }
+    }
+}
+
+/// The largest gap in the neighbourhood of a direction.
+pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> {
+    let start = flats.project(start);
+    if flats.directions.is_full() {
+        return pair.gap(start);
+    }
+    match cap(pair, start) {
+        Some((cap, None)) => Gap {
+            settled: true,
+            ..cap
+        },
+        Some((_, Some(beside))) => climb(pair, beside, flats),
+        None => climb(pair, start, flats),
+    }
+}
+
+/// The gap of the best cap that faces `n` more or less, if better than that of `n`; and if the gap grows beside it, where to
+/// look.
+fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<(Gap<S>, Option<Vec3<S>>)> {
+    let mut best = pair.gap(n);
+    let mut found = None;
+    let z = Vec3::new(S::ZERO, S::ZERO, S::ONE);
+    let caps = [(pair.a, z), (pair.b, pair.rotation.column(2))];
+    for (k, (body, axis)) in caps.into_iter().enumerate() {
+        let Some(radius) = body.cap() else { continue };
+        let cosine = axis.dot(n);
+        if cosine.abs() < S::new(LARGEST_TURN.cos()) {
+            continue;
+        }
+        let axis = axis * S::ONE.copysign(cosine);
+        let vertex = pair.vertex(axis);
+        let gap = axis.dot(vertex.w);
+        if gap <= best.gap {
+            continue;
+        }
+        best = Gap {
+            normal: axis,
+            gap,
+            settled: false,
+        };
+        // From the middle of the cap to the other body's point: within the disc, or the gap grows towards it.
+        let to_middle = if k == 0 {
+            vertex.a - body.corner(vertex.a)
+        } else {
+            pair.rotation * (body.corner(vertex.b) - vertex.b)
+        };
+        let lateral = vertex.w + to_middle;
+        let lateral = lateral - axis * axis.dot(lateral);
+        let (toward, distance) = lateral.normalize();
+        let beside = (distance > radius * (S::ONE + S::new(1e-9)) && distance > S::new(1e-15))
+            .then(|| {
+                // Beside the axis, for on it the rim has no direction.
+                let start = axis + toward * S::EPSILON.sqrt();
+                let [bend] = pair.curvature(start, [(toward, toward)]);
+                let turn = (distance - radius) / (bend + gap).max(pair.tolerance);
+                let turn = turn.clamp(S::EPSILON.sqrt(), S::new(LARGEST_TURN));
+                (axis + toward * turn).normalize().0
+            });
+        found = Some((best, beside));
+    }
+    found
+}
+
+/// Newton's iteration; a step that loses is halved.
+fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> {
+    let last = S::new(LAST_TURN).max(S::EPSILON * S::new(256.0));
+    let mut w = pair.vertex(start).w;
+    let mut best = Gap {
+        normal: start,
+        gap: start.dot(w),
+        settled: false,
+    };
+    for _ in 0..STEPS {
+        let Some((mut turn, down)) = step(pair, &best, w, flats) else {
+            return best;
+        };
+        let size = turn.norm();
+        if size > S::new(LARGEST_TURN) {
+            turn = turn * (S::new(LARGEST_TURN) / size);
+        }
+        let mut halvings = 0;
+        loop {
+            let (tried, _) = (best.normal + turn).normalize();
+            w = pair.vertex(tried).w;
+            let gap = tried.dot(w);
+            if gap >= best.gap - pair.tolerance * S::new(1e-3) {
+                (best.normal, best.gap) = (tried, gap);
+                break;
+            }
+            if halvings == HALVINGS {
+                return best;
+            }
+            halvings += 1;
+            turn = turn * S::new(0.5);
+        }
+        if size <= last {
+            best.settled = down && flats.hold(pair, best.normal);
+            return best;
+        }
+    }
+    best
+}
+
+/// The step t, and whether the gap curves down there; nothing where it curves up both ways.
+fn step<S: Scalar>(
+    pair: &Pair<S>,
+    at: &Gap<S>,
+    w: Vec3<S>,
+    flats: &Flats<S>,
+) -> Option<(Vec3<S>, bool)> {
+    let (n, gap) = (at.normal, at.gap);
+    if let [f] = flats.directions[..] {
+        let e = n.cross(f);
+        let [bend] = pair.curvature(n, [(e, e)]);
+        let bend = bend + gap;
+        return (bend > S::ZERO).then(|| (e * (e.dot(w) / bend), true));
+    }
+    let (e, f) = across(n);
+    let [ee, ef, ff] = pair.curvature(n, [(e, e), (e, f), (f, f)]);
+    let half = S::new(0.5);
+    let mean = (ee + ff) * half + gap;
+    let spread = (((ee - ff) * half).squared() + ef * ef).sqrt();
+    let (least, most) = (mean - spread, mean + spread);
+    if most <= S::ZERO {
+        return None;
+    }
+    // Around an axis that both bodies share the gap does not change; on a saddle, away from it is up.
+    let floor = most * S::new(1e-6);
+    let shift = (floor - least).max(S::ZERO);
+    let (ee, ff) = (ee + gap + shift, ff + gap + shift);
+    let inverse = S::ONE / (ee * ff - ef * ef);
+    let (we, wf) = (e.dot(w), f.dot(w));
+    let turn = e * ((ff * we - ef * wf) * inverse) + f * ((ee * wf - ef * we) * inverse);
+    Some((turn, least > -floor))
+}

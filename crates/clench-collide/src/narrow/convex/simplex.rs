@@ -1,0 +1,179 @@
+//! The point nearest to the origin in the hull of up to four vertices.
+
+use super::pair::Vertex;
+use clench_math::{Scalar, Vec3};
+
+/// One to four vertices; all but the last are known to be needed for the nearest point of the others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Simplex<S> {
+    vertices: [Vertex<S>; 4],
+    len: usize,
+    /// The nearest point is the sum of weight times vertex.
+    weights: [S; 4],
+}
+
+impl<S: Scalar> Simplex<S> {
+    pub fn new(vertex: Vertex<S>) -> Self {
+        Simplex {
+            vertices: [vertex; 4],
+            len: 1,
+            weights: [S::ONE, S::ZERO, S::ZERO, S::ZERO],
+        }
+    }
+    pub fn vertices(&self) -> &[Vertex<S>] {
+        &self.vertices[..self.len]
+    }
+    pub fn weights(&self) -> &[S] {
+        &self.weights[..self.len]
+    }
+
+    /// Adds a vertex and drops those that the nearest point does without. Gives that point, or nothing where the origin is
+    /// inside.
+    pub fn add(&mut self, vertex: Vertex<S>) -> Option<Vec3<S>> {
+        self.vertices[self.len] = vertex;
+        self.len += 1;
+        let nearest = match self.len {
+            2 => self.on_segment(1, 0),
+            3 => self.on_triangle(2, 0, 1),
+            _ => self.on_tetrahedron()?,
+        };
+        self.keep(&nearest);
+        Some(nearest.point)
+    }
+
+    fn keep(&mut self, nearest: &Nearest<S>) {
+        let old = self.vertices;
+        self.len = 0;
+        // In case no weight is a number.
+        self.vertices[0] = old[nearest.of[0]];
+        for (&index, &weight) in nearest.of.iter().zip(&nearest.weights) {
+            if weight > S::ZERO {
+                self.vertices[self.len] = old[index];
+                self.weights[self.len] = weight;
+                self.len += 1;
+            }
+        }
+        self.len = self.len.max(1);
+    }
+
+    fn w(&self, index: usize) -> Vec3<S> {
+        self.vertices[index].w
+    }
+
+    fn on_segment(&self, i: usize, j: usize) -> Nearest<S> {
+        let (p, q) = (self.w(i), self.w(j));
+        let along = q - p;
+        let ahead = -p.dot(along);
+        if ahead <= S::ZERO {
+            return Nearest::vertex(i, p);
+        }
+        let square = along.norm_squared();
+        if ahead >= square {
+            return Nearest::vertex(j, q);
+        }
+        Nearest::edge((i, p), (j, q), ahead, square)
+    }
+
+    /// By the regions of space in which a corner, an edge or the inside is nearest (Ericson, Real-Time Collision Detection,
+    /// 5.1.5).
+    fn on_triangle(&self, i: usize, j: usize, k: usize) -> Nearest<S> {
+        let (a, b, c) = (self.w(i), self.w(j), self.w(k));
+        let (ab, ac) = (b - a, c - a);
+        let zero = S::ZERO;
+        let (d1, d2) = (-ab.dot(a), -ac.dot(a));
+        if d1 <= zero && d2 <= zero {
+            return Nearest::vertex(i, a);
+        }
+        let (d3, d4) = (-ab.dot(b), -ac.dot(b));
+        if d3 >= zero && d4 <= d3 {
+            return Nearest::vertex(j, b);
+        }
+        let vc = d1 * d4 - d3 * d2;
+        if vc <= zero && d1 >= zero && d3 <= zero {
+            return Nearest::edge((i, a), (j, b), d1, d1 - d3);
+        }
+        let (d5, d6) = (-ab.dot(c), -ac.dot(c));
+        if d6 >= zero && d5 <= d6 {
+            return Nearest::vertex(k, c);
+        }
+        let vb = d5 * d2 - d1 * d6;
+        if vb <= zero && d2 >= zero && d6 <= zero {
+            return Nearest::edge((i, a), (k, c), d2, d2 - d6);
+        }
+        let va = d3 * d6 - d5 * d4;
+        if va <= zero && d4 >= d3 && d5 >= d6 {
+            let (ahead, behind) = (d4 - d3, d5 - d6);
+            return Nearest::edge((j, b), (k, c), ahead, ahead + behind);
+        }
+        let (sum, normal) = (va + vb + vc, ab.cross(ac));
+        let square = normal.norm_squared();
+        if !(sum > zero && square > zero) {
+            // Without area.
+            let sides = [(i, j), (j, k), (k, i)].map(|(i, j)| self.on_segment(i, j));
+            return sides[1..]
+                .iter()
+                .fold(sides[0], |best, side| best.nearer(*side));
+        }
+        let (v, w) = (vb / sum, vc / sum);
+        // Along the normal the point keeps its direction where the weighted sum would lose it.
+        Nearest {
+            point: normal * (normal.dot(a) / square),
+            of: [i, j, k],
+            weights: [S::ONE - v - w, v, w],
+        }
+    }
+
+    /// The nearest of the three faces with the new vertex, of those that the origin is beyond; nothing if it is beyond none.
+    fn on_tetrahedron(&self) -> Option<Nearest<S>> {
+        let new = self.w(3);
+        let mut best: Option<Nearest<S>> = None;
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let normal = (self.w(i) - new).cross(self.w(j) - new);
+            let origin = -new.dot(normal);
+            let opposite = (self.w(k) - new).dot(normal);
+            if origin * opposite > S::ZERO {
+                continue;
+            }
+            let nearest = self.on_triangle(3, i, j);
+            best = Some(best.map_or(nearest, |best| best.nearer(nearest)));
+        }
+        best
+    }
+}
+
+/// A point as the weighted sum of some vertices.
+#[derive(Clone, Copy)]
+struct Nearest<S> {
+    point: Vec3<S>,
+    of: [usize; 3],
+    weights: [S; 3],
+}
+
+impl<S: Scalar> Nearest<S> {
+    fn vertex(i: usize, p: Vec3<S>) -> Self {
+        Nearest {
+            point: p,
+            of: [i, i, i],
+            weights: [S::ONE, S::ZERO, S::ZERO],
+        }
+    }
+    /// The point that is the share `ahead` / `whole` of the way from one vertex to another.
+    fn edge((i, p): (usize, Vec3<S>), (j, q): (usize, Vec3<S>), ahead: S, whole: S) -> Self {
+        if whole <= S::ZERO {
+            return Nearest::vertex(i, p);
+        }
+        let t = ahead / whole;
+        Nearest {
+            point: p + (q - p) * t,
+            of: [i, j, j],
+            weights: [S::ONE - t, t, S::ZERO],
+        }
+    }
+    fn nearer(self, other: Self) -> Self {
+        if other.point.norm_squared() < self.point.norm_squared() {
+            other
+        } else {
+            self
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Features as seen along the contact's normal, and where two of them overlap.
+//!
+//! In the view an edge is a segment and a face a convex polygon, with a height that is linear over it. One is clipped by the
+//! sides of the other. A round cap is its circle where it matters: what is left of a segment or a polygon over it are their
+//! corners within the circle, the ends of their chords, and such points of the circle as lie in the polygon.
+
+use super::feature::Feature;
+use crate::narrow::polygon::Polygon;
+use clench_math::{Mat3, Scalar, Vec3};
+
+/// Edges at less than this angle lie side by side; others cross.
+const PARALLEL: f64 = 1e-3;
+
+/// An edge or a face in the view: x and y across the normal, z along it.
+pub(super) struct Seen<S> {
+    polygon: Polygon<S>,
+    /// The slope of its height.
+    slope: (S, S),
+    /// The round cap that the polygon stands for.
+    disc: Option<Disc<S>>,
+}
+
+/// A round cap: two axes in its plane, a point that has its middle's coordinates along them, and its radius.
+struct Disc<S> {
+    x: Vec3<S>,
+    y: Vec3<S>,
+    center: Vec3<S>,
+    radius: S,
+}
+
+impl<S: Scalar> Seen<S> {
+    /// A feature whose body has this origin and these axes in the view; `below` if it is seen from inside its body.
+    pub fn new(feature: &Feature<S>, origin: Vec3<S>, axes: &Mat3<S>, below: bool) -> Self {
+        let mut polygon = Polygon::empty();
+        let corners = &feature.corners;
+        for k in 0..corners.len() {
+            let corner = corners[if below { corners.len() - 1 - k } else { k }];
+            polygon.push(origin + *axes * corner);
+        }
+        let normal = *axes * feature.normal;
+        let slope = match polygon.corners() {
+            [p, q] => {
+                let (x, y) = (q.x - p.x, q.y - p.y);
+                let rise = (q.z - p.z) / (x * x + y * y).max(S::MIN_POSITIVE);
+                (x * rise, y * rise)
+            }
+            _ => (-normal.x / normal.z, -normal.y / normal.z),
+        };
+        let disc = feature.radius.map(|radius| Disc {
+            x: axes.column(0),
+            y: axes.column(1),
+            center: origin,
+            radius,
+        });
+        Seen {
+            polygon,
+            slope,
+            disc,
+        }
+    }
+
+    fn corners(&self) -> &[Vec3<S>] {
+        self.polygon.corners()
+    }
+    fn is_edge(&self) -> bool {
+        self.corners().len() == 2
+    }
+
+    /// The height above a point of the view.
+    pub fn height(&self, p: Vec3<S>) -> S {
+        let origin = self.corners()[0];
+        origin.z + self.slope.0 * (p.x - origin.x) + self.slope.1 * (p.y - origin.y)
+    }
+
+    /// Where this and another overlap in the view, or are at most `slack` m from it: the corners of a polygon, the ends of a
+    /// segment, or a point. The heights of these are open.
+    pub fn overlap(&self, other: &Seen<S>, slack: S) -> Polygon<S> {
+        if let (&[p, p_end], &[q, q_end]) = (self.corners(), other.corners())
+            && !parallel(p_end - p, q_end - q)
+        {
+            let mut point = Polygon::empty();
+            point.push(crossing((p, p_end), (q, q_end)));
+            return point;
+        }
+        // An edge is cut by a face, a polygon by a circle, many sides by few.
+        let self_is_cut = self.is_edge()
+            || (!other.is_edge()
+                && (other.disc.is_some()
+                    || (self.disc.is_none() && self.corners().len() >= other.corners().len())));
+        let (cut, by) = if self_is_cut {
+            (self, other)
+        } else {
+            (other, self)
+        };
+        match &by.disc {
+            Some(disc) => by.over_disc(disc, cut, slack),
+            None => {
+                let mut rest = cut.polygon.clone();
+                by.clip(&mut rest, slack);
+                rest
+            }
+        }
+    }
+
+    /// Clips a polygon to the sides of this one, or between the ends of this segment.
+    fn clip(&self, polygon: &mut Polygon<S>, slack: S) {
+        let corners = self.corners();
+        for (k, p) in corners.iter().enumerate() {
+            let q = corners[(k + 1) % corners.len()];
+            let (x, y) = (q.x - p.x, q.y - p.y);
+            let outward = if self.is_edge() { (-x, -y) } else { (y, -x) };
+            let beyond = (x * x + y * y).sqrt() * slack;
+            polygon.clip(outward, outward.0 * p.x + outward.1 * p.y + beyond);
+        }
+    }
+
+    /// Whether a point of the view is over this face.
+    fn covers(&self, p: Vec3<S>, slack: S) -> bool {
+        if let Some(disc) = &self.disc {
+            let (x, y) = self.in_plane(disc, p);
+            return x * x + y * y <= (disc.radius + slack).squared();
+        }
+        let corners = self.corners();
+        (0..corners.len()).all(|k| {
+            let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
+            turn(to - from, p - from) >= -slack * (to - from).norm()
+        })
+    }
+
+    /// The coordinates, in the plane of this cap and from its middle, of the point over or under a point of the view.
+    fn in_plane(&self, disc: &Disc<S>, p: Vec3<S>) -> (S, S) {
+        let arm = Vec3::new(p.x, p.y, self.height(p)) - disc.center;
+        (disc.x.dot(arm), disc.y.dot(arm))
+    }
+
+    /// What of an edge or a face is over this round cap.
+    fn over_disc(&self, disc: &Disc<S>, cut: &Seen<S>, slack: S) -> Polygon<S> {
+        let mut over = Polygon::empty();
+        if let &[p, q] = cut.corners() {
+            let (from, to) = self.chord(disc, p, q);
+            for t in [from, to] {
+                over.push(p + (q - p) * t.clamp(S::ZERO, S::ONE));
+            }
+            return over;
+        }
+        let corners = cut.corners();
+        for (k, &p) in corners.iter().enumerate() {
+            if self.covers(p, slack) {
+                over.push(p);
+            }
+            let q = corners[(k + 1) % corners.len()];
+            let (from, to) = self.chord(disc, p, q);
+            for t in [from, to] {
+                if from < to && t > S::ZERO && t < S::ONE {
+                    over.push(p + (q - p) * t);
+                }
+            }
+        }
+        for &p in self.corners() {
+            if cut.covers(p, slack) {
+                over.push(p);
+            }
+        }
+        over.sort_around();
+        over
+    }
+
+    /// Where along a segment it enters and leaves this cap's circle, its ends being 0 and 1; both where it is nearest to the
+    /// middle if it misses the circle.
+    fn chord(&self, disc: &Disc<S>, p: Vec3<S>, q: Vec3<S>) -> (S, S) {
+        let (from, to) = (self.in_plane(disc, p), self.in_plane(disc, q));
+        let along = (to.0 - from.0, to.1 - from.1);
+        let square = (along.0 * along.0 + along.1 * along.1).max(S::MIN_POSITIVE);
+        let middle = -(from.0 * along.0 + from.1 * along.1) / square;
+        let miss = from.0 * along.1 - from.1 * along.0;
+        let reach = (disc.radius * disc.radius * square - miss * miss).max(S::ZERO);
+        let reach = reach.sqrt() / square;
+        (middle - reach, middle + reach)
+    }
+}
+
+fn turn<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> S {
+    u.x * v.y - u.y * v.x
+}
+
+fn parallel<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> bool {
+    let lengths = (u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y);
+    turn(u, v).squared() <= lengths * S::new(PARALLEL * PARALLEL)
+}
+
+/// Where two segments cross in the view, or come nearest to that.
+fn crossing<S: Scalar>((p, p_end): (Vec3<S>, Vec3<S>), (q, q_end): (Vec3<S>, Vec3<S>)) -> Vec3<S> {
+    let (u, v, offset) = (p_end - p, q_end - q, q - p);
+    let inverse = S::ONE / turn(u, v);
+    let s = (turn(offset, v) * inverse).clamp(S::ZERO, S::ONE);
+    let t = (turn(offset, u) * inverse).clamp(S::ZERO, S::ONE);
+    (p + u * s + q + v * t) * S::new(0.5)
+}

@@ -1,0 +1,82 @@
+//! Pairs whose decisions branch too much for lanes: each environment is done on its own.
+
+use super::Placed;
+use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, Shape, frame_from_normal};
+use arrayvec::ArrayVec;
+use clench_math::{Mask, Mat3, Real, Vec3};
+
+/// A contact before it has a frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point<S> {
+    pub position: Vec3<S>,
+    pub normal: Vec3<S>,
+    pub distance: S,
+}
+
+/// The points of one environment.
+pub(super) type Points<S> = ArrayVec<Point<S>, MAX_POINTS>;
+
+/// Adds the points that `pair` finds for each lane; those of equal rank share a slot.
+pub(super) fn one_by_one<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    out: &mut Contacts<T>,
+    pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
+) {
+    let mut slots = ArrayVec::<ContactPoint<T>, MAX_POINTS>::new();
+    let mut points = Points::new();
+    for lane in 0..T::LANES {
+        let ((shape_a, pose_a), (shape_b, pose_b)) = (lane_of(a, lane), lane_of(b, lane));
+        let a = Placed {
+            shape: &shape_a,
+            pose: &pose_a,
+        };
+        let b = Placed {
+            shape: &shape_b,
+            pose: &pose_b,
+        };
+        points.clear();
+        pair(a, b, margin.lane(lane), &mut points);
+        for (k, point) in points.iter().enumerate() {
+            if k == slots.len() {
+                slots.push(ContactPoint::none());
+            }
+            set_point(&mut slots[k], lane, point);
+        }
+    }
+    for slot in &slots {
+        out.push(*slot);
+    }
+}
+
+fn lane_of<T: Real>(p: Placed<T>, lane: usize) -> (Shape<T::Scalar>, Pose<T::Scalar>) {
+    let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
+    let shape = Shape {
+        kind: p.shape.kind,
+        size: vector(p.shape.size),
+    };
+    let pose = Pose {
+        position: vector(p.pose.position),
+        rotation: Mat3 {
+            rows: p.pose.rotation.rows.map(vector),
+        },
+    };
+    (shape, pose)
+}
+
+fn set_point<T: Real>(slot: &mut ContactPoint<T>, lane: usize, point: &Point<T::Scalar>) {
+    set_lane(&mut slot.position, lane, point.position);
+    let frame = frame_from_normal(point.normal);
+    for (row, value) in slot.frame.rows.iter_mut().zip(frame.rows) {
+        set_lane(row, lane, value);
+    }
+    slot.distance.set_lane(lane, point.distance);
+    slot.active.set_lane(lane, true);
+}
+
+fn set_lane<T: Real>(v: &mut Vec3<T>, lane: usize, value: Vec3<T::Scalar>) {
+    v.x.set_lane(lane, value.x);
+    v.y.set_lane(lane, value.y);
+    v.z.set_lane(lane, value.z);
+}

@@ -1,0 +1,80 @@
+//! Convex polygons as seen along a direction, and what is left of one within another.
+
+use arrayvec::ArrayVec;
+use clench_math::{Scalar, Vec3};
+use std::cmp::Ordering;
+
+/// Room for corners. Two faces have at most 17 each (see `convex::feature`); of each side of one, both ends of a chord may be
+/// corners of their overlap.
+pub(super) const CAPACITY: usize = 4 * 17;
+
+/// A convex polygon, or a segment (two corners): x and y in the plane across the line of sight, z the height along it.
+#[derive(Clone, Debug)]
+pub(super) struct Polygon<S> {
+    corners: ArrayVec<Vec3<S>, CAPACITY>,
+}
+
+impl<S: Scalar> Polygon<S> {
+    pub fn empty() -> Self {
+        Polygon {
+            corners: ArrayVec::new(),
+        }
+    }
+    pub fn corners(&self) -> &[Vec3<S>] {
+        &self.corners
+    }
+    pub fn push(&mut self, corner: Vec3<S>) {
+        // Only rounding could make more corners than there is room for, and then they coincide with others.
+        let _ = self.corners.try_push(corner);
+    }
+
+    /// Leaves the part where x·`x` + y·`y` is at most `limit` (Sutherland–Hodgman).
+    pub fn clip(&mut self, (x, y): (S, S), limit: S) {
+        let beyond = |p: Vec3<S>| x * p.x + y * p.y - limit;
+        if self.corners.iter().all(|p| beyond(*p) <= S::ZERO) {
+            return;
+        }
+        let whole = self.corners.clone();
+        self.corners.clear();
+        // The way back along a segment would meet the line a second time.
+        let sides = if whole.len() == 2 { 1 } else { whole.len() };
+        for (k, &p) in whole.iter().enumerate() {
+            let q = whole[(k + 1) % whole.len()];
+            let (dp, dq) = (beyond(p), beyond(q));
+            if dp <= S::ZERO {
+                self.push(p);
+            }
+            let crosses = (dp < S::ZERO && dq > S::ZERO) || (dp > S::ZERO && dq < S::ZERO);
+            if crosses && k < sides {
+                self.push(p + (q - p) * (dp / (dp - dq)));
+            }
+        }
+    }
+
+    /// Puts the corners in order around their middle, beginning with the first. Their heights are lost.
+    pub fn sort_around(&mut self) {
+        let Some(&first) = self.corners.first() else {
+            return;
+        };
+        let share = S::ONE / S::new(self.corners.len() as f64);
+        let sum = self.corners.iter().fold(Vec3::ZERO, |sum, p| sum + *p);
+        let middle = sum * share;
+        let start = first - middle;
+        // Grows with the angle from the first corner, 0 to 4. Corners next to the first come with it.
+        let tiny = S::EPSILON * S::new(1e3);
+        for p in &mut self.corners {
+            let arm = *p - middle;
+            let along = start.x * arm.x + start.y * arm.y;
+            let aside = start.x * arm.y - start.y * arm.x;
+            let sum = (along.abs() + aside.abs()).max(S::MIN_POSITIVE);
+            let turn = S::ONE - along / sum;
+            p.z = if aside < -sum * tiny {
+                S::new(4.0) - turn
+            } else {
+                turn
+            };
+        }
+        self.corners
+            .sort_unstable_by(|p, q| p.z.partial_cmp(&q.z).unwrap_or(Ordering::Equal));
+    }
+}
