@@ -242,11 +242,13 @@ fn joint_type(kind: JointKind) -> i32 {
 fn geom_type(kind: ShapeKind) -> i32 {
     match kind {
         ShapeKind::Plane => 0,
+        ShapeKind::HeightField => 1,
         ShapeKind::Sphere => 2,
         ShapeKind::Capsule => 3,
         ShapeKind::Ellipsoid => 4,
         ShapeKind::Cylinder => 5,
         ShapeKind::Box => 6,
+        ShapeKind::Mesh => 7,
     }
 }
 

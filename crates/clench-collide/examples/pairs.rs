@@ -18,7 +18,12 @@ const KINDS: [ShapeKind; 6] = [
     ShapeKind::Box,
 ];
 
-type Scene = (Shape<f64>, Pose<f64>, Shape<f64>, Pose<f64>);
+type Scene = (
+    Shape<'static, f64>,
+    Pose<f64>,
+    Shape<'static, f64>,
+    Pose<f64>,
+);
 
 /// Random numbers in [0, 1) (SplitMix64, Steele, Lea & Flood 2014).
 struct Random(u64);
@@ -34,9 +39,9 @@ impl Random {
     fn vector(&mut self) -> Vec3<f64> {
         Vec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - Vec3::new(1.0, 1.0, 1.0)
     }
-    fn shape(&mut self, kind: ShapeKind) -> Shape<f64> {
+    fn shape(&mut self, kind: ShapeKind) -> Shape<'static, f64> {
         let size = self.vector() * 0.04 + Vec3::new(0.08, 0.08, 0.08);
-        Shape { kind, size }
+        Shape::new(kind, size)
     }
     fn pose(&mut self) -> Pose<f64> {
         Pose {

@@ -8,8 +8,8 @@
 //! use clench_math::Vec3;
 //!
 //! // A ball of radius 0.1 m pressed 1 mm into the ground.
-//! let ground = Shape { kind: ShapeKind::Plane, size: Vec3::ZERO };
-//! let ball = Shape { kind: ShapeKind::Sphere, size: Vec3::new(0.1, 0.0, 0.0) };
+//! let ground = Shape::new(ShapeKind::Plane, Vec3::ZERO);
+//! let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.1, 0.0, 0.0));
 //! let above = Pose { position: Vec3::new(0.0, 0.0, 0.099), ..Pose::IDENTITY };
 //!
 //! let mut contacts = Contacts::<f64>::new();
@@ -22,11 +22,15 @@
 mod broad;
 mod contact;
 mod frame;
+mod height_field;
+mod hull;
 mod narrow;
 mod shape;
 
 pub use broad::{Bound, Sweep, allowance, near};
 pub use contact::{ContactPoint, Contacts, MAX_POINTS};
 pub use frame::{frame_along, frame_from_normal};
+pub use height_field::{HeightField, HeightFieldError};
+pub use hull::{Hull, HullError, HullSurface, convex_hull};
 pub use narrow::{collide, supported};
-pub use shape::{Pose, Shape, ShapeKind, bounding_radius};
+pub use shape::{Asset, Pose, Shape, ShapeKind, bounding_radius};

@@ -1,5 +1,6 @@
 //! What collides: a shape, its size and where it is.
 
+use crate::{HeightField, Hull};
 use clench_math::{Mat3, Real, Vec3};
 
 /// The kinds of shape, in the order that decides which of two is the first of a pair (MuJoCo's `mjtGeom`).
@@ -7,6 +8,9 @@ use clench_math::{Mat3, Real, Vec3};
 pub enum ShapeKind {
     /// The half-space below the local xy plane, without bounds. No size.
     Plane,
+    /// Terrain over a rectangle, on a base. Size: half lengths along x and y; a quarter of the elevation and half of the base,
+    /// added (as in MuJoCo).
+    HeightField,
     /// Size: radius.
     Sphere,
     /// The points within a radius of a segment on the local z axis. Size: radius, half length of the segment.
@@ -17,15 +21,64 @@ pub enum ShapeKind {
     Cylinder,
     /// Size: half lengths along x, y, z.
     Box,
+    /// The convex hull of a mesh. Size: how far it reaches from its origin along x, y, z, to either side.
+    Mesh,
 }
 
 /// A shape about its own origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shape<T> {
+pub struct Shape<'a, T> {
     /// What it is.
     pub kind: ShapeKind,
     /// Size in metres, as each [`ShapeKind`] says; numbers that a kind does not use are ignored.
     pub size: Vec3<T>,
+    /// What its size does not tell. A mesh without a hull and a height field without heights touch nothing.
+    pub asset: Asset<'a>,
+}
+
+/// What belongs to a shape besides its size: the same in every environment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Asset<'a> {
+    /// Nothing: the size says it all.
+    #[default]
+    None,
+    /// The hull of a [`ShapeKind::Mesh`].
+    Hull(&'a Hull),
+    /// The heights of a [`ShapeKind::HeightField`].
+    HeightField(&'a HeightField),
+}
+
+impl<'a, T: Real> Shape<'a, T> {
+    /// A shape that its size describes.
+    #[inline(always)]
+    pub fn new(kind: ShapeKind, size: Vec3<T>) -> Self {
+        Shape {
+            kind,
+            size,
+            asset: Asset::None,
+        }
+    }
+    /// A convex hull.
+    pub fn mesh(hull: &'a Hull) -> Self {
+        Shape {
+            kind: ShapeKind::Mesh,
+            size: numbers(hull.extent()),
+            asset: Asset::Hull(hull),
+        }
+    }
+    /// A height field.
+    pub fn height_field(field: &'a HeightField) -> Self {
+        let [x, y, elevation, base] = field.size();
+        Shape {
+            kind: ShapeKind::HeightField,
+            size: numbers(Vec3::new(x, y, 0.25 * elevation + 0.5 * base)),
+            asset: Asset::HeightField(field),
+        }
+    }
+}
+
+fn numbers<T: Real>(v: Vec3<f64>) -> Vec3<T> {
+    Vec3::new(T::new(v.x), T::new(v.y), T::new(v.z))
 }
 
 /// Where a shape is.
@@ -61,7 +114,7 @@ impl<T: Real> Pose<T> {
     }
 }
 
-/// The radius in metres of the smallest sphere about the shape's origin that holds it; infinite for a plane.
+/// The radius in metres of a sphere about the shape's origin that holds it, the smallest where size tells all; infinite for a plane.
 #[inline(always)]
 pub fn bounding_radius<T: Real>(shape: &Shape<T>) -> T {
     let s = shape.size;
@@ -71,6 +124,8 @@ pub fn bounding_radius<T: Real>(shape: &Shape<T>) -> T {
         ShapeKind::Capsule => s.x + s.y,
         ShapeKind::Ellipsoid => s.x.max(s.y).max(s.z),
         ShapeKind::Cylinder => (s.x * s.x + s.y * s.y).sqrt(),
-        ShapeKind::Box => s.norm(),
+        ShapeKind::Box | ShapeKind::Mesh => s.norm(),
+        // Neither elevation nor base is more than four times that sum.
+        ShapeKind::HeightField => Vec3::new(s.x, s.y, s.z * T::new(4.0)).norm(),
     }
 }

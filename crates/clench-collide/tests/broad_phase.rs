@@ -12,7 +12,7 @@ const KINDS: [ShapeKind; 6] = {
 };
 
 struct World<T: Real> {
-    shapes: Vec<Shape<T>>,
+    shapes: Vec<Shape<'static, T>>,
     poses: Vec<Pose<T>>,
     bounds: Vec<Bound<T>>,
     margins: Vec<T>,
@@ -29,10 +29,7 @@ impl<T: Real> World<T> {
         };
         for _ in 0..count {
             let kind = KINDS[(random.unit() * 6.0) as usize];
-            let shape = Shape {
-                kind,
-                size: Vec3::from_f64(random.shape(kind).size.to_array()),
-            };
+            let shape = Shape::new(kind, Vec3::from_f64(random.shape(kind).size.to_array()));
             let mut pose = Pose::<T>::IDENTITY;
             for lane in 0..T::LANES {
                 let place = random.vector().scale_by(Vec3::new(5.0, 1.0, 1.0));

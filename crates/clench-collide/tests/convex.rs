@@ -60,15 +60,9 @@ fn placed(random: &mut Random, kinds: (ShapeKind, ShapeKind), placement: Placeme
     }
     let pose = |rotation, position| Pose { position, rotation };
     let mut scene = Scene {
-        a: Shape {
-            kind: kinds.0,
-            size: sizes[0],
-        },
+        a: Shape::new(kinds.0, sizes[0]),
         pose_a: pose(rotations[0], V::ZERO),
-        b: Shape {
-            kind: kinds.1,
-            size: sizes[1],
-        },
+        b: Shape::new(kinds.1, sizes[1]),
         pose_b: pose(rotations[1], V::ZERO),
         margin: 1.0,
     };
@@ -166,15 +160,17 @@ fn every_point_lies_midway_between_the_surfaces() {
     }
 }
 
-fn shape(kind: ShapeKind, size: [f64; 3]) -> Shape<f64> {
-    Shape {
-        kind,
-        size: Vec3::from_f64(size),
-    }
+fn shape(kind: ShapeKind, size: [f64; 3]) -> Shape<'static, f64> {
+    Shape::new(kind, Vec3::from_f64(size))
 }
 
 /// A shape on another, upright, moved by `offset` and turned.
-fn on_top(a: Shape<f64>, b: Shape<f64>, offset: [f64; 3], turn: Mat3<f64>) -> Scene {
+fn on_top(
+    a: Shape<'static, f64>,
+    b: Shape<'static, f64>,
+    offset: [f64; 3],
+    turn: Mat3<f64>,
+) -> Scene {
     Scene {
         a,
         pose_a: Pose::IDENTITY,
@@ -302,18 +298,15 @@ fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
         }
         _ => random.rotation(),
     };
-    let a = Shape {
-        kind: kinds.0,
-        size: size(random),
-    };
-    let b = Shape {
-        kind: kinds.1,
-        size: if random.unit() < 0.2 {
+    let a = Shape::new(kinds.0, size(random));
+    let b = Shape::new(
+        kinds.1,
+        if random.unit() < 0.2 {
             a.size
         } else {
             size(random)
         },
-    };
+    );
     let (rotation_a, rotation_b) = (rotation(random), rotation(random));
     let direction = match (random.unit() * 3.0) as usize {
         0 => rotation_a.column(0),

@@ -89,7 +89,7 @@ fn pairs_out_of_order_or_unknown_yield_nothing() {
     assert!(!supported(ShapeKind::Plane, ShapeKind::Plane));
     assert!(supported(ShapeKind::Box, ShapeKind::Ellipsoid));
     let size = Vec3::new(1.0, 1.0, 1.0);
-    let shape = |kind| Shape { kind, size };
+    let shape = |kind| Shape::new(kind, size);
     let mut out = Contacts::new();
     let here = Pose::IDENTITY;
     for (a, b) in [
@@ -103,7 +103,7 @@ fn pairs_out_of_order_or_unknown_yield_nothing() {
 }
 
 /// Puts scene `i` into lane `i`.
-fn lanes<T: Real>(scenes: &[Scene]) -> (Shape<T>, Pose<T>, Shape<T>, Pose<T>, T) {
+fn lanes<T: Real>(scenes: &[Scene]) -> (Shape<'static, T>, Pose<T>, Shape<'static, T>, Pose<T>, T) {
     let vector = |get: &dyn Fn(&Scene) -> Vec3<f64>| {
         let mut v = Vec3::<T>::ZERO;
         for (lane, scene) in scenes.iter().enumerate() {
@@ -119,14 +119,8 @@ fn lanes<T: Real>(scenes: &[Scene]) -> (Shape<T>, Pose<T>, Shape<T>, Pose<T>, T)
             rows: [0, 1, 2].map(|i| vector(&|s| get(s).rotation.rows[i])),
         },
     };
-    let a = Shape {
-        kind: scenes[0].a.kind,
-        size: vector(&|s| s.a.size),
-    };
-    let b = Shape {
-        kind: scenes[0].b.kind,
-        size: vector(&|s| s.b.size),
-    };
+    let a = Shape::new(scenes[0].a.kind, vector(&|s| s.a.size));
+    let b = Shape::new(scenes[0].b.kind, vector(&|s| s.b.size));
     let mut margin = T::ZERO;
     for (lane, scene) in scenes.iter().enumerate() {
         margin.set_lane(lane, T::new(scene.margin).lane(0));

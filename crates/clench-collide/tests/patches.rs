@@ -7,11 +7,8 @@ use clench_math::{Mat3, Quat, Vec3};
 use common::Scene;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-fn shape(kind: ShapeKind, size: [f64; 3]) -> Shape<f64> {
-    Shape {
-        kind,
-        size: Vec3::from_f64(size),
-    }
+fn shape(kind: ShapeKind, size: [f64; 3]) -> Shape<'static, f64> {
+    Shape::new(kind, Vec3::from_f64(size))
 }
 
 fn at(position: [f64; 3], rotation: Mat3<f64>) -> Pose<f64> {
@@ -30,9 +27,9 @@ fn lying() -> Mat3<f64> {
 }
 
 fn points(
-    a: Shape<f64>,
+    a: Shape<'static, f64>,
     pose_a: Pose<f64>,
-    b: Shape<f64>,
+    b: Shape<'static, f64>,
     pose_b: Pose<f64>,
 ) -> Vec<ContactPoint<f64>> {
     let scene = Scene {
@@ -45,7 +42,7 @@ fn points(
     scene.contacts().as_slice().to_vec()
 }
 
-fn on_floor(b: Shape<f64>, pose: Pose<f64>) -> Vec<ContactPoint<f64>> {
+fn on_floor(b: Shape<'static, f64>, pose: Pose<f64>) -> Vec<ContactPoint<f64>> {
     points(shape(ShapeKind::Plane, [0.0; 3]), Pose::IDENTITY, b, pose)
 }
 
@@ -169,7 +166,7 @@ fn crossing_capsules_touch_once() {
 }
 
 /// The scene upside down: the box or cylinder is the second shape but the lower one.
-fn lying_on(b: Shape<f64>, top: f64) -> Vec<ContactPoint<f64>> {
+fn lying_on(b: Shape<'static, f64>, top: f64) -> Vec<ContactPoint<f64>> {
     let capsule = shape(ShapeKind::Capsule, [0.1, 0.3, 0.0]);
     let mut found = points(
         capsule,

@@ -4,7 +4,9 @@
 //! What an MJCF file can say and this library cannot simulate yet is an error that names file, line and element, never
 //! a silent skip; what has no effect on motion (textures, cameras, colours, ...) is accepted by an explicit list.
 
+mod elevation;
 mod error;
+mod mesh;
 mod mjcf;
 
 pub use error::LoadError;

@@ -306,8 +306,8 @@ fn errors_of_the_model_are_located_too() {
 fn what_is_not_supported_yet_is_an_error_that_says_so() {
     let later = "not supported yet";
     for (line, element) in [
-        ("<geom type='mesh' mesh='m'/>", "geom"),
-        ("<geom type='hfield'/>", "geom"),
+        ("<geom type='sdf' mesh='m'/>", "geom"),
+        ("<site type='mesh'/>", "site"),
         ("<geom size='1' adhesion='1'/>", "geom"),
         ("<geom size='1' surfacevel='0 0 1'/>", "geom"),
         ("<geom size='1' fluidshape='ellipsoid'/>", "geom"),
@@ -325,7 +325,7 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ("<tendon><spatial/></tendon>", "spatial"),
         ("<deformable><flex/></deformable>", "flex"),
         ("<extension><plugin/></extension>", "plugin"),
-        ("<asset><mesh/></asset>", "mesh"),
+        ("<asset><skin/></asset>", "skin"),
         ("<asset><model/></asset>", "model"),
         ("<equality><flex/></equality>", "flex"),
         ("<option integrator='implicit'/>", "option"),

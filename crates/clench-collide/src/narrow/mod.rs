@@ -21,7 +21,7 @@ use clench_math::Real;
 /// A shape where it is.
 #[derive(Clone, Copy)]
 struct Placed<'a, T> {
-    shape: &'a Shape<T>,
+    shape: &'a Shape<'a, T>,
     pose: &'a Pose<T>,
 }
 
@@ -31,11 +31,12 @@ pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     matches!(
         (a.min(b), a.max(b)),
         (Plane, Sphere | Capsule | Ellipsoid | Cylinder | Box)
-            | (Sphere, Sphere | Capsule | Ellipsoid | Cylinder | Box)
-            | (Capsule, Capsule | Ellipsoid | Cylinder | Box)
-            | (Ellipsoid, Ellipsoid | Cylinder | Box)
-            | (Cylinder, Cylinder | Box)
-            | (Box, Box)
+            | (Sphere, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh)
+            | (Capsule, Capsule | Ellipsoid | Cylinder | Box | Mesh)
+            | (Ellipsoid, Ellipsoid | Cylinder | Box | Mesh)
+            | (Cylinder, Cylinder | Box | Mesh)
+            | (Box, Box | Mesh)
+            | (Mesh, Mesh)
     )
 }
 
@@ -79,7 +80,10 @@ pub fn collide<T: Real>(
         (Box, Box) => box_box::box_box(a, b, margin, out),
         (Sphere | Capsule | Ellipsoid, Ellipsoid)
         | (Ellipsoid | Cylinder, Cylinder)
-        | (Ellipsoid | Cylinder, Box) => convex::convex(a, b, margin, out),
+        | (Ellipsoid | Cylinder, Box)
+        | (Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh, Mesh) => {
+            convex::convex(a, b, margin, out)
+        }
         _ => {}
     }
 }

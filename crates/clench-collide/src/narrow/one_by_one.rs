@@ -50,11 +50,12 @@ pub(super) fn one_by_one<T: Real>(
     }
 }
 
-fn lane_of<T: Real>(p: Placed<T>, lane: usize) -> (Shape<T::Scalar>, Pose<T::Scalar>) {
+fn lane_of<'a, T: Real>(p: Placed<'a, T>, lane: usize) -> (Shape<'a, T::Scalar>, Pose<T::Scalar>) {
     let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
     let shape = Shape {
         kind: p.shape.kind,
         size: vector(p.shape.size),
+        asset: p.shape.asset,
     };
     let pose = Pose {
         position: vector(p.pose.position),

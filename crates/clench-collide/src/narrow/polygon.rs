@@ -4,9 +4,11 @@ use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 use std::cmp::Ordering;
 
-/// Room for corners. Two faces have at most 17 each (see `convex::feature`); of each side of one, both ends of a chord may be
-/// corners of their overlap.
-pub(super) const CAPACITY: usize = 4 * 17;
+use super::convex::MOST_CORNERS;
+
+/// Room for corners. Of each side of a face, both ends of a chord may be corners of its overlap with another, and so may all
+/// corners of both.
+pub(super) const CAPACITY: usize = 4 * MOST_CORNERS;
 
 /// A convex polygon, or a segment (two corners): x and y in the plane across the line of sight, z the height along it.
 #[derive(Clone, Debug)]

@@ -67,13 +67,13 @@ impl Random {
     pub fn rotation(&mut self) -> Mat3<f64> {
         Quat::from_axis_angle(self.direction(), self.range(0.0, 6.3)).to_matrix()
     }
-    pub fn shape(&mut self, kind: ShapeKind) -> Shape<f64> {
+    pub fn shape(&mut self, kind: ShapeKind) -> Shape<'static, f64> {
         let size = Vec3::new(
             self.range(0.05, 0.5),
             self.range(0.05, 0.5),
             self.range(0.05, 0.5),
         );
-        Shape { kind, size }
+        Shape::new(kind, size)
     }
     /// A pair at random, near enough that most touch: sometimes aligned with the axes, on round coordinates.
     pub fn scene(&mut self, kinds: (ShapeKind, ShapeKind)) -> Scene {
@@ -138,9 +138,9 @@ fn grid(v: V) -> V {
 /// Two shapes and where they are.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
-    pub a: Shape<f64>,
+    pub a: Shape<'static, f64>,
     pub pose_a: Pose<f64>,
-    pub b: Shape<f64>,
+    pub b: Shape<'static, f64>,
     pub pose_b: Pose<f64>,
     pub margin: f64,
 }
@@ -223,7 +223,7 @@ impl Scene {
 }
 
 /// The point of a shape furthest along a direction (of a plane: its origin).
-pub fn support(shape: &Shape<f64>, pose: &Pose<f64>, n: V) -> V {
+pub fn support(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V) -> V {
     let d = pose.rotation.transpose_mul(n);
     let s = shape.size;
     let signed = |size: f64, along: f64| size.copysign(along);
@@ -240,12 +240,13 @@ pub fn support(shape: &Shape<f64>, pose: &Pose<f64>, n: V) -> V {
             Vec3::new(d.x / level * s.x, d.y / level * s.x, signed(s.y, d.z))
         }
         ShapeKind::Box => Vec3::new(signed(s.x, d.x), signed(s.y, d.y), signed(s.z, d.z)),
+        ShapeKind::HeightField | ShapeKind::Mesh => unreachable!("no size tells its points"),
     };
     pose.point(local)
 }
 
 /// How far a point is from a shape's surface. (For ellipsoids, to first order near the surface.)
-pub fn off_surface(shape: &Shape<f64>, pose: &Pose<f64>, point: V) -> f64 {
+pub fn off_surface(shape: &Shape<'static, f64>, pose: &Pose<f64>, point: V) -> f64 {
     let p = pose.local(point);
     let s = shape.size;
     let signed = match shape.kind {
@@ -259,6 +260,7 @@ pub fn off_surface(shape: &Shape<f64>, pose: &Pose<f64>, point: V) -> f64 {
         }
         ShapeKind::Cylinder => outside(&[p.x.hypot(p.y) - s.x, p.z.abs() - s.y]),
         ShapeKind::Box => outside(&[p.x.abs() - s.x, p.y.abs() - s.y, p.z.abs() - s.z]),
+        ShapeKind::HeightField | ShapeKind::Mesh => unreachable!("no size tells its surface"),
     };
     signed.abs()
 }
@@ -275,11 +277,8 @@ fn outside(excess: &[f64]) -> f64 {
 }
 
 /// A shape in another number type, the same in every lane.
-pub fn convert_shape<T: Real>(s: &Shape<f64>) -> Shape<T> {
-    Shape {
-        kind: s.kind,
-        size: Vec3::from_f64(s.size.to_array()),
-    }
+pub fn convert_shape<T: Real>(s: &Shape<'static, f64>) -> Shape<'static, T> {
+    Shape::new(s.kind, Vec3::from_f64(s.size.to_array()))
 }
 
 /// A pose in another number type, the same in every lane.

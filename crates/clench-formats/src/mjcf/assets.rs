@@ -1,4 +1,4 @@
-//! `<asset>`: textures and materials are only seen, but who names one must name one that exists.
+//! Textures and materials of `<asset>` are only seen, but who names one must name one that exists.
 
 use super::document::Element;
 use super::{entries, schema, sections};

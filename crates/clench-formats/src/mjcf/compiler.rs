@@ -11,6 +11,10 @@ pub(crate) struct Notation {
     pub degrees: bool,
     /// Axes of the three Euler rotations; lower case: moving axes, upper case: fixed ones.
     pub eulerseq: [char; 3],
+    /// Where files of meshes and height fields are, seen from the model.
+    pub meshdir: String,
+    /// Only the last part of a file's path counts.
+    pub strippath: bool,
 }
 
 impl Default for Notation {
@@ -18,6 +22,8 @@ impl Default for Notation {
         Notation {
             degrees: true,
             eulerseq: ['x', 'y', 'z'],
+            meshdir: String::new(),
+            strippath: false,
         }
     }
 }
@@ -57,6 +63,10 @@ impl Notation {
             &[("radian", false), ("degree", true)],
             &mut self.degrees,
         )?;
+        if let Some(directory) = element.text("meshdir").or(element.text("assetdir")) {
+            directory.clone_into(&mut self.meshdir);
+        }
+        element.set_boolean("strippath", &mut self.strippath)?;
         if let Some(text) = element.text("eulerseq") {
             let axes: Vec<char> = text.chars().filter(|c| "xyzXYZ".contains(*c)).collect();
             let axes = <[char; 3]>::try_from(axes).ok().filter(|_| text.len() == 3);
@@ -98,5 +108,7 @@ pub(crate) fn read(
         let wrong = |_| element.error("inertiagrouprange needs two integers");
         spec.inertiagrouprange = groups.try_into().map_err(wrong)?;
     }
-    element.set_boolean("alignfree", &mut spec.alignfree)
+    element.set_boolean("alignfree", &mut spec.alignfree)?;
+    element.set_boolean("fitaabb", &mut spec.fitaabb)?;
+    element.set_boolean("discardvisual", &mut spec.discardvisual)
 }

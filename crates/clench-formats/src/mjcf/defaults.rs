@@ -9,6 +9,7 @@ use super::document::Element;
 use super::equality::EqualityDraft;
 use super::geom::GeomDraft;
 use super::joint;
+use super::mesh::MeshDraft;
 use super::site::SiteDraft;
 use super::tendon;
 use crate::LoadError;
@@ -19,6 +20,7 @@ use clench_rigid::builder::{JointSpec, PairSpec, TendonSpec};
 pub(crate) struct Class {
     name: String,
     parent: Option<usize>,
+    pub mesh: MeshDraft,
     pub joint: JointSpec,
     pub geom: GeomDraft,
     pub site: SiteDraft,
@@ -40,6 +42,7 @@ impl Default for Classes {
         Classes(vec![Class {
             name: "main".to_owned(),
             parent: None,
+            mesh: MeshDraft::default(),
             joint: JointSpec::default(),
             geom: GeomDraft::default(),
             site: SiteDraft::default(),
@@ -100,6 +103,7 @@ impl Classes {
         }
         let class = &mut self.0[class];
         match element.tag.as_str() {
+            "mesh" => class.mesh.read(element),
             "joint" => joint::read(element, &mut class.joint),
             "geom" => class.geom.read(element),
             "site" => class.site.read(element),

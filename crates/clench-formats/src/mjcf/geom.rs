@@ -10,13 +10,13 @@ use clench_rigid::builder::{GeomMass, GeomSpec};
 
 const KINDS: [(&str, Option<ShapeKind>); 9] = [
     ("plane", Some(ShapeKind::Plane)),
-    ("hfield", None),
+    ("hfield", Some(ShapeKind::HeightField)),
     ("sphere", Some(ShapeKind::Sphere)),
     ("capsule", Some(ShapeKind::Capsule)),
     ("ellipsoid", Some(ShapeKind::Ellipsoid)),
     ("cylinder", Some(ShapeKind::Cylinder)),
     ("box", Some(ShapeKind::Box)),
-    ("mesh", None),
+    ("mesh", Some(ShapeKind::Mesh)),
     ("sdf", None),
 ];
 
@@ -79,6 +79,13 @@ impl GeomDraft {
         element.set_number("gap", &mut geom.gap)?;
         element.set_boolean("shellinertia", &mut geom.shellinertia)?;
         element.set_integer("group", &mut geom.group)?;
+        if let Some(mesh) = element.text("mesh") {
+            mesh.clone_into(&mut geom.mesh);
+        }
+        if let Some(hfield) = element.text("hfield") {
+            hfield.clone_into(&mut geom.hfield);
+        }
+        element.set_number("fitscale", &mut geom.fitscale)?;
         element.overlay("size", &mut self.size)?;
         element.set_numbers("pos", &mut self.pos)?;
         self.orientation.read(element)?;
@@ -95,6 +102,9 @@ impl GeomDraft {
         frame: &Pose,
     ) -> Result<GeomSpec, LoadError> {
         let pose = match self.fromto {
+            Some(_) if !self.spec.mesh.is_empty() => {
+                return Err(element.error("fromto and mesh cannot both be given"));
+            }
             Some(points) => {
                 place_segment(points, self.pos, self.spec.kind, &mut self.size, element)?
             }
@@ -134,7 +144,7 @@ pub(crate) fn place_segment(
     match kind {
         ShapeKind::Capsule | ShapeKind::Cylinder => size[1] = half_length,
         ShapeKind::Ellipsoid | ShapeKind::Box => *size = [size[0], size[0], half_length],
-        ShapeKind::Plane | ShapeKind::Sphere => {
+        ShapeKind::Plane | ShapeKind::Sphere | ShapeKind::HeightField | ShapeKind::Mesh => {
             return Err(element.error("fromto needs a capsule, cylinder, box or ellipsoid"));
         }
     }

@@ -12,10 +12,13 @@ mod contact;
 mod defaults;
 mod document;
 mod equality;
+mod files;
 mod geom;
+mod hfield;
 mod include;
 mod joint;
 mod keyframe;
+mod mesh;
 mod option;
 mod orientation;
 mod rules;
@@ -30,6 +33,7 @@ use clench_rigid::builder::ModelBuilder;
 use compiler::Notation;
 use defaults::{Classes, MAIN};
 use document::Element;
+use files::Files;
 use include::Includes;
 use option::OptionReader;
 use std::collections::HashSet;
@@ -84,7 +88,7 @@ fn read(
     includes.expand(&mut root, directory, 1)?;
     schema::check(&root)?;
     assets::check_materials(&root)?;
-    read_model(&root)
+    read_model(&root, directory)
 }
 
 /// The sections of a kind, in order.
@@ -99,7 +103,7 @@ fn entries<'a>(root: &'a Element, tag: &str) -> impl Iterator<Item = &'a Element
     sections(root, tag).flat_map(|section| &section.children)
 }
 
-fn read_model(root: &Element) -> Result<ModelBuilder, LoadError> {
+fn read_model(root: &Element, directory: &Path) -> Result<ModelBuilder, LoadError> {
     let mut builder = ModelBuilder {
         name: root.text("model").unwrap_or("MuJoCo Model").to_owned(),
         bodies: vec![body::world()],
@@ -118,6 +122,17 @@ fn read_model(root: &Element) -> Result<ModelBuilder, LoadError> {
     let mut classes = Classes::default();
     for section in sections(root, "default") {
         classes.read(section)?;
+    }
+    let files = Files::new(directory, &notation);
+    for element in entries(root, "asset") {
+        match element.tag.as_str() {
+            "mesh" => {
+                let draft = classes.of(element)?.mesh.clone();
+                builder.meshes.push(draft.finish(element, &files)?);
+            }
+            "hfield" => builder.height_fields.push(hfield::read(element, &files)?),
+            _ => {}
+        }
     }
     let mut bodies = BodyReader::new(&notation, &classes, &mut builder.bodies);
     for section in sections(root, "worldbody") {

@@ -75,9 +75,8 @@ pub(crate) const RULES: &[Rule] = &[
     Rule {
         element: "compiler",
         read: "angle eulerseq coordinate autolimits boundmass boundinertia settotalmass balanceinertia \
-            inertiafromgeom inertiagrouprange alignfree",
-        ignored: "assetdir meshdir texturedir strippath usethread conflict fitaabb discardvisual passthrough \
-            savecanonical savecompiled saveinertial",
+            inertiafromgeom inertiagrouprange alignfree assetdir meshdir strippath fitaabb discardvisual",
+        ignored: "texturedir usethread conflict passthrough savecanonical savecompiled saveinertial",
         later: "fusestatic=false",
         once: "lengthrange",
         ..NONE
@@ -185,9 +184,9 @@ pub(crate) const RULES: &[Rule] = &[
     Rule {
         element: "geom",
         read: "name class type contype conaffinity condim group priority size friction mass density shellinertia \
-            solmix solref solimp margin gap fromto pos quat axisangle euler xyaxes zaxis",
+            solmix solref solimp margin gap fromto pos quat axisangle euler xyaxes zaxis mesh hfield fitscale",
         ignored: "material rgba castshadow user fluidcoef",
-        later: "fluidshape=none surfacevel=0 adhesion=0 hfield mesh fitscale",
+        later: "fluidshape=none surfacevel=0 adhesion=0",
         later_children: "plugin",
         ..NONE
     },
@@ -375,7 +374,7 @@ pub(crate) const RULES: &[Rule] = &[
         slidercrank crankbroken frustum bv bvactive",
         "",
     ),
-    section("asset", "texture material", "mesh hfield skin model"),
+    section("asset", "texture material mesh hfield", "skin model"),
     ignored(
         "texture",
         "name class type colorspace content_type embed file gridsize gridlayout fileright fileleft fileup \
@@ -389,7 +388,24 @@ pub(crate) const RULES: &[Rule] = &[
         "layer",
     ),
     ignored("layer", "texture role", ""),
-    ignored("default/mesh", "inertia maxhullvert scale", ""),
+    Rule {
+        element: "mesh",
+        read: "name class file content_type vertex face refpos refquat scale inertia maxhullvert",
+        ignored: "normal texcoord smoothnormal material octree_maxdepth",
+        later: "builtin=none params",
+        later_children: "plugin",
+        ..NONE
+    },
+    Rule {
+        element: "default/mesh",
+        read: "inertia maxhullvert scale",
+        ..NONE
+    },
+    Rule {
+        element: "hfield",
+        read: "name file content_type nrow ncol elevation size",
+        ..NONE
+    },
     section("custom", "numeric text tuple", ""),
     ignored("numeric", "name size data", ""),
     ignored("text", "name data", ""),

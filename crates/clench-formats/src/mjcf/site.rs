@@ -35,8 +35,15 @@ impl SiteDraft {
     /// Overwrites what the element gives.
     pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         self.kind = read_kind(element)?.unwrap_or(self.kind);
-        if self.kind == ShapeKind::Plane {
-            return Err(element.error("a site cannot be a plane"));
+        match self.kind {
+            ShapeKind::Plane => return Err(element.error("a site cannot be a plane")),
+            ShapeKind::HeightField => {
+                return Err(element.error("a site cannot be a height field"));
+            }
+            ShapeKind::Mesh => {
+                return Err(element.error("a site with a mesh is not supported yet"));
+            }
+            _ => {}
         }
         element.set_numbers("pos", &mut self.pos)?;
         self.orientation.read(element)?;

@@ -3,7 +3,8 @@
 use super::check::describe;
 use super::element::Element;
 use super::inertia::{MassProperties, mass_properties};
-use super::{BodySpec, BuildError, JointSpec, ModelBuilder, geoms, joints};
+use super::placed::{Assets, is_discarded};
+use super::{BodySpec, BuildError, InertiaFromGeom, JointSpec, ModelBuilder, geoms, joints};
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
 
@@ -43,6 +44,7 @@ pub(super) fn depth_first(bodies: &[BodySpec]) -> Result<Vec<usize>, BuildError>
 pub(super) fn add_all(
     builder: &ModelBuilder,
     order: &[usize],
+    assets: &Assets,
     model: &mut Model,
 ) -> Result<(), BuildError> {
     let mut number = vec![0; order.len()];
@@ -59,7 +61,7 @@ pub(super) fn add_all(
             parent: number[spec.parent],
             has_children: has_children[old],
         };
-        add(builder, spec, &place, model)?;
+        add(builder, spec, &place, assets, model)?;
     }
     Ok(())
 }
@@ -96,6 +98,7 @@ fn add(
     builder: &ModelBuilder,
     spec: &BodySpec,
     place: &Place,
+    assets: &Assets,
     model: &mut Model,
 ) -> Result<(), BuildError> {
     let b = model.bodies.len();
@@ -104,7 +107,7 @@ fn add(
     check_joints(spec, parent).map_err(|e| e.about(&place.name))?;
     let mut inertia = match is_world {
         true => MassProperties::NONE,
-        false => mass_properties(spec, &place.name, &builder.compiler)?,
+        false => mass_properties(spec, &place.name, &builder.compiler, assets)?,
     };
     let frame = align(builder, spec, place.has_children, &mut inertia);
     let within = |e: BuildError| e.of_body(&place.name);
@@ -118,7 +121,14 @@ fn add(
     model.bodies[b].joints.end = model.joints.len();
     model.bodies[b].dofs.end = model.nv;
     for geom in &spec.geoms {
-        geoms::add_geom(geom, b, frame.moved, model).map_err(within)?;
+        match is_discarded(builder, geom) {
+            true if builder.compiler.inertiafromgeom == InertiaFromGeom::Always => {
+                let message = "cannot be discarded as visual where all inertia comes from geoms";
+                return Err(within(geom.error(message)));
+            }
+            true => assets.place(geom).map(drop).map_err(within)?,
+            false => geoms::add_geom(geom, b, frame.moved, assets, model).map_err(within)?,
+        }
     }
     model.bodies[b].geoms.end = model.geoms.len();
     for site in &spec.sites {

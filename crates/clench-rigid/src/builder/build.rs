@@ -1,5 +1,6 @@
 //! From a description to a model.
 
+use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
     BuildError, ModelBuilder, actuators, bodies, check, contacts, equalities, keyframes, tendons,
@@ -16,7 +17,7 @@ use std::sync::Arc;
 
 impl ModelBuilder {
     /// Checks the description and turns it into a model, by the rules of MuJoCo's compiler: bodies are numbered depth
-    /// first, masses come from geoms where they are not given, ranges become limits, and the inverse inertias that
+    /// first, meshes come to stand about their centres of mass, masses come from geoms where they are not given, ranges become limits, and the inverse inertias that
     /// scale constraints are computed in the initial configuration.
     ///
     /// # Errors
@@ -33,9 +34,11 @@ impl ModelBuilder {
         check::check(self)?;
         let order = bodies::depth_first(&self.bodies)?;
         let names = AllNames::new(self, &order)?;
+        let assets = Assets::new(self)?;
         let mut model = self.empty_model();
 
-        bodies::add_all(self, &order, &mut model)?;
+        bodies::add_all(self, &order, &assets, &mut model)?;
+        assets.keep(self, &mut model);
         weights::require_inertia(&model, &order)?;
         weights::masses(self, &mut model);
         model.tree = Arc::new(tree(&model)?);
@@ -69,6 +72,8 @@ impl ModelBuilder {
             pairs: Vec::new(),
             excludes: HashSet::new(),
             keyframes: Vec::new(),
+            meshes: Vec::new(),
+            height_fields: Vec::new(),
             nq: 0,
             nv: 0,
             na: 0,

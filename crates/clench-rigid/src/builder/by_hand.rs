@@ -190,6 +190,20 @@ impl GeomSpec {
     pub fn ellipsoid(semi_axes: [f64; 3]) -> Self {
         Self::of_kind(ShapeKind::Ellipsoid, semi_axes)
     }
+    /// A mesh among `ModelBuilder::meshes`; its convex hull collides.
+    pub fn mesh(name: impl Into<String>) -> Self {
+        GeomSpec {
+            mesh: name.into(),
+            ..Self::of_kind(ShapeKind::Mesh, [0.0; 3])
+        }
+    }
+    /// A height field among `ModelBuilder::height_fields`.
+    pub fn height_field(name: impl Into<String>) -> Self {
+        GeomSpec {
+            hfield: name.into(),
+            ..Self::of_kind(ShapeKind::HeightField, [0.0; 3])
+        }
+    }
     /// Its name.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {

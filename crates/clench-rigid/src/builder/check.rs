@@ -1,12 +1,11 @@
-//! What can be said of each element alone, before anything is computed: NaN and infinity are refused, and so are sizes
-//! and other numbers that must be positive.
+//! What can be said of each element alone, before anything is computed: NaN and infinity are refused, and so are
+//! numbers that must be positive.
 
 use super::element::Element;
 use super::{
     ActuatorSpec, BodySpec, BuildError, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
     InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec, TendonSpec,
 };
-use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 
 /// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
@@ -162,8 +161,8 @@ fn check_geom(g: &GeomSpec) -> Result<(), BuildError> {
     g.require_finite("gap", &[g.gap])?;
     g.require_finite("solmix", &[g.solmix])?;
     check_softness(g, &[g.solref], &[g.solimp])?;
-    require_condim(g, g.condim)?;
-    check_size(g)
+    g.require_finite("fitscale", &[g.fitscale])?;
+    require_condim(g, g.condim)
 }
 
 /// Contacts have 1, 3, 4 or 6 dimensions.
@@ -174,38 +173,6 @@ pub(super) fn require_condim(element: &impl Element, condim: u32) -> Result<(), 
     match condim {
         1 | 3 | 4 | 6 => Ok(()),
         other => Err(element.error(format!("condim must be 1, 3, 4 or 6, not {other}"))),
-    }
-}
-
-fn check_size(spec: &GeomSpec) -> Result<(), BuildError> {
-    let size = spec.size.to_array();
-    // MuJoCo asks for a plane's third number, the spacing of its grid, though nothing is computed from it.
-    let used = match spec.kind {
-        ShapeKind::Plane => 2..3,
-        ShapeKind::Sphere => 0..1,
-        ShapeKind::Capsule | ShapeKind::Cylinder => 0..2,
-        ShapeKind::Ellipsoid | ShapeKind::Box => 0..3,
-    };
-    for i in used {
-        if size[i] <= 0.0 {
-            return Err(spec.error(format!(
-                "size[{i}] of a {} must be positive, but is {}",
-                shape_name(spec.kind),
-                size[i]
-            )));
-        }
-    }
-    Ok(())
-}
-
-fn shape_name(kind: ShapeKind) -> &'static str {
-    match kind {
-        ShapeKind::Plane => "plane",
-        ShapeKind::Sphere => "sphere",
-        ShapeKind::Capsule => "capsule",
-        ShapeKind::Ellipsoid => "ellipsoid",
-        ShapeKind::Cylinder => "cylinder",
-        ShapeKind::Box => "box",
     }
 }
 

@@ -1,8 +1,8 @@
 //! What all elements have in common: a kind, a name, a place where they were written, and numbers that must be numbers.
 
 use super::{
-    ActuatorSpec, BodySpec, BuildError, EqualitySpec, ExcludeSpec, GeomSpec, JointSpec,
-    KeyframeSpec, Origin, PairSpec, SiteSpec, TendonSpec,
+    ActuatorSpec, BodySpec, BuildError, EqualitySpec, ExcludeSpec, GeomSpec, HeightFieldSpec,
+    JointSpec, KeyframeSpec, MeshSpec, Origin, PairSpec, SiteSpec, TendonSpec,
 };
 
 /// An element of the author's description, as error messages see it.
@@ -72,6 +72,8 @@ elements! {
     JointSpec => "joint",
     GeomSpec => "geom",
     SiteSpec => "site",
+    MeshSpec => "mesh",
+    HeightFieldSpec => "height field",
     TendonSpec => "tendon",
     ActuatorSpec => "actuator",
     EqualitySpec => "equality constraint",

@@ -161,11 +161,17 @@ pub struct GeomSpec {
     pub name: String,
     /// Shape.
     pub kind: ShapeKind,
-    /// MuJoCo's sizes of that shape, m.
+    /// MuJoCo's sizes of that shape, m; those of a mesh or height field, and of a shape that is fitted to a mesh, are ignored.
     pub size: Vec3<f64>,
-    /// Position in the body frame, m.
+    /// The mesh that it is (`kind` is `Mesh`), or that its shape is fitted to, in whose frame it then stands; possibly empty.
+    pub mesh: String,
+    /// The height field that it is (`kind` is `HeightField`), or empty.
+    pub hfield: String,
+    /// Multiplies the size of a shape that is fitted to a mesh.
+    pub fitscale: f64,
+    /// Position in the body frame (of the mesh's own frame, for a mesh), m.
     pub pos: Vec3<f64>,
-    /// Orientation in the body frame.
+    /// Orientation in the body frame, likewise.
     pub quat: Quat<f64>,
     /// Contact type bits.
     pub contype: u32,
@@ -203,6 +209,9 @@ impl Default for GeomSpec {
             name: String::new(),
             kind: ShapeKind::Sphere,
             size: Vec3::ZERO,
+            mesh: String::new(),
+            hfield: String::new(),
+            fitscale: 1.0,
             pos: Vec3::ZERO,
             quat: Quat::IDENTITY,
             contype: 1,

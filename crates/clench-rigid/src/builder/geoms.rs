@@ -1,9 +1,10 @@
 //! Geoms and sites.
 
 use super::element::Element;
+use super::placed::Assets;
 use super::{BuildError, GeomSpec, SiteSpec};
 use crate::model::{Geom, Model, Site};
-use clench_collide::{Shape, ShapeKind, bounding_radius};
+use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 
 /// Where a body's frame was moved, its geoms and sites follow: their pose in the model's frame, of unit quaternion.
@@ -20,13 +21,15 @@ fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>
 /// Adds a geom of body `b`.
 ///
 /// # Errors
-/// A plane that would move.
+/// What a geom cannot take from its asset; a plane that would move.
 pub(super) fn add_geom(
     spec: &GeomSpec,
     b: usize,
     moved: Moved,
+    assets: &Assets,
     model: &mut Model,
 ) -> Result<(), BuildError> {
+    let placed = assets.place(spec)?;
     let weld = &model.bodies[model.bodies[b].weld];
     if spec.kind == ShapeKind::Plane && !weld.joints.is_empty() {
         return Err(spec.error("a plane can only stand on a body that no joint moves"));
@@ -34,6 +37,8 @@ pub(super) fn add_geom(
     model.geoms.push(Geom {
         name: spec.name.clone(),
         kind: spec.kind,
+        mesh: placed.mesh.map(|(index, _)| index),
+        height_field: placed.height_field,
         body: b,
         contype: spec.contype,
         conaffinity: spec.conaffinity,
@@ -42,18 +47,12 @@ pub(super) fn add_geom(
         group: spec.group,
         origin: spec.origin.clone(),
     });
-    let (pos, quat) = place(moved, spec.pos, spec.quat);
+    let (pos, quat) = place(moved, placed.pos, placed.quat);
     let p = &mut model.params;
     p.geom_pos.push(pos);
     p.geom_quat.push(quat);
-    p.geom_size.push(spec.size);
-    p.geom_rbound.push(match spec.kind {
-        ShapeKind::Plane => 0.0,
-        kind => bounding_radius(&Shape {
-            kind,
-            size: spec.size,
-        }),
-    });
+    p.geom_size.push(placed.size);
+    p.geom_rbound.push(placed.rbound);
     p.geom_friction.push(spec.friction);
     p.geom_margin.push(spec.margin);
     p.geom_gap.push(spec.gap);

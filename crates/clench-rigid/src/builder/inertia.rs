@@ -1,10 +1,10 @@
 //! A body's mass, centre of mass and principal moments: as the author gave them, or from its geoms.
 
 use super::element::Element;
+use super::placed::{Assets, PlacedGeom};
 use super::shapes;
 use super::{
-    BodySpec, BuildError, CompilerSpec, GeomMass, GeomSpec, InertiaFromGeom, InertiaSpec,
-    InertialSpec,
+    BodySpec, BuildError, CompilerSpec, GeomMass, InertiaFromGeom, InertiaSpec, InertialSpec,
 };
 use clench_math::{Inertia, Mat3, Quat, Vec3, principal_axes};
 
@@ -42,6 +42,7 @@ pub(super) fn mass_properties(
     body: &BodySpec,
     name: &str,
     compiler: &CompilerSpec,
+    assets: &Assets,
 ) -> Result<MassProperties, BuildError> {
     let from_geoms = match compiler.inertiafromgeom {
         InertiaFromGeom::Always => true,
@@ -49,7 +50,7 @@ pub(super) fn mass_properties(
         InertiaFromGeom::Never => false,
     };
     let counted = match from_geoms {
-        true => geoms_with_mass(body, compiler).map_err(|e| e.of_body(name))?,
+        true => geoms_with_mass(body, compiler, assets).map_err(|e| e.of_body(name))?,
         false => Vec::new(),
     };
     let found = match (&counted[..], &body.inertial) {
@@ -72,18 +73,20 @@ pub(super) fn mass_properties(
 fn geoms_with_mass(
     body: &BodySpec,
     compiler: &CompilerSpec,
+    assets: &Assets,
 ) -> Result<Vec<MassProperties>, BuildError> {
     let [first, last] = compiler.inertiagrouprange;
     let mut counted = Vec::new();
     for geom in &body.geoms {
         if (first..=last).contains(&geom.group) {
-            let mass = geom_mass(geom)?;
+            let geom = assets.place(geom)?;
+            let mass = geom_mass(&geom)?;
             if mass > NEGLIGIBLE {
                 counted.push(MassProperties {
                     mass,
                     pos: geom.pos,
-                    quat: geom.quat.normalize(),
-                    moments: shapes::moments(geom, mass),
+                    quat: geom.quat,
+                    moments: shapes::moments(&geom, mass),
                 });
             }
         }
@@ -91,14 +94,14 @@ fn geoms_with_mass(
     Ok(counted)
 }
 
-fn geom_mass(geom: &GeomSpec) -> Result<f64, BuildError> {
+fn geom_mass(geom: &PlacedGeom) -> Result<f64, BuildError> {
     let measure = shapes::measure(geom);
-    let mass = match geom.mass {
+    let mass = match geom.spec.mass {
         GeomMass::Mass(mass) if mass == 0.0 || measure > NEGLIGIBLE => mass,
         GeomMass::Mass(_) => 0.0,
         GeomMass::Density(density) => density * measure,
     };
-    geom.require_not_negative("mass", &[mass])?;
+    geom.spec.require_not_negative("mass", &[mass])?;
     Ok(mass)
 }
 

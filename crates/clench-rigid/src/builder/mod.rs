@@ -26,6 +26,7 @@
 //! ```
 
 mod actuators;
+mod assets;
 mod bodies;
 mod build;
 mod by_hand;
@@ -39,13 +40,17 @@ mod geoms;
 mod inertia;
 mod joints;
 mod keyframes;
+mod meshes;
 mod physics;
+mod placed;
 mod relations;
 mod resolve;
 mod shapes;
+mod solid;
 mod tendons;
 mod weights;
 
+pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};
 pub use elements::{
     BodySpec, DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomMass, GeomSpec, InertiaSpec, InertialSpec,
     JointSpec, SiteSpec,
@@ -72,6 +77,10 @@ pub struct ModelBuilder {
     pub options: RigidOptions,
     /// Bodies in order of appearance, parents before children; the first is the world.
     pub bodies: Vec<BodySpec>,
+    /// Meshes that geoms refer to.
+    pub meshes: Vec<MeshSpec>,
+    /// Height fields that geoms refer to.
+    pub height_fields: Vec<HeightFieldSpec>,
     /// Fixed tendons.
     pub tendons: Vec<TendonSpec>,
     /// Actuators.
@@ -97,6 +106,8 @@ impl Default for ModelBuilder {
             physics: PhysicsSpec::default(),
             options: RigidOptions::default(),
             bodies: vec![BodySpec::new("world")],
+            meshes: Vec::new(),
+            height_fields: Vec::new(),
             tendons: Vec::new(),
             actuators: Vec::new(),
             equalities: Vec::new(),

@@ -34,6 +34,10 @@ pub struct CompilerSpec {
     pub inertiagrouprange: [i32; 2],
     /// Move the frame of free bodies to their inertial frame.
     pub alignfree: bool,
+    /// Fit shapes to the bounding boxes of meshes, not to their boxes of equivalent inertia.
+    pub fitaabb: bool,
+    /// Leave out geoms that collide with nothing, and meshes that no other geom has; masses stay.
+    pub discardvisual: bool,
 }
 
 impl Default for CompilerSpec {
@@ -47,6 +51,8 @@ impl Default for CompilerSpec {
             inertiafromgeom: InertiaFromGeom::Auto,
             inertiagrouprange: [0, 5],
             alignfree: false,
+            fitaabb: false,
+            discardvisual: false,
         }
     }
 }

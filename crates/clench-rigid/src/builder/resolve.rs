@@ -1,7 +1,8 @@
 //! From names to indices.
 
 use super::element::Element;
-use super::{BodySpec, BuildError, ModelBuilder};
+use super::placed::is_discarded;
+use super::{BodySpec, BuildError, GeomSpec, ModelBuilder};
 use std::collections::HashMap;
 
 /// The named elements of one kind.
@@ -61,6 +62,7 @@ impl<'a> AllNames<'a> {
     /// A name that two elements of one kind share, those included that nothing refers to.
     pub fn new(builder: &'a ModelBuilder, order: &[usize]) -> Result<Self, BuildError> {
         let in_order = || order.iter().map(|&b| &builder.bodies[b]);
+        let kept = |geom: &&GeomSpec| !is_discarded(builder, geom);
         Names::new(&builder.actuators)?;
         Names::new(&builder.equalities)?;
         Names::new(&builder.pairs)?;
@@ -69,7 +71,7 @@ impl<'a> AllNames<'a> {
         Ok(AllNames {
             bodies: body_names(in_order())?,
             joints: Names::new(in_order().flat_map(|b| &b.joints))?,
-            geoms: Names::new(in_order().flat_map(|b| &b.geoms))?,
+            geoms: Names::new(in_order().flat_map(|b| &b.geoms).filter(kept))?,
             sites: Names::new(in_order().flat_map(|b| &b.sites))?,
             tendons: Names::new(&builder.tendons)?,
         })

@@ -2,9 +2,9 @@
 //!
 //! Solids are homogeneous; a shell spreads its mass evenly over the surface. Sizes are MuJoCo's half sizes, moments are
 //! about the shape's own origin and axes, which are principal for every shape here. Textbook integrals; where MuJoCo
-//! approximates (the ellipsoid's shell) its approximation is used, so that a file means the same mass.
+//! approximates (the ellipsoid's shell, a height field as a box) its approximation is used, so that a file means the same mass.
 
-use super::GeomSpec;
+use super::placed::PlacedGeom;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
 use std::f64::consts::PI;
@@ -15,11 +15,12 @@ const THOMSEN: f64 = 1.6075;
 const LAYER: f64 = 1e-6;
 
 /// Volume in m³, or the surface in m² of a shell. A plane has neither.
-pub(super) fn measure(geom: &GeomSpec) -> f64 {
+pub(super) fn measure(geom: &PlacedGeom) -> f64 {
     let Vec3 { x: a, y: b, z: c } = geom.size;
     let (radius, height) = (a, 2.0 * b);
-    match (geom.kind, geom.shellinertia) {
+    match (geom.spec.kind, geom.spec.shellinertia) {
         (ShapeKind::Plane, _) => 0.0,
+        (ShapeKind::Mesh, _) => geom.mesh.map_or(0.0, |(_, mesh)| mesh.measure),
         (ShapeKind::Sphere, false) => 4.0 * PI * a * a * a / 3.0,
         (ShapeKind::Sphere, true) => 4.0 * PI * a * a,
         (ShapeKind::Capsule, false) => {
@@ -33,16 +34,20 @@ pub(super) fn measure(geom: &GeomSpec) -> f64 {
             let sum = (a * b).powf(THOMSEN) + (b * c).powf(THOMSEN) + (c * a).powf(THOMSEN);
             4.0 * PI * (sum / 3.0).powf(1.0 / THOMSEN)
         }
-        (ShapeKind::Box, false) => a * b * c * 8.0,
-        (ShapeKind::Box, true) => 8.0 * (a * b + b * c + c * a),
+        (ShapeKind::Box | ShapeKind::HeightField, false) => a * b * c * 8.0,
+        (ShapeKind::Box | ShapeKind::HeightField, true) => 8.0 * (a * b + b * c + c * a),
     }
 }
 
 /// Principal moments in kg m² of the shape with this mass, about its own axes.
-pub(super) fn moments(geom: &GeomSpec, mass: f64) -> Vec3<f64> {
+pub(super) fn moments(geom: &PlacedGeom, mass: f64) -> Vec3<f64> {
     let size = geom.size;
-    match (geom.kind, geom.shellinertia) {
+    match (geom.spec.kind, geom.spec.shellinertia) {
         (ShapeKind::Plane, _) => Vec3::ZERO,
+        (ShapeKind::Mesh, _) => {
+            let half = geom.mesh.map_or(Vec3::ZERO, |(_, mesh)| mesh.half_box);
+            about_axes(half.scale_by(half) * (mass / 3.0))
+        }
         (ShapeKind::Sphere, false) => equal(2.0 * mass * size.x * size.x / 5.0),
         (ShapeKind::Sphere, true) => equal(2.0 * mass * size.x * size.x / 3.0),
         (ShapeKind::Capsule, false) => capsule(size.x, size.y, mass),
@@ -51,8 +56,10 @@ pub(super) fn moments(geom: &GeomSpec, mass: f64) -> Vec3<f64> {
         (ShapeKind::Cylinder, true) => cylinder_shell(size.x, size.y, mass),
         (ShapeKind::Ellipsoid, false) => about_axes(size.scale_by(size) * (mass / 5.0)),
         (ShapeKind::Ellipsoid, true) => ellipsoid_shell(size, mass),
-        (ShapeKind::Box, false) => about_axes(size.scale_by(size) * (mass / 3.0)),
-        (ShapeKind::Box, true) => box_shell(size, mass),
+        (ShapeKind::Box | ShapeKind::HeightField, false) => {
+            about_axes(size.scale_by(size) * (mass / 3.0))
+        }
+        (ShapeKind::Box | ShapeKind::HeightField, true) => box_shell(size, mass),
     }
 }
 

@@ -120,11 +120,7 @@ fn narrow<T: Real>(
     points: &mut Contacts<T>,
 ) {
     let [a, b] = [candidate.geoms[0] as usize, candidate.geoms[1] as usize];
-    let shape = |kind, geom: usize| Shape {
-        kind,
-        size: params.geom_size[geom],
-    };
-    let (shape_a, shape_b) = (shape(candidate.kinds[0], a), shape(candidate.kinds[1], b));
+    let (shape_a, shape_b) = (shape(model, params, a), shape(model, params, b));
     let (pose_a, pose_b) = (pose(pos, a), pose(pos, b));
     let (_, range) = contact_range(model, params, candidate);
     collide(&shape_a, &pose_a, &shape_b, &pose_b, range, points);
@@ -164,6 +160,16 @@ fn list<T: Real>(
     }
 }
 
+/// The shape of a geom.
+#[inline(always)]
+pub fn shape<'a, T: Real>(model: &'a Model, params: &Params<T>, geom: usize) -> Shape<'a, T> {
+    Shape {
+        kind: model.geoms[geom].kind,
+        size: params.geom_size[geom],
+        asset: model.asset(geom),
+    }
+}
+
 #[inline(always)]
 fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
     Pose {
@@ -193,15 +199,11 @@ impl<T: Real> SweepState<T> {
         candidates: &mut Vec<Candidate>,
     ) {
         let ngeom = model.geoms.len();
-        let shape = |g: usize| Shape {
-            kind: model.geoms[g].kind,
-            size: params.geom_size[g],
-        };
         self.bounds.clear();
         self.poses.clear();
         self.margins.clear();
         for g in 0..ngeom {
-            self.bounds.push(Bound::new(&shape(g)));
+            self.bounds.push(Bound::new(&shape(model, params, g)));
             self.poses.push(pose(pos, g));
             self.margins.push(reach::own_margin(model, params, g));
         }

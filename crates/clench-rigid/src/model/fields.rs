@@ -91,6 +91,9 @@ impl ParamField {
                 });
             }
         }
+        if self == ParamField::geom_size {
+            require_own_sizes(model, field, row)?;
+        }
         let size = match rule {
             Rule::Quaternion => 4,
             Rule::Axis => 3,
@@ -115,6 +118,32 @@ impl Rule {
         };
         (!holds).then_some(range)
     }
+}
+
+/// Whether a shape's size is that of its asset, which is the same in every environment.
+fn has_own_size(kind: ShapeKind) -> bool {
+    matches!(kind, ShapeKind::Mesh | ShapeKind::HeightField)
+}
+
+fn require_own_sizes<S: Scalar>(
+    model: &Model,
+    field: &'static str,
+    row: &[S],
+) -> Result<(), SimError> {
+    for (g, geom) in model.geoms.iter().enumerate() {
+        let own = model.params.geom_size[g].to_array().map(S::new);
+        let given = &row[3 * g..][..3];
+        if has_own_size(geom.kind) && given != own {
+            let axis = (0..3).find(|&i| given[i] != own[i]).unwrap_or(0);
+            return Err(SimError::Parameter {
+                field,
+                index: 3 * g + axis,
+                value: given[axis].to_f64(),
+                range: "the size of its mesh or height field",
+            });
+        }
+    }
+    Ok(())
 }
 
 fn require_rising<S: Scalar>(field: &'static str, row: &[S]) -> Result<(), SimError> {
@@ -163,12 +192,13 @@ impl<T: Real> Params<T> {
             }
             ParamField::geom_size => {
                 self.geom_rbound.clear();
-                let shapes = model.geoms.iter().zip(&self.geom_size);
-                self.geom_rbound
-                    .extend(shapes.map(|(geom, &size)| match geom.kind {
+                for (g, (geom, &size)) in model.geoms.iter().zip(&self.geom_size).enumerate() {
+                    self.geom_rbound.push(match geom.kind {
                         ShapeKind::Plane => T::ZERO,
-                        kind => bounding_radius(&Shape { kind, size }),
-                    }));
+                        kind if has_own_size(kind) => T::new(model.params.geom_rbound[g]),
+                        kind => bounding_radius(&Shape::new(kind, size)),
+                    });
+                }
             }
             _ => {}
         }

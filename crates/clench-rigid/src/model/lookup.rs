@@ -31,4 +31,8 @@ lookups! {
     equality in equalities;
     /// Index of the keyframe of that name.
     keyframe in keyframes;
+    /// Index of the mesh of that name.
+    mesh in meshes;
+    /// Index of the height field of that name.
+    height_field in height_fields;
 }

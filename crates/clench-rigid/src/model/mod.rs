@@ -13,9 +13,10 @@ mod structure;
 pub use params::{ParamField, Params};
 pub use structure::{
     Actuator, BiasKind, Body, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom,
-    Integrator, Joint, JointKind, Keyframe, Pair, Site, Tendon, Transmission,
+    HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair, Site, Tendon, Transmission,
 };
 
+use clench_collide::Asset;
 use clench_solver::{RigidOptions, Tree};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -49,6 +50,10 @@ pub struct Model {
     pub excludes: HashSet<(u32, u32)>,
     /// Stored states.
     pub keyframes: Vec<Keyframe>,
+    /// Meshes.
+    pub meshes: Vec<Arc<Mesh>>,
+    /// Height fields.
+    pub height_fields: Vec<Arc<HeightField>>,
     /// Position coordinates.
     pub nq: usize,
     /// Degrees of freedom.
@@ -81,5 +86,20 @@ impl Model {
     /// Number of actuators, each with one control.
     pub fn nu(&self) -> usize {
         self.actuators.len()
+    }
+    /// The hull or the heights of a geom that is a mesh or a height field.
+    #[inline(always)]
+    pub fn asset(&self, geom: usize) -> Asset<'_> {
+        let geom = &self.geoms[geom];
+        if let Some(mesh) = geom.mesh {
+            return self.meshes[mesh]
+                .hull
+                .as_ref()
+                .map_or(Asset::None, Asset::Hull);
+        }
+        match geom.height_field {
+            Some(field) => Asset::HeightField(&self.height_fields[field].shape),
+            None => Asset::None,
+        }
     }
 }

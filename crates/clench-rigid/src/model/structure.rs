@@ -1,7 +1,8 @@
 //! Records of structure: what each element is and what it belongs to. No number that a user might randomize.
 
 use crate::builder::Origin;
-use clench_collide::ShapeKind;
+use clench_collide::{Hull, ShapeKind};
+use clench_math::{Quat, Vec3};
 use std::ops::Range;
 
 /// Kinds of joint.
@@ -110,6 +111,10 @@ pub struct Geom {
     pub name: String,
     /// Shape.
     pub kind: ShapeKind,
+    /// Its mesh, for `ShapeKind::Mesh`.
+    pub mesh: Option<usize>,
+    /// Its height field, for `ShapeKind::HeightField`.
+    pub height_field: Option<usize>,
     /// Body that carries it.
     pub body: usize,
     /// Contact type bits.
@@ -124,6 +129,36 @@ pub struct Geom {
     pub group: i32,
     /// Where it was written.
     pub origin: Option<Origin>,
+}
+
+/// A mesh about its centre of mass, along its principal axes.
+///
+/// Its numbers are structure: they are the same in every environment.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// Name.
+    pub name: String,
+    /// Its centre of mass where its author put it (scaled, about the reference pose), m.
+    pub pos: Vec3<f64>,
+    /// Its principal axes there.
+    pub quat: Quat<f64>,
+    /// Vertices, m.
+    pub vertices: Vec<Vec3<f64>>,
+    /// Triangles, counter-clockwise seen from outside.
+    pub faces: Vec<[u32; 3]>,
+    /// What collides; `None` where no geom with this mesh does.
+    pub hull: Option<Hull>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// Terrain; its numbers are structure, as those of a [`Mesh`].
+#[derive(Clone, Debug)]
+pub struct HeightField {
+    /// Name.
+    pub name: String,
+    /// Heights and size.
+    pub shape: clench_collide::HeightField,
 }
 
 /// A named frame on a body.

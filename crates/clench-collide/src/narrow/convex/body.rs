@@ -6,7 +6,7 @@
 //! ```text
 //! point      0                                  segment   h |d·z|
 //! ellipsoid  |S d|,  S = diag(semi-axes)        cylinder  r |d across z| + h |d·z|
-//! box        Σ hᵢ |dᵢ|
+//! box        Σ hᵢ |dᵢ|                           hull      max v·d over its vertices v
 //! ```
 //!
 //! A ball of radius ρ rolls freely within a body whose radii of curvature are nowhere below ρ (Blaschke's theorem), so the
@@ -14,22 +14,25 @@
 //! an ellipsoid with ρ = (least semi-axis)² / (largest semi-axis) a core plus a ball. As long as only the balls' layers
 //! overlap, the cores are apart and their distance is a convex problem with one solution.
 
-use crate::{Shape, ShapeKind};
+use crate::{Asset, Hull, Shape, ShapeKind};
 use clench_math::{Scalar, Vec3};
+use std::cell::Cell;
 
 /// A shape in its own frame.
-#[derive(Clone, Copy)]
-pub(super) struct Body<S> {
+pub(super) struct Body<'a, S> {
     kind: ShapeKind,
     size: Vec3<S>,
     /// Of the ball that is added to the core, m.
     pub radius: S,
     /// Of a sphere about the origin that holds the body, m.
     pub reach: S,
+    /// Of a mesh, and its vertex found last, near which the next one is looked for.
+    hull: Option<(&'a Hull, Cell<usize>)>,
 }
 
-impl<S: Scalar> Body<S> {
-    pub fn new(shape: &Shape<S>) -> Self {
+impl<'a, S: Scalar> Body<'a, S> {
+    /// The body of a bounded convex shape; a point for any other.
+    pub fn new(shape: &Shape<'a, S>) -> Self {
         let size = shape.size;
         let radius = match shape.kind {
             ShapeKind::Sphere | ShapeKind::Capsule => size.x,
@@ -45,6 +48,10 @@ impl<S: Scalar> Body<S> {
             size,
             radius,
             reach: crate::bounding_radius(shape),
+            hull: match shape.asset {
+                Asset::Hull(hull) => Some((hull, Cell::new(0))),
+                _ => None,
+            },
         }
     }
 
@@ -74,8 +81,18 @@ impl<S: Scalar> Body<S> {
                 s.y.copysign(side.y),
                 s.z.copysign(side.z),
             ),
-            ShapeKind::Plane | ShapeKind::Sphere => Vec3::ZERO,
+            ShapeKind::Mesh => self.vertex(side).map_or(Vec3::ZERO, Vec3::from_f64),
+            ShapeKind::Plane | ShapeKind::HeightField | ShapeKind::Sphere => Vec3::ZERO,
         }
+    }
+
+    /// The vertex of the hull that is furthest along `d`.
+    #[inline]
+    fn vertex(&self, d: Vec3<S>) -> Option<[f64; 3]> {
+        let (hull, last) = self.hull.as_ref()?;
+        let found = hull.support(Vec3::from_array(d.to_array().map(S::to_f64)), last.get());
+        last.set(found);
+        Some(hull.vertices()[found].to_array())
     }
 
     /// The Hessian of the core's support function at the unit direction `d`.
@@ -126,6 +143,10 @@ impl<S: Scalar> Body<S> {
     }
     pub fn size(&self) -> Vec3<S> {
         self.size
+    }
+    /// The hull, and its vertex that the last support found.
+    pub fn hull(&self) -> Option<(&'a Hull, usize)> {
+        (self.hull.as_ref()).map(|(hull, last)| (*hull, last.get()))
     }
 }
 

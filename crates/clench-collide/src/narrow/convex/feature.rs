@@ -1,12 +1,12 @@
 //! What of a body lies against a plane: a face, an edge or a corner.
 
 use super::body::{Body, rim};
-use crate::ShapeKind;
+use crate::{Hull, ShapeKind};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// Most corners of a feature. A round cap is a polygon of so many on its rim, but one that is kept for the deepest point.
-pub(super) const MOST_CORNERS: usize = 17;
+/// Most corners of a feature. A face of a hull that has more is seen with every second, third, ... of them and the furthest one.
+pub(crate) const MOST_CORNERS: usize = 24;
 /// A face counts as lying against the plane up to this tilt (5°), an edge likewise.
 const FACE_COSINE: f64 = 0.996;
 const EDGE_SINE: f64 = 0.087;
@@ -38,6 +38,7 @@ impl<S: Scalar> Feature<S> {
                 feature.edge(body.support(d, d), 2);
             }
             ShapeKind::Box => feature.of_box(body.size(), d),
+            ShapeKind::Mesh => feature.of_hull(body, d),
             _ => feature.corners.push(body.support(d, d)),
         }
         feature
@@ -73,6 +74,52 @@ impl<S: Scalar> Feature<S> {
         } else {
             self.corners.push(corner);
         }
+    }
+
+    /// Of the faces and edges at the furthest vertex the one that is most nearly level, if one is level enough.
+    fn of_hull(&mut self, body: &Body<S>, d: Vec3<S>) {
+        self.corners.push(body.support(d, d));
+        let Some((hull, vertex)) = body.hull() else {
+            return;
+        };
+        let mut best = (S::new(FACE_COSINE), None);
+        for face in hull.faces_at(vertex) {
+            let cosine = Vec3::from_f64(hull.normal(*face as usize).to_array()).dot(d);
+            if cosine >= best.0 {
+                best = (cosine, Some(*face as usize));
+            }
+        }
+        if let Some(face) = best.1 {
+            self.face(hull, face, vertex);
+            return;
+        }
+        let corner = self.corners[0];
+        let mut best = (S::new(EDGE_SINE), None);
+        for &neighbor in hull.neighbors(vertex) {
+            let end = Vec3::from_f64(hull.vertices()[neighbor as usize].to_array());
+            let (along, _) = (end - corner).normalize();
+            let sine = along.dot(d).abs();
+            if sine <= best.0 {
+                best = (sine, Some(end));
+            }
+        }
+        if let Some(end) = best.1 {
+            self.corners.push(end);
+        }
+    }
+
+    /// A face of a hull; `vertex` is kept whatever else is left out.
+    fn face(&mut self, hull: &Hull, face: usize, vertex: usize) {
+        let at = |v: u32| Vec3::from_f64(hull.vertices()[v as usize].to_array());
+        let corners = hull.corners(face);
+        let stride = corners.len().div_ceil(MOST_CORNERS - 1);
+        self.corners.clear();
+        for (k, &corner) in corners.iter().enumerate() {
+            if k % stride == 0 || corner as usize == vertex {
+                self.corners.push(at(corner));
+            }
+        }
+        self.normal = Vec3::from_f64(hull.normal(face).to_array());
     }
 
     /// The cap of a cylinder: corners that do not turn with the tilt, so that a standing cylinder stands still, and between

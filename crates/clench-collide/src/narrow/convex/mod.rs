@@ -19,6 +19,7 @@ use super::{
 use crate::Contacts;
 use clench_math::{Real, Scalar};
 use epa::epa;
+pub(super) use feature::MOST_CORNERS;
 use gjk::{Cores, gjk};
 use pair::Pair;
 use patch::patch;

@@ -9,9 +9,9 @@ use crate::narrow::Placed;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// Two bodies in the frame of the first.
-pub(super) struct Pair<S> {
-    pub a: Body<S>,
-    pub b: Body<S>,
+pub(super) struct Pair<'a, S> {
+    pub a: Body<'a, S>,
+    pub b: Body<'a, S>,
     /// The axes of the second as columns.
     pub rotation: Mat3<S>,
     /// The origin of the second.
@@ -61,8 +61,8 @@ impl<S: Scalar> Gap<S> {
     }
 }
 
-impl<S: Scalar> Pair<S> {
-    pub fn new(a: Placed<S>, b: Placed<S>) -> Self {
+impl<'a, S: Scalar> Pair<'a, S> {
+    pub fn new(a: Placed<'a, S>, b: Placed<'a, S>) -> Self {
         let offset = a.pose.local(b.pose.position);
         let rotation = a.pose.rotation.transpose() * b.pose.rotation;
         let (a, b) = (Body::new(a.shape), Body::new(b.shape));
@@ -70,6 +70,7 @@ impl<S: Scalar> Pair<S> {
         let largest = a.reach + b.reach + offset.norm();
         let rounding = largest * S::EPSILON * S::new(64.0);
         Pair {
+            curved: a.curved() | b.curved(),
             a,
             b,
             rotation,
@@ -77,7 +78,6 @@ impl<S: Scalar> Pair<S> {
             smallest,
             largest,
             tolerance: Real::max(rounding, smallest * S::new(1e-9)),
-            curved: a.curved() | b.curved(),
         }
     }
 

@@ -9,7 +9,7 @@ use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
 /// Room for vertices; a polytope of so many has 2·VERTICES − 4 triangles.
-pub(super) const VERTICES: usize = 66;
+pub(super) const VERTICES: usize = 128;
 const FACES: usize = 2 * VERTICES - 4;
 /// Vertices nearer than this share of the smaller body are one.
 const SAME: f64 = 1e-6;

@@ -134,7 +134,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<(Gap<S>, Option<Vec3<S>>
     let mut best = pair.gap(n);
     let mut found = None;
     let z = Vec3::new(S::ZERO, S::ZERO, S::ONE);
-    let caps = [(pair.a, z), (pair.b, pair.rotation.column(2))];
+    let caps = [(&pair.a, z), (&pair.b, pair.rotation.column(2))];
     for (k, (body, axis)) in caps.into_iter().enumerate() {
         let Some(radius) = body.cap() else { continue };
         let cosine = axis.dot(n);

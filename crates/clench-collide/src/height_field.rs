@@ -1,0 +1,129 @@
+//! Height fields: terrain as a grid of heights.
+
+use clench_math::Vec3;
+
+/// A grid of heights over a rectangle, on a base: a solid.
+///
+/// Heights are parts of the elevation, between 0 and 1. Rows follow each other along y, columns along x, both from the negative
+/// end; between its four heights a cell is two triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightField {
+    rows: usize,
+    columns: usize,
+    heights: Vec<f64>,
+    half: [f64; 2],
+    elevation: f64,
+    base: f64,
+}
+
+/// A height field that cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum HeightFieldError {
+    /// Fewer than two rows or columns.
+    #[error("a height field needs at least two rows and columns, not {0} x {1}")]
+    TooFew(usize, usize),
+    /// A wrong number of heights.
+    #[error("{rows} rows and {columns} columns need {} heights, not {found}", rows.saturating_mul(*columns))]
+    WrongCount {
+        /// Rows.
+        rows: usize,
+        /// Columns.
+        columns: usize,
+        /// Heights.
+        found: usize,
+    },
+    /// A height that is not a number, or not finite.
+    #[error("height {0} is not a finite number")]
+    NotFinite(usize),
+    /// A size that is not positive.
+    #[error("size[{0}] must be positive and finite, but is {1}")]
+    Size(usize, f64),
+}
+
+impl HeightField {
+    /// A field of rows of heights in any unit, which are brought to parts between the lowest, 0, and the highest, 1 (all 0 where
+    /// they are equal). `size`, in metres: half lengths along x and y, elevation of the highest over the lowest, depth
+    /// of the base below the lowest.
+    ///
+    /// # Errors
+    /// Counts that do not fit, heights that are not finite, sizes that are not positive.
+    pub fn new(
+        rows: usize,
+        columns: usize,
+        mut heights: Vec<f64>,
+        size: [f64; 4],
+    ) -> Result<Self, HeightFieldError> {
+        if rows < 2 || columns < 2 {
+            return Err(HeightFieldError::TooFew(rows, columns));
+        }
+        if rows.checked_mul(columns) != Some(heights.len()) {
+            return Err(HeightFieldError::WrongCount {
+                rows,
+                columns,
+                found: heights.len(),
+            });
+        }
+        if let Some(bad) = heights.iter().position(|height| !height.is_finite()) {
+            return Err(HeightFieldError::NotFinite(bad));
+        }
+        let positive = |s: f64| s > 0.0 && s.is_finite();
+        if let Some(bad) = size.iter().position(|&s| !positive(s)) {
+            return Err(HeightFieldError::Size(bad, size[bad]));
+        }
+        normalize(&mut heights);
+        let [x, y, elevation, base] = size;
+        Ok(HeightField {
+            rows,
+            columns,
+            heights,
+            half: [x, y],
+            elevation,
+            base,
+        })
+    }
+
+    /// Rows, along y.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+    /// Columns, along x.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+    /// All heights as parts of the elevation, row after row.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+    /// Half lengths along x and y, elevation, base, m.
+    pub fn size(&self) -> [f64; 4] {
+        [self.half[0], self.half[1], self.elevation, self.base]
+    }
+    /// A point of the surface, m.
+    pub fn point(&self, row: usize, column: usize) -> Vec3<f64> {
+        let along = |index: usize, count: usize, half: f64| {
+            half * (2.0 * index as f64 / (count - 1) as f64 - 1.0)
+        };
+        Vec3::new(
+            along(column, self.columns, self.half[0]),
+            along(row, self.rows, self.half[1]),
+            self.elevation * self.heights[row * self.columns + column],
+        )
+    }
+    /// The radius of a sphere about the origin that holds it, m (MuJoCo's `geom_rbound`).
+    pub fn radius(&self) -> f64 {
+        let [x, y] = self.half;
+        Vec3::new(x, y, self.elevation.max(self.base)).norm()
+    }
+}
+
+fn normalize(heights: &mut [f64]) {
+    let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    for height in heights {
+        *height = match high > low {
+            // Halved first, so that no difference overflows.
+            true => (0.5 * *height - 0.5 * low) / (0.5 * high - 0.5 * low),
+            false => 0.0,
+        };
+    }
+}

@@ -1,0 +1,182 @@
+//! Triangles in one plane merged to polygons.
+//!
+//! Files keep 24 bits of a coordinate, so what was drawn as one face arrives as triangles that differ a little. From the largest
+//! triangle on, each takes in its neighbours whose corners are all near to its plane; a face's own plane is then laid
+//! through the farthest vertex along its normal, so that no vertex is beyond it.
+
+use super::surface::{Edge, edges};
+use super::{Hull, HullSurface, Lists};
+use clench_math::Vec3;
+
+/// Corners within this part of the hull's size of a plane are in it: some ulps of the 24 bits in files.
+const COPLANAR: f64 = 1e-6;
+const NONE: u32 = u32::MAX;
+
+pub(super) fn build(surface: &HullSurface, points: &[Vec3<f64>]) -> Hull {
+    assert!(points.len() >= surface.point_count());
+    let (vertices, triangles) = compact(surface, points);
+    let sum = vertices.iter().fold(Vec3::ZERO, |sum, &v| sum + v);
+    let center = sum * (1.0 / vertices.len() as f64);
+    let edges = edges(&triangles);
+    let (faces, face_of) = merge(&vertices, &triangles, &edges, center);
+
+    let mut hull = Hull {
+        neighbors: neighbors(vertices.len(), &edges),
+        vertex_faces: faces_at(vertices.len(), &triangles, &face_of),
+        corners: Lists::default(),
+        normals: Vec::new(),
+        offsets: Vec::new(),
+        center,
+        vertices,
+    };
+    for corners in faces {
+        let normal = newell(&hull.vertices, &corners).normalize().0;
+        let farthest = hull.support(normal, corners[0] as usize);
+        hull.offsets.push(hull.vertices[farthest].dot(normal));
+        hull.normals.push(normal);
+        hull.corners.push(corners);
+    }
+    hull
+}
+
+/// The points that are on the surface, in their order, and its triangles in their numbers. Where the points are mirrored,
+/// so are the triangles.
+fn compact(surface: &HullSurface, points: &[Vec3<f64>]) -> (Vec<Vec3<f64>>, Vec<[u32; 3]>) {
+    let mut number = vec![NONE; points.len()];
+    for &corner in surface.triangles().as_flattened() {
+        number[corner as usize] = 0;
+    }
+    let mut vertices = Vec::new();
+    for (point, number) in points.iter().zip(&mut number) {
+        if *number == 0 {
+            *number = vertices.len() as u32;
+            vertices.push(*point);
+        }
+    }
+    let mut triangles: Vec<[u32; 3]> = (surface.triangles().iter())
+        .map(|corners| corners.map(|c| number[c as usize]))
+        .collect();
+    let at = |c: u32| vertices[c as usize] - vertices[0];
+    let volume: f64 = (triangles.iter())
+        .map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))))
+        .sum();
+    if volume < 0.0 {
+        triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    }
+    (vertices, triangles)
+}
+
+/// Twice the area of a polygon, along its normal.
+fn newell(vertices: &[Vec3<f64>], corners: &[u32]) -> Vec3<f64> {
+    let first = vertices[corners[0] as usize];
+    let arms = corners[1..].windows(2).map(|pair| {
+        let [a, b] = [pair[0], pair[1]].map(|c| vertices[c as usize] - first);
+        a.cross(b)
+    });
+    arms.fold(Vec3::ZERO, |sum, arm| sum + arm)
+}
+
+/// The corners of each face, the largest triangles' faces first, and the face of each triangle.
+fn merge(
+    vertices: &[Vec3<f64>],
+    triangles: &[[u32; 3]],
+    edges: &[Edge],
+    center: Vec3<f64>,
+) -> (Vec<Vec<u32>>, Vec<u32>) {
+    let size = (vertices.iter()).fold(0.0, |size, &v| f64::max(size, (v - center).norm()));
+    let mut adjacent = vec![Vec::with_capacity(3); triangles.len()];
+    for edge in edges {
+        adjacent[edge.left].push(edge.right);
+        adjacent[edge.right].push(edge.left);
+    }
+    let areas: Vec<Vec3<f64>> = triangles.iter().map(|t| newell(vertices, t)).collect();
+    let mut order: Vec<usize> = (0..triangles.len()).collect();
+    order.sort_by(|&a, &b| {
+        let [a, b] = [a, b].map(|t| areas[t].norm_squared());
+        b.total_cmp(&a)
+    });
+    let mut face_of = vec![NONE; triangles.len()];
+    let mut faces = Vec::new();
+    for seed in order {
+        if face_of[seed] != NONE {
+            continue;
+        }
+        let normal = areas[seed].normalize().0;
+        let foot = vertices[triangles[seed][0] as usize];
+        let in_plane = |t: usize| {
+            let near = |&c: &u32| normal.dot(vertices[c as usize] - foot).abs() <= COPLANAR * size;
+            triangles[t].iter().all(near) && areas[t].dot(normal) >= 0.0
+        };
+        let number = faces.len() as u32;
+        face_of[seed] = number;
+        let mut members = vec![seed];
+        let mut next = 0;
+        while next < members.len() {
+            for &t in &adjacent[members[next]] {
+                if face_of[t] == NONE && in_plane(t) {
+                    face_of[t] = number;
+                    members.push(t);
+                }
+            }
+            next += 1;
+        }
+        match outline(triangles, &members) {
+            Some(corners) => faces.push(corners),
+            // Not a disk, which only rounding makes: the seed stays alone.
+            None => {
+                members[1..].iter().for_each(|&t| face_of[t] = NONE);
+                faces.push(triangles[seed].to_vec());
+            }
+        }
+    }
+    (faces, face_of)
+}
+
+/// The corners around triangles that form a disk.
+fn outline(triangles: &[[u32; 3]], members: &[usize]) -> Option<Vec<u32>> {
+    let mut halves: Vec<(u32, u32)> = Vec::with_capacity(3 * members.len());
+    for &t in members {
+        let [a, b, c] = triangles[t];
+        halves.extend([(a, b), (b, c), (c, a)]);
+    }
+    halves.sort_unstable();
+    let inner = |&(a, b): &(u32, u32)| halves.binary_search(&(b, a)).is_ok();
+    let rim: Vec<(u32, u32)> = halves.iter().copied().filter(|half| !inner(half)).collect();
+    let (first, mut at) = *rim.first()?;
+    let mut corners = vec![first];
+    while at != first && corners.len() < rim.len() {
+        corners.push(at);
+        let next = rim.binary_search_by_key(&at, |&(from, _)| from).ok()?;
+        at = rim[next].1;
+    }
+    (at == first && corners.len() == rim.len()).then_some(corners)
+}
+
+fn neighbors(count: usize, edges: &[Edge]) -> Lists {
+    let mut pairs: Vec<[u32; 2]> = (edges.iter())
+        .flat_map(|&Edge { ends: [a, b], .. }| [[a, b], [b, a]])
+        .collect();
+    pairs.sort_unstable();
+    lists(count, &pairs)
+}
+
+fn faces_at(count: usize, triangles: &[[u32; 3]], face_of: &[u32]) -> Lists {
+    let mut pairs: Vec<[u32; 2]> = (triangles.iter().zip(face_of))
+        .flat_map(|(corners, &face)| corners.map(|c| [c, face]))
+        .collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    lists(count, &pairs)
+}
+
+/// The second numbers of sorted pairs, a list for each first number below `count`.
+fn lists(count: usize, pairs: &[[u32; 2]]) -> Lists {
+    let mut lists = Lists::default();
+    let mut rest = pairs;
+    for i in 0..count as u32 {
+        let (mine, others) = rest.split_at(rest.partition_point(|pair| pair[0] <= i));
+        lists.push(mine.iter().map(|pair| pair[1]));
+        rest = others;
+    }
+    lists
+}

@@ -1,0 +1,181 @@
+//! Convex hulls: what collides of a mesh.
+//!
+//! [`convex_hull`] finds which of some points lie on their hull, in exact arithmetic; [`Hull`] is that surface made ready for
+//! collision: triangles in one plane merged to polygons, each vertex with its neighbours.
+//!
+//! ```
+//! use clench_collide::{Hull, convex_hull};
+//! use clench_math::Vec3;
+//!
+//! // The corners of a cube, and its middle.
+//! let corner = |i: usize, axis: usize| if i >> axis & 1 == 1 { 1.0 } else { -1.0 };
+//! let mut points: Vec<_> = (0..8)
+//!     .map(|i| Vec3::new(corner(i, 0), corner(i, 1), corner(i, 2)))
+//!     .collect();
+//! points.push(Vec3::ZERO);
+//!
+//! let surface = convex_hull(&points, None)?;
+//! let hull = Hull::new(&surface, &points);
+//! assert_eq!((hull.vertices().len(), hull.face_count()), (8, 6));
+//! # Ok::<(), clench_collide::HullError>(())
+//! ```
+
+mod faces;
+mod quickhull;
+mod surface;
+
+pub use surface::{HullSurface, convex_hull};
+
+use clench_math::Vec3;
+
+/// Points that have no hull with an inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HullError {
+    /// Fewer than four points.
+    #[error("a convex hull needs at least four points, not {0}")]
+    TooFew(usize),
+    /// More points than can be numbered.
+    #[error("{0} points are too many for a convex hull")]
+    TooMany(usize),
+    /// A coordinate that is not finite or beyond 1e60 m.
+    #[error("point {0} has a coordinate that is not a number, or too large")]
+    NotFinite(usize),
+    /// All points coincide.
+    #[error("all points coincide: they have no convex hull (a small sphere may serve instead)")]
+    Point,
+    /// All points lie on a line.
+    #[error(
+        "all points lie on a line: they have no convex hull (a thin capsule may serve instead)"
+    )]
+    Line,
+    /// All points lie in a plane.
+    #[error(
+        "all points lie in a plane: their convex hull has no volume (a plane or a thin box may serve instead)"
+    )]
+    Plane,
+    /// Fewer than four vertices were allowed.
+    #[error("a convex hull has at least four vertices, but only {0} are allowed")]
+    Bound(usize),
+    /// The surface found is not closed.
+    #[error("the convex hull is not closed: please report the points")]
+    Broken,
+}
+
+/// A convex polyhedron about its own origin.
+///
+/// Vertices and faces stay numbered as they are; counts and orders depend on the points alone. Neighbours are those of a
+/// triangulation, in which a vertex that is no farthest one along a direction has a neighbour that is farther, so climbing
+/// from any vertex ends at a farthest one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    vertices: Vec<Vec3<f64>>,
+    /// Of each vertex.
+    neighbors: Lists,
+    /// Faces that each vertex is in.
+    vertex_faces: Lists,
+    /// Corners of each face.
+    corners: Lists,
+    normals: Vec<Vec3<f64>>,
+    offsets: Vec<f64>,
+    center: Vec3<f64>,
+}
+
+impl Hull {
+    /// A surface whose points have moved by an affine map, such as a scale and a turn: `points` are those that the surface
+    /// was found from, where they are now. A map that mirrors is allowed.
+    ///
+    /// # Panics
+    /// Where `points` are fewer than those that the surface was found from.
+    pub fn new(surface: &HullSurface, points: &[Vec3<f64>]) -> Self {
+        faces::build(surface, points)
+    }
+
+    /// Corners, m.
+    pub fn vertices(&self) -> &[Vec3<f64>] {
+        &self.vertices
+    }
+    /// A point well inside: the mean of the vertices, m.
+    pub fn center(&self) -> Vec3<f64> {
+        self.center
+    }
+    /// The vertices that share an edge of the triangulation with a vertex.
+    pub fn neighbors(&self, vertex: usize) -> &[u32] {
+        self.neighbors.get(vertex)
+    }
+    /// The faces that a vertex is in: as a corner, or within a face up to the tolerance of merging.
+    pub fn faces_at(&self, vertex: usize) -> &[u32] {
+        self.vertex_faces.get(vertex)
+    }
+    /// How many faces there are.
+    pub fn face_count(&self) -> usize {
+        self.normals.len()
+    }
+    /// The vertices around a face, counter-clockwise seen from outside.
+    pub fn corners(&self, face: usize) -> &[u32] {
+        self.corners.get(face)
+    }
+    /// The unit vector out of a face.
+    pub fn normal(&self, face: usize) -> Vec3<f64> {
+        self.normals[face]
+    }
+    /// Where the plane of a face is along its normal, m. No vertex is beyond it.
+    pub fn offset(&self, face: usize) -> f64 {
+        self.offsets[face]
+    }
+    /// The radius of the smallest sphere about the origin that holds the hull, m.
+    pub fn radius(&self) -> f64 {
+        let squares = self.vertices.iter().map(|v| v.norm_squared());
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
+    /// How far it reaches from the origin along x, y and z, to either side, m.
+    pub fn extent(&self) -> Vec3<f64> {
+        let reach = |axis: usize| {
+            let along = self.vertices.iter().map(|v| v[axis].abs());
+            along.fold(0.0, f64::max)
+        };
+        Vec3::new(reach(0), reach(1), reach(2))
+    }
+
+    /// The vertex that is farthest along a direction of any length, by climbing from `start`. Where several are, which one
+    /// is found depends on the start.
+    pub fn support(&self, direction: Vec3<f64>, start: usize) -> usize {
+        let mut vertex = start;
+        let mut reach = self.vertices[vertex].dot(direction);
+        loop {
+            let before = vertex;
+            for &neighbor in self.neighbors(before) {
+                let farther = self.vertices[neighbor as usize].dot(direction);
+                if farther > reach {
+                    (vertex, reach) = (neighbor as usize, farther);
+                }
+            }
+            if vertex == before {
+                return vertex;
+            }
+        }
+    }
+}
+
+/// Lists of numbers, one after the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Lists {
+    /// Where each list ends.
+    ends: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    fn push(&mut self, list: impl IntoIterator<Item = u32>) {
+        self.items.extend(list);
+        self.ends.push(self.items.len() as u32);
+    }
+
+    fn get(&self, index: usize) -> &[u32] {
+        let start = match index {
+            0 => 0,
+            _ => self.ends[index - 1] as usize,
+        };
+        &self.items[start..self.ends[index] as usize]
+    }
+}

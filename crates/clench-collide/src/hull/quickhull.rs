@@ -1,0 +1,274 @@
+//! Quickhull (Barber, Dobkin and Huhdanpaa 1996) with exact predicates.
+//!
+//! Start from a tetrahedron; each other point belongs to some triangle that it is strictly outside of. While a triangle has
+//! such points, take the farthest: the triangles that see it go, and a cone from it to their rim closes the hole. Whether a
+//! point is outside is the sign of a determinant, which `robust` finds without error, so the triangles that a point sees
+//! always form a disk and the surface stays closed and convex, however thin or fine it is. Distances, which are rounded, only
+//! choose the order.
+
+use super::HullError;
+use clench_math::Vec3;
+use robust::{Coord3D, orient3d};
+
+/// Points thinner than this part of their extent are flat: what is left of a plane after it was turned in `f64`.
+const FLAT: f64 = 1e-14;
+const NONE: u32 = u32::MAX;
+
+/// A triangle of the surface as it grows.
+struct Facet {
+    /// Counter-clockwise from outside.
+    corners: [u32; 3],
+    /// The facet across the edge from each corner to the next.
+    across: [u32; 3],
+    normal: Vec3<f64>,
+    /// Points that are strictly outside, and belong to no other facet.
+    outside: Vec<u32>,
+    /// The farthest of them, and how far it is.
+    farthest: (f64, u32),
+    alive: bool,
+    /// The last round in which it was asked whether it sees the point.
+    seen: u32,
+}
+
+/// An edge between facets that see a point and one that does not.
+#[derive(Clone, Copy)]
+struct RimEdge {
+    from: u32,
+    to: u32,
+    /// The facet behind it, and which of its edges it is.
+    behind: (u32, usize),
+}
+
+pub(super) struct Quickhull<'a> {
+    points: &'a [Vec3<f64>],
+    facets: Vec<Facet>,
+    /// Facets that may have points outside.
+    pending: Vec<u32>,
+    round: u32,
+    /// Of the new facets of a round, the one whose edge starts at a point.
+    starting_at: Vec<u32>,
+}
+
+/// The triangles of the hull of some of the points. `most` bounds how many of them become corners.
+///
+/// # Errors
+/// Points without an inside.
+pub(super) fn triangles(
+    points: &[Vec3<f64>],
+    among: &[u32],
+    most: Option<usize>,
+) -> Result<Vec<[u32; 3]>, HullError> {
+    let mut hull = Quickhull {
+        points,
+        facets: Vec::new(),
+        pending: Vec::new(),
+        round: 0,
+        starting_at: vec![NONE; points.len()],
+    };
+    hull.start(simplex(points, among)?, among);
+    let mut corners = 4;
+    while most.is_none_or(|most| corners < most)
+        && let Some(facet) = hull.next(most.is_some())
+    {
+        hull.add(facet)?;
+        corners += 1;
+    }
+    let alive = hull.facets.iter().filter(|facet| facet.alive);
+    let mut triangles: Vec<[u32; 3]> = alive.map(|facet| smallest_first(facet.corners)).collect();
+    triangles.sort_unstable();
+    Ok(triangles)
+}
+
+fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
+    match a.min(b).min(c) {
+        least if least == a => [a, b, c],
+        least if least == b => [b, c, a],
+        _ => [c, a, b],
+    }
+}
+
+/// Whether `d` is strictly outside (1), in the plane (0) or inside (-1) of the triangle a, b, c.
+pub(super) fn side(points: &[Vec3<f64>], [a, b, c]: [u32; 3], d: u32) -> i32 {
+    let coord = |i: u32| {
+        let Vec3 { x, y, z } = points[i as usize];
+        Coord3D { x, y, z }
+    };
+    let determinant = orient3d(coord(a), coord(b), coord(c), coord(d));
+    i32::from(determinant < 0.0) - i32::from(determinant > 0.0)
+}
+
+/// Four points that span a volume, near to as large a one as there is, counter-clockwise: the last is inside of the triangle
+/// of the others.
+fn simplex(points: &[Vec3<f64>], among: &[u32]) -> Result<[u32; 4], HullError> {
+    let at = |i: u32| points[i as usize];
+    let largest = |measure: &dyn Fn(Vec3<f64>) -> f64| {
+        among.iter().fold((f64::NEG_INFINITY, 0), |best, &i| {
+            let value = measure(at(i));
+            if value > best.0 { (value, i) } else { best }
+        })
+    };
+    let extent = |axis: usize| {
+        let (high, b) = largest(&|p| p[axis]);
+        let (low, a) = largest(&|p| -p[axis]);
+        (high + low, a, b)
+    };
+    let (size, a, b) = (1..3).fold(extent(0), |best, axis| {
+        let found = extent(axis);
+        if found.0 > best.0 { found } else { best }
+    });
+    if size <= 0.0 {
+        return Err(HullError::Point);
+    }
+    let (along, length) = (at(b) - at(a)).normalize();
+    let (width, c) = largest(&|p| along.cross(p - at(a)).norm());
+    if width <= FLAT * length {
+        return Err(HullError::Line);
+    }
+    let (normal, _) = (at(b) - at(a)).cross(at(c) - at(a)).normalize();
+    let (height, d) = largest(&|p| normal.dot(p - at(a)).abs());
+    if height <= FLAT * length {
+        return Err(HullError::Plane);
+    }
+    match side(points, [a, b, c], d) {
+        0 => Err(HullError::Plane),
+        1 => Ok([a, c, b, d]),
+        _ => Ok([a, b, c, d]),
+    }
+}
+
+impl Quickhull<'_> {
+    fn at(&self, point: u32) -> Vec3<f64> {
+        self.points[point as usize]
+    }
+
+    fn facet(&self, corners: [u32; 3], across: [u32; 3]) -> Facet {
+        let [a, b, c] = corners.map(|i| self.at(i));
+        Facet {
+            corners,
+            across,
+            normal: (b - a).cross(c - a).normalize().0,
+            outside: Vec::new(),
+            farthest: (f64::NEG_INFINITY, NONE),
+            alive: true,
+            seen: 0,
+        }
+    }
+
+    fn start(&mut self, [a, b, c, d]: [u32; 4], among: &[u32]) {
+        let facets = [
+            ([a, b, c], [1, 2, 3]),
+            ([b, a, d], [0, 3, 2]),
+            ([c, b, d], [0, 1, 3]),
+            ([a, c, d], [0, 2, 1]),
+        ];
+        for (corners, across) in facets {
+            let facet = self.facet(corners, across);
+            self.facets.push(facet);
+        }
+        self.assign(among, 0);
+    }
+
+    /// Gives each point to the first facet from `first` on that it is outside of; the others are inside for good.
+    fn assign(&mut self, candidates: &[u32], first: usize) {
+        for &point in candidates {
+            let position = self.points[point as usize];
+            let seeing = |facet: &&mut Facet| side(self.points, facet.corners, point) > 0;
+            if let Some(facet) = self.facets[first..].iter_mut().find(seeing) {
+                let corner = self.points[facet.corners[0] as usize];
+                let distance = facet.normal.dot(position - corner);
+                facet.outside.push(point);
+                if distance > facet.farthest.0 || facet.farthest.1 == NONE {
+                    facet.farthest = (distance, point);
+                }
+            }
+        }
+        self.pending.extend(first as u32..self.facets.len() as u32);
+    }
+
+    /// A facet that has points outside: any, or the one with the farthest.
+    fn next(&mut self, farthest: bool) -> Option<u32> {
+        let facets = &self.facets;
+        let open = |&f: &u32| facets[f as usize].alive && !facets[f as usize].outside.is_empty();
+        if farthest {
+            self.pending.retain(open);
+            let distance = |f: u32| facets[f as usize].farthest.0;
+            let farther = |a: &u32, b: &u32| distance(*a).total_cmp(&distance(*b));
+            return self.pending.iter().copied().max_by(farther);
+        }
+        while let Some(facet) = self.pending.pop() {
+            if open(&facet) {
+                return Some(facet);
+            }
+        }
+        None
+    }
+
+    /// Takes in the farthest point of a facet.
+    fn add(&mut self, facet: u32) -> Result<(), HullError> {
+        let point = self.facets[facet as usize].farthest.1;
+        let mut orphans = Vec::new();
+        let rim = self.remove_seen(facet, point, &mut orphans);
+        let first = self.facets.len();
+        for (i, edge) in rim.iter().enumerate() {
+            self.starting_at[edge.from as usize] = (first + i) as u32;
+        }
+        for edge in &rim {
+            let next = self.starting_at[edge.to as usize];
+            let new = self.facet([edge.from, edge.to, point], [edge.behind.0, next, NONE]);
+            self.facets.push(new);
+        }
+        for (i, edge) in rim.iter().enumerate() {
+            let new = (first + i) as u32;
+            let next = self.starting_at[edge.to as usize];
+            let (behind, side) = edge.behind;
+            let closed = next != NONE && self.facets[next as usize].across[2] == NONE;
+            if !closed {
+                return Err(HullError::Broken);
+            }
+            self.facets[next as usize].across[2] = new;
+            self.facets[behind as usize].across[side] = new;
+        }
+        for edge in &rim {
+            self.starting_at[edge.from as usize] = NONE;
+        }
+        orphans.retain(|&orphan| orphan != point);
+        self.assign(&orphans, first);
+        Ok(())
+    }
+
+    /// Removes the facets that see a point, from one that does on, and returns the rim of the hole.
+    fn remove_seen(&mut self, from: u32, point: u32, orphans: &mut Vec<u32>) -> Vec<RimEdge> {
+        self.round += 1;
+        let mut rim = Vec::new();
+        let mut stack = vec![from];
+        self.facets[from as usize].seen = self.round;
+        self.facets[from as usize].alive = false;
+        while let Some(f) = stack.pop() {
+            let (corners, across) = {
+                let facet = &mut self.facets[f as usize];
+                orphans.append(&mut facet.outside);
+                (facet.corners, facet.across)
+            };
+            for (edge, &other) in across.iter().enumerate() {
+                let neighbor = &mut self.facets[other as usize];
+                if neighbor.alive && neighbor.seen != self.round {
+                    neighbor.seen = self.round;
+                    neighbor.alive = side(self.points, neighbor.corners, point) <= 0;
+                    if !neighbor.alive {
+                        stack.push(other);
+                    }
+                }
+                if neighbor.alive {
+                    let [from, to] = [corners[edge], corners[(edge + 1) % 3]];
+                    let side = neighbor.corners.iter().position(|&c| c == to);
+                    rim.push(RimEdge {
+                        from,
+                        to,
+                        behind: (other, side.unwrap_or(0)),
+                    });
+                }
+            }
+        }
+        rim
+    }
+}

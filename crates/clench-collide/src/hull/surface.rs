@@ -1,0 +1,120 @@
+//! Which points are on a hull, and in which triangles.
+
+use super::HullError;
+use super::quickhull::{side, triangles};
+use clench_math::Vec3;
+
+/// Coordinates beyond this (m) have products that overflow.
+const LARGEST: f64 = 1e60;
+/// Coordinates below this (m) have products that vanish: they count as zero.
+const SMALLEST: f64 = 1e-60;
+
+/// The surface of the convex hull of some points: triangles of their indices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HullSurface {
+    triangles: Vec<[u32; 3]>,
+    /// How many points there were.
+    points: usize,
+}
+
+impl HullSurface {
+    /// Indices of three of the points each, counter-clockwise seen from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+    /// How many points it was found from.
+    pub(super) fn point_count(&self) -> usize {
+        self.points
+    }
+}
+
+/// The convex hull of points: exact in their coordinates, however thin it is, and free of corners that lie between others.
+///
+/// `max_vertices` bounds how many corners it has; the farthest points are taken first, so the rest lie little outside.
+///
+/// # Errors
+/// Coordinates that are not finite; points that lie in a point, a line or a plane (up to a part 1e-14 of their extent); fewer than
+/// four points or allowed vertices.
+pub fn convex_hull(
+    points: &[Vec3<f64>],
+    max_vertices: Option<usize>,
+) -> Result<HullSurface, HullError> {
+    if points.len() < 4 {
+        return Err(HullError::TooFew(points.len()));
+    }
+    if points.len() >= u32::MAX as usize {
+        return Err(HullError::TooMany(points.len()));
+    }
+    if let Some(bound) = max_vertices.filter(|&bound| bound < 4) {
+        return Err(HullError::Bound(bound));
+    }
+    let usable = |p: &Vec3<f64>| p.to_array().iter().all(|x| x.abs() <= LARGEST);
+    if let Some(bad) = points.iter().position(|p| !usable(p)) {
+        return Err(HullError::NotFinite(bad));
+    }
+    let flush = |x: f64| if x.abs() < SMALLEST { 0.0 } else { x };
+    let points: Vec<Vec3<f64>> = (points.iter())
+        .map(|p| Vec3::new(flush(p.x), flush(p.y), flush(p.z)))
+        .collect();
+
+    let mut among: Vec<u32> = (0..points.len() as u32).collect();
+    loop {
+        let triangles = triangles(&points, &among, max_vertices)?;
+        let between = between(&points, &triangles);
+        if between.is_empty() {
+            return Ok(HullSurface {
+                triangles,
+                points: points.len(),
+            });
+        }
+        among.retain(|i| between.binary_search(i).is_err());
+    }
+}
+
+/// Corners that lie within an edge or a face, ascending: fewer than three bent edges meet there.
+fn between(points: &[Vec3<f64>], triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut bent: Vec<u32> = Vec::with_capacity(3 * triangles.len());
+    for edge in edges(triangles) {
+        let opposite = triangles[edge.right]
+            .into_iter()
+            .find(|corner| !edge.ends.contains(corner));
+        if opposite.is_none_or(|corner| side(points, triangles[edge.left], corner) != 0) {
+            bent.extend(edge.ends);
+        }
+    }
+    bent.sort_unstable();
+    let mut corners: Vec<u32> = triangles.iter().flatten().copied().collect();
+    corners.sort_unstable();
+    corners.dedup();
+    let meeting = |c: u32| bent.partition_point(|&b| b <= c) - bent.partition_point(|&b| b < c);
+    corners.retain(|&corner| meeting(corner) < 3);
+    corners
+}
+
+/// An edge between two triangles.
+pub(super) struct Edge {
+    pub ends: [u32; 2],
+    /// The triangle that goes along it from its first end to its second.
+    pub left: usize,
+    pub right: usize,
+}
+
+/// The edges of a closed surface.
+pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
+    let mut halves: Vec<(u32, u32, bool, usize)> = Vec::with_capacity(3 * triangles.len());
+    for (t, corners) in triangles.iter().enumerate() {
+        for i in 0..3 {
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            halves.push((from.min(to), from.max(to), from > to, t));
+        }
+    }
+    halves.sort_unstable();
+    let pairs = halves.chunks_exact(2);
+    pairs
+        .map(|pair| Edge {
+            ends: [pair[0].0, pair[0].1],
+            left: pair[0].3,
+            right: pair[1].3,
+        })
+        .collect()
+}

@@ -1,0 +1,93 @@
+//! Mesh files: triangles from STL, OBJ and MSH.
+//!
+//! A reader takes the bytes of a file and says what is wrong with them; who asked for the file adds which one it was. Counts that a
+//! file claims are held against its length before anything is allocated.
+
+mod msh;
+mod obj;
+mod stl;
+
+use clench_math::Vec3;
+
+/// What a mesh file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Triangles {
+    /// Vertices, in the file's unit, each finite.
+    pub vertices: Vec<Vec3<f64>>,
+    /// Triangles; none for a cloud of points.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Stl,
+    Obj,
+    Msh,
+}
+
+impl Format {
+    /// The format that a file name ends with, in small letters or capitals.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "stl" => Some(Format::Stl),
+            "obj" => Some(Format::Obj),
+            "msh" => Some(Format::Msh),
+            _ => None,
+        }
+    }
+    /// The format of a media type, MJCF's `content_type`.
+    pub fn from_media_type(media_type: &str) -> Option<Self> {
+        match media_type {
+            "model/stl" => Some(Format::Stl),
+            "model/obj" => Some(Format::Obj),
+            "model/vnd.mujoco.msh" => Some(Format::Msh),
+            _ => None,
+        }
+    }
+}
+
+/// Reads a mesh.
+///
+/// # Errors
+/// What is wrong with the bytes.
+pub(crate) fn read(bytes: Vec<u8>, format: Format) -> Result<Triangles, String> {
+    if bytes.is_empty() {
+        return Err("the file is empty".to_owned());
+    }
+    let found = match format {
+        Format::Stl => stl::read(bytes),
+        Format::Obj => obj::read(&bytes),
+        Format::Msh => msh::read(&bytes),
+    }?;
+    check(&found)?;
+    Ok(found)
+}
+
+fn check(found: &Triangles) -> Result<(), String> {
+    let finite = |v: &Vec3<f64>| v.to_array().iter().all(|x| x.is_finite());
+    if let Some(bad) = found.vertices.iter().position(|v| !finite(v)) {
+        return Err(format!("a coordinate of vertex {bad} is not finite"));
+    }
+    for (number, face) in found.faces.iter().enumerate() {
+        if let Some(vertex) = face.iter().find(|&&v| v as usize >= found.vertices.len()) {
+            return Err(format!(
+                "face {number} names vertex {vertex}, which is not there"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The numbers of a run of little-endian bytes.
+fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> {
+    let words = bytes.as_chunks::<4>().0;
+    words.iter().copied().map(f32::from_le_bytes)
+}
+
+/// Points from their coordinates, one after the other.
+fn points(coordinates: impl Iterator<Item = f32>) -> Vec<Vec3<f64>> {
+    let coordinates: Vec<f64> = coordinates.map(f64::from).collect();
+    let (points, _) = coordinates.as_chunks::<3>();
+    points.iter().copied().map(Vec3::from_array).collect()
+}

@@ -1,0 +1,86 @@
+//! Files that a model names: meshes and height fields.
+//!
+//! As in MuJoCo, a path is relative to `meshdir`, which is relative to the model's directory; what is not there, and named in an
+//! included file, is looked for in `meshdir` along the path from the model to that file.
+
+use super::compiler::Notation;
+use super::document::Element;
+use crate::LoadError;
+use std::path::{Path, PathBuf};
+
+/// Where a model's files are.
+pub(crate) struct Files<'a> {
+    model_directory: &'a Path,
+    meshes: PathBuf,
+    strippath: bool,
+}
+
+/// The bytes of a file, and what it is called.
+pub(crate) struct Content {
+    /// Name without directory and extension.
+    pub stem: String,
+    /// Without the dot.
+    pub extension: String,
+    pub bytes: Vec<u8>,
+    path: PathBuf,
+}
+
+impl<'a> Files<'a> {
+    /// For a model in a directory.
+    pub fn new(model_directory: &'a Path, notation: &Notation) -> Self {
+        Files {
+            model_directory,
+            meshes: model_directory.join(slashes(&notation.meshdir)),
+            strippath: notation.strippath,
+        }
+    }
+
+    /// Reads the file that an element names, if it names one.
+    pub fn read(&self, element: &Element) -> Result<Option<Content>, LoadError> {
+        let Some(name) = element.text("file").filter(|name| !name.is_empty()) else {
+            return Ok(None);
+        };
+        let name = slashes(name);
+        let name = match (self.strippath, Path::new(&name).file_name()) {
+            (true, Some(last)) => PathBuf::from(last),
+            _ => PathBuf::from(&name),
+        };
+        let mut places = vec![self.meshes.join(&name)];
+        let written = Path::new(&*element.origin.file).parent();
+        let below = written.and_then(|file| file.strip_prefix(self.model_directory).ok());
+        places.extend(below.map(|below| self.meshes.join(below).join(&name)));
+        let found = places.iter().find(|path| path.is_file());
+        let path = found.ok_or_else(|| {
+            element.error(format!("cannot find the file \"{}\"", places[0].display()))
+        })?;
+        let unreadable =
+            |error| element.error(format!("cannot read \"{}\": {error}", path.display()));
+        let part = |part: Option<&std::ffi::OsStr>| {
+            part.map(|text| text.to_string_lossy().into_owned())
+                .unwrap_or_default()
+        };
+        Ok(Some(Content {
+            stem: part(path.file_stem()),
+            extension: part(path.extension()),
+            bytes: std::fs::read(path).map_err(unreadable)?,
+            path: path.clone(),
+        }))
+    }
+}
+
+impl Content {
+    /// Takes the bytes out, for a reader whose errors shall name the file and who asked for it.
+    pub fn parse<T>(
+        &mut self,
+        element: &Element,
+        reader: impl FnOnce(Vec<u8>) -> Result<T, String>,
+    ) -> Result<T, LoadError> {
+        reader(std::mem::take(&mut self.bytes))
+            .map_err(|message| element.error(format!("\"{}\": {message}", self.path.display())))
+    }
+}
+
+/// Paths of model files may be written as on Windows.
+fn slashes(path: &str) -> String {
+    path.replace('\\', "/")
+}

@@ -1,0 +1,80 @@
+//! `<hfield>`: from an image or a binary file, or from numbers in the model.
+
+use super::document::Element;
+use super::files::Files;
+use crate::LoadError;
+use crate::elevation::{Elevation, read_grid, read_png};
+use clench_rigid::builder::HeightFieldSpec;
+
+/// More heights than a model can mean to have without giving them.
+const MOST_HEIGHTS: usize = 100_000_000;
+
+pub(crate) fn read(element: &Element, files: &Files) -> Result<HeightFieldSpec, LoadError> {
+    let mut name = element.string("name");
+    let rows = element.count("nrow")?.unwrap_or(0);
+    let columns = element.count("ncol")?.unwrap_or(0);
+    let found = match files.read(element)? {
+        Some(_) if rows > 0 || columns > 0 => {
+            return Err(element.error("nrow and ncol cannot be given with a file"));
+        }
+        Some(mut file) => {
+            if name.is_empty() {
+                name.clone_from(&file.stem);
+            }
+            let is_image = match element.text("content_type") {
+                Some("image/png") => true,
+                Some("image/vnd.mujoco.hfield") => false,
+                Some(_) => {
+                    let message =
+                        "the content_type is neither image/png nor image/vnd.mujoco.hfield";
+                    return Err(element.error(message));
+                }
+                None => file.extension.eq_ignore_ascii_case("png"),
+            };
+            let reader = if is_image { read_png } else { read_grid };
+            file.parse(element, |bytes| reader(&bytes))?
+        }
+        None => written(element, rows, columns)?,
+    };
+    if name.is_empty() {
+        return Err(element.error("a height field needs a name or a file"));
+    }
+    Ok(HeightFieldSpec {
+        name,
+        rows: found.rows,
+        columns: found.columns,
+        heights: found.heights,
+        size: element.required_numbers("size")?,
+        origin: Some(element.origin.clone()),
+    })
+}
+
+/// Heights in the model: rows from the positive end of y, as one sees them; flat where none are given.
+fn written(element: &Element, rows: usize, columns: usize) -> Result<Elevation, LoadError> {
+    let count = rows.saturating_mul(columns);
+    if count == 0 {
+        return Err(element.error("a height field needs a file, or nrow and ncol"));
+    }
+    let heights = match element.list("elevation")? {
+        Some(heights) if heights.len() == count => (heights.chunks_exact(columns).rev())
+            .flatten()
+            .map(|&height| f64::from(height as f32))
+            .collect(),
+        Some(heights) => {
+            let message = format!(
+                "elevation needs {rows} x {columns} numbers, but has {}",
+                heights.len()
+            );
+            return Err(element.error(message));
+        }
+        None if count > MOST_HEIGHTS => {
+            return Err(element.error(format!("there are more than {MOST_HEIGHTS} heights")));
+        }
+        None => vec![0.0; count],
+    };
+    Ok(Elevation {
+        rows,
+        columns,
+        heights,
+    })
+}

@@ -1,0 +1,118 @@
+//! `<mesh>`: from a file, or from vertices and faces in the model.
+
+use super::document::Element;
+use super::files::Files;
+use crate::LoadError;
+use crate::mesh::{self, Format, Triangles};
+use clench_math::{Quat, Vec3};
+use clench_rigid::builder::{MeshInertia, MeshSpec};
+
+/// A mesh as it is written, or as a default class has it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MeshDraft(MeshSpec);
+
+impl MeshDraft {
+    /// Overwrites what the element gives, of what a default class may have.
+    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+        let mesh = &mut self.0;
+        element.set_vector("scale", &mut mesh.scale)?;
+        let kinds = [
+            ("convex", MeshInertia::Convex),
+            ("exact", MeshInertia::Exact),
+            ("legacy", MeshInertia::Legacy),
+            ("shell", MeshInertia::Shell),
+        ];
+        element.set_keyword("inertia", &kinds, &mut mesh.inertia)?;
+        if let Some(bound) = element.integer("maxhullvert")? {
+            mesh.max_hull_vertices = match bound {
+                -1 => None,
+                ..4 => return Err(element.error("maxhullvert must be larger than 3, or -1")),
+                _ => Some(bound as usize),
+            };
+        }
+        Ok(())
+    }
+
+    /// The mesh, with what only an element itself can say.
+    pub fn finish(mut self, element: &Element, files: &Files) -> Result<MeshSpec, LoadError> {
+        self.read(element)?;
+        let mut mesh = self.0;
+        mesh.name = element.string("name");
+        element.set_vector("refpos", &mut mesh.refpos)?;
+        if let Some(quat) = element.numbers("refquat")? {
+            if quat == [0.0; 4] {
+                return Err(element.error("refquat cannot be zero"));
+            }
+            mesh.refquat = Quat::from_f64(quat);
+        }
+        let written = Triangles {
+            vertices: read_vertices(element)?,
+            faces: read_faces(element)?,
+        };
+        let found = match files.read(element)? {
+            None => written,
+            Some(mut file) => {
+                if mesh.name.is_empty() {
+                    mesh.name.clone_from(&file.stem);
+                }
+                let format = match element.text("content_type") {
+                    Some(media_type) => Format::from_media_type(media_type),
+                    None => Format::from_extension(&file.extension),
+                };
+                let format = format.ok_or_else(|| {
+                    element.error("a mesh file is STL, OBJ or MSH, and its name says which")
+                })?;
+                let found = file.parse(element, |bytes| mesh::read(bytes, format))?;
+                merge(found, written, element)?
+            }
+        };
+        if mesh.name.is_empty() {
+            return Err(element.error("a mesh needs a name or a file"));
+        }
+        Ok(MeshSpec {
+            vertices: found.vertices,
+            faces: found.faces,
+            origin: Some(element.origin.clone()),
+            ..mesh
+        })
+    }
+}
+
+/// A file without faces may get them from the model.
+fn merge(file: Triangles, written: Triangles, element: &Element) -> Result<Triangles, LoadError> {
+    if !written.vertices.is_empty() {
+        return Err(element.error("vertex and file cannot both be given"));
+    }
+    if !file.faces.is_empty() && !written.faces.is_empty() {
+        return Err(element.error("the file has faces: face cannot be given too"));
+    }
+    let faces = match file.faces.is_empty() {
+        true => written.faces,
+        false => file.faces,
+    };
+    Ok(Triangles { faces, ..file })
+}
+
+/// Vertices with the 24 bits a coordinate that MuJoCo keeps.
+fn read_vertices(element: &Element) -> Result<Vec<Vec3<f64>>, LoadError> {
+    let numbers = element.list("vertex")?.unwrap_or_default();
+    let (points, rest) = numbers.as_chunks::<3>();
+    if !rest.is_empty() {
+        return Err(element.error("vertex needs three numbers a vertex"));
+    }
+    let short = |point: [f64; 3]| Vec3::from_array(point.map(|x| f64::from(x as f32)));
+    Ok(points.iter().copied().map(short).collect())
+}
+
+fn read_faces(element: &Element) -> Result<Vec<[u32; 3]>, LoadError> {
+    let negative = |_| element.error("face cannot have negative numbers");
+    let numbers = element.integers("face")?;
+    let numbers: Vec<u32> = (numbers.into_iter())
+        .map(|number| u32::try_from(number).map_err(negative))
+        .collect::<Result<_, _>>()?;
+    let (faces, rest) = numbers.as_chunks::<3>();
+    if !rest.is_empty() {
+        return Err(element.error("face needs three numbers a face"));
+    }
+    Ok(faces.to_vec())
+}

@@ -1,0 +1,240 @@
+//! What geoms take from meshes and height fields: their own frame and size, or a primitive that fits.
+
+use super::element::Element;
+use super::meshes::{Processed, process};
+use super::resolve::Names;
+use super::{BuildError, GeomSpec, ModelBuilder};
+use crate::model::{HeightField, Model};
+use clench_collide::{Shape, ShapeKind, bounding_radius};
+use clench_math::{Quat, Vec3};
+use std::sync::Arc;
+
+/// The processed meshes and height fields of a model.
+pub(super) struct Assets<'a> {
+    names: Names<'a>,
+    field_names: Names<'a>,
+    pub meshes: Vec<Processed>,
+    pub height_fields: Vec<Arc<HeightField>>,
+    /// Fit primitives to bounding boxes instead of equivalent boxes.
+    fitaabb: bool,
+}
+
+/// A geom in its body, with all that follows from what it refers to.
+pub(super) struct PlacedGeom<'a> {
+    pub spec: &'a GeomSpec,
+    pub pos: Vec3<f64>,
+    /// Of unit length.
+    pub quat: Quat<f64>,
+    pub size: Vec3<f64>,
+    /// Radius of a sphere about its origin that holds it; 0 for a plane.
+    pub rbound: f64,
+    /// For mesh geoms.
+    pub mesh: Option<(usize, &'a Processed)>,
+    /// For height fields.
+    pub height_field: Option<usize>,
+}
+
+impl<'a> Assets<'a> {
+    /// Those of a description.
+    ///
+    /// # Errors
+    /// Names that are taken; meshes and height fields that cannot be.
+    pub fn new(builder: &'a ModelBuilder) -> Result<Self, BuildError> {
+        let names = Names::new(&builder.meshes)?;
+        let mut collides = vec![false; builder.meshes.len()];
+        for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
+            let counts = geom.kind == ShapeKind::Mesh && !is_visual(builder, geom);
+            if counts && let Ok(mesh) = names.find(&geom.mesh, geom) {
+                collides[mesh] = true;
+            }
+        }
+        let meshes = (builder.meshes.iter().zip(collides))
+            .map(|(spec, collides)| process(spec, collides))
+            .collect::<Result<_, _>>()?;
+        let height_fields = (builder.height_fields.iter())
+            .map(|spec| {
+                let heights = spec.heights.clone();
+                let shape =
+                    clench_collide::HeightField::new(spec.rows, spec.columns, heights, spec.size);
+                Ok(Arc::new(HeightField {
+                    name: spec.name.clone(),
+                    shape: shape.map_err(|error| spec.error(error.to_string()))?,
+                }))
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Assets {
+            names,
+            field_names: Names::new(&builder.height_fields)?,
+            meshes,
+            height_fields,
+            fitaabb: builder.compiler.fitaabb,
+        })
+    }
+
+    /// Moves them to a model that has all its geoms, without those that no geom has where the visual is discarded.
+    pub fn keep(self, builder: &ModelBuilder, model: &mut Model) {
+        let mut used = vec![!builder.compiler.discardvisual; self.meshes.len()];
+        for mesh in model.geoms.iter().filter_map(|geom| geom.mesh) {
+            used[mesh] = true;
+        }
+        let mut number = vec![0; used.len()];
+        for (index, processed) in self.meshes.into_iter().enumerate() {
+            number[index] = model.meshes.len();
+            if used[index] {
+                model.meshes.push(Arc::new(processed.mesh));
+            }
+        }
+        for mesh in model.geoms.iter_mut().filter_map(|geom| geom.mesh.as_mut()) {
+            *mesh = number[*mesh];
+        }
+        model.height_fields = self.height_fields;
+    }
+
+    /// A geom with what it takes from its mesh or height field.
+    ///
+    /// # Errors
+    /// A name that nothing has; references that its shape has no use for; sizes that are not positive.
+    pub fn place(&'a self, spec: &'a GeomSpec) -> Result<PlacedGeom<'a>, BuildError> {
+        if !spec.hfield.is_empty() && spec.kind != ShapeKind::HeightField {
+            return Err(spec.error("only a geom of type hfield can refer to a height field"));
+        }
+        let mut placed = PlacedGeom {
+            spec,
+            pos: spec.pos,
+            quat: spec.quat.normalize(),
+            size: spec.size,
+            rbound: 0.0,
+            mesh: None,
+            height_field: None,
+        };
+        if spec.kind == ShapeKind::HeightField {
+            let field = self.field_names.find(&spec.hfield, spec)?;
+            placed.take_height_field(field, &self.height_fields[field].shape);
+        } else if spec.kind == ShapeKind::Mesh || !spec.mesh.is_empty() {
+            let mesh = self.names.find(&spec.mesh, spec)?;
+            placed.take_mesh(mesh, &self.meshes[mesh], self.fitaabb)?;
+        }
+        check_size(spec, placed.size)?;
+        if !matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField) {
+            placed.rbound = bounding_radius(&Shape::new(spec.kind, placed.size));
+        }
+        Ok(placed)
+    }
+}
+
+impl<'a> PlacedGeom<'a> {
+    fn take_height_field(&mut self, index: usize, field: &clench_collide::HeightField) {
+        let [x, y, elevation, base] = field.size();
+        self.size = Vec3::new(x, y, 0.25 * elevation + 0.5 * base);
+        self.rbound = field.radius();
+        self.height_field = Some(index);
+    }
+
+    /// The mesh itself, or the primitive that fits it, in the mesh's frame.
+    fn take_mesh(
+        &mut self,
+        index: usize,
+        mesh: &'a Processed,
+        fitaabb: bool,
+    ) -> Result<(), BuildError> {
+        let mut center = Vec3::ZERO;
+        if self.spec.kind == ShapeKind::Mesh {
+            if self.spec.shellinertia {
+                return Err(self.spec.error(
+                    "shellinertia is for other shapes; a mesh says itself that it is a shell",
+                ));
+            }
+            self.size = mesh.reach();
+            self.mesh = Some((index, mesh));
+        } else if fitaabb {
+            center = (mesh.low + mesh.high) * 0.5;
+            self.size = around(self.spec, mesh.high - center)? * self.spec.fitscale;
+        } else {
+            self.size = alike(self.spec, mesh.half_box)? * self.spec.fitscale;
+        }
+        let (pos, quat) = (mesh.mesh.pos, mesh.mesh.quat);
+        self.pos += self.quat.rotate(pos + quat.rotate(center));
+        self.quat = (self.quat * quat).normalize();
+        Ok(())
+    }
+}
+
+/// The size of a primitive like a box with these half sizes.
+fn alike(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
+    let radius = 0.5 * (half.x + half.y);
+    let size = match spec.kind {
+        ShapeKind::Sphere => [(half.x + half.y + half.z) / 3.0, 0.0, 0.0],
+        ShapeKind::Capsule => [radius, (half.z - 0.5 * radius).max(0.0), 0.0],
+        ShapeKind::Cylinder => [radius, half.z, 0.0],
+        ShapeKind::Ellipsoid | ShapeKind::Box => half.to_array(),
+        _ => return Err(spec.error("this shape cannot be fitted to a mesh")),
+    };
+    Ok(Vec3::from_array(size))
+}
+
+/// The size of the smallest primitive whose bounding box holds one with these half sizes.
+fn around(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
+    let radius = half.x.max(half.y);
+    let size = match spec.kind {
+        ShapeKind::Sphere => [radius.max(half.z), 0.0, 0.0],
+        ShapeKind::Capsule => [radius, half.z - radius, 0.0],
+        ShapeKind::Cylinder => [radius, half.z, 0.0],
+        ShapeKind::Ellipsoid | ShapeKind::Box => half.to_array(),
+        _ => return Err(spec.error("this shape cannot be fitted to a mesh")),
+    };
+    Ok(Vec3::from_array(size))
+}
+
+/// Whether a geom is only seen: it collides with nothing, by masks or explicit pairs.
+fn is_visual(builder: &ModelBuilder, geom: &GeomSpec) -> bool {
+    let paired = || {
+        let names = builder
+            .pairs
+            .iter()
+            .flat_map(|pair| [&pair.geom1, &pair.geom2]);
+        names
+            .into_iter()
+            .any(|name| !name.is_empty() && *name == geom.name)
+    };
+    geom.contype == 0 && geom.conaffinity == 0 && !paired()
+}
+
+/// Whether a geom is left out of the model.
+pub(super) fn is_discarded(builder: &ModelBuilder, geom: &GeomSpec) -> bool {
+    builder.compiler.discardvisual && is_visual(builder, geom)
+}
+
+fn check_size(spec: &GeomSpec, size: Vec3<f64>) -> Result<(), BuildError> {
+    // MuJoCo asks for a plane's third number, the spacing of its grid, though nothing is computed from it.
+    let used = match spec.kind {
+        ShapeKind::Plane => 2..3,
+        ShapeKind::Sphere => 0..1,
+        ShapeKind::Capsule | ShapeKind::Cylinder => 0..2,
+        ShapeKind::Ellipsoid | ShapeKind::Box => 0..3,
+        // Positive by construction.
+        ShapeKind::HeightField | ShapeKind::Mesh => 0..0,
+    };
+    for i in used {
+        if size[i].is_nan() || size[i] <= 0.0 {
+            return Err(spec.error(format!(
+                "size[{i}] of a {} must be positive, but is {}",
+                shape_name(spec.kind),
+                size[i]
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn shape_name(kind: ShapeKind) -> &'static str {
+    match kind {
+        ShapeKind::Plane => "plane",
+        ShapeKind::HeightField => "height field",
+        ShapeKind::Sphere => "sphere",
+        ShapeKind::Capsule => "capsule",
+        ShapeKind::Ellipsoid => "ellipsoid",
+        ShapeKind::Cylinder => "cylinder",
+        ShapeKind::Box => "box",
+        ShapeKind::Mesh => "mesh",
+    }
+}
