@@ -1,29 +1,55 @@
 //! How long each pair of shapes takes: `cargo run --release -p clench-collide --example pairs`.
 //!
-//! A thousand random poses a pair, of shapes about 10 cm large that overlap by 0 to 1 cm. One line a pair: the time of a call
-//! in nanoseconds, the best of some runs, and how many points it yields.
+//! A thousand poses a pair, of shapes about 10 cm large: of every four, two overlap by 0 to 1 cm at random, one rests face to
+//! face, tilted by up to 1e-3 rad, and one misses by up to 1 cm. One line a pair: the time of a call in nanoseconds, the best of
+//! some runs, and how many points it yields. With `--json` the poses come along, so that another engine can be timed on them.
+//! Names such as `box-hull` choose pairs.
 
-use clench_collide::{Contacts, Pose, Shape, ShapeKind, collide, supported};
+use clench_collide::{Contacts, Hull, Pose, Shape, ShapeKind, collide, convex_hull, supported};
 use clench_math::{Quat, Vec3};
 use std::time::Instant;
 
 const POSES: usize = 1000;
-const RUNS: usize = 50;
-const KINDS: [ShapeKind; 6] = [
-    ShapeKind::Plane,
-    ShapeKind::Sphere,
-    ShapeKind::Capsule,
-    ShapeKind::Ellipsoid,
-    ShapeKind::Cylinder,
-    ShapeKind::Box,
+const RUNS: usize = 20;
+
+/// What collides, and how many vertices it has if it is a hull.
+const SUBJECTS: [(&str, ShapeKind, usize); 8] = [
+    ("plane", ShapeKind::Plane, 0),
+    ("sphere", ShapeKind::Sphere, 0),
+    ("capsule", ShapeKind::Capsule, 0),
+    ("ellipsoid", ShapeKind::Ellipsoid, 0),
+    ("cylinder", ShapeKind::Cylinder, 0),
+    ("box", ShapeKind::Box, 0),
+    ("hull", ShapeKind::Mesh, 30),
+    ("hull of 1000", ShapeKind::Mesh, 1000),
 ];
 
-type Scene = (
-    Shape<'static, f64>,
-    Pose<f64>,
-    Shape<'static, f64>,
-    Pose<f64>,
-);
+/// A shape that knows where its numbers are.
+struct Body<'a> {
+    shape: Shape<'a, f64>,
+    /// Which of the hulls it is.
+    hull: usize,
+    position: Vec3<f64>,
+    rotation: Quat<f64>,
+}
+
+impl Body<'_> {
+    fn pose(&self) -> Pose<f64> {
+        Pose {
+            position: self.position,
+            rotation: self.rotation.to_matrix(),
+        }
+    }
+    fn json(&self) -> String {
+        let (size, position) = (self.shape.size.to_array(), self.position.to_array());
+        let Quat { w, x, y, z } = self.rotation;
+        let hull = self.hull;
+        format!(
+            r#"{{"size": {size:?}, "hull": {hull}, "pos": {position:?}, "quat": {:?}}}"#,
+            [w, x, y, z]
+        )
+    }
+}
 
 /// Random numbers in [0, 1) (SplitMix64, Steele, Lea & Flood 2014).
 struct Random(u64);
@@ -39,59 +65,138 @@ impl Random {
     fn vector(&mut self) -> Vec3<f64> {
         Vec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - Vec3::new(1.0, 1.0, 1.0)
     }
-    fn shape(&mut self, kind: ShapeKind) -> Shape<'static, f64> {
-        let size = self.vector() * 0.04 + Vec3::new(0.08, 0.08, 0.08);
-        Shape::new(kind, size)
+    fn rotation(&mut self) -> Quat<f64> {
+        Quat::from_rotation_vector(self.vector() * 3.0)
     }
-    fn pose(&mut self) -> Pose<f64> {
-        Pose {
+    /// Points on an ellipsoid of 8 cm, all of them on their hull.
+    fn hull(&mut self, vertices: usize) -> Hull {
+        let semi_axes = self.vector() * 0.04 + Vec3::new(0.08, 0.08, 0.08);
+        let point = |_| self.vector().normalize().0.scale_by(semi_axes);
+        let points: Vec<Vec3<f64>> = (0..vertices).map(point).collect();
+        let surface = convex_hull(&points, None).expect("points on an ellipsoid have a hull");
+        Hull::new(&surface, &points)
+    }
+    fn body<'a>(&mut self, kind: ShapeKind, hulls: &'a [Hull]) -> Body<'a> {
+        let size = self.vector() * 0.04 + Vec3::new(0.08, 0.08, 0.08);
+        let hull = (self.unit() * hulls.len() as f64) as usize;
+        Body {
+            shape: match hulls.get(hull) {
+                Some(hull) => Shape::mesh(hull),
+                None => Shape::new(kind, size),
+            },
+            hull,
             position: self.vector(),
-            rotation: Quat::from_rotation_vector(self.vector() * 3.0).to_matrix(),
+            rotation: self.rotation(),
         }
     }
-    /// Two shapes, moved together until they overlap by `depth`.
-    fn scene(&mut self, a: ShapeKind, b: ShapeKind) -> Scene {
-        let (a, b) = (self.shape(a), self.shape(b));
-        let (pose_a, mut pose_b) = (self.pose(), self.pose());
-        let direction = match a.kind {
-            ShapeKind::Plane => pose_a.axis(),
-            _ => self.vector().normalize().0,
-        };
-        let depth = 0.01 * self.unit();
+    /// A quarter turn or two, tilted a little.
+    fn upright(&mut self, tilt: f64) -> Quat<f64> {
+        let quarter = Vec3::new(self.unit(), self.unit(), self.unit()) * 3.0;
+        let turns = [quarter.x, quarter.y].map(|x| x.floor() * std::f64::consts::FRAC_PI_2);
+        let about = |axis, angle| Quat::from_axis_angle(axis, angle);
+        let yaw = about(Vec3::new(0.0, 0.0, 1.0), 6.0 * self.unit());
+        Quat::from_rotation_vector(self.vector() * tilt)
+            * yaw
+            * about(Vec3::new(1.0, 0.0, 0.0), turns[0])
+            * about(Vec3::new(0.0, 1.0, 0.0), turns[1])
+    }
+    /// Two bodies, moved together until they overlap as wanted.
+    fn scene<'a>(&mut self, mut a: Body<'a>, mut b: Body<'a>, k: usize) -> (Body<'a>, Body<'a>) {
+        let mut direction = self.vector().normalize().0;
+        let depth = 0.01 * self.unit() * if k % 4 == 3 { -1.0 } else { 1.0 };
+        if k % 4 == 2 {
+            (a.rotation, b.rotation) = (self.upright(0.0), self.upright(1e-3));
+            direction = (Vec3::new(0.0, 0.0, 1.0) + self.vector() * 0.2)
+                .normalize()
+                .0;
+        }
+        if a.shape.kind == ShapeKind::Plane {
+            direction = a.pose().axis();
+        }
         let (mut near, mut far) = (0.0, 0.6);
         let mut out = Contacts::new();
         for _ in 0..30 {
             let middle = (near + far) / 2.0;
-            pose_b.position = pose_a.position + direction * middle;
-            collide(&a, &pose_a, &b, &pose_b, 0.0, &mut out);
+            b.position = a.position + direction * middle;
+            collide(&a.shape, &a.pose(), &b.shape, &b.pose(), 0.02, &mut out);
             let deep = out.as_slice().iter().any(|c| c.distance < -depth);
             *(if deep { &mut near } else { &mut far }) = middle;
         }
-        pose_b.position = pose_a.position + direction * near;
-        (a, pose_a, b, pose_b)
+        b.position = a.position + direction * near;
+        (a, b)
     }
 }
 
 fn main() {
-    println!("{:<24}{:>8}{:>8}", "pair", "ns", "points");
-    for (k, &a) in KINDS.iter().enumerate() {
-        for &b in KINDS[k..].iter().filter(|b| supported(a, **b)) {
-            let mut random = Random(1);
-            let scenes: Vec<Scene> = (0..POSES).map(|_| random.scene(a, b)).collect();
-            let mut out = Contacts::new();
-            let (mut best, mut points) = (f64::INFINITY, 0);
-            for _ in 0..RUNS {
-                points = 0;
-                let start = Instant::now();
-                for (a, pose_a, b, pose_b) in &scenes {
-                    collide(a, pose_a, b, pose_b, 0.0, &mut out);
-                    points += out.as_slice().len();
-                }
-                best = best.min(start.elapsed().as_secs_f64());
+    let (flags, names): (Vec<_>, Vec<_>) =
+        std::env::args().skip(1).partition(|arg| arg == "--json");
+    let json = !flags.is_empty();
+    if !json {
+        println!("{:<26}{:>8}{:>8}", "pair", "ns", "points");
+    }
+    for (k, &a) in SUBJECTS.iter().enumerate() {
+        for &b in &SUBJECTS[k..] {
+            let wanted = names.is_empty() || names.contains(&format!("{}-{}", a.0, b.0));
+            if wanted && supported(a.1, b.1) {
+                measure(a, b, json);
             }
-            let name = format!("{a:?}-{b:?}");
-            let (time, mean) = (best * 1e9 / POSES as f64, points as f64 / POSES as f64);
-            println!("{name:<24}{time:>8.0}{mean:>8.2}");
         }
     }
+}
+
+fn measure(a: (&str, ShapeKind, usize), b: (&str, ShapeKind, usize), json: bool) {
+    let mut random = Random(1);
+    let hulls = [a, b].map(|(_, kind, vertices)| {
+        let count = if kind == ShapeKind::Mesh { 10 } else { 0 };
+        let hulls = (0..count).map(|_| random.hull(vertices));
+        hulls.collect::<Vec<Hull>>()
+    });
+    let scenes: Vec<(Body, Body)> = (0..POSES)
+        .map(|k| {
+            let (a, b) = (random.body(a.1, &hulls[0]), random.body(b.1, &hulls[1]));
+            random.scene(a, b, k)
+        })
+        .collect();
+    let placed: Vec<_> = (scenes.iter())
+        .map(|(a, b)| (a.shape, a.pose(), b.shape, b.pose()))
+        .collect();
+    let mut out = Contacts::new();
+    let (mut best, mut points) = (f64::INFINITY, 0);
+    for _ in 0..RUNS {
+        points = 0;
+        let start = Instant::now();
+        for (a, pose_a, b, pose_b) in &placed {
+            collide(a, pose_a, b, pose_b, 0.0, &mut out);
+            points += out.as_slice().len();
+        }
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    let (time, mean) = (best * 1e9 / POSES as f64, points as f64 / POSES as f64);
+    let name = format!("{} – {}", a.0, b.0);
+    if !json {
+        println!("{name:<26}{time:>8.0}{mean:>8.2}");
+        return;
+    }
+    let hulls = hulls.each_ref().map(|hulls| {
+        list(hulls.iter().map(|hull| {
+            format!(
+                "{:?}",
+                hull.vertices()
+                    .iter()
+                    .map(|v| v.to_array())
+                    .collect::<Vec<_>>()
+            )
+        }))
+    });
+    let bodies = list(scenes.iter().map(|(a, b)| list([a.json(), b.json()])));
+    println!(
+        r#"{{"pair": {:?}, "ns": {time}, "points": {mean}, "hulls": {}, "bodies": {bodies}}}"#,
+        [a.0, b.0],
+        list(hulls),
+    );
+}
+
+fn list(items: impl IntoIterator<Item = String>) -> String {
+    let items: Vec<String> = items.into_iter().collect();
+    format!("[{}]", items.join(", "))
 }

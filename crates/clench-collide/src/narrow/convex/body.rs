@@ -138,6 +138,23 @@ impl<'a, S: Scalar> Body<'a, S> {
         (self.kind == ShapeKind::Cylinder).then_some(self.size.x)
     }
 
+    /// The axes along which it has straight edges. None are told of a hull.
+    pub fn edge_axes(&self) -> &'static [usize] {
+        match self.kind {
+            ShapeKind::Box => &[0, 1, 2],
+            ShapeKind::Cylinder | ShapeKind::Capsule => &[2],
+            _ => &[],
+        }
+    }
+    /// The axes across which it has flat faces. None are told of a hull.
+    pub fn face_axes(&self) -> &'static [usize] {
+        match self.kind {
+            ShapeKind::Box => &[0, 1, 2],
+            ShapeKind::Cylinder => &[2],
+            _ => &[],
+        }
+    }
+
     pub fn kind(&self) -> ShapeKind {
         self.kind
     }

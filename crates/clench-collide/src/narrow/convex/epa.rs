@@ -11,6 +11,8 @@
 //!
 //! Bodies with flat faces end exactly, at a face that cannot be moved. For curved bodies the upper bound comes from
 //! Newton's method, to the last digits, and the lower bound needs only show that no other way out is noticeably shorter.
+//! Where the polytope runs out of room before it has, in the middle of thin round bodies, the directions across two creases
+//! of the gap are tried too: ways out that are nearly all the same are shortest there.
 
 use super::{
     pair::{Gap, Pair, Vertex},
@@ -26,6 +28,9 @@ const ROUNDS: usize = 2 * VERTICES;
 const SLACK: f64 = 1e-5;
 /// Newton's method is tried where a face can be moved by less than this share of the smaller body.
 const NEAR: f64 = 0.1;
+
+/// A polytope begins with vertices that are further apart than this share of the smaller body, if it can.
+const FAR: f64 = 0.05;
 
 /// The largest gap of overlapping cores, which is negative, and the face of the difference that it belongs to.
 pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: &Simplex<S>) -> (Gap<S>, Simplex<S>) {
@@ -56,7 +61,8 @@ fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>;
     Ok([first, second, third, fourth])
 }
 
-/// The given vertex that is furthest, or if all are nearer than `least`, the furthest along or against any of the directions.
+/// The given vertex that is furthest; if that is not far, the furthest along or against any of the directions, if further.
+/// Where that is nearer than `least`, what a direction says of the gap.
 fn furthest<S: Scalar>(
     pair: &Pair<S>,
     given: &[Vertex<S>],
@@ -71,7 +77,7 @@ fn furthest<S: Scalar>(
             best = (reach, *vertex);
         }
     }
-    if best.0 > least {
+    if best.0 > pair.smallest * S::new(FAR) {
         return Ok(best.1);
     }
     for &direction in directions {
@@ -95,19 +101,20 @@ fn furthest<S: Scalar>(
 fn expand<S: Scalar>(pair: &Pair<S>, polytope: &mut Polytope<S>) -> (Gap<S>, Simplex<S>) {
     let mut best = pair.gap(pair.start());
     let mut touching = polytope.corners(0);
+    let mut known = false;
     for _ in 0..ROUNDS {
-        let nearest = polytope.nearest();
-        let (outward, distance) = (polytope.normal(nearest), polytope.distance(nearest));
+        let (nearest, distance) = polytope.nearest();
         // How much shorter a way out over the nearest face may still be.
         let slack = if best.settled {
             (pair.smallest * S::new(SLACK)).max(pair.tolerance)
         } else {
             pair.tolerance
         };
-        if polytope.is_full() || -best.gap - distance <= slack {
+        known = -best.gap - distance <= slack;
+        if known || polytope.is_full() {
             break;
         }
-        let corners = polytope.corners(nearest);
+        let outward = polytope.normal(nearest);
         let vertex = pair.vertex(-outward);
         let raw = Gap {
             normal: -outward,
@@ -115,26 +122,34 @@ fn expand<S: Scalar>(pair: &Pair<S>, polytope: &mut Polytope<S>) -> (Gap<S>, Sim
             settled: false,
         };
         let movable = -raw.gap - distance;
+        let corners = polytope.corners(nearest);
         let better = best.improve(raw, pair.tolerance);
         if better {
             touching = corners;
         }
-        if movable <= pair.tolerance {
+        known = movable <= pair.tolerance;
+        if known {
             break;
         }
-        if !polytope.add(nearest, vertex) {
+        if !polytope.add(nearest, &vertex) {
             // As far out as rounding lets it be.
             polytope.retire(nearest);
         }
-        if better && pair.curved && movable < pair.smallest * S::new(NEAR) {
-            let flats = Flats::of(pair, &corners);
+        if better && pair.curved && movable < pair.smallest.max(distance) * S::new(NEAR) {
+            let flats = Flats::of(pair, &polytope.vertices(corners));
             best.improve(refine(pair, raw.normal, &flats), pair.tolerance);
             for vertex in flats.vertices(pair, best.normal) {
-                polytope.add_anywhere(vertex);
+                polytope.add_anywhere(&vertex);
             }
         }
     }
+    let touching = polytope.vertices(touching);
     best.settle(pair, &touching);
+    if !known {
+        for normal in pair.crossings() {
+            best.improve(pair.gap(normal), pair.tolerance);
+        }
+    }
     (best, simplex_of(&touching))
 }
 

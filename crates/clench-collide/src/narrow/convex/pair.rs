@@ -6,6 +6,7 @@
 
 use super::body::Body;
 use crate::narrow::Placed;
+use arrayvec::ArrayVec;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// Two bodies in the frame of the first.
@@ -115,6 +116,32 @@ impl<'a, S: Scalar> Pair<'a, S> {
             gap: normal.dot(self.vertex(normal).w),
             settled: false,
         }
+    }
+
+    /// Directions across two creases of the gap, from the first body to the second: the normals of flat faces, and what is
+    /// across an edge of each body. Of hulls there would be too many.
+    pub fn crossings(&self) -> ArrayVec<Vec3<S>, 15> {
+        let (own, other) = (Mat3::IDENTITY, self.rotation);
+        let mut found = ArrayVec::new();
+        let mut add = |direction: Vec3<S>| {
+            let (unit, length) = direction.normalize();
+            if length > S::EPSILON.sqrt() {
+                let ahead = S::ONE.copysign(unit.dot(self.offset));
+                found.push(unit * ahead);
+            }
+        };
+        for &i in self.a.face_axes() {
+            add(own.column(i));
+        }
+        for &j in self.b.face_axes() {
+            add(other.column(j));
+        }
+        for &i in self.a.edge_axes() {
+            for &j in self.b.edge_axes() {
+                add(own.column(i).cross(other.column(j)));
+            }
+        }
+        found
     }
 
     /// uᵀ (H_A + H_B) v at a direction, for each of some pairs of vectors u, v across it.
