@@ -3,8 +3,10 @@
 use crate::frame_from_normal;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
-/// The most points that one pair yields: a face of a box on a face of another.
-pub const MAX_POINTS: usize = 8;
+/// The most points that one pair yields: something on a height field, which may touch it in many places.
+pub const MAX_POINTS: usize = 32;
+/// The most points that two convex shapes yield: a face of a box on a face of another.
+pub const PATCH_POINTS: usize = 8;
 
 /// One point where two shapes touch or are about to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +45,7 @@ impl<T: Real> ContactPoint<T> {
     }
 }
 
-/// The contact points of one pair, at most [`MAX_POINTS`].
+/// The contact points of one pair: at most [`PATCH_POINTS`], with a height field at most [`MAX_POINTS`].
 #[derive(Clone, Copy, Debug)]
 pub struct Contacts<T: Real> {
     points: [ContactPoint<T>; MAX_POINTS],

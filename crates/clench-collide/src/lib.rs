@@ -28,7 +28,7 @@ mod narrow;
 mod shape;
 
 pub use broad::{Bound, Sweep, allowance, near};
-pub use contact::{ContactPoint, Contacts, MAX_POINTS};
+pub use contact::{ContactPoint, Contacts, MAX_POINTS, PATCH_POINTS};
 pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};

@@ -3,7 +3,7 @@
 
 mod common;
 
-use clench_collide::{Contacts, MAX_POINTS, Pose, Shape, ShapeKind, bounding_radius, collide};
+use clench_collide::{Contacts, PATCH_POINTS, Pose, Shape, ShapeKind, bounding_radius, collide};
 use clench_math::{Mat3, Quat, Real, Scalar, Vec3};
 use common::{PAIRS, Random, Scene, V, convert_pose, convert_shape, off_surface};
 
@@ -441,8 +441,8 @@ fn no_number_breaks_it() {
                 _ => scene.pose_a.rotation.rows[axis].y = bad,
             }
             // It returns, and the buffer holds no more than it can.
-            assert!(in_type::<f64>(&scene).as_slice().len() <= MAX_POINTS);
-            assert!(in_type::<f32>(&scene).as_slice().len() <= MAX_POINTS);
+            assert!(in_type::<f64>(&scene).as_slice().len() <= PATCH_POINTS);
+            assert!(in_type::<f32>(&scene).as_slice().len() <= PATCH_POINTS);
         }
     }
 }

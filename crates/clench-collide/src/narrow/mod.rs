@@ -31,6 +31,10 @@ pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     matches!(
         (a.min(b), a.max(b)),
         (Plane, Sphere | Capsule | Ellipsoid | Cylinder | Box)
+            | (
+                HeightField,
+                Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh
+            )
             | (Sphere, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh)
             | (Capsule, Capsule | Ellipsoid | Cylinder | Box | Mesh)
             | (Ellipsoid, Ellipsoid | Cylinder | Box | Mesh)
@@ -70,6 +74,9 @@ pub fn collide<T: Real>(
         (Plane, Ellipsoid) => plane::plane_ellipsoid(a, b, margin, out),
         (Plane, Cylinder) => plane::plane_cylinder(a, b, margin, out),
         (Plane, Box) => plane::plane_box(a, b, margin, out),
+        (HeightField, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh) => {
+            convex::terrain(a, b, margin, out)
+        }
         (Sphere, Sphere) => ball::sphere_sphere(a, b, margin, out),
         (Sphere, Capsule) => ball::sphere_capsule(a, b, margin, out),
         (Sphere, Cylinder) => cylinder::sphere_cylinder(a, b, margin, out),

@@ -14,11 +14,13 @@
 //! an ellipsoid with ρ = (least semi-axis)² / (largest semi-axis) a core plus a ball. As long as only the balls' layers
 //! overlap, the cores are apart and their distance is a convex problem with one solution.
 
+use super::prism::Prism;
 use crate::{Asset, Hull, Shape, ShapeKind};
 use clench_math::{Scalar, Vec3};
 use std::cell::Cell;
 
 /// A shape in its own frame.
+#[derive(Clone)]
 pub(super) struct Body<'a, S> {
     kind: ShapeKind,
     size: Vec3<S>,
@@ -28,6 +30,8 @@ pub(super) struct Body<'a, S> {
     pub reach: S,
     /// Of a mesh, and its vertex found last, near which the next one is looked for.
     hull: Option<(&'a Hull, Cell<usize>)>,
+    /// Of a height field, the part that is looked at.
+    prism: Option<&'a Prism<S>>,
 }
 
 impl<'a, S: Scalar> Body<'a, S> {
@@ -52,6 +56,19 @@ impl<'a, S: Scalar> Body<'a, S> {
                 Asset::Hull(hull) => Some((hull, Cell::new(0))),
                 _ => None,
             },
+            prism: None,
+        }
+    }
+
+    /// One triangle of a height field.
+    pub fn of_prism(prism: &'a Prism<S>) -> Self {
+        Body {
+            kind: ShapeKind::HeightField,
+            size: Vec3::ZERO,
+            radius: S::ZERO,
+            reach: prism.reach(),
+            hull: None,
+            prism: Some(prism),
         }
     }
 
@@ -82,7 +99,8 @@ impl<'a, S: Scalar> Body<'a, S> {
                 s.z.copysign(side.z),
             ),
             ShapeKind::Mesh => self.vertex(side).map_or(Vec3::ZERO, Vec3::from_f64),
-            ShapeKind::Plane | ShapeKind::HeightField | ShapeKind::Sphere => Vec3::ZERO,
+            ShapeKind::HeightField => self.prism.map_or(Vec3::ZERO, |p| p.support(side)),
+            ShapeKind::Plane | ShapeKind::Sphere => Vec3::ZERO,
         }
     }
 
@@ -160,6 +178,9 @@ impl<'a, S: Scalar> Body<'a, S> {
     }
     pub fn size(&self) -> Vec3<S> {
         self.size
+    }
+    pub fn prism(&self) -> Option<&'a Prism<S>> {
+        self.prism
     }
     /// The hull, and its vertex that the last support found.
     pub fn hull(&self) -> Option<(&'a Hull, usize)> {

@@ -8,8 +8,8 @@ use clench_math::{Scalar, Vec3};
 /// Most corners of a feature. A face of a hull that has more is seen with every second, third, ... of them and the furthest one.
 pub(crate) const MOST_CORNERS: usize = 24;
 /// A face counts as lying against the plane up to this tilt (5°), an edge likewise.
-const FACE_COSINE: f64 = 0.996;
-const EDGE_SINE: f64 = 0.087;
+pub(super) const FACE_COSINE: f64 = 0.996;
+pub(super) const EDGE_SINE: f64 = 0.087;
 /// A cap tilted by less has its deepest point at every corner, as far as anyone can tell.
 const TILT: f64 = 5e-6;
 
@@ -39,6 +39,10 @@ impl<S: Scalar> Feature<S> {
             }
             ShapeKind::Box => feature.of_box(body.size(), d),
             ShapeKind::Mesh => feature.of_hull(body, d),
+            ShapeKind::HeightField => match body.prism() {
+                Some(prism) => prism.feature(d, &mut feature),
+                None => feature.corners.push(Vec3::ZERO),
+            },
             _ => feature.corners.push(body.support(d, d)),
         }
         feature

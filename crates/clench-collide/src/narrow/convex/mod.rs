@@ -8,8 +8,10 @@ mod gjk;
 mod pair;
 mod patch;
 mod polytope;
+mod prism;
 mod refine;
 mod simplex;
+mod terrain;
 mod view;
 
 use super::{
@@ -21,8 +23,10 @@ use clench_math::{Real, Scalar};
 use epa::epa;
 pub(super) use feature::MOST_CORNERS;
 use gjk::{Cores, gjk};
-use pair::Pair;
+use pair::{Gap, Pair};
 use patch::patch;
+use simplex::Simplex;
+pub(super) use terrain::terrain;
 
 /// The contacts of two shapes that are bounded and convex.
 pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
@@ -31,13 +35,19 @@ pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut C
 
 fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
     let pair = Pair::new(a, b);
-    let radii = pair.a.radius + pair.b.radius;
-    let (best, simplex) = match gjk(&pair, margin + radii) {
-        Cores::Apart => return,
-        Cores::Near(best, simplex) => (best, simplex),
-        Cores::Overlap(simplex) => epa(&pair, &simplex),
-    };
-    if best.gap - radii <= margin {
+    if let Some((best, simplex)) = nearest(&pair, margin) {
         patch(&pair, a, best, &simplex, margin, points);
     }
+}
+
+/// The largest gap between two cores and the simplex that their nearest points are made of, if the bodies are at most `margin`
+/// apart.
+fn nearest<S: Scalar>(pair: &Pair<S>, margin: S) -> Option<(Gap<S>, Simplex<S>)> {
+    let radii = pair.a.radius + pair.b.radius;
+    let (best, simplex) = match gjk(pair, margin + radii) {
+        Cores::Apart => return None,
+        Cores::Near(best, simplex) => (best, simplex),
+        Cores::Overlap(simplex) => epa(pair, &simplex),
+    };
+    (best.gap - radii <= margin).then_some((best, simplex))
 }

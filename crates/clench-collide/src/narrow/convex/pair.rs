@@ -66,7 +66,11 @@ impl<'a, S: Scalar> Pair<'a, S> {
     pub fn new(a: Placed<'a, S>, b: Placed<'a, S>) -> Self {
         let offset = a.pose.local(b.pose.position);
         let rotation = a.pose.rotation.transpose() * b.pose.rotation;
-        let (a, b) = (Body::new(a.shape), Body::new(b.shape));
+        Pair::between(Body::new(a.shape), Body::new(b.shape), rotation, offset)
+    }
+
+    /// Two bodies, the second where its axes and its origin are in the frame of the first.
+    pub fn between(a: Body<'a, S>, b: Body<'a, S>, rotation: Mat3<S>, offset: Vec3<S>) -> Self {
         let smallest = Real::min(a.reach, b.reach);
         let largest = a.reach + b.reach + offset.norm();
         let rounding = largest * S::EPSILON * S::new(64.0);
@@ -91,7 +95,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
     #[inline]
     pub fn vertex(&self, normal: Vec3<S>) -> Vertex<S> {
         let local = -self.rotation.transpose_mul(normal);
-        self.between(self.a.support(normal, normal), self.b.support(local, local))
+        self.difference(self.a.support(normal, normal), self.b.support(local, local))
     }
 
     /// Of the vertices w(n) where there are several, the one furthest against `side`, which is next to n.
@@ -99,11 +103,11 @@ impl<'a, S: Scalar> Pair<'a, S> {
     pub fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
         let local = |v| -self.rotation.transpose_mul(v);
         let b = self.b.support(local(normal), local(side));
-        self.between(self.a.support(normal, side), b)
+        self.difference(self.a.support(normal, side), b)
     }
 
     #[inline]
-    fn between(&self, a: Vec3<S>, b: Vec3<S>) -> Vertex<S> {
+    fn difference(&self, a: Vec3<S>, b: Vec3<S>) -> Vertex<S> {
         let w = self.offset + self.rotation * b - a;
         Vertex { w, a, b }
     }

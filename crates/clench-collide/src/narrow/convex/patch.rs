@@ -9,7 +9,7 @@ use super::{
     simplex::Simplex,
     view::Seen,
 };
-use crate::MAX_POINTS;
+use crate::PATCH_POINTS;
 use crate::narrow::{
     Placed,
     one_by_one::{Point, Points},
@@ -137,7 +137,7 @@ fn witness<S: Scalar>(simplex: &Simplex<S>, pair: &Pair<S>, view: &Mat3<S>, gap:
     }
 }
 
-/// Leaves one of points that coincide, and at most [`MAX_POINTS`]: the deepest, and those that span the largest area, by
+/// Leaves one of points that coincide, and at most [`PATCH_POINTS`]: the deepest, and those that span the largest area, by
 /// taking away again and again the corner that spans the smallest triangle with its neighbours.
 fn thin_out<S: Scalar>(spots: &mut Spots<S>, same: S, tolerance: S) {
     let mut kept = Spots::<S>::new();
@@ -153,7 +153,7 @@ fn thin_out<S: Scalar>(spots: &mut Spots<S>, same: S, tolerance: S) {
         }
     }
     *spots = kept;
-    while spots.len() > MAX_POINTS {
+    while spots.len() > PATCH_POINTS {
         let len = spots.len();
         let deepest = deepest(spots, tolerance);
         let mut least = (S::INFINITY, deepest);

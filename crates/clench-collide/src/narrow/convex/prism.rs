@@ -1,0 +1,100 @@
+//! A triangle of terrain with the ground below it: a convex body of six corners.
+
+use super::feature::{EDGE_SINE, FACE_COSINE, Feature};
+use clench_math::{Scalar, Vec3};
+
+/// Three corners on top, counter-clockwise seen from above, and the three below them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Prism<S> {
+    pub corners: [Vec3<S>; 6],
+    /// The unit normal of the top.
+    pub normal: Vec3<S>,
+}
+
+/// The top, the bottom and the walls, counter-clockwise seen from outside.
+const FACES: [&[usize]; 5] = [
+    &[0, 1, 2],
+    &[5, 4, 3],
+    &[0, 3, 4, 1],
+    &[1, 4, 5, 2],
+    &[2, 5, 3, 0],
+];
+/// The corners that share an edge with each.
+const NEIGHBORS: [[usize; 3]; 6] = [
+    [1, 2, 3],
+    [2, 0, 4],
+    [0, 1, 5],
+    [4, 5, 0],
+    [5, 3, 1],
+    [3, 4, 2],
+];
+
+impl<S: Scalar> Prism<S> {
+    /// The prism between a triangle and the horizontal plane at `bottom`.
+    pub fn new(top: [Vec3<S>; 3], bottom: S) -> Self {
+        let [p, q, r] = top;
+        let below = |v: Vec3<S>| Vec3::new(v.x, v.y, bottom);
+        Prism {
+            corners: [p, q, r, below(p), below(q), below(r)],
+            normal: (q - p).cross(r - p).normalize().0,
+        }
+    }
+
+    /// The radius of a sphere about the origin that holds it, m.
+    pub fn reach(&self) -> S {
+        let squares = self.corners.iter().map(|v| v.norm_squared());
+        squares.fold(S::ZERO, |most, s| most.max(s)).sqrt()
+    }
+
+    /// The number of the corner that is furthest along `d`.
+    fn furthest(&self, d: Vec3<S>) -> usize {
+        let mut best = (self.corners[0].dot(d), 0);
+        for (k, corner) in self.corners.iter().enumerate().skip(1) {
+            let reach = corner.dot(d);
+            if reach > best.0 {
+                best = (reach, k);
+            }
+        }
+        best.1
+    }
+
+    /// The corner that is furthest along `d`.
+    #[inline]
+    pub fn support(&self, d: Vec3<S>) -> Vec3<S> {
+        self.corners[self.furthest(d)]
+    }
+
+    /// The face, edge or corner that lies against a plane across `d`.
+    pub fn feature(&self, d: Vec3<S>, feature: &mut Feature<S>) {
+        let mut best = (S::new(FACE_COSINE), None);
+        for face in FACES {
+            let [p, q, r] = [0, 1, 2].map(|k| self.corners[face[k]]);
+            let (normal, _) = (q - p).cross(r - p).normalize();
+            let cosine = normal.dot(d);
+            if cosine >= best.0 {
+                best = (cosine, Some((face, normal)));
+            }
+        }
+        if let Some((face, normal)) = best.1 {
+            feature.normal = normal;
+            feature
+                .corners
+                .extend(face.iter().map(|&k| self.corners[k]));
+            return;
+        }
+        let first = self.furthest(d);
+        let corner = self.corners[first];
+        let mut best = (S::new(EDGE_SINE), None);
+        for next in NEIGHBORS[first] {
+            let (along, _) = (self.corners[next] - corner).normalize();
+            let sine = along.dot(d).abs();
+            if sine <= best.0 {
+                best = (sine, Some(next));
+            }
+        }
+        feature.corners.push(corner);
+        feature
+            .corners
+            .extend(best.1.map(|next| self.corners[next]));
+    }
+}

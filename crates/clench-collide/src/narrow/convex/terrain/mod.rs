@@ -1,0 +1,264 @@
+//! Height fields against convex shapes.
+//!
+//! Under each triangle of the surface lies a prism down to the base, and together they are the field. The distance of a body
+//! that is outside is the least of its distances to the prisms. One that has sunk in may leave a single prism sideways, into the
+//! next one, which is no way out of the field; so a direction counts only where it is a normal of the whole surface: of a
+//! face, of an edge or a corner that stands out, or of the field's sides. Along the normal of a face the contacts are the
+//! corners of what the body shows to it, clipped to the triangle. Where a prism's best direction does not count, its face
+//! does, unless that is a long way round: the foot of a cliff is not left over the top.
+//!
+//! The work grows with the number of cells below the body's bounding box.
+
+mod grid;
+mod spread;
+
+use super::{
+    body::Body,
+    feature::Feature,
+    nearest,
+    pair::{Gap, Pair, across},
+    patch::patch,
+    simplex::Simplex,
+};
+use crate::narrow::{
+    Placed,
+    one_by_one::{Point, Points, one_by_one},
+    polygon::Polygon,
+};
+use crate::{Asset, Contacts, Pose, Shape, ShapeKind};
+use clench_math::{Mat3, Real, Scalar, Vec3};
+use grid::{Triangle, Window, same_direction};
+use spread::Spread;
+
+/// How many times as far as the shortest way out of any prism a face may still be a way out of the field.
+const DETOUR: f64 = 2.0;
+/// A corner this far outside a triangle, as a share of the body, still belongs to it.
+const BESIDE: f64 = 1e-9;
+
+/// The contacts of a height field and a shape that is bounded and convex.
+pub(in crate::narrow) fn terrain<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
+    one_by_one(a, b, margin, out, points);
+}
+
+fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
+    let Asset::HeightField(field) = a.shape.asset else {
+        return;
+    };
+    let mut search = Search::new(a, b, margin);
+    let body = Body::new(b.shape);
+    let Some((low, high)) = search.bounds(&body) else {
+        return;
+    };
+    let [_, _, elevation, base] = field.size();
+    if low.z > elevation || high.z < -base {
+        return;
+    }
+    let window = Window::new(field, [low.x, low.y], [high.x, high.y]);
+    for row in window.rows {
+        for column in window.columns.clone() {
+            for triangle in Triangle::of_cell(field, row, column) {
+                search.look_at(&triangle, &body);
+            }
+        }
+    }
+    for point in search.finish().points() {
+        points.push(Point {
+            position: a.pose.point(point.position),
+            normal: a.pose.rotation * point.normal,
+            distance: point.distance,
+        });
+    }
+}
+
+/// What is known after some of the triangles.
+struct Search<S> {
+    /// The body in the field's frame.
+    rotation: Mat3<S>,
+    offset: Vec3<S>,
+    margin: S,
+    /// How exact distances are, m.
+    tolerance: S,
+    found: Spread<S>,
+    /// Contacts with faces that may not be the shortest way out.
+    doubtful: Spread<S>,
+    /// The least distance along directions that count, and a contact that has it.
+    deepest: Option<Point<S>>,
+    /// The largest distance along normals of doubtful faces.
+    shallowest: S,
+    /// The least distance along directions that do not count, and its contact.
+    sideways: Option<Point<S>>,
+}
+
+impl<S: Scalar> Search<S> {
+    fn new(a: Placed<S>, b: Placed<S>, margin: S) -> Self {
+        let size = crate::bounding_radius(b.shape);
+        let offset = a.pose.local(b.pose.position);
+        let rounding = (size + offset.norm()) * S::EPSILON * S::new(64.0);
+        let tolerance = Real::max(rounding, size * S::new(1e-9));
+        Search {
+            rotation: a.pose.rotation.transpose() * b.pose.rotation,
+            offset,
+            margin,
+            tolerance,
+            found: Spread::new(size, tolerance),
+            doubtful: Spread::new(size, tolerance),
+            deepest: None,
+            shallowest: -S::INFINITY,
+            sideways: None,
+        }
+    }
+
+    /// The box around the body with its margin; nothing where it is not finite.
+    fn bounds(&self, body: &Body<S>) -> Option<(Vec3<f64>, Vec3<f64>)> {
+        let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
+        let around = body.radius + self.margin;
+        for axis in 0..3 {
+            let reach = |sign: S| {
+                let mut along = Vec3::ZERO;
+                along[axis] = sign;
+                let local = self.rotation.transpose_mul(along);
+                let point = self.rotation * body.support(local, local) + self.offset;
+                (point[axis] + around * sign).to_f64()
+            };
+            (low[axis], high[axis]) = (reach(-S::ONE), reach(S::ONE));
+        }
+        let finite = |v: Vec3<f64>| v.to_array().iter().all(|x| x.is_finite());
+        (finite(low) && finite(high)).then_some((low, high))
+    }
+
+    /// Adds the contacts of a triangle.
+    fn look_at(&mut self, triangle: &Triangle<S>, body: &Body<S>) {
+        let normal = triangle.prism.normal;
+        let offset = self.offset - triangle.origin();
+        let local = -self.rotation.transpose_mul(normal);
+        let lowest = self.rotation * body.support(local, local) + offset;
+        let distance = normal.dot(lowest) - body.radius;
+        if distance > self.margin {
+            return;
+        }
+        let ground = Body::of_prism(&triangle.prism);
+        let pair = Pair::between(ground, body.clone(), self.rotation, offset);
+        // No deeper than what is known: then only what lies on the face or stands out can add to it.
+        if distance >= self.known() - self.tolerance
+            && (on_face(triangle, &pair, self.margin, &mut self.found) || triangle.is_hollow())
+        {
+            return;
+        }
+        if let Some((best, simplex)) = nearest(&pair, self.margin) {
+            self.judge(triangle, &pair, distance, best, &simplex);
+        }
+    }
+
+    /// The least distance along directions that count, so far.
+    fn known(&self) -> S {
+        self.deepest.map_or(S::INFINITY, |p| p.distance)
+    }
+
+    /// Adds the contacts of a triangle, given its distance along its normal and the largest gap of its prism.
+    fn judge(
+        &mut self,
+        triangle: &Triangle<S>,
+        pair: &Pair<S>,
+        distance: S,
+        best: Gap<S>,
+        simplex: &Simplex<S>,
+    ) {
+        let pose = Pose {
+            position: triangle.origin(),
+            rotation: Mat3::IDENTITY,
+        };
+        let shape = &Shape::new(ShapeKind::HeightField, Vec3::ZERO);
+        let ground = Placed { shape, pose: &pose };
+        let mut touching = Points::new();
+        patch(pair, ground, best, simplex, self.margin, &mut touching);
+        let deeper = |p: &Point<S>, q: &Point<S>| p.distance < q.distance;
+        let first = touching.first().copied();
+        let deepest = first.map(|first| {
+            let points = touching.iter();
+            points.fold(first, |p, q| if deeper(q, &p) { *q } else { p })
+        });
+        let replace = |old: &mut Option<Point<S>>| {
+            if old.is_none_or(|old| deepest.is_some_and(|p| deeper(&p, &old))) {
+                *old = deepest;
+            }
+        };
+        let face = (best.normal - triangle.prism.normal).norm() <= same_direction();
+        if face || triangle.admits(best.normal) {
+            replace(&mut self.deepest);
+            if !face || !on_face(triangle, pair, self.margin, &mut self.found) {
+                touching.into_iter().for_each(|p| self.found.add(p));
+            }
+        } else {
+            replace(&mut self.sideways);
+            if on_face(triangle, pair, self.margin, &mut self.doubtful) {
+                self.shallowest = Real::max(self.shallowest, distance);
+            }
+        }
+    }
+
+    /// All contacts. The body is in the field at least as deep as in any prism.
+    fn finish(mut self) -> Spread<S> {
+        let depth = |p: Option<Point<S>>| p.map_or(S::INFINITY, |p| p.distance);
+        let (known, other) = (depth(self.deepest), depth(self.sideways));
+        let least = Real::min(known, other * S::new(DETOUR));
+        let least = match self.deepest {
+            Some(_) => least,
+            None => Real::min(least, self.shallowest),
+        };
+        for point in self.doubtful.points() {
+            if point.distance >= least - self.tolerance {
+                self.found.add(*point);
+            }
+        }
+        // What no face shows: a corner in a groove, or a body between faces.
+        for witness in [self.deepest, self.sideways].into_iter().flatten() {
+            if self.found.deepest() > witness.distance + self.tolerance {
+                self.found.add(witness);
+            }
+        }
+        self.found
+    }
+}
+
+/// Adds the corners of what the body shows to the face of a triangle, clipped to it. Whether there are any.
+fn on_face<S: Scalar>(
+    triangle: &Triangle<S>,
+    pair: &Pair<S>,
+    margin: S,
+    found: &mut Spread<S>,
+) -> bool {
+    let normal = triangle.prism.normal;
+    let [p, q, r, ..] = triangle.prism.corners;
+    let (e, f) = across(normal);
+    let view = Mat3::from_rows(e, f, normal);
+    let feature = Feature::new(&pair.b, -pair.rotation.transpose_mul(normal));
+    let mut shown = Polygon::empty();
+    for corner in &feature.corners {
+        shown.push(view * (pair.offset + pair.rotation * *corner - p));
+    }
+    let slack = pair.b.reach * S::new(BESIDE);
+    for (from, to) in [(p, q), (q, r), (r, p)] {
+        let (out, _) = (to - from).cross(normal).normalize();
+        let limit = out.dot(from - p) + slack;
+        shown.clip((out.dot(e), out.dot(f)), limit);
+    }
+    let mut any = false;
+    for corner in shown.corners() {
+        let distance = corner.z - pair.b.radius;
+        if distance <= margin {
+            any = true;
+            let middle = Vec3::new(corner.x, corner.y, distance * S::new(0.5));
+            found.add(Point {
+                position: triangle.origin() + p + view.transpose_mul(middle),
+                normal,
+                distance,
+            });
+        }
+    }
+    any
+}
