@@ -3,12 +3,16 @@
 //! Jacobi's method: while an off-diagonal entry d_ij is worth it, turn the frame about the third axis k by the angle
 //! that zeroes it, tan 2φ = 2 d_ij / (d_ii − d_jj). Each turn removes 2 d_ij² from the off-diagonal sum of squares, and near the
 //! end that sum is squared at every sweep. The frame is kept as a quaternion, so it stays a rotation.
+//!
+//! Where moments are nearly equal, the rule of stopping decides on the axes between them. Models are compared by their frames,
+//! so the rule is MuJoCo's.
 
 use crate::{Mat3, Quat, Vec3};
 
-/// Off-diagonal entries below this part of the largest entry count as zero: the size of the turned matrix's rounding.
-const NEGLIGIBLE: f64 = 1e-15;
-/// Moments closer than this part of the largest are equal, and keep their order (relative form of MuJoCo's `eigEPS`).
+/// Off-diagonal entries below this part of the largest entry count as zero, as in MuJoCo: the size of the turned matrix's
+/// rounding.
+const NEGLIGIBLE: f64 = 4e-15;
+/// Moments closer than this part of the largest are equal, and keep their order, as in MuJoCo.
 const EQUAL: f64 = 1e-12;
 /// Jacobi's method needs some ten turns; this bounds it on input that is not finite.
 const MAX_TURNS: usize = 60;
@@ -18,13 +22,24 @@ const MAX_TURNS: usize = 60;
 ///
 /// Only the upper triangle is read. Input that is not finite gives a result that is not finite.
 pub fn principal_axes(inertia: &Mat3<f64>) -> (Vec3<f64>, Quat<f64>) {
+    diagonalize(inertia, NEGLIGIBLE, EQUAL)
+}
+
+/// As [`principal_axes`], of an inertia that is known no better than to a part `uncertainty` of its largest entry, such as that
+/// of vertices with few digits: off-diagonal entries below it count as zero, moments closer than it as equal. So axes stay as
+/// they are where nothing asks for others.
+pub fn rough_principal_axes(inertia: &Mat3<f64>, uncertainty: f64) -> (Vec3<f64>, Quat<f64>) {
+    diagonalize(inertia, uncertainty, uncertainty)
+}
+
+fn diagonalize(inertia: &Mat3<f64>, negligible: f64, equal: f64) -> (Vec3<f64>, Quat<f64>) {
     let [a, b, c] = inertia.rows;
     let matrix = Mat3::from_rows(a, Vec3::new(a.y, b.y, b.z), Vec3::new(a.z, b.z, c.z));
     let scale = largest_entry(&matrix);
     let mut frame = Quat::IDENTITY;
     let mut turned = matrix;
     for _ in 0..MAX_TURNS {
-        let Some(turn) = jacobi_turn(&turned, NEGLIGIBLE * scale) else {
+        let Some(turn) = jacobi_turn(&turned, negligible * scale) else {
             break;
         };
         frame = (frame * turn).normalize();
@@ -34,7 +49,7 @@ pub fn principal_axes(inertia: &Mat3<f64>) -> (Vec3<f64>, Quat<f64>) {
     sort_descending(
         Vec3::new(turned.rows[0].x, turned.rows[1].y, turned.rows[2].z),
         frame,
-        EQUAL * scale,
+        equal * scale,
     )
 }
 

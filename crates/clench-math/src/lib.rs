@@ -71,7 +71,7 @@ pub use cast::{broadcast, cast, read_lane, write_lane};
 /// ```
 ///
 pub use clench_kernel::kernel;
-pub use eigen::principal_axes;
+pub use eigen::{principal_axes, rough_principal_axes};
 pub use lanes::{Instructions, LaneMask, LaneTask, Lanes, Portable};
 pub use matrix::Mat3;
 pub use quaternion::Quat;

@@ -2,7 +2,7 @@
 
 mod support;
 
-use clench_math::{Lanes, Mat3, Quat, Real, Vec3, principal_axes};
+use clench_math::{Lanes, Mat3, Quat, Real, Vec3, principal_axes, rough_principal_axes};
 use std::f64::consts::PI;
 use support::{Random, assert_close};
 
@@ -300,6 +300,22 @@ fn principal_axes_diagonalise() {
             1e-14,
             "moments",
         );
+    }
+}
+
+#[test]
+fn rough_principal_axes_leave_what_is_not_known() {
+    for scale in [1e-9, 1.0, 1e9] {
+        let axes = |entry: f64, third: f64| {
+            let rows = [[3.0, 3.0 * entry, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, third]];
+            let matrix = Mat3::from_f64(rows.map(|row| row.map(|x| x * scale)));
+            rough_principal_axes(&matrix, 1e-7).1
+        };
+        assert_eq!(axes(0.99e-7, 1.0), Quat::IDENTITY, "an entry too small");
+        assert_ne!(axes(1.01e-7, 1.0), Quat::IDENTITY, "an entry that counts");
+        let above = |part: f64| 2.0 + 3.0 * part;
+        assert_eq!(axes(0.0, above(0.99e-7)), Quat::IDENTITY, "equal moments");
+        assert_ne!(axes(0.0, above(1.01e-7)), Quat::IDENTITY, "other moments");
     }
 }
 

@@ -83,6 +83,22 @@ fn the_ways_to_weigh_differ_where_a_mesh_is_not_convex() {
 }
 
 #[test]
+fn axes_turn_only_where_the_digits_of_vertices_tell() {
+    let centered: Vec<[f64; 3]> = (corners().into_iter())
+        .map(|[x, y, z]| [2.0 * x - 1.0, y - 1.0, z - 1.5])
+        .collect();
+    // Moments of the box with half sides 1, 1 + part, 1.5, as parts of the largest.
+    let frame = |part: f64| {
+        let mesh = MeshSpec::hull("m", &centered).scaled([1.0, 1.0 + part, 1.0]);
+        build(mesh).params.geom_quat[0]
+    };
+    // About y and about x: 1 + 1.5² against 1 + 2 part + 1.5², so the first is larger where the part is negative.
+    let (unknown, known) = (1.5e-7, 1.8e-7);
+    assert_eq!(frame(-unknown), clench_math::Quat::IDENTITY);
+    assert_ne!(frame(-known), clench_math::Quat::IDENTITY);
+}
+
+#[test]
 fn what_cannot_be_names_its_element() {
     let refused = |builder: ModelBuilder| builder.build().unwrap_err().to_string();
     let mut flat = corners();

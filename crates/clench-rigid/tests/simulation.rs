@@ -2,14 +2,16 @@
 
 mod scenes;
 
-use clench_collide::{ShapeKind, frame_from_normal};
+use clench_collide::frame_from_normal;
 use clench_math::Vec3;
-use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, KeyframeSpec, ModelBuilder};
+use clench_rigid::builder::{
+    DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomSpec, HeightFieldSpec, KeyframeSpec, ModelBuilder,
+};
 use clench_rigid::contact::Contact;
 use clench_rigid::model::JointKind;
 use clench_rigid::{Fault, Sim, SimError, readout};
 use clench_solver::{RigidOptions, Switch};
-use scenes::{add, free, geom, joint, model, plane, run, sim, sphere, world};
+use scenes::{add, free, joint, model, plane, run, sim, sphere, world};
 
 fn ball() -> ModelBuilder {
     let mut b = world();
@@ -118,30 +120,24 @@ fn the_user_wins_over_the_file_and_the_file_over_the_defaults() {
 #[test]
 fn shapes_that_cannot_be_collided_are_refused_before_the_first_step() {
     let mut b = world();
-    add(
-        &mut b,
-        0,
-        "a",
-        [0.0; 3],
-        free(),
-        vec![geom(ShapeKind::Ellipsoid, [0.1, 0.2, 0.3])],
-    );
-    add(
-        &mut b,
-        0,
-        "b",
-        [1.0, 0.0, 0.0],
-        free(),
-        vec![geom(ShapeKind::Ellipsoid, [0.1, 0.2, 0.3])],
-    );
-    b.bodies[1].geoms[0].name = "egg".into();
+    b.bodies[0].geoms.push(plane());
+    b.height_fields.push(HeightFieldSpec {
+        name: "hills".into(),
+        rows: 2,
+        columns: 2,
+        heights: vec![0.0, 1.0, 2.0, 0.0],
+        size: [1.0, 1.0, 0.2, 0.1],
+        origin: None,
+    });
+    let tray = GeomSpec::height_field("hills").named("tray");
+    add(&mut b, 0, "a", [0.0, 0.0, 1.0], free(), vec![tray]);
     let refused = Sim::<f64>::new(model(&b));
     let Err(error @ SimError::UnsupportedPair(_)) = refused else {
-        panic!("two ellipsoids");
+        panic!("terrain that falls on a plane");
     };
     let text = error.to_string();
     assert!(
-        text.contains("\"egg\"") && text.contains("ellipsoid against ellipsoid"),
+        text.contains("\"tray\"") && text.contains("plane against heightfield"),
         "{text}"
     );
     let without = RigidOptions::new().disable_constraint(true);

@@ -5,12 +5,14 @@ use super::solid::Solid;
 use super::{BuildError, MeshInertia, MeshSpec};
 use crate::model::Mesh;
 use clench_collide::{Hull, HullSurface, convex_hull};
-use clench_math::{Mat3, Quat, Vec3, principal_axes};
+use clench_math::{Mat3, Quat, Vec3, rough_principal_axes};
 
 /// Volumes (m³) and areas (m²) below this are none (MuJoCo's `mjMINVAL`).
 const NEGLIGIBLE: f64 = 1e-15;
 /// Triangles of less area (m²) have no side (the root of `mjMINVAL`).
 const NO_SIDE: f64 = 3.162_277_660_168_379e-8;
+/// To what part of its largest entry the inertia of vertices with 24 bits a coordinate is known (MuJoCo's measure).
+const UNCERTAINTY: f64 = 1e-7;
 /// By how much a principal moment may exceed the sum of the others, as part of it and in m⁵.
 const IMPLAUSIBLE: (f64, f64) = (1e-6, 1e-9);
 
@@ -186,7 +188,7 @@ fn weigh(
         }));
     }
     let (inertia, measure) = solid(weighed).inertia(pos);
-    let (moments, quat) = principal_axes(&inertia);
+    let (moments, quat) = rough_principal_axes(&inertia, UNCERTAINTY);
     Ok(MassFrame {
         pos,
         quat,
