@@ -1,6 +1,6 @@
 //! Collision detection: shapes and poses in, contact points out. No joints, no masses.
 //!
-//! [`collide`] finds the contact points of one pair of shapes, [`near`] and [`Sweep`] find the pairs worth asking about. Everything is generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or several
+//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`near`] and [`Sweep`] find the pairs worth asking about. Everything is generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or several
 //! side by side, where each contact point says in which of them it exists. Which points a pair yields follows MuJoCo 4.0.
 //!
 //! ```
@@ -21,6 +21,7 @@
 
 mod broad;
 mod contact;
+mod distance;
 mod frame;
 mod height_field;
 mod hull;
@@ -29,6 +30,7 @@ mod shape;
 
 pub use broad::{Bound, Sweep, allowance, near};
 pub use contact::{ContactPoint, Contacts, MAX_POINTS, PATCH_POINTS};
+pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};

@@ -113,10 +113,14 @@ impl<S: Scalar> Search<S> {
         }
     }
 
-    /// The box around the body with its margin; nothing where it is not finite.
+    /// The box around the body with its margin; nothing where the body is not finite.
     fn bounds(&self, body: &Body<S>) -> Option<(Vec3<f64>, Vec3<f64>)> {
         let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
         let around = body.radius + self.margin;
+        let known = body.reach + self.offset.norm_squared();
+        if !(known.to_f64().is_finite() && around > -S::INFINITY) {
+            return None;
+        }
         for axis in 0..3 {
             let reach = |sign: S| {
                 let mut along = Vec3::ZERO;
@@ -127,8 +131,7 @@ impl<S: Scalar> Search<S> {
             };
             (low[axis], high[axis]) = (reach(-S::ONE), reach(S::ONE));
         }
-        let finite = |v: Vec3<f64>| v.to_array().iter().all(|x| x.is_finite());
-        (finite(low) && finite(high)).then_some((low, high))
+        Some((low, high))
     }
 
     /// Adds the contacts of a triangle.

@@ -1,0 +1,97 @@
+//! How far apart two shapes are.
+
+use crate::narrow::collide_exactly;
+use crate::{Asset, Contacts, Pose, Shape, bounding_radius, supported};
+use clench_math::{Real, Scalar, Vec3};
+
+/// The shortest way between two shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Separation<S> {
+    /// Signed, m: negative is how far the shapes must move apart to touch no more.
+    pub distance: S,
+    /// The unit vector from the first shape to the second along which the distance is measured.
+    pub normal: Vec3<S>,
+    /// The nearest point of each shape, or the deepest where they overlap, in world coordinates, m: `points[1] - points[0]` is
+    /// `distance * normal`. Where faces lie against each other many points are as near, and these are some of them.
+    pub points: [Vec3<S>; 2],
+}
+
+/// The signed distance of two shapes, which may come in either order; nothing if they are further apart than `limit` metres
+/// (which may be infinite), if a number is not finite, or if there is no distance: between two planes, two height fields, or a
+/// plane and a height field.
+///
+/// The distance is true, to rounding or a billionth of the smaller shape's size, its points to a millionth. A mesh is its hull. A shape that has sunk into
+/// a height field is at least as deep in it as in the ground below any single triangle.
+///
+/// ```
+/// use clench_collide::{Pose, Shape, ShapeKind, distance};
+/// use clench_math::Vec3;
+///
+/// let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.1, 0.0, 0.0));
+/// let cube = Shape::new(ShapeKind::Box, Vec3::new(0.5, 0.5, 0.5));
+/// let beside = Pose { position: Vec3::new(0.7, 0.2, 0.0), ..Pose::IDENTITY };
+///
+/// let near = distance(&cube, &Pose::IDENTITY, &ball, &beside, 1.0).expect("0.1 m apart");
+/// assert!((near.distance - 0.1_f64).abs() < 1e-12);
+/// assert!((near.points[0] - Vec3::new(0.5, 0.2, 0.0)).norm() < 1e-12);
+/// assert_eq!(distance(&cube, &Pose::IDENTITY, &ball, &beside, 0.05), None);
+/// ```
+pub fn distance<S: Scalar>(
+    a: &Shape<S>,
+    pose_a: &Pose<S>,
+    b: &Shape<S>,
+    pose_b: &Pose<S>,
+    limit: S,
+) -> Option<Separation<S>> {
+    if a.kind > b.kind {
+        let found = distance(b, pose_b, a, pose_a, limit)?;
+        let [second, first] = found.points;
+        return Some(Separation {
+            normal: -found.normal,
+            points: [first, second],
+            ..found
+        });
+    }
+    if !supported(a.kind, b.kind) {
+        return None;
+    }
+    let mut contacts = Contacts::new();
+    let mut reach = Real::max(limit, S::ZERO);
+    if let Asset::HeightField(field) = a.asset {
+        // Near cells first. No point of the field is further away than the sum.
+        let size = bounding_radius(b);
+        let furthest = S::new(field.radius()) + size + (pose_b.position - pose_a.position).norm();
+        let most = Real::min(reach, furthest);
+        reach = Real::max(size, furthest * S::new(LEAST_REACH));
+        while reach < most {
+            collide_exactly(a, pose_a, b, pose_b, reach, &mut contacts);
+            if !contacts.as_slice().is_empty() {
+                break;
+            }
+            reach *= S::new(4.0);
+        }
+        reach = most;
+    }
+    if contacts.as_slice().is_empty() {
+        collide_exactly(a, pose_a, b, pose_b, reach, &mut contacts);
+    }
+    let mut points = contacts.as_slice().iter();
+    let mut best = points.next()?;
+    for point in points {
+        if point.distance < best.distance {
+            best = point;
+        }
+    }
+    let (normal, half) = (best.frame.rows[0], best.distance * S::new(0.5));
+    let finite = (best.position.norm_squared() + best.distance)
+        .to_f64()
+        .is_finite();
+    (finite && best.distance <= limit).then(|| Separation {
+        distance: best.distance,
+        normal,
+        points: [best.position - normal * half, best.position + normal * half],
+    })
+}
+
+/// Where the search over a height field begins, as a share of the distance to its furthest point.
+const LEAST_REACH: f64 = 1e-3;
