@@ -1,6 +1,7 @@
 //! Collision detection: shapes and poses in, contact points out. No joints, no masses.
 //!
-//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`near`] and [`Sweep`] find the pairs worth asking about. Everything is generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or several
+//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`ray`]
+//! where a ray hits one, [`near`] and [`Sweep`] find the pairs worth asking about. Everything is generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or several
 //! side by side, where each contact point says in which of them it exists. Which points a pair yields follows MuJoCo 4.0.
 //!
 //! ```
@@ -26,6 +27,7 @@ mod frame;
 mod height_field;
 mod hull;
 mod narrow;
+mod ray;
 mod shape;
 
 pub use broad::{Bound, Sweep, allowance, near};
@@ -35,4 +37,5 @@ pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};
 pub use narrow::{collide, supported};
+pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, ray};
 pub use shape::{Asset, Pose, Shape, ShapeKind, bounding_radius};

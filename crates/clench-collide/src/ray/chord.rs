@@ -1,0 +1,122 @@
+//! The part of a line within a convex body.
+
+use super::Line;
+use clench_math::{Real, Scalar, Vec3};
+
+/// Where a line enters and leaves, and the normals out of the body there. It misses where it would leave before it enters.
+#[derive(Clone, Copy)]
+pub(super) struct Chord<T> {
+    pub enter: T,
+    pub leave: T,
+    pub entered: Vec3<T>,
+    pub left: Vec3<T>,
+}
+
+impl<T: Real> Chord<T> {
+    /// The whole line.
+    #[inline(always)]
+    pub fn whole() -> Self {
+        Chord {
+            enter: T::new(f64::NEG_INFINITY),
+            leave: T::new(f64::INFINITY),
+            entered: Vec3::ZERO,
+            left: Vec3::ZERO,
+        }
+    }
+
+    /// The part within a ball about a point.
+    #[inline(always)]
+    pub fn of_ball(line: &Line<T>, center: Vec3<T>, radius: T) -> Self {
+        let offset = line.origin - center;
+        let back = offset.dot(line.along);
+        // From the nearest point of the line, since the origin may be far away.
+        let square = radius * radius - (offset - line.along * back).norm_squared();
+        let half = square.max(T::ZERO).sqrt();
+        Chord::whole().between(-back - half, -back + half, square.ge(T::ZERO))
+    }
+
+    /// The part within the unbounded cylinder about the z axis.
+    #[inline(always)]
+    pub fn of_tube(line: &Line<T>, radius: T) -> Self {
+        let (o, u) = (line.origin, line.along);
+        let square = u.x * u.x + u.y * u.y;
+        let least = T::splat(T::Scalar::EPSILON * T::Scalar::EPSILON);
+        let parallel = square.lt(least);
+        let divisor = T::select(parallel, T::ONE, square);
+        let back = (o.x * u.x + o.y * u.y) / divisor;
+        let back = T::select(parallel, T::ZERO, back);
+        let (x, y) = (o.x - u.x * back, o.y - u.y * back);
+        let rest = radius * radius - x * x - y * y;
+        let half = (rest.max(T::ZERO) / divisor).sqrt();
+        let half = T::select(parallel, T::new(f64::INFINITY), half);
+        Chord::whole().between(-back - half, -back + half, rest.ge(T::ZERO))
+    }
+
+    #[inline(always)]
+    fn between(self, enter: T, leave: T, hit: T::Mask) -> Self {
+        Chord {
+            enter: T::select(hit, enter, T::new(f64::INFINITY)),
+            leave: T::select(hit, leave, T::new(f64::NEG_INFINITY)),
+            ..self
+        }
+    }
+
+    /// The part between two planes across an axis.
+    #[inline(always)]
+    pub fn slab(self, line: &Line<T>, axis: usize, low: T, high: T) -> Self {
+        let (o, u) = (line.origin[axis], line.along[axis]);
+        let parallel = u.eq(T::ZERO);
+        let within = o.ge(low) & o.le(high);
+        let ahead = u.gt(T::ZERO);
+        let infinity = T::new(f64::INFINITY);
+        let divisor = T::select(parallel, T::ONE, u);
+        let enter = (T::select(ahead, low, high) - o) / divisor;
+        let leave = (T::select(ahead, high, low) - o) / divisor;
+        let unbounded = T::select(within, -infinity, infinity);
+        let mut out = Vec3::ZERO;
+        out[axis] = T::ONE.copysign(u);
+        self.cut(
+            (T::select(parallel, unbounded, enter), -out),
+            (T::select(parallel, -unbounded, leave), out),
+        )
+    }
+
+    /// Begins no earlier and ends no later than this, with these normals.
+    #[inline(always)]
+    pub fn cut(self, (enter, entered): (T, Vec3<T>), (leave, left): (T, Vec3<T>)) -> Self {
+        let (later, earlier) = (enter.gt(self.enter), leave.lt(self.leave));
+        Chord {
+            enter: T::select(later, enter, self.enter),
+            leave: T::select(earlier, leave, self.leave),
+            entered: Vec3::select(later, entered, self.entered),
+            left: Vec3::select(earlier, left, self.left),
+        }
+    }
+
+    /// The part within either of two bodies whose union is convex.
+    #[inline(always)]
+    pub fn or(self, other: Self) -> Self {
+        let infinity = T::new(f64::INFINITY);
+        let hits = self.enter.le(self.leave);
+        let enter = T::select(hits, self.enter, infinity);
+        let leave = T::select(hits, self.leave, -infinity);
+        let hits = other.enter.le(other.leave);
+        Chord {
+            enter: enter.min(T::select(hits, other.enter, infinity)),
+            leave: leave.max(T::select(hits, other.leave, -infinity)),
+            ..self
+        }
+    }
+
+    /// Where the line crosses the surface first, not before its origin, and the normal there. Infinite if nowhere.
+    #[inline(always)]
+    pub fn first(&self) -> (T, Vec3<T>) {
+        let outside = self.enter.ge(T::ZERO);
+        let hit = self.enter.le(self.leave) & self.leave.ge(T::ZERO);
+        let distance = T::select(outside, self.enter, self.leave);
+        (
+            T::select(hit, distance, T::new(f64::INFINITY)),
+            Vec3::select(outside, self.entered, self.left),
+        )
+    }
+}

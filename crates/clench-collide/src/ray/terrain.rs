@@ -1,0 +1,178 @@
+//! Rays against height fields: from cell to cell.
+//!
+//! Within one triangle of a cell the height of the ray over the surface changes linearly, so a ray that is above where it enters
+//! and below where it leaves has hit the surface in between; and since neighbours agree about their common edge, no ray slips
+//! through. A ray passes at most as many cells as there are rows and columns.
+
+use super::{Line, chord::Chord};
+use crate::HeightField;
+use clench_math::Vec3;
+
+/// The field's highest point is this much lower than the box that a ray is followed in.
+const HEADROOM: f64 = 1e-9;
+
+pub(super) fn height_field(
+    field: &HeightField,
+    origin: Vec3<f64>,
+    along: Vec3<f64>,
+) -> Option<(f64, Vec3<f64>)> {
+    let line = Line { origin, along };
+    let [half_x, half_y, elevation, base] = field.size();
+    let chord = Chord::whole()
+        .slab(&line, 0, -half_x, half_x)
+        .slab(&line, 1, -half_y, half_y)
+        .slab(&line, 2, -base, elevation * (1.0 + HEADROOM));
+    if !(chord.enter <= chord.leave && chord.leave >= 0.0) {
+        return None;
+    }
+    let mut walk = Walk::new(field, &line, chord.enter.max(0.0));
+    let above = walk.height(walk.now) >= 0.0;
+    if !above && chord.enter >= 0.0 {
+        // Through a side or the bottom.
+        return Some((chord.enter, chord.entered));
+    }
+    for _ in 0..field.rows() + field.columns() {
+        let end = walk.next.0.min(walk.next.1).min(chord.leave);
+        if let Some(hit) = walk.cross(end.max(walk.now), above) {
+            return Some(hit);
+        }
+        if end >= chord.leave {
+            break;
+        }
+        walk.advance();
+    }
+    (!above).then_some((chord.leave, chord.left))
+}
+
+/// A ray on its way over the cells.
+struct Walk<'a> {
+    field: &'a HeightField,
+    line: &'a Line<f64>,
+    /// Lengths of a cell along x and y, m.
+    step: [f64; 2],
+    /// Column and row.
+    cell: [usize; 2],
+    /// How far along the line it is, and where the cell's borders across x and y are ahead.
+    now: f64,
+    next: (f64, f64),
+}
+
+impl<'a> Walk<'a> {
+    fn new(field: &'a HeightField, line: &'a Line<f64>, start: f64) -> Self {
+        let [half_x, half_y, ..] = field.size();
+        let count = [field.columns() - 1, field.rows() - 1];
+        let step = [
+            2.0 * half_x / count[0] as f64,
+            2.0 * half_y / count[1] as f64,
+        ];
+        let p = line.at(start);
+        let cell = |x: f64, half: f64, axis: usize| {
+            let inside = ((x + half) / step[axis]).clamp(0.0, (count[axis] - 1) as f64);
+            inside as usize
+        };
+        let mut walk = Walk {
+            field,
+            line,
+            step,
+            cell: [cell(p.x, half_x, 0), cell(p.y, half_y, 1)],
+            now: start,
+            next: (0.0, 0.0),
+        };
+        walk.next = (walk.border(0), walk.border(1));
+        walk
+    }
+
+    /// Where the line crosses the next border of the cell along an axis.
+    fn border(&self, axis: usize) -> f64 {
+        let (o, u) = (self.line.origin[axis], self.line.along[axis]);
+        let half = self.field.size()[axis];
+        let ahead = (self.cell[axis] + usize::from(u > 0.0)) as f64 * self.step[axis] - half;
+        if u == 0.0 {
+            f64::INFINITY
+        } else {
+            (ahead - o) / u
+        }
+    }
+
+    /// Into the next cell, if there is one.
+    fn advance(&mut self) {
+        let axis = usize::from(self.next.1 < self.next.0);
+        let count = [self.field.columns() - 1, self.field.rows() - 1][axis];
+        let border = [self.next.0, self.next.1][axis];
+        self.now = self.now.max(border);
+        let forward = self.line.along[axis] > 0.0;
+        let cell = self.cell[axis];
+        let last = if forward {
+            cell + 1 == count
+        } else {
+            cell == 0
+        };
+        let next = if last {
+            f64::INFINITY
+        } else {
+            self.cell[axis] = if forward { cell + 1 } else { cell - 1 };
+            self.border(axis)
+        };
+        *[&mut self.next.0, &mut self.next.1][axis] = next;
+    }
+
+    /// Place within the cell, each from 0 to 1.
+    fn place(&self, at: f64) -> [f64; 2] {
+        let p = self.line.at(at);
+        [0, 1].map(|axis| {
+            let from = self.cell[axis] as f64 * self.step[axis] - self.field.size()[axis];
+            (p[axis] - from) / self.step[axis]
+        })
+    }
+
+    /// Height of the lowest corner, and the slopes of a triangle along x and y, in units of the cell.
+    fn slopes(&self, right: bool) -> (f64, f64, f64) {
+        let z = |r: usize, c: usize| self.field.point(self.cell[1] + r, self.cell[0] + c).z;
+        let (first, last) = (z(0, 0), z(1, 1));
+        if right {
+            (first, z(0, 1) - first, last - z(0, 1))
+        } else {
+            (first, last - z(1, 0), z(1, 0) - first)
+        }
+    }
+
+    /// Of the line over the triangle on the right of the cell's diagonal, or on its left.
+    fn over(&self, at: f64, right: bool) -> f64 {
+        let [x, y] = self.place(at);
+        let (z, along_x, along_y) = self.slopes(right);
+        self.line.at(at).z - (z + along_x * x + along_y * y)
+    }
+
+    /// Of the line over the surface.
+    fn height(&self, at: f64) -> f64 {
+        let [x, y] = self.place(at);
+        self.over(at, x > y)
+    }
+
+    /// Where the line crosses the surface between here and `end`, and the normal there.
+    fn cross(&self, end: f64, above: bool) -> Option<(f64, Vec3<f64>)> {
+        let aside = |at| {
+            let [x, y] = self.place(at);
+            x - y
+        };
+        let (from, to) = (aside(self.now), aside(end));
+        let diagonal = if (from < 0.0) != (to < 0.0) {
+            self.now + (end - self.now) * (from / (from - to))
+        } else {
+            end
+        };
+        let right = if from == 0.0 { to > 0.0 } else { from > 0.0 };
+        let parts = [(self.now, diagonal, right), (diagonal, end, to > 0.0)];
+        parts.into_iter().find_map(|(start, end, right)| {
+            let (before, after) = (self.over(start, right), self.over(end, right));
+            let crosses = if above { after < 0.0 } else { after > 0.0 };
+            if !(crosses && end >= start) {
+                return None;
+            }
+            let share = (before / (before - after)).clamp(0.0, 1.0);
+            let (_, along_x, along_y) = self.slopes(right);
+            let normal = Vec3::new(-along_x / self.step[0], -along_y / self.step[1], 1.0);
+            Some((start + (end - start) * share, normal.normalize().0))
+        })
+    }
+}

@@ -1,0 +1,250 @@
+//! Rays against the triangles of a mesh, found by a tree of boxes.
+//!
+//! A ray and a triangle are sheared so that the ray is the z axis; then the signs of three areas say on which side of each edge
+//! the ray passes, the same for both triangles at an edge: no ray slips between them (Woop, Benthin & Wald 2013).
+
+use super::{Hit, Line, Ray, each_lane};
+use crate::Pose;
+use clench_math::{Real, Vec3};
+
+/// Leaves hold up to so many triangles.
+const LEAF: usize = 4;
+/// Nodes that wait to be visited: no more than the tree is deep, and 2³² triangles make it 32 deep.
+const STACK: usize = 64;
+
+/// The triangles of a mesh as they are, with what lies inside its hull: for rays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleMesh {
+    vertices: Vec<Vec3<f64>>,
+    /// Corners, in the order of the leaves.
+    faces: Vec<[u32; 3]>,
+    /// The first is the root; both children of a node are next to each other.
+    nodes: Vec<Node>,
+}
+
+/// Triangles that no mesh can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TriangleMeshError {
+    /// A corner that is no vertex.
+    #[error("face {0} has a corner beyond the {1} vertices")]
+    Corner(usize, usize),
+    /// A coordinate that is not finite.
+    #[error("vertex {0} has a coordinate that is not finite")]
+    NotFinite(usize),
+    /// More faces than can be numbered.
+    #[error("{0} faces are too many")]
+    TooMany(usize),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Node {
+    low: Vec3<f64>,
+    high: Vec3<f64>,
+    /// The first face, or the first child.
+    first: u32,
+    /// Faces of a leaf; 0 for a node with children.
+    count: u32,
+}
+
+impl TriangleMesh {
+    /// A mesh of triangles, each three indices of `vertices`, counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    /// Corners that do not exist, coordinates that are not finite.
+    pub fn new(
+        vertices: Vec<Vec3<f64>>,
+        mut faces: Vec<[u32; 3]>,
+    ) -> Result<Self, TriangleMeshError> {
+        let finite = |v: &Vec3<f64>| v.to_array().iter().all(|x| x.is_finite());
+        if let Some(bad) = vertices.iter().position(|v| !finite(v)) {
+            return Err(TriangleMeshError::NotFinite(bad));
+        }
+        let count = vertices.len();
+        let exists = |face: &[u32; 3]| face.iter().all(|&corner| (corner as usize) < count);
+        if let Some(bad) = faces.iter().position(|face| !exists(face)) {
+            return Err(TriangleMeshError::Corner(bad, count));
+        }
+        if faces.len() > u32::MAX as usize / 2 {
+            return Err(TriangleMeshError::TooMany(faces.len()));
+        }
+        let mut nodes = vec![bounds(&vertices, &faces, 0)];
+        let mut next = 0;
+        while next < nodes.len() {
+            split(&vertices, &mut faces, &mut nodes, next);
+            next += 1;
+        }
+        Ok(TriangleMesh {
+            vertices,
+            faces,
+            nodes,
+        })
+    }
+
+    /// Corners of the triangles, m.
+    pub fn vertices(&self) -> &[Vec3<f64>] {
+        &self.vertices
+    }
+
+    /// Where a ray hits a triangle first, from either side. The normal is on the side from which its corners are
+    /// counter-clockwise.
+    pub fn ray<T: Real>(&self, pose: &Pose<T>, ray: &Ray<T>) -> Hit<T> {
+        let (line, unit) = Line::of(pose, ray);
+        let (distance, normal) = each_lane(&line, |origin, along| self.cast(origin, along));
+        unit.hit(pose, distance, normal)
+    }
+
+    fn cast(&self, origin: Vec3<f64>, along: Vec3<f64>) -> Option<(f64, Vec3<f64>)> {
+        let shear = Shear::new(origin, along);
+        let mut best = (f64::INFINITY, None);
+        let mut stack = arrayvec::ArrayVec::<(f64, u32), STACK>::new();
+        stack.extend(shear.enters(&self.nodes[0], best.0).map(|at| (at, 0)));
+        while let Some((at, node)) = stack.pop() {
+            if at > best.0 {
+                continue;
+            }
+            let node = &self.nodes[node as usize];
+            let first = node.first as usize;
+            if node.count > 0 {
+                for face in &self.faces[first..first + node.count as usize] {
+                    if let Some(at) = shear.hits(self.corners(face)).filter(|at| *at < best.0) {
+                        best = (at, Some(face));
+                    }
+                }
+                continue;
+            }
+            // The nearer child is visited first.
+            let mut children = [first, first + 1].map(|child| {
+                let enters = shear.enters(&self.nodes[child], best.0);
+                enters.map(|at| (at, child as u32))
+            });
+            if let [Some(a), Some(b)] = children
+                && a.0 < b.0
+            {
+                children.swap(0, 1);
+            }
+            stack.extend(children.into_iter().flatten());
+        }
+        let (at, face) = best;
+        let [p, q, r] = self.corners(face?);
+        Some((at, (q - p).cross(r - p).normalize().0))
+    }
+
+    fn corners(&self, face: &[u32; 3]) -> [Vec3<f64>; 3] {
+        face.map(|corner| self.vertices[corner as usize])
+    }
+}
+
+/// A leaf of some faces, the first of which has a number.
+fn bounds(vertices: &[Vec3<f64>], faces: &[[u32; 3]], first: usize) -> Node {
+    let mut node = Node {
+        low: Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+        high: -Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+        first: first as u32,
+        count: faces.len() as u32,
+    };
+    for &corner in faces.as_flattened() {
+        let v = vertices[corner as usize];
+        for axis in 0..3 {
+            node.low[axis] = node.low[axis].min(v[axis]);
+            node.high[axis] = node.high[axis].max(v[axis]);
+        }
+    }
+    node
+}
+
+/// Makes two children of a leaf that is too large: halves of its faces along its longest side.
+fn split(vertices: &[Vec3<f64>], faces: &mut [[u32; 3]], nodes: &mut Vec<Node>, index: usize) {
+    let node = nodes[index];
+    let (first, count) = (node.first as usize, node.count as usize);
+    if count <= LEAF {
+        return;
+    }
+    let sides = node.high - node.low;
+    let longest = |a: usize, b: usize| if sides[b] > sides[a] { b } else { a };
+    let axis = longest(longest(0, 1), 2);
+    let middle = |face: &[u32; 3]| {
+        let sum = |sum: f64, &corner: &u32| sum + vertices[corner as usize][axis] / 3.0;
+        face.iter().fold(0.0, sum)
+    };
+    let half = count / 2;
+    let own = &mut faces[first..first + count];
+    own.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
+    let children = [
+        bounds(vertices, &own[..half], first),
+        bounds(vertices, &own[half..], first + half),
+    ];
+    nodes[index].first = nodes.len() as u32;
+    nodes[index].count = 0;
+    nodes.extend(children);
+}
+
+/// A ray, and the shear that makes it the z axis.
+struct Shear {
+    origin: Vec3<f64>,
+    inverse: Vec3<f64>,
+    /// Axes in an order in which the ray is longest along the last.
+    axes: [usize; 3],
+    /// How much x and y change along z, and how much of the ray z is.
+    slope: [f64; 2],
+    scale: f64,
+}
+
+impl Shear {
+    fn new(origin: Vec3<f64>, along: Vec3<f64>) -> Self {
+        let size = along.to_array().map(f64::abs);
+        let mut z = 0;
+        for axis in 1..3 {
+            if size[axis] > size[z] {
+                z = axis;
+            }
+        }
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        Shear {
+            origin,
+            inverse: Vec3::new(1.0 / along.x, 1.0 / along.y, 1.0 / along.z),
+            axes: [x, y, z],
+            slope: [along[x] / along[z], along[y] / along[z]],
+            scale: 1.0 / along[z],
+        }
+    }
+
+    /// Where the ray enters a node's box, if it does before `limit`.
+    fn enters(&self, node: &Node, limit: f64) -> Option<f64> {
+        let (mut enter, mut leave) = (0.0_f64, limit);
+        for axis in 0..3 {
+            let (inverse, origin) = (self.inverse[axis], self.origin[axis]);
+            let (low, high) = (node.low[axis] - origin, node.high[axis] - origin);
+            let (near, far) = if inverse.is_sign_negative() {
+                (high * inverse, low * inverse)
+            } else {
+                (low * inverse, high * inverse)
+            };
+            // Zero times infinity, which min and max pass over, is a ray within a side of the box.
+            enter = enter.max(near);
+            leave = leave.min(far * (1.0 + 4.0 * f64::EPSILON));
+        }
+        (enter <= leave).then_some(enter)
+    }
+
+    /// Where the ray hits a triangle, if it does.
+    fn hits(&self, corners: [Vec3<f64>; 3]) -> Option<f64> {
+        let [kx, ky, kz] = self.axes;
+        let [p, q, r] = corners.map(|v| {
+            let v = v - self.origin;
+            [
+                v[kx] - self.slope[0] * v[kz],
+                v[ky] - self.slope[1] * v[kz],
+                v[kz] * self.scale,
+            ]
+        });
+        let area = |a: [f64; 3], b: [f64; 3]| a[0] * b[1] - a[1] * b[0];
+        let (u, v, w) = (area(r, q), area(p, r), area(q, p));
+        let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+        let whole = u + v + w;
+        if !inside || whole == 0.0 {
+            return None;
+        }
+        let at = (u * p[2] + v * q[2] + w * r[2]) / whole;
+        (at >= 0.0).then_some(at)
+    }
+}

@@ -1,0 +1,569 @@
+//! Rays against what is true of a first hit: it lies on the surface, the normal points out there, and nothing of the shape is in
+//! the way.
+
+mod common;
+
+use clench_collide::{
+    HeightField, Hit, Hull, Pose, Ray, Shape, ShapeKind, TriangleMesh, TriangleMeshError,
+    convex_hull, ray,
+};
+use clench_math::{Lanes, Mat3, Real, Vec3};
+use common::{Random, V, convert_pose, off_surface};
+
+const ROUND: [ShapeKind; 5] = [
+    ShapeKind::Sphere,
+    ShapeKind::Capsule,
+    ShapeKind::Ellipsoid,
+    ShapeKind::Cylinder,
+    ShapeKind::Box,
+];
+
+fn inside(shape: &Shape<'static, f64>, pose: &Pose<f64>, point: V) -> bool {
+    let (p, s) = (pose.local(point), shape.size);
+    match shape.kind {
+        ShapeKind::Sphere => p.norm() < s.x,
+        ShapeKind::Capsule => (p - Vec3::new(0.0, 0.0, p.z.clamp(-s.y, s.y))).norm() < s.x,
+        ShapeKind::Ellipsoid => Vec3::new(p.x / s.x, p.y / s.y, p.z / s.z).norm() < 1.0,
+        ShapeKind::Cylinder => p.x.hypot(p.y) < s.x && p.z.abs() < s.y,
+        _ => p.x.abs() < s.x && p.y.abs() < s.y && p.z.abs() < s.z,
+    }
+}
+
+#[test]
+fn the_first_hit_lies_on_the_surface_and_nothing_is_before_it() {
+    let mut random = Random(41);
+    for kind in ROUND {
+        let (mut hits, mut misses, mut within) = (0, 0, 0);
+        for k in 0..2000 {
+            let shape = random.shape(kind);
+            let pose = Pose {
+                position: random.vector(),
+                rotation: random.rotation(),
+            };
+            let mut origin = pose.position + random.vector() * 0.7;
+            let mut direction = random.direction() * random.range(0.1, 3.0);
+            if k % 3 == 0 {
+                direction = pose.position + random.vector() * 0.2 - origin;
+            }
+            if k % 50 == 0 {
+                origin = pose.position;
+                direction = pose.rotation.column(k / 50 % 3);
+            }
+            let hit = ray(&shape, &pose, &Ray { origin, direction });
+            let begins_inside = inside(&shape, &pose, origin);
+            within += usize::from(begins_inside);
+            let steps = if hit.distance.is_finite() {
+                hit.distance
+            } else {
+                4.0 / direction.norm()
+            };
+            for step in 0..200 {
+                let at = origin + direction * (steps * (f64::from(step) + 0.5) / 200.0);
+                assert_eq!(
+                    inside(&shape, &pose, at),
+                    begins_inside,
+                    "{kind:?} {shape:?} {pose:?} {origin:?} {direction:?} {hit:?}"
+                );
+            }
+            if !hit.distance.is_finite() {
+                misses += 1;
+                assert!(!begins_inside && hit.normal == V::ZERO);
+                continue;
+            }
+            hits += 1;
+            let at = origin + direction * hit.distance;
+            assert!(off_surface(&shape, &pose, at) < 1e-12, "{kind:?} {hit:?}");
+            assert!((hit.normal.norm() - 1.0).abs() < 1e-12);
+            assert_eq!(hit.normal.dot(direction) > 0.0, begins_inside);
+            // The normal: outside is that way.
+            assert!(
+                !inside(&shape, &pose, at + hit.normal * 1e-6)
+                    && inside(&shape, &pose, at - hit.normal * 1e-6)
+            );
+            let tip = common::support(&shape, &pose, hit.normal);
+            assert!((tip - at).dot(hit.normal).abs() < 1e-9, "{kind:?} {hit:?}");
+        }
+        assert!(
+            hits > 500 && misses > 200 && within > 50,
+            "{kind:?}: {hits} {misses} {within}"
+        );
+    }
+}
+
+#[test]
+fn planes_are_hit_from_above_and_within_their_size() {
+    let pose = Pose {
+        position: Vec3::new(0.0, 0.0, 1.0),
+        rotation: Mat3::IDENTITY,
+    };
+    let cast = |size, from: [f64; 3], to: [f64; 3]| {
+        let ray_ = Ray {
+            origin: Vec3::from_array(from),
+            direction: Vec3::from_array(to),
+        };
+        ray(&Shape::new(ShapeKind::Plane, size), &pose, &ray_).distance
+    };
+    assert_eq!(cast(V::ZERO, [5.0, 9.0, 3.0], [0.0, 1.0, -4.0]), 0.5);
+    assert_eq!(
+        cast(V::ZERO, [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
+        f64::INFINITY
+    );
+    assert_eq!(
+        cast(V::ZERO, [0.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        f64::INFINITY
+    );
+    assert_eq!(
+        cast(V::ZERO, [0.0, 0.0, 2.0], [1.0, 0.0, 0.0]),
+        f64::INFINITY
+    );
+    assert_eq!(
+        cast(Vec3::new(1.0, 0.0, 0.1), [0.9, 50.0, 2.0], [0.0, 0.0, -1.0]),
+        1.0
+    );
+    assert_eq!(
+        cast(Vec3::new(1.0, 0.0, 0.1), [1.1, 50.0, 2.0], [0.0, 0.0, -1.0]),
+        f64::INFINITY
+    );
+}
+
+/// A crumpled ball.
+fn bumpy(random: &mut Random) -> (Vec<V>, Vec<[u32; 3]>) {
+    let (rings, around) = (9, 14);
+    let mut vertices = Vec::new();
+    for ring in 0..=rings {
+        for k in 0..around {
+            let polar = std::f64::consts::PI * f64::from(ring) / f64::from(rings);
+            let azimuth = std::f64::consts::TAU * f64::from(k) / f64::from(around);
+            let pole = ring == 0 || ring == rings;
+            let radius = if pole { 0.3 } else { random.range(0.2, 0.5) };
+            let (sine, cosine) = polar.sin_cos();
+            // The corners around a pole leave no gap.
+            let sine = if pole { 0.0 } else { sine };
+            vertices.push(Vec3::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine) * radius);
+        }
+    }
+    let at = |ring: i32, k: i32| (ring * around + k % around) as u32;
+    let mut faces = Vec::new();
+    for ring in 0..rings {
+        for k in 0..around {
+            faces.push([at(ring, k), at(ring + 1, k), at(ring + 1, k + 1)]);
+            faces.push([at(ring, k), at(ring + 1, k + 1), at(ring, k + 1)]);
+        }
+    }
+    (vertices, faces)
+}
+
+/// The textbook's way (Möller & Trumbore 1997), over all triangles.
+fn by_force(vertices: &[V], faces: &[[u32; 3]], origin: V, direction: V) -> f64 {
+    let hit = |face: &[u32; 3]| {
+        let [p, q, r] = face.map(|v| vertices[v as usize]);
+        let (e, f) = (q - p, r - p);
+        let h = direction.cross(f);
+        let determinant = e.dot(h);
+        if determinant == 0.0 {
+            return f64::INFINITY;
+        }
+        let s = origin - p;
+        let u = s.dot(h) / determinant;
+        let g = s.cross(e);
+        let v = direction.dot(g) / determinant;
+        let t = f.dot(g) / determinant;
+        if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0 {
+            t
+        } else {
+            f64::INFINITY
+        }
+    };
+    faces.iter().map(hit).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn triangles_are_hit_as_by_trying_them_all() {
+    let mut random = Random(42);
+    for _ in 0..10 {
+        let (vertices, faces) = bumpy(&mut random);
+        let mesh = TriangleMesh::new(vertices.clone(), faces.clone()).unwrap();
+        let pose = Pose {
+            position: random.vector(),
+            rotation: random.rotation(),
+        };
+        let (mut hits, mut misses) = (0, 0);
+        for k in 0..400 {
+            let (from, to) = (random.vector(), random.vector() * 0.6);
+            let from = if k % 4 == 0 { from * 0.1 } else { from };
+            let cast = Ray {
+                origin: pose.point(from),
+                direction: pose.rotation * (to - from),
+            };
+            let hit = mesh.ray(&pose, &cast);
+            let truth = by_force(&vertices, &faces, from, to - from);
+            assert!(
+                hit.distance == truth || (hit.distance - truth).abs() < 1e-9,
+                "{hit:?} for {truth}"
+            );
+            if hit.distance.is_finite() {
+                hits += 1;
+                assert!((hit.normal.norm() - 1.0).abs() < 1e-12);
+            } else {
+                misses += 1;
+            }
+        }
+        assert!(hits > 200 && misses > 50, "{hits} {misses}");
+    }
+}
+
+#[test]
+fn no_ray_slips_out_of_a_closed_mesh() {
+    let mut random = Random(43);
+    let (vertices, faces) = bumpy(&mut random);
+    let mesh = TriangleMesh::new(vertices.clone(), faces).unwrap();
+    for k in 0..20_000 {
+        // At vertices and at the middles of edges, too.
+        let direction = match k % 3 {
+            0 => random.direction(),
+            1 => vertices[k % vertices.len()],
+            _ => vertices[k % vertices.len()] + vertices[(k + 1) % vertices.len()],
+        };
+        let hit = mesh.ray(
+            &Pose::IDENTITY,
+            &Ray {
+                origin: V::ZERO,
+                direction,
+            },
+        );
+        assert!(
+            hit.distance.is_finite() || direction.norm() == 0.0,
+            "{direction:?}"
+        );
+    }
+}
+
+#[test]
+fn a_mesh_of_nothing_is_never_hit_and_a_broken_one_is_refused() {
+    let empty = TriangleMesh::new(Vec::new(), Vec::new()).unwrap();
+    let down = Ray {
+        origin: V::ZERO,
+        direction: Vec3::new(0.0, 0.0, -1.0),
+    };
+    assert_eq!(empty.ray(&Pose::IDENTITY, &down).distance, f64::INFINITY);
+    let corner = TriangleMesh::new(vec![V::ZERO; 3], vec![[0, 1, 2], [0, 1, 3]]);
+    assert_eq!(corner, Err(TriangleMeshError::Corner(1, 3)));
+    let nan = TriangleMesh::new(vec![V::ZERO, Vec3::new(0.0, f64::NAN, 0.0)], Vec::new());
+    assert_eq!(nan, Err(TriangleMeshError::NotFinite(1)));
+    // All in one place: halves of it are as large.
+    let same = TriangleMesh::new(vec![V::ZERO; 3], vec![[0, 1, 2]; 1000]).unwrap();
+    assert_eq!(same.ray(&Pose::IDENTITY, &down).distance, f64::INFINITY);
+}
+
+#[test]
+fn hulls_are_hit_like_their_triangles() {
+    let mut random = Random(44);
+    let points: Vec<V> = (0..60)
+        .map(|_| random.direction() * random.range(0.3, 0.4))
+        .collect();
+    let surface = convex_hull(&points, None).unwrap();
+    let hull = Hull::new(&surface, &points);
+    let faces: Vec<[u32; 3]> = (0..hull.face_count())
+        .flat_map(|face| {
+            let corners = hull.corners(face).to_vec();
+            (2..corners.len()).map(move |k| [corners[0], corners[k - 1], corners[k]])
+        })
+        .collect();
+    let mesh = TriangleMesh::new(hull.vertices().to_vec(), faces).unwrap();
+    let pose = Pose {
+        position: random.vector(),
+        rotation: random.rotation(),
+    };
+    let mut hits = 0;
+    for k in 0..1000 {
+        let from = random.vector() * if k % 4 == 0 { 0.15 } else { 1.0 };
+        let cast = Ray {
+            origin: pose.point(from),
+            direction: pose.rotation * (random.vector() * 0.5 - from),
+        };
+        let (a, b) = (
+            ray(&Shape::mesh(&hull), &pose, &cast),
+            mesh.ray(&pose, &cast),
+        );
+        assert!(
+            a.distance == b.distance || (a.distance - b.distance).abs() < 1e-9,
+            "{a:?} {b:?}"
+        );
+        assert!((a.normal - b.normal).norm() < 1e-6);
+        hits += usize::from(a.distance.is_finite());
+    }
+    assert!(hits > 300 && hits < 1000);
+}
+
+/// The height field as a closed mesh.
+fn skin(field: &HeightField) -> (Vec<V>, Vec<[u32; 3]>) {
+    let (rows, columns) = (field.rows(), field.columns());
+    let [.., base] = field.size();
+    let top = (0..rows * columns).map(|k| field.point(k / columns, k % columns));
+    let mut vertices: Vec<V> = top.collect();
+    let below: Vec<V> = vertices
+        .iter()
+        .map(|v| Vec3::new(v.x, v.y, -base))
+        .collect();
+    vertices.extend(below);
+    let at = |row: usize, column: usize, low: usize| {
+        (low * rows * columns + row * columns + column) as u32
+    };
+    let mut faces = Vec::new();
+    for row in 0..rows - 1 {
+        for column in 0..columns - 1 {
+            for low in 0..2 {
+                let v = |r, c| at(row + r, column + c, low);
+                faces.push([v(0, 0), v(1, 1), v(1, 0)]);
+                faces.push([v(0, 0), v(0, 1), v(1, 1)]);
+            }
+        }
+    }
+    let mut wall = |a: (usize, usize), b: (usize, usize)| {
+        let [p, q, r, s] = [
+            at(a.0, a.1, 0),
+            at(b.0, b.1, 0),
+            at(a.0, a.1, 1),
+            at(b.0, b.1, 1),
+        ];
+        faces.push([p, r, q]);
+        faces.push([q, r, s]);
+    };
+    for column in 0..columns - 1 {
+        wall((0, column), (0, column + 1));
+        wall((rows - 1, column + 1), (rows - 1, column));
+    }
+    for row in 0..rows - 1 {
+        wall((row, columns - 1), (row + 1, columns - 1));
+        wall((row + 1, 0), (row, 0));
+    }
+    (vertices, faces)
+}
+
+#[test]
+fn height_fields_are_hit_like_their_triangles() {
+    let mut random = Random(45);
+    for k in 0..40 {
+        let (rows, columns) = (2 + k % 7, 2 + k % 11);
+        let heights = (0..rows * columns).map(|_| random.unit()).collect();
+        let field = HeightField::new(rows, columns, heights, [0.5, 0.7, 0.4, 0.2]).unwrap();
+        let (vertices, faces) = skin(&field);
+        let pose = Pose {
+            position: random.vector(),
+            rotation: random.rotation(),
+        };
+        let shape = Shape::height_field(&field);
+        let mut hits = 0;
+        for k in 0..400 {
+            let from = random.vector() * if k % 3 == 0 { 0.4 } else { 1.2 };
+            let mut to = random.vector().scale_by(Vec3::new(0.6, 0.8, 0.3)) - from;
+            if k % 7 == 0 {
+                to = Vec3::new(0.0, 0.0, if k % 2 == 0 { -1.0 } else { 1.0 });
+            }
+            let cast = Ray {
+                origin: pose.point(from),
+                direction: pose.rotation * to,
+            };
+            let hit = ray(&shape, &pose, &cast);
+            let truth = by_force(&vertices, &faces, from, to);
+            assert!(
+                hit.distance == truth || (hit.distance - truth).abs() < 1e-9,
+                "{hit:?} for {truth}: {from:?} {to:?}"
+            );
+            if hit.distance.is_finite() {
+                hits += 1;
+                let on =
+                    pose.local(cast.origin + cast.direction * (hit.distance + 1e-7 / to.norm()));
+                let ahead = by_force(
+                    &vertices,
+                    &faces,
+                    on,
+                    pose.rotation.transpose_mul(hit.normal),
+                );
+                let behind = by_force(
+                    &vertices,
+                    &faces,
+                    on,
+                    -pose.rotation.transpose_mul(hit.normal),
+                );
+                // Just outside or just inside, and the surface is close on the side of the normal or against it.
+                assert!(ahead < 1e-5 || behind < 1e-5, "{hit:?} {ahead} {behind}");
+            }
+        }
+        assert!(hits > 150 && hits < 400, "{hits}");
+    }
+}
+
+#[test]
+fn a_ray_crosses_a_large_field_from_end_to_end() {
+    let field = HeightField::new(
+        1000,
+        1000,
+        (0..1_000_000).map(|k| f64::from(k % 1000 % 3)).collect(),
+        [50.0, 50.0, 1.0, 1.0],
+    )
+    .unwrap();
+    let shape = Shape::height_field(&field);
+    let start = std::time::Instant::now();
+    for k in 0..1000 {
+        let y = -49.0 + 0.098 * f64::from(k);
+        let graze = Ray {
+            origin: Vec3::new(-60.0, y, 1.1),
+            direction: Vec3::new(1.0, 1e-3, -1e-3),
+        };
+        let hit = ray(&shape, &Pose::IDENTITY, &graze);
+        // It comes down to a metre after 100 m, at the end of the field or behind it.
+        let to = Ray {
+            direction: Vec3::new(1.0, 1e-3, -3e-3),
+            ..graze
+        };
+        let far = ray(&shape, &Pose::IDENTITY, &to);
+        assert!(
+            hit.distance > 99.0 && far.distance < 90.0,
+            "{hit:?} {far:?} {y}"
+        );
+    }
+    assert!(start.elapsed().as_secs() < 20);
+}
+
+#[test]
+fn lanes_are_scalars_and_single_precision_is_near() {
+    let mut random = Random(46);
+    type L = Lanes<f64, 4>;
+    for kind in ROUND.into_iter().chain([ShapeKind::Plane]) {
+        for _ in 0..100 {
+            let shapes: Vec<_> = (0..4).map(|_| random.shape(kind)).collect();
+            let rays: Vec<_> = (0..4)
+                .map(|_| Ray {
+                    origin: random.vector(),
+                    direction: random.vector(),
+                })
+                .collect();
+            let pose = Pose {
+                position: random.vector() * 0.3,
+                rotation: random.rotation(),
+            };
+            let gather = |v: &dyn Fn(usize) -> V| {
+                let mut out = Vec3::<L>::ZERO;
+                for lane in 0..4 {
+                    for axis in 0..3 {
+                        out[axis].set_lane(lane, v(lane)[axis]);
+                    }
+                }
+                out
+            };
+            let shape = Shape::new(kind, gather(&|lane| shapes[lane].size));
+            let wide = Ray {
+                origin: gather(&|lane| rays[lane].origin),
+                direction: gather(&|lane| rays[lane].direction),
+            };
+            let hits = ray(&shape, &convert_pose::<L>(&pose), &wide);
+            for lane in 0..4 {
+                let alone = ray(&shapes[lane], &pose, &rays[lane]);
+                assert_eq!(hits.distance.lane(lane).to_bits(), alone.distance.to_bits());
+                assert_eq!(hits.normal.x.lane(lane).to_bits(), alone.normal.x.to_bits());
+            }
+            let of = |v: V| Vec3::<f32>::from_f64(v.to_array());
+            let single = Ray {
+                origin: of(rays[0].origin),
+                direction: of(rays[0].direction),
+            };
+            let shape = Shape::new(kind, of(shapes[0].size));
+            let hit: Hit<f32> = ray(&shape, &convert_pose(&pose), &single);
+            let alone = ray(&shapes[0], &pose, &rays[0]);
+            let grazes = alone.normal.dot(rays[0].direction).abs() < 0.1;
+            if hit.distance.is_finite() && alone.distance.is_finite() && !grazes {
+                assert!(
+                    (f64::from(hit.distance) - alone.distance).abs()
+                        < 1e-4 * (1.0 + alone.distance)
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_breaks_a_ray() {
+    let mut random = Random(47);
+    let field =
+        HeightField::new(3, 4, (0..12).map(f64::from).collect(), [0.5, 0.4, 0.1, 0.2]).unwrap();
+    let points: Vec<V> = (0..9).map(|_| random.direction()).collect();
+    let hull = Hull::new(&convex_hull(&points, None).unwrap(), &points);
+    let (vertices, faces) = bumpy(&mut random);
+    let mesh = TriangleMesh::new(vertices, faces).unwrap();
+    let strange = [
+        f64::NAN,
+        f64::INFINITY,
+        -f64::INFINITY,
+        0.0,
+        -0.0,
+        1e-300,
+        1e300,
+        -1.0,
+        1.0,
+        0.5,
+        5e-324,
+        f64::MAX,
+    ];
+    let pick = |random: &mut Random| strange[(random.unit() * 12.0) as usize];
+    let any = |random: &mut Random| Vec3::new(pick(random), pick(random), pick(random));
+    for k in 0..40_000 {
+        let kinds = ROUND
+            .into_iter()
+            .chain([ShapeKind::Plane])
+            .collect::<Vec<_>>();
+        let shape = match k % 8 {
+            0 => Shape::mesh(&hull),
+            1 => Shape::height_field(&field),
+            k => Shape::new(
+                kinds[k - 2],
+                if random.unit() < 0.5 {
+                    any(&mut random)
+                } else {
+                    Vec3::new(0.5, 0.5, 0.5)
+                },
+            ),
+        };
+        let cast = Ray {
+            origin: if random.unit() < 0.5 {
+                any(&mut random)
+            } else {
+                Vec3::new(0.5, -2.0, 0.0)
+            },
+            direction: if random.unit() < 0.5 {
+                any(&mut random)
+            } else {
+                Vec3::new(0.0, 1.0, 0.0)
+            },
+        };
+        let hits = [
+            ray(&shape, &Pose::IDENTITY, &cast),
+            mesh.ray(&Pose::IDENTITY, &cast),
+        ];
+        for hit in hits {
+            let unit = (hit.normal.norm() - 1.0).abs() < 1e-9;
+            assert!(
+                hit.distance == f64::INFINITY && hit.normal == V::ZERO
+                    || hit.distance >= 0.0 && hit.distance.is_finite() && unit,
+                "{hit:?} of {cast:?} at {shape:?}"
+            );
+        }
+        let d = cast.direction;
+        let largest = d
+            .to_array()
+            .into_iter()
+            .fold(0.0, |m: f64, x| m.max(x.abs()));
+        let leads = largest >= f64::MIN_POSITIVE && d.to_array().iter().all(|x| x.is_finite());
+        assert!(leads || hits.iter().all(|hit| hit.distance == f64::INFINITY));
+    }
+    // Lengths of the direction do not matter but as a unit.
+    let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.5, 0.0, 0.0));
+    for length in [1e-300, 1e-9, 1e9, 1e300] {
+        let cast = Ray {
+            origin: Vec3::new(0.0, 0.0, 2.5),
+            direction: Vec3::new(0.0, 0.0, -length),
+        };
+        let hit = ray(&ball, &Pose::IDENTITY, &cast);
+        assert!((hit.distance * length - 2.0).abs() < 1e-12, "{hit:?}");
+    }
+}
