@@ -10,10 +10,10 @@ pub(crate) struct Elevation {
     pub heights: Vec<f64>,
 }
 
-/// Deflate makes at most so many bytes of one.
-const MOST_INFLATED: usize = 1040;
-/// A pixel of one bit, an index of a colour, becomes four bytes.
-const MOST_UNPACKED: usize = 32;
+/// Heights of a field, at most, where hardly anything is written of them: 4096 × 4096.
+pub(crate) const MOST_HEIGHTS: usize = 1 << 24;
+/// Pixels that a byte of a larger image may stand for. Images of terrain are far from it, deflated emptiness is a thousand.
+const MOST_PIXELS_A_BYTE: usize = 16;
 
 /// Reads an image: white is high. Of a coloured one the red channel counts, of 16 bits the upper 8, as in MuJoCo.
 ///
@@ -24,12 +24,16 @@ pub(crate) fn read_png(bytes: &[u8]) -> Result<Elevation, String> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(wrong)?;
+    let (width, height) = reader.info().size();
+    let most = MOST_HEIGHTS.max(bytes.len().saturating_mul(MOST_PIXELS_A_BYTE));
+    if u64::from(width) * u64::from(height) > most as u64 {
+        return Err(format!(
+            "a PNG image of {} bytes and {width} x {height} pixels is no terrain",
+            bytes.len()
+        ));
+    }
     let size = reader.output_buffer_size();
-    let room = bytes.len().saturating_mul(MOST_INFLATED);
-    let Some(size) = size.filter(|&size| size / MOST_UNPACKED <= room) else {
-        return Err("the PNG image claims more pixels than it can hold".to_owned());
-    };
-    let mut pixels = vec![0; size];
+    let mut pixels = vec![0; size.ok_or("the PNG image is too large")?];
     let frame = reader.next_frame(&mut pixels).map_err(wrong)?;
     let (rows, columns) = (frame.height as usize, frame.width as usize);
     let lines = pixels.chunks_exact(frame.line_size).take(rows).rev();

@@ -379,19 +379,22 @@ fn height_fields_come_from_numbers_and_files() {
     grid.pop();
     folder.write("parts/short.bin", &grid);
     folder.write("parts/cut.png", &image[..image.len() - 20]);
-    let mut claims = image.clone();
-    claims[16..20].copy_from_slice(&100_000_000u32.to_be_bytes());
+    let mut claims = Vec::new();
+    drop(png::Encoder::new(&mut claims, 5000, 5000).write_header());
+    let header = 33;
+    claims.splice(header.., image[header..].iter().copied());
     folder.write("parts/claims.png", &claims);
     for (attributes, complaint) in [
         ("name='h' nrow='2' ncol='3' elevation='1 2 3'", "2 x 3"),
         ("name='h' nrow='1' ncol='3'", "at least two"),
         ("name='h' nrow='2000000000' ncol='2000000000'", "heights"),
+        ("name='h' nrow='10000' ncol='10000'", "heights"),
         ("name='h'", "nrow"),
         ("file='h.bin' nrow='2' ncol='3'", "with a file"),
         ("file='nowhere.png'", "nowhere.png"),
         ("name='h' file='short.bin'", "short.bin"),
         ("name='h' file='cut.png'", "cut.png"),
-        ("name='h' file='claims.png'", "claims.png"),
+        ("name='h' file='claims.png'", "claims.png\": a PNG image of"),
         ("nrow='2' ncol='2'", "name"),
     ] {
         let error = field(attributes).expect_err(attributes);
@@ -460,6 +463,11 @@ fn broken_files_are_refused_with_their_names() {
             "nan.obj",
             obj().replace("v 0 0 1", "v 0 nan 1").into_bytes(),
             "not finite",
+        ),
+        (
+            "round.obj",
+            format!("{}f{}\n", obj(), " 1".repeat(2000)).into_bytes(),
+            "line 22: a face has more than 1000 corners",
         ),
         ("binary.obj", vec![0xff; 100], "not an OBJ"),
         (

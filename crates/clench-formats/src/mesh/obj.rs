@@ -7,6 +7,9 @@ use super::Triangles;
 use clench_math::Vec3;
 use earcut::{Earcut, utils3d::project3d_to_2d};
 
+/// Corners of a face, at most: ears of a polygon that crosses itself take a time that grows with the square of them.
+const MOST_CORNERS: usize = 1000;
+
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     let text = String::from_utf8_lossy(bytes);
     let mut vertices = Vec::new();
@@ -21,6 +24,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
                 let corners = words
                     .map(|word| corner(word, vertices.len(), number))
                     .collect::<Result<Vec<u32>, String>>()?;
+                if corners.len() > MOST_CORNERS {
+                    return Err(format!(
+                        "line {number}: a face has more than {MOST_CORNERS} corners"
+                    ));
+                }
                 // What has no area is dropped, as in MuJoCo.
                 if corners.len() >= 3 {
                     polygons.push((number, corners));

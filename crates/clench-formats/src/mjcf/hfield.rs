@@ -3,11 +3,8 @@
 use super::document::Element;
 use super::files::Files;
 use crate::LoadError;
-use crate::elevation::{Elevation, read_grid, read_png};
+use crate::elevation::{Elevation, MOST_HEIGHTS, read_grid, read_png};
 use clench_rigid::builder::HeightFieldSpec;
-
-/// More heights than a model can mean to have without giving them.
-const MOST_HEIGHTS: usize = 100_000_000;
 
 pub(crate) fn read(element: &Element, files: &Files) -> Result<HeightFieldSpec, LoadError> {
     let mut name = element.string("name");
