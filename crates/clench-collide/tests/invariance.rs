@@ -62,6 +62,7 @@ fn like_shapes_may_be_swapped() {
         ShapeKind::Ellipsoid,
         ShapeKind::Cylinder,
         ShapeKind::Box,
+        ShapeKind::Mesh,
     ] {
         for _ in 0..500 {
             let scene = generic(&mut random, (kind, kind));
@@ -119,8 +120,12 @@ fn lanes<T: Real>(scenes: &[Scene]) -> (Shape<'static, T>, Pose<T>, Shape<'stati
             rows: [0, 1, 2].map(|i| vector(&|s| get(s).rotation.rows[i])),
         },
     };
-    let a = Shape::new(scenes[0].a.kind, vector(&|s| s.a.size));
-    let b = Shape::new(scenes[0].b.kind, vector(&|s| s.b.size));
+    let shape = |get: &dyn Fn(&Scene) -> Shape<'static, f64>| Shape {
+        kind: get(&scenes[0]).kind,
+        size: vector(&|s| get(s).size),
+        asset: get(&scenes[0]).asset,
+    };
+    let (a, b) = (shape(&|s| s.a), shape(&|s| s.b));
     let mut margin = T::ZERO;
     for (lane, scene) in scenes.iter().enumerate() {
         margin.set_lane(lane, T::new(scene.margin).lane(0));
@@ -155,7 +160,16 @@ where
     let mut random = Random(seed);
     for kinds in PAIRS {
         for _ in 0..300 {
-            let scenes: Vec<Scene> = (0..T::LANES).map(|_| random.scene(kinds)).collect();
+            let mut scenes: Vec<Scene> = (0..T::LANES).map(|_| random.scene(kinds)).collect();
+            // All environments have the same hull.
+            let first = scenes[0];
+            for scene in &mut scenes {
+                for (shape, other) in [(&mut scene.a, first.a), (&mut scene.b, first.b)] {
+                    if shape.kind == ShapeKind::Mesh {
+                        *shape = other;
+                    }
+                }
+            }
             let (a, pose_a, b, pose_b, margin) = lanes::<T>(&scenes);
             let mut together = Contacts::<T>::new();
             collide(&a, &pose_a, &b, &pose_b, margin, &mut together);

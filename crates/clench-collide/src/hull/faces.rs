@@ -4,6 +4,7 @@
 //! triangle on, each takes in its neighbours whose corners are all near to its plane; a face's own plane is then laid
 //! through the farthest vertex along its normal, so that no vertex is beyond it.
 
+use super::starts::Starts;
 use super::surface::{Edge, edges};
 use super::{Hull, HullSurface, Lists};
 use clench_math::Vec3;
@@ -28,10 +29,14 @@ pub(super) fn build(surface: &HullSurface, points: &[Vec3<f64>]) -> Hull {
         offsets: Vec::new(),
         center,
         vertices,
+        starts: Starts::default(),
     };
+    hull.starts = Starts::new(hull.vertices.len(), |direction, near| {
+        hull.climb(direction, near)
+    });
     for corners in faces {
         let normal = newell(&hull.vertices, &corners).normalize().0;
-        let farthest = hull.support(normal, corners[0] as usize);
+        let farthest = hull.support(normal);
         hull.offsets.push(hull.vertices[farthest].dot(normal));
         hull.normals.push(normal);
         hull.corners.push(corners);

@@ -22,11 +22,17 @@
 
 mod faces;
 mod quickhull;
+mod starts;
 mod surface;
 
 pub use surface::{HullSurface, convex_hull};
 
 use clench_math::Vec3;
+use starts::Starts;
+use std::fmt;
+
+/// A face counts as lying across a direction up to this tilt (5°).
+pub(crate) const FACE_COSINE: f64 = 0.996;
 
 /// Points that have no hull with an inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -66,7 +72,7 @@ pub enum HullError {
 /// Vertices and faces stay numbered as they are; counts and orders depend on the points alone. Neighbours are those of a
 /// triangulation, in which a vertex that is no farthest one along a direction has a neighbour that is farther, so climbing
 /// from any vertex ends at a farthest one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Hull {
     vertices: Vec<Vec3<f64>>,
     /// Of each vertex.
@@ -78,6 +84,7 @@ pub struct Hull {
     normals: Vec<Vec3<f64>>,
     offsets: Vec<f64>,
     center: Vec3<f64>,
+    starts: Starts,
 }
 
 impl Hull {
@@ -114,6 +121,19 @@ impl Hull {
     pub fn corners(&self, face: usize) -> &[u32] {
         self.corners.get(face)
     }
+    /// The face that lies across the unit vector `direction`, of those at a vertex the one that does most nearly; none if all are
+    /// tilted by more than 5°.
+    #[inline]
+    pub(crate) fn face_across(&self, vertex: usize, direction: Vec3<f64>) -> Option<usize> {
+        let mut best = (FACE_COSINE, None);
+        for &face in self.faces_at(vertex) {
+            let cosine = self.normals[face as usize].dot(direction);
+            if cosine >= best.0 {
+                best = (cosine, Some(face as usize));
+            }
+        }
+        best.1
+    }
     /// The unit vector out of a face.
     pub fn normal(&self, face: usize) -> Vec3<f64> {
         self.normals[face]
@@ -137,9 +157,16 @@ impl Hull {
         Vec3::new(reach(0), reach(1), reach(2))
     }
 
-    /// The vertex that is farthest along a direction of any length, by climbing from `start`. Where several are, which one
-    /// is found depends on the start.
-    pub fn support(&self, direction: Vec3<f64>, start: usize) -> usize {
+    /// The vertex that is farthest along a direction of any length; where several are, one that depends on the direction
+    /// alone.
+    #[inline]
+    pub fn support(&self, direction: Vec3<f64>) -> usize {
+        self.climb(direction, self.starts.near(direction))
+    }
+
+    /// From neighbour to farther neighbour.
+    #[inline]
+    fn climb(&self, direction: Vec3<f64>, start: usize) -> usize {
         let mut vertex = start;
         let mut reach = self.vertices[vertex].dot(direction);
         loop {
@@ -157,8 +184,15 @@ impl Hull {
     }
 }
 
+impl fmt::Debug for Hull {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (vertices, faces) = (self.vertices.len(), self.face_count());
+        write!(f, "Hull of {vertices} vertices and {faces} faces")
+    }
+}
+
 /// Lists of numbers, one after the other.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 struct Lists {
     /// Where each list ends.
     ends: Vec<u32>,

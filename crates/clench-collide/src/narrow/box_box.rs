@@ -1,11 +1,15 @@
-//! Box–box: separating axes, then either the face of one box clipped to the face of the other, or two crossing edges.
+//! Box–box: separating axes, then the face of one box clipped to the face of the other, or two edges that cross.
 //!
-//! Two boxes are apart exactly if some face normal of either, or some cross product of their edges, separates them.
-//! The axis of largest separation decides the contact. A face yields up to eight points, an edge pair one. The rules
-//! that break ties, which decide how a stack rests, follow MuJoCo 4.0's collider, and so do their numbers.
+//! Two boxes are apart exactly if some face normal of either, or some cross product of their edges, separates them. The
+//! axis of largest separation tells the depth where they overlap, and decides the contact. A face yields up to eight points;
+//! across two edges lies a point, or the patch of faces that are nearly level. The rules that break ties, which decide how a
+//! stack rests, follow MuJoCo 4.0's collider, and so do their numbers.
+//!
+//! Where the boxes are apart the axis tells their distance only if a corner is over a face; else the nearest points of the
+//! two are found as for any convex shapes.
 
 use super::{
-    Placed,
+    Placed, convex,
     one_by_one::{Points, one_by_one},
 };
 use crate::{Contacts, Pose};
@@ -13,10 +17,6 @@ use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
 const EDGE_BIAS: f64 = 1e-6;
-/// An edge axis within this cosine of the best face axis (8°) is the same contact, better seen as a face ...
-const ALIAS_COSINE: f64 = 0.99;
-/// ... unless it is better by this share of the face's separation.
-const ALIAS_SHARE: f64 = 0.05;
 
 /// Tolerances for rounding: MuJoCo's in double precision, not below a few units in the last place in any.
 #[inline]
@@ -25,9 +25,32 @@ pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
 }
 
 pub(super) fn box_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    one_by_one(a, b, margin, out, |a, b, margin, points| {
-        BoxPair::new(a, b, margin).collide(points);
-    });
+    one_by_one(a, b, margin, out, points);
+}
+
+fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
+    let boxes = BoxPair::new(a, b, margin);
+    let Some((feature, separation)) = boxes.touching_feature() else {
+        return;
+    };
+    match feature {
+        Feature::Face { owner, axis } => {
+            boxes.face_contact(owner, axis, points);
+            let least = points
+                .iter()
+                .fold(S::INFINITY, |least, p| p.distance.min(least));
+            if separation <= S::ZERO || least <= separation + boxes.slack {
+                return;
+            }
+        }
+        Feature::Edges(i, j) if separation <= S::ZERO => {
+            let normal = boxes.edge_normal(i, j);
+            return convex::points_along((a, b), (normal, separation), margin, points);
+        }
+        Feature::Edges(..) => {}
+    }
+    points.clear();
+    convex::points(a, b, margin, points);
 }
 
 /// What touches what.
@@ -49,8 +72,10 @@ pub(super) struct BoxPair<S> {
     /// In the frame of each box, the axes of the other as columns.
     pub rotation: [Mat3<S>; 2],
     pub margin: S,
-    /// Separations up to this count as touching: the margin, and some rounding so that no pair slips through.
-    pub reach: S,
+    /// What rounding may do to a separation.
+    slack: S,
+    /// Separations up to this count as touching: the margin, and some slack so that no pair slips through.
+    reach: S,
 }
 
 impl<S: Scalar> BoxPair<S> {
@@ -69,36 +94,18 @@ impl<S: Scalar> BoxPair<S> {
             rotation: [rotation, rotation.transpose()],
             margin,
             reach: margin + slack,
-        }
-    }
-
-    fn collide(&self, points: &mut Points<S>) {
-        match self.touching_feature() {
-            None => {}
-            Some(Feature::Face { owner, axis }) => self.face_contact(owner, axis, points),
-            Some(Feature::Edges(i, j)) => self.edge_contact(i, j, points),
+            slack,
         }
     }
 
     /// The feature of largest separation, or none if that is beyond reach.
-    fn touching_feature(&self) -> Option<Feature> {
+    fn touching_feature(&self) -> Option<(Feature, S)> {
         let (face, face_separation) = self.best_face()?;
         let (edges, separation) = self.best_edges(face_separation)?;
-        let Some((i, j)) = edges else {
-            return Some(face);
-        };
-        let Feature::Face { owner, axis } = face else {
-            return Some(face);
-        };
-        let (direction, _) = self.edge_axis(i, j).normalize();
-        let along_face = if owner == 0 {
-            direction[axis].abs()
-        } else {
-            self.rotation[0].column(axis).dot(direction).abs()
-        };
-        let share = S::new(ALIAS_SHARE) * face_separation.abs() + S::new(1e-15);
-        let alias = along_face > S::new(ALIAS_COSINE) && separation < face_separation + share;
-        Some(if alias { face } else { Feature::Edges(i, j) })
+        Some(match edges {
+            Some((i, j)) => (Feature::Edges(i, j), separation),
+            None => (face, face_separation),
+        })
     }
 
     fn best_face(&self) -> Option<(Feature, S)> {
@@ -148,10 +155,16 @@ impl<S: Scalar> BoxPair<S> {
     }
 
     /// The cross product of axis `i` of the first box with axis `j` of the second, in the first box's frame.
-    pub(super) fn edge_axis(&self, i: usize, j: usize) -> Vec3<S> {
+    fn edge_axis(&self, i: usize, j: usize) -> Vec3<S> {
         let mut unit = Vec3::ZERO;
         unit[i] = S::ONE;
         unit.cross(self.rotation[0].column(j))
+    }
+
+    /// The unit vector along that product, towards the second box.
+    fn edge_normal(&self, i: usize, j: usize) -> Vec3<S> {
+        let (n, _) = self.edge_axis(i, j).normalize();
+        n * S::ONE.copysign(n.dot(self.offset[0]))
     }
 
     /// Half the width of a box along a direction in its frame.

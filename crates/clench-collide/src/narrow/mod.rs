@@ -11,6 +11,7 @@ mod convex;
 mod cylinder;
 mod one_by_one;
 mod plane;
+mod plane_mesh;
 mod polygon;
 mod segment;
 mod way_out;
@@ -30,12 +31,10 @@ pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     use ShapeKind::*;
     matches!(
         (a.min(b), a.max(b)),
-        (Plane, Sphere | Capsule | Ellipsoid | Cylinder | Box)
-            | (
-                HeightField,
-                Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh
-            )
-            | (Sphere, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh)
+        (
+            Plane | HeightField,
+            Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh
+        ) | (Sphere, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh)
             | (Capsule, Capsule | Ellipsoid | Cylinder | Box | Mesh)
             | (Ellipsoid, Ellipsoid | Cylinder | Box | Mesh)
             | (Cylinder, Cylinder | Box | Mesh)
@@ -44,8 +43,7 @@ pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     )
 }
 
-/// As [`collide`], but without the approximations that pairs with a box have in a simulation: a capsule deep inside one, and the
-/// axes between two.
+/// As [`collide`], but without the approximation that a capsule deep inside a box has in a simulation.
 pub(crate) fn collide_exactly<T: Real>(
     a: &Shape<T>,
     pose_a: &Pose<T>,
@@ -54,10 +52,7 @@ pub(crate) fn collide_exactly<T: Real>(
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    if !matches!(
-        (a.kind, b.kind),
-        (ShapeKind::Capsule | ShapeKind::Box, ShapeKind::Box)
-    ) {
+    if (a.kind, b.kind) != (ShapeKind::Capsule, ShapeKind::Box) {
         return collide(a, pose_a, b, pose_b, margin, out);
     }
     out.clear();
@@ -105,6 +100,7 @@ pub fn collide<T: Real>(
         (HeightField, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh) => {
             convex::terrain(a, b, margin, out)
         }
+        (Plane, Mesh) => plane_mesh::plane_mesh(a, b, margin, out),
         (Sphere, Sphere) => ball::sphere_sphere(a, b, margin, out),
         (Sphere, Capsule) => ball::sphere_capsule(a, b, margin, out),
         (Sphere, Cylinder) => cylinder::sphere_cylinder(a, b, margin, out),

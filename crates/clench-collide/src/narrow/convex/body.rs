@@ -17,7 +17,6 @@
 use super::prism::Prism;
 use crate::{Asset, Hull, Shape, ShapeKind};
 use clench_math::{Scalar, Vec3};
-use std::cell::Cell;
 
 /// A shape in its own frame.
 #[derive(Clone)]
@@ -28,8 +27,8 @@ pub(super) struct Body<'a, S> {
     pub radius: S,
     /// Of a sphere about the origin that holds the body, m.
     pub reach: S,
-    /// Of a mesh, and its vertex found last, near which the next one is looked for.
-    hull: Option<(&'a Hull, Cell<usize>)>,
+    /// Of a mesh.
+    pub hull: Option<&'a Hull>,
     /// Of a height field, the part that is looked at.
     prism: Option<&'a Prism<S>>,
 }
@@ -53,7 +52,7 @@ impl<'a, S: Scalar> Body<'a, S> {
             radius,
             reach: crate::bounding_radius(shape),
             hull: match shape.asset {
-                Asset::Hull(hull) => Some((hull, Cell::new(0))),
+                Asset::Hull(hull) => Some(hull),
                 _ => None,
             },
             prism: None,
@@ -98,19 +97,18 @@ impl<'a, S: Scalar> Body<'a, S> {
                 s.y.copysign(side.y),
                 s.z.copysign(side.z),
             ),
-            ShapeKind::Mesh => self.vertex(side).map_or(Vec3::ZERO, Vec3::from_f64),
+            ShapeKind::Mesh => self.vertex(side).map_or(Vec3::ZERO, |(_, vertex)| vertex),
             ShapeKind::HeightField => self.prism.map_or(Vec3::ZERO, |p| p.support(side)),
             ShapeKind::Plane | ShapeKind::Sphere => Vec3::ZERO,
         }
     }
 
-    /// The vertex of the hull that is furthest along `d`.
+    /// The vertex of the hull that is furthest along `d`, with its number.
     #[inline]
-    fn vertex(&self, d: Vec3<S>) -> Option<[f64; 3]> {
-        let (hull, last) = self.hull.as_ref()?;
-        let found = hull.support(Vec3::from_array(d.to_array().map(S::to_f64)), last.get());
-        last.set(found);
-        Some(hull.vertices()[found].to_array())
+    pub fn vertex(&self, d: Vec3<S>) -> Option<(usize, Vec3<S>)> {
+        let hull = self.hull?;
+        let vertex = hull.support(Vec3::from_array(d.to_array().map(S::to_f64)));
+        Some((vertex, Vec3::from_f64(hull.vertices()[vertex].to_array())))
     }
 
     /// The Hessian of the core's support function at the unit direction `d`.
@@ -181,10 +179,6 @@ impl<'a, S: Scalar> Body<'a, S> {
     }
     pub fn prism(&self) -> Option<&'a Prism<S>> {
         self.prism
-    }
-    /// The hull, and its vertex that the last support found.
-    pub fn hull(&self) -> Option<(&'a Hull, usize)> {
-        (self.hull.as_ref()).map(|(hull, last)| (*hull, last.get()))
     }
 }
 

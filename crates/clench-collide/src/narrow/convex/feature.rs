@@ -1,14 +1,13 @@
 //! What of a body lies against a plane: a face, an edge or a corner.
 
 use super::body::{Body, rim};
-use crate::{Hull, ShapeKind};
+use crate::{Hull, ShapeKind, hull::FACE_COSINE};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
 /// Most corners of a feature. A face of a hull that has more is seen with every second, third, ... of them and the furthest one.
 pub(crate) const MOST_CORNERS: usize = 24;
-/// A face counts as lying against the plane up to this tilt (5°), an edge likewise.
-pub(super) const FACE_COSINE: f64 = 0.996;
+/// An edge counts as lying against the plane up to this tilt (5°), as a face does.
 pub(super) const EDGE_SINE: f64 = 0.087;
 /// A cap tilted by less has its deepest point at every corner, as far as anyone can tell.
 const TILT: f64 = 5e-6;
@@ -82,33 +81,27 @@ impl<S: Scalar> Feature<S> {
 
     /// Of the faces and edges at the furthest vertex the one that is most nearly level, if one is level enough.
     fn of_hull(&mut self, body: &Body<S>, d: Vec3<S>) {
-        self.corners.push(body.support(d, d));
-        let Some((hull, vertex)) = body.hull() else {
+        let (Some(hull), Some((vertex, corner))) = (body.hull, body.vertex(d)) else {
+            self.corners.push(Vec3::ZERO);
             return;
         };
-        let mut best = (S::new(FACE_COSINE), None);
-        for face in hull.faces_at(vertex) {
-            let cosine = Vec3::from_f64(hull.normal(*face as usize).to_array()).dot(d);
-            if cosine >= best.0 {
-                best = (cosine, Some(*face as usize));
-            }
-        }
-        if let Some(face) = best.1 {
+        if let Some(face) = hull.face_across(vertex, Vec3::from_array(d.to_array().map(S::to_f64)))
+        {
             self.face(hull, face, vertex);
             return;
         }
-        let corner = self.corners[0];
         let mut best = (S::new(EDGE_SINE), None);
         for &neighbor in hull.neighbors(vertex) {
             let end = Vec3::from_f64(hull.vertices()[neighbor as usize].to_array());
             let (along, _) = (end - corner).normalize();
             let sine = along.dot(d).abs();
             if sine <= best.0 {
-                best = (sine, Some(end));
+                best = (sine, Some((neighbor as usize, end)));
             }
         }
-        if let Some(end) = best.1 {
-            self.corners.push(end);
+        self.corners.push(corner);
+        if let Some((neighbor, end)) = best.1 {
+            self.corners.insert(usize::from(vertex < neighbor), end);
         }
     }
 

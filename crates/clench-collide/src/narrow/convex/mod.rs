@@ -19,7 +19,7 @@ use super::{
     one_by_one::{Points, one_by_one},
 };
 use crate::Contacts;
-use clench_math::{Real, Scalar};
+use clench_math::{Real, Scalar, Vec3};
 use epa::epa;
 pub(super) use feature::MOST_CORNERS;
 use gjk::{Cores, gjk};
@@ -33,7 +33,8 @@ pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut C
     one_by_one(a, b, margin, out, points);
 }
 
-fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
+/// The contacts of one environment.
+pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
     let pair = Pair::new(a, b);
     if let Some((best, simplex)) = nearest(&pair, margin) {
         patch(&pair, a, best, &simplex, margin, points);
@@ -50,4 +51,21 @@ fn nearest<S: Scalar>(pair: &Pair<S>, margin: S) -> Option<(Gap<S>, Simplex<S>)>
         Cores::Overlap(simplex) => epa(pair, &simplex),
     };
     (best.gap - radii <= margin).then_some((best, simplex))
+}
+
+/// The contacts of one environment whose normal and distance along it are known already; the normal in the first shape's frame.
+pub(super) fn points_along<S: Scalar>(
+    (a, b): (Placed<S>, Placed<S>),
+    (normal, gap): (Vec3<S>, S),
+    margin: S,
+    points: &mut Points<S>,
+) {
+    let pair = Pair::new(a, b);
+    let best = Gap {
+        normal,
+        gap,
+        settled: true,
+    };
+    let simplex = Simplex::new(pair.vertex(normal));
+    patch(&pair, a, best, &simplex, margin, points);
 }

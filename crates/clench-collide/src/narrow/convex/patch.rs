@@ -87,13 +87,16 @@ pub(super) fn patch<S: Scalar>(
     let slack = (pair.smallest * S::new(MISSED)).max(pair.tolerance);
     let mut spots = Spots::new();
     // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
-    for beyond in [S::ZERO, slack] {
+    for beyond in [S::ZERO, pair.tolerance, slack] {
         spots.clear();
         for p in seen_a.overlap(&seen_b, beyond).corners() {
+            let on_a = seen_a.height(*p);
+            // Just beyond a corner the features' planes go on, but the bodies do not.
+            let on_b = seen_b.height(*p).max(on_a + best.gap);
             spots.push(Spot {
                 x: p.x,
                 y: p.y,
-                heights: (seen_a.height(*p), seen_b.height(*p)),
+                heights: (on_a, on_b),
             });
         }
         if spots.iter().any(|s| s.distance() <= best.gap + slack) {

@@ -1,6 +1,7 @@
 //! A triangle of terrain with the ground below it: a convex body of six corners.
 
-use super::feature::{EDGE_SINE, FACE_COSINE, Feature};
+use super::feature::{EDGE_SINE, Feature};
+use crate::hull::FACE_COSINE;
 use clench_math::{Scalar, Vec3};
 
 /// Three corners on top, counter-clockwise seen from above, and the three below them.

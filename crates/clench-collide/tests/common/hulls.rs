@@ -1,0 +1,90 @@
+//! Hulls to collide: made once, since their shapes are borrowed for as long as the tests run.
+
+use super::{Random, V};
+use clench_collide::{Hull, convex_hull};
+use clench_math::Vec3;
+use std::sync::OnceLock;
+
+/// The hull of points that have one.
+pub fn hull_of(points: &[V]) -> &'static Hull {
+    let surface = convex_hull(points, None).unwrap();
+    Box::leak(Box::new(Hull::new(&surface, points)))
+}
+
+/// The corners of a box, given its half lengths.
+pub fn corners(half: V) -> Vec<V> {
+    let sign = |k: usize, axis: usize| if k >> axis & 1 == 1 { 1.0 } else { -1.0 };
+    let corner = |k| half.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2)));
+    (0..8).map(corner).collect()
+}
+
+/// The rims of a cylinder about z, `sides` points each.
+pub fn rims(radius: f64, half_length: f64, sides: usize) -> Vec<V> {
+    let at = |k: usize| (k as f64 * std::f64::consts::TAU / sides as f64).sin_cos();
+    let ends = [-half_length, half_length];
+    let rim = |z| (0..sides).map(move |k| Vec3::new(radius * at(k).1, radius * at(k).0, z));
+    ends.into_iter().flat_map(rim).collect()
+}
+
+/// Points on an ellipsoid with these semi-axes.
+pub fn round(random: &mut Random, count: usize, semi_axes: V) -> Vec<V> {
+    (0..count)
+        .map(|_| random.direction().scale_by(semi_axes))
+        .collect()
+}
+
+/// Hulls about as large as the other shapes of random scenes: 5 cm to half a metre.
+pub fn wide() -> &'static [&'static Hull] {
+    static HULLS: OnceLock<Vec<&Hull>> = OnceLock::new();
+    HULLS.get_or_init(|| some_of_all(0.05, 0.5))
+}
+
+/// Hulls of about 10 cm.
+pub fn handy() -> &'static [&'static Hull] {
+    static HULLS: OnceLock<Vec<&Hull>> = OnceLock::new();
+    HULLS.get_or_init(|| some_of_all(0.04, 0.12))
+}
+
+/// Random ones of 6 to 60 vertices, one of a thousand, boxes, prisms that stand for cylinders, thin plates; about the origin or
+/// beside it.
+fn some_of_all(low: f64, high: f64) -> Vec<&'static Hull> {
+    let mut random = Random(77);
+    let mut hulls = Vec::new();
+    for k in 0..12 {
+        let size = random.size(low, high);
+        hulls.push(hull_of(&round(&mut random, 6 + 5 * k, size)));
+        let beside = size.scale_by(random.vector());
+        let boxed = corners(size).into_iter().map(|p| p + beside);
+        hulls.push(hull_of(&boxed.collect::<Vec<_>>()));
+        hulls.push(hull_of(&rims(size.x, size.y, 5 + 2 * k)));
+    }
+    let size = random.size(low, high);
+    for thin in [1e-2, 1e-4] {
+        hulls.push(hull_of(&corners(Vec3::new(size.x, size.y, thin * size.z))));
+    }
+    hulls.push(hull_of(&round(&mut random, 1000, size)));
+    hulls
+}
+
+/// Hulls that are huge, tiny, thin as a needle or a leaf.
+pub fn troubled() -> &'static [&'static Hull] {
+    static HULLS: OnceLock<Vec<&Hull>> = OnceLock::new();
+    HULLS.get_or_init(|| {
+        let mut random = Random(78);
+        let mut hulls = Vec::new();
+        while hulls.len() < 60 {
+            let lengths = [1e-6, 1e-3, 0.1, 0.3, 1e3];
+            let mut length = || lengths[(random.unit() * 5.0) as usize];
+            let size = Vec3::new(length(), length(), length());
+            let points = match hulls.len() % 3 {
+                0 => corners(size),
+                1 => rims(size.x, size.y, 16),
+                _ => round(&mut random, 20, size),
+            };
+            if convex_hull(&points, None).is_ok() {
+                hulls.push(hull_of(&points));
+            }
+        }
+        hulls
+    })
+}
