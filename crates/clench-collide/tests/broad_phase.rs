@@ -2,7 +2,7 @@
 
 mod common;
 
-use clench_collide::{Bound, Contacts, Pose, Shape, ShapeKind, Sweep, collide, near, supported};
+use clench_collide::{Bound, Contacts, Grid, Pose, Shape, ShapeKind, collide, near, supported};
 use clench_math::{Lanes, Mask, Mat3, Real, Vec3};
 use common::Random;
 
@@ -42,7 +42,7 @@ impl<T: Real> World<T> {
                     }
                 }
             }
-            world.bounds.push(Bound::new(&shape));
+            world.bounds.push(Bound::new(&shape, &pose));
             world.shapes.push(shape);
             world.poses.push(pose);
             world.margins.push(T::new(random.range(0.0, 0.05)));
@@ -52,9 +52,8 @@ impl<T: Real> World<T> {
 
     /// Whether two shapes are near in any lane.
     fn near(&self, i: usize, j: usize) -> bool {
-        let (bounds, poses) = (&self.bounds, &self.poses);
         let margin = self.margins[i] + self.margins[j];
-        near(&bounds[i], &poses[i], &bounds[j], &poses[j], margin).any()
+        near(&self.bounds[i], &self.bounds[j], margin).any()
     }
 
     /// Whether the narrow phase finds anything between two shapes.
@@ -78,19 +77,13 @@ fn allowed(i: u32, j: u32) -> bool {
     !(i + j).is_multiple_of(7)
 }
 
-fn sweep_misses_nothing<T: Real>(seed: u64) {
+fn the_grid_misses_nothing<T: Real>(seed: u64) {
     let mut random = Random(seed);
-    let (mut sweep, mut pairs) = (Sweep::new(), Vec::new());
+    let (mut grid, mut pairs) = (Grid::new(), Vec::new());
     let (mut found, mut most) = (0, 0);
     for count in [0, 1, 2, 60, 150] {
         let world = World::<T>::random(&mut random, count);
-        sweep.pairs(
-            &world.bounds,
-            &world.poses,
-            &world.margins,
-            allowed,
-            &mut pairs,
-        );
+        grid.pairs(&world.bounds, &world.margins, allowed, &mut pairs);
         assert!(pairs.is_sorted() && pairs.iter().all(|&(i, j)| i < j && allowed(i, j)));
 
         let list: Vec<(u32, u32)> = (0..count as u32)
@@ -120,24 +113,24 @@ fn sweep_misses_nothing<T: Real>(seed: u64) {
 }
 
 #[test]
-fn the_sweep_finds_every_touching_pair_and_agrees_with_the_list() {
-    sweep_misses_nothing::<f64>(31);
-    sweep_misses_nothing::<Lanes<f64, 4>>(32);
-    sweep_misses_nothing::<f32>(33);
+fn the_grid_finds_every_touching_pair_and_agrees_with_the_list() {
+    the_grid_misses_nothing::<f64>(31);
+    the_grid_misses_nothing::<Lanes<f64, 4>>(32);
+    the_grid_misses_nothing::<f32>(33);
 }
 
 #[test]
-fn a_warm_sweep_does_not_grow() {
+fn a_warm_grid_does_not_grow() {
     let mut random = Random(34);
     let world = World::<f64>::random(&mut random, 100);
-    let (mut sweep, mut pairs) = (Sweep::new(), Vec::new());
-    let mut run = |poses: &[Pose<f64>], pairs: &mut Vec<(u32, u32)>| {
-        sweep.pairs(&world.bounds, poses, &world.margins, |_, _| true, pairs);
+    let (mut grid, mut pairs) = (Grid::new(), Vec::new());
+    let mut run = || {
+        grid.pairs(&world.bounds, &world.margins, |_, _| true, &mut pairs);
         (pairs.capacity(), pairs.as_ptr())
     };
-    let cold = run(&world.poses, &mut pairs);
+    let cold = run();
     for _ in 0..10 {
-        assert_eq!(run(&world.poses, &mut pairs), cold);
+        assert_eq!(run(), cold);
     }
 }
 
@@ -148,18 +141,93 @@ fn a_bound_holds_its_shape() {
         for _ in 0..200 {
             let shape = random.shape(*kind);
             let pose = Pose {
-                position: Vec3::ZERO,
-                rotation: Mat3::IDENTITY,
+                position: random.vector(),
+                rotation: random.rotation(),
             };
-            let radius = Bound::new(&shape).radius;
+            let bound = Bound::new(&shape, &pose);
+            assert_eq!(bound.center, pose.position);
+            let along = |n| common::support(&shape, &pose, n) - pose.position;
             let mut widest = 0f64;
             for _ in 0..100 {
-                widest = widest.max(common::support(&shape, &pose, random.direction()).norm());
+                widest = widest.max(along(random.direction()).norm());
             }
             assert!(
-                widest <= radius && radius < 2.0 * widest,
-                "{shape:?}: {widest} in {radius}"
+                widest <= bound.radius && bound.radius < 2.0 * widest,
+                "{shape:?}: {widest} in {bound:?}"
             );
+            for axis in 0..3 {
+                let mut n = Vec3::ZERO;
+                n[axis] = 1.0;
+                let (reach, half) = (along(n)[axis], bound.half[axis]);
+                assert!(
+                    reach <= half && half < reach * (1.0 + 1e-5),
+                    "{shape:?}: {reach} in {bound:?}"
+                );
+            }
         }
     }
+}
+
+/// Balls of 1 dm in a heap without gaps.
+fn heap(count: usize) -> Vec<Bound<f64>> {
+    let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.05, 0.0, 0.0));
+    let edge = (count as f64).cbrt().ceil() as usize;
+    let place = |k: usize| {
+        Vec3::new(
+            (k % edge) as f64,
+            (k / edge % edge) as f64,
+            (k / edge / edge) as f64,
+        )
+    };
+    (0..count)
+        .map(|k| {
+            let pose = Pose {
+                position: place(k) * 0.099,
+                rotation: Mat3::IDENTITY,
+            };
+            Bound::new(&ball, &pose)
+        })
+        .collect()
+}
+
+/// How many pairs are asked about, and how many are near.
+fn asked(bounds: &[Bound<f64>]) -> (usize, usize) {
+    let (mut asked, mut pairs) = (0, Vec::new());
+    let mut count = |_, _| {
+        asked += 1;
+        true
+    };
+    Grid::new().pairs(bounds, &vec![0.0; bounds.len()], &mut count, &mut pairs);
+    (asked, pairs.len())
+}
+
+#[test]
+fn what_is_asked_about_grows_with_the_scene_and_not_its_square() {
+    for count in [125, 1000, 8000] {
+        let bounds = heap(count);
+        let (asked, near) = asked(&bounds);
+        assert!(near >= 2 * count, "{near} of {count}");
+        assert!(asked <= 14 * count, "{asked} of {count}");
+    }
+}
+
+#[test]
+fn what_is_large_or_far_or_no_number_does_not_disturb_the_rest() {
+    let (mut bounds, ball) = (heap(1000), heap(1)[0]);
+    let (_, near) = asked(&bounds);
+    let floor = Shape::new(ShapeKind::Box, Vec3::new(100.0, 100.0, 0.05));
+    let below = Pose {
+        position: Vec3::new(0.0, 0.0, -0.099),
+        rotation: Mat3::IDENTITY,
+    };
+    bounds.push(Bound::new(&floor, &below));
+    for far in [1e6, 1e12, 1e300, f64::INFINITY, f64::NAN] {
+        let center = Vec3::new(far, 0.0, 0.0);
+        bounds.push(Bound { center, ..ball });
+        bounds.push(Bound { center, ..ball });
+    }
+    let (asked, with_floor) = asked(&bounds);
+    // The lowest layer lies on the floor; of those far away, each is near its twin where there is a distance.
+    assert_eq!(with_floor, near + 100 + 3);
+    assert!(asked <= 15 * bounds.len(), "{asked}");
 }

@@ -7,11 +7,11 @@ use crate::model::{Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::workspace::{Positions, Workspace};
-use clench_collide::{Bound, Contacts, Pose, Shape, Sweep, collide};
+use clench_collide::{Bound, Contacts, Grid, Pose, Shape, collide};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::MaxContacts;
 
-/// Above this many geoms the pairs are not listed but swept for: a list grows with the square.
+/// Above this many geoms the pairs are not listed once but looked for in each step: a list grows with the square.
 const MOST_LISTED_GEOMS: usize = 128;
 
 /// What detection keeps between steps.
@@ -26,17 +26,16 @@ pub struct Collision<T: Real> {
     /// Those of them that may touch now.
     near: Vec<u32>,
     /// Finds the candidates of a large model anew each step; those of a small one never change.
-    sweep: Option<Box<SweepState<T>>>,
+    crowd: Option<Box<Crowd<T>>>,
     reaches: Vec<Reach<T>>,
     points: Contacts<T>,
     count: T,
 }
 
 #[derive(Clone, Debug)]
-struct SweepState<T> {
-    sweep: Sweep,
+struct Crowd<T> {
+    grid: Grid,
     bounds: Vec<Bound<T>>,
-    poses: Vec<Pose<T>>,
     margins: Vec<T>,
     hits: Vec<(u32, u32)>,
 }
@@ -49,7 +48,7 @@ impl<T: Real> Collision<T> {
             given: false,
             overflow: T::Mask::splat(false),
             candidates: if large { Vec::new() } else { candidates(model) },
-            sweep: large.then(|| Box::new(SweepState::new())),
+            crowd: large.then(|| Box::new(Crowd::new())),
             near: Vec::new(),
             reaches: Vec::new(),
             points: Contacts::new(),
@@ -88,8 +87,8 @@ pub fn detect<T: Real>(
     if !settings.flags.constraint || !settings.flags.contact {
         return;
     }
-    if let Some(sweep) = &mut collision.sweep {
-        sweep.find(model, params, pos, &mut collision.candidates);
+    if let Some(crowd) = &mut collision.crowd {
+        crowd.find(model, params, pos, &mut collision.candidates);
     }
     reach::update(model, params, pos, &mut collision.reaches);
     collision.near.clear();
@@ -178,12 +177,11 @@ fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
     }
 }
 
-impl<T: Real> SweepState<T> {
+impl<T: Real> Crowd<T> {
     fn new() -> Self {
-        SweepState {
-            sweep: Sweep::new(),
+        Crowd {
+            grid: Grid::new(),
             bounds: Vec::new(),
-            poses: Vec::new(),
             margins: Vec::new(),
             hits: Vec::new(),
         }
@@ -200,17 +198,14 @@ impl<T: Real> SweepState<T> {
     ) {
         let ngeom = model.geoms.len();
         self.bounds.clear();
-        self.poses.clear();
         self.margins.clear();
         for g in 0..ngeom {
-            self.bounds.push(Bound::new(&shape(model, params, g)));
-            self.poses.push(pose(pos, g));
+            (self.bounds).push(Bound::new(&shape(model, params, g), &pose(pos, g)));
             self.margins.push(reach::own_margin(model, params, g));
         }
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
         let hits = &mut self.hits;
-        self.sweep
-            .pairs(&self.bounds, &self.poses, &self.margins, allowed, hits);
+        self.grid.pairs(&self.bounds, &self.margins, allowed, hits);
         candidates.clear();
         candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
         let found =

@@ -1,0 +1,76 @@
+//! A ball and a box about a shape.
+
+use crate::{Pose, Shape, ShapeKind, bounding_radius};
+use clench_math::{Mask, Real, Scalar, Vec3};
+
+/// By how much bounding radii and margins are enlarged, a hair more than 1, so that rounding never rejects a pair in which the
+/// narrow phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
+#[inline(always)]
+pub fn allowance<T: Real>() -> T {
+    T::ONE + T::new(1e-6).max(T::splat(T::Scalar::EPSILON) * T::new(64.0))
+}
+
+/// Where a shape can be at most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound<T> {
+    /// The shape's origin in the world, m.
+    pub center: Vec3<T>,
+    /// Radius of a ball about the centre that holds the shape, m; infinite for a plane.
+    pub radius: T,
+    /// Half lengths of a box about the centre, along the coordinate axes, that holds the shape, m; infinite for a plane.
+    pub half: Vec3<T>,
+    /// The normal of a plane.
+    pub plane: Option<Vec3<T>>,
+}
+
+impl<T: Real> Bound<T> {
+    /// The bound of a shape, larger by the [`allowance`].
+    #[inline(always)]
+    pub fn new(shape: &Shape<T>, pose: &Pose<T>) -> Self {
+        Bound {
+            center: pose.position,
+            radius: bounding_radius(shape) * allowance(),
+            half: half_lengths(shape, pose) * allowance(),
+            plane: (shape.kind == ShapeKind::Plane).then(|| pose.axis()),
+        }
+    }
+}
+
+/// How far a shape reaches from its origin along the coordinate axes.
+///
+/// Along a unit vector with local coordinates d that is a shape's support function: `r + h |d_z|` of a capsule, `|S d|` of an ellipsoid
+/// with semi-axes S, `h |d_z| + r √(d_x² + d_y²)` of a cylinder, `Σ hᵢ |dᵢ|` of a box, which holds meshes and height fields too.
+#[inline(always)]
+fn half_lengths<T: Real>(shape: &Shape<T>, pose: &Pose<T>) -> Vec3<T> {
+    let s = shape.size;
+    let along = |d: Vec3<T>| match shape.kind {
+        ShapeKind::Plane => T::new(f64::INFINITY),
+        ShapeKind::Sphere => s.x,
+        ShapeKind::Capsule => s.x + s.y * d.z.abs(),
+        ShapeKind::Ellipsoid => d.scale_by(s).norm(),
+        ShapeKind::Cylinder => s.x * (d.x * d.x + d.y * d.y).sqrt() + s.y * d.z.abs(),
+        ShapeKind::Box | ShapeKind::Mesh => s.x * d.x.abs() + s.y * d.y.abs() + s.z * d.z.abs(),
+        // Neither elevation nor base is more than four times the size.
+        ShapeKind::HeightField => s.x * d.x.abs() + s.y * d.y.abs() + s.z * T::new(4.0) * d.z.abs(),
+    };
+    let [x, y, z] = pose.rotation.rows;
+    Vec3::new(along(x), along(y), along(z))
+}
+
+/// In which environments two shapes are near enough that they may be within `margin` metres of each other. Two planes
+/// never are.
+#[inline(always)]
+pub fn near<T: Real>(a: &Bound<T>, b: &Bound<T>, margin: T) -> T::Mask {
+    let offset = b.center - a.center;
+    let margin = margin * allowance();
+    match (a.plane, b.plane) {
+        (None, None) => {
+            let reach = a.radius + b.radius + margin;
+            let apart = |axis: usize| offset[axis].abs().le(a.half[axis] + b.half[axis] + margin);
+            offset.norm_squared().le(reach * reach) & apart(0) & apart(1) & apart(2)
+        }
+        (Some(normal), None) => normal.dot(offset).le(b.radius + margin),
+        (None, Some(normal)) => (-normal.dot(offset)).le(a.radius + margin),
+        (Some(_), Some(_)) => T::Mask::splat(false),
+    }
+}

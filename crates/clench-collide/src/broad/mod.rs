@@ -1,0 +1,10 @@
+//! Broad phase: which pairs of shapes are near enough to be worth asking about.
+//!
+//! [`Bound`] holds a shape in a ball and in a box along the coordinate axes, [`near`] compares two of them, and [`Grid`] finds the
+//! near pairs of a scene of many shapes.
+
+mod bound;
+mod grid;
+
+pub use bound::{Bound, allowance, near};
+pub use grid::Grid;
