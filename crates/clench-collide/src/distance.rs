@@ -1,7 +1,6 @@
 //! How far apart two shapes are.
 
-use crate::narrow::collide_exactly;
-use crate::{Asset, Contacts, Pose, Shape, bounding_radius, supported};
+use crate::{Asset, Contacts, Pose, Shape, bounding_radius, collide, supported};
 use clench_math::{Real, Scalar, Vec3};
 
 /// The shortest way between two shapes.
@@ -64,7 +63,7 @@ pub fn distance<S: Scalar>(
         let most = Real::min(reach, furthest);
         reach = Real::max(size, furthest * S::new(LEAST_REACH));
         while reach < most {
-            collide_exactly(a, pose_a, b, pose_b, reach, &mut contacts);
+            collide(a, pose_a, b, pose_b, reach, &mut contacts);
             if !contacts.as_slice().is_empty() {
                 break;
             }
@@ -73,7 +72,7 @@ pub fn distance<S: Scalar>(
         reach = most;
     }
     if contacts.as_slice().is_empty() {
-        collide_exactly(a, pose_a, b, pose_b, reach, &mut contacts);
+        collide(a, pose_a, b, pose_b, reach, &mut contacts);
     }
     let mut points = contacts.as_slice().iter();
     let mut best = points.next()?;

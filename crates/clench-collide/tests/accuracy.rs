@@ -39,7 +39,7 @@ fn depths_and_normals_are_true() {
                 c.distance
             );
             // Where another direction is as good, or a flat one nearly, the normal is open.
-            let rival = |(gap, n): &(f64, V)| truth - gap < 1e-6 && angle(*n, normal) > 0.05;
+            let rival = |(gap, n): &(f64, V)| truth - gap < 1e-8 && angle(*n, normal) > 0.05;
             if optima.iter().any(rival) {
                 continue;
             }

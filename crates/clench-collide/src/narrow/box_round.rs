@@ -1,8 +1,10 @@
 //! A box against round things: sphere–box, and capsule–box as up to two spheres on the capsule's axis.
 //!
-//! Both work in the box's own frame, where the nearest point of the box is a clamp of the coordinates.
+//! Both work in the box's own frame, where the nearest point of the box is a clamp of the coordinates. Once the capsule's middle
+//! segment enters the box, no sphere on it tells how far the capsule must move to be free, and the general convex search
+//! does.
 
-use super::Placed;
+use super::{Placed, convex, one_by_one::one_by_one_where};
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
@@ -88,14 +90,51 @@ pub(super) fn sphere_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &m
 pub(super) fn capsule_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let center = b.pose.local(a.pose.position);
     let half = b.pose.rotation.transpose_mul(a.pose.axis()) * a.shape.size.y;
-    let nearest = Nearest::find(center, half, b.shape.size);
-    let (far, lies_along) = nearest.second(half, b.shape.size);
-    let radius = a.shape.size.x;
-    let all = T::Mask::splat(true);
-    ball_box(center + half * nearest.along, radius, b, margin, all, out);
-    if lies_along.any() {
-        ball_box(center + half * far, radius, b, margin, lies_along, out);
+    let (radius, size) = (a.shape.size.x, b.shape.size);
+    let beyond = |i: usize| center[i].abs() - half[i].abs() - size[i];
+    let near = (beyond(0).max(beyond(1)).max(beyond(2)) - radius).le(margin);
+    if !near.any() {
+        return;
     }
+    let sunk = near & enters(center, half, size);
+    if sunk.any() {
+        one_by_one_where(sunk, a, b, margin, out, convex::points);
+    }
+    let beside = near & !sunk;
+    if beside.any() {
+        let nearest = Nearest::find(center, half, size);
+        let (far, lies_along) = nearest.second(half, size);
+        ball_box(
+            center + half * nearest.along,
+            radius,
+            b,
+            margin,
+            beside,
+            out,
+        );
+        let again = beside & lies_along;
+        if again.any() {
+            ball_box(center + half * far, radius, b, margin, again, out);
+        }
+    }
+}
+
+/// Whether a segment, centre + x·half with x in [−1, 1], has a point in the box: between all three pairs of its faces for some x.
+#[inline(always)]
+fn enters<T: Real>(center: Vec3<T>, half: Vec3<T>, size: Vec3<T>) -> T::Mask {
+    let (mut from, mut to) = (-T::ONE, T::ONE);
+    let mut between = T::Mask::splat(true);
+    for i in 0..3 {
+        let (c, h) = (center[i], half[i]);
+        let level = h.abs().lt(T::new(1e-15));
+        let inverse = T::ONE / T::select(level, T::ONE, h.abs());
+        let middle = -(c * inverse).copysign(c * h);
+        let reach = size[i] * inverse;
+        between &= !level | c.abs().le(size[i]);
+        from = T::select(level, from, from.max(middle - reach));
+        to = T::select(level, to, to.min(middle + reach));
+    }
+    between & from.le(to)
 }
 
 /// Where a capsule's middle segment, centre + x·half with x in [−1, 1], is nearest to a box.

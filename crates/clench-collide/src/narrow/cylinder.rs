@@ -9,8 +9,10 @@ use super::{
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
-/// Halvings of a segment that leave less than a rounding error of it.
-const HALVINGS: usize = 54;
+/// Steps to the nearest point of a segment. Four to eight are usual; so many halvings would leave a rounding error of it.
+const STEPS: usize = 54;
+/// A capsule lies along a cap or a side that it is tilted against by less (5°).
+const LEVEL_SINE: f64 = 0.087;
 
 /// A cylinder in its own frame.
 #[derive(Clone, Copy)]
@@ -95,11 +97,10 @@ pub(super) fn sphere_cylinder<T: Real>(
     add_ball(center, radius, nearest, b, active, out);
 }
 
-/// The deepest point, and both ends of the stretch where the capsule lies along the cap or the side.
+/// The deepest point, and where the capsule lies along the cap or the side both ends of that stretch.
 ///
-/// The signed distance is convex, so along the capsule's middle segment its slope changes sign once, and halving finds
-/// where. Once the segment itself enters the cylinder, that distance no longer tells how far the capsule must move to
-/// be free, and [`way_out`] does.
+/// Once the capsule's middle segment enters the cylinder, the signed distance of its points no longer tells how far the
+/// capsule must move to be free, and [`way_out`] does.
 #[kernel]
 pub(super) fn capsule_cylinder<T: Real>(
     a: Placed<T>,
@@ -171,22 +172,60 @@ impl<T: Real> Cylinder<T> {
         beyond_caps.max(beyond_side)
     }
 
-    /// The parameter of the point on a segment that has the least signed distance.
+    /// The parameter of the point on a segment that is nearest to the cylinder; somewhere within, if it enters.
+    ///
+    /// With the distances s beyond the side and h beyond the caps, those below zero taken as zero, ½(s² + h²) is convex along
+    /// the segment. Its slope is s s' + h h', which Newton's method brings to zero; a step that leaves the bracket, or is not
+    /// half as long as the one before, is replaced by halving the bracket.
     #[inline(always)]
     fn nearest_on(&self, segment: &Segment<T>) -> T {
-        let (mut low, mut high) = (-segment.half_length, segment.half_length);
-        for _ in 0..HALVINGS {
-            let middle = (low + high) * T::new(0.5);
-            let (_, outward) = self.distance(segment.at(middle));
-            let rising = outward.dot(segment.axis).gt(T::ZERO);
-            high = T::select(rising, middle, high);
-            low = T::select(rising, low, middle);
+        let whole = segment.half_length;
+        let (mut low, mut high) = (-whole, whole);
+        let at_low = self.slope(segment, low).0.ge(T::ZERO);
+        let at_high = self.slope(segment, high).0.le(T::ZERO);
+        let mut found = at_low | at_high;
+        let mut t = T::select(at_low, low, T::select(at_high, high, T::ZERO));
+        let mut last = whole + whole;
+        let enough = (whole + self.radius + self.half_length) * T::splat(T::Scalar::EPSILON);
+        for _ in 0..STEPS {
+            if found.all() {
+                break;
+            }
+            let (slope, bend) = self.slope(segment, t);
+            let rising = slope.gt(T::ZERO);
+            high = T::select(rising, t, high);
+            low = T::select(rising, low, t);
+            let step = -slope / bend.max(T::splat(T::Scalar::MIN_POSITIVE));
+            let newton = t + step;
+            let converges = step.abs().le(T::new(0.5) * last);
+            let newton_serves = converges & newton.ge(low) & newton.le(high);
+            let next = T::select(newton_serves, newton, (low + high) * T::new(0.5));
+            last = (next - t).abs();
+            t = T::select(found, t, next);
+            found |= last.le(enough);
         }
-        (low + high) * T::new(0.5)
+        t
     }
 
-    /// The ends of the stretch of a segment above the cap, or beside the side, whichever the point at `nearest` faces
-    /// more; at least that point.
+    /// How ½(s² + h²) changes along a segment: once and twice differentiated.
+    #[inline(always)]
+    fn slope(&self, segment: &Segment<T>, t: T) -> (T, T) {
+        let (p, u) = (segment.at(t), segment.axis);
+        let from_axis = (p.x * p.x + p.y * p.y).sqrt();
+        let inverse = T::ONE / from_axis.max(T::splat(T::Scalar::MIN_POSITIVE));
+        let beyond_side = (from_axis - self.radius).max(T::ZERO);
+        let beyond_cap = (p.z.abs() - self.half_length).max(T::ZERO);
+        let outward = (p.x * u.x + p.y * u.y) * inverse;
+        let upward = u.z.copysign(u.z * p.z);
+        let around = (u.x * u.x + u.y * u.y - outward * outward) * inverse;
+        let side = outward * outward + beyond_side * around;
+        let bend = T::select(beyond_side.gt(T::ZERO), side, T::ZERO)
+            + T::select(beyond_cap.gt(T::ZERO), upward * upward, T::ZERO);
+        (beyond_side * outward + beyond_cap * upward, bend)
+    }
+
+    /// The ends of the stretch of a segment along the cap, or along the side, whichever the point at `nearest` faces more; that
+    /// point alone if the segment is tilted against it.
     #[inline(always)]
     fn overlap(&self, segment: &Segment<T>, nearest: T) -> [T; 2] {
         let (c, u) = (segment.center, segment.axis);
@@ -208,9 +247,11 @@ impl<T: Real> Cylinder<T> {
         let cap = outward.z.squared().gt(T::new(0.5));
         let middle = T::select(cap, middle, level);
         let reach = T::select(cap, reach, extent);
+        let tilt = T::select(cap, u.z.squared(), u.x * u.x + u.y * u.y);
+        let along = tilt.le(T::new(LEVEL_SINE * LEVEL_SINE));
         let whole = segment.half_length;
         let low = (middle - reach).max(-whole).min(nearest);
         let high = (middle + reach).min(whole).max(nearest);
-        [low, high]
+        [low, high].map(|end| T::select(along, end, nearest))
     }
 }

@@ -43,30 +43,6 @@ pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     )
 }
 
-/// As [`collide`], but without the approximation that a capsule deep inside a box has in a simulation.
-pub(crate) fn collide_exactly<T: Real>(
-    a: &Shape<T>,
-    pose_a: &Pose<T>,
-    b: &Shape<T>,
-    pose_b: &Pose<T>,
-    margin: T,
-    out: &mut Contacts<T>,
-) {
-    if (a.kind, b.kind) != (ShapeKind::Capsule, ShapeKind::Box) {
-        return collide(a, pose_a, b, pose_b, margin, out);
-    }
-    out.clear();
-    let a = Placed {
-        shape: a,
-        pose: pose_a,
-    };
-    let b = Placed {
-        shape: b,
-        pose: pose_b,
-    };
-    convex::convex(a, b, margin, out);
-}
-
 /// Replaces `out` by the points where shape `a` at `pose_a` and shape `b` at `pose_b` are at most `margin` metres
 /// apart.
 ///

@@ -24,9 +24,21 @@ pub(super) fn one_by_one<T: Real>(
     out: &mut Contacts<T>,
     pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
 ) {
+    one_by_one_where(T::Mask::splat(true), a, b, margin, out, pair);
+}
+
+/// The same for some of the lanes.
+pub(super) fn one_by_one_where<T: Real>(
+    wanted: T::Mask,
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    out: &mut Contacts<T>,
+    pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
+) {
     let mut slots = ArrayVec::<ContactPoint<T>, MAX_POINTS>::new();
     let mut points = Points::new();
-    for lane in 0..T::LANES {
+    for lane in (0..T::LANES).filter(|lane| wanted.lane(*lane)) {
         let ((shape_a, pose_a), (shape_b, pose_b)) = (lane_of(a, lane), lane_of(b, lane));
         let a = Placed {
             shape: &shape_a,
