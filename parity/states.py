@@ -14,15 +14,18 @@ SPACING, CONTROL_HOLD = 0.5, 0.05  # seconds
 
 
 @functools.lru_cache(maxsize=None)
-def sample(path):
-    """ROLLOUTS × SAMPLES states of the model at `path`, always the same ones."""
+def sample(path, rollouts=ROLLOUTS, samples=SAMPLES, may_be_unstable=False):
+    """rollouts × samples states of the model at `path`, always the same ones."""
     model = mujoco.MjModel.from_xml_path(str(path))
     rng = np.random.default_rng(2024)
-    return [state for k in range(ROLLOUTS) for state in rollout(model, k, rng)]
+    found = [state for k in range(rollouts) for state in rollout(model, k, samples, rng)]
+    if len(found) < rollouts * samples and not may_be_unstable:
+        raise RuntimeError("MuJoCo's rollout is unstable: these states would compare nothing")
+    return found
 
 
-def rollout(model, index, rng):
-    """SAMPLES states along one rollout, which starts from the model's default state or one of its keyframes."""
+def rollout(model, index, samples, rng):
+    """States along one rollout, from the model's default state or one of its keyframes, for as long as MuJoCo is stable."""
     data = mujoco.MjData(model)
     start = index % (model.nkey + 1) - 1
     if start >= 0:
@@ -31,13 +34,13 @@ def rollout(model, index, rng):
     strength = (1.0, 0.1)[index % 2]  # thrash about, or settle where gravity puts them
     per_control = max(1, round(CONTROL_HOLD / model.opt.timestep))
     per_sample = max(1, round(SPACING / model.opt.timestep))
-    for sample_index in range(SAMPLES):
+    for sample_index in range(samples):
         for step in range(per_sample):
             if step % per_control == 0:
                 data.ctrl[:] = strength * controls(model, rng)
             mujoco.mj_step(model, data)
         if any(w.number for w in data.warning):
-            raise RuntimeError("MuJoCo's rollout is unstable: these states would compare nothing")
+            return
         yield disturbed(model, data, rng, index + sample_index)
 
 

@@ -1,8 +1,18 @@
-//! The Python side of the checks: a virtual environment, `.venv`, with what `parity/requirements.txt` names. It is made once.
+//! The Python side of the checks: a virtual environment, `.venv`, with what `parity/requirements.txt` names, and beside it, in
+//! `.venv/models`, the packages whose models are compared. It is made once.
 
 use crate::run::{command, root, run};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Packages as mere folders of files: nothing that they need to run, nothing compiled, and what was there before replaced.
+const UNPACK_ONLY: &[&str] = &[
+    "--no-deps",
+    "--no-compile",
+    "--upgrade",
+    "--target",
+    ".venv/models",
+];
 
 /// Makes what is missing of the environment.
 ///
@@ -10,7 +20,8 @@ use std::path::{Path, PathBuf};
 /// What failed, and what to install or check.
 pub fn prepare() -> Result<(), String> {
     make_environment()?;
-    install_requirements()
+    install("requirements.txt", &[])?;
+    install("model-packages.txt", UNPACK_ONLY)
 }
 
 /// The interpreter of `.venv`.
@@ -34,15 +45,18 @@ fn make_environment() -> Result<(), String> {
     })
 }
 
-/// Installs `parity/requirements.txt` unless a copy of it, kept in `.venv`, says that this was done.
-fn install_requirements() -> Result<(), String> {
-    let wanted = read(&root().join("parity/requirements.txt"))?;
-    let done = root().join(".venv/requirements-installed.txt");
+/// Installs what a file in `parity` lists, unless a copy of it, kept in `.venv`, says that this was done.
+fn install(list: &str, options: &[&str]) -> Result<(), String> {
+    let wanted = read(&root().join("parity").join(list))?;
+    let done = root().join(".venv").join(format!("installed-{list}"));
     if fs::read_to_string(&done).is_ok_and(|have| have == wanted) {
         return Ok(());
     }
-    println!("installing parity/requirements.txt");
-    run(command(interpreter(), &["-m", "pip", "install", "--quiet", "-r", "parity/requirements.txt"])).map_err(
+    println!("installing parity/{list}");
+    let path = format!("parity/{list}");
+    let mut pip = command(interpreter(), &["-m", "pip", "install", "--quiet"]);
+    pip.args(options).args(["-r", &path]);
+    run(pip).map_err(
         |e| format!("{e}\nA package index must be reachable, and Python be 3.11 or later (MuJoCo 4.0 needs it)."),
     )?;
     fs::write(&done, wanted).map_err(|e| format!("cannot write {}: {e}", done.display()))

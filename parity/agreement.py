@@ -1,0 +1,69 @@
+"""What must agree where both engines have the same contacts, on one state: dynamics, constraint rows, accelerations, forces.
+
+What precedes the solver differs by rounding alone (1e-10); accelerations agree to 1e-8 of the accelerations involved. `what` is how
+messages begin.
+"""
+
+import numpy as np
+
+import oracle
+import program
+from compare import assert_close, largest
+
+ROUNDING = 1e-10
+SOLVED = 1e-8
+SMALL_VIOLATION = 1e-4  # metres: a violation is a difference of positions of some metres, known to 1e-14
+SMALL_ROW = 1e-5  # metres: a lever is a difference of positions of about a metre, known to 1e-15
+KIND = dict(enumerate(("equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon", *3 * ["contact"])))
+
+
+def mass_matrix(what, ours, theirs):
+    diagonal = np.sqrt(np.diag(theirs.mass))
+    assert_close(what + "mass", ours["mass"], theirs.mass, ROUNDING, np.outer(diagonal, diagonal))
+
+
+def smooth_forces(what, ours, theirs):
+    """Bias, passive and actuator forces share one scale: they come from sums that may cancel."""
+    scale = largest(theirs.qfrc_bias, theirs.qfrc_passive, theirs.qfrc_actuator)
+    for name in ("qfrc_bias", "qfrc_passive", "qfrc_actuator"):
+        assert_close(what + name, ours[name], getattr(theirs, name), ROUNDING, scale)
+    scale = oracle.acceleration_scale(theirs)
+    assert_close(what + "qacc_smooth", ours["qacc_smooth"], theirs.qacc_smooth, 10 * ROUNDING, scale)
+
+
+def constraint_rows(what, ours, theirs):
+    """Violation, Jacobian, velocity, reference acceleration and D, row by row in MuJoCo's order."""
+    count = len(theirs.efc_pos)
+    assert len(ours["constraints"]) == count, f"{what}{len(ours['constraints'])} rows, MuJoCo has {count}"
+    assert [row["kind"] for row in ours["constraints"]] == [KIND[t] for t in theirs.efc_type], what
+    if count == 0:
+        return
+    row_size = np.abs(theirs.jacobian).max(axis=1, initial=SMALL_ROW)
+    speed = row_size * largest(theirs.qvel)
+    stiffness, damping, impedance = np.abs(theirs.efc_KBIP[:, :3].T)
+    # The reference acceleration is a sum: damping times a velocity, stiffness times a violation.
+    violation = np.abs(theirs.efc_pos - theirs.efc_margin) + SMALL_VIOLATION
+    asked = np.abs(theirs.efc_aref) + damping * speed + stiffness * impedance * violation
+    assert_close(what + "pos", program.rows(ours, "pos"), theirs.efc_pos, ROUNDING, 1.0)
+    assert_close(what + "jacobian", ours["jacobian"], theirs.jacobian, ROUNDING, row_size[:, None])
+    assert_close(what + "vel", program.rows(ours, "vel"), theirs.efc_vel, ROUNDING, speed)
+    assert_close(what + "D", program.rows(ours, "D"), theirs.efc_D, ROUNDING, theirs.efc_D)
+    assert_close(what + "aref", program.rows(ours, "aref"), theirs.efc_aref, ROUNDING, asked)
+
+
+def acceleration(what, ours, theirs):
+    assert_close(f"{what}{ours['solver']} qacc", ours["qacc"], theirs.qacc, SOLVED, oracle.acceleration_scale(theirs))
+
+
+def constraint_forces(what, ours, theirs):
+    """Row forces and what they do together; each contact's force in its frame."""
+    slow = oracle.SLOW * np.diag(theirs.mass)
+    scale = largest(theirs.qfrc_constraint, theirs.qfrc_smooth, slow)
+    assert_close(what + "qfrc_constraint", ours["qfrc_constraint"], theirs.qfrc_constraint, SOLVED, scale)
+    scale = largest(theirs.efc_force, slow, floor=1e-3)
+    assert_close(what + "force", program.rows(ours, "force"), theirs.efc_force, 10 * SOLVED, scale)
+    count = len(theirs.contacts)
+    assert len(ours["contacts"]) == count, f"{what}{len(ours['contacts'])} contacts, fed {count}"
+    for k, contact in enumerate(theirs.contacts):
+        actual = ours["contacts"][k]["force"]
+        assert_close(f"{what}contact {k} force", actual, contact["force"], 10 * SOLVED, scale)
