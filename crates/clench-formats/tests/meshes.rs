@@ -3,6 +3,7 @@
 
 use clench_collide::ShapeKind;
 use clench_rigid::Model;
+use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::PathBuf;
 
@@ -238,6 +239,52 @@ fn scales_references_and_classes_apply() {
     // (x, y) becomes (y, -x), then x doubles.
     near(p.geom_pos[1].to_array(), [1.0, -0.5, 0.5]);
     assert!((p.body_mass[2] - 2.0).abs() < 1e-12);
+}
+
+#[test]
+fn builtin_meshes_have_the_shapes_that_they_are_named_after() {
+    let folder = Folder::new("builtin");
+    // Vertices, faces and volume; of smooth shapes a fine mesh lacks little.
+    let (disc, prism) = (PI * PI, 5.0 * (TAU / 5.0).sin());
+    for (attributes, vertices, faces, volume) in [
+        ("builtin='sphere' params='4'", 2562, 5120, 4.0 * PI / 3.0),
+        ("builtin='hemisphere' params='10'", 266, 528, 2.0 * PI / 3.0),
+        ("builtin='cone' params='5 1'", 10, 16, prism),
+        ("builtin='cone' params='5 0'", 6, 8, prism / 3.0),
+        (
+            "builtin='supersphere' params='80 1 1'",
+            6322,
+            12640,
+            4.0 * PI / 3.0,
+        ),
+        (
+            "builtin='supertorus' params='80 0.5 1 1'",
+            6400,
+            12800,
+            disc / 2.0,
+        ),
+    ] {
+        let text = of_mesh(
+            &format!("{attributes} inertia='exact'"),
+            "type='mesh' density='1'",
+        );
+        let model = folder
+            .load(&text)
+            .unwrap_or_else(|error| panic!("{attributes}: {error}"));
+        let mesh = &model.meshes[0];
+        assert_eq!(
+            (mesh.vertices.len(), mesh.faces.len()),
+            (vertices, faces),
+            "{attributes}"
+        );
+        let mass = model.params.body_mass[1];
+        let straight = attributes.contains("cone");
+        let lacks = if straight { 1e-6 } else { 0.02 };
+        assert!(
+            mass < volume * (1.0 + 1e-6) && mass > volume * (1.0 - lacks),
+            "{attributes}: {mass}"
+        );
+    }
 }
 
 #[test]
@@ -552,8 +599,25 @@ fn meshes_that_cannot_be_are_refused() {
         ),
         (
             "vertex='0 0 0 1 0 0 0 1 0 0 0 1' builtin='sphere' params='1'",
-            "not supported yet",
+            "vertex and builtin",
         ),
+        (
+            "file='m.stl' builtin='sphere' params='1'",
+            "file and builtin",
+        ),
+        ("builtin='sphere'", "params"),
+        ("builtin='sphere' params='5'", "needs 0 to 4"),
+        ("builtin='sphere' params='-1'", "needs 0 to 4"),
+        ("builtin='sphere' params='1 1'", "params"),
+        ("builtin='hemisphere' params='11'", "needs 0 to 10"),
+        ("builtin='cone' params='2 0.5'", "needs 3 to"),
+        ("builtin='cone' params='5 2'", "params"),
+        ("builtin='supersphere' params='1e300 1 1'", "needs 3 to"),
+        ("builtin='supersphere' params='nan 1 1'", "finite"),
+        ("builtin='supersphere' params='9 -1 1'", "params"),
+        ("builtin='supertorus' params='9 0 1 1'", "params"),
+        ("builtin='plate' params='4 5'", "not supported yet"),
+        ("builtin='ball' params='4 5'", "there is no builtin ball"),
         (
             "vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 2 0 1 3' inertia='exact'",
             "outside",

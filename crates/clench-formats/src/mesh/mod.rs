@@ -1,8 +1,9 @@
-//! Mesh files: triangles from STL, OBJ and MSH.
+//! Meshes: triangles from STL, OBJ and MSH files, and those that a model asks for by name.
 //!
 //! A reader takes the bytes of a file and says what is wrong with them; who asked for the file adds which one it was. Counts that a
 //! file claims are held against its length before anything is allocated.
 
+pub(crate) mod builtin;
 mod msh;
 mod obj;
 mod stl;

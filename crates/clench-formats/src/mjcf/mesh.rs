@@ -1,9 +1,9 @@
-//! `<mesh>`: from a file, or from vertices and faces in the model.
+//! `<mesh>`: from a file, from vertices and faces in the model, or made by name.
 
 use super::document::Element;
 use super::files::Files;
 use crate::LoadError;
-use crate::mesh::{self, Format, Triangles};
+use crate::mesh::{self, Format, Triangles, builtin};
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{MeshInertia, MeshSpec};
 
@@ -45,26 +45,9 @@ impl MeshDraft {
             }
             mesh.refquat = Quat::from_f64(quat);
         }
-        let written = Triangles {
-            vertices: read_vertices(element)?,
-            faces: read_faces(element)?,
-        };
-        let found = match files.read(element)? {
-            None => written,
-            Some(mut file) => {
-                if mesh.name.is_empty() {
-                    mesh.name.clone_from(&file.stem);
-                }
-                let format = match element.text("content_type") {
-                    Some(media_type) => Format::from_media_type(media_type),
-                    None => Format::from_extension(&file.extension),
-                };
-                let format = format.ok_or_else(|| {
-                    element.error("a mesh file is STL, OBJ or MSH, and its name says which")
-                })?;
-                let found = file.parse(element, |bytes| mesh::read(bytes, format))?;
-                merge(found, written, element)?
-            }
+        let found = match element.text("builtin") {
+            Some(builtin) => make(element, builtin)?,
+            None => read_or_written(element, files, &mut mesh.name)?,
         };
         if mesh.name.is_empty() {
             return Err(element.error("a mesh needs a name or a file"));
@@ -76,6 +59,44 @@ impl MeshDraft {
             ..mesh
         })
     }
+}
+
+/// The mesh that `builtin` names.
+fn make(element: &Element, builtin: &str) -> Result<Triangles, LoadError> {
+    for other in ["file", "vertex"] {
+        if element.text(other).is_some() {
+            return Err(element.error(format!("{other} and builtin cannot both be given")));
+        }
+    }
+    let parameters = element.list("params")?;
+    let parameters = parameters.ok_or_else(|| element.missing("params"))?;
+    builtin::make(builtin, &parameters).map_err(|message| element.error(message))
+}
+
+/// The mesh in a file, which also gives a name to one without, or in the model.
+fn read_or_written(
+    element: &Element,
+    files: &Files,
+    name: &mut String,
+) -> Result<Triangles, LoadError> {
+    let written = Triangles {
+        vertices: read_vertices(element)?,
+        faces: read_faces(element)?,
+    };
+    let Some(mut file) = files.read(element)? else {
+        return Ok(written);
+    };
+    if name.is_empty() {
+        name.clone_from(&file.stem);
+    }
+    let format = match element.text("content_type") {
+        Some(media_type) => Format::from_media_type(media_type),
+        None => Format::from_extension(&file.extension),
+    };
+    let wrong = || element.error("a mesh file is STL, OBJ or MSH, and its name says which");
+    let format = format.ok_or_else(wrong)?;
+    let found = file.parse(element, |bytes| mesh::read(bytes, format))?;
+    merge(found, written, element)
 }
 
 /// A file without faces may get them from the model.

@@ -390,9 +390,8 @@ pub(crate) const RULES: &[Rule] = &[
     ignored("layer", "texture role", ""),
     Rule {
         element: "mesh",
-        read: "name class file content_type vertex face refpos refquat scale inertia maxhullvert",
+        read: "name class file content_type builtin params vertex face refpos refquat scale inertia maxhullvert",
         ignored: "normal texcoord smoothnormal material octree_maxdepth",
-        later: "builtin=none params",
         later_children: "plugin",
         ..NONE
     },

@@ -1,0 +1,268 @@
+//! Meshes that a model asks for by name and parameters, MJCF's `builtin`: points and triangles as MuJoCo makes them, with 24 bits
+//! a coordinate.
+
+use super::Triangles;
+use clench_math::Vec3;
+use std::collections::HashMap;
+use std::f64::consts::PI;
+
+/// Names in MJCF that are not read.
+const NOT_YET: &[&str] = &[
+    "wedge",
+    "plate",
+    "grid",
+    "box",
+    "cylinder",
+    "ellipsoid",
+    "square",
+    "disc",
+];
+/// The most that a resolution can be asked to be, so that a few letters do not fill the memory.
+const FINEST: usize = 1000;
+
+/// Makes the mesh of a name.
+///
+/// # Errors
+/// A name that is not known, a wrong number of parameters, or one that cannot be.
+pub(crate) fn make(name: &str, parameters: &[f64]) -> Result<Triangles, String> {
+    let count = |number: f64, least: usize, most: usize| {
+        // As in MuJoCo, what is behind the point does not count.
+        let whole = number.trunc();
+        match whole >= least as f64 && whole <= most as f64 {
+            true => Ok(whole as usize),
+            false => Err(format!(
+                "the first of params is {number}, but a {name} needs {least} to {most}"
+            )),
+        }
+    };
+    match (name, parameters) {
+        ("sphere", &[subdivisions]) => Ok(sphere(count(subdivisions, 0, 4)?)),
+        ("hemisphere", &[resolution]) => Ok(hemisphere(count(resolution, 0, 10)?)),
+        ("cone", &[corners, radius]) if (0.0..=1.0).contains(&radius) => {
+            Ok(cone(count(corners, 3, FINEST)?, radius))
+        }
+        ("supersphere", &[resolution, e, n]) if e >= 0.0 && n >= 0.0 => {
+            Ok(supersphere(count(resolution, 3, FINEST)?, e, n))
+        }
+        ("supertorus", &[resolution, radius, s, t])
+            if radius > 0.0 && radius <= 1.0 && s > 0.0 && t > 0.0 =>
+        {
+            Ok(supertorus(count(resolution, 3, FINEST)?, radius, s, t))
+        }
+        ("sphere" | "hemisphere" | "cone" | "supersphere" | "supertorus", _) => {
+            Err(format!("a {name} cannot have the params {parameters:?}"))
+        }
+        (name, _) if NOT_YET.contains(&name) => {
+            Err(format!("the builtin {name} is not supported yet"))
+        }
+        _ => Err(format!("there is no builtin {name}")),
+    }
+}
+
+/// A point with the bits that it keeps.
+fn point(x: f64, y: f64, z: f64) -> Vec3<f64> {
+    Vec3::from_array([x, y, z].map(|coordinate| f64::from(coordinate as f32)))
+}
+
+/// Triangles of the icosahedron.
+const ICOSAHEDRON: [[u32; 3]; 20] = [
+    [0, 11, 5],
+    [0, 5, 1],
+    [0, 1, 7],
+    [0, 7, 10],
+    [0, 10, 11],
+    [1, 5, 9],
+    [5, 11, 4],
+    [11, 10, 2],
+    [10, 7, 6],
+    [7, 1, 8],
+    [3, 9, 4],
+    [3, 4, 2],
+    [3, 2, 6],
+    [3, 6, 8],
+    [3, 8, 9],
+    [4, 9, 5],
+    [2, 4, 11],
+    [6, 2, 10],
+    [8, 6, 7],
+    [9, 8, 1],
+];
+
+/// Corners of an icosahedron: three rectangles with sides 2 and 2 φ, φ the golden ratio, each in a plane of two axes.
+fn icosahedron(golden: f32) -> Vec<[f32; 3]> {
+    let corners = [
+        (golden, -1.0),
+        (golden, 1.0),
+        (-golden, -1.0),
+        (-golden, 1.0),
+    ];
+    [
+        corners.map(|(long, short)| [short, long, 0.0]),
+        corners.map(|(long, short)| [0.0, short, long]),
+        corners.map(|(long, short)| [long, 0.0, short]),
+    ]
+    .concat()
+}
+
+/// An icosahedron whose triangles are cut into four, again and again, their new corners on the unit sphere.
+fn sphere(subdivisions: usize) -> Triangles {
+    let golden = (0.5 * (1.0 + 5f64.sqrt())) as f32;
+    let norm = (1.0 + f64::from(golden * golden)).sqrt();
+    let mut vertices = icosahedron(golden);
+    for coordinate in vertices.as_flattened_mut() {
+        *coordinate = (f64::from(*coordinate) / norm) as f32;
+    }
+    let mut faces = ICOSAHEDRON.to_vec();
+    for _ in 0..subdivisions {
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                let [p, q] = [a, b].map(|corner| vertices[corner as usize]);
+                let between = [0, 1, 2].map(|i| (p[i] + q[i]) / 2.0);
+                let [x, y, z] = between;
+                let norm = (x * x + y * y + z * z).sqrt();
+                vertices.push(between.map(|x| x / norm));
+                vertices.len() as u32 - 1
+            })
+        };
+        let mut finer = Vec::with_capacity(4 * faces.len());
+        for [a, b, c] in faces {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        faces = finer;
+    }
+    let exact = |corner: [f32; 3]| Vec3::from_array(corner.map(f64::from));
+    Triangles {
+        vertices: vertices.into_iter().map(exact).collect(),
+        faces,
+    }
+}
+
+/// The upper half of an octahedron, each of its triangles cut into rows of triangles, its corners moved to the unit sphere; and a
+/// disc around the origin.
+fn hemisphere(resolution: usize) -> Triangles {
+    const EQUATOR: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    let rows = resolution + 1;
+    let mut vertices = vec![Vec3::new(0.0, 0.0, 1.0)];
+    for row in 1..=rows {
+        let down = row as f64 / rows as f64;
+        for side in 0..4 {
+            let [start, end] = [EQUATOR[side], EQUATOR[(side + 1) % 4]];
+            for step in 0..row {
+                let along = |i: usize| {
+                    let delta = (down * end[i] - down * start[i]) / row as f64;
+                    down * start[i] + step as f64 * delta
+                };
+                let (x, y, z) = (along(0), along(1), 1.0 - down);
+                let norm = (x * x + y * y + z * z).sqrt();
+                vertices.push(point(x / norm, y / norm, z / norm));
+            }
+        }
+    }
+    let middle = vertices.len() as u32;
+    vertices.push(Vec3::ZERO);
+    // Corner number `step` of a side of a row; the pole is the row 0.
+    let corner = |row: usize, side: usize, step: usize| match row {
+        0 => 0,
+        _ => (1 + 2 * row * (row - 1) + (side * row + step) % (4 * row)) as u32,
+    };
+    let mut faces = Vec::new();
+    for row in 0..rows {
+        for side in 0..4 {
+            for step in 0..=row {
+                let here = corner(row, side, step);
+                let below = [step, step + 1].map(|step| corner(row + 1, side, step));
+                faces.push([here, below[0], below[1]]);
+                if step < row {
+                    faces.push([here, below[1], corner(row, side, step + 1)]);
+                }
+            }
+        }
+    }
+    for step in 0..4 * rows {
+        faces.push([corner(rows, 0, step), middle, corner(rows, 0, step + 1)]);
+    }
+    Triangles { vertices, faces }
+}
+
+/// A regular polygon at z = −1 and another, of this radius, at z = 1; or a point there.
+fn cone(corners: usize, radius: f64) -> Triangles {
+    let ring = |radius: f64, z: f64, turns: usize| {
+        (0..corners).map(move |corner| {
+            let angle = 2.0 * (corner + turns * corners) as f64 * PI / corners as f64;
+            point(radius * angle.cos(), radius * angle.sin(), z)
+        })
+    };
+    let mut vertices: Vec<Vec3<f64>> = ring(1.0, -1.0, 0).collect();
+    match radius > 0.0 {
+        // As in MuJoCo, the upper ring is one turn further.
+        true => vertices.extend(ring(radius, 1.0, 1)),
+        false => vertices.push(Vec3::new(0.0, 0.0, 1.0)),
+    }
+    Triangles {
+        vertices,
+        faces: Vec::new(),
+    }
+}
+
+/// abs(x)ⁿ with the sign of x.
+fn signed_power(x: f64, exponent: f64) -> f64 {
+    x.abs().powf(exponent).copysign(x)
+}
+
+/// A superellipsoid with half axes of length one: rings of points between two poles.
+fn supersphere(resolution: usize, e: f64, n: f64) -> Triangles {
+    let step = |turn: f64, k: usize| k as f64 * turn / resolution as f64;
+    let mut vertices = vec![Vec3::new(0.0, 0.0, -1.0)];
+    for ring in 1..resolution {
+        let v = -PI / 2.0 + step(PI, ring);
+        for k in 0..resolution {
+            let u = -PI + step(2.0 * PI, k);
+            let out = signed_power(v.cos(), n);
+            vertices.push(point(
+                out * signed_power(u.cos(), e),
+                out * signed_power(u.sin(), e),
+                signed_power(v.sin(), n),
+            ));
+        }
+    }
+    let north = vertices.len() as u32;
+    vertices.push(Vec3::new(0.0, 0.0, 1.0));
+    let at = |ring: usize, k: usize| (1 + ring * resolution + k % resolution) as u32;
+    let mut faces: Vec<[u32; 3]> = (0..resolution)
+        .map(|k| [0, at(0, k + 1), at(0, k)])
+        .collect();
+    for ring in 0..resolution - 2 {
+        for k in 0..resolution {
+            let [below, next] = [at(ring, k), at(ring, k + 1)];
+            let [above, beyond] = [at(ring + 1, k), at(ring + 1, k + 1)];
+            faces.extend([[below, next, above], [next, beyond, above]]);
+        }
+    }
+    let last = resolution - 2;
+    faces.extend((0..resolution).map(|k| [at(last, k), at(last, k + 1), north]));
+    Triangles { vertices, faces }
+}
+
+/// A supertoroid about a circle of radius one.
+fn supertorus(resolution: usize, radius: f64, s: f64, t: f64) -> Triangles {
+    let angle = |k: usize| 2.0 * PI * k as f64 / resolution as f64;
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    let at = |i: usize, j: usize| ((i % resolution) * resolution + j % resolution) as u32;
+    for i in 0..resolution {
+        for j in 0..resolution {
+            let (u, v) = (angle(i), angle(j));
+            let out = 1.0 + radius * signed_power(v.cos(), s);
+            vertices.push(point(
+                out * signed_power(u.cos(), t),
+                out * signed_power(u.sin(), t),
+                radius * signed_power(v.sin(), s),
+            ));
+            let [here, next] = [at(i, j), at(i + 1, j)];
+            let [above, beyond] = [at(i, j + 1), at(i + 1, j + 1)];
+            faces.extend([[here, next, above], [next, beyond, above]]);
+        }
+    }
+    Triangles { vertices, faces }
+}
