@@ -74,8 +74,13 @@ impl<'a> Assets<'a> {
     /// Moves them to a model that has all its geoms, without those that no geom has where the visual is discarded.
     pub fn keep(self, builder: &ModelBuilder, model: &mut Model) {
         let mut used = vec![!builder.compiler.discardvisual; self.meshes.len()];
-        for mesh in model.geoms.iter().filter_map(|geom| geom.mesh) {
-            used[mesh] = true;
+        for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
+            // A primitive that was fitted to a mesh keeps it too, as in MuJoCo.
+            if !is_discarded(builder, geom)
+                && let Ok(mesh) = self.names.find(&geom.mesh, geom)
+            {
+                used[mesh] = true;
+            }
         }
         let mut number = vec![0; used.len()];
         for (index, processed) in self.meshes.into_iter().enumerate() {
