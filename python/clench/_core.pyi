@@ -29,7 +29,9 @@ __all__ = [
 ]
 
 _Precision: TypeAlias = Literal["64", "32"]
-_Kind: TypeAlias = Literal["body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair"]
+_Kind: TypeAlias = Literal[
+    "body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair", "mesh", "hfield"
+]
 _Cost: TypeAlias = Literal["quadratic", "one_sided", "huber", "pyramid", "elliptic"]
 _Status: TypeAlias = Literal["unconstrained", "proven", "converged", "no_progress", "iteration_limit", "non_finite"]
 _Source: TypeAlias = Literal[
@@ -85,6 +87,10 @@ class Model:
     def nmocap(self) -> int: ...
     @property
     def npair(self) -> int: ...
+    @property
+    def nmesh(self) -> int: ...
+    @property
+    def nhfield(self) -> int: ...
     def names(self, kind: _Kind) -> list[str]: ...
     def body(self, which: str | SupportsIndex) -> Element: ...
     def joint(self, which: str | SupportsIndex) -> Element: ...
@@ -95,6 +101,8 @@ class Model:
     def equality(self, which: str | SupportsIndex) -> Element: ...
     def keyframe(self, which: str | SupportsIndex) -> Element: ...
     def pair(self, which: str | SupportsIndex) -> Element: ...
+    def mesh(self, which: str | SupportsIndex) -> Element: ...
+    def hfield(self, which: str | SupportsIndex) -> Element: ...
 
     # Fields. Arrays cannot be written to; lengths and times are in SI units; quaternions are w, x, y, z.
     timestep: Final[float]  # Seconds a step.
@@ -166,7 +174,8 @@ class Model:
     geom_solmix: Final[_Floats]  # (ngeom,) Weight in mixing.
     geom_solref: Final[_Floats]  # (ngeom, 2) Reference dynamics.
     geom_solimp: Final[_Floats]  # (ngeom, 5) Impedance.
-    geom_type: Final[_Codes]  # (ngeom,) 0 plane, 2 sphere, 3 capsule, 4 ellipsoid, 5 cylinder, 6 box.
+    geom_type: Final[_Codes]  # (ngeom,) 0 plane, 1 hfield, 2 sphere, 3 capsule, 4 ellipsoid, 5 cylinder, 6 box, 7 mesh.
+    geom_dataid: Final[_Codes]  # (ngeom,) Its mesh or height field, or -1.
     geom_bodyid: Final[_Codes]  # (ngeom,) The body that carries it.
     geom_contype: Final[_Codes]  # (ngeom,) Bits of its contact type.
     geom_conaffinity: Final[_Codes]  # (ngeom,) Bits of the types that it collides with.
@@ -241,6 +250,21 @@ class Model:
     pair_geom1: Final[_Codes]  # (npair,) The geom whose type has the smaller code.
     pair_geom2: Final[_Codes]  # (npair,) The other.
 
+    mesh_pos: Final[_Floats]  # (nmesh, 3) Its centre of mass where its author put it.
+    mesh_quat: Final[_Floats]  # (nmesh, 4) Its principal axes there.
+    mesh_vertadr: Final[_Codes]  # (nmesh,) The first of its vertices.
+    mesh_vertnum: Final[_Codes]  # (nmesh,) How many vertices.
+    mesh_faceadr: Final[_Codes]  # (nmesh,) The first of its triangles.
+    mesh_facenum: Final[_Codes]  # (nmesh,) How many triangles.
+    mesh_vert: Final[_Floats]  # (nmeshvert, 3) Vertices of all meshes, about the centres of mass, along the principal axes.
+    mesh_face: Final[_Codes]  # (nmeshface, 3) Corners of all triangles, counted from the first vertex of each mesh.
+
+    hfield_size: Final[_Floats]  # (nhfield, 4) Half lengths along x and y, elevation, depth of the base.
+    hfield_nrow: Final[_Codes]  # (nhfield,) How many rows, along y.
+    hfield_ncol: Final[_Codes]  # (nhfield,) How many columns, along x.
+    hfield_adr: Final[_Codes]  # (nhfield,) The first of its heights.
+    hfield_data: Final[_Floats]  # (nhfielddata,) Heights of all, as parts of the elevation.
+
     key_time: Final[_Floats]  # (nkey,) Time, s.
     key_qpos: Final[_Floats]  # (nkey, nq) Position coordinates.
     key_qvel: Final[_Floats]  # (nkey, nv) Velocities.
@@ -268,7 +292,7 @@ class Element:
     active0: Final[bool]  # equality
     actlimited: Final[bool]  # actuator
     actrange: Final[_Floats]  # (2,) actuator
-    adr: Final[int]  # tendon
+    adr: Final[int]  # tendon, hfield
     anchor1: Final[_Floats]  # (3,) equality
     anchor2: Final[_Floats]  # (3,) equality
     axis: Final[_Floats]  # (3,) joint
@@ -282,11 +306,16 @@ class Element:
     ctrllimited: Final[bool]  # actuator
     ctrlrange: Final[_Floats]  # (2,) actuator
     damping: Final[float]  # tendon
+    data: Final[_Floats]  # (nrow, ncol) hfield
+    dataid: Final[int]  # geom
     dim: Final[int]  # pair
     dofadr: Final[int]  # body, joint
     dofnum: Final[int]  # body
     dynprm: Final[_Floats]  # (10,) actuator
     dyntype: Final[int]  # actuator
+    face: Final[_Codes]  # (facenum, 3) mesh
+    faceadr: Final[int]  # mesh
+    facenum: Final[int]  # mesh
     forcelimited: Final[bool]  # actuator
     forcerange: Final[_Floats]  # (2,) actuator
     friction: Final[_Floats]  # geom, pair
@@ -315,23 +344,25 @@ class Element:
     mocapid: Final[int]  # body
     mpos: Final[_Floats]  # (nmocap, 3) keyframe
     mquat: Final[_Floats]  # (nmocap, 4) keyframe
+    ncol: Final[int]  # hfield
+    nrow: Final[int]  # hfield
     num: Final[int]  # tendon
     obj1id: Final[int]  # equality
     obj2id: Final[int]  # equality
     parentid: Final[int]  # body
     polycoef: Final[_Floats]  # (5,) equality
-    pos: Final[_Floats]  # (3,) body, joint, geom, site
+    pos: Final[_Floats]  # (3,) body, joint, geom, site, mesh
     priority: Final[int]  # geom
     qpos: Final[_Floats]  # (nq,) keyframe
     qposadr: Final[int]  # joint
-    quat: Final[_Floats]  # (4,) body, geom, site
+    quat: Final[_Floats]  # (4,) body, geom, site, mesh
     quat1: Final[_Floats]  # (4,) equality
     quat2: Final[_Floats]  # (4,) equality
     qvel: Final[_Floats]  # (nv,) keyframe
     range: Final[_Floats]  # (2,) joint, tendon
     rbound: Final[float]  # geom
     rootid: Final[int]  # body
-    size: Final[_Floats]  # (3,) geom
+    size: Final[_Floats]  # (3,) geom, (4,) hfield
     solimp: Final[_Floats]  # (5,) joint, geom, equality, pair
     solimp_fri: Final[_Floats]  # (5,) tendon
     solimp_lim: Final[_Floats]  # (5,) tendon
@@ -347,6 +378,9 @@ class Element:
     trnid: Final[_Codes]  # (2,) actuator
     trntype: Final[int]  # actuator
     type: Final[int]  # joint, geom, equality
+    vert: Final[_Floats]  # (vertnum, 3) mesh
+    vertadr: Final[int]  # mesh
+    vertnum: Final[int]  # mesh
     weldid: Final[int]  # body
     # Of a joint: rows of its degrees of freedom, and its position coordinates.
     dof_armature: Final[_Floats]  # (nv,)

@@ -1,5 +1,6 @@
 //! `clench.Element`.
 
+use crate::assets;
 use crate::fields;
 use crate::kind::Kind;
 use crate::names::no_attribute;
@@ -9,11 +10,13 @@ use pyo3::types::PySlice;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// One element of a model: a body, joint, geom, site, tendon, actuator, equality constraint, keyframe or geom pair.
+/// One element of a model: a body, joint, geom, site, tendon, actuator, equality constraint, keyframe, geom pair, mesh or
+/// height field.
 ///
 /// Its numbers are attributes, named as the fields of the model without the kind: the `mass` of a body is
 /// ``body_mass[id]``, the `range` of a joint ``jnt_range[id]``, the `qpos` of a keyframe ``key_qpos[id]``. A joint also
-/// has a row of each `dof_...` field for each of its degrees of freedom, and its part of `qpos0` and `qpos_spring`.
+/// has a row of each `dof_...` field for each of its degrees of freedom, and its part of `qpos0` and `qpos_spring`; a mesh
+/// has its vertices and faces as `vert` and `face`, a height field its (nrow, ncol) heights as `data`.
 /// ``dir(element)`` lists all.
 ///
 /// Examples
@@ -35,6 +38,15 @@ impl Element {
         Ok(Element { model, kind, id })
     }
 
+    /// Heights by row and column; anything else as it is.
+    fn in_shape<'py>(&self, rows: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if self.kind != Kind::HeightField {
+            return Ok(rows);
+        }
+        let shape = &self.model.height_fields[self.id].shape;
+        rows.call_method1("reshape", (shape.rows(), shape.columns()))
+    }
+
     /// The names of its fields.
     fn fields(&self) -> Vec<&'static str> {
         let mut names: Vec<_> = fields::names()
@@ -46,8 +58,11 @@ impl Element {
         names
     }
 
-    /// Which rows of a field of the model belong to this joint.
+    /// Which rows of a field of the model belong to this element, where that is not the one of its number.
     fn rows_of(&self, field: &str) -> Option<Range<usize>> {
+        if field.starts_with(self.kind.prefix()) {
+            return assets::rows_of(&self.model, field, self.id);
+        }
         let joint = self
             .model
             .joints
@@ -83,7 +98,15 @@ impl Element {
     }
 
     fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        if let Some(field) = fields::find(&self.model, &format!("{}{name}", self.kind.prefix())) {
+        let own = format!("{}{name}", self.kind.prefix());
+        for field in [own.as_str(), name] {
+            let rows = self.rows_of(field);
+            if let (Some(rows), Some(field)) = (rows, fields::find(&self.model, field)) {
+                let slice = PySlice::new(py, rows.start as isize, rows.end as isize, 1);
+                return self.in_shape(field.show(py)?.get_item(slice)?);
+            }
+        }
+        if let Some(field) = fields::find(&self.model, &own) {
             let row = field.show(py)?.get_item(self.id)?;
             let single = row.getattr("ndim")?.extract::<usize>()? == 0;
             return if single {
@@ -91,11 +114,6 @@ impl Element {
             } else {
                 Ok(row)
             };
-        }
-        let rows = self.rows_of(name);
-        if let (Some(rows), Some(field)) = (rows, fields::find(&self.model, name)) {
-            let slice = PySlice::new(py, rows.start as isize, rows.end as isize, 1);
-            return field.show(py)?.get_item(slice);
         }
         let class = format!("an Element of kind \"{}\"", self.kind.name());
         Err(no_attribute(&class, name, &self.fields()))

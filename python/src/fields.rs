@@ -1,5 +1,6 @@
 //! The fields of a model by name: its parameters, and the structure in MuJoCo's names and codes.
 
+use crate::assets::ASSETS;
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::rigid::model::{
@@ -12,11 +13,11 @@ use std::ops::Range;
 
 /// Some numbers, and how many along each axis.
 pub(crate) struct Field {
-    shape: Vec<usize>,
-    numbers: Numbers,
+    pub(crate) shape: Vec<usize>,
+    pub(crate) numbers: Numbers,
 }
 
-enum Numbers {
+pub(crate) enum Numbers {
     Real(Vec<f64>),
     Code(Vec<i32>),
     Flag(Vec<bool>),
@@ -24,7 +25,7 @@ enum Numbers {
 
 /// The names of all fields.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    let structure = STRUCTURE.iter().map(|(name, _)| *name);
+    let structure = STRUCTURE.iter().chain(ASSETS).map(|(name, _)| *name);
     ParamField::ALL
         .iter()
         .map(|field| field.name())
@@ -39,7 +40,8 @@ pub(crate) fn find(model: &Model, name: &str) -> Option<Field> {
         numbers: Numbers::Real(model.params.read_lane(field, 0)),
     });
     param.or_else(|| {
-        let (_, read) = STRUCTURE.iter().find(|(known, _)| *known == name)?;
+        let mut structure = STRUCTURE.iter().chain(ASSETS);
+        let (_, read) = structure.find(|(known, _)| *known == name)?;
         Some(read(model))
     })
 }
@@ -71,7 +73,7 @@ fn read_only<'py, T: Element>(
 }
 
 /// The name of a field, and how it is read.
-type Reader = (&'static str, fn(&Model) -> Field);
+pub(crate) type Reader = (&'static str, fn(&Model) -> Field);
 
 /// Structure, read from the records of the model. Where there is nothing to point at, the index is −1.
 const STRUCTURE: &[Reader] = &[
@@ -101,6 +103,9 @@ const STRUCTURE: &[Reader] = &[
     ("dof_jntid", |m| codes(&m.dofs, |d| id(d.joint))),
     ("dof_parentid", |m| codes(&m.dofs, |d| id_or_none(d.parent))),
     ("geom_type", |m| codes(&m.geoms, |g| geom_type(g.kind))),
+    ("geom_dataid", |m| {
+        codes(&m.geoms, |g| id_or_none(g.mesh.or(g.height_field)))
+    }),
     ("geom_bodyid", |m| codes(&m.geoms, |g| id(g.body))),
     ("geom_contype", |m| {
         codes(&m.geoms, |g| g.contype.cast_signed())
@@ -174,7 +179,7 @@ const STRUCTURE: &[Reader] = &[
     }),
 ];
 
-fn codes<E>(elements: &[E], code: impl Fn(&E) -> i32) -> Field {
+pub(crate) fn codes<E>(elements: &[E], code: impl Fn(&E) -> i32) -> Field {
     Field {
         shape: vec![elements.len()],
         numbers: Numbers::Code(elements.iter().map(code).collect()),
@@ -218,7 +223,7 @@ fn transmission_targets(model: &Model) -> Field {
 const NONE: i32 = -1;
 
 /// Indices and counts are far below 2³¹: no memory holds so many elements.
-fn id(index: usize) -> i32 {
+pub(crate) fn id(index: usize) -> i32 {
     index as i32
 }
 

@@ -18,10 +18,12 @@ pub(crate) enum Kind {
     Equality,
     Keyframe,
     Pair,
+    Mesh,
+    HeightField,
 }
 
 impl Kind {
-    const ALL: [Kind; 9] = [
+    const ALL: [Kind; 11] = [
         Kind::Body,
         Kind::Joint,
         Kind::Geom,
@@ -31,6 +33,8 @@ impl Kind {
         Kind::Equality,
         Kind::Keyframe,
         Kind::Pair,
+        Kind::Mesh,
+        Kind::HeightField,
     ];
 
     /// The kind of that name.
@@ -51,6 +55,8 @@ impl Kind {
             Kind::Equality => "equality",
             Kind::Keyframe => "keyframe",
             Kind::Pair => "pair",
+            Kind::Mesh => "mesh",
+            Kind::HeightField => "hfield",
         }
     }
 
@@ -66,6 +72,8 @@ impl Kind {
             Kind::Equality => "eq_",
             Kind::Keyframe => "key_",
             Kind::Pair => "pair_",
+            Kind::Mesh => "mesh_",
+            Kind::HeightField => "hfield_",
         }
     }
 
@@ -81,6 +89,8 @@ impl Kind {
             Kind::Equality => model.equalities.iter().map(|e| &*e.name).collect(),
             Kind::Keyframe => model.keyframes.iter().map(|e| &*e.name).collect(),
             Kind::Pair => model.pairs.iter().map(|e| &*e.name).collect(),
+            Kind::Mesh => model.meshes.iter().map(|e| &*e.name).collect(),
+            Kind::HeightField => model.height_fields.iter().map(|e| &*e.name).collect(),
         }
     }
 

@@ -2,6 +2,7 @@
 //! computed in the crates; here they are only shown, checked and handed on.
 
 mod arrays;
+mod assets;
 mod batch;
 mod block;
 mod busy;

@@ -200,12 +200,22 @@ impl Model {
     fn npair(&self) -> usize {
         self.0.pairs.len()
     }
+    /// int : Number of meshes.
+    #[getter]
+    fn nmesh(&self) -> usize {
+        self.0.meshes.len()
+    }
+    /// int : Number of height fields.
+    #[getter]
+    fn nhfield(&self) -> usize {
+        self.0.height_fields.len()
+    }
 
     /// Names of all elements of a kind.
     ///
     /// Parameters
     /// ----------
-    /// kind : {"body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair"}
+    /// kind : {"body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair", "mesh", "hfield"}
     ///     What to name.
     ///
     /// Returns
@@ -256,6 +266,14 @@ impl Model {
     #[doc = named!("explicit geom pair")]
     fn pair(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
         Element::find(&self.0, Kind::Pair, which)
+    }
+    #[doc = named!("mesh")]
+    fn mesh(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Mesh, which)
+    }
+    #[doc = named!("height field")]
+    fn hfield(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::HeightField, which)
     }
 
     fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

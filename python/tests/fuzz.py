@@ -52,7 +52,7 @@ OPTIONS = {
     "warmstart": (True, False),
 }
 COSTS = ("quadratic", "one_sided", "huber", "pyramid", "elliptic")
-KINDS = ("body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair")
+KINDS = ("body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair", "mesh", "hfield")
 KEYS = ("bent", "dropped", "struck", "raised", 0, 1, -1, None)
 PATHS = (ROOT / "models/pendulum.xml", str(ROOT / "models/pinch.xml"), ROOT, ROOT / "README.md", "", "none.xml", "\0")
 

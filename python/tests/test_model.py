@@ -15,7 +15,7 @@ import clench
 import mujoco  # type: ignore[import-untyped]
 import numpy as np
 import pytest
-from models import EXAMPLES, FEATURES, ROOT
+from models import EXAMPLES, FEATURES, PUBLIC, ROOT, SHAPES
 
 HUMANOID = ROOT / "models/humanoid.xml"
 STUB = Path(clench.__file__).with_name("_core.pyi")
@@ -30,8 +30,11 @@ KINDS = {
     "equality": "eq_",
     "keyframe": "key_",
     "pair": "pair_",
+    "mesh": "mesh_",
+    "hfield": "hfield_",
 }
 SIZES = ["nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ntendon", "neq", "nkey", "nmocap", "npair"]
+SIZES += ["nmesh", "nhfield"]
 
 # What MuJoCo keeps in its options, by its name there.
 OPTIONS = {
@@ -47,6 +50,10 @@ OPTIONS = {
 }
 # What it keeps in another form: these have a test of their own.
 OURS = {"wrap_coef", "eq_anchor1", "eq_anchor2", "eq_quat1", "eq_quat2", "eq_torquescale", "eq_polycoef"}
+# What it keeps with fewer digits, or may cut into other triangles.
+OURS |= {"mesh_vert", "mesh_face", "hfield_data"}
+# Many rows for an element.
+LISTS = {"mesh_vert", "mesh_face", "hfield_data"}
 
 
 def field_names() -> list[str]:
@@ -59,7 +66,7 @@ def humanoid() -> clench.Model:
     return clench.Model.from_file(HUMANOID)
 
 
-@pytest.fixture(params=EXAMPLES + FEATURES, ids=lambda path: path.stem)
+@pytest.fixture(params=EXAMPLES + FEATURES + SHAPES, ids=lambda path: path.stem)
 def both(request: pytest.FixtureRequest) -> tuple[clench.Model, mujoco.MjModel]:
     """The same file, loaded here and by MuJoCo."""
     return clench.Model.from_file(request.param), mujoco.MjModel.from_xml_path(str(request.param))
@@ -91,6 +98,21 @@ def test_fields_are_those_of_mujoco(both: tuple[clench.Model, mujoco.MjModel]) -
             np.testing.assert_array_equal(found, expected, err_msg=name)
 
 
+@pytest.mark.parametrize("name", PUBLIC)
+def test_robots_of_other_packages_are_those_of_mujoco(name: str) -> None:
+    """Masses, frames and sizes, most of which follow from meshes."""
+    path = ROOT / ".venv/models" / name
+    ours, theirs = clench.Model.from_file(path), mujoco.MjModel.from_xml_path(str(path))
+    for field in ["body_mass", "body_inertia"]:
+        np.testing.assert_allclose(getattr(ours, field), getattr(theirs, field), rtol=1e-9, atol=1e-15, err_msg=field)
+    for field in ["body_ipos", "geom_pos", "geom_size", "geom_rbound", "mesh_pos"]:
+        np.testing.assert_allclose(getattr(ours, field), getattr(theirs, field), rtol=0, atol=1e-9, err_msg=field)
+    for field in ["body_iquat", "geom_quat", "mesh_quat"]:
+        # Near equal moments leave the axes to rounding.
+        cosine = np.abs((getattr(ours, field) * getattr(theirs, field)).sum(axis=1))
+        np.testing.assert_allclose(cosine, 1.0, rtol=0, atol=1e-14, err_msg=field)
+
+
 def test_fields_that_mujoco_packs(both: tuple[clench.Model, mujoco.MjModel]) -> None:
     ours, theirs = both
     np.testing.assert_array_equal(ours.wrap_coef, theirs.wrap_prm)
@@ -109,6 +131,26 @@ def test_fields_that_mujoco_packs(both: tuple[clench.Model, mujoco.MjModel]) -> 
     ]:
         np.testing.assert_allclose(found[rows], expected[rows], rtol=1e-9, atol=1e-12)
     np.testing.assert_array_equal(ours.eq_quat2[weld], np.tile([1.0, 0.0, 0.0, 0.0], (weld.sum(), 1)))
+
+
+def test_meshes_and_height_fields(both: tuple[clench.Model, mujoco.MjModel]) -> None:
+    ours, theirs = both
+    assert ours.mesh_vert.dtype == ours.hfield_data.dtype == np.float64
+    np.testing.assert_allclose(ours.mesh_vert, theirs.mesh_vert, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(ours.hfield_data, theirs.hfield_data, rtol=0, atol=1e-7)
+    assert ours.mesh_face.shape == theirs.mesh_face.shape
+    for i in range(ours.nmesh):
+        mesh = ours.mesh(i)
+        np.testing.assert_array_equal(mesh.vert, ours.mesh_vert[mesh.vertadr : mesh.vertadr + mesh.vertnum])
+        np.testing.assert_array_equal(mesh.face, ours.mesh_face[mesh.faceadr : mesh.faceadr + mesh.facenum])
+        assert mesh.face.max() < mesh.vertnum and not mesh.vert.flags.writeable
+        expected = theirs.mesh_face[mesh.faceadr : mesh.faceadr + mesh.facenum]
+        volume, theirs_volume = (np.linalg.det(mesh.vert[face]).sum() for face in (mesh.face, expected))
+        np.testing.assert_allclose(volume, theirs_volume, rtol=1e-9)
+    for i in range(ours.nhfield):
+        field = ours.hfield(i)
+        assert field.data.shape == (field.nrow, field.ncol) and not field.data.flags.writeable
+        np.testing.assert_allclose(field.data, theirs.hfield(i).data, rtol=0, atol=1e-7)
 
 
 def test_sizes_and_names(both: tuple[clench.Model, mujoco.MjModel]) -> None:
@@ -132,7 +174,7 @@ def test_every_field_of_an_element_is_a_row(both: tuple[clench.Model, mujoco.MjM
             if name:
                 assert getattr(model, kind)(name).id == i
             for field in field_names():
-                if field.startswith(prefix):
+                if field.startswith(prefix) and field not in LISTS:
                     np.testing.assert_array_equal(getattr(element, field[len(prefix) :]), getattr(model, field)[i])
 
 
@@ -184,6 +226,10 @@ def test_stubs_list_what_there_is(humanoid: clench.Model) -> None:
     assert declared("Model") == found(humanoid)
     everything = clench.Model.from_xml(
         """<mujoco>
+             <asset>
+               <mesh name="a" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>
+               <hfield name="a" nrow="2" ncol="3" size="1 1 1 1"/>
+             </asset>
              <worldbody>
                <body name="a"><joint name="a"/><geom name="a" size="1"/><site name="a"/></body>
                <body name="b"><joint name="b"/><geom name="b" size="1"/></body>
