@@ -1,6 +1,7 @@
 """What the program promises on its own: summaries, records, help, toggled equalities."""
 
 import json
+import re
 import subprocess
 
 import mujoco
@@ -24,6 +25,23 @@ def test_examples_inspect(path):
     done = program.run("inspect", path, "--steps", 100)
     assert done.returncode == 0, done.stderr
     assert "nv" in done.stdout
+
+
+def test_contacts_are_listed():
+    """The same contacts with the same numbers as `forward` gives for that state."""
+    path = program.ROOT / "models/box_stack.xml"
+    listed = program.run("inspect", path, "--steps", 500, "--contacts").stdout.partition("\ncontacts at ")[2]
+    heading, columns, *lines = listed.splitlines()
+    assert columns.split()[:2] == ["geoms", "distance"]
+    with program.Forward(path) as forward:
+        state, _ = program.simulate(path, "--steps", 500, "--every", 500)
+        result = forward({"qpos": list(state["qpos"][-1]), "qvel": list(state["qvel"][-1])})
+    assert heading.endswith(f": {len(lines)}") and len(lines) == len(result["contacts"]) > 0
+    for line, contact in zip(lines, result["contacts"]):
+        _, *cells = re.split("  +", line.strip())
+        numbers = [float(word) for cell in cells for word in cell.split()]
+        expected = [contact["dist"], *contact["pos"], *np.ravel(contact["frame"])[:6], *contact["force"]]
+        assert np.allclose(numbers, expected, rtol=1e-4, atol=2e-5)
 
 
 def test_json_summary_and_record():

@@ -1,4 +1,4 @@
-//! `clench inspect`: sizes, tree, options, and the constraints that act.
+//! `clench inspect`: sizes, tree, options, the constraints that act, and contacts.
 
 use crate::options::ModelArguments;
 use crate::table::Table;
@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use clench::rigid::constraint::ConstraintSource;
 use clench::rigid::model::JointKind;
-use clench::rigid::readout::{ConstraintRow, constraint_rows};
+use clench::rigid::readout::{ConstraintRow, constraint_rows, contact_rows};
 use clench::{Model, Sim};
 use std::io::{self, Write};
 
@@ -17,6 +17,9 @@ pub struct Arguments {
     /// Step this often before looking at the constraints
     #[arg(long, value_name = "N", default_value_t = 0)]
     steps: usize,
+    /// List the contacts too: geoms, distance, position, frame and forces
+    #[arg(long)]
+    contacts: bool,
 
     // Last, because its heading in the help holds for all that follows.
     #[command(flatten)]
@@ -35,6 +38,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     sim.forward()?;
     print_constraints(&mut out, &sim)?;
+    if arguments.contacts {
+        print_contacts(&mut out, &sim)?;
+    }
     Ok(())
 }
 
@@ -166,14 +172,48 @@ fn print_constraints(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
 fn source(sim: &Sim, row: &ConstraintRow) -> String {
     let model = sim.model();
     match row.source {
-        ConstraintSource::Contact(i) => {
-            let name = |g: usize| name_or_index(&model.geoms[g].name, "geom", g);
-            let [a, b] = sim.contacts()[i].geoms.map(name);
-            format!("{a} – {b}")
-        }
+        ConstraintSource::Contact(i) => geoms(model, sim.contacts()[i].geoms),
         source => match source.name(model) {
             "" => source.index().to_string(),
             name => name.to_string(),
         },
     }
+}
+
+fn geoms(model: &Model, geoms: [usize; 2]) -> String {
+    let [a, b] = geoms.map(|g| name_or_index(&model.geoms[g].name, "geom", g));
+    format!("{a} – {b}")
+}
+
+/// One line a contact. Its second tangent is the normal times the first.
+fn print_contacts(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
+    let rows = contact_rows(sim.workspace(), 0);
+    let (time, count) = (sim.state.time, rows.len());
+    writeln!(out, "\ncontacts at {time:.4} s: {count}")?;
+    if rows.is_empty() {
+        return Ok(());
+    }
+    let headings = [
+        "geoms",
+        "distance",
+        "position",
+        "normal",
+        "tangent",
+        "force (normal, tangents)",
+        "torque",
+    ];
+    let numbers = |v: &[f64]| format!("{:.6} {:.6} {:.6}", v[0], v[1], v[2]);
+    let mut table = Table::new(&headings);
+    for row in &rows {
+        table.row(vec![
+            geoms(sim.model(), row.geoms),
+            format!("{:.6}", row.dist),
+            numbers(&row.pos),
+            numbers(&row.frame[0]),
+            numbers(&row.frame[1]),
+            numbers(&row.force[..3]),
+            numbers(&row.force[3..]),
+        ]);
+    }
+    write!(out, "{table}")
 }

@@ -251,7 +251,7 @@ impl<T: Precision> Sim<T> {
     pub fn workspace(&self) -> &Workspace<T> {
         &self.ws
     }
-    /// The contacts of the last step or forward.
+    /// The contacts of the last step or forward. [`contact_rows`](crate::readout::contact_rows) adds their forces and wrenches.
     pub fn contacts(&self) -> &[Contact<T>] {
         &self.ws.contacts
     }
