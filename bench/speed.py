@@ -4,8 +4,8 @@ First one environment: each repetition steps every engine from the model's defau
 (which reports the time of stepping alone) and MuJoCo through its own rollout in C. Then many environments at once; the top
 of batch.py says how. Times are medians over repetitions; a ratio is the median of what each repetition gave. Both engines
 read the same file with its integrator, tolerance and iterations; where the file asks for PGS, MuJoCo is timed with Newton,
-which is what Clench uses, and in one environment with PGS as well. Last come what Python's calls cost beyond Rust's (calls.py), and
-vector environments beside gymnasium's (vector.py).
+which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
+vector environments beside gymnasium's (vector.py), and heaps of bodies (heaps.py).
 """
 
 import argparse
@@ -17,6 +17,7 @@ import sys
 import alone
 import batch
 import calls
+import heaps
 import vector
 from scene import find
 
@@ -36,6 +37,7 @@ def main():
         "batch": (batch.compare, models),
         "calls": (calls.compare, models),
         "vector": (vector.compare, args.tasks),
+        "heaps": (heaps.compare, heaps.SCENES),
     }.items():
         if args.only in (None, name):
             results += [row for subject in subjects for row in compare(subject, args)]
@@ -51,12 +53,13 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector"], help="one of the comparisons")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps"], help="one of the comparisons")
     parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
     parser.add_argument("--batch-steps", type=int, default=500, help="steps a run of the batch (default: %(default)s)")
     parser.add_argument("--tasks", nargs="*", default=DEFAULT_TASKS, help="vector environments (default: %(default)s)")
     parser.add_argument("--vector-steps", type=int, default=100, help="steps a run of these (default: %(default)s)")
+    parser.add_argument("--heap-steps", type=int, default=1500, help="steps a run of a heap (default: %(default)s)")
     parser.add_argument("--noise", type=float, default=0.1, help="how far starts are moved apart (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=min(2, batch.processors()), help="threads of Clench's batch beside one")
     parser.add_argument("--repeat", type=int, default=7, help="runs of each engine (default: %(default)s)")
