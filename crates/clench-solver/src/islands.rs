@@ -3,11 +3,15 @@
 //! Each island is copied into a compact problem of its own and solved as if nothing else existed: fewer iterations where
 //! another island is hard, smaller factors, and a stop rule in its own scale. Trees on which no constraint acts are not
 //! touched at all. Slots are kept by island number, so that a scene that stays as it is reuses its patterns.
+//!
+//! The trees of a large island are numbered anew, so that eliminating them fills little of its Hessian.
 
+use crate::elimination::Elimination;
 use crate::problem::Problem;
 use crate::workspace::Workspace;
 use crate::{Settings, SolveClock, SolveStats, Tree};
 use clench_math::{Mask, Real};
+use std::cmp::Reverse;
 use std::sync::Arc;
 
 /// The partition, and a compact problem for each part.
@@ -19,6 +23,9 @@ pub(crate) struct Islands<T: Real> {
     island_of: Vec<u32>,
     /// The island-local index of each dof.
     local: Vec<u32>,
+    /// How many trees each island has.
+    sizes: Vec<usize>,
+    elimination: Elimination,
     slots: Vec<Island<T>>,
     count: usize,
 }
@@ -26,7 +33,7 @@ pub(crate) struct Islands<T: Real> {
 /// One part.
 #[derive(Clone, Debug)]
 pub(crate) struct Island<T: Real> {
-    /// Its dofs and its blocks in the whole problem, ascending.
+    /// Its dofs in the whole problem, in the order that they have here; its blocks, ascending.
     pub dofs: Vec<u32>,
     pub blocks: Vec<u32>,
     pub problem: Problem<T>,
@@ -37,8 +44,11 @@ pub(crate) struct Island<T: Real> {
 /// Marks a tree without constraints.
 const FREE: u32 = u32::MAX;
 
+/// Islands of more trees are numbered anew; smaller ones have little to gain.
+const MOST_IN_PLACE: usize = 8;
+
 impl<T: Real> Islands<T> {
-    /// Finds the islands of `problem`; true if they are a partition worth solving by parts: not one that covers everything.
+    /// Finds the islands of `problem`; true if they are worth solving by parts: not if a single small one covers everything.
     pub fn find(&mut self, problem: &Problem<T>) -> bool {
         let tree = problem.tree();
         self.leader.clear();
@@ -64,17 +74,25 @@ impl<T: Real> Islands<T> {
                 self.island_of[leader] = 0;
             }
         }
-        self.count = 0;
+        self.sizes.clear();
         for t in 0..tree.ntree() {
             let leader = self.find_leader(t);
             if leader != t {
                 self.island_of[t] = self.island_of[leader];
             } else if self.island_of[t] != FREE {
-                self.island_of[t] = self.count as u32;
-                self.count += 1;
+                self.island_of[t] = self.sizes.len() as u32;
+                self.sizes.push(0);
+            }
+            if self.island_of[t] != FREE {
+                self.sizes[self.island_of[t] as usize] += 1;
             }
         }
-        self.count != 1 || self.island_of.contains(&FREE)
+        self.count = self.sizes.len();
+        self.count != 1 || self.has_large() || self.island_of.contains(&FREE)
+    }
+
+    fn has_large(&self) -> bool {
+        self.sizes.iter().any(|&size| size > MOST_IN_PLACE)
     }
 
     fn find_leader(&mut self, tree: usize) -> usize {
@@ -128,15 +146,20 @@ impl<T: Real> Islands<T> {
             slot.dofs.clear();
             slot.blocks.clear();
         }
-        self.local.clear();
         for dof in 0..tree.nv() {
             let island = self.island_of[tree.tree_of(dof)];
-            if island == FREE {
-                self.local.push(FREE);
-            } else {
-                let dofs = &mut self.slots[island as usize].dofs;
-                self.local.push(dofs.len() as u32);
-                dofs.push(dof as u32);
+            if island != FREE {
+                self.slots[island as usize].dofs.push(dof as u32);
+            }
+        }
+        if self.has_large() {
+            self.reorder(problem);
+        }
+        self.local.clear();
+        self.local.resize(tree.nv(), FREE);
+        for slot in &self.slots[..self.count] {
+            for (local, &dof) in slot.dofs.iter().enumerate() {
+                self.local[dof as usize] = local as u32;
             }
         }
         for (k, block) in problem.blocks().enumerate().filter(|(_, b)| acts(b.d)) {
@@ -148,6 +171,29 @@ impl<T: Real> Islands<T> {
         for slot in &mut self.slots[..self.count] {
             slot.problem
                 .gather(problem, &slot.dofs, &self.local, &slot.blocks);
+        }
+    }
+
+    /// Orders the dofs of large islands so that the tree to be eliminated first comes last.
+    fn reorder(&mut self, problem: &Problem<T>) {
+        let tree = problem.tree();
+        self.elimination.clear(tree.ntree());
+        for block in problem.blocks().filter(|b| acts(b.d)) {
+            for (k, &one) in block.dofs.iter().enumerate() {
+                let one = tree.tree_of(one as usize);
+                let others = block.dofs[..k].iter();
+                for other in others.map(|&dof| tree.tree_of(dof as usize)) {
+                    self.elimination.couple(one, other);
+                }
+            }
+        }
+        let ranks = self.elimination.ranks();
+        let sizes = self.sizes.iter();
+        for (slot, _) in
+            (self.slots.iter_mut().zip(sizes)).filter(|(_, size)| **size > MOST_IN_PLACE)
+        {
+            let place = |dof: &u32| (Reverse(ranks[tree.tree_of(*dof as usize)]), *dof);
+            slot.dofs.sort_unstable_by_key(place);
         }
     }
 }

@@ -84,7 +84,7 @@ impl<T: Real> StoredRows<T> {
         &mut self.values[block.value..]
     }
 
-    /// Appends a copy of another problem's block, at the row and piece given.
+    /// Appends a copy of another problem's block, at the row and piece given; its dofs may be numbered in another order.
     #[inline(always)]
     pub fn push_copy(
         &mut self,
@@ -103,6 +103,24 @@ impl<T: Real> StoredRows<T> {
         });
         self.dofs.extend(dofs);
         self.values.extend(values);
+        self.sort_last();
+    }
+
+    /// Puts the columns of the last block into the order of their dofs.
+    #[inline(always)]
+    fn sort_last(&mut self) {
+        let Some(b) = self.blocks.last() else { return };
+        let dofs = &mut self.dofs[b.dof..];
+        let rows = &mut self.values[b.value..];
+        for column in 1..b.ndof {
+            let place = dofs[..column].partition_point(|&dof| dof < dofs[column]);
+            if place < column {
+                dofs[place..=column].rotate_right(1);
+                for row in rows.chunks_exact_mut(b.ndof) {
+                    row[place..=column].rotate_right(1);
+                }
+            }
+        }
     }
 
     #[inline(always)]

@@ -15,6 +15,7 @@ mod cg;
 mod check;
 mod costs;
 mod descent;
+mod elimination;
 mod hessian;
 mod islands;
 mod iterate;

@@ -5,11 +5,12 @@ mod common;
 use clench_math::{Lanes, Real};
 use clench_solver::{Cost, Problem, RigidOptions, Solver, Status, Switch};
 use common::*;
+use std::collections::BTreeSet;
 
 fn scenes(count: usize) -> impl Iterator<Item = Problem<f64>> {
     let mut rng = Rng(3);
     (0..count).map(move |k| {
-        // Many small trees; few couplings, so that islands of several trees and free trees both occur.
+        // Many small trees; from few couplings, with islands of several trees and free trees, to one island of all.
         let parents = (0..30)
             .map(|i: usize| {
                 if i.is_multiple_of(3) {
@@ -19,7 +20,7 @@ fn scenes(count: usize) -> impl Iterator<Item = Problem<f64>> {
                 }
             })
             .collect();
-        let mut shape = Shape::new(parents, 1 + k % 12);
+        let mut shape = Shape::new(parents, 1 + k % 24);
         shape.cross = 0.4;
         random_problem(&mut rng, &shape)
     })
@@ -42,10 +43,16 @@ fn solve(problem: &Problem<f64>, options: RigidOptions) -> Solver<f64> {
 
 #[test]
 fn on_and_off_agree() {
+    let mut large = 0;
     for (k, problem) in scenes(200).enumerate() {
         let on = solve(&problem, options(Switch::On));
         let off = solve(&problem, options(Switch::Off));
         assert!(difference(on.qacc(), off.qacc()) < 1e-9, "scene {k}");
+        let tree = problem.tree();
+        let coupled: BTreeSet<usize> = (problem.blocks())
+            .flat_map(|block| block.dofs.iter().map(|&dof| tree.tree_of(dof as usize)))
+            .collect();
+        large += u32::from(coupled.len() > 8 && on.stats().lane(0).islands == 1);
         assert!(
             difference(on.qfrc_constraint(), off.qfrc_constraint()) < 1e-8,
             "scene {k}"
@@ -61,6 +68,10 @@ fn on_and_off_agree() {
             );
         }
     }
+    assert!(
+        large > 5,
+        "{large} scenes were one island of nearly all trees"
+    );
 }
 
 #[test]

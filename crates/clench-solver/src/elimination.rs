@@ -1,0 +1,131 @@
+//! The order in which coupled trees are eliminated from a Hessian.
+//!
+//! Eliminating a tree couples all trees that it was coupled with. In a heap of many bodies that is what a factorization costs, so
+//! the tree with the fewest neighbours goes next (minimum degree: Tinney & Walker 1967; George & Liu 1989). Between equals the
+//! one of lower number does: the order depends on the couplings alone.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// A graph of trees, and its order of elimination.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Elimination {
+    /// Of each tree, ascending; those of an eliminated one are what it coupled.
+    neighbors: Vec<Vec<u32>>,
+    /// Degree and number; of a tree's entries the last one holds.
+    queue: BinaryHeap<Reverse<(u32, u32)>>,
+    /// When each tree goes.
+    rank: Vec<u32>,
+    merged: Vec<u32>,
+}
+
+/// The rank of a tree that is still there.
+const LEFT: u32 = u32::MAX;
+
+impl Elimination {
+    /// `count` trees, of which none is coupled.
+    pub fn clear(&mut self, count: usize) {
+        self.neighbors.truncate(count);
+        self.neighbors.iter_mut().for_each(Vec::clear);
+        self.neighbors.resize_with(count, Vec::new);
+    }
+
+    /// Couples two trees.
+    pub fn couple(&mut self, a: usize, b: usize) {
+        for (one, other) in [(a, b as u32), (b, a as u32)] {
+            if let (true, Err(place)) = (a != b, self.neighbors[one].binary_search(&other)) {
+                self.neighbors[one].insert(place, other);
+            }
+        }
+    }
+
+    /// The rank of each tree: the first to be eliminated has rank 0.
+    pub fn ranks(&mut self) -> &[u32] {
+        let count = self.neighbors.len();
+        self.rank.clear();
+        self.rank.resize(count, LEFT);
+        self.queue.clear();
+        let degrees = self.neighbors.iter().map(|n| n.len() as u32).zip(0..);
+        self.queue.extend(degrees.map(Reverse));
+        let mut next = 0;
+        while let Some(Reverse((degree, tree))) = self.queue.pop() {
+            let tree = tree as usize;
+            if self.rank[tree] == LEFT && self.neighbors[tree].len() == degree as usize {
+                self.rank[tree] = next;
+                next += 1;
+                self.eliminate(tree);
+            }
+        }
+        &self.rank
+    }
+
+    /// Couples all neighbours of a tree, and takes it out of their lists.
+    fn eliminate(&mut self, tree: usize) {
+        let clique = std::mem::take(&mut self.neighbors[tree]);
+        for &one in &clique {
+            let own = &mut self.neighbors[one as usize];
+            merge(own, &clique, &mut self.merged);
+            self.merged
+                .retain(|&other| other != one && other as usize != tree);
+            std::mem::swap(own, &mut self.merged);
+            self.queue.push(Reverse((own.len() as u32, one)));
+        }
+        self.neighbors[tree] = clique;
+    }
+}
+
+/// The union of two ascending lists, ascending.
+fn merge(a: &[u32], b: &[u32], out: &mut Vec<u32>) {
+    out.clear();
+    let (mut a, mut b) = (a, b);
+    while let (Some((&x, rest_a)), Some((&y, rest_b))) = (a.split_first(), b.split_first()) {
+        out.push(x.min(y));
+        if x <= y {
+            a = rest_a;
+        }
+        if y <= x {
+            b = rest_b;
+        }
+    }
+    out.extend_from_slice(a);
+    out.extend_from_slice(b);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_star_goes_from_its_ends() {
+        let mut star = Elimination::default();
+        star.clear(5);
+        for end in [0, 1, 3, 4] {
+            star.couple(2, end);
+            star.couple(end, 2);
+        }
+        assert_eq!(star.ranks(), [0, 1, 3, 2, 4]);
+    }
+
+    #[test]
+    fn a_path_stays_a_path_and_parts_do_not_matter_to_each_other() {
+        let mut graph = Elimination::default();
+        for _ in 0..2 {
+            graph.clear(7);
+            for (a, b) in [(0, 2), (2, 4), (4, 6), (1, 3)] {
+                graph.couple(a, b);
+            }
+            assert_eq!(graph.ranks(), [1, 2, 4, 3, 5, 0, 6]);
+        }
+    }
+
+    #[test]
+    fn what_a_tree_couples_counts_from_then_on() {
+        // A square with a tail: eliminating a corner couples its neighbours.
+        let mut graph = Elimination::default();
+        graph.clear(5);
+        for (a, b) in [(0, 1), (1, 2), (2, 3), (3, 0), (3, 4)] {
+            graph.couple(a, b);
+        }
+        assert_eq!(graph.ranks(), [1, 2, 3, 4, 0]);
+    }
+}
