@@ -19,7 +19,9 @@ __all__ = [
     "Contacts",
     "Element",
     "Model",
+    "RayHit",
     "RigidOptions",
+    "Separation",
     "Sim",
     "Solution",
     "SolverStats",
@@ -565,6 +567,21 @@ class Sim(_Outputs):
     @property
     def contact_overflow(self) -> bool: ...
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
+    def ray(
+        self,
+        origin: ArrayLike,  # (3,)
+        direction: ArrayLike,  # (3,)
+        *,
+        groups: ArrayLike | None = None,
+        fixed: bool | np.bool_ = True,
+        exclude_body: str | SupportsIndex | None = None,
+    ) -> RayHit | None: ...
+    def distance(
+        self,
+        geom1: str | SupportsIndex,
+        geom2: str | SupportsIndex,
+        limit: float | None = None,
+    ) -> Separation | None: ...
 
     contact_count: Final[float]
     solver_iterations: Final[float]
@@ -654,6 +671,28 @@ class Contacts:
     @property
     def wrench(self) -> _Floats: ...  # (ncon, 6) in world axes, on the second geom
     def __len__(self) -> int: ...
+
+@final
+class RayHit:
+    @property
+    def geom(self) -> int: ...
+    @property
+    def geom_name(self) -> str: ...
+    @property
+    def distance(self) -> float: ...
+    @property
+    def position(self) -> _Floats: ...  # (3,)
+    @property
+    def normal(self) -> _Floats: ...  # (3,)
+
+@final
+class Separation:
+    @property
+    def distance(self) -> float: ...
+    @property
+    def normal(self) -> _Floats: ...  # (3,)
+    @property
+    def points(self) -> _Floats: ...  # (2, 3)
 
 @final
 class Constraints:

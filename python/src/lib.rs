@@ -18,6 +18,7 @@ mod names;
 mod option_values;
 mod options;
 mod precision;
+mod queries;
 mod recorded;
 mod rollout;
 mod row_sim;
@@ -50,6 +51,8 @@ mod _core {
     use crate::model::Model;
     #[pymodule_export]
     use crate::options::RigidOptions;
+    #[pymodule_export]
+    use crate::queries::{RayHit, Separation};
     #[pymodule_export]
     use crate::sim::Sim;
     #[pymodule_export]

@@ -1,6 +1,6 @@
 //! `clench.Sim`.
 
-use crate::arrays::shaped;
+use crate::arrays::{indices, shaped};
 use crate::busy::{in_portions, lock};
 use crate::constraints::Constraints;
 use crate::contacts::Contacts;
@@ -11,14 +11,16 @@ use crate::model::Model;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use crate::precision::Bits;
+use crate::queries::{self, RayHit, Separation};
 use crate::row_sim::{AnySim, each_sim};
 use crate::state_views::StateViews;
 use crate::stats::SolverStats;
 use crate::view::{Keeper, read_only};
-use clench::Output;
-use clench::math::Scalar;
+use clench::math::{Real, Scalar};
 use clench::rigid::readout;
+use clench::{Output, RayFilter};
 use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -274,6 +276,99 @@ impl Sim {
         let values = each_sim!(&*guard, own => readout::mass_matrix(own.sim.workspace(), 0));
         let nv = self.model.get().inner().nv;
         Ok(PyArray1::from_vec(py, values).reshape([nv, nv])?.into_any())
+    }
+
+    /// The geom that a ray hits first, where the last step or forward found the geoms.
+    ///
+    /// As MuJoCo's ``mj_ray``: planes are hit from above and within their size (where that is positive), meshes on their
+    /// own triangles, from either side; a ray that begins inside another shape hits it where it leaves, and rays pass through what
+    /// cannot be seen (colours of opacity 0).
+    ///
+    /// Parameters
+    /// ----------
+    /// origin : array_like
+    ///     Where the ray begins (3,), m.
+    /// direction : array_like
+    ///     Where it leads (3,). Its length is the unit of `RayHit.distance`.
+    /// groups : array_like of int, optional
+    ///     The groups of geoms, 0 to 5, that can be hit; all of them if not given.
+    /// fixed : bool
+    ///     Whether geoms can be hit that are fixed to the world.
+    /// exclude_body : str or int, optional
+    ///     A body, by name or index, whose geoms are not hit.
+    ///
+    /// Returns
+    /// -------
+    /// RayHit or None
+    ///     None if the ray hits nothing.
+    #[pyo3(signature = (origin, direction, *, groups = None, fixed = true, exclude_body = None))]
+    fn ray(
+        &self,
+        py: Python<'_>,
+        origin: &Bound<'_, PyAny>,
+        direction: &Bound<'_, PyAny>,
+        groups: Option<&Bound<'_, PyAny>>,
+        fixed: bool,
+        exclude_body: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Option<RayHit>> {
+        let model = self.model.get().inner();
+        let mut filter = RayFilter {
+            fixed,
+            excluded_body: exclude_body
+                .map(|which| Kind::Body.find(model, which))
+                .transpose()?,
+            ..RayFilter::default()
+        };
+        if let Some(groups) = groups {
+            let chosen = indices("groups", groups, filter.groups.len())?;
+            filter.groups = std::array::from_fn(|group| chosen.contains(&group));
+        }
+        let guard = lock(&self.inner, "simulation")?;
+        each_sim!(&*guard, own => {
+            let (origin, direction) = (queries::vector("origin", origin)?, queries::direction(direction)?);
+            let hit = own.sim.ray(origin, direction, &filter);
+            let name = |geom: usize| &*model.geoms[geom].name;
+            hit.map(|hit| RayHit::new(py, &hit, name(hit.geom), origin, direction)).transpose()
+        })
+    }
+
+    /// How far apart two geoms were in the last step or forward, whatever they collide with.
+    ///
+    /// As MuJoCo's ``mj_geomDistance``. A mesh counts as its convex hull.
+    ///
+    /// Parameters
+    /// ----------
+    /// geom1, geom2 : str or int
+    ///     The geoms, by name or index.
+    /// limit : float, optional
+    ///     Geoms further apart than this, m, are not measured, which saves time.
+    ///
+    /// Returns
+    /// -------
+    /// Separation or None
+    ///     None if they are further apart than the limit, or have no distance: two planes or height fields, or a mesh that is flat.
+    #[pyo3(signature = (geom1, geom2, limit = None))]
+    fn distance(
+        &self,
+        py: Python<'_>,
+        geom1: &Bound<'_, PyAny>,
+        geom2: &Bound<'_, PyAny>,
+        limit: Option<f64>,
+    ) -> PyResult<Option<Separation>> {
+        let limit = limit.unwrap_or(f64::INFINITY);
+        let model = self.model.get().inner();
+        let (geom1, geom2) = (
+            Kind::Geom.find(model, geom1)?,
+            Kind::Geom.find(model, geom2)?,
+        );
+        if limit.is_nan() {
+            return Err(PyValueError::new_err("limit is not a number"));
+        }
+        let guard = lock(&self.inner, "simulation")?;
+        each_sim!(&*guard, own => {
+            let found = own.sim.distance(geom1, geom2, Real::new(limit)).map_err(sim_error)?;
+            found.map(|found| Separation::new(py, &found)).transpose()
+        })
     }
 
     /// Switches an equality constraint on or off.

@@ -228,7 +228,8 @@ class Fuzz:
 
     def call_sim(self) -> Any:
         sim = self.choose([owner for owner in self.owners if isinstance(owner, clench.Sim)] or [clench.Sim(ball())])
-        what = self.choose(("reset", "set_equality", "set_param", "mass_matrix", "contacts", "constraints", "solver_stats"))
+        views = ("contacts", "constraints", "solver_stats")
+        what = self.choose(("reset", "set_equality", "set_param", "mass_matrix", "ray", "distance", *views))
         if what == "reset":
             return sim.reset(self.key())
         if what == "set_equality":
@@ -238,6 +239,15 @@ class Fuzz:
             return sim.set_param(*self.parameter(sim.model))
         if what == "mass_matrix":
             return sim.mass_matrix()
+        if what == "ray":
+            groups = self.maybe(lambda: self.choose((None, [0], [1, 5])))
+            body = self.maybe(lambda: self.choose((None, 0, "ball")))
+            fixed = self.maybe(lambda: self.junk.chance(0.5))
+            hit = sim.ray(self.numbers(3), self.numbers(3), groups=groups, fixed=fixed, exclude_body=body)
+            return self.touch(hit)
+        if what == "distance":
+            first, second = (self.maybe(lambda: self.choose((0, 1, "floor", "ball"))) for _ in range(2))
+            return self.touch(sim.distance(first, second, self.maybe(lambda: self.choose((None, 1.0)))))
         return self.touch(getattr(sim, what))
 
     def call_batch(self) -> Any:

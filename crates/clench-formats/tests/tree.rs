@@ -280,6 +280,48 @@ fn what_is_only_seen_is_accepted() {
 }
 
 #[test]
+fn opacity_says_what_can_be_seen() {
+    let model = load_str(
+        "<mujoco>
+           <default>
+             <material rgba='1 1 1 0'/>
+             <default class='glass'><geom rgba='0 0 1 0'/><material rgba='0 1 0 1'/></default>
+             <default class='made'><geom material='air'/></default>
+           </default>
+           <asset>
+             <material name='air'/>
+             <material name='green' class='glass'/>
+             <material name='red' rgba='1 0 0 .01'/>
+             <mesh name='spot' material='air' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/>
+           </asset>
+           <worldbody>
+             <geom size='1'/>
+             <geom size='1' rgba='1 0 0 0'/>
+             <geom size='1' class='glass'/>
+             <geom size='1' class='glass' rgba='0 0 1 1'/>
+             <geom size='1' material='air' rgba='1 0 0 1'/>
+             <geom size='1' class='made'/>
+             <geom size='1' class='made' material='green'/>
+             <geom size='1' material='red' rgba='1 0 0 0'/>
+             <geom type='mesh' mesh='spot'/>
+             <geom type='mesh' mesh='spot' material='red'/>
+           </worldbody>
+         </mujoco>",
+    )
+    .unwrap();
+    let visible: Vec<_> = model.geoms.iter().map(|geom| geom.visible).collect();
+    let (yes, no) = (true, false);
+    assert_eq!(visible, [yes, no, no, yes, no, no, yes, yes, no, yes]);
+    let error = load_str("<mujoco><worldbody><geom size='1' rgba='1 0 0'/></worldbody></mujoco>");
+    assert!(
+        error
+            .unwrap_err()
+            .to_string()
+            .contains("rgba needs 4 numbers, not 3")
+    );
+}
+
+#[test]
 fn a_chain_as_deep_as_a_file_may_be_is_read() {
     let depth = 497;
     let chain = "<body><joint/><geom size='1'/>".repeat(depth) + &"</body>".repeat(depth);

@@ -169,7 +169,7 @@
 //! | --- | --- |
 //! | [`math`] | numbers, lanes, vectors, quaternions |
 //! | [`solver`] | the convex problem and its solvers, without any body in sight |
-//! | [`collide`] | shapes in, contact points out |
+//! | [`collide`] | shapes in, contact points, distances and ray hits out |
 //! | [`rigid`] | models, dynamics, constraints, simulations and batches |
 //! | [`formats`] | model files |
 
@@ -182,7 +182,8 @@ pub use clench_solver as solver;
 pub use clench_formats::{LoadError, load, load_str};
 pub use clench_rigid::batch::Controls;
 pub use clench_rigid::{
-    Batch, BatchOptions, EnvStatus, Fault, Model, Output, Precision, Sim, SimError, State,
+    Batch, BatchOptions, EnvStatus, Fault, Model, Output, Precision, RayFilter, RayHit, Sim,
+    SimError, State,
 };
 pub use clench_solver::RigidOptions;
 

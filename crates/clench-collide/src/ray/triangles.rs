@@ -13,7 +13,7 @@ const LEAF: usize = 4;
 const STACK: usize = 64;
 
 /// The triangles of a mesh as they are, with what lies inside its hull: for rays.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     vertices: Vec<Vec3<f64>>,
     /// Corners, in the order of the leaves.
@@ -97,7 +97,8 @@ impl TriangleMesh {
         let shear = Shear::new(origin, along);
         let mut best = (f64::INFINITY, None);
         let mut stack = arrayvec::ArrayVec::<(f64, u32), STACK>::new();
-        stack.extend(shear.enters(&self.nodes[0], best.0).map(|at| (at, 0)));
+        let enters = |node| shear.enters(node, best.0);
+        stack.extend(self.nodes.first().and_then(enters).map(|at| (at, 0)));
         while let Some((at, node)) = stack.pop() {
             if at > best.0 {
                 continue;

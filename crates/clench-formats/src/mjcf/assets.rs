@@ -1,9 +1,12 @@
-//! Textures and materials of `<asset>` are only seen, but who names one must name one that exists.
+//! Textures and materials of `<asset>` are only seen, but who names one must name one that exists, and rays pass through what
+//! cannot be seen.
 
+use super::defaults::Classes;
 use super::document::Element;
 use super::{entries, schema, sections};
 use crate::LoadError;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 /// Checks that every material that an element of the body tree names exists.
 pub(crate) fn check_materials(root: &Element) -> Result<(), LoadError> {
@@ -27,6 +30,61 @@ fn check_below(element: &Element, known: &BTreeSet<&str>) -> Result<(), LoadErro
     }
     for child in &element.children {
         check_below(child, known)?;
+    }
+    Ok(())
+}
+
+/// What is needed of materials to know what can be seen.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Looks {
+    /// Whether each material can be seen.
+    materials: BTreeMap<String, bool>,
+    /// The materials that meshes lend to geoms without one.
+    meshes: BTreeMap<String, String>,
+}
+
+impl Looks {
+    /// Reads the materials, and which meshes have one.
+    pub fn read(root: &Element, classes: &Classes) -> Result<Self, LoadError> {
+        let mut looks = Looks::default();
+        for asset in entries(root, "asset") {
+            match (asset.tag.as_str(), asset.text("material")) {
+                ("material", _) => {
+                    let mut alpha = classes.of(asset)?.material_alpha;
+                    read_alpha(asset, &mut alpha)?;
+                    looks.materials.insert(asset.string("name"), alpha != 0.0);
+                }
+                ("mesh", Some(material)) => {
+                    let file = asset
+                        .text("file")
+                        .and_then(|file| Path::new(file).file_stem());
+                    let stem = file.map(|stem| stem.to_string_lossy().into_owned());
+                    let name = asset.text("name").map(str::to_owned).or(stem);
+                    looks
+                        .meshes
+                        .insert(name.unwrap_or_default(), material.to_owned());
+                }
+                _ => {}
+            }
+        }
+        Ok(looks)
+    }
+
+    /// Whether a geom can be seen: by its material or that of its mesh, or without one by its own colour.
+    pub fn shows(&self, alpha: f64, material: &str, mesh: &str) -> bool {
+        let lent = self.meshes.get(mesh).filter(|_| material.is_empty());
+        let material = lent.map_or(material, String::as_str);
+        self.materials
+            .get(material)
+            .copied()
+            .unwrap_or(alpha != 0.0)
+    }
+}
+
+/// Overwrites the opacity if the element gives a colour.
+pub(crate) fn read_alpha(element: &Element, alpha: &mut f64) -> Result<(), LoadError> {
+    if let Some([.., given]) = element.numbers::<4>("rgba")? {
+        *alpha = given;
     }
     Ok(())
 }

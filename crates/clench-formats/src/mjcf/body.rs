@@ -1,5 +1,6 @@
 //! `<worldbody>` and what is in it: bodies, frames, replicas and the elements that bodies carry.
 
+use super::assets::Looks;
 use super::compiler::Notation;
 use super::defaults::{Classes, MAIN};
 use super::document::Element;
@@ -14,6 +15,7 @@ use std::collections::HashSet;
 pub(crate) struct BodyReader<'a> {
     notation: &'a Notation,
     classes: &'a Classes,
+    looks: &'a Looks,
     bodies: &'a mut Vec<BodySpec>,
     /// Names in the file that stand for several elements of the model.
     pub replicated: HashSet<String>,
@@ -52,11 +54,13 @@ impl<'a> BodyReader<'a> {
     pub fn new(
         notation: &'a Notation,
         classes: &'a Classes,
+        looks: &'a Looks,
         bodies: &'a mut Vec<BodySpec>,
     ) -> Self {
         BodyReader {
             notation,
             classes,
+            looks,
             bodies,
             replicated: HashSet::new(),
             replicas: 0,
@@ -250,7 +254,7 @@ impl<'a> BodyReader<'a> {
     fn read_geom(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let mut geom = self.classes[self.class(element, place)?].geom.clone();
         geom.read(element)?;
-        let mut geom = geom.finish(element, self.notation, &place.frame)?;
+        let mut geom = geom.finish(element, self.notation, self.looks, &place.frame)?;
         geom.name = self.named(element, place);
         self.bodies[place.body].geoms.push(geom);
         Ok(())

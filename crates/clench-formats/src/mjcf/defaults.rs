@@ -4,6 +4,7 @@
 //! class. Copies, not a search for the nearest value, because an attribute with several numbers may give only some.
 
 use super::actuator::{ActuatorDraft, Law, Shortcut};
+use super::assets;
 use super::contact;
 use super::document::Element;
 use super::equality::EqualityDraft;
@@ -21,6 +22,8 @@ pub(crate) struct Class {
     name: String,
     parent: Option<usize>,
     pub mesh: MeshDraft,
+    /// Opacity of materials.
+    pub material_alpha: f64,
     pub joint: JointSpec,
     pub geom: GeomDraft,
     pub site: SiteDraft,
@@ -43,6 +46,7 @@ impl Default for Classes {
             name: "main".to_owned(),
             parent: None,
             mesh: MeshDraft::default(),
+            material_alpha: 1.0,
             joint: JointSpec::default(),
             geom: GeomDraft::default(),
             site: SiteDraft::default(),
@@ -104,6 +108,7 @@ impl Classes {
         let class = &mut self.0[class];
         match element.tag.as_str() {
             "mesh" => class.mesh.read(element),
+            "material" => assets::read_alpha(element, &mut class.material_alpha),
             "joint" => joint::read(element, &mut class.joint),
             "geom" => class.geom.read(element),
             "site" => class.site.read(element),

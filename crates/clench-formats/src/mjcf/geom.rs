@@ -1,5 +1,6 @@
 //! `<geom>`.
 
+use super::assets::{Looks, read_alpha};
 use super::compiler::Notation;
 use super::document::Element;
 use super::orientation::{Orientation, Pose, segment};
@@ -42,6 +43,9 @@ pub(crate) struct GeomDraft {
     fromto: Option<[f64; 6]>,
     mass: Option<f64>,
     density: f64,
+    /// Opacity of its own colour, and the material that goes before it.
+    alpha: f64,
+    material: String,
 }
 
 impl Default for GeomDraft {
@@ -54,6 +58,8 @@ impl Default for GeomDraft {
             fromto: None,
             mass: None,
             density: 1000.0,
+            alpha: 1.0,
+            material: String::new(),
         }
     }
 }
@@ -85,6 +91,10 @@ impl GeomDraft {
         if let Some(hfield) = element.text("hfield") {
             hfield.clone_into(&mut geom.hfield);
         }
+        read_alpha(element, &mut self.alpha)?;
+        if let Some(material) = element.text("material") {
+            material.clone_into(&mut self.material);
+        }
         element.set_number("fitscale", &mut geom.fitscale)?;
         element.overlay("size", &mut self.size)?;
         element.set_numbers("pos", &mut self.pos)?;
@@ -99,6 +109,7 @@ impl GeomDraft {
         mut self,
         element: &Element,
         notation: &Notation,
+        looks: &Looks,
         frame: &Pose,
     ) -> Result<GeomSpec, LoadError> {
         let pose = match self.fromto {
@@ -116,6 +127,7 @@ impl GeomDraft {
         let pose = frame.then(pose);
         Ok(GeomSpec {
             name: element.string("name"),
+            visible: looks.shows(self.alpha, &self.material, &self.spec.mesh),
             size: Vec3::from_array(self.size),
             pos: pose.pos,
             quat: pose.quat,

@@ -134,7 +134,8 @@ fn read_model(root: &Element, directory: &Path) -> Result<ModelBuilder, LoadErro
             _ => {}
         }
     }
-    let mut bodies = BodyReader::new(&notation, &classes, &mut builder.bodies);
+    let looks = assets::Looks::read(root, &classes)?;
+    let mut bodies = BodyReader::new(&notation, &classes, &looks, &mut builder.bodies);
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }

@@ -184,8 +184,9 @@ pub(crate) const RULES: &[Rule] = &[
     Rule {
         element: "geom",
         read: "name class type contype conaffinity condim group priority size friction mass density shellinertia \
-            solmix solref solimp margin gap fromto pos quat axisangle euler xyaxes zaxis mesh hfield fitscale",
-        ignored: "material rgba castshadow user fluidcoef",
+            solmix solref solimp margin gap fromto pos quat axisangle euler xyaxes zaxis mesh hfield fitscale material \
+            rgba",
+        ignored: "castshadow user fluidcoef",
         later: "fluidshape=none surfacevel=0 adhesion=0",
         later_children: "plugin",
         ..NONE
@@ -381,17 +382,19 @@ pub(crate) const RULES: &[Rule] = &[
         filedown filefront fileback builtin rgb1 rgb2 mark markrgb random width height hflip vflip nchannel",
         "",
     ),
-    ignored(
-        "material",
-        "name class texture texrepeat texuniform emission specular shininess reflectance metallic roughness \
-        rgba",
-        "layer",
-    ),
+    Rule {
+        element: "material",
+        read: "name class rgba",
+        ignored: "texture texrepeat texuniform emission specular shininess reflectance metallic roughness",
+        children: "layer",
+        ..NONE
+    },
     ignored("layer", "texture role", ""),
     Rule {
         element: "mesh",
-        read: "name class file content_type builtin params vertex face refpos refquat scale inertia maxhullvert",
-        ignored: "normal texcoord smoothnormal material octree_maxdepth",
+        read: "name class file content_type builtin params vertex face refpos refquat scale inertia maxhullvert \
+            material",
+        ignored: "normal texcoord smoothnormal octree_maxdepth",
         later_children: "plugin",
         ..NONE
     },

@@ -197,6 +197,8 @@ pub struct GeomSpec {
     pub mass: GeomMass,
     /// Mass spread over the surface.
     pub shellinertia: bool,
+    /// Whether it can be seen: rays pass through what cannot.
+    pub visible: bool,
     /// Group.
     pub group: i32,
     /// Where it was written.
@@ -226,6 +228,7 @@ impl Default for GeomSpec {
             gap: 0.0,
             mass: GeomMass::Density(1000.0),
             shellinertia: false,
+            visible: true,
             group: 0,
             origin: None,
         }

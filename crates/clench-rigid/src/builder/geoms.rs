@@ -45,6 +45,7 @@ pub(super) fn add_geom(
         condim: spec.condim,
         priority: spec.priority,
         group: spec.group,
+        visible: spec.visible,
         origin: spec.origin.clone(),
     });
     let (pos, quat) = place(moved, placed.pos, placed.quat);

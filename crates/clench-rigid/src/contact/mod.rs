@@ -6,6 +6,7 @@ mod mix;
 mod reach;
 mod select;
 
+pub(crate) use detect::shape;
 pub use detect::{Collision, detect};
 pub(crate) use mix::mixed_params;
 pub use mix::{ContactParams, contact_params, contact_range};

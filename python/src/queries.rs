@@ -1,0 +1,106 @@
+//! What `Sim.ray` and `Sim.distance` find.
+
+use crate::arrays::{column, require_finite, shaped};
+use clench::Precision;
+use clench::RayHit as Hit;
+use clench::collide::Separation as Found;
+use clench::math::Vec3;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// Where a ray hits first.
+#[pyclass(frozen, get_all, module = "clench")]
+pub(crate) struct RayHit {
+    /// int : The geom.
+    geom: usize,
+    /// str : Its name, empty if it has none.
+    geom_name: String,
+    /// float : From the ray's origin, in lengths of its direction.
+    distance: f64,
+    /// numpy.ndarray : The place (3,), m.
+    position: Py<PyAny>,
+    /// numpy.ndarray : Unit vector out of the geom there (3,).
+    normal: Py<PyAny>,
+}
+
+impl RayHit {
+    /// What a ray from `origin` hit.
+    pub(crate) fn new<S: Precision>(
+        py: Python<'_>,
+        hit: &Hit<S>,
+        name: &str,
+        origin: Vec3<S>,
+        direction: Vec3<S>,
+    ) -> PyResult<Self> {
+        Ok(RayHit {
+            geom: hit.geom,
+            geom_name: name.to_owned(),
+            distance: hit.distance.to_f64(),
+            position: array(py, origin + direction * hit.distance)?,
+            normal: array(py, hit.normal)?,
+        })
+    }
+}
+
+#[pymethods]
+impl RayHit {
+    fn __repr__(&self) -> String {
+        let name = match self.geom_name.as_str() {
+            "" => String::new(),
+            name => format!(" '{name}'"),
+        };
+        format!(
+            "<clench.RayHit: geom {}{name} at {}>",
+            self.geom, self.distance
+        )
+    }
+}
+
+/// The shortest way between two geoms.
+#[pyclass(frozen, get_all, module = "clench")]
+pub(crate) struct Separation {
+    /// float : Signed, m; negative is how far they must move apart to touch no more.
+    distance: f64,
+    /// numpy.ndarray : Unit vector from the first to the second (3,).
+    normal: Py<PyAny>,
+    /// numpy.ndarray : The nearest point of each, or the deepest where they overlap (2, 3), m.
+    points: Py<PyAny>,
+}
+
+impl Separation {
+    pub(crate) fn new<S: Precision>(py: Python<'_>, found: &Found<S>) -> PyResult<Self> {
+        Ok(Separation {
+            distance: found.distance.to_f64(),
+            normal: array(py, found.normal)?,
+            points: column(py, &found.points, [3], |v| v.to_array().map(S::to_f64))?,
+        })
+    }
+}
+
+#[pymethods]
+impl Separation {
+    fn __repr__(&self) -> String {
+        format!("<clench.Separation: {} m>", self.distance)
+    }
+}
+
+/// A vector (3,) of finite numbers.
+pub(crate) fn vector<S: Precision>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec3<S>> {
+    let values = shaped::<f64>(name, value, &[3])?;
+    let values = values.as_slice()?;
+    require_finite(name, values)?;
+    Ok(Vec3::from_f64([values[0], values[1], values[2]]))
+}
+
+/// A vector that is not zero.
+pub(crate) fn direction<S: Precision>(value: &Bound<'_, PyAny>) -> PyResult<Vec3<S>> {
+    let found = vector::<S>("direction", value)?;
+    if found.to_array().iter().all(|x| x.abs() < S::MIN_POSITIVE) {
+        return Err(PyValueError::new_err("direction has no length"));
+    }
+    Ok(found)
+}
+
+fn array<S: Precision>(py: Python<'_>, v: Vec3<S>) -> PyResult<Py<PyAny>> {
+    column(py, &v.to_array(), [], |x| [x.to_f64()])
+}
