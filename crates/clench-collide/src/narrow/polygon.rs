@@ -25,6 +25,9 @@ impl<S: Scalar> Polygon<S> {
     pub fn corners(&self) -> &[Vec3<S>] {
         &self.corners
     }
+    pub fn clear(&mut self) {
+        self.corners.clear();
+    }
     pub fn push(&mut self, corner: Vec3<S>) {
         // Only rounding could make more corners than there is room for, and then they coincide with others.
         let _ = self.corners.try_push(corner);
@@ -36,8 +39,8 @@ impl<S: Scalar> Polygon<S> {
         if self.corners.iter().all(|p| beyond(*p) <= S::ZERO) {
             return;
         }
-        let whole = self.corners.clone();
-        self.corners.clear();
+        let mut whole = ArrayVec::<Vec3<S>, CAPACITY>::new();
+        whole.extend(self.corners.drain(..));
         // The way back along a segment would meet the line a second time.
         let sides = if whole.len() == 2 { 1 } else { whole.len() };
         for (k, &p) in whole.iter().enumerate() {

@@ -119,22 +119,23 @@ impl<'a, S: Scalar> Body<'a, S> {
             ShapeKind::Ellipsoid => {
                 let scaled = d.scale_by(s);
                 let inverse = S::ONE / scaled.norm().max(S::MIN_POSITIVE);
-                Curvature::Ellipsoid {
-                    semi_axes: s,
-                    unit: scaled * inverse,
-                    inverse,
+                Curvature {
+                    share: inverse,
+                    diagonal: s.scale_by(s),
+                    flat: scaled.scale_by(s) * inverse,
                     radius: self.radius,
                 }
             }
             ShapeKind::Cylinder => {
                 let (x, y) = rim(d);
                 let level = (d.x * d.x + d.y * d.y).sqrt().max(S::EPSILON);
-                Curvature::Rim {
-                    along: Vec3::new(-y, x, S::ZERO),
-                    radius: s.x / level,
+                Curvature {
+                    share: -s.x / level,
+                    flat: Vec3::new(-y, x, S::ZERO),
+                    ..Curvature::NONE
                 }
             }
-            _ => Curvature::Corner,
+            _ => Curvature::NONE,
         }
     }
 
@@ -182,38 +183,31 @@ impl<'a, S: Scalar> Body<'a, S> {
     }
 }
 
-/// How the supporting point of a core moves with the direction: a symmetric matrix.
-pub(super) enum Curvature<S> {
-    /// Not at all.
-    Corner,
-    /// (S² − S u uᵀ S) / |S d| − ρ 1 with u = S d / |S d|.
-    Ellipsoid {
-        semi_axes: Vec3<S>,
-        unit: Vec3<S>,
-        inverse: S,
-        radius: S,
-    },
-    /// Along a rim, with its radius over the part of d in its plane.
-    Rim { along: Vec3<S>, radius: S },
+/// How the supporting point of a core moves with the direction: the matrix λ (Q − p pᵀ) − ρ 1 with a diagonal Q.
+///
+/// Of an ellipsoid Q = S², p = S² d / |S d| and λ = 1 / |S d|. Of the rim of a cylinder p is the direction along it, and −λ
+/// its radius over the part of d in its plane.
+pub(super) struct Curvature<S> {
+    share: S,
+    diagonal: Vec3<S>,
+    flat: Vec3<S>,
+    radius: S,
 }
 
 impl<S: Scalar> Curvature<S> {
+    /// Of a corner.
+    const NONE: Self = Curvature {
+        share: S::ZERO,
+        diagonal: Vec3::ZERO,
+        flat: Vec3::ZERO,
+        radius: S::ZERO,
+    };
+
     /// The matrix between two vectors, uᵀ H v.
     #[inline]
     pub fn between(&self, u: Vec3<S>, v: Vec3<S>) -> S {
-        match *self {
-            Curvature::Corner => S::ZERO,
-            Curvature::Ellipsoid {
-                semi_axes,
-                unit,
-                inverse,
-                radius,
-            } => {
-                let (su, sv) = (u.scale_by(semi_axes), v.scale_by(semi_axes));
-                (su.dot(sv) - unit.dot(su) * unit.dot(sv)) * inverse - radius * u.dot(v)
-            }
-            Curvature::Rim { along, radius } => along.dot(u) * along.dot(v) * radius,
-        }
+        let bend = u.scale_by(self.diagonal).dot(v) - self.flat.dot(u) * self.flat.dot(v);
+        self.share * bend - self.radius * u.dot(v)
     }
 }
 

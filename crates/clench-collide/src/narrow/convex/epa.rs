@@ -25,19 +25,22 @@ use clench_math::{Mat3, Scalar, Vec3};
 /// Rounds until an answer is given, certain or not. Most move a face, some find that it cannot be moved.
 const ROUNDS: usize = 2 * VERTICES;
 /// How far, as a share of the smaller body, another way out of curved bodies may be shorter than the one found.
-const SLACK: f64 = 1e-5;
+const SLACK: f64 = 1e-4;
 /// Newton's method is tried where a face can be moved by less than this share of the smaller body.
 const NEAR: f64 = 0.1;
 
 /// A polytope begins with vertices that are further apart than this share of the smaller body, if it can.
 const FAR: f64 = 0.05;
 
-/// The largest gap of overlapping cores, which is negative, and the face of the difference that it belongs to.
-pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: &Simplex<S>) -> (Gap<S>, Simplex<S>) {
-    match enclose(pair, start.vertices()) {
-        Ok(vertices) => expand(pair, &mut Polytope::new(pair, vertices)),
-        Err(flat) => (flat, *start),
+/// The largest gap of overlapping cores, which is negative. The simplex holds the origin, and ends on the face of the difference
+/// that the gap belongs to.
+pub(super) fn epa<S: Scalar>(pair: &Pair<S>, simplex: &mut Simplex<S>) -> Gap<S> {
+    let mut polytope = Polytope::empty(pair);
+    match enclose(pair, simplex.vertices()) {
+        Ok(vertices) => polytope.begin(&vertices),
+        Err(flat) => return flat,
     }
+    expand(pair, &mut polytope, simplex)
 }
 
 /// Four vertices with a volume, among them the given ones where these span something. Where the difference has no volume,
@@ -98,7 +101,11 @@ fn furthest<S: Scalar>(
 }
 
 /// Grows until the depth is known.
-fn expand<S: Scalar>(pair: &Pair<S>, polytope: &mut Polytope<S>) -> (Gap<S>, Simplex<S>) {
+fn expand<S: Scalar>(
+    pair: &Pair<S>,
+    polytope: &mut Polytope<S>,
+    simplex: &mut Simplex<S>,
+) -> Gap<S> {
     let mut best = pair.gap(pair.start());
     let mut touching = polytope.corners(0);
     let mut known = false;
@@ -150,13 +157,8 @@ fn expand<S: Scalar>(pair: &Pair<S>, polytope: &mut Polytope<S>) -> (Gap<S>, Sim
             best.improve(pair.gap(normal), pair.tolerance);
         }
     }
-    (best, simplex_of(&touching))
-}
-
-/// What the point nearest to the origin of a triangle is made of.
-fn simplex_of<S: Scalar>(corners: &[Vertex<S>; 3]) -> Simplex<S> {
-    let mut simplex = Simplex::new(corners[0]);
-    simplex.add(corners[1]);
-    simplex.add(corners[2]);
-    simplex
+    *simplex = Simplex::new(touching[0]);
+    simplex.add(touching[1]);
+    simplex.add(touching[2]);
+    best
 }

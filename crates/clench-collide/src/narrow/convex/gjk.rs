@@ -30,23 +30,22 @@ const NOISE: f64 = 4.0;
 pub(super) enum Cores<S> {
     /// Further apart than the limit.
     Apart,
-    /// The largest gap, and the simplex that the nearest points are made of.
-    Near(Gap<S>, Simplex<S>),
-    /// They overlap or touch; the simplex holds the origin, but for rounding.
-    Overlap(Simplex<S>),
+    /// The largest gap.
+    Near(Gap<S>),
+    /// They overlap or touch.
+    Overlap,
 }
 
-/// The distance of the cores if it is at most `limit`.
-pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S) -> Cores<S> {
+/// The distance of the cores if it is at most `limit`. The simplex begins with the vertex along [`Pair::start`], and ends as what
+/// the nearest points are made of, or holds the origin, but for rounding, where the cores overlap.
+pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S, simplex: &mut Simplex<S>) -> Cores<S> {
     let start = pair.start();
-    let first = pair.vertex(start);
+    let mut v = simplex.vertices()[0].w;
     let mut best = Gap {
         normal: start,
-        gap: start.dot(first.w),
+        gap: start.dot(v),
         settled: false,
     };
-    let mut simplex = Simplex::new(first);
-    let mut v = first.w;
     let touching = pair.smallest * S::EPSILON.sqrt() * S::new(NOISE);
     for _ in 0..ROUNDS {
         if best.gap > limit {
@@ -55,7 +54,7 @@ pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S) -> Cores<S> {
         let square = v.norm_squared();
         let length = square.sqrt();
         if length <= touching {
-            return Cores::Overlap(simplex);
+            return Cores::Overlap;
         }
         if length - best.gap <= pair.tolerance {
             break;
@@ -73,7 +72,7 @@ pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S) -> Cores<S> {
             break;
         }
         let Some(nearest) = simplex.add(vertex) else {
-            return Cores::Overlap(simplex);
+            return Cores::Overlap;
         };
         if nearest.norm_squared() >= square {
             // Rounding has the last word.
@@ -88,12 +87,12 @@ pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S) -> Cores<S> {
                 for vertex in flats.vertices(pair, best.normal) {
                     match simplex.add(vertex) {
                         Some(nearest) => v = nearest,
-                        None => return Cores::Overlap(simplex),
+                        None => return Cores::Overlap,
                     }
                 }
             }
         }
     }
     best.settle(pair, simplex.vertices());
-    Cores::Near(best, simplex)
+    Cores::Near(best)
 }

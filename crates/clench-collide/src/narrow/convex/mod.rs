@@ -45,10 +45,11 @@ pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &
 /// apart.
 fn nearest<S: Scalar>(pair: &Pair<S>, margin: S) -> Option<(Gap<S>, Simplex<S>)> {
     let radii = pair.a.radius + pair.b.radius;
-    let (best, simplex) = match gjk(pair, margin + radii) {
+    let mut simplex = Simplex::new(pair.vertex(pair.start()));
+    let best = match gjk(pair, margin + radii, &mut simplex) {
         Cores::Apart => return None,
-        Cores::Near(best, simplex) => (best, simplex),
-        Cores::Overlap(simplex) => epa(pair, &simplex),
+        Cores::Near(best) => best,
+        Cores::Overlap => epa(pair, &mut simplex),
     };
     (best.gap - radii <= margin).then_some((best, simplex))
 }

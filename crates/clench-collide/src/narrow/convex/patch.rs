@@ -13,7 +13,7 @@ use crate::PATCH_POINTS;
 use crate::narrow::{
     Placed,
     one_by_one::{Point, Points},
-    polygon::CAPACITY,
+    polygon::{CAPACITY, Polygon},
 };
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
@@ -85,11 +85,12 @@ pub(super) fn patch<S: Scalar>(
     );
 
     let slack = (pair.smallest * S::new(MISSED)).max(pair.tolerance);
-    let mut spots = Spots::new();
+    let (mut over, mut spots) = (Polygon::empty(), Spots::new());
     // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
     for beyond in [S::ZERO, pair.tolerance, slack] {
         spots.clear();
-        for p in seen_a.overlap(&seen_b, beyond).corners() {
+        seen_a.overlap(&seen_b, beyond, &mut over);
+        for p in over.corners() {
             let on_a = seen_a.height(*p);
             // Just beyond a corner the features' planes go on, but the bodies do not.
             let on_b = seen_b.height(*p).max(on_a + best.gap);
@@ -108,7 +109,7 @@ pub(super) fn patch<S: Scalar>(
     }
     spots.retain(|s| s.distance() - radii.0 - radii.1 <= margin);
     thin_out(&mut spots, pair.smallest * S::new(SAME), pair.tolerance);
-    for spot in spots {
+    for spot in &spots {
         let (from, to) = (spot.heights.0 + radii.0, spot.heights.1 - radii.1);
         let middle = Vec3::new(spot.x, spot.y, (from + to) * S::new(0.5));
         points.push(Point {
@@ -143,19 +144,20 @@ fn witness<S: Scalar>(simplex: &Simplex<S>, pair: &Pair<S>, view: &Mat3<S>, gap:
 /// Leaves one of points that coincide, and at most [`PATCH_POINTS`]: the deepest, and those that span the largest area, by
 /// taking away again and again the corner that spans the smallest triangle with its neighbours.
 fn thin_out<S: Scalar>(spots: &mut Spots<S>, same: S, tolerance: S) {
-    let mut kept = Spots::<S>::new();
-    for spot in spots.iter() {
-        let near = |s: &mut Spot<S>| {
-            let (x, y) = (s.x - spot.x, s.y - spot.y);
-            x * x + y * y <= same * same
-        };
-        match kept.iter_mut().find_map(|s| near(s).then_some(s)) {
-            Some(twin) if spot.distance() < twin.distance() => *twin = *spot,
+    let mut kept = 0;
+    for k in 0..spots.len() {
+        let spot = spots[k];
+        let near = |s: &Spot<S>| (s.x - spot.x).squared() + (s.y - spot.y).squared() <= same * same;
+        match spots[..kept].iter().position(near) {
+            Some(twin) if spot.distance() < spots[twin].distance() => spots[twin] = spot,
             Some(_) => {}
-            None => kept.push(*spot),
+            None => {
+                spots[kept] = spot;
+                kept += 1;
+            }
         }
     }
-    *spots = kept;
+    spots.truncate(kept);
     while spots.len() > PATCH_POINTS {
         let len = spots.len();
         let deepest = deepest(spots, tolerance);

@@ -55,11 +55,11 @@ pub(super) struct Polytope<S> {
 }
 
 impl<S: Scalar> Polytope<S> {
-    /// A tetrahedron with a volume.
+    /// Nothing yet.
     #[inline(always)]
-    pub fn new(pair: &Pair<S>, [a, b, c, d]: [Vertex<S>; 4]) -> Self {
+    pub fn empty(pair: &Pair<S>) -> Self {
         let same = (pair.smallest * S::new(SAME)).max(pair.tolerance);
-        let mut polytope = Polytope {
+        Polytope {
             vertices: ArrayVec::new_const(),
             faces: ArrayVec::new_const(),
             distances: ArrayVec::new_const(),
@@ -68,11 +68,18 @@ impl<S: Scalar> Polytope<S> {
             rim: ArrayVec::new_const(),
             rounding: pair.largest * S::EPSILON * S::new(4.0),
             same: same * same,
-            middle: (a.w + b.w + c.w + d.w) * S::new(0.25),
-        };
+            middle: Vec3::ZERO,
+        }
+    }
+
+    /// Begins with a tetrahedron that has a volume.
+    pub fn begin(&mut self, [a, b, c, d]: &[Vertex<S>; 4]) {
+        self.middle = (a.w + b.w + c.w + d.w) * S::new(0.25);
         let volume = (b.w - a.w).cross(c.w - a.w).dot(d.w - a.w);
         let (b, c) = if volume > S::ZERO { (c, b) } else { (b, c) };
-        polytope.vertices.extend([a, b, c, d]);
+        for vertex in [a, b, c, d] {
+            self.vertices.push(*vertex);
+        }
         // Seen against d, the first face turns counter-clockwise now.
         for (corners, across) in [
             ([0, 1, 2], [(1, 0), (2, 0), (3, 0)]),
@@ -80,9 +87,8 @@ impl<S: Scalar> Polytope<S> {
             ([2, 1, 3], [(0, 1), (1, 2), (3, 1)]),
             ([0, 2, 3], [(0, 2), (2, 2), (1, 1)]),
         ] {
-            polytope.insert(corners, across.map(|(face, side)| Side { face, side }));
+            self.insert(corners, across.map(|(face, side)| Side { face, side }));
         }
-        polytope
     }
 
     /// Adds a face and gives its place.

@@ -42,18 +42,22 @@ impl<S: Scalar> Simplex<S> {
     }
 
     fn keep(&mut self, nearest: &Nearest<S>) {
-        let old = self.vertices;
-        self.len = 0;
-        // In case no weight is a number.
-        self.vertices[0] = old[nearest.of[0]];
+        let mut weights = [S::ZERO; 4];
         for (&index, &weight) in nearest.of.iter().zip(&nearest.weights) {
+            weights[index] += weight;
+        }
+        let mut kept = 0;
+        for (k, weight) in weights.into_iter().enumerate() {
             if weight > S::ZERO {
-                self.vertices[self.len] = old[index];
-                self.weights[self.len] = weight;
-                self.len += 1;
+                if kept < k {
+                    self.vertices[kept] = self.vertices[k];
+                }
+                self.weights[kept] = weight;
+                kept += 1;
             }
         }
-        self.len = self.len.max(1);
+        // None is left where no weight is a number.
+        self.len = kept.max(1);
     }
 
     fn w(&self, index: usize) -> Vec3<S> {

@@ -4,8 +4,9 @@
 //! sides of the other. A round cap is its circle where it matters: what is left of a segment or a polygon over it are their
 //! corners within the circle, the ends of their chords, and such points of the circle as lie in the polygon.
 
-use super::feature::Feature;
+use super::feature::{Feature, MOST_CORNERS};
 use crate::narrow::polygon::Polygon;
+use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// Edges at less than this angle lie side by side; others cross.
@@ -13,7 +14,7 @@ const PARALLEL: f64 = 1e-3;
 
 /// An edge or a face in the view: x and y across the normal, z along it.
 pub(super) struct Seen<S> {
-    polygon: Polygon<S>,
+    corners: ArrayVec<Vec3<S>, MOST_CORNERS>,
     /// The slope of its height.
     slope: (S, S),
     /// The round cap that the polygon stands for.
@@ -31,14 +32,15 @@ struct Disc<S> {
 impl<S: Scalar> Seen<S> {
     /// A feature whose body has this origin and these axes in the view; `below` if it is seen from inside its body.
     pub fn new(feature: &Feature<S>, origin: Vec3<S>, axes: &Mat3<S>, below: bool) -> Self {
-        let mut polygon = Polygon::empty();
-        let corners = &feature.corners;
-        for k in 0..corners.len() {
-            let corner = corners[if below { corners.len() - 1 - k } else { k }];
-            polygon.push(origin + *axes * corner);
+        let mut corners = ArrayVec::new();
+        let place = |corner: &Vec3<S>| origin + *axes * *corner;
+        if below {
+            corners.extend(feature.corners.iter().rev().map(place));
+        } else {
+            corners.extend(feature.corners.iter().map(place));
         }
         let normal = *axes * feature.normal;
-        let slope = match polygon.corners() {
+        let slope = match corners[..] {
             [p, q] => {
                 let (x, y) = (q.x - p.x, q.y - p.y);
                 let rise = (q.z - p.z) / (x * x + y * y).max(S::MIN_POSITIVE);
@@ -53,58 +55,53 @@ impl<S: Scalar> Seen<S> {
             radius,
         });
         Seen {
-            polygon,
+            corners,
             slope,
             disc,
         }
     }
 
-    fn corners(&self) -> &[Vec3<S>] {
-        self.polygon.corners()
-    }
     fn is_edge(&self) -> bool {
-        self.corners().len() == 2
+        self.corners.len() == 2
     }
 
     /// The height above a point of the view.
     pub fn height(&self, p: Vec3<S>) -> S {
-        let origin = self.corners()[0];
+        let origin = self.corners[0];
         origin.z + self.slope.0 * (p.x - origin.x) + self.slope.1 * (p.y - origin.y)
     }
 
-    /// Where this and another overlap in the view, or are at most `slack` m from it: the corners of a polygon, the ends of a
-    /// segment, or a point. The heights of these are open.
-    pub fn overlap(&self, other: &Seen<S>, slack: S) -> Polygon<S> {
-        if let (&[p, p_end], &[q, q_end]) = (self.corners(), other.corners())
+    /// Fills `over` with where this and another overlap in the view, or are at most `slack` m from it: the corners of a polygon,
+    /// the ends of a segment, or a point. The heights of these are open.
+    pub fn overlap(&self, other: &Seen<S>, slack: S, over: &mut Polygon<S>) {
+        over.clear();
+        if let (&[p, p_end], &[q, q_end]) = (&self.corners[..], &other.corners[..])
             && !parallel(p_end - p, q_end - q)
         {
-            let mut point = Polygon::empty();
-            point.push(crossing((p, p_end), (q, q_end)));
-            return point;
+            return over.push(crossing((p, p_end), (q, q_end)));
         }
         // An edge is cut by a face, a polygon by a circle, many sides by few.
         let self_is_cut = self.is_edge()
             || (!other.is_edge()
                 && (other.disc.is_some()
-                    || (self.disc.is_none() && self.corners().len() >= other.corners().len())));
+                    || (self.disc.is_none() && self.corners.len() >= other.corners.len())));
         let (cut, by) = if self_is_cut {
             (self, other)
         } else {
             (other, self)
         };
         match &by.disc {
-            Some(disc) => by.over_disc(disc, cut, slack),
+            Some(disc) => by.over_disc(disc, cut, slack, over),
             None => {
-                let mut rest = cut.polygon.clone();
-                by.clip(&mut rest, slack);
-                rest
+                cut.corners.iter().for_each(|corner| over.push(*corner));
+                by.clip(over, slack);
             }
         }
     }
 
     /// Clips a polygon to the sides of this one, or between the ends of this segment.
     fn clip(&self, polygon: &mut Polygon<S>, slack: S) {
-        let corners = self.corners();
+        let corners = &self.corners;
         for (k, p) in corners.iter().enumerate() {
             let q = corners[(k + 1) % corners.len()];
             let (x, y) = (q.x - p.x, q.y - p.y);
@@ -120,7 +117,7 @@ impl<S: Scalar> Seen<S> {
             let (x, y) = self.in_plane(disc, p);
             return x * x + y * y <= (disc.radius + slack).squared();
         }
-        let corners = self.corners();
+        let corners = &self.corners;
         (0..corners.len()).all(|k| {
             let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
             turn(to - from, p - from) >= -slack * (to - from).norm()
@@ -134,16 +131,15 @@ impl<S: Scalar> Seen<S> {
     }
 
     /// What of an edge or a face is over this round cap.
-    fn over_disc(&self, disc: &Disc<S>, cut: &Seen<S>, slack: S) -> Polygon<S> {
-        let mut over = Polygon::empty();
-        if let &[p, q] = cut.corners() {
+    fn over_disc(&self, disc: &Disc<S>, cut: &Seen<S>, slack: S, over: &mut Polygon<S>) {
+        if let [p, q] = cut.corners[..] {
             let (from, to) = self.chord(disc, p, q);
             for t in [from, to] {
                 over.push(p + (q - p) * t.clamp(S::ZERO, S::ONE));
             }
-            return over;
+            return;
         }
-        let corners = cut.corners();
+        let corners = &cut.corners;
         for (k, &p) in corners.iter().enumerate() {
             if self.covers(p, slack) {
                 over.push(p);
@@ -156,13 +152,12 @@ impl<S: Scalar> Seen<S> {
                 }
             }
         }
-        for &p in self.corners() {
+        for &p in &self.corners {
             if cut.covers(p, slack) {
                 over.push(p);
             }
         }
         over.sort_around();
-        over
     }
 
     /// Where along a segment it enters and leaves this cap's circle, its ends being 0 and 1; both where it is nearest to the
