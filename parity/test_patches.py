@@ -1,0 +1,87 @@
+"""Faces that lie on each other: how much of them the contacts span, beside MuJoCo's default."""
+
+import itertools
+
+import mujoco
+import numpy as np
+import pytest
+
+import program
+
+# Half a decimetre high; flat below and above.
+FACES = {
+    "box": 'type="box" size="0.06 0.04 0.05"',
+    "cylinder": 'type="cylinder" size="0.05 0.05"',
+    "prism": 'type="mesh" mesh="prism"',
+    "block": 'type="mesh" mesh="block"',
+}
+HALF = 0.05
+STATES = 60
+
+
+def mesh(name, corners):
+    vertices = [f"{x:.6f} {y:.6f} {z}" for z in (-HALF, HALF) for x, y in corners]
+    return f'<mesh name="{name}" vertex="{"  ".join(vertices)}"/>'
+
+
+def scene(below, above):
+    turn = np.arange(6) * np.pi / 3
+    hexagon = 0.05 * np.transpose([np.cos(turn), np.sin(turn)])
+    lower = "" if below == "plane" else f"<geom {FACES[below]}/>"
+    floor = '<geom type="plane" size="1 1 1"/>' if below == "plane" else ""
+    return f"""<mujoco>
+      <asset>{mesh("prism", hexagon)} {mesh("block", [(0.05, 0.04), (-0.05, 0.04), (-0.05, -0.04), (0.05, -0.04)])}</asset>
+      <worldbody>{floor}
+        <body><freejoint/><geom {FACES[above]}/></body>
+        {f"<body><freejoint/>{lower}</body>" if lower else ""}
+      </worldbody></mujoco>"""
+
+
+def poses(rng, below):
+    """One body on the other, pressed by up to a millimetre, moved and turned about the vertical, tilted a little."""
+    quat, tilt = np.empty(4), np.empty(4)
+    axis = rng.standard_normal(3) * 10 ** rng.uniform(-7, -3)
+    mujoco.mju_axisAngle2Quat(quat, [0, 0, 1], rng.uniform(0, 2 * np.pi))
+    mujoco.mju_axisAngle2Quat(tilt, axis / np.linalg.norm(axis), np.linalg.norm(axis))
+    mujoco.mju_mulQuat(quat, tilt, quat.copy())
+    height = HALF if below == "plane" else 2 * HALF
+    above = [*rng.uniform(-0.03, 0.03, 2), height - rng.uniform(2e-4, 1e-3), *quat]
+    return above if below == "plane" else [*above, 0, 0, 0, 1, 0, 0, 0]
+
+
+def area(points):
+    """Of the convex hull of points, seen from above (Andrew 1979)."""
+    points = sorted({tuple(p) for p in np.round(np.asarray(points).reshape(-1, 3)[:, :2], 9)})
+    if len(points) < 3:
+        return 0.0
+
+    def chain(points):
+        hull = []
+        for x, y in points:
+            while len(hull) > 1:
+                (ax, ay), (bx, by) = hull[-2:]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
+                    break
+                hull.pop()
+            hull.append((x, y))
+        return hull[:-1]
+
+    x, y = np.transpose(chain(points) + chain(points[::-1]))
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+
+@pytest.mark.parametrize("below, above", [*itertools.product(["plane"], FACES), *itertools.combinations_with_replacement(FACES, 2)])
+def test_patches_are_as_large_as_mujocos(tmp_path, below, above):
+    path = tmp_path / "faces.xml"
+    path.write_text(scene(below, above))
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data, rng, shares = mujoco.MjData(model), np.random.default_rng(5), []
+    with program.Forward(path) as forward:
+        for _ in range(STATES):
+            data.qpos[:] = poses(rng, below)
+            mujoco.mj_forward(model, data)
+            own = forward({"qpos": data.qpos.tolist()})["contacts"]
+            assert own and all(contact["dist"] < 0 for contact in own), "it lies on the other"
+            expected = area(data.contact.pos)
+            shares.append(area([contact["pos"] for contact in own]) / expected if expected > 1e-6 else 1.0)
+    assert min(shares) >= 0.9, f"{np.sum(np.array(shares) < 0.9)} of {STATES} below 0.9, the least {min(shares):.3f}"
