@@ -126,6 +126,9 @@ fn what_cannot_be_names_its_element() {
     let mut bad = MeshSpec::hull("m", &corners());
     bad.vertices[3].x = f64::NAN;
     assert!(refused(with_mesh(bad, GeomSpec::mesh("m"))).contains("vertex 3"));
+    let mut vast = with_mesh(MeshSpec::hull("m", &corners()), GeomSpec::mesh("m"));
+    vast.bodies[0].geoms.push(GeomSpec::cuboid([1e160; 3]));
+    assert!(refused(vast).contains("bounding radius must be finite"));
 }
 
 fn terrain() -> ModelBuilder {

@@ -123,6 +123,7 @@ impl<'a> Assets<'a> {
         if !matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField) {
             placed.rbound = bounding_radius(&Shape::new(spec.kind, placed.size));
         }
+        spec.require_finite("bounding radius", &[placed.rbound])?;
         Ok(placed)
     }
 }
