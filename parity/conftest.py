@@ -11,12 +11,17 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 GYMNASIUM = pathlib.Path(gymnasium.__file__).parent / "envs/mujoco/assets"
 
 
+# Heaps whose contacts are patches: the one is in `test_shapes.py`, the other too large to compare.
+HEAPS = ("towers", "pile")
+
+
 def models():
     """Every model compared: gymnasium's, the examples, and the ones that exist to cover a feature."""
     return [
         pytest.param(path, id=f"{group}-{path.stem}")
         for group, folder in (("gym", GYMNASIUM), ("example", ROOT / "models"), ("feature", ROOT / "parity/models"))
         for path in sorted(folder.glob("*.xml"))
+        if path.stem not in HEAPS
     ]
 
 

@@ -26,7 +26,7 @@ SAME_PAIRS, SAME_POINT = 0.995, 0.99  # parts of all
 DEPTH = 1e-6  # metres
 LAST_BIT = 1e-12  # metres
 NORMAL = np.cos(np.radians(0.1))
-OWN = [str(path) for path in sorted((program.ROOT / "parity/shapes").glob("*.xml"))]
+OWN = [str(path) for path in [*sorted((program.ROOT / "parity/shapes").glob("*.xml")), program.ROOT / "models/towers.xml"]]
 COMPARED = [*OWN, *public.compared()]
 
 

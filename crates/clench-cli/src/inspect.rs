@@ -68,6 +68,8 @@ fn print_sizes(out: &mut impl Write, model: &Model) -> io::Result<()> {
         ("bodies, the world included", model.nbody()),
         ("joints", model.joints.len()),
         ("geoms", model.geoms.len()),
+        ("meshes", model.meshes.len()),
+        ("height fields", model.height_fields.len()),
         ("tendons", model.tendons.len()),
         ("equality constraints", model.equalities.len()),
         ("keyframes", model.keyframes.len()),
