@@ -6,6 +6,7 @@ mod ball;
 mod box_box;
 mod box_manifold;
 mod box_round;
+mod boxes;
 mod capsule;
 mod convex;
 mod cylinder;

@@ -16,10 +16,11 @@ mod view;
 
 use super::{
     Placed,
-    one_by_one::{Points, one_by_one},
+    boxes::boxes_near,
+    one_by_one::{Points, one_by_one_where},
 };
 use crate::Contacts;
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3};
 use epa::epa;
 pub(super) use feature::MOST_CORNERS;
 use gjk::{Cores, gjk};
@@ -30,7 +31,10 @@ pub(super) use terrain::terrain;
 
 /// The contacts of two shapes that are bounded and convex.
 pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    one_by_one(a, b, margin, out, points);
+    let near = boxes_near(a, b, margin);
+    if near.any() {
+        one_by_one_where(near, a, b, margin, out, points);
+    }
 }
 
 /// The contacts of one environment.

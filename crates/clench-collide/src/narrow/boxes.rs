@@ -1,0 +1,44 @@
+//! Oriented boxes about two shapes: a quick look, in all lanes at once, before a method that is slow and goes lane by lane.
+//!
+//! Boxes are apart if they are so along a face normal of either (Gottschalk, Lin & Manocha 1996; the nine cross products of edges
+//! would find few more).
+
+use super::Placed;
+use crate::{ShapeKind, allowance};
+use clench_math::{Real, Vec3};
+
+/// Where the boxes about two bounded shapes are at most `margin` apart along all of their face normals.
+#[inline(always)]
+pub(super) fn boxes_near<T: Real>(a: Placed<T>, b: Placed<T>, margin: T) -> T::Mask {
+    let (half_a, half_b) = (half_lengths(a), half_lengths(b));
+    let turn = a.pose.rotation.transpose() * b.pose.rotation;
+    let offset = b.pose.position - a.pose.position;
+    let (along_a, along_b) = (
+        a.pose.rotation.transpose_mul(offset),
+        b.pose.rotation.transpose_mul(offset),
+    );
+    let mut near = margin.le(T::new(f64::INFINITY));
+    for i in 0..3 {
+        let row = turn.rows[i];
+        let column = turn.column(i);
+        let reach = |own: T, axis: Vec3<T>, other: Vec3<T>| {
+            let across = axis.x.abs() * other.x + axis.y.abs() * other.y + axis.z.abs() * other.z;
+            (own + across) * allowance() + margin
+        };
+        near &= along_a[i].abs().le(reach(half_a[i], row, half_b));
+        near &= along_b[i].abs().le(reach(half_b[i], column, half_a));
+    }
+    near
+}
+
+/// How far a shape reaches along its own axes.
+#[inline(always)]
+fn half_lengths<T: Real>(shape: Placed<T>) -> Vec3<T> {
+    let s = shape.shape.size;
+    match shape.shape.kind {
+        ShapeKind::Sphere => Vec3::new(s.x, s.x, s.x),
+        ShapeKind::Capsule => Vec3::new(s.x, s.x, s.x + s.y),
+        ShapeKind::Cylinder => Vec3::new(s.x, s.x, s.y),
+        _ => s,
+    }
+}
