@@ -17,6 +17,10 @@ use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
 const EDGE_BIAS: f64 = 1e-6;
+/// An edge axis within this cosine of the best face axis (0.05°) is the same contact, seen as a face, as stacks rest on them ...
+const ALIAS_COSINE: f64 = 1.0 - 3.8e-7;
+/// ... unless it is better by this share of the face's separation.
+const ALIAS_SHARE: f64 = 0.05;
 
 /// Tolerances for rounding: MuJoCo's in double precision, not below a few units in the last place in any.
 #[inline]
@@ -102,9 +106,20 @@ impl<S: Scalar> BoxPair<S> {
     fn touching_feature(&self) -> Option<(Feature, S)> {
         let (face, face_separation) = self.best_face()?;
         let (edges, separation) = self.best_edges(face_separation)?;
-        Some(match edges {
-            Some((i, j)) => (Feature::Edges(i, j), separation),
-            None => (face, face_separation),
+        let Some((i, j)) = edges else {
+            return Some((face, face_separation));
+        };
+        let (direction, _) = self.edge_axis(i, j).normalize();
+        let along_face = match face {
+            Feature::Face { owner: 0, axis } => direction[axis].abs(),
+            Feature::Face { axis, .. } => self.rotation[0].column(axis).dot(direction).abs(),
+            Feature::Edges(..) => S::ZERO,
+        };
+        let share = S::new(ALIAS_SHARE) * face_separation.abs() + S::new(1e-15);
+        let alias = along_face > S::new(ALIAS_COSINE) && separation < face_separation + share;
+        Some(match alias {
+            true => (face, face_separation),
+            false => (Feature::Edges(i, j), separation),
         })
     }
 
