@@ -538,16 +538,21 @@ fn broken_files_are_refused_with_their_names() {
     }
 }
 
-#[test]
-fn random_bytes_never_panic() {
-    let folder = Folder::new("noise");
+/// Reproducible noise.
+fn random() -> impl FnMut() -> u64 {
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
-    let mut random = move || {
+    move || {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
         state
-    };
+    }
+}
+
+#[test]
+fn random_bytes_never_panic() {
+    let folder = Folder::new("noise");
+    let mut random = random();
     let originals = [
         ("x.stl", binary_stl()),
         ("t.stl", text_stl().into_bytes()),
@@ -569,6 +574,50 @@ fn random_bytes_never_panic() {
         // Whatever comes of it, it comes back.
         let _ = folder.load_mesh(&format!("file='{name}' inertia='{inertia}'"));
     }
+}
+
+#[test]
+fn numbers_of_any_size_never_panic() {
+    const NUMBERS: [&str; 12] = [
+        "0", "1", "-1", "0.3", "0.7", "1.5", "1e-8", "1e-160", "1e-320", "1e30", "1e150", "-1e308",
+    ];
+    let folder = Folder::new("sizes");
+    let mut random = random();
+    let mut built = 0;
+    for _ in 0..800 {
+        let mut pick = |count: usize| random() as usize % count;
+        let mut numbers = |count: usize| {
+            // Most are tame, so that some models come about.
+            let number = |_| NUMBERS[if pick(8) > 0 { 3 + pick(3) } else { pick(12) }];
+            (0..count).map(number).collect::<Vec<_>>().join(" ")
+        };
+        let vertices = format!("0 0 0 1 0 0 0 1 0 0 0 1 {}", numbers(6));
+        let mesh = format!(
+            "vertex='{vertices}' scale='{}' refpos='{}' refquat='{}'",
+            numbers(3),
+            numbers(3),
+            numbers(4)
+        );
+        let size = format!("fitscale='{}' density='{}'", numbers(1), numbers(1));
+        let field = format!("elevation='{}' size='{}'", numbers(6), numbers(4));
+        let inertia = ["legacy", "exact", "convex", "shell"][pick(4)];
+        let kind = ["mesh", "mesh", "box", "sphere", "capsule", "ellipsoid"][pick(6)];
+        let terrain = ["", "<geom type='hfield' hfield='h'/>"][pick(2)];
+        let model = folder.load(&format!(
+            "<mujoco>
+               <asset><mesh name='m' inertia='{inertia}' {mesh}/><hfield name='h' nrow='2' ncol='3' {field}/></asset>
+               <worldbody>{terrain}<body><freejoint/><geom type='{kind}' mesh='m' {size}/></body></worldbody>
+             </mujoco>"
+        ));
+        // What is built is finite; whatever else comes of it, it comes back.
+        if let Ok(model) = model {
+            let p = &model.params;
+            let finite = [p.geom_rbound[0], p.body_mass[1], p.body_inertia[1].x];
+            assert!(finite.iter().all(|x| x.is_finite()), "{mesh}: {finite:?}");
+            built += 1;
+        }
+    }
+    assert!(built > 40, "only {built} models");
 }
 
 #[test]
