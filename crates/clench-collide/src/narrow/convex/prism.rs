@@ -7,9 +7,7 @@ use clench_math::{Scalar, Vec3};
 /// Three corners on top, counter-clockwise seen from above, and the three below them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prism<S> {
-    pub corners: [Vec3<S>; 6],
-    /// The unit normal of the top.
-    pub normal: Vec3<S>,
+    corners: [Vec3<S>; 6],
 }
 
 /// The top, the bottom and the walls, counter-clockwise seen from outside.
@@ -37,7 +35,6 @@ impl<S: Scalar> Prism<S> {
         let below = |v: Vec3<S>| Vec3::new(v.x, v.y, bottom);
         Prism {
             corners: [p, q, r, below(p), below(q), below(r)],
-            normal: (q - p).cross(r - p).normalize().0,
         }
     }
 
@@ -48,13 +45,16 @@ impl<S: Scalar> Prism<S> {
     }
 
     /// The number of the corner that is furthest along `d`.
+    #[inline]
     fn furthest(&self, d: Vec3<S>) -> usize {
-        let mut best = (self.corners[0].dot(d), 0);
-        for (k, corner) in self.corners.iter().enumerate().skip(1) {
-            let reach = corner.dot(d);
-            if reach > best.0 {
-                best = (reach, k);
-            }
+        let first = if d.z < S::ZERO { 3 } else { 0 };
+        let [p, q, r] = [0, 1, 2].map(|k| self.corners[first + k].dot(d));
+        let mut best = (p, first);
+        if q > best.0 {
+            best = (q, first + 1);
+        }
+        if r > best.0 {
+            best = (r, first + 2);
         }
         best.1
     }

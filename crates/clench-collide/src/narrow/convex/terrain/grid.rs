@@ -1,9 +1,10 @@
 //! The triangles of a height field, one at a time, and which normals a solid has at their corners and edges.
 
+use super::bounds::Bounds;
 use crate::HeightField;
 use crate::narrow::convex::prism::Prism;
 use clench_math::{Real, Scalar, Vec3};
-use std::ops::Range;
+use std::ops::RangeInclusive;
 
 /// Row and column of a grid point; those beyond the border do not exist.
 type Node = [i64; 2];
@@ -13,71 +14,137 @@ pub(super) fn same_direction<S: Scalar>() -> S {
     Real::max(S::new(1e-6), S::EPSILON * S::new(100.0))
 }
 
-/// The rows and columns of cells above or below a rectangle.
-pub(super) struct Window {
-    pub rows: Range<i64>,
-    pub columns: Range<i64>,
+/// A height field with what follows from its size.
+pub(super) struct Grid<'a> {
+    field: &'a HeightField,
+    half: [f64; 2],
+    /// Lengths of a cell along x and y, m.
+    pub step: [f64; 2],
+    elevation: f64,
+    base: f64,
 }
 
-impl Window {
-    /// The cells that a rectangle reaches, given by its lowest and highest x and y in the field's frame.
-    pub fn new(field: &HeightField, low: [f64; 2], high: [f64; 2]) -> Self {
-        let [half_x, half_y, ..] = field.size();
-        let cells = |axis: usize, half: f64, count: usize| {
-            let last = (count - 1) as f64;
-            let at = |x: f64| (x / half + 1.0) * 0.5 * last;
-            let from = at(low[axis]).floor().clamp(0.0, last);
-            let to = at(high[axis]).ceil().clamp(0.0, last);
-            from as i64..to as i64
-        };
-        Window {
-            rows: cells(1, half_y, field.rows()),
-            columns: cells(0, half_x, field.columns()),
+impl<'a> Grid<'a> {
+    pub fn new(field: &'a HeightField) -> Self {
+        let [x, y, elevation, base] = field.size();
+        let step = |half: f64, count: usize| 2.0 * half / (count - 1) as f64;
+        Grid {
+            field,
+            half: [x, y],
+            step: [step(x, field.columns()), step(y, field.rows())],
+            elevation,
+            base,
         }
+    }
+
+    /// The cell above or below a place along an axis, or the nearest one.
+    fn cell(&self, axis: usize, place: f64) -> i64 {
+        let count = [self.field.columns(), self.field.rows()][axis];
+        let cell = ((place + self.half[axis]) / self.step[axis]).floor();
+        cell.clamp(0.0, (count - 2) as f64) as i64
+    }
+
+    /// The rows and columns of cells that bounds reach; nothing where they are off the field.
+    pub fn window(&self, bounds: &Bounds) -> Option<[RangeInclusive<i64>; 2]> {
+        let over = |axis: usize| {
+            bounds.low[axis] <= self.half[axis] && bounds.high[axis] >= -self.half[axis]
+        };
+        let cells = |axis| self.cell(axis, bounds.low[axis])..=self.cell(axis, bounds.high[axis]);
+        let level = bounds.low.z <= self.elevation && bounds.high.z >= -self.base;
+        (over(0) && over(1) && level).then(|| [cells(1), cells(0)])
+    }
+
+    /// The cell at a point, or the nearest one: row and column.
+    pub fn cell_at(&self, point: Vec3<f64>) -> Node {
+        [self.cell(1, point.y), self.cell(0, point.x)]
+    }
+
+    /// Where the lowest corner of a cell is along x and y, m.
+    pub fn corner(&self, [row, column]: Node) -> [f64; 2] {
+        [
+            column as f64 * self.step[0] - self.half[0],
+            row as f64 * self.step[1] - self.half[1],
+        ]
+    }
+
+    fn height(&self, [row, column]: Node) -> f64 {
+        self.elevation * self.field.heights()[row as usize * self.field.columns() + column as usize]
     }
 }
 
-/// A triangle of the surface.
+/// A triangle of the surface, in a frame that begins at its first corner.
 pub(super) struct Triangle<'a, S> {
-    field: &'a HeightField,
+    grid: &'a Grid<'a>,
     nodes: [Node; 3],
-    /// Where the prism's frame begins, in the field's frame.
-    origin: Vec3<f64>,
-    pub prism: Prism<S>,
+    /// Where its frame begins, in the field's frame.
+    pub origin: Vec3<S>,
+    /// Counter-clockwise seen from above.
+    pub corners: [Vec3<S>; 3],
 }
 
 impl<'a, S: Scalar> Triangle<'a, S> {
-    /// Both triangles of a cell, which its diagonal from the lowest x and y to the highest divides.
-    pub fn of_cell(field: &'a HeightField, row: i64, column: i64) -> [Self; 2] {
-        let node = |r, c| [row + r, column + c];
+    /// Both triangles of a cell, on the left and on the right of its diagonal from the lowest x and y to the highest.
+    pub fn of_cell(grid: &'a Grid<'a>, first: Node) -> [Self; 2] {
+        let [x, y] = grid.corner(first);
+        let z = grid.height(first);
+        let origin = Vec3::from_f64([x, y, z]);
+        let node = |r, c| [first[0] + r, first[1] + c];
+        let point = |r: i64, c: i64| {
+            let rise = grid.height(node(r, c)) - z;
+            Vec3::from_f64([c as f64 * grid.step[0], r as f64 * grid.step[1], rise])
+        };
+        let last = point(1, 1);
+        let half = |other, corners| Triangle {
+            grid,
+            nodes: other,
+            origin,
+            corners,
+        };
         [
-            [node(0, 0), node(1, 1), node(1, 0)],
-            [node(0, 0), node(0, 1), node(1, 1)],
+            half(
+                [first, node(1, 1), node(1, 0)],
+                [Vec3::ZERO, last, point(1, 0)],
+            ),
+            half(
+                [first, node(0, 1), node(1, 1)],
+                [Vec3::ZERO, point(0, 1), last],
+            ),
         ]
-        .map(|nodes| {
-            let origin = point(field, nodes[0]);
-            let [.., base] = field.size();
-            let local = |node| Vec3::from_f64((point(field, node) - origin).to_array());
-            Triangle {
-                field,
-                nodes,
-                origin,
-                prism: Prism::new(nodes.map(local), S::new(-base - origin.z)),
-            }
-        })
     }
 
-    /// Where the prism's frame begins, in the field's frame.
-    pub fn origin(&self) -> Vec3<S> {
-        Vec3::from_f64(self.origin.to_array())
+    /// Its unit normal.
+    pub fn normal(&self) -> Vec3<S> {
+        let [_, q, r] = self.corners;
+        q.cross(r).normalize().0
     }
 
-    /// A grid point in the prism's frame, if it exists.
+    /// Whether all of it is lower than a height, m.
+    pub fn is_below(&self, height: S) -> bool {
+        let [_, q, r] = self.corners;
+        self.origin.z + q.z.max(r.z).max(S::ZERO) < height
+    }
+
+    /// The ground below it.
+    pub fn prism(&self) -> Prism<S> {
+        let bottom = -self.origin.z - S::new(self.grid.base);
+        Prism::new(self.corners, bottom)
+    }
+
+    /// A grid point in its frame, if it exists.
     fn node(&self, node: Node) -> Option<Vec3<S>> {
         let [row, column] = node;
-        let inside = (0..self.field.rows() as i64).contains(&row)
-            && (0..self.field.columns() as i64).contains(&column);
-        inside.then(|| Vec3::from_f64((point(self.field, node) - self.origin).to_array()))
+        let field = self.grid.field;
+        let inside = (0..field.rows() as i64).contains(&row)
+            && (0..field.columns() as i64).contains(&column);
+        inside.then(|| {
+            let [first_row, first_column] = self.nodes[0];
+            let [along_x, along_y] = self.grid.step;
+            Vec3::new(
+                S::new((column - first_column) as f64 * along_x),
+                S::new((row - first_row) as f64 * along_y),
+                S::new(self.grid.height(node)) - self.origin.z,
+            )
+        })
     }
 
     /// The grid point across the edge that is opposite to corner `k`.
@@ -90,14 +157,25 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         self.node([p[0] + q[0] - r[0], p[1] + q[1] - r[1]])
     }
 
+    /// How far the surface rises beyond the edge opposite to corner `k`, as a share of the way; nothing where it ends.
+    fn rise_across(&self, k: usize, normal: Vec3<S>) -> Option<S> {
+        let edge = self.across(k)? - self.corners[(k + 1) % 3];
+        Some(normal.dot(edge) / edge.norm())
+    }
+
+    /// Whether the surface is flat across the edge opposite to corner `k`.
+    pub fn goes_on_across(&self, k: usize, normal: Vec3<S>) -> bool {
+        let rise = self.rise_across(k, normal);
+        rise.is_some_and(|rise| rise.abs() <= same_direction())
+    }
+
     /// Whether the surface bends away from the triangle nowhere, so that nothing but its face can be touched.
-    pub fn is_hollow(&self) -> bool {
-        (0..3).all(|k| {
-            self.across(k).is_some_and(|w| {
-                let edge = w - self.prism.corners[(k + 1) % 3];
-                self.prism.normal.dot(edge) >= -edge.norm() * same_direction()
-            })
-        })
+    pub fn is_hollow(&self, normal: Vec3<S>) -> bool {
+        let bends_up = |k| {
+            self.rise_across(k, normal)
+                .is_some_and(|rise| rise >= -same_direction::<S>())
+        };
+        (0..3).all(bends_up)
     }
 
     /// Whether `n` is a normal of the whole field where the prism reaches furthest along it: not where the field goes on beyond
@@ -111,7 +189,7 @@ impl<'a, S: Scalar> Triangle<'a, S> {
                 v
             }
         };
-        let corners = [0, 1, 2].map(|k| level(self.prism.corners[k]));
+        let corners = self.corners.map(level);
         let reach = corners.map(|v| v.dot(n));
         let most = reach[0].max(reach[1]).max(reach[2]);
         let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
@@ -136,7 +214,3 @@ impl<'a, S: Scalar> Triangle<'a, S> {
 
 /// From a grid point to those that share an edge with it.
 const AROUND: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];
-
-fn point(field: &HeightField, [row, column]: Node) -> Vec3<f64> {
-    field.point(row as usize, column as usize)
-}

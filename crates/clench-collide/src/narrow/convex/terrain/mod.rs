@@ -9,31 +9,34 @@
 //!
 //! The work grows with the number of cells below the body's bounding box.
 
+mod bounds;
+mod face;
 mod grid;
 mod spread;
 
 use super::{
     body::Body,
-    feature::Feature,
     nearest,
-    pair::{Gap, Pair, across},
+    pair::{Gap, Pair},
     patch::patch,
     simplex::Simplex,
 };
 use crate::narrow::{
     Placed,
     one_by_one::{Point, Points, one_by_one},
-    polygon::Polygon,
 };
 use crate::{Asset, Contacts, Pose, Shape, ShapeKind};
+use bounds::Bounds;
 use clench_math::{Mat3, Real, Scalar, Vec3};
-use grid::{Triangle, Window, same_direction};
+use face::Over;
+use grid::{Grid, Triangle, same_direction};
 use spread::Spread;
 
 /// How many times as far as the shortest way out of any prism a face may still be a way out of the field.
 const DETOUR: f64 = 2.0;
-/// A corner this far outside a triangle, as a share of the body, still belongs to it.
-const BESIDE: f64 = 1e-9;
+
+/// Directions within so many times what counts as one are that of a face: more than a triangle's corners tell apart.
+const LEVEL: f64 = 8.0;
 
 /// The contacts of a height field and a shape that is bounded and convex.
 pub(in crate::narrow) fn terrain<T: Real>(
@@ -49,20 +52,38 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     let Asset::HeightField(field) = a.shape.asset else {
         return;
     };
+    let grid = Grid::new(field);
     let mut search = Search::new(a, b, margin);
     let body = Body::new(b.shape);
-    let Some((low, high)) = search.bounds(&body) else {
+    let around = body.radius + margin;
+    let Some(bounds) = Bounds::new(&body, &search.rotation, search.offset, around, &grid) else {
         return;
     };
-    let [_, _, elevation, base] = field.size();
-    if low.z > elevation || high.z < -base {
+    let Some([rows, columns]) = grid.window(&bounds) else {
         return;
+    };
+    let mut look_at = |cell| {
+        let reached = bounds.reach(grid.corner(cell), &grid);
+        let triangles = Triangle::of_cell(&grid, cell);
+        for (triangle, _) in triangles
+            .iter()
+            .zip(reached)
+            .filter(|(_, reached)| *reached)
+        {
+            if !triangle.is_below(S::new(bounds.low.z)) {
+                search.look_at(triangle, &body);
+            }
+        }
+    };
+    // What is deepest saves much of the work on the rest.
+    let first = grid.cell_at(bounds.lowest);
+    if rows.contains(&first[0]) && columns.contains(&first[1]) {
+        look_at(first);
     }
-    let window = Window::new(field, [low.x, low.y], [high.x, high.y]);
-    for row in window.rows {
-        for column in window.columns.clone() {
-            for triangle in Triangle::of_cell(field, row, column) {
-                search.look_at(&triangle, &body);
+    for row in rows {
+        for column in columns.clone() {
+            if [row, column] != first {
+                look_at([row, column]);
             }
         }
     }
@@ -113,45 +134,31 @@ impl<S: Scalar> Search<S> {
         }
     }
 
-    /// The box around the body with its margin; nothing where the body is not finite.
-    fn bounds(&self, body: &Body<S>) -> Option<(Vec3<f64>, Vec3<f64>)> {
-        let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
-        let around = body.radius + self.margin;
-        let known = body.reach + self.offset.norm_squared();
-        if !(known.to_f64().is_finite() && around > -S::INFINITY) {
-            return None;
-        }
-        for axis in 0..3 {
-            let reach = |sign: S| {
-                let mut along = Vec3::ZERO;
-                along[axis] = sign;
-                let local = self.rotation.transpose_mul(along);
-                let point = self.rotation * body.support(local, local) + self.offset;
-                (point[axis] + around * sign).to_f64()
-            };
-            (low[axis], high[axis]) = (reach(-S::ONE), reach(S::ONE));
-        }
-        Some((low, high))
-    }
-
     /// Adds the contacts of a triangle.
     fn look_at(&mut self, triangle: &Triangle<S>, body: &Body<S>) {
-        let normal = triangle.prism.normal;
-        let offset = self.offset - triangle.origin();
+        let normal = triangle.normal();
+        let offset = self.offset - triangle.origin;
         let local = -self.rotation.transpose_mul(normal);
         let lowest = self.rotation * body.support(local, local) + offset;
         let distance = normal.dot(lowest) - body.radius;
         if distance > self.margin {
             return;
         }
-        let ground = Body::of_prism(&triangle.prism);
-        let pair = Pair::between(ground, body.clone(), self.rotation, offset);
         // No deeper than what is known: then only what lies on the face or stands out can add to it.
+        let over = Over {
+            triangle,
+            normal,
+            body,
+            rotation: &self.rotation,
+            offset,
+        };
         if distance >= self.known() - self.tolerance
-            && (on_face(triangle, &pair, self.margin, &mut self.found) || triangle.is_hollow())
+            && (over.touch(self.margin, &mut self.found) || triangle.is_hollow(normal))
         {
             return;
         }
+        let prism = triangle.prism();
+        let pair = Pair::between(Body::of_prism(&prism), body.clone(), self.rotation, offset);
         if let Some((best, simplex)) = nearest(&pair, self.margin) {
             self.judge(triangle, &pair, distance, best, &simplex);
         }
@@ -172,7 +179,7 @@ impl<S: Scalar> Search<S> {
         simplex: &Simplex<S>,
     ) {
         let pose = Pose {
-            position: triangle.origin(),
+            position: triangle.origin,
             rotation: Mat3::IDENTITY,
         };
         let shape = &Shape::new(ShapeKind::HeightField, Vec3::ZERO);
@@ -190,15 +197,23 @@ impl<S: Scalar> Search<S> {
                 *old = deepest;
             }
         };
-        let face = (best.normal - triangle.prism.normal).norm() <= same_direction();
-        if face || triangle.admits(best.normal) {
+        let normal = triangle.normal();
+        let level = (best.normal - normal).norm() <= S::new(LEVEL) * same_direction();
+        let over = Over {
+            triangle,
+            normal,
+            body: &pair.b,
+            rotation: &pair.rotation,
+            offset: pair.offset,
+        };
+        if level || triangle.admits(best.normal) {
             replace(&mut self.deepest);
-            if !face || !on_face(triangle, pair, self.margin, &mut self.found) {
+            if !level || !over.touch(self.margin, &mut self.found) {
                 touching.into_iter().for_each(|p| self.found.add(p));
             }
         } else {
             replace(&mut self.sideways);
-            if on_face(triangle, pair, self.margin, &mut self.doubtful) {
+            if over.touch(self.margin, &mut self.doubtful) {
                 self.shallowest = Real::max(self.shallowest, distance);
             }
         }
@@ -226,42 +241,4 @@ impl<S: Scalar> Search<S> {
         }
         self.found
     }
-}
-
-/// Adds the corners of what the body shows to the face of a triangle, clipped to it. Whether there are any.
-fn on_face<S: Scalar>(
-    triangle: &Triangle<S>,
-    pair: &Pair<S>,
-    margin: S,
-    found: &mut Spread<S>,
-) -> bool {
-    let normal = triangle.prism.normal;
-    let [p, q, r, ..] = triangle.prism.corners;
-    let (e, f) = across(normal);
-    let view = Mat3::from_rows(e, f, normal);
-    let feature = Feature::new(&pair.b, -pair.rotation.transpose_mul(normal));
-    let mut shown = Polygon::empty();
-    for corner in &feature.corners {
-        shown.push(view * (pair.offset + pair.rotation * *corner - p));
-    }
-    let slack = pair.b.reach * S::new(BESIDE);
-    for (from, to) in [(p, q), (q, r), (r, p)] {
-        let (out, _) = (to - from).cross(normal).normalize();
-        let limit = out.dot(from - p) + slack;
-        shown.clip((out.dot(e), out.dot(f)), limit);
-    }
-    let mut any = false;
-    for corner in shown.corners() {
-        let distance = corner.z - pair.b.radius;
-        if distance <= margin {
-            any = true;
-            let middle = Vec3::new(corner.x, corner.y, distance * S::new(0.5));
-            found.add(Point {
-                position: triangle.origin() + p + view.transpose_mul(middle),
-                normal,
-                distance,
-            });
-        }
-    }
-    any
 }

@@ -7,6 +7,7 @@ use crate::narrow::one_by_one::Point;
 use crate::{MAX_POINTS, PATCH_POINTS};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
+use std::ops::Range;
 
 /// Points nearer to each other than this share of the body's size are one.
 const SAME: f64 = 1e-5;
@@ -16,18 +17,26 @@ pub(super) struct Spread<S> {
     points: ArrayVec<Point<S>, { MAX_POINTS + 1 }>,
     /// The size of the body, m.
     size: S,
+    /// Points nearer to each other are one, m.
+    same: S,
     /// How exact distances are, m.
     tolerance: S,
 }
 
-/// The points on one plane of the terrain.
-type Facet<S> = ArrayVec<Point<S>, { 2 * PATCH_POINTS + 4 }>;
+/// The points on one plane of the terrain and a new one, or both halves of their hull.
+type Facet<S> = ArrayVec<Point<S>, { 2 * (PATCH_POINTS + 1) + 1 }>;
+
+/// The point of a contact that lies on the terrain.
+fn ground<S: Scalar>(point: &Point<S>) -> Vec3<S> {
+    point.position - point.normal * (point.distance * S::new(0.5))
+}
 
 impl<S: Scalar> Spread<S> {
     pub fn new(size: S, tolerance: S) -> Self {
         Spread {
             points: ArrayVec::new(),
             size,
+            same: size * S::new(SAME),
             tolerance,
         }
     }
@@ -44,30 +53,16 @@ impl<S: Scalar> Spread<S> {
 
     /// Adds a point, if it says more than those that are there.
     pub fn add(&mut self, point: Point<S>) {
-        let same = self.size * S::new(SAME);
-        let ground = |p: &Point<S>| p.position - p.normal * (p.distance * S::new(0.5));
-        let mut facet = Facet::new();
-        let mut found = false;
-        self.points.retain(|p| {
-            let on_plane = (p.normal - point.normal).norm() <= same_direction()
-                && (ground(p) - ground(&point)).dot(point.normal).abs() <= same;
-            if !on_plane || facet.len() > PATCH_POINTS {
-                return true;
-            }
-            if !found && (p.position - point.position).norm() <= same {
-                found = true;
-                if point.distance < p.distance {
-                    *p = point;
-                }
-            }
-            facet.push(*p);
-            false
-        });
-        if !found {
-            facet.push(point);
+        let facet = self.facet(&point);
+        if self.says_nothing(&self.points[facet.clone()], &point) {
+            return;
         }
-        self.corners(&mut facet, same);
-        for point in facet {
+        let mut corners: Facet<S> = self.points.drain(facet).collect();
+        // A point in the same place is not as deep.
+        corners.retain(|p| !self.is_same(p, &point));
+        corners.push(point);
+        self.corners(&mut corners);
+        for point in corners {
             self.points.push(point);
             if self.points.len() > MAX_POINTS {
                 self.thin_out();
@@ -75,8 +70,61 @@ impl<S: Scalar> Spread<S> {
         }
     }
 
+    /// Where the points on the plane of a point are: next to each other, around their area.
+    fn facet(&self, point: &Point<S>) -> Range<usize> {
+        let on_plane = |p: &Point<S>| {
+            (p.normal - point.normal).norm_squared() <= same_direction::<S>().squared()
+                && (ground(p) - ground(point)).dot(point.normal).abs() <= self.same
+        };
+        let start = self.points.iter().position(on_plane);
+        let start = start.unwrap_or(self.points.len());
+        let others = self.points[start..].iter();
+        start
+            ..start
+                + others
+                    .take_while(|p| on_plane(p))
+                    .take(PATCH_POINTS)
+                    .count()
+    }
+
+    fn is_same(&self, p: &Point<S>, q: &Point<S>) -> bool {
+        (p.position - q.position).norm_squared() <= self.same.squared()
+    }
+
+    /// Whether a point lies within the area of a facet, or on one of its points, and no deeper.
+    fn says_nothing(&self, facet: &[Point<S>], point: &Point<S>) -> bool {
+        let deepest = facet
+            .iter()
+            .fold(S::INFINITY, |least, p| least.min(p.distance));
+        if point.distance < deepest - self.tolerance {
+            return false;
+        }
+        if let Some(twin) = facet.iter().find(|p| self.is_same(p, point)) {
+            return twin.distance <= point.distance + self.tolerance;
+        }
+        self.surrounds(facet, point.position)
+    }
+
+    /// Whether a place is above or below the area of a facet.
+    fn surrounds(&self, facet: &[Point<S>], place: Vec3<S>) -> bool {
+        let Some(last) = facet.last().filter(|_| facet.len() > 2) else {
+            return false;
+        };
+        let mut from = last.position;
+        for point in facet {
+            let side = point.position - from;
+            let size = side.x.abs().max(side.y.abs()).max(side.z.abs());
+            if side.cross(place - from).dot(point.normal) < -self.same * size {
+                return false;
+            }
+            from = point.position;
+        }
+        true
+    }
+
     /// Leaves the corners of the area that the points of a facet span, and the deepest of them.
-    fn corners(&self, facet: &mut Facet<S>, same: S) {
+    fn corners(&self, facet: &mut Facet<S>) {
+        let same = self.same;
         if facet.len() < 3 {
             return;
         }

@@ -1,0 +1,66 @@
+//! Where a body is seen from above: its extent along the axes and along the diagonals of cells.
+
+use super::grid::Grid;
+use crate::narrow::convex::body::Body;
+use clench_math::{Mat3, Scalar, Vec3};
+
+/// How far a body with its margin reaches, in the field's frame.
+pub(super) struct Bounds {
+    pub low: Vec3<f64>,
+    pub high: Vec3<f64>,
+    /// Between two lines along the diagonals of cells, and between two along their other diagonals: the least and most of
+    /// x·dy − y·dx and x·dy + y·dx, with the lengths dx, dy of a cell.
+    diagonals: [(f64, f64); 2],
+    /// The lowest point of the body.
+    pub lowest: Vec3<f64>,
+}
+
+impl Bounds {
+    /// Of a body that is finite; `around` are its radius and margin.
+    pub fn new<S: Scalar>(
+        body: &Body<S>,
+        rotation: &Mat3<S>,
+        offset: Vec3<S>,
+        around: S,
+        grid: &Grid,
+    ) -> Option<Self> {
+        let known = body.reach + offset.norm_squared();
+        if !(known.to_f64().is_finite() && around > -S::INFINITY) {
+            return None;
+        }
+        let furthest = |d: Vec3<f64>| {
+            let (d, length) = Vec3::<S>::from_f64(d.to_array()).normalize();
+            let local = rotation.transpose_mul(d);
+            let point = *rotation * body.support(local, local) + offset;
+            (point, ((point.dot(d) + around) * length).to_f64())
+        };
+        let extent = |d: Vec3<f64>| (-furthest(-d).1, furthest(d).1);
+        let axes = Mat3::IDENTITY.rows.map(extent);
+        let [dx, dy] = grid.step;
+        Some(Bounds {
+            low: Vec3::from_array(axes.map(|(low, _)| low)),
+            high: Vec3::from_array(axes.map(|(_, high)| high)),
+            diagonals: [Vec3::new(dy, -dx, 0.0), Vec3::new(dy, dx, 0.0)].map(extent),
+            lowest: {
+                let (point, _) = furthest(Vec3::new(0.0, 0.0, -1.0));
+                Vec3::from_array(point.to_array().map(S::to_f64))
+            },
+        })
+    }
+
+    /// Whether they reach the left and the right triangle of a cell, given where its lowest corner is.
+    pub fn reach(&self, [x, y]: [f64; 2], grid: &Grid) -> [bool; 2] {
+        let [dx, dy] = grid.step;
+        let area = dx * dy;
+        let (aside, along) = (x * dy - y * dx, x * dy + y * dx);
+        let ([low, high], (from, to)) = (
+            [self.diagonals[0].0, self.diagonals[0].1],
+            self.diagonals[1],
+        );
+        let near = along <= to && along + 2.0 * area >= from;
+        [
+            near && aside - area <= high && aside >= low,
+            near && aside <= high && aside + area >= low,
+        ]
+    }
+}

@@ -1,0 +1,107 @@
+//! What a body shows to the face of a triangle.
+
+use super::grid::Triangle;
+use super::spread::Spread;
+use crate::narrow::convex::{body::Body, feature::Feature, pair::across};
+use crate::narrow::{one_by_one::Point, polygon::Polygon};
+use clench_math::{Mat3, Scalar, Vec3};
+
+/// A corner this far outside a triangle, as a share of the body, still belongs to it.
+const BESIDE: f64 = 1e-9;
+
+/// A triangle, and the body in its frame.
+pub(super) struct Over<'a, S> {
+    pub triangle: &'a Triangle<'a, S>,
+    /// The triangle's unit normal.
+    pub normal: Vec3<S>,
+    pub body: &'a Body<'a, S>,
+    pub rotation: &'a Mat3<S>,
+    pub offset: Vec3<S>,
+}
+
+/// The line of a side of a triangle: out of it, and how far along that it is with some slack, itself slack times the size of `out`.
+#[derive(Clone, Copy)]
+struct Side<S> {
+    out: Vec3<S>,
+    limit: S,
+    slack: S,
+}
+
+impl<S: Scalar> Over<'_, S> {
+    /// Adds a contact for each corner of what the body shows, clipped to the triangle, that is near enough. Whether there are
+    /// any.
+    ///
+    /// Where the surface goes on in the same plane, the cut has no corner.
+    pub fn touch(&self, margin: S, found: &mut Spread<S>) -> bool {
+        let feature = Feature::new(self.body, -self.rotation.transpose_mul(self.normal));
+        let [p, q, r] = self.triangle.corners;
+        // Each opposite to the corner of its number.
+        let sides = [self.side(q, r), self.side(r, p), self.side(p, q)];
+        let place = |corner: &Vec3<S>| self.offset + *self.rotation * *corner;
+        let beyond = |side: &Side<S>| {
+            let mut corners = feature.corners.iter();
+            corners.all(|corner| side.out.dot(place(corner)) > side.limit)
+        };
+        if sides.iter().any(beyond) {
+            return false;
+        }
+        if let [corner] = &feature.corners[..] {
+            return self.add(place(corner), margin, found);
+        }
+        let (e, f) = across(self.normal);
+        let view = Mat3::from_rows(e, f, self.normal);
+        let mut shown = Polygon::empty();
+        for corner in &feature.corners {
+            shown.push(view * place(corner));
+        }
+        let own = shown.clone();
+        for Side { out, limit, .. } in sides {
+            shown.clip((out.dot(e), out.dot(f)), limit);
+        }
+        let mut any = false;
+        for corner in shown.corners() {
+            let place = view.transpose_mul(*corner);
+            if own.corners().contains(corner) || self.ends_at(place, &sides) {
+                any |= self.add(place, margin, found);
+            } else {
+                any |= corner.z - self.body.radius <= margin;
+            }
+        }
+        any
+    }
+
+    fn side(&self, from: Vec3<S>, to: Vec3<S>) -> Side<S> {
+        let out = (to - from).cross(self.normal);
+        let size = out.x.abs().max(out.y.abs()).max(out.z.abs());
+        let slack = self.body.reach * S::new(BESIDE) * size;
+        Side {
+            out,
+            limit: out.dot(from) + slack,
+            slack,
+        }
+    }
+
+    /// Whether the plane of the triangle ends at one of the sides that a place is on.
+    fn ends_at(&self, place: Vec3<S>, sides: &[Side<S>; 3]) -> bool {
+        sides.iter().enumerate().any(|(k, side)| {
+            let on_side = side.out.dot(place) > side.limit - side.slack * S::new(4.0);
+            on_side && !self.triangle.goes_on_across(k, self.normal)
+        })
+    }
+
+    /// Adds the contact below a point of the body's core, if it is near enough.
+    fn add(&self, point: Vec3<S>, margin: S, found: &mut Spread<S>) -> bool {
+        let height = self.normal.dot(point);
+        let distance = height - self.body.radius;
+        let near = distance <= margin;
+        if near {
+            let down = height - distance * S::new(0.5);
+            found.add(Point {
+                position: self.triangle.origin + point - self.normal * down,
+                normal: self.normal,
+                distance,
+            });
+        }
+        near
+    }
+}
