@@ -44,7 +44,7 @@ def main():
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps(results, indent=2) + "\n")
     print(f"\nratio: MuJoCo's time with Newton over this engine's; medians of {args.repeat} runs")
-    slower = {r.get("model", r.get("task")) for r in results if r["engine"].startswith("clench") and r["ratio"] < 1}
+    slower = {r.get("model", r.get("task", r.get("pair"))) for r in results if r["engine"].startswith("clench") and r["ratio"] < 1}
     if slower:
         print(f"slower than MuJoCo on: {', '.join(sorted(slower))}")
     sys.exit(1 if slower and args.check else 0)

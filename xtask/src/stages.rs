@@ -104,10 +104,12 @@ pub fn test(names: &[String]) -> Result<(), String> {
 pub fn bench(args: &[String]) -> Result<(), String> {
     build()?;
     release("clench", ["--example", "batch_step"])?;
+    release("clench-collide", ["--example", "pairs"])?;
     package::install()?;
     let mut script = command(python::interpreter(), &["bench/speed.py"]);
     script.args(args).env("CLENCH", clench());
     script.env("BATCH_STEP", released("examples/batch_step"));
+    script.env("PAIRS", released("examples/pairs"));
     run(script)
 }
 

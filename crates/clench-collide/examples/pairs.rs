@@ -3,7 +3,7 @@
 //! A thousand poses a pair, of shapes about 10 cm large: of every four, two overlap by 0 to 1 cm at random, one rests face to
 //! face, tilted by up to 1e-3 rad, and one misses by up to 1 cm. One line a pair: the time of a call in nanoseconds, the best of
 //! some runs, and how many points it yields. With `--json` the poses come along, so that another engine can be timed on them.
-//! Names such as `box-hull` choose pairs.
+//! `--list` names all pairs; names such as `box-hull` choose some.
 
 use clench_collide::{Contacts, Hull, Pose, Shape, ShapeKind, collide, convex_hull, supported};
 use clench_math::{Quat, Vec3};
@@ -128,23 +128,29 @@ impl Random {
 }
 
 fn main() {
-    let (flags, names): (Vec<_>, Vec<_>) =
-        std::env::args().skip(1).partition(|arg| arg == "--json");
-    let json = !flags.is_empty();
-    if !json {
-        println!("{:<26}{:>8}{:>8}", "pair", "ns", "points");
+    let (flags, names): (Vec<_>, Vec<_>) = std::env::args()
+        .skip(1)
+        .partition(|arg| arg.starts_with("--"));
+    let set = |flag: &str| flags.iter().any(|f| f == flag);
+    let (only_list, json) = (set("--list"), set("--json"));
+    if !only_list && !json {
+        println!("{:<30}{:>8}{:>8}", "pair", "ns", "points");
     }
     for (k, &a) in SUBJECTS.iter().enumerate() {
-        for &b in &SUBJECTS[k..] {
-            let wanted = names.is_empty() || names.contains(&format!("{}-{}", a.0, b.0));
-            if wanted && supported(a.1, b.1) {
-                measure(a, b, json);
+        for &b in SUBJECTS[k..].iter().filter(|b| supported(a.1, b.1)) {
+            let name = format!("{}-{}", a.0, b.0);
+            if !names.is_empty() && !names.contains(&name) {
+                continue;
+            }
+            match only_list {
+                true => println!("{name}"),
+                false => measure(&name, a, b, json),
             }
         }
     }
 }
 
-fn measure(a: (&str, ShapeKind, usize), b: (&str, ShapeKind, usize), json: bool) {
+fn measure(name: &str, a: (&str, ShapeKind, usize), b: (&str, ShapeKind, usize), json: bool) {
     let mut random = Random(1);
     let hulls = [a, b].map(|(_, kind, vertices)| {
         let count = if kind == ShapeKind::Mesh { 10 } else { 0 };
@@ -172,13 +178,12 @@ fn measure(a: (&str, ShapeKind, usize), b: (&str, ShapeKind, usize), json: bool)
         best = best.min(start.elapsed().as_secs_f64());
     }
     let (time, mean) = (best * 1e9 / POSES as f64, points as f64 / POSES as f64);
-    let name = format!("{} – {}", a.0, b.0);
     if !json {
-        println!("{name:<26}{time:>8.0}{mean:>8.2}");
+        println!("{name:<30}{time:>8.0}{mean:>8.2}");
         return;
     }
     let hulls = hulls.each_ref().map(|hulls| {
-        list(hulls.iter().map(|hull| {
+        joined(hulls.iter().map(|hull| {
             format!(
                 "{:?}",
                 hull.vertices()
@@ -188,15 +193,15 @@ fn measure(a: (&str, ShapeKind, usize), b: (&str, ShapeKind, usize), json: bool)
             )
         }))
     });
-    let bodies = list(scenes.iter().map(|(a, b)| list([a.json(), b.json()])));
+    let bodies = joined(scenes.iter().map(|(a, b)| joined([a.json(), b.json()])));
     println!(
         r#"{{"pair": {:?}, "ns": {time}, "points": {mean}, "hulls": {}, "bodies": {bodies}}}"#,
         [a.0, b.0],
-        list(hulls),
+        joined(hulls),
     );
 }
 
-fn list(items: impl IntoIterator<Item = String>) -> String {
+fn joined(items: impl IntoIterator<Item = String>) -> String {
     let items: Vec<String> = items.into_iter().collect();
     format!("[{}]", items.join(", "))
 }

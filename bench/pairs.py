@@ -1,0 +1,119 @@
+"""Collision of one pair of shapes after another: Clench's narrow phase and MuJoCo's on the same poses.
+
+The example `pairs` of clench-collide makes a thousand poses of each pair of shapes and times itself on them. Here MuJoCo gets
+the same poses, all in one scene with the pairs far from each other, and tells what its own timer of the narrow phase says, at
+its defaults. That timer includes the mixing of contact parameters, which in Clench is another stage. Both take turns; figures
+are the best of all runs, as both work on the same numbers again and again.
+"""
+
+import json
+import os
+import subprocess
+import time
+
+import mujoco
+import numpy as np
+
+from scene import ROOT
+
+PAIRS = os.environ.get("PAIRS", str(ROOT / "target/release/examples/pairs"))
+TIMER = int(mujoco.mjtTimer.mjTIMER_COL_NARROW)
+TURNS = 3
+RUNS = 7
+# How far pairs are apart, m, and how many stand in a row.
+SPACING, ROW = 4.0, 32
+
+
+def compare(_, args):
+    """Times both engines on every pair, prints a table and returns its rows."""
+    mujoco.set_mjcb_time(lambda: 1e9 * time.perf_counter())
+    print("\none pair of shapes, a thousand poses; times in ns, then how many points a pose has")
+    print(f"  {'pair':<30}{'clench':>8}{'mujoco':>8}{'ratio':>7}{'clench':>9}{'mujoco':>8}")
+    try:
+        return [measure(name) for name in example("--list").split("\n") if name]
+    finally:
+        mujoco.set_mjcb_time(None)
+
+
+def measure(name):
+    """Both engines in turn on one pair; prints and returns its row."""
+    scene = None
+    clench, other, contacts = np.inf, np.inf, 0
+    for _ in range(TURNS):
+        row = json.loads(example("--json", name))
+        clench = min(clench, row["ns"])
+        scene = scene or MuJoCo(row)
+        nanoseconds, contacts = scene.run()
+        other = min(other, nanoseconds)
+    ratio = other / clench
+    print(f"  {name:<30}{clench:>8.0f}{other:>8.0f}{ratio:>7.2f}{row['points']:>9.2f}{contacts:>8.2f}", flush=True)
+    return {
+        "pair": name, "engine": "clench", "nanoseconds": clench, "mujoco_nanoseconds": other, "ratio": ratio,
+        "contacts_mean": row["points"], "mujoco_contacts_mean": contacts,
+    }  # fmt: skip
+
+
+def example(*arguments):
+    """What the example prints."""
+    return subprocess.run([PAIRS, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+class MuJoCo:
+    """One scene of all poses."""
+
+    def __init__(self, row):
+        self.poses = len(row["bodies"])
+        self.model = mujoco.MjModel.from_xml_string(xml(row))
+        self.data = mujoco.MjData(self.model)
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+
+    def run(self):
+        """Nanoseconds and contacts of a pose."""
+        timer, best = self.data.timer[TIMER], np.inf
+        for _ in range(RUNS):
+            timer.duration, timer.number = 0, 0
+            mujoco.mj_collision(self.model, self.data)
+            best = min(best, timer.duration)
+        return best / self.poses, self.data.ncon / self.poses
+
+
+def xml(row):
+    """All pairs as free bodies on a grid; of a plane there is but one, and poses are as seen from it."""
+    kinds = row["pair"]
+    meshes = [
+        f'<mesh name="{side}_{k}" vertex="{numbers(np.ravel(hull))}"/>'
+        for side, hulls in enumerate(row["hulls"])
+        for k, hull in enumerate(hulls)
+    ]
+    plane = kinds[0] == "plane"
+    bodies = ['<geom type="plane" size="1 1 1"/>'] if plane else []
+    for k, pair in enumerate(row["bodies"]):
+        corner = np.array([SPACING * (k % ROW), SPACING * (k // ROW), 0.0])
+        for side, body in enumerate(pair):
+            if plane and side == 0:
+                continue
+            position, quat = seen_from(pair[0], body) if plane else (body["pos"], body["quat"])
+            place = f'pos="{numbers(corner + position)}" quat="{numbers(quat)}"'
+            bodies.append(f"<body {place}><freejoint/>{geom(kinds[side], side, body)}</body>")
+    return f"""<mujoco><size memory="200M"/><default><geom mass="1"/></default>
+        <asset>{"".join(meshes)}</asset><worldbody>{"".join(bodies)}</worldbody></mujoco>"""
+
+
+def geom(kind, side, body):
+    if kind.startswith("hull"):
+        return f'<geom type="mesh" mesh="{side}_{body["hull"]}"/>'
+    return f'<geom type="{kind}" size="{numbers(body["size"])}"/>'
+
+
+def seen_from(frame, body):
+    """Position and quaternion of a body in the frame of another."""
+    back, position, quat = np.zeros(4), np.zeros(3), np.zeros(4)
+    mujoco.mju_negQuat(back, np.array(frame["quat"]))
+    mujoco.mju_rotVecQuat(position, np.array(body["pos"]) - np.array(frame["pos"]), back)
+    mujoco.mju_mulQuat(quat, back, np.array(body["quat"]))
+    return position, quat
+
+
+def numbers(values):
+    return " ".join(repr(float(v)) for v in values)
