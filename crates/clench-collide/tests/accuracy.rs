@@ -3,9 +3,10 @@
 
 mod common;
 
-use clench_collide::ShapeKind;
+use clench_collide::{Pose, Shape, ShapeKind};
+use clench_math::Mat3;
 use common::placement::{PLACEMENTS, placed};
-use common::{PAIRS, Random, V, by_support, off_surface};
+use common::{PAIRS, Random, Scene, V, by_support, off_surface};
 
 fn angle(u: V, v: V) -> f64 {
     u.cross(v).norm().atan2(u.dot(v)).to_degrees()
@@ -84,4 +85,51 @@ fn every_point_lies_midway_between_the_surfaces() {
         }
         assert!(points > 300, "{kinds:?}: {points}");
     }
+}
+
+/// Vertices of these that nearly coincide once made a sliver, on which the search seemed to be at its end 6 mm too early.
+#[test]
+fn a_sliver_does_not_deceive() {
+    let pose = |position: [f64; 3], rows: [[f64; 3]; 3]| Pose {
+        position: V::from_array(position),
+        rotation: Mat3 {
+            rows: rows.map(V::from_array),
+        },
+    };
+    let cylinder = |radius, half| Shape::new(ShapeKind::Cylinder, V::new(radius, half, 0.0));
+    let scene = Scene {
+        a: cylinder(0.4893183589786955, 0.2397221883143682),
+        pose_a: pose(
+            [0.4715968704184732, -0.996850259215508, 0.30161676085313327],
+            [
+                [0.7689965286047217, 0.26476132958368126, 0.5818468676129216],
+                [
+                    -0.28117488751513786,
+                    0.9575140922845988,
+                    -0.06408935720734268,
+                ],
+                [
+                    -0.5740949587174033,
+                    -0.11431623433914403,
+                    0.8107692501210075,
+                ],
+            ],
+        ),
+        b: cylinder(0.10380336642386795, 0.21702828651452827),
+        pose_b: pose(
+            [0.13672730787313814, -0.3762281627476035, 0.5751945200421366],
+            [
+                [
+                    0.38868050095769946,
+                    0.42420837827794056,
+                    -0.8179087479505716,
+                ],
+                [0.8528859037604307, 0.1702000185813083, 0.4935763252443087],
+                [0.3485872965872754, -0.8894263350462038, -0.2956479176051352],
+            ],
+        ),
+        margin: 0.05,
+    };
+    let found = scene.deepest().expect("within the margin").distance;
+    assert!((found - 0.04761838154017693).abs() < 1e-9, "{found}");
 }

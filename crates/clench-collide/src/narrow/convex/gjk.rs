@@ -26,6 +26,9 @@ const NEAR: f64 = 0.1;
 /// The multiple of √ε, as a share of the larger coordinates, below which the direction of v is noise.
 const NOISE: f64 = 4.0;
 
+/// The share of the smaller body by which the bounds may differ at the end of a search.
+const DOUBT: f64 = 1e-6;
+
 /// What is known of two cores.
 pub(super) enum Cores<S> {
     /// Further apart than the limit.
@@ -38,26 +41,67 @@ pub(super) enum Cores<S> {
 
 /// The distance of the cores if it is at most `limit`. The simplex begins with the vertex along [`Pair::start`], and ends as what
 /// the nearest points are made of, or holds the origin, but for rounding, where the cores overlap.
+///
+/// Vertices that nearly coincide make slivers, whose nearest point may be false. So what ends a search is not believed against
+/// the bounds: then another one begins with the best direction known, without Newton's vertices.
 pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S, simplex: &mut Simplex<S>) -> Cores<S> {
     let start = pair.start();
-    let mut v = simplex.vertices()[0].w;
     let mut best = Gap {
         normal: start,
-        gap: start.dot(v),
+        gap: start.dot(simplex.vertices()[0].w),
         settled: false,
     };
+    let mut end = search(pair, limit, pair.curved, simplex, &mut best);
+    let deceived = match end {
+        End::Beyond => false,
+        End::Inside => best.gap > pair.tolerance,
+        End::Nearest(length) => length - best.gap > pair.smallest * S::new(DOUBT),
+    };
+    if deceived {
+        *simplex = Simplex::new(pair.vertex(best.normal));
+        end = search(pair, limit, false, simplex, &mut best);
+    }
+    match end {
+        End::Beyond => Cores::Apart,
+        End::Inside if best.gap <= pair.tolerance => Cores::Overlap,
+        End::Inside | End::Nearest(_) => {
+            best.settle(pair, simplex.vertices());
+            Cores::Near(best)
+        }
+    }
+}
+
+/// Why a search has ended.
+enum End<S> {
+    /// A gap beyond the limit.
+    Beyond,
+    /// The origin seems to be in the simplex.
+    Inside,
+    /// Nothing is nearer to the origin than a point at this distance.
+    Nearest(S),
+}
+
+/// Adds vertices until nothing is nearer; `newton` helps with curved bodies.
+fn search<S: Scalar>(
+    pair: &Pair<S>,
+    limit: S,
+    newton: bool,
+    simplex: &mut Simplex<S>,
+    best: &mut Gap<S>,
+) -> End<S> {
+    let mut v = simplex.vertices()[0].w;
     let touching = pair.smallest * S::EPSILON.sqrt() * S::new(NOISE);
     for _ in 0..ROUNDS {
         if best.gap > limit {
-            return Cores::Apart;
+            return End::Beyond;
         }
         let square = v.norm_squared();
         let length = square.sqrt();
         if length <= touching {
-            return Cores::Overlap;
+            return End::Inside;
         }
         if length - best.gap <= pair.tolerance {
-            break;
+            return End::Nearest(length);
         }
         let n = v * (S::ONE / length);
         let vertex = pair.vertex(n);
@@ -69,17 +113,17 @@ pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S, simplex: &mut Simplex<S>)
         };
         best.improve(raw, pair.tolerance);
         if length - gap <= pair.tolerance {
-            break;
+            return End::Nearest(length);
         }
         let Some(nearest) = simplex.add(vertex) else {
-            return Cores::Overlap;
+            return End::Inside;
         };
         if nearest.norm_squared() >= square {
             // Rounding has the last word.
-            break;
+            return End::Nearest(length);
         }
         v = nearest;
-        if pair.curved && length - gap < pair.smallest * S::new(NEAR) {
+        if newton && length - gap < pair.smallest * S::new(NEAR) {
             let flats = Flats::of(pair, simplex.vertices());
             let known = best.normal;
             best.improve(refine(pair, n, &flats), pair.tolerance);
@@ -87,12 +131,11 @@ pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S, simplex: &mut Simplex<S>)
                 for vertex in flats.vertices(pair, best.normal) {
                     match simplex.add(vertex) {
                         Some(nearest) => v = nearest,
-                        None => return Cores::Overlap,
+                        None => return End::Inside,
                     }
                 }
             }
         }
     }
-    best.settle(pair, simplex.vertices());
-    Cores::Near(best)
+    End::Nearest(v.norm())
 }
