@@ -1,5 +1,5 @@
 //! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed, `cargo xtask soak`
-//! steps many environments for long.
+//! looks long for rare failures.
 
 mod package;
 mod python;
@@ -26,8 +26,12 @@ Commands:
                       parity   `clench` against MuJoCo, with pytest
   bench [ARG...]    Build the release `clench` and time it against MuJoCo.
                     Arguments go to bench/speed.py; try `cargo xtask bench --help`.
-  soak [SEED]       Step 10,000 environments 1,000 times under random controls, resets and poison: none may be
-                    lost, disturb another, or leak. `test` runs a short form.
+  soak [--only NAME] [SEED]
+                    batch: step 10,000 environments 1,000 times under random controls, resets and poison; none may
+                    be lost, disturb another, or leak.
+                    collide: a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones;
+                    nothing may panic, hang, or be no number.
+                    `test` runs a short form of both.
 
 Needs Python 3.11 or later with venv. A package index must be reachable on the first run, and for the stage `package`.";
 

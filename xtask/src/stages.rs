@@ -113,22 +113,42 @@ pub fn bench(args: &[String]) -> Result<(), String> {
     run(script)
 }
 
-/// Steps many environments for long under random controls, resets and poison; `args` may hold a seed.
+/// What takes long and looks for rare failures: many environments under random controls, resets and poison, and a million
+/// poses of every pair of shapes. `args` may choose one, by `--only`, and hold a seed.
 ///
 /// # Errors
-/// An argument that is no seed, or what the soak found.
+/// Arguments that mean nothing, or what a soak found.
 pub fn soak(args: &[String]) -> Result<(), String> {
-    let seed = match args {
+    let (only, rest) = match args {
+        [flag, only, rest @ ..] if flag == "--only" => (Some(only.as_str()), rest),
+        _ => (None, args),
+    };
+    let seed = match rest {
         [] => 1,
         [seed] => seed
             .parse::<u64>()
             .map_err(|_| format!("`{seed}` is not a seed: give a whole number"))?,
-        _ => return Err("soak takes at most one argument, a seed".into()),
+        _ => return Err("soak takes `--only NAME` and a seed, in that order".into()),
     };
-    let mut test = cargo(&["test", "--release", "--package", "clench", "--test", "soak"]);
-    test.args(["--", "--ignored", "--nocapture"]);
-    test.env("SOAK_SEED", seed.to_string());
-    run(test)
+    let soaks = [
+        ("batch", "clench", "soak"),
+        ("collide", "clench-collide", "trouble"),
+    ];
+    let mut known = false;
+    for (name, package, test) in soaks {
+        if only.is_none_or(|only| only == name) {
+            known = true;
+            let mut test = cargo(&["test", "--release", "--package", package, "--test", test]);
+            test.args(["--", "--ignored", "--nocapture"]);
+            test.env("SOAK_SEED", seed.to_string());
+            run(test)?;
+        }
+    }
+    if known {
+        Ok(())
+    } else {
+        Err("soak knows `--only batch` and `--only collide`".into())
+    }
 }
 
 fn fmt() -> Result<(), String> {

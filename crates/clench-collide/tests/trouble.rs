@@ -6,6 +6,7 @@ use clench_collide::{Contacts, PATCH_POINTS, ShapeKind, bounding_radius, collide
 use clench_math::{Real, Scalar};
 use common::placement::trouble;
 use common::{PAIRS, Random, Scene, V, convert_pose, convert_shape};
+use std::time::Instant;
 
 fn in_type<S: Scalar>(scene: &Scene) -> Contacts<S> {
     let mut out = Contacts::new();
@@ -40,14 +41,36 @@ fn assert_proper<S: Scalar>(contacts: &Contacts<S>, scene: &Scene) {
 
 #[test]
 fn no_pose_and_no_shape_breaks_it() {
-    let mut random = Random(23);
     for kinds in PAIRS {
-        for _ in 0..10_000 {
-            let scene = trouble(&mut random, kinds);
-            assert_proper(&in_type::<f64>(&scene), &scene);
-            assert_proper(&in_type::<f32>(&scene), &scene);
-        }
+        assert_unbroken(kinds, 10_000, 23);
     }
+}
+
+/// `cargo xtask soak --only collide`.
+#[test]
+#[ignore = "takes minutes"]
+fn a_million_poses_break_nothing() {
+    let seed = std::env::var("SOAK_SEED").map_or(1, |seed| seed.parse().unwrap());
+    for kinds in PAIRS {
+        let start = Instant::now();
+        let points = assert_unbroken(kinds, 1_000_000, seed);
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{kinds:?}: {points} points of a million poses in {seconds:.0} s");
+    }
+}
+
+/// Tries so many troublesome poses; gives the number of contact points found.
+fn assert_unbroken(kinds: (ShapeKind, ShapeKind), poses: usize, seed: u64) -> usize {
+    let mut random = Random(seed);
+    let mut points = 0;
+    for _ in 0..poses {
+        let scene = trouble(&mut random, kinds);
+        let contacts = in_type::<f64>(&scene);
+        assert_proper(&contacts, &scene);
+        assert_proper(&in_type::<f32>(&scene), &scene);
+        points += contacts.as_slice().len();
+    }
+    points
 }
 
 /// How far the gap along a direction of some hundred exceeds the distance found.

@@ -51,7 +51,8 @@ pub(super) fn patch<S: Scalar>(
     margin: S,
     points: &mut Points<S>,
 ) {
-    let n = best.normal;
+    // Once more: squares of very short vectors lose digits.
+    let n = best.normal.normalize().0;
     let feature_a = Feature::new(&pair.a, n);
     let feature_b = Feature::new(&pair.b, -pair.rotation.transpose_mul(n));
     let radii = (pair.a.radius, pair.b.radius);
