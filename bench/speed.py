@@ -5,7 +5,8 @@ First one environment: each repetition steps every engine from the model's defau
 of batch.py says how. Times are medians over repetitions; a ratio is the median of what each repetition gave. Both engines
 read the same file with its integrator, tolerance and iterations; where the file asks for PGS, MuJoCo is timed with Newton,
 which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
-vector environments beside gymnasium's (vector.py), and heaps of bodies (heaps.py).
+vector environments beside gymnasium's (vector.py), heaps of bodies
+(heaps.py), and collision pair by pair (pairs.py).
 """
 
 import argparse
@@ -18,6 +19,7 @@ import alone
 import batch
 import calls
 import heaps
+import pairs
 import vector
 from scene import find
 
@@ -38,6 +40,7 @@ def main():
         "calls": (calls.compare, models),
         "vector": (vector.compare, args.tasks),
         "heaps": (heaps.compare, heaps.SCENES),
+        "pairs": (pairs.compare, ["all pairs"]),
     }.items():
         if args.only in (None, name):
             results += [row for subject in subjects for row in compare(subject, args)]
@@ -53,7 +56,7 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps"], help="one of the comparisons")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs"], help="one of the comparisons")
     parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
     parser.add_argument("--batch-steps", type=int, default=500, help="steps a run of the batch (default: %(default)s)")
