@@ -6,7 +6,7 @@ use clench_math::{Mat3, Real, Vec3};
 /// The kinds of shape, in the order that decides which of two is the first of a pair (MuJoCo's `mjtGeom`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ShapeKind {
-    /// The half-space below the local xy plane, without bounds. No size.
+    /// The half-space below the local xy plane, without bounds. No size, but for rays: see [`ray`](crate::ray()).
     Plane,
     /// Terrain over a rectangle, on a base. Size: half lengths along x and y; a quarter of the elevation and half of the base,
     /// added (as in MuJoCo).
