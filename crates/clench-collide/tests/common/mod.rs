@@ -3,6 +3,7 @@
 // Each test program uses a part of it.
 #![allow(dead_code, unused_imports)]
 
+pub mod fields;
 pub mod hulls;
 pub mod placement;
 pub mod truth;

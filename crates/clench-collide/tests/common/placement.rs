@@ -1,6 +1,6 @@
 //! Two shapes as a simulation meets them, and as it should never meet them.
 
-use super::{Random, Scene, V, hulls};
+use super::{Random, Scene, V, fields, hulls};
 use clench_collide::{Pose, Shape, ShapeKind, bounding_radius};
 use clench_math::{Quat, Vec3};
 
@@ -103,6 +103,10 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     let shape = |random: &mut Random, kind| match kind {
         ShapeKind::Mesh if random.unit() < 0.7 => Shape::mesh(random.pick(hulls::troubled())),
         ShapeKind::Mesh => Shape::mesh(random.pick(hulls::wide())),
+        ShapeKind::HeightField => {
+            let fields = fields::troubled();
+            Shape::height_field(&fields[(random.unit() * fields.len() as f64) as usize])
+        }
         _ => Shape::new(
             kind,
             Vec3::new(length(random), length(random), length(random)),
@@ -141,11 +145,16 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     };
     let finite = |r: f64| if r.is_finite() { r } else { 1.0 };
     let reach = finite(bounding_radius(&a)) + finite(bounding_radius(&b));
+    // Terrain has no support function: somewhere near its surface will do.
+    let touching = match a.kind {
+        ShapeKind::HeightField => a.size.z * random.range(-1.0, 4.0),
+        _ => -scene.gap_along(direction),
+    };
     scene.pose_b.position = match (random.unit() * 5.0) as usize {
         0 => V::ZERO,
-        1 => direction * -scene.gap_along(direction),
+        1 => direction * touching,
         2 => direction * (reach * random.unit()),
-        3 => direction * (-scene.gap_along(direction) * random.range(0.99, 1.01)),
+        3 => direction * (touching * random.range(0.99, 1.01)),
         _ => direction * (reach + 10.0 * random.unit()),
     };
     if random.unit() < 0.1 {
