@@ -5,8 +5,7 @@ First one environment: each repetition steps every engine from the model's defau
 of batch.py says how. Times are medians over repetitions; a ratio is the median of what each repetition gave. Both engines
 read the same file with its integrator, tolerance and iterations; where the file asks for PGS, MuJoCo is timed with Newton,
 which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
-vector environments beside gymnasium's (vector.py), heaps of bodies
-(heaps.py), and collision pair by pair (pairs.py).
+vector environments beside gymnasium's (vector.py), heaps of bodies (heaps.py), and collision pair by pair (pairs.py).
 """
 
 import argparse

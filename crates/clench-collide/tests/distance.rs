@@ -4,7 +4,7 @@ mod common;
 
 use clench_collide::{HeightField, Hull, Pose, Shape, ShapeKind, convex_hull, distance, supported};
 use clench_math::{Mat3, Vec3};
-use common::{PAIRS, Random, V, off_surface};
+use common::{BOUNDED, PAIRS, Random, V, off_surface};
 
 /// How exact the search for the true distance is, m.
 const SEARCH: f64 = 1e-6;
@@ -82,13 +82,7 @@ fn hulls_have_distances() {
         .collect();
     let hull = Hull::new(&convex_hull(&corners, None).unwrap(), &corners);
     let cube = Shape::new(ShapeKind::Box, Vec3::new(0.3, 0.3, 0.3));
-    for kind in [
-        ShapeKind::Sphere,
-        ShapeKind::Capsule,
-        ShapeKind::Ellipsoid,
-        ShapeKind::Cylinder,
-        ShapeKind::Box,
-    ] {
+    for kind in BOUNDED.into_iter().filter(|kind| *kind != ShapeKind::Mesh) {
         for _ in 0..50 {
             let scene = random.scene((kind, ShapeKind::Box));
             let of = |shape: &Shape<f64>| {

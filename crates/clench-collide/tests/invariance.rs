@@ -4,7 +4,7 @@ mod common;
 
 use clench_collide::{ContactPoint, Contacts, Pose, Shape, ShapeKind, collide, supported};
 use clench_math::{Lanes, Mask, Mat3, Real, Vec3};
-use common::{PAIRS, Random, Scene, convert_pose, convert_shape};
+use common::{BOUNDED, PAIRS, Random, Scene, convert_pose, convert_shape};
 
 fn moved(pose: &Pose<f64>, by: &Pose<f64>) -> Pose<f64> {
     Pose {
@@ -56,14 +56,7 @@ fn a_moved_scene_has_moved_contacts() {
 #[test]
 fn like_shapes_may_be_swapped() {
     let mut random = Random(12);
-    for kind in [
-        ShapeKind::Sphere,
-        ShapeKind::Capsule,
-        ShapeKind::Ellipsoid,
-        ShapeKind::Cylinder,
-        ShapeKind::Box,
-        ShapeKind::Mesh,
-    ] {
+    for kind in BOUNDED {
         for _ in 0..500 {
             let scene = generic(&mut random, (kind, kind));
             let swapped = Scene {

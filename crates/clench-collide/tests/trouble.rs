@@ -5,7 +5,7 @@ mod common;
 use clench_collide::{Contacts, PATCH_POINTS, ShapeKind, bounding_radius, collide};
 use clench_math::{Real, Scalar};
 use common::placement::trouble;
-use common::{PAIRS, Random, Scene, V, convert_pose, convert_shape};
+use common::{BOUNDED, PAIRS, Random, Scene, V, convert_pose, convert_shape};
 use std::time::Instant;
 
 fn in_type<S: Scalar>(scene: &Scene) -> Contacts<S> {
@@ -41,11 +41,9 @@ fn assert_proper<S: Scalar>(contacts: &Contacts<S>, scene: &Scene) {
 
 /// All pairs of shapes that can collide.
 fn pairs() -> impl Iterator<Item = (ShapeKind, ShapeKind)> {
-    use ShapeKind::*;
-    let bounded = [Sphere, Capsule, Ellipsoid, Cylinder, Box, Mesh];
     PAIRS
         .into_iter()
-        .chain(bounded.map(|kind| (HeightField, kind)))
+        .chain(BOUNDED.map(|kind| (ShapeKind::HeightField, kind)))
 }
 
 #[test]

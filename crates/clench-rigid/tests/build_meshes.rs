@@ -1,10 +1,13 @@
 //! Meshes and height fields by hand: where they stand, what they weigh, and what batches may change of them.
 
+mod common;
+
 use clench_collide::ShapeKind;
 use clench_rigid::builder::{
     BodySpec, GeomSpec, HeightFieldSpec, JointSpec, MeshInertia, MeshSpec, ModelBuilder,
 };
 use clench_rigid::{Model, Sim};
+use common::hourglass;
 use std::sync::Arc;
 
 /// A box from the origin to (1, 2, 3).
@@ -13,25 +16,6 @@ fn corners() -> Vec<[f64; 3]> {
         .map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|side| side as f64))
         .map(|[x, y, z]| [x, 2.0 * y, 3.0 * z])
         .collect()
-}
-
-/// Two tetrahedra that share a corner: not convex.
-fn hourglass(inertia: MeshInertia) -> MeshSpec {
-    let vertices = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 1.0],
-        [-1.0, 1.0, 1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, 0.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, -1.0],
-    ];
-    let upper = [[1, 2, 3], [0, 2, 1], [0, 3, 2], [0, 1, 3]];
-    let lower = [[4, 6, 5], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
-    MeshSpec {
-        inertia,
-        ..MeshSpec::triangles("m", &vertices, &[upper, lower].concat())
-    }
 }
 
 fn with_mesh(mesh: MeshSpec, geom: GeomSpec) -> ModelBuilder {
@@ -43,7 +27,8 @@ fn with_mesh(mesh: MeshSpec, geom: GeomSpec) -> ModelBuilder {
 }
 
 fn build(mesh: MeshSpec) -> Model {
-    let builder = with_mesh(mesh, GeomSpec::mesh("m").density(1.0));
+    let geom = GeomSpec::mesh(&mesh.name).density(1.0);
+    let builder = with_mesh(mesh, geom);
     builder.build().unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -70,7 +55,14 @@ fn a_hull_of_points_stands_about_its_centre() {
 
 #[test]
 fn the_ways_to_weigh_differ_where_a_mesh_is_not_convex() {
-    let mass = |inertia| build(hourglass(inertia)).params.body_mass[1];
+    let mass = |inertia| {
+        build(MeshSpec {
+            inertia,
+            ..hourglass()
+        })
+        .params
+        .body_mass[1]
+    };
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a}, not {b}");
     // Base 2, height 1, twice.
     near(mass(MeshInertia::Exact), 4.0 / 3.0);

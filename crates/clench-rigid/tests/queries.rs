@@ -1,11 +1,12 @@
 //! What rays hit and how far apart geoms are, in scenes whose answers are plain.
 
+mod common;
+
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{
-    BodySpec, GeomSpec, HeightFieldSpec, JointSpec, MeshSpec, ModelBuilder,
-};
+use clench_rigid::builder::{BodySpec, GeomSpec, HeightFieldSpec, JointSpec, ModelBuilder};
 use clench_rigid::{RayFilter, RayHit, Sim, SimError};
+use common::hourglass;
 use std::sync::Arc;
 
 type V = Vec3<f64>;
@@ -132,22 +133,6 @@ fn what_cannot_be_seen_is_not_hit() {
     let sim = forwarded(&builder);
     let (name, ..) = hit(&sim, v(0.0, 0.0, 4.0), -UP, RayFilter::default()).unwrap();
     assert_eq!(name, "core");
-}
-
-/// Two tetrahedra that share a corner: between them is air within the hull.
-fn hourglass() -> MeshSpec {
-    let vertices = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 1.0],
-        [-1.0, 1.0, 1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, 0.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, -1.0],
-    ];
-    let upper = [[1, 2, 3], [0, 2, 1], [0, 3, 2], [0, 1, 3]];
-    let lower = [[4, 6, 5], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
-    MeshSpec::triangles("hourglass", &vertices, &[upper, lower].concat())
 }
 
 #[test]

@@ -26,8 +26,10 @@ pub(crate) struct Islands<T: Real> {
     /// How many trees each island has.
     sizes: Vec<usize>,
     elimination: Elimination,
+    /// The trees of a block.
+    coupled: Vec<usize>,
+    /// A slot for each island, and perhaps more from earlier.
     slots: Vec<Island<T>>,
-    count: usize,
 }
 
 /// One part.
@@ -87,8 +89,7 @@ impl<T: Real> Islands<T> {
                 self.sizes[self.island_of[t] as usize] += 1;
             }
         }
-        self.count = self.sizes.len();
-        self.count != 1 || self.has_large() || self.island_of.contains(&FREE)
+        self.sizes.len() != 1 || self.has_large() || self.island_of.contains(&FREE)
     }
 
     fn has_large(&self) -> bool {
@@ -114,7 +115,7 @@ impl<T: Real> Islands<T> {
     ) -> (&[Island<T>], SolveStats<T>) {
         self.gather(problem);
         let mut stats = SolveStats::default();
-        for island in &mut self.slots[..self.count] {
+        for island in &mut self.slots[..self.sizes.len()] {
             let warmstart = warmstart.map(|warm| {
                 island.warmstart.clear();
                 island
@@ -127,13 +128,13 @@ impl<T: Real> Islands<T> {
             std::mem::swap(&mut island.work.course.clock, clock);
             stats.combine(&island.work.course.stats);
         }
-        (&self.slots[..self.count], stats)
+        (&self.slots[..self.sizes.len()], stats)
     }
 
     /// Copies the dofs and blocks of each island into its slot.
     fn gather(&mut self, problem: &Problem<T>) {
         let tree = problem.tree();
-        while self.slots.len() < self.count {
+        while self.slots.len() < self.sizes.len() {
             self.slots.push(Island {
                 dofs: Vec::new(),
                 blocks: Vec::new(),
@@ -142,7 +143,7 @@ impl<T: Real> Islands<T> {
                 work: Workspace::default(),
             });
         }
-        for slot in &mut self.slots[..self.count] {
+        for slot in &mut self.slots[..self.sizes.len()] {
             slot.dofs.clear();
             slot.blocks.clear();
         }
@@ -157,7 +158,7 @@ impl<T: Real> Islands<T> {
         }
         self.local.clear();
         self.local.resize(tree.nv(), FREE);
-        for slot in &self.slots[..self.count] {
+        for slot in &self.slots[..self.sizes.len()] {
             for (local, &dof) in slot.dofs.iter().enumerate() {
                 self.local[dof as usize] = local as u32;
             }
@@ -168,7 +169,7 @@ impl<T: Real> Islands<T> {
                 self.slots[island as usize].blocks.push(k as u32);
             }
         }
-        for slot in &mut self.slots[..self.count] {
+        for slot in &mut self.slots[..self.sizes.len()] {
             slot.problem
                 .gather(problem, &slot.dofs, &self.local, &slot.blocks);
         }
@@ -179,21 +180,24 @@ impl<T: Real> Islands<T> {
         let tree = problem.tree();
         self.elimination.clear(tree.ntree());
         for block in problem.blocks().filter(|b| acts(b.d)) {
-            for (k, &one) in block.dofs.iter().enumerate() {
-                let one = tree.tree_of(one as usize);
-                let others = block.dofs[..k].iter();
-                for other in others.map(|&dof| tree.tree_of(dof as usize)) {
+            self.coupled.clear();
+            for &dof in block.dofs {
+                let one = tree.tree_of(dof as usize);
+                if self.coupled.contains(&one) {
+                    continue;
+                }
+                for &other in &self.coupled {
                     self.elimination.couple(one, other);
                 }
+                self.coupled.push(one);
             }
         }
         let ranks = self.elimination.ranks();
-        let sizes = self.sizes.iter();
-        for (slot, _) in
-            (self.slots.iter_mut().zip(sizes)).filter(|(_, size)| **size > MOST_IN_PLACE)
-        {
-            let place = |dof: &u32| (Reverse(ranks[tree.tree_of(*dof as usize)]), *dof);
-            slot.dofs.sort_unstable_by_key(place);
+        for (slot, &size) in self.slots.iter_mut().zip(&self.sizes) {
+            if size > MOST_IN_PLACE {
+                let place = |dof: &u32| (Reverse(ranks[tree.tree_of(*dof as usize)]), *dof);
+                slot.dofs.sort_unstable_by_key(place);
+            }
         }
     }
 }

@@ -1,10 +1,9 @@
 //! Convex polygons as seen along a direction, and what is left of one within another.
 
+use super::convex::MOST_CORNERS;
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 use std::cmp::Ordering;
-
-use super::convex::MOST_CORNERS;
 
 /// Room for corners. Of each side of a face, both ends of a chord may be corners of its overlap with another, and so may all
 /// corners of both.

@@ -14,6 +14,12 @@ pub use truth::{off_surface, support};
 
 pub type V = Vec3<f64>;
 
+/// All shapes that a ball holds and that are convex.
+pub const BOUNDED: [ShapeKind; 6] = {
+    use ShapeKind::*;
+    [Sphere, Capsule, Ellipsoid, Cylinder, Box, Mesh]
+};
+
 /// All pairs of convex shapes that can collide.
 pub const PAIRS: [(ShapeKind, ShapeKind); 27] = {
     use ShapeKind::*;

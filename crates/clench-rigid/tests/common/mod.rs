@@ -1,7 +1,7 @@
 //! What the tests of this crate share: from a builder to a simulation, and reproducible numbers.
 #![allow(dead_code)] // Each test file uses some of these.
 
-use clench_rigid::builder::ModelBuilder;
+use clench_rigid::builder::{MeshSpec, ModelBuilder};
 use clench_rigid::dynamics::integrate::integrate_positions;
 use clench_rigid::{Model, Sim};
 use std::sync::Arc;
@@ -37,4 +37,20 @@ impl Numbers {
             *x = scale * self.next();
         }
     }
+}
+
+/// Two tetrahedra that share a corner: not convex, between them is air within the hull.
+pub fn hourglass() -> MeshSpec {
+    let vertices = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 1.0],
+        [-1.0, 1.0, 1.0],
+        [-1.0, -1.0, 1.0],
+        [1.0, 0.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, -1.0],
+    ];
+    let upper = [[1, 2, 3], [0, 2, 1], [0, 3, 2], [0, 1, 3]];
+    let lower = [[4, 6, 5], [0, 4, 5], [0, 5, 6], [0, 6, 4]];
+    MeshSpec::triangles("hourglass", &vertices, &[upper, lower].concat())
 }
