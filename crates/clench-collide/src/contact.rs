@@ -72,6 +72,15 @@ impl<T: Real> Contacts<T> {
     pub fn as_slice(&self) -> &[ContactPoint<T>] {
         &self.points[..self.len]
     }
+    /// The point at a place that exists or follows the last, where a point is made that exists nowhere yet.
+    #[inline(always)]
+    pub(crate) fn slot(&mut self, place: usize) -> &mut ContactPoint<T> {
+        if place == self.len {
+            self.points[place] = ContactPoint::none();
+            self.len += 1;
+        }
+        &mut self.points[place]
+    }
     /// Adds a point if any environment has it. No pair has more points than there is room for.
     #[inline(always)]
     pub(crate) fn push(&mut self, point: ContactPoint<T>) {

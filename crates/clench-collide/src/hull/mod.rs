@@ -22,13 +22,13 @@
 
 mod faces;
 mod quickhull;
-mod starts;
+mod squares;
 mod surface;
 
 pub use surface::{HullSurface, convex_hull};
 
 use clench_math::Vec3;
-use starts::Starts;
+use squares::Squares;
 use std::fmt;
 
 /// A face counts as lying across a direction up to this tilt (5°).
@@ -84,7 +84,7 @@ pub struct Hull {
     normals: Vec<Vec3<f64>>,
     offsets: Vec<f64>,
     center: Vec3<f64>,
-    starts: Starts,
+    squares: Squares,
 }
 
 impl Hull {
@@ -161,7 +161,22 @@ impl Hull {
     /// alone.
     #[inline]
     pub fn support(&self, direction: Vec3<f64>) -> usize {
-        self.climb(direction, self.starts.near(direction))
+        let candidates = self.squares.candidates(direction);
+        let (fours, rest) = candidates.as_chunks::<4>();
+        // Selections instead of branches, for nobody can tell where these would go.
+        let farther = |a: (u32, f64), b: (u32, f64)| {
+            let is = b.1 > a.1;
+            (if is { b.0 } else { a.0 }, if is { b.1 } else { a.1 })
+        };
+        let mut farthest = (0, f64::NEG_INFINITY);
+        for four in fours {
+            let [a, b, c, d] = four.map(|v| (v, self.vertices[v as usize].dot(direction)));
+            farthest = farther(farthest, farther(farther(a, b), farther(c, d)));
+        }
+        match rest {
+            [start] => self.climb(direction, *start as usize),
+            _ => farthest.0 as usize,
+        }
     }
 
     /// From neighbour to farther neighbour.
@@ -192,24 +207,30 @@ impl fmt::Debug for Hull {
 }
 
 /// Lists of numbers, one after the other.
-#[derive(Clone, Default, PartialEq)]
+#[derive(Clone, PartialEq)]
 struct Lists {
-    /// Where each list ends.
-    ends: Vec<u32>,
+    /// Where each list begins, and where the last ends.
+    starts: Vec<u32>,
     items: Vec<u32>,
+}
+
+impl Default for Lists {
+    fn default() -> Self {
+        Lists {
+            starts: vec![0],
+            items: Vec::new(),
+        }
+    }
 }
 
 impl Lists {
     fn push(&mut self, list: impl IntoIterator<Item = u32>) {
         self.items.extend(list);
-        self.ends.push(self.items.len() as u32);
+        self.starts.push(self.items.len() as u32);
     }
 
+    #[inline]
     fn get(&self, index: usize) -> &[u32] {
-        let start = match index {
-            0 => 0,
-            _ => self.ends[index - 1] as usize,
-        };
-        &self.items[start..self.ends[index] as usize]
+        &self.items[self.starts[index] as usize..self.starts[index + 1] as usize]
     }
 }

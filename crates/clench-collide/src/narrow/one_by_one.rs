@@ -16,7 +16,7 @@ pub(super) struct Point<S> {
 /// The points of one environment.
 pub(super) type Points<S> = ArrayVec<Point<S>, MAX_POINTS>;
 
-/// Adds the points that `pair` finds for each lane; those of equal rank share a slot.
+/// Puts the points that `pair` finds for each lane into `out`, which is empty; those of equal rank share a slot.
 pub(super) fn one_by_one<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
@@ -36,7 +36,6 @@ pub(super) fn one_by_one_where<T: Real>(
     out: &mut Contacts<T>,
     pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
 ) {
-    let mut slots = ArrayVec::<ContactPoint<T>, MAX_POINTS>::new();
     let mut points = Points::new();
     for lane in (0..T::LANES).filter(|lane| wanted.lane(*lane)) {
         let ((shape_a, pose_a), (shape_b, pose_b)) = (lane_of(a, lane), lane_of(b, lane));
@@ -51,14 +50,8 @@ pub(super) fn one_by_one_where<T: Real>(
         points.clear();
         pair(a, b, margin.lane(lane), &mut points);
         for (k, point) in points.iter().enumerate() {
-            if k == slots.len() {
-                slots.push(ContactPoint::none());
-            }
-            set_point(&mut slots[k], lane, point);
+            set_point(out.slot(k), lane, point);
         }
-    }
-    for slot in &slots {
-        out.push(*slot);
     }
 }
 

@@ -71,6 +71,11 @@ impl<'a, S: Scalar> Body<'a, S> {
         }
     }
 
+    /// Whether the core is but the origin.
+    pub fn is_point(&self) -> bool {
+        self.kind == ShapeKind::Sphere
+    }
+
     /// Whether the core has curved parts.
     pub fn curved(&self) -> bool {
         matches!(self.kind, ShapeKind::Ellipsoid | ShapeKind::Cylinder)
@@ -216,7 +221,8 @@ impl<S: Scalar> Curvature<S> {
 pub(super) fn rim<S: Scalar>(d: Vec3<S>) -> (S, S) {
     let level = (d.x * d.x + d.y * d.y).sqrt();
     if level > S::MIN_POSITIVE {
-        (d.x / level, d.y / level)
+        let inverse = S::ONE / level;
+        (d.x * inverse, d.y * inverse)
     } else {
         (S::ONE, S::ZERO)
     }

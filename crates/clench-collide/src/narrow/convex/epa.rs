@@ -106,7 +106,7 @@ fn expand<S: Scalar>(
     polytope: &mut Polytope<S>,
     simplex: &mut Simplex<S>,
 ) -> Gap<S> {
-    let mut best = pair.gap(pair.start());
+    let mut best = pair.gap(pair.start);
     let mut touching = polytope.corners(0);
     let mut known = false;
     for _ in 0..ROUNDS {
@@ -145,8 +145,10 @@ fn expand<S: Scalar>(
         if better && pair.curved && movable < pair.smallest.max(distance) * S::new(NEAR) {
             let flats = Flats::of(pair, &polytope.vertices(corners));
             best.improve(refine(pair, raw.normal, &flats), pair.tolerance);
-            for vertex in flats.vertices(pair, best.normal) {
-                polytope.add_anywhere(&vertex);
+            let vertices = flats.vertices(pair, best.normal);
+            best.settled |= flats.face_below_origin(&vertices, best.normal);
+            for vertex in &vertices {
+                polytope.add_anywhere(vertex);
             }
         }
     }
@@ -157,8 +159,6 @@ fn expand<S: Scalar>(
             best.improve(pair.gap(normal), pair.tolerance);
         }
     }
-    *simplex = Simplex::new(touching[0]);
-    simplex.add(touching[1]);
-    simplex.add(touching[2]);
+    *simplex = Simplex::unsolved(&touching);
     best
 }

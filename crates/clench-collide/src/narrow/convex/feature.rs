@@ -90,17 +90,18 @@ impl<S: Scalar> Feature<S> {
             self.face(hull, face, vertex);
             return;
         }
-        let mut best = (S::new(EDGE_SINE), None);
+        // The rise and the length of the best edge, squared: its sine is their quotient's root.
+        let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
         for &neighbor in hull.neighbors(vertex) {
             let end = Vec3::from_f64(hull.vertices()[neighbor as usize].to_array());
-            let (along, _) = (end - corner).normalize();
-            let sine = along.dot(d).abs();
-            if sine <= best.0 {
-                best = (sine, Some((neighbor as usize, end)));
+            let edge = end - corner;
+            let (rise, length) = (edge.dot(d).squared(), edge.norm_squared());
+            if rise * best.1 <= best.0 * length {
+                best = (rise, length, Some((neighbor as usize, end)));
             }
         }
         self.corners.push(corner);
-        if let Some((neighbor, end)) = best.1 {
+        if let Some((neighbor, end)) = best.2 {
             self.corners.insert(usize::from(vertex < neighbor), end);
         }
     }

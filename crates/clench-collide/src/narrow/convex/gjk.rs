@@ -45,7 +45,7 @@ pub(super) enum Cores<S> {
 /// Vertices that nearly coincide make slivers, whose nearest point may be false. So what ends a search is not believed against
 /// the bounds: then another one begins with the best direction known, without Newton's vertices.
 pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S, simplex: &mut Simplex<S>) -> Cores<S> {
-    let start = pair.start();
+    let start = pair.start;
     let mut best = Gap {
         normal: start,
         gap: start.dot(simplex.vertices()[0].w),

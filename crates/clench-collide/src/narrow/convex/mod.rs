@@ -40,22 +40,22 @@ pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut C
 /// The contacts of one environment.
 pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
     let pair = Pair::new(a, b);
-    if let Some((best, simplex)) = nearest(&pair, margin) {
+    let mut simplex = Simplex::new(pair.vertex(pair.start));
+    if let Some(best) = nearest(&pair, margin, &mut simplex) {
         patch(&pair, a, best, &simplex, margin, points);
     }
 }
 
-/// The largest gap between two cores and the simplex that their nearest points are made of, if the bodies are at most `margin`
-/// apart.
-fn nearest<S: Scalar>(pair: &Pair<S>, margin: S) -> Option<(Gap<S>, Simplex<S>)> {
+/// The largest gap between two cores, if the bodies are at most `margin` apart. The simplex begins with the vertex along
+/// [`Pair::start`] and ends as what the nearest points are made of.
+fn nearest<S: Scalar>(pair: &Pair<S>, margin: S, simplex: &mut Simplex<S>) -> Option<Gap<S>> {
     let radii = pair.a.radius + pair.b.radius;
-    let mut simplex = Simplex::new(pair.vertex(pair.start()));
-    let best = match gjk(pair, margin + radii, &mut simplex) {
+    let best = match gjk(pair, margin + radii, simplex) {
         Cores::Apart => return None,
         Cores::Near(best) => best,
-        Cores::Overlap => epa(pair, &mut simplex),
+        Cores::Overlap => epa(pair, simplex),
     };
-    (best.gap - radii <= margin).then_some((best, simplex))
+    (best.gap - radii <= margin).then_some(best)
 }
 
 /// The contacts of one environment whose normal and distance along it are known already; the normal in the first shape's frame.

@@ -17,6 +17,8 @@ pub(super) struct Pair<'a, S> {
     pub rotation: Mat3<S>,
     /// The origin of the second.
     pub offset: Vec3<S>,
+    /// The direction between the origins.
+    pub start: Vec3<S>,
     /// The smaller of the bodies' sizes, m: what tolerances are shares of.
     pub smallest: S,
     /// Coordinates are at most this large, m: what rounding errors are shares of.
@@ -72,7 +74,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
     /// Two bodies, the second where its axes and its origin are in the frame of the first.
     pub fn between(a: Body<'a, S>, b: Body<'a, S>, rotation: Mat3<S>, offset: Vec3<S>) -> Self {
         let smallest = Real::min(a.reach, b.reach);
-        let largest = a.reach + b.reach + offset.norm();
+        let (start, distance) = offset.normalize();
+        let largest = a.reach + b.reach + distance;
         let rounding = largest * S::EPSILON * S::new(64.0);
         Pair {
             curved: a.curved() | b.curved(),
@@ -80,15 +83,11 @@ impl<'a, S: Scalar> Pair<'a, S> {
             b,
             rotation,
             offset,
+            start,
             smallest,
             largest,
             tolerance: Real::max(rounding, smallest * S::new(1e-9)),
         }
-    }
-
-    /// The direction between the origins.
-    pub fn start(&self) -> Vec3<S> {
-        self.offset.normalize().0
     }
 
     /// The vertex w(n).

@@ -53,11 +53,23 @@ pub(super) fn patch<S: Scalar>(
 ) {
     // Once more: squares of very short vectors lose digits.
     let n = best.normal.normalize().0;
-    let feature_a = Feature::new(&pair.a, n);
-    let feature_b = Feature::new(&pair.b, -pair.rotation.transpose_mul(n));
     let radii = (pair.a.radius, pair.b.radius);
     let normal = a.pose.rotation * n;
     let half = best.gap * S::new(0.5);
+    let mut add_one = |middle: Vec3<S>| {
+        points.push(Point {
+            position: a
+                .pose
+                .point(middle + n * ((radii.0 - radii.1) * S::new(0.5))),
+            normal,
+            distance: best.gap - radii.0 - radii.1,
+        });
+    };
+    if pair.a.is_point() {
+        return add_one(n * half);
+    }
+    let feature_a = Feature::new(&pair.a, n);
+    let feature_b = Feature::new(&pair.b, -pair.rotation.transpose_mul(n));
     let place = |p| pair.offset + pair.rotation * p;
     // A corner, or the one point where a curved body touches.
     let middle = match (&feature_a.corners[..], &feature_b.corners[..]) {
@@ -67,13 +79,7 @@ pub(super) fn patch<S: Scalar>(
         _ => None,
     };
     if let Some(middle) = middle {
-        let shift = (radii.0 - radii.1) * S::new(0.5);
-        points.push(Point {
-            position: a.pose.point(middle + n * shift),
-            normal,
-            distance: best.gap - radii.0 - radii.1,
-        });
-        return;
+        return add_one(middle);
     }
     let (side, other) = across(n);
     let view = Mat3::from_rows(side, other, n);
@@ -126,11 +132,7 @@ fn witness<S: Scalar>(simplex: &Simplex<S>, pair: &Pair<S>, view: &Mat3<S>, gap:
     let Vertex { w, a, b } = pair.vertex(view.rows[2]);
     let (mut on_a, mut on_b) = (a, b);
     if (w - view.rows[2] * gap).norm() > pair.smallest * S::new(MISSED) {
-        (on_a, on_b) = (Vec3::ZERO, Vec3::ZERO);
-        for (vertex, &weight) in simplex.vertices().iter().zip(simplex.weights()) {
-            on_a += vertex.a * weight;
-            on_b += vertex.b * weight;
-        }
+        (on_a, on_b) = simplex.nearest();
     }
     let on_b = pair.offset + pair.rotation * on_b;
     let middle = *view * ((on_a + on_b) * S::new(0.5));

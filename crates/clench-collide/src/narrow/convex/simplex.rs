@@ -3,7 +3,7 @@
 use super::pair::Vertex;
 use clench_math::{Scalar, Vec3};
 
-/// One to four vertices; all but the last are known to be needed for the nearest point of the others.
+/// One to four vertices. Of those added one by one, all but the last are known to be needed for the nearest point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Simplex<S> {
     vertices: [Vertex<S>; 4],
@@ -20,11 +20,28 @@ impl<S: Scalar> Simplex<S> {
             weights: [S::ONE, S::ZERO, S::ZERO, S::ZERO],
         }
     }
+    /// Some vertices, at most four; which of them the nearest point needs is open.
+    pub fn unsolved(vertices: &[Vertex<S>]) -> Self {
+        let mut simplex = Simplex::new(vertices[0]);
+        simplex.vertices[..vertices.len()].copy_from_slice(vertices);
+        simplex.len = vertices.len();
+        simplex
+    }
     pub fn vertices(&self) -> &[Vertex<S>] {
         &self.vertices[..self.len]
     }
-    pub fn weights(&self) -> &[S] {
-        &self.weights[..self.len]
+    /// The nearest point as what it is on the first body and on the second, each in its own frame.
+    pub fn nearest(&self) -> (Vec3<S>, Vec3<S>) {
+        let mut solved = Simplex::new(self.vertices[0]);
+        for vertex in &self.vertices()[1..] {
+            solved.add(*vertex);
+        }
+        let mut nearest = (Vec3::ZERO, Vec3::ZERO);
+        for (vertex, &weight) in solved.vertices().iter().zip(&solved.weights) {
+            nearest.0 += vertex.a * weight;
+            nearest.1 += vertex.b * weight;
+        }
+        nearest
     }
 
     /// Adds a vertex and drops those that the nearest point does without. Gives that point, or nothing where the origin is

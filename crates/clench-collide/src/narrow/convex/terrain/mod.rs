@@ -159,7 +159,8 @@ impl<S: Scalar> Search<S> {
         }
         let prism = triangle.prism();
         let pair = Pair::between(Body::of_prism(&prism), body.clone(), self.rotation, offset);
-        if let Some((best, simplex)) = nearest(&pair, self.margin) {
+        let mut simplex = Simplex::new(pair.vertex(pair.start));
+        if let Some(best) = nearest(&pair, self.margin, &mut simplex) {
             self.judge(triangle, &pair, distance, best, &simplex);
         }
     }
