@@ -108,6 +108,8 @@ fn expand<S: Scalar>(
 ) -> Gap<S> {
     let mut best = pair.gap(pair.start);
     let mut touching = polytope.corners(0);
+    // Whether Newton's method has said what there is to say of the best direction.
+    let mut refined = false;
     let mut known = false;
     for _ in 0..ROUNDS {
         let (nearest, distance) = polytope.nearest();
@@ -131,10 +133,10 @@ fn expand<S: Scalar>(
         let movable = -raw.gap - distance;
         let corners = polytope.corners(nearest);
         let better = best.improve(raw, pair.tolerance);
-        if better {
-            touching = corners;
-        }
         known = movable <= pair.tolerance;
+        if better || (known && !best.settled) {
+            (touching, refined) = (corners, false);
+        }
         if known {
             break;
         }
@@ -144,16 +146,13 @@ fn expand<S: Scalar>(
         }
         if better && pair.curved && movable < pair.smallest.max(distance) * S::new(NEAR) {
             let flats = Flats::of(pair, &polytope.vertices(corners));
-            best.improve(refine(pair, raw.normal, &flats), pair.tolerance);
-            let vertices = flats.vertices(pair, best.normal);
-            best.settled |= flats.face_below_origin(&vertices, best.normal);
-            for vertex in &vertices {
-                polytope.add_anywhere(vertex);
-            }
+            refined |= best.improve(refine(pair, raw.normal, &flats), pair.tolerance);
         }
     }
     let touching = polytope.vertices(touching);
-    best.settle(pair, &touching);
+    if !refined {
+        best.settle(pair, &touching);
+    }
     if !known {
         for normal in pair.crossings() {
             best.improve(pair.gap(normal), pair.tolerance);

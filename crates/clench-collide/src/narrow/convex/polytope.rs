@@ -154,20 +154,6 @@ impl<S: Scalar> Polytope<S> {
         numbers.map(|k| self.vertices[k as usize])
     }
 
-    /// Adds a vertex that some face may see.
-    pub fn add_anywhere(&mut self, vertex: &Vertex<S>) {
-        let mut best = (self.rounding, None);
-        for (k, face) in self.faces.iter().enumerate() {
-            let beyond = face.normal.dot(vertex.w) - face.distance;
-            if beyond > best.0 && !face.removed {
-                best = (beyond, Some(k));
-            }
-        }
-        if let Some(face) = best.1 {
-            self.add(face, vertex);
-        }
-    }
-
     /// Replaces the faces that see a vertex by faces to it; `seen` is one of them. Nothing happens, and the answer is no,
     /// if the vertex is one of theirs or rounding has spoilt their rim.
     pub fn add(&mut self, seen: usize, vertex: &Vertex<S>) -> bool {

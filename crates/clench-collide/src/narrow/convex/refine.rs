@@ -88,20 +88,6 @@ impl<S: Scalar> Flats<S> {
         along(f) <= pair.tolerance && along(-f) <= pair.tolerance
     }
 
-    /// Whether the edges span a face, and its `vertices`, from [`Self::vertices`], lie around the foot of the origin: then no
-    /// direction near `n` has a larger gap.
-    pub fn face_below_origin(&self, vertices: &[Vertex<S>], n: Vec3<S>) -> bool {
-        let (mut least, mut most) = (S::ZERO, S::ZERO);
-        if self.directions.is_full() {
-            for (k, p) in vertices.iter().enumerate() {
-                let q = vertices[(k + 1) % vertices.len()];
-                let turn = n.dot(p.w.cross(q.w));
-                (least, most) = (least.min(turn), most.max(turn));
-            }
-        }
-        (least < S::ZERO) != (most > S::ZERO)
-    }
-
     /// The vertices at the direction `n`: one for each corner of what touches.
     pub fn vertices(&self, pair: &Pair<S>, n: Vec3<S>) -> ArrayVec<Vertex<S>, 4> {
         let tilt = S::EPSILON.sqrt();
