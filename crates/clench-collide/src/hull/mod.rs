@@ -168,10 +168,12 @@ impl Hull {
             let is = b.1 > a.1;
             (if is { b.0 } else { a.0 }, if is { b.1 } else { a.1 })
         };
+        let at = |v: u32| (v, self.vertices[v as usize].dot(direction));
         let mut farthest = (0, f64::NEG_INFINITY);
         for four in fours {
-            let [a, b, c, d] = four.map(|v| (v, self.vertices[v as usize].dot(direction)));
-            farthest = farther(farthest, farther(farther(a, b), farther(c, d)));
+            let [a, b, c, d] = *four;
+            let best = farther(farther(at(a), at(b)), farther(at(c), at(d)));
+            farthest = farther(farthest, best);
         }
         match rest {
             [start] => self.climb(direction, *start as usize),

@@ -119,10 +119,7 @@ pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>
         return pair.gap(start);
     }
     match cap(pair, start) {
-        Some((cap, None)) => Gap {
-            settled: true,
-            ..cap
-        },
+        Some((cap, None)) => cap,
         Some((_, Some(beside))) => climb(pair, beside, flats),
         None => climb(pair, start, flats),
     }
@@ -131,7 +128,7 @@ pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>
 /// The gap of the best cap that faces `n` more or less, if better than that of `n`; and if the gap grows beside it, where to
 /// look.
 fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<(Gap<S>, Option<Vec3<S>>)> {
-    let mut best = pair.gap(n);
+    let mut best = None;
     let mut found = None;
     let z = Vec3::new(S::ZERO, S::ZERO, S::ONE);
     let caps = [(&pair.a, z), (&pair.b, pair.rotation.column(2))];
@@ -144,14 +141,10 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<(Gap<S>, Option<Vec3<S>>
         let axis = axis * S::ONE.copysign(cosine);
         let vertex = pair.vertex(axis);
         let gap = axis.dot(vertex.w);
-        if gap <= best.gap {
+        if gap <= *best.get_or_insert_with(|| pair.gap(n).gap) {
             continue;
         }
-        best = Gap {
-            normal: axis,
-            gap,
-            settled: false,
-        };
+        best = Some(gap);
         // From the middle of the cap to the other body's point: within the disc, or the gap grows towards it.
         let to_middle = if k == 0 {
             vertex.a - body.corner(vertex.a)
@@ -170,7 +163,12 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<(Gap<S>, Option<Vec3<S>>
                 let turn = turn.clamp(S::EPSILON.sqrt(), S::new(LARGEST_TURN));
                 (axis + toward * turn).normalize().0
             });
-        found = Some((best, beside));
+        let capped = Gap {
+            normal: axis,
+            gap,
+            settled: beside.is_none(),
+        };
+        found = Some((capped, beside));
     }
     found
 }
