@@ -4,7 +4,7 @@
 //! triangle on, each takes in its neighbours whose corners are all near to its plane; a face's own plane is then laid
 //! through the farthest vertex along its normal, so that no vertex is beyond it.
 
-use super::squares::Squares;
+use super::sectors::Sectors;
 use super::surface::{Edge, edges};
 use super::{Hull, HullSurface, Lists};
 use clench_math::Vec3;
@@ -29,9 +29,9 @@ pub(super) fn build(surface: &HullSurface, points: &[Vec3<f64>]) -> Hull {
         offsets: Vec::new(),
         center,
         vertices,
-        squares: Squares::default(),
+        sectors: Sectors::default(),
     };
-    hull.squares = Squares::new(&hull.vertices, &hull.neighbors, |direction, near| {
+    hull.sectors = Sectors::new(&hull.vertices, &hull.neighbors, |direction, near| {
         hull.climb(direction, near)
     });
     for corners in faces {

@@ -22,13 +22,15 @@
 
 mod faces;
 mod quickhull;
-mod squares;
+mod sectors;
+
 mod surface;
 
 pub use surface::{HullSurface, convex_hull};
 
 use clench_math::Vec3;
-use squares::Squares;
+use sectors::Sectors;
+
 use std::fmt;
 
 /// A face counts as lying across a direction up to this tilt (5°).
@@ -84,7 +86,7 @@ pub struct Hull {
     normals: Vec<Vec3<f64>>,
     offsets: Vec<f64>,
     center: Vec3<f64>,
-    squares: Squares,
+    sectors: Sectors,
 }
 
 impl Hull {
@@ -161,7 +163,7 @@ impl Hull {
     /// alone.
     #[inline]
     pub fn support(&self, direction: Vec3<f64>) -> usize {
-        let candidates = self.squares.candidates(direction);
+        let candidates = self.sectors.candidates(direction);
         let (fours, rest) = candidates.as_chunks::<4>();
         // Selections instead of branches, for nobody can tell where these would go.
         let farther = |a: (u32, f64), b: (u32, f64)| {

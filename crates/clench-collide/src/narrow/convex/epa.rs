@@ -119,7 +119,11 @@ fn expand<S: Scalar>(
         } else {
             pair.tolerance
         };
+        let corners = polytope.corners(nearest);
         known = -best.gap - distance <= slack;
+        if known && !best.settled && distance < S::INFINITY {
+            touching = corners;
+        }
         if known || polytope.is_full() {
             break;
         }
@@ -131,11 +135,11 @@ fn expand<S: Scalar>(
             settled: false,
         };
         let movable = -raw.gap - distance;
-        let corners = polytope.corners(nearest);
         let better = best.improve(raw, pair.tolerance);
+        refined &= !better;
         known = movable <= pair.tolerance;
         if better || (known && !best.settled) {
-            (touching, refined) = (corners, false);
+            touching = corners;
         }
         if known {
             break;
