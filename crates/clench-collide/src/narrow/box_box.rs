@@ -146,17 +146,25 @@ impl<S: Scalar> BoxPair<S> {
     /// separates the boxes.
     fn best_edges(&self, face: S) -> Option<(Option<(usize, usize)>, S)> {
         let mut best = (None, face);
+        let (turn, offset, [a, b]) = (&self.rotation[0].rows, self.offset[0], self.size);
         for i in 0..3 {
+            let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
             for j in 0..3 {
-                let across = self.edge_axis(i, j);
-                let sine_squared = across.norm_squared();
+                // In the first box's frame the product is (0, -v, u) from axis i on, and its parts along the second box's
+                // other axes are, but for signs, that of axis i along each one's successor.
+                let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
+                let (u, v) = (turn[i1][j], turn[i2][j]);
+                let sine_squared = u * u + v * v;
                 // Nearly parallel edges: their cross product is noise, and the faces cover the case.
                 if sine_squared < S::EPSILON * S::new(0.5) {
                     continue;
                 }
-                let n = across * (S::ONE / sine_squared.sqrt());
-                let extents = self.extent(0, n) + self.extent(1, self.rotation[0].transpose_mul(n));
-                let separation = n.dot(self.offset[0]).abs() - extents;
+                let extents = a[i1] * v.abs()
+                    + a[i2] * u.abs()
+                    + b[j1] * turn[i][j2].abs()
+                    + b[j2] * turn[i][j1].abs();
+                let beyond = (u * offset[i2] - v * offset[i1]).abs() - extents;
+                let separation = beyond / sine_squared.sqrt();
                 if separation > self.reach {
                     return None;
                 }
@@ -180,11 +188,5 @@ impl<S: Scalar> BoxPair<S> {
     fn edge_normal(&self, i: usize, j: usize) -> Vec3<S> {
         let (n, _) = self.edge_axis(i, j).normalize();
         n * S::ONE.copysign(n.dot(self.offset[0]))
-    }
-
-    /// Half the width of a box along a direction in its frame.
-    fn extent(&self, of: usize, n: Vec3<S>) -> S {
-        let size = self.size[of];
-        size.x * n.x.abs() + size.y * n.y.abs() + size.z * n.z.abs()
     }
 }

@@ -49,8 +49,13 @@ pub(super) fn one_by_one_where<T: Real>(
         };
         points.clear();
         pair(a, b, margin.lane(lane), &mut points);
+        let mut frame = Mat3::IDENTITY;
         for (k, point) in points.iter().enumerate() {
-            set_point(out.slot(k), lane, point);
+            // Most points of a pair have one normal.
+            if k == 0 || point.normal != frame.rows[0] {
+                frame = frame_from_normal(point.normal);
+            }
+            set_point(out.slot(k), lane, point, &frame);
         }
     }
 }
@@ -71,9 +76,13 @@ fn lane_of<'a, T: Real>(p: Placed<'a, T>, lane: usize) -> (Shape<'a, T::Scalar>,
     (shape, pose)
 }
 
-fn set_point<T: Real>(slot: &mut ContactPoint<T>, lane: usize, point: &Point<T::Scalar>) {
+fn set_point<T: Real>(
+    slot: &mut ContactPoint<T>,
+    lane: usize,
+    point: &Point<T::Scalar>,
+    frame: &Mat3<T::Scalar>,
+) {
     set_lane(&mut slot.position, lane, point.position);
-    let frame = frame_from_normal(point.normal);
     for (row, value) in slot.frame.rows.iter_mut().zip(frame.rows) {
         set_lane(row, lane, value);
     }

@@ -76,6 +76,9 @@ fn around_deepest<S: Scalar>(
         }
     };
     look(deepest as u32, &mut seen);
+    if seen.is_empty() {
+        return;
+    }
     if let Some(face) = hull.face_across(deepest, down) {
         let corners = hull.corners(face);
         for corner in corners.iter().step_by(corners.len().div_ceil(MOST_CORNERS)) {
