@@ -108,10 +108,12 @@ impl Hull {
         self.center
     }
     /// The vertices that share an edge of the triangulation with a vertex.
+    #[inline]
     pub fn neighbors(&self, vertex: usize) -> &[u32] {
         self.neighbors.get(vertex)
     }
     /// The faces that a vertex is in: as a corner, or within a face up to the tolerance of merging.
+    #[inline]
     pub fn faces_at(&self, vertex: usize) -> &[u32] {
         self.vertex_faces.get(vertex)
     }
@@ -120,6 +122,7 @@ impl Hull {
         self.normals.len()
     }
     /// The vertices around a face, counter-clockwise seen from outside.
+    #[inline]
     pub fn corners(&self, face: usize) -> &[u32] {
         self.corners.get(face)
     }

@@ -68,8 +68,9 @@ fn around_deepest<S: Scalar>(
     let deepest = hull.support(down);
     let mut seen = ArrayVec::<u32, MOST>::new();
     let mut look = |vertex: u32, seen: &mut ArrayVec<u32, MOST>| {
-        if !seen.contains(&vertex)
-            && let Some(spot) = near(vertex)
+        // Most are not near.
+        if let Some(spot) = near(vertex)
+            && !seen.contains(&vertex)
         {
             seen.push(vertex);
             spots.push(spot);
