@@ -81,7 +81,7 @@ impl<'a, S: Scalar> Body<'a, S> {
         matches!(self.kind, ShapeKind::Ellipsoid | ShapeKind::Cylinder)
     }
 
-    /// The point of the core that is furthest along the unit direction `d`. Of several corners or ends that are, the one further
+    /// The point of the core that is furthest along `d`, a direction of any length. Of several corners or ends that are, the one further
     /// along `side`, which is `d` or next to it.
     #[inline]
     pub fn support(&self, d: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
@@ -91,7 +91,8 @@ impl<'a, S: Scalar> Body<'a, S> {
             ShapeKind::Ellipsoid => {
                 let scaled = d.scale_by(s);
                 let length = scaled.norm().max(S::MIN_POSITIVE);
-                scaled.scale_by(s) * (S::ONE / length) - d * self.radius
+                let unit = d * (S::ONE / d.norm().max(S::MIN_POSITIVE));
+                scaled.scale_by(s) * (S::ONE / length) - unit * self.radius
             }
             ShapeKind::Cylinder => {
                 let (x, y) = rim(d);

@@ -103,8 +103,9 @@ fn search<S: Scalar>(
         if length - best.gap <= pair.tolerance {
             return End::Nearest(length);
         }
+        // The vertex need not wait for the length.
+        let vertex = pair.vertex(v);
         let n = v * (S::ONE / length);
-        let vertex = pair.vertex(n);
         let gap = n.dot(vertex.w);
         let raw = Gap {
             normal: n,

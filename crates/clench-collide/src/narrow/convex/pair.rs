@@ -90,7 +90,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// The vertex w(n).
+    /// The vertex w(n), n being of any length.
     #[inline]
     pub fn vertex(&self, normal: Vec3<S>) -> Vertex<S> {
         let local = -self.rotation.transpose_mul(normal);
