@@ -2,6 +2,8 @@
 //! where they touch.
 
 mod body;
+mod cylinder_box;
+mod ellipse;
 mod epa;
 mod feature;
 mod gjk;
@@ -19,7 +21,7 @@ use super::{
     boxes::boxes_near,
     one_by_one::{Points, one_by_one_where},
 };
-use crate::Contacts;
+use crate::{Contacts, ShapeKind};
 use clench_math::{Mask, Real, Scalar, Vec3};
 use epa::epa;
 pub(super) use feature::MOST_CORNERS;
@@ -40,6 +42,17 @@ pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut C
 /// The contacts of one environment.
 pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
     let pair = Pair::new(a, b);
+    if (a.shape.kind, b.shape.kind) == (ShapeKind::Cylinder, ShapeKind::Box) {
+        let best = cylinder_box::largest_gap(&pair);
+        if best.gap > margin {
+            return;
+        }
+        // Of bodies that are apart it tells no distance.
+        if best.gap <= S::ZERO && Real::is_finite(best.gap) {
+            let simplex = Simplex::new(pair.vertex(best.normal));
+            return patch(&pair, a, best, &simplex, margin, points);
+        }
+    }
     let mut simplex = Simplex::new(pair.vertex(pair.start));
     if let Some(best) = nearest(&pair, margin, &mut simplex) {
         patch(&pair, a, best, &simplex, margin, points);

@@ -1,0 +1,71 @@
+//! The normals of an ellipse through a point.
+//!
+//! With C = cos θ and S = sin θ the ellipse is at (C, b S), its normal there (b C, S) goes through the point (x, y) where
+//!
+//! ```text
+//! G(θ) = (1 − b²) S C − x S + b y C = 0,      G + G″ = −3 (1 − b²) S C ≤ 0 in the first quarter.
+//! ```
+//!
+//! Being no more curved than a sinusoid, G has at most two roots there, from − to + and from + to −. The second one is where the
+//! gap along the normal is a maximum, and Newton's method with sinusoids for tangents comes down to it from the y axis without
+//! passing it.
+
+use clench_math::Scalar;
+
+/// Newton's method stops after so many steps, converged or not. Four are usual.
+const STEPS: usize = 16;
+
+/// An ellipse with semi-axes 1 along x and b ≤ 1 along y: a circle seen aslant.
+pub(super) struct Ellipse<S> {
+    minor: S,
+    /// 1 − b².
+    square: S,
+}
+
+impl<S: Scalar> Ellipse<S> {
+    /// Of a circle across an axis at an angle to the line of sight that has this cosine and this sine.
+    pub fn new(cosine: S, sine: S) -> Self {
+        Ellipse {
+            minor: cosine,
+            square: sine * sine,
+        }
+    }
+
+    /// Whether the chord between two points of the first quarter, the second further around, is at least so deep around a point.
+    #[inline]
+    pub fn chord_is_deep(&self, from: (S, S), to: (S, S), point: (S, S), depth: S) -> bool {
+        let outward = (to.1 - from.1, from.0 - to.0);
+        let deep = outward.0 * (to.0 - point.0) + outward.1 * (to.1 - point.1);
+        let square = outward.0 * outward.0 + outward.1 * outward.1;
+        deep >= S::ZERO && deep * deep >= depth * depth * square
+    }
+
+    /// The unit normal in the first quarter that goes through a point with x ≥ 0 and along which the gap between ellipse and point
+    /// is the largest around, if there is one.
+    #[inline]
+    pub fn normal_through(&self, (x, y): (S, S)) -> Option<(S, S)> {
+        let (square, height) = (self.square, self.minor * y);
+        // The first step, from the y axis.
+        let (mut cos, mut sin) = (x, square + height);
+        for _ in 0..STEPS {
+            if sin <= S::ZERO {
+                return None;
+            }
+            let inverse = S::ONE / (cos * cos + sin * sin).sqrt();
+            (cos, sin) = (cos * inverse, sin * inverse);
+            let value = square * sin * cos - x * sin + height * cos;
+            let fall = x * cos + height * sin - square * (cos * cos - sin * sin);
+            if fall <= S::ZERO {
+                return None;
+            }
+            let last = value.abs() <= fall * S::EPSILON.sqrt();
+            (cos, sin) = (cos * fall - sin * value, sin * fall + cos * value);
+            if last {
+                break;
+            }
+        }
+        let (u, v) = (self.minor * cos, sin);
+        let inverse = S::ONE / (u * u + v * v).sqrt();
+        Some((u * inverse, v * inverse))
+    }
+}

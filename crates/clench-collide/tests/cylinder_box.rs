@@ -1,0 +1,146 @@
+//! Cylinders that overlap boxes, whose depth is found in closed form: no direction has a larger gap than the one found, and every
+//! kind of direction is the one to find in some pose.
+
+mod common;
+
+use clench_collide::{Pose, Shape, ShapeKind, bounding_radius};
+use clench_math::{Mat3, Quat};
+use common::{Random, Scene, V};
+use std::collections::BTreeMap;
+
+/// What touches what, told from a normal that is found exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Touch {
+    FaceOfBox,
+    Cap,
+    EdgeOnSide,
+    CornerOnSide,
+    EdgeOnRim,
+}
+
+fn touch(scene: &Scene, n: V) -> Option<Touch> {
+    let axis = scene.pose_a.axis().dot(n).abs();
+    let cosines = scene.pose_b.rotation.transpose_mul(n).to_array();
+    let (one, zero) = (|x: f64| (1.0 - x.abs()) < 1e-12, |x: f64| x.abs() < 1e-12);
+    if cosines.into_iter().any(one) {
+        Some(Touch::FaceOfBox)
+    } else if one(axis) {
+        Some(Touch::Cap)
+    } else {
+        match (zero(axis), cosines.into_iter().any(zero)) {
+            (true, true) => Some(Touch::EdgeOnSide),
+            (true, false) => Some(Touch::CornerOnSide),
+            (false, true) => Some(Touch::EdgeOnRim),
+            (false, false) => None,
+        }
+    }
+}
+
+/// How the sizes of a scene are drawn.
+#[derive(Clone, Copy, Debug)]
+enum Sizes {
+    /// 5 to 50 cm.
+    Usual,
+    /// 1 mm to 1 m, each on its own.
+    Uneven,
+    /// The same, and some are zero.
+    Flat,
+}
+
+/// How the bodies are turned.
+#[derive(Clone, Copy, Debug)]
+enum Turns {
+    Any,
+    /// By right angles.
+    Right,
+    /// By right angles, but for 1e-12 to 0.1 rad.
+    NearlyRight,
+}
+
+fn scene(random: &mut Random, sizes: Sizes, turns: Turns) -> Scene {
+    let length = |random: &mut Random| match sizes {
+        Sizes::Usual => random.range(0.05, 0.5),
+        Sizes::Flat if random.unit() < 0.2 => 0.0,
+        _ => 10f64.powf(random.range(-3.0, 0.0)),
+    };
+    let mut shape = |kind| {
+        let size = [0; 3].map(|_| length(random));
+        Shape::new(kind, V::from_array(size))
+    };
+    let (a, b) = (shape(ShapeKind::Cylinder), shape(ShapeKind::Box));
+    let rotation_a = random.quarter_turns();
+    let rotation_b = match turns {
+        Turns::Any => random.rotation(),
+        Turns::Right => random.quarter_turns(),
+        Turns::NearlyRight => {
+            let tilt = random.direction() * 10f64.powf(random.range(-12.0, -1.0));
+            Quat::from_rotation_vector(tilt).to_matrix() * random.quarter_turns()
+        }
+    };
+    let pose = |rotation: Mat3<f64>, position| Pose { position, rotation };
+    let mut scene = Scene {
+        a,
+        pose_a: pose(rotation_a, V::ZERO),
+        b,
+        pose_b: pose(rotation_b, V::ZERO),
+        margin: 0.0,
+    };
+    // Concentric, deep or shallow: a share of the way out along some direction.
+    let any = random.direction();
+    let direction = match (random.unit() * 6.0) as usize {
+        0 => rotation_a.column(2),
+        1 => rotation_b.column(0),
+        2 | 3 => {
+            (any - rotation_a.column(2) * any.dot(rotation_a.column(2)))
+                .normalize()
+                .0
+        }
+        _ => any,
+    };
+    let share = match (random.unit() * 8.0) as usize {
+        0 => 0.0,
+        1..=5 => 1.0 - 10f64.powf(random.range(-6.0, -1.0)),
+        _ => random.unit(),
+    };
+    scene.pose_b.position = direction * (-scene.gap_along(direction) * share);
+    scene
+}
+
+#[test]
+fn no_direction_has_a_larger_gap_than_the_one_found() {
+    let mut random = Random(31);
+    let mut touches = BTreeMap::new();
+    for sizes in [Sizes::Usual, Sizes::Uneven, Sizes::Flat] {
+        for (turns, poses) in [
+            (Turns::Any, 1000),
+            (Turns::Right, 100),
+            (Turns::NearlyRight, 200),
+        ] {
+            for _ in 0..poses {
+                let scene = scene(&mut random, sizes, turns);
+                let (truth, normal) = scene.optima(&mut random)[0];
+                let size = bounding_radius(&scene.a) + bounding_radius(&scene.b);
+                let Some(c) = scene.deepest() else {
+                    // Bodies without volume may miss each other by nothing.
+                    assert!(truth >= -1e-12 * size, "nothing at {truth} in {scene:?}");
+                    continue;
+                };
+                let n = c.frame.rows[0];
+                let gap = scene.gap_along(n);
+                assert!(
+                    gap >= truth - 2e-9 * size,
+                    "{gap} along {n:?}, but {truth} along {normal:?} in {scene:?}"
+                );
+                let error = (c.distance - gap).abs();
+                assert!(error <= 1e-6 * size, "{error} off in {scene:?}");
+                if let Some(touch) = touch(&scene, n) {
+                    *touches.entry(touch).or_insert(0) += 1;
+                }
+            }
+        }
+    }
+    assert!(
+        touches.len() == 5 && touches.values().all(|count| *count > 50),
+        "{touches:?}"
+    );
+}
