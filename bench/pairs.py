@@ -64,6 +64,8 @@ class MuJoCo:
     def __init__(self, row):
         self.poses = len(row["bodies"])
         self.model = mujoco.MjModel.from_xml_string(xml(row))
+        if self.model.nhfield:
+            self.model.hfield_data[:] = row["assets"][0]["heights"]
         self.data = mujoco.MjData(self.model)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
@@ -79,24 +81,33 @@ class MuJoCo:
 
 
 def xml(row):
-    """All pairs as free bodies on a grid; of a plane there is but one, and poses are as seen from it."""
+    """All pairs as free bodies on a grid; of a plane and of terrain there is but one, and poses are as seen from it.
+
+    On terrain the bodies stand among each other, so they collide with the terrain alone.
+    """
     kinds = row["pair"]
+    terrain = kinds[0] == "terrain"
     meshes = [
         f'<mesh name="{side}_{k}" vertex="{numbers(np.ravel(hull))}"/>'
-        for side, hulls in enumerate(row["hulls"])
+        for side, hulls in enumerate(assets["hulls"] for assets in row["assets"])
         for k, hull in enumerate(hulls)
     ]
-    plane = kinds[0] == "plane"
-    bodies = ['<geom type="plane" size="1 1 1"/>'] if plane else []
+    bodies, ground = [], kinds[0] in ("plane", "terrain")
+    if terrain:
+        grid, size = row["assets"][0]["grid"], row["assets"][0]["terrain"]
+        meshes.append(f'<hfield name="terrain" nrow="{grid}" ncol="{grid}" size="{numbers(size)}"/>')
+        bodies.append('<geom type="hfield" hfield="terrain" contype="1" conaffinity="0"/>')
+    elif ground:
+        bodies.append('<geom type="plane" size="1 1 1"/>')
     for k, pair in enumerate(row["bodies"]):
-        corner = np.array([SPACING * (k % ROW), SPACING * (k // ROW), 0.0])
+        corner = np.zeros(3) if terrain else np.array([SPACING * (k % ROW), SPACING * (k // ROW), 0.0])
         for side, body in enumerate(pair):
-            if plane and side == 0:
+            if ground and side == 0:
                 continue
-            position, quat = seen_from(pair[0], body) if plane else (body["pos"], body["quat"])
+            position, quat = seen_from(pair[0], body) if ground else (body["pos"], body["quat"])
             place = f'pos="{numbers(corner + position)}" quat="{numbers(quat)}"'
             bodies.append(f"<body {place}><freejoint/>{geom(kinds[side], side, body)}</body>")
-    return f"""<mujoco><size memory="200M"/><default><geom mass="1"/></default>
+    return f"""<mujoco><size memory="200M"/><default><geom mass="1"{' contype="0"' if terrain else ""}/></default>
         <asset>{"".join(meshes)}</asset><worldbody>{"".join(bodies)}</worldbody></mujoco>"""
 
 

@@ -1,11 +1,13 @@
 //! How long each pair of shapes takes: `cargo run --release -p clench-collide --example pairs`.
 //!
-//! A thousand poses a pair, of shapes about 10 cm large: of every four, two overlap by 0 to 1 cm at random, one rests face to
+//! A thousand poses a pair, of shapes about 10 cm large, on terrain of cells of 5 cm: of every four, two overlap by 0 to 1 cm at random, one rests face to
 //! face, tilted by up to 1e-3 rad, and one misses by up to 1 cm. One line a pair: the time of a call in nanoseconds, the best of
 //! some runs, and how many points it yields. With `--json` the poses come along, so that another engine can be timed on them.
 //! `--list` names all pairs; names such as `box-hull` choose some.
 
-use clench_collide::{Contacts, Hull, Pose, Shape, ShapeKind, collide, convex_hull, supported};
+use clench_collide::{
+    Contacts, HeightField, Hull, Pose, Shape, ShapeKind, collide, convex_hull, supported,
+};
 use clench_math::{Quat, Vec3};
 use std::time::Instant;
 
@@ -13,8 +15,9 @@ const POSES: usize = 1000;
 const RUNS: usize = 20;
 
 /// What collides, and how many vertices it has if it is a hull.
-const SUBJECTS: [(&str, ShapeKind, usize); 8] = [
+const SUBJECTS: [(&str, ShapeKind, usize); 9] = [
     ("plane", ShapeKind::Plane, 0),
+    ("terrain", ShapeKind::HeightField, 0),
     ("sphere", ShapeKind::Sphere, 0),
     ("capsule", ShapeKind::Capsule, 0),
     ("ellipsoid", ShapeKind::Ellipsoid, 0),
@@ -23,6 +26,37 @@ const SUBJECTS: [(&str, ShapeKind, usize); 8] = [
     ("hull", ShapeKind::Mesh, 30),
     ("hull of 1000", ShapeKind::Mesh, 1000),
 ];
+
+/// Of terrain: points along a side, and size in metres. Cells are about half as large as a body.
+const GRID: usize = 41;
+const TERRAIN: [f64; 4] = [1.0, 1.0, 0.04, 0.1];
+
+/// What shapes are made of.
+struct Assets {
+    hulls: Vec<Hull>,
+    terrain: Option<HeightField>,
+}
+
+impl Assets {
+    fn of((_, kind, vertices): (&str, ShapeKind, usize), random: &mut Random) -> Self {
+        let count = if kind == ShapeKind::Mesh { 10 } else { 0 };
+        Assets {
+            hulls: (0..count).map(|_| random.hull(vertices)).collect(),
+            terrain: (kind == ShapeKind::HeightField).then(|| random.terrain()),
+        }
+    }
+    fn json(&self) -> String {
+        let hulls = self.hulls.iter().map(|hull| {
+            let vertices = hull.vertices().iter().map(|v| v.to_array());
+            format!("{:?}", vertices.collect::<Vec<_>>())
+        });
+        let heights = self.terrain.as_ref().map_or(&[][..], HeightField::heights);
+        let hulls = joined(hulls);
+        format!(
+            r#"{{"hulls": {hulls}, "heights": {heights:?}, "grid": {GRID}, "terrain": {TERRAIN:?}}}"#
+        )
+    }
+}
 
 /// A shape that knows where its numbers are.
 struct Body<'a> {
@@ -76,13 +110,20 @@ impl Random {
         let surface = convex_hull(&points, None).expect("points on an ellipsoid have a hull");
         Hull::new(&surface, &points)
     }
-    fn body<'a>(&mut self, kind: ShapeKind, hulls: &'a [Hull]) -> Body<'a> {
+    /// Random heights, each the mean of four.
+    fn terrain(&mut self) -> HeightField {
+        let heights =
+            (0..GRID * GRID).map(|_| self.unit() + self.unit() + self.unit() + self.unit());
+        HeightField::new(GRID, GRID, heights.collect(), TERRAIN).expect("a grid of heights")
+    }
+    fn body<'a>(&mut self, kind: ShapeKind, assets: &'a Assets) -> Body<'a> {
         let size = self.vector() * 0.04 + Vec3::new(0.08, 0.08, 0.08);
-        let hull = (self.unit() * hulls.len() as f64) as usize;
+        let hull = (self.unit() * assets.hulls.len() as f64) as usize;
         Body {
-            shape: match hulls.get(hull) {
-                Some(hull) => Shape::mesh(hull),
-                None => Shape::new(kind, size),
+            shape: match (assets.hulls.get(hull), &assets.terrain) {
+                (Some(hull), _) => Shape::mesh(hull),
+                (_, Some(field)) => Shape::height_field(field),
+                _ => Shape::new(kind, size),
             },
             hull,
             position: self.vector(),
@@ -110,19 +151,23 @@ impl Random {
                 .normalize()
                 .0;
         }
-        if a.shape.kind == ShapeKind::Plane {
+        let mut beside = Vec3::ZERO;
+        if matches!(a.shape.kind, ShapeKind::Plane | ShapeKind::HeightField) {
             direction = a.pose().axis();
+        }
+        if a.shape.kind == ShapeKind::HeightField {
+            beside = a.pose().rotation * self.vector().scale_by(Vec3::new(0.7, 0.7, 0.0));
         }
         let (mut near, mut far) = (0.0, 0.6);
         let mut out = Contacts::new();
         for _ in 0..30 {
             let middle = (near + far) / 2.0;
-            b.position = a.position + direction * middle;
+            b.position = a.position + beside + direction * middle;
             collide(&a.shape, &a.pose(), &b.shape, &b.pose(), 0.02, &mut out);
             let deep = out.as_slice().iter().any(|c| c.distance < -depth);
             *(if deep { &mut near } else { &mut far }) = middle;
         }
-        b.position = a.position + direction * near;
+        b.position = a.position + beside + direction * near;
         (a, b)
     }
 }
@@ -152,14 +197,10 @@ fn main() {
 
 fn measure(name: &str, a: (&str, ShapeKind, usize), b: (&str, ShapeKind, usize), json: bool) {
     let mut random = Random(1);
-    let hulls = [a, b].map(|(_, kind, vertices)| {
-        let count = if kind == ShapeKind::Mesh { 10 } else { 0 };
-        let hulls = (0..count).map(|_| random.hull(vertices));
-        hulls.collect::<Vec<Hull>>()
-    });
+    let assets = [a, b].map(|subject| Assets::of(subject, &mut random));
     let scenes: Vec<(Body, Body)> = (0..POSES)
         .map(|k| {
-            let (a, b) = (random.body(a.1, &hulls[0]), random.body(b.1, &hulls[1]));
+            let (a, b) = (random.body(a.1, &assets[0]), random.body(b.1, &assets[1]));
             random.scene(a, b, k)
         })
         .collect();
@@ -182,22 +223,11 @@ fn measure(name: &str, a: (&str, ShapeKind, usize), b: (&str, ShapeKind, usize),
         println!("{name:<30}{time:>8.0}{mean:>8.2}");
         return;
     }
-    let hulls = hulls.each_ref().map(|hulls| {
-        joined(hulls.iter().map(|hull| {
-            format!(
-                "{:?}",
-                hull.vertices()
-                    .iter()
-                    .map(|v| v.to_array())
-                    .collect::<Vec<_>>()
-            )
-        }))
-    });
     let bodies = joined(scenes.iter().map(|(a, b)| joined([a.json(), b.json()])));
     println!(
-        r#"{{"pair": {:?}, "ns": {time}, "points": {mean}, "hulls": {}, "bodies": {bodies}}}"#,
+        r#"{{"pair": {:?}, "ns": {time}, "points": {mean}, "assets": {}, "bodies": {bodies}}}"#,
         [a.0, b.0],
-        joined(hulls),
+        joined(assets.each_ref().map(Assets::json)),
     );
 }
 

@@ -68,6 +68,9 @@ pub(super) fn patch<S: Scalar>(
     if pair.a.is_point() {
         return add_one(n * half);
     }
+    if pair.b.is_point() {
+        return add_one(pair.offset - n * half);
+    }
     let feature_a = Feature::new(&pair.a, n);
     let feature_b = Feature::new(&pair.b, -pair.rotation.transpose_mul(n));
     let place = |p| pair.offset + pair.rotation * p;

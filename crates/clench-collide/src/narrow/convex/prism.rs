@@ -67,17 +67,18 @@ impl<S: Scalar> Prism<S> {
 
     /// The face, edge or corner that lies against a plane across `d`.
     pub fn feature(&self, d: Vec3<S>, feature: &mut Feature<S>) {
-        let mut best = (S::new(FACE_COSINE), None);
+        // A cosine as the squares of two lengths that it is the quotient of.
+        let mut best = (S::new(FACE_COSINE).squared(), S::ONE, None);
         for face in FACES {
-            let [p, q, r] = [0, 1, 2].map(|k| self.corners[face[k]]);
-            let (normal, _) = (q - p).cross(r - p).normalize();
-            let cosine = normal.dot(d);
-            if cosine >= best.0 {
-                best = (cosine, Some((face, normal)));
+            let [p, q, r] = [face[0], face[1], face[2]].map(|k| self.corners[k]);
+            let normal = (q - p).cross(r - p);
+            let (along, square) = (normal.dot(d), normal.norm_squared());
+            if along > S::ZERO && along.squared() * best.1 >= best.0 * square {
+                best = (along.squared(), square, Some((face, normal)));
             }
         }
-        if let Some((face, normal)) = best.1 {
-            feature.normal = normal;
+        if let (_, _, Some((face, normal))) = best {
+            feature.normal = normal.normalize().0;
             feature
                 .corners
                 .extend(face.iter().map(|&k| self.corners[k]));
@@ -85,17 +86,17 @@ impl<S: Scalar> Prism<S> {
         }
         let first = self.furthest(d);
         let corner = self.corners[first];
-        let mut best = (S::new(EDGE_SINE), None);
+        let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
         for next in NEIGHBORS[first] {
-            let (along, _) = (self.corners[next] - corner).normalize();
-            let sine = along.dot(d).abs();
-            if sine <= best.0 {
-                best = (sine, Some(next));
+            let edge = self.corners[next] - corner;
+            let (rise, square) = (edge.dot(d).squared(), edge.norm_squared());
+            if rise * best.1 <= best.0 * square {
+                best = (rise, square, Some(next));
             }
         }
         feature.corners.push(corner);
         feature
             .corners
-            .extend(best.1.map(|next| self.corners[next]));
+            .extend(best.2.map(|next| self.corners[next]));
     }
 }

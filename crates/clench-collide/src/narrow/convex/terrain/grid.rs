@@ -83,8 +83,8 @@ pub(super) struct Triangle<'a, S> {
 }
 
 impl<'a, S: Scalar> Triangle<'a, S> {
-    /// Both triangles of a cell, on the left and on the right of its diagonal from the lowest x and y to the highest.
-    pub fn of_cell(grid: &'a Grid<'a>, first: Node) -> [Self; 2] {
+    /// One of the triangles of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the highest.
+    pub fn of_cell(grid: &'a Grid<'a>, first: Node, half: usize) -> Self {
         let [x, y] = grid.corner(first);
         let z = grid.height(first);
         let origin = Vec3::from_f64([x, y, z]);
@@ -93,29 +93,32 @@ impl<'a, S: Scalar> Triangle<'a, S> {
             let rise = grid.height(node(r, c)) - z;
             Vec3::from_f64([c as f64 * grid.step[0], r as f64 * grid.step[1], rise])
         };
-        let last = point(1, 1);
-        let half = |other, corners| Triangle {
-            grid,
-            nodes: other,
-            origin,
-            corners,
+        let [second, third] = match half {
+            0 => [(1, 1), (1, 0)],
+            _ => [(0, 1), (1, 1)],
         };
-        [
-            half(
-                [first, node(1, 1), node(1, 0)],
-                [Vec3::ZERO, last, point(1, 0)],
-            ),
-            half(
-                [first, node(0, 1), node(1, 1)],
-                [Vec3::ZERO, point(0, 1), last],
-            ),
-        ]
+        Triangle {
+            grid,
+            nodes: [first, node(second.0, second.1), node(third.0, third.1)],
+            origin,
+            corners: [
+                Vec3::ZERO,
+                point(second.0, second.1),
+                point(third.0, third.1),
+            ],
+        }
     }
 
     /// Its unit normal.
     pub fn normal(&self) -> Vec3<S> {
         let [_, q, r] = self.corners;
         q.cross(r).normalize().0
+    }
+
+    /// The mean of its corners.
+    pub fn middle(&self) -> Vec3<S> {
+        let [p, q, r] = self.corners;
+        (p + q + r) * S::new(1.0 / 3.0)
     }
 
     /// Whether all of it is lower than a height, m.

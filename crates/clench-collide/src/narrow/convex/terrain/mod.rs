@@ -64,14 +64,10 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     };
     let mut look_at = |cell| {
         let reached = bounds.reach(grid.corner(cell), &grid);
-        let triangles = Triangle::of_cell(&grid, cell);
-        for (triangle, _) in triangles
-            .iter()
-            .zip(reached)
-            .filter(|(_, reached)| *reached)
-        {
+        for half in (0..2).filter(|half| reached[*half]) {
+            let triangle = Triangle::of_cell(&grid, cell, half);
             if !triangle.is_below(S::new(bounds.low.z)) {
-                search.look_at(triangle, &body);
+                search.look_at(&triangle, &body);
             }
         }
     };
@@ -144,6 +140,9 @@ impl<S: Scalar> Search<S> {
         if distance > self.margin {
             return;
         }
+        if self.is_aside(triangle, body, offset) {
+            return;
+        }
         // No deeper than what is known: then only what lies on the face or stands out can add to it.
         let over = Over {
             triangle,
@@ -163,6 +162,21 @@ impl<S: Scalar> Search<S> {
         if let Some(best) = nearest(&pair, self.margin, &mut simplex) {
             self.judge(triangle, &pair, distance, best, &simplex);
         }
+    }
+
+    /// Whether the direction from the middle of a triangle to the body shows that they are apart.
+    fn is_aside(&self, triangle: &Triangle<S>, body: &Body<S>, offset: Vec3<S>) -> bool {
+        let n = offset - triangle.middle();
+        // Downwards the ground would have to be looked at, too.
+        if n.z <= S::ZERO {
+            return false;
+        }
+        let local = -self.rotation.transpose_mul(n);
+        let nearest = self.rotation * body.support(local, local) + offset;
+        let [p, q, r] = triangle.corners.map(|corner| n.dot(corner));
+        let gap = n.dot(nearest) - p.max(q).max(r);
+        let reach = self.margin + body.radius;
+        gap > S::ZERO && gap.squared() > reach.squared() * n.norm_squared()
     }
 
     /// The least distance along directions that count, so far.
