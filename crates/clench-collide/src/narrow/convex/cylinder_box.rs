@@ -16,6 +16,7 @@
 //! If the bodies are apart some of these directions show it, but then the largest gap may be along another.
 
 use super::{
+    best::Best,
     ellipse::Ellipse,
     pair::{Gap, Pair},
 };
@@ -24,52 +25,12 @@ use clench_math::{Scalar, Vec3};
 /// The largest gap if that is not positive, else one that is.
 pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Gap<S> {
     let (view, mirror) = View::new(pair);
-    let mut best = Best {
-        gap: -S::INFINITY,
-        normal: pair.start,
-        bar: -S::INFINITY,
-        tolerance: pair.tolerance,
-    };
+    let mut best = Best::new(pair.start, pair.tolerance);
     view.search(&mut best);
     Gap {
         normal: pair.rotation * best.normal.scale_by(mirror),
         gap: best.gap,
         settled: true,
-    }
-}
-
-/// The best direction so far.
-struct Best<S> {
-    gap: S,
-    normal: Vec3<S>,
-    /// What the gap along an exact direction must exceed: between equals, to the tolerance, the first one is kept.
-    bar: S,
-    tolerance: S,
-}
-
-impl<S: Scalar> Best<S> {
-    /// Takes a better direction.
-    #[inline]
-    fn offer(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
-        if gap > self.bar {
-            (self.gap, self.normal) = (gap, normal());
-            self.bar = gap + self.tolerance;
-        }
-    }
-
-    /// Takes a better direction for the time being: it may be next to an exact one, which then is welcome if it is as good.
-    #[inline]
-    fn offer_inexact(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
-        if gap > self.gap + self.tolerance {
-            (self.gap, self.normal) = (gap, normal());
-            self.bar = gap - self.tolerance;
-        }
-    }
-
-    /// A way out that is at least so long is no better.
-    #[inline]
-    fn depth(&self) -> S {
-        (-self.bar).max(S::ZERO)
     }
 }
 

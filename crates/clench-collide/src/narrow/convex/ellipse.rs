@@ -58,7 +58,9 @@ impl<S: Scalar> Ellipse<S> {
             if fall <= S::ZERO {
                 return None;
             }
-            let last = value.abs() <= fall * S::EPSILON.sqrt();
+            // The normal of a flat ellipse turns quickly at its end.
+            let turn = cos * cos * self.minor * self.minor + sin * sin;
+            let last = value * value <= fall * fall * turn * S::EPSILON;
             (cos, sin) = (cos * fall - sin * value, sin * fall + cos * value);
             if last {
                 break;

@@ -1,8 +1,10 @@
 //! Any two convex shapes, by their support functions: how far apart or how deep they are, along which normal, and the points
 //! where they touch.
 
+mod best;
 mod body;
 mod cylinder_box;
+mod cylinders;
 mod ellipse;
 mod epa;
 mod feature;
@@ -42,21 +44,34 @@ pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut C
 /// The contacts of one environment.
 pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
     let pair = Pair::new(a, b);
-    if (a.shape.kind, b.shape.kind) == (ShapeKind::Cylinder, ShapeKind::Box) {
-        let best = cylinder_box::largest_gap(&pair);
-        if best.gap > margin {
-            return;
-        }
-        // Of bodies that are apart it tells no distance.
-        if best.gap <= S::ZERO && Real::is_finite(best.gap) {
-            let simplex = Simplex::new(pair.vertex(best.normal));
-            return patch(&pair, a, best, &simplex, margin, points);
-        }
+    let known = match (a.shape.kind, b.shape.kind) {
+        (ShapeKind::Cylinder, ShapeKind::Box) => Some(cylinder_box::largest_gap(&pair)),
+        (ShapeKind::Cylinder, ShapeKind::Cylinder) => cylinders::largest_gap(&pair),
+        _ => None,
+    };
+    let known = known.filter(|known| Real::is_finite(known.gap));
+    if known.is_some_and(|known| known.gap > margin) {
+        return;
     }
+    // Of bodies that are apart it tells no distance.
+    let certain = known.filter(|known| known.settled && known.gap <= S::ZERO);
     let mut simplex = Simplex::new(pair.vertex(pair.start));
-    if let Some(best) = nearest(&pair, margin, &mut simplex) {
-        patch(&pair, a, best, &simplex, margin, points);
+    let Some(mut best) = certain.or_else(|| nearest(&pair, margin, &mut simplex)) else {
+        return;
+    };
+    if let Some(known) = known
+        && (certain.is_some() || known.gap > best.gap + pair.tolerance)
+    {
+        best = known;
+        simplex = Simplex::new(pair.vertex(known.normal));
     }
+    patch(&pair, a, best, &simplex, margin, points);
+}
+
+/// Whether two cores overlap.
+fn overlap<S: Scalar>(pair: &Pair<S>) -> bool {
+    let mut simplex = Simplex::new(pair.vertex(pair.start));
+    matches!(gjk(pair, S::ZERO, &mut simplex), Cores::Overlap)
 }
 
 /// The largest gap between two cores, if the bodies are at most `margin` apart. The simplex begins with the vertex along

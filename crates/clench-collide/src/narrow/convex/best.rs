@@ -1,0 +1,48 @@
+//! The best of a few directions.
+
+use clench_math::{Scalar, Vec3};
+
+/// The largest gap so far, and its direction.
+pub(super) struct Best<S> {
+    pub gap: S,
+    pub normal: Vec3<S>,
+    /// What the gap along an exact direction must exceed: between equals, to the tolerance, the first one is kept.
+    bar: S,
+    tolerance: S,
+}
+
+impl<S: Scalar> Best<S> {
+    /// No gap as yet, and a direction in case that none comes.
+    pub fn new(normal: Vec3<S>, tolerance: S) -> Self {
+        Best {
+            gap: -S::INFINITY,
+            normal,
+            bar: -S::INFINITY,
+            tolerance,
+        }
+    }
+
+    /// Takes a better direction.
+    #[inline]
+    pub fn offer(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
+        if gap > self.bar {
+            (self.gap, self.normal) = (gap, normal());
+            self.bar = gap + self.tolerance;
+        }
+    }
+
+    /// Takes a better direction for the time being: it may be next to an exact one, which then is welcome if it is as good.
+    #[inline]
+    pub fn offer_inexact(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
+        if gap > self.gap + self.tolerance {
+            (self.gap, self.normal) = (gap, normal());
+            self.bar = gap - self.tolerance;
+        }
+    }
+
+    /// A way out that is at least so long is no better.
+    #[inline]
+    pub fn depth(&self) -> S {
+        (-self.bar).max(S::ZERO)
+    }
+}

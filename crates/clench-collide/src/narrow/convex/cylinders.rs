@@ -1,0 +1,157 @@
+//! The largest gap of two cylinders that overlap, among the few directions that can have it, unless it may be across two rims.
+//!
+//! As for a cylinder and a box (see [`super::cylinder_box`]) few directions lead out over a smooth point of the boundary of the
+//! difference. With the axes z and u these are
+//!
+//! ```text
+//! z, u       a cap                     n across z or u  a rim on the side of the other: the normal of an ellipse
+//! z × u      a side across a side      any other n      a rim across a rim
+//! ```
+//!
+//! Seen along its axis a cylinder is a circle, the other a rectangle with halves of an ellipse at its ends; their middle lines are
+//! the same, so the shortest way out is over the quarter that the offset points to.
+//!
+//! A way out across two rims that is shorter than d leads from one to the other: each passes within d of both the cap and the
+//! side of the other cylinder, inside. Where they do not, the other directions are all there are.
+
+use super::{
+    best::Best,
+    ellipse::Ellipse,
+    overlap,
+    pair::{Gap, Pair},
+};
+use clench_math::{Scalar, Vec3};
+
+/// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two rims,
+/// nothing where the axes are parallel.
+pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
+    let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
+    let (cosine, sine) = (
+        axes[1].z,
+        (axes[1].x.squared() + axes[1].y.squared()).sqrt(),
+    );
+    if sine <= S::EPSILON {
+        return None;
+    }
+    let sizes = [pair.a.size(), pair.b.size()];
+    let least = pair.largest * S::EPSILON;
+    let inverse = S::ONE / sine;
+    let across = Vec3::new(-axes[1].y * inverse, axes[1].x * inverse, S::ZERO);
+    let cylinder = |i: usize, side: Vec3<S>, offset: Vec3<S>| Cylinder {
+        radius: sizes[i].x.max(least),
+        half: sizes[i].y,
+        side,
+        offset: [offset.dot(across), offset.dot(side), offset.dot(axes[i])],
+    };
+    let cylinders = [
+        cylinder(0, across.cross(axes[0]), pair.offset),
+        cylinder(1, axes[1].cross(across), -pair.offset),
+    ];
+
+    let mut best = Best::new(pair.start, pair.tolerance);
+    let mut offer = |direction: Vec3<S>| {
+        let normal = direction * S::ONE.copysign(direction.dot(pair.offset));
+        best.offer(pair.gap(normal).gap, || normal);
+    };
+    axes.into_iter().for_each(&mut offer);
+    offer(across);
+    let [first, second] = &cylinders;
+    // At the ends of a flat ellipse the normal is anywhere in a quarter, of one hardly less flat it is determined.
+    let ellipse = Ellipse::new(cosine.abs().max(S::EPSILON), sine);
+    for (own, other) in [(first, second), (second, first)] {
+        let [x, y, _] = own.offset;
+        let unit = S::ONE / other.radius;
+        let point = (x.abs() * unit, (y.abs() - other.half * sine) * unit);
+        if let Some((along_x, along_y)) = ellipse.normal_through(point) {
+            offer(across * along_x.copysign(x) + own.side * along_y.copysign(y));
+        }
+    }
+    let settled = best.gap > S::ZERO
+        || (!rims_cross(&cylinders, (cosine, sine), -best.gap)
+            && (axes_pass(&cylinders, sine) || deepest_inside(pair, best.normal) || overlap(pair)));
+    Some(Gap {
+        normal: best.normal,
+        gap: best.gap,
+        settled,
+    })
+}
+
+/// Whether two rims may be a shorter way out than `depth`.
+fn rims_cross<S: Scalar>([a, b]: &[Cylinder<S>; 2], angle: (S, S), depth: S) -> bool {
+    ENDS.into_iter().any(|ends| {
+        let [end, other] = ends.map(S::new);
+        a.near_rim(b, [end, other], angle, depth) && b.near_rim(a, [other, end], angle, depth)
+    })
+}
+
+/// Whether the axes' nearest points are within both cylinders: then they overlap, if no gap is across both axes.
+fn axes_pass<S: Scalar>([a, b]: &[Cylinder<S>; 2], sine: S) -> bool {
+    a.offset[1].abs() <= b.half * sine && b.offset[1].abs() <= a.half * sine
+}
+
+/// Whether the deepest point of one, along the normal, is within the other.
+fn deepest_inside<S: Scalar>(pair: &Pair<S>, normal: Vec3<S>) -> bool {
+    let holds =
+        |size: Vec3<S>, p: Vec3<S>| p.z.abs() <= size.y && p.x * p.x + p.y * p.y <= size.x * size.x;
+    let deepest = pair.vertex(normal);
+    holds(pair.a.size(), pair.offset + pair.rotation * deepest.b)
+        || holds(
+            pair.b.size(),
+            pair.rotation.transpose_mul(deepest.a - pair.offset),
+        )
+}
+
+/// Rims of both.
+const ENDS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+
+/// A cylinder, and where the other one is from its middle: across both axes, along `side`, and along its own axis.
+struct Cylinder<S> {
+    radius: S,
+    half: S,
+    /// The unit direction across its axis towards the axis of the other.
+    side: Vec3<S>,
+    offset: [S; 3],
+}
+
+impl<S: Scalar> Cylinder<S> {
+    /// Whether a rim of another cylinder passes within `depth` of this one's cap and side, inside, at one of its ends; `ends` tell
+    /// which, and which rim. (Or it may pass.)
+    ///
+    /// The rim runs through (x + r C, y − r γ S, z + r σ S) with C = cos θ and S = sin θ, where γ and σ are the cosine and the
+    /// sine between the axes. Within `depth` of the cap S is in an interval; there the rim is in one of two rectangles, seen
+    /// along the axis, that must reach into a ring.
+    #[inline]
+    fn near_rim(&self, other: &Self, ends: [S; 2], (cosine, sine): (S, S), depth: S) -> bool {
+        let [x, y, z] = self.offset;
+        let arm = other.half * ends[1];
+        let (y, z) = (y + arm * sine, (z + arm * cosine) * ends[0]);
+        let inverse = S::ONE / (other.radius * sine);
+        let from = ((self.half - depth - z) * inverse).max(-S::ONE);
+        let to = ((self.half - z) * inverse).min(S::ONE);
+        if from > to {
+            return false;
+        }
+        let level = |s: S| (S::ONE - s * s).max(S::ZERO).sqrt() * other.radius;
+        let (c_from, c_to) = (level(from), level(to));
+        let over_top = from < S::ZERO && to > S::ZERO;
+        let most = S::select(over_top, other.radius, c_from.max(c_to));
+        let least = c_from.min(c_to);
+        let slope = -cosine * ends[0] * other.radius;
+        let (y_from, y_to) = (y + slope * from, y + slope * to);
+        let ys = (y_from.min(y_to), y_from.max(y_to));
+        let inner = (self.radius - depth).max(S::ZERO);
+        [(x + least, x + most), (x - most, x - least)]
+            .into_iter()
+            .any(|xs| {
+                let (x, y) = (distances(xs), distances(ys));
+                x.0 * x.0 + y.0 * y.0 <= self.radius * self.radius
+                    && x.1 * x.1 + y.1 * y.1 >= inner * inner
+            })
+    }
+}
+
+/// How far the numbers of an interval are from 0, at least and at most.
+#[inline]
+fn distances<S: Scalar>((low, high): (S, S)) -> (S, S) {
+    (low.max(-high).max(S::ZERO), high.max(-low))
+}
