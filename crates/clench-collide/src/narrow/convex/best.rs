@@ -12,11 +12,11 @@ pub(super) struct Best<S> {
 }
 
 impl<S: Scalar> Best<S> {
-    /// No gap as yet, and a direction in case that none comes.
-    pub fn new(normal: Vec3<S>, tolerance: S) -> Self {
+    /// No gap as yet, and any direction.
+    pub fn new(tolerance: S) -> Self {
         Best {
             gap: -S::INFINITY,
-            normal,
+            normal: Vec3::new(S::ZERO, S::ZERO, S::ONE),
             bar: -S::INFINITY,
             tolerance,
         }

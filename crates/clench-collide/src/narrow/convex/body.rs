@@ -76,6 +76,30 @@ impl<'a, S: Scalar> Body<'a, S> {
         self.kind == ShapeKind::Sphere
     }
 
+    /// The point of the core that is nearest to a point, of cores whose size tells it.
+    pub fn nearest(&self, point: impl FnOnce() -> Vec3<S>) -> Option<Vec3<S>> {
+        let s = self.size;
+        let within = |x: S, half: S| x.clamp(-half, half);
+        match self.kind {
+            ShapeKind::Capsule => Some(Vec3::new(S::ZERO, S::ZERO, within(point().z, s.y))),
+            ShapeKind::Box => {
+                let p = point();
+                Some(Vec3::new(
+                    within(p.x, s.x),
+                    within(p.y, s.y),
+                    within(p.z, s.z),
+                ))
+            }
+            ShapeKind::Cylinder => {
+                let p = point();
+                let level = (p.x * p.x + p.y * p.y).sqrt();
+                let share = (s.x / level.max(S::MIN_POSITIVE)).min(S::ONE);
+                Some(Vec3::new(p.x * share, p.y * share, within(p.z, s.y)))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether the core has curved parts.
     pub fn curved(&self) -> bool {
         matches!(self.kind, ShapeKind::Ellipsoid | ShapeKind::Cylinder)

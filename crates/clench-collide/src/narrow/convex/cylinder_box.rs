@@ -25,7 +25,7 @@ use clench_math::{Scalar, Vec3};
 /// The largest gap if that is not positive, else one that is.
 pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Gap<S> {
     let (view, mirror) = View::new(pair);
-    let mut best = Best::new(pair.start, pair.tolerance);
+    let mut best = Best::new(pair.tolerance);
     view.search(&mut best);
     Gap {
         normal: pair.rotation * best.normal.scale_by(mirror),

@@ -48,7 +48,7 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
         cylinder(1, axes[1].cross(across), -pair.offset),
     ];
 
-    let mut best = Best::new(pair.start, pair.tolerance);
+    let mut best = Best::new(pair.tolerance);
     let mut offer = |direction: Vec3<S>| {
         let normal = direction * S::ONE.copysign(direction.dot(pair.offset));
         best.offer(pair.gap(normal).gap, || normal);

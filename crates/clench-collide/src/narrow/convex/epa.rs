@@ -34,13 +34,13 @@ const FAR: f64 = 0.05;
 
 /// The largest gap of overlapping cores, which is negative. The simplex holds the origin, and ends on the face of the difference
 /// that the gap belongs to.
-pub(super) fn epa<S: Scalar>(pair: &Pair<S>, simplex: &mut Simplex<S>) -> Gap<S> {
+pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, simplex: &mut Simplex<S>) -> Gap<S> {
     let mut polytope = Polytope::empty(pair);
     match enclose(pair, simplex.vertices()) {
         Ok(vertices) => polytope.begin(&vertices),
         Err(flat) => return flat,
     }
-    expand(pair, &mut polytope, simplex)
+    expand(pair, start, &mut polytope, simplex)
 }
 
 /// Four vertices with a volume, among them the given ones where these span something. Where the difference has no volume,
@@ -103,10 +103,11 @@ fn furthest<S: Scalar>(
 /// Grows until the depth is known.
 fn expand<S: Scalar>(
     pair: &Pair<S>,
+    start: Vec3<S>,
     polytope: &mut Polytope<S>,
     simplex: &mut Simplex<S>,
 ) -> Gap<S> {
-    let mut best = pair.gap(pair.start);
+    let mut best = pair.gap(start);
     let mut touching = polytope.corners(0);
     // Whether Newton's method has said what there is to say of the best direction.
     let mut refined = false;

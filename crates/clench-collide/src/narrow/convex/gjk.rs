@@ -17,7 +17,7 @@ use super::{
     refine::{Flats, refine},
     simplex::Simplex,
 };
-use clench_math::Scalar;
+use clench_math::{Scalar, Vec3};
 
 /// Rounds until an answer is given, certain or not. Five to ten are usual.
 const ROUNDS: usize = 64;
@@ -39,13 +39,17 @@ pub(super) enum Cores<S> {
     Overlap,
 }
 
-/// The distance of the cores if it is at most `limit`. The simplex begins with the vertex along [`Pair::start`], and ends as what
-/// the nearest points are made of, or holds the origin, but for rounding, where the cores overlap.
+/// The distance of the cores if it is at most `limit`. The simplex begins with the vertex along `start`, and ends as what the
+/// nearest points are made of, or holds the origin, but for rounding, where the cores overlap.
 ///
 /// Vertices that nearly coincide make slivers, whose nearest point may be false. So what ends a search is not believed against
 /// the bounds: then another one begins with the best direction known, without Newton's vertices.
-pub(super) fn gjk<S: Scalar>(pair: &Pair<S>, limit: S, simplex: &mut Simplex<S>) -> Cores<S> {
-    let start = pair.start;
+pub(super) fn gjk<S: Scalar>(
+    pair: &Pair<S>,
+    start: Vec3<S>,
+    limit: S,
+    simplex: &mut Simplex<S>,
+) -> Cores<S> {
     let mut best = Gap {
         normal: start,
         gap: start.dot(simplex.vertices()[0].w),

@@ -54,34 +54,45 @@ pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &
         return;
     }
     // Of bodies that are apart it tells no distance.
-    let certain = known.filter(|known| known.settled && known.gap <= S::ZERO);
-    let mut simplex = Simplex::new(pair.vertex(pair.start));
-    let Some(mut best) = certain.or_else(|| nearest(&pair, margin, &mut simplex)) else {
+    if let Some(certain) = known.filter(|known| known.settled && known.gap <= S::ZERO) {
+        return patch_along(&pair, a, certain, margin, points);
+    }
+    let (start, mut simplex) = begin(&pair);
+    let Some(best) = nearest(&pair, start, margin, &mut simplex) else {
         return;
     };
-    if let Some(known) = known
-        && (certain.is_some() || known.gap > best.gap + pair.tolerance)
-    {
-        best = known;
-        simplex = Simplex::new(pair.vertex(known.normal));
+    match known.filter(|known| known.gap > best.gap + pair.tolerance) {
+        Some(known) => patch_along(&pair, a, known, margin, points),
+        None => patch(&pair, a, best, &simplex, margin, points),
     }
-    patch(&pair, a, best, &simplex, margin, points);
 }
 
 /// Whether two cores overlap.
 fn overlap<S: Scalar>(pair: &Pair<S>) -> bool {
-    let mut simplex = Simplex::new(pair.vertex(pair.start));
-    matches!(gjk(pair, S::ZERO, &mut simplex), Cores::Overlap)
+    let (start, mut simplex) = begin(pair);
+    matches!(gjk(pair, start, S::ZERO, &mut simplex), Cores::Overlap)
+}
+
+/// A direction to begin with, and the vertex along it.
+#[inline(always)]
+fn begin<S: Scalar>(pair: &Pair<S>) -> (Vec3<S>, Simplex<S>) {
+    let start = pair.start();
+    (start, Simplex::new(pair.vertex(start)))
 }
 
 /// The largest gap between two cores, if the bodies are at most `margin` apart. The simplex begins with the vertex along
-/// [`Pair::start`] and ends as what the nearest points are made of.
-fn nearest<S: Scalar>(pair: &Pair<S>, margin: S, simplex: &mut Simplex<S>) -> Option<Gap<S>> {
+/// `start` and ends as what the nearest points are made of.
+fn nearest<S: Scalar>(
+    pair: &Pair<S>,
+    start: Vec3<S>,
+    margin: S,
+    simplex: &mut Simplex<S>,
+) -> Option<Gap<S>> {
     let radii = pair.a.radius + pair.b.radius;
-    let best = match gjk(pair, margin + radii, simplex) {
+    let best = match gjk(pair, start, margin + radii, simplex) {
         Cores::Apart => return None,
         Cores::Near(best) => best,
-        Cores::Overlap => epa(pair, simplex),
+        Cores::Overlap => epa(pair, start, simplex),
     };
     (best.gap - radii <= margin).then_some(best)
 }
@@ -93,12 +104,22 @@ pub(super) fn points_along<S: Scalar>(
     margin: S,
     points: &mut Points<S>,
 ) {
-    let pair = Pair::new(a, b);
-    let best = Gap {
+    let known = Gap {
         normal,
         gap,
         settled: true,
     };
-    let simplex = Simplex::new(pair.vertex(normal));
-    patch(&pair, a, best, &simplex, margin, points);
+    patch_along(&Pair::new(a, b), a, known, margin, points);
+}
+
+/// The contacts of a pair whose largest gap was found without a simplex.
+fn patch_along<S: Scalar>(
+    pair: &Pair<S>,
+    a: Placed<S>,
+    known: Gap<S>,
+    margin: S,
+    points: &mut Points<S>,
+) {
+    let simplex = Simplex::new(pair.vertex(known.normal));
+    patch(pair, a, known, &simplex, margin, points);
 }

@@ -17,8 +17,6 @@ pub(super) struct Pair<'a, S> {
     pub rotation: Mat3<S>,
     /// The origin of the second.
     pub offset: Vec3<S>,
-    /// The direction between the origins.
-    pub start: Vec3<S>,
     /// The smaller of the bodies' sizes, m: what tolerances are shares of.
     pub smallest: S,
     /// Coordinates are at most this large, m: what rounding errors are shares of.
@@ -74,8 +72,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
     /// Two bodies, the second where its axes and its origin are in the frame of the first.
     pub fn between(a: Body<'a, S>, b: Body<'a, S>, rotation: Mat3<S>, offset: Vec3<S>) -> Self {
         let smallest = Real::min(a.reach, b.reach);
-        let (start, distance) = offset.normalize();
-        let largest = a.reach + b.reach + distance;
+        let [x, y, z] = offset.to_array().map(S::abs);
+        let largest = a.reach + b.reach + x + y + z;
         let rounding = largest * S::EPSILON * S::new(64.0);
         Pair {
             curved: a.curved() | b.curved(),
@@ -83,10 +81,25 @@ impl<'a, S: Scalar> Pair<'a, S> {
             b,
             rotation,
             offset,
-            start,
             smallest,
             largest,
             tolerance: Real::max(rounding, smallest * S::new(1e-9)),
+        }
+    }
+
+    /// The direction between points of the cores that are near to each other.
+    pub fn start(&self) -> Vec3<S> {
+        let from = self.a.nearest(|| self.offset).unwrap_or(Vec3::ZERO);
+        let beside = || self.rotation.transpose_mul(from - self.offset);
+        let to = match self.b.nearest(beside) {
+            Some(to) => self.offset + self.rotation * to,
+            None => self.offset,
+        };
+        let (start, apart) = (to - from).normalize();
+        if apart > S::ZERO {
+            start
+        } else {
+            self.offset.normalize().0
         }
     }
 

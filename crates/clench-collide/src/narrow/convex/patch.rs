@@ -72,6 +72,10 @@ pub(super) fn patch<S: Scalar>(
         return add_one(pair.offset - n * half);
     }
     let feature_a = Feature::new(&pair.a, n);
+    // A corner is where it is, however exact the normal.
+    if let (&[corner], false) = (&feature_a.corners[..], pair.a.curved()) {
+        return add_one(corner + n * half);
+    }
     let feature_b = Feature::new(&pair.b, -pair.rotation.transpose_mul(n));
     let place = |p| pair.offset + pair.rotation * p;
     // A corner, or the one point where a curved body touches.
@@ -118,6 +122,10 @@ pub(super) fn patch<S: Scalar>(
         spots.insert(0, witness(simplex, pair, &view, best.gap));
     }
     spots.retain(|s| s.distance() - radii.0 - radii.1 <= margin);
+    if spots.is_empty() {
+        // They touch by less than the features tell.
+        spots.push(witness(simplex, pair, &view, best.gap));
+    }
     thin_out(&mut spots, pair.smallest * S::new(SAME), pair.tolerance);
     for spot in &spots {
         let (from, to) = (spot.heights.0 + radii.0, spot.heights.1 - radii.1);

@@ -22,8 +22,8 @@ const STEPS: usize = 12;
 const HALVINGS: usize = 3;
 /// The largest turn of a step, rad.
 const LARGEST_TURN: f64 = 0.3;
-/// The last step turns by less than this in double precision; then the next would turn by about its square.
-const LAST_TURN: f64 = 1e-5;
+/// The last step turns by less than this in double precision; then the next would turn by some times its square.
+const LAST_TURN: f64 = 2e-6;
 
 /// Directions of the edges that touch, orthonormal: none, an edge, or two that span a face (or cross).
 pub(super) struct Flats<S> {

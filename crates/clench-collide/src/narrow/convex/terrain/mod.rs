@@ -15,6 +15,7 @@ mod grid;
 mod spread;
 
 use super::{
+    begin,
     body::Body,
     nearest,
     pair::{Gap, Pair},
@@ -158,8 +159,8 @@ impl<S: Scalar> Search<S> {
         }
         let prism = triangle.prism();
         let pair = Pair::between(Body::of_prism(&prism), body.clone(), self.rotation, offset);
-        let mut simplex = Simplex::new(pair.vertex(pair.start));
-        if let Some(best) = nearest(&pair, self.margin, &mut simplex) {
+        let (start, mut simplex) = begin(&pair);
+        if let Some(best) = nearest(&pair, start, self.margin, &mut simplex) {
             self.judge(triangle, &pair, distance, best, &simplex);
         }
     }
