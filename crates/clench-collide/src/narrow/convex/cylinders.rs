@@ -17,13 +17,12 @@
 use super::{
     best::Best,
     ellipse::Ellipse,
-    overlap,
     pair::{Gap, Pair},
 };
 use clench_math::{Scalar, Vec3};
 
 /// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two rims,
-/// nothing where the axes are parallel.
+/// or no common point is at hand; nothing where the axes are parallel.
 pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
     let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
     let (cosine, sine) = (
@@ -68,7 +67,7 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
     }
     let settled = best.gap > S::ZERO
         || (!rims_cross(&cylinders, (cosine, sine), -best.gap)
-            && (axes_pass(&cylinders, sine) || deepest_inside(pair, best.normal) || overlap(pair)));
+            && (axes_pass(&cylinders, sine) || deepest_inside(pair, best.normal)));
     Some(Gap {
         normal: best.normal,
         gap: best.gap,

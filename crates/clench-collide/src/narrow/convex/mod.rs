@@ -67,12 +67,6 @@ pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &
     }
 }
 
-/// Whether two cores overlap.
-fn overlap<S: Scalar>(pair: &Pair<S>) -> bool {
-    let (start, mut simplex) = begin(pair);
-    matches!(gjk(pair, start, S::ZERO, &mut simplex), Cores::Overlap)
-}
-
 /// A direction to begin with, and the vertex along it.
 #[inline(always)]
 fn begin<S: Scalar>(pair: &Pair<S>) -> (Vec3<S>, Simplex<S>) {
