@@ -36,6 +36,15 @@ impl<S: Scalar> Spot<S> {
     fn distance(&self) -> S {
         self.heights.1 - self.heights.0
     }
+    /// The same with another distance.
+    fn at_distance(&self, distance: S) -> Self {
+        let middle = (self.heights.0 + self.heights.1) * S::new(0.5);
+        let half = distance * S::new(0.5);
+        Spot {
+            heights: (middle - half, middle + half),
+            ..*self
+        }
+    }
 }
 
 /// All corners of an overlap, and one more.
@@ -121,11 +130,14 @@ pub(super) fn patch<S: Scalar>(
     if !spots.iter().any(|s| s.distance() <= best.gap + slack) {
         spots.insert(0, witness(simplex, pair, &view, best.gap));
     }
-    spots.retain(|s| s.distance() - radii.0 - radii.1 <= margin);
-    if spots.is_empty() {
+    let reach = margin + radii.0 + radii.1;
+    if spots.iter().all(|s| s.distance() > reach) {
         // They touch by less than the features tell.
-        spots.push(witness(simplex, pair, &view, best.gap));
+        let only = spots[deepest(&spots, S::ZERO)].at_distance(best.gap);
+        spots.clear();
+        spots.push(only);
     }
+    spots.retain(|s| s.distance() <= reach);
     thin_out(&mut spots, pair.smallest * S::new(SAME), pair.tolerance);
     for spot in &spots {
         let (from, to) = (spot.heights.0 + radii.0, spot.heights.1 - radii.1);
@@ -147,12 +159,12 @@ fn witness<S: Scalar>(simplex: &Simplex<S>, pair: &Pair<S>, view: &Mat3<S>, gap:
     }
     let on_b = pair.offset + pair.rotation * on_b;
     let middle = *view * ((on_a + on_b) * S::new(0.5));
-    let half = gap * S::new(0.5);
-    Spot {
+    let spot = Spot {
         x: middle.x,
         y: middle.y,
-        heights: (middle.z - half, middle.z + half),
-    }
+        heights: (middle.z, middle.z),
+    };
+    spot.at_distance(gap)
 }
 
 /// Leaves one of points that coincide, and at most [`PATCH_POINTS`]: the deepest, and those that span the largest area, by

@@ -191,6 +191,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> 
             turn = turn * (S::new(LARGEST_TURN) / size);
         }
         let mut halvings = 0;
+        let before = best.gap;
         loop {
             let (tried, _) = (best.normal + turn).normalize();
             w = pair.vertex(tried).w;
@@ -205,7 +206,8 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> 
             halvings += 1;
             turn = turn * S::new(0.5);
         }
-        if size <= last {
+        // On the rim next to a cap's axis the smallest turn counts.
+        if size <= last && best.gap - before <= pair.tolerance {
             best.settled = down && flats.hold(pair, best.normal);
             return best;
         }
