@@ -140,6 +140,44 @@ fn a_hull_has_flat_faces_and_finds_the_farthest_vertex() {
     }
 }
 
+/// Few vertices, many, and so many in a small range of normals that they have to be climbed.
+#[test]
+fn the_farthest_vertex_is_found_along_any_direction() {
+    let mut noise = Noise(104_729);
+    let mut ball = |count: usize, squash: f64| -> Vec<Vec3<f64>> {
+        let point = |_| noise.vector().normalize().0;
+        let squashed = |p: Vec3<f64>| Vec3::new(p.x, p.y, squash * p.z);
+        (0..count).map(point).map(squashed).collect()
+    };
+    let clouds = [ball(40, 1.0), ball(400, 0.7), ball(2000, 1e-3)];
+    let mut noise = Noise(7919);
+    for points in clouds {
+        let hull = Hull::new(&convex_hull(&points, None).unwrap(), &points);
+        let size = hull.radius();
+        let steps = || -4..=4;
+        let lattice = steps()
+            .flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])))
+            .map(|d| Vec3::from_array(d.map(f64::from)));
+        for d in lattice {
+            for (tilt, length) in [(0.0, 1.0), (1e-9, 1e-9), (1e-3, 1e9)] {
+                let direction = (d + noise.vector() * tilt) * length;
+                let reach = |v: &Vec3<f64>| v.dot(direction);
+                let found = reach(&hull.vertices()[hull.support(direction)]);
+                let farthest = hull.vertices().iter().map(reach).fold(f64::MIN, f64::max);
+                let rounding = 1e-14 * size * direction.norm();
+                assert!(
+                    farthest - found <= rounding,
+                    "{direction:?}: {found} {farthest}"
+                );
+            }
+        }
+        for nonsense in [f64::NAN, f64::INFINITY] {
+            let vertex = hull.support(Vec3::new(nonsense, 0.0, nonsense));
+            assert!(vertex < hull.vertices().len());
+        }
+    }
+}
+
 #[test]
 fn boxes_have_six_faces_however_thin_and_turned() {
     let mut noise = Noise(521_288_629_362_436_069);
