@@ -1,6 +1,6 @@
 //! A hull on a plane.
 //!
-//! The vertex that is deepest, by climbing, and with it the face that lies on the plane, of which those corners are kept that
+//! The vertex that is deepest, and with it the face that lies on the plane, of which those corners are kept that
 //! are far from each other. If there are fewer points than there is room for, others within the margin around the deepest
 //! vertex: the vertices of a hull on one side of a plane hang together, so walking over neighbours finds them.
 
