@@ -31,8 +31,8 @@ const DOUBT: f64 = 1e-6;
 
 /// What is known of two cores.
 pub(super) enum Cores<S> {
-    /// Further apart than the limit.
-    Apart,
+    /// Further apart than the limit, as this gap shows.
+    Apart(Gap<S>),
     /// The largest gap.
     Near(Gap<S>),
     /// They overlap or touch.
@@ -66,7 +66,7 @@ pub(super) fn gjk<S: Scalar>(
         end = search(pair, limit, false, simplex, &mut best);
     }
     match end {
-        End::Beyond => Cores::Apart,
+        End::Beyond => Cores::Apart(best),
         End::Inside if best.gap <= pair.tolerance => Cores::Overlap,
         End::Inside | End::Nearest(_) => {
             best.settle(pair, simplex.vertices());

@@ -58,7 +58,7 @@ pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &
         return patch_along(&pair, a, certain, margin, points);
     }
     let (start, mut simplex) = begin(&pair);
-    let Some(best) = nearest(&pair, start, margin, &mut simplex) else {
+    let Ok(best) = nearest(&pair, start, margin, &mut simplex) else {
         return;
     };
     match known.filter(|known| known.gap > best.gap + pair.tolerance) {
@@ -74,21 +74,25 @@ fn begin<S: Scalar>(pair: &Pair<S>) -> (Vec3<S>, Simplex<S>) {
     (start, Simplex::new(pair.vertex(start)))
 }
 
-/// The largest gap between two cores, if the bodies are at most `margin` apart. The simplex begins with the vertex along
-/// `start` and ends as what the nearest points are made of.
+/// The largest gap between two cores, or, if the bodies are more than `margin` apart, one that shows it. The simplex begins with
+/// the vertex along `start` and ends as what the nearest points are made of.
 fn nearest<S: Scalar>(
     pair: &Pair<S>,
     start: Vec3<S>,
     margin: S,
     simplex: &mut Simplex<S>,
-) -> Option<Gap<S>> {
+) -> Result<Gap<S>, Gap<S>> {
     let radii = pair.a.radius + pair.b.radius;
     let best = match gjk(pair, start, margin + radii, simplex) {
-        Cores::Apart => return None,
+        Cores::Apart(gap) => return Err(gap),
         Cores::Near(best) => best,
         Cores::Overlap => epa(pair, start, simplex),
     };
-    (best.gap - radii <= margin).then_some(best)
+    if best.gap - radii <= margin {
+        Ok(best)
+    } else {
+        Err(best)
+    }
 }
 
 /// The contacts of one environment whose normal and distance along it are known already; the normal in the first shape's frame.

@@ -91,17 +91,23 @@ impl<S: Scalar> Over<'_, S> {
 
     /// Adds the contact below a point of the body's core, if it is near enough.
     fn add(&self, point: Vec3<S>, margin: S, found: &mut Spread<S>) -> bool {
-        let height = self.normal.dot(point);
-        let distance = height - self.body.radius;
-        let near = distance <= margin;
+        let contact = self.contact(point);
+        let near = contact.distance <= margin;
         if near {
-            let down = height - distance * S::new(0.5);
-            found.add(Point {
-                position: self.triangle.origin + point - self.normal * down,
-                normal: self.normal,
-                distance,
-            });
+            found.add(contact);
         }
         near
+    }
+
+    /// The contact below a point of the body's core.
+    pub fn contact(&self, point: Vec3<S>) -> Point<S> {
+        let height = self.normal.dot(point);
+        let distance = height - self.body.radius;
+        let down = height - distance * S::new(0.5);
+        Point {
+            position: self.triangle.origin + point - self.normal * down,
+            normal: self.normal,
+            distance,
+        }
     }
 }

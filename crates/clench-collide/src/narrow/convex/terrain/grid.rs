@@ -127,6 +127,18 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         self.origin.z + q.z.max(r.z).max(S::ZERO) < height
     }
 
+    /// Whether a point is within the ground below it, and at least so far from walls and bottom, m.
+    pub fn surrounds(&self, point: Vec3<S>, distance: S) -> bool {
+        let within = |k: usize| {
+            let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
+            let (x, y) = (to.x - from.x, to.y - from.y);
+            let inside = x * (point.y - from.y) - y * (point.x - from.x);
+            inside >= distance * (x * x + y * y).sqrt()
+        };
+        let bottom = -self.origin.z - S::new(self.grid.base);
+        (0..3).all(within) && point.z - bottom >= distance
+    }
+
     /// The ground below it.
     pub fn prism(&self) -> Prism<S> {
         let bottom = -self.origin.z - S::new(self.grid.base);

@@ -110,6 +110,15 @@ struct Search<S> {
     shallowest: S,
     /// The least distance along directions that do not count, and its contact.
     sideways: Option<Point<S>>,
+    /// The direction along which the last triangle's ground was apart from the body: the next one's may be so, too.
+    apart: Vec3<S>,
+}
+
+/// Takes the deeper of two points.
+fn deepen<S: Scalar>(deepest: &mut Option<Point<S>>, point: Option<Point<S>>) {
+    if deepest.is_none_or(|old| point.is_some_and(|p| p.distance < old.distance)) {
+        *deepest = point;
+    }
 }
 
 impl<S: Scalar> Search<S> {
@@ -128,6 +137,7 @@ impl<S: Scalar> Search<S> {
             deepest: None,
             shallowest: -S::INFINITY,
             sideways: None,
+            apart: Vec3::ZERO,
         }
     }
 
@@ -141,7 +151,7 @@ impl<S: Scalar> Search<S> {
         if distance > self.margin {
             return;
         }
-        if self.is_aside(triangle, body, offset) {
+        if self.passes(triangle, body, offset, offset - triangle.middle()) {
             return;
         }
         // No deeper than what is known: then only what lies on the face or stands out can add to it.
@@ -157,17 +167,28 @@ impl<S: Scalar> Search<S> {
         {
             return;
         }
+        if self.passes(triangle, body, offset, self.apart) {
+            return;
+        }
+        // Deep within its walls: then no way out of the prism is shorter than through its face.
+        let height = normal.dot(lowest);
+        let foot = lowest - normal * height.max(S::ZERO);
+        if triangle.surrounds(foot, (-height).max(S::ZERO)) {
+            deepen(&mut self.deepest, Some(over.contact(lowest)));
+            over.touch(self.margin, &mut self.found);
+            return;
+        }
         let prism = triangle.prism();
         let pair = Pair::between(Body::of_prism(&prism), body.clone(), self.rotation, offset);
         let (start, mut simplex) = begin(&pair);
-        if let Some(best) = nearest(&pair, start, self.margin, &mut simplex) {
-            self.judge(triangle, &pair, distance, best, &simplex);
+        match nearest(&pair, start, self.margin, &mut simplex) {
+            Ok(best) => self.judge(triangle, &pair, distance, best, &simplex),
+            Err(gap) => self.apart = gap.normal,
         }
     }
 
-    /// Whether the direction from the middle of a triangle to the body shows that they are apart.
-    fn is_aside(&self, triangle: &Triangle<S>, body: &Body<S>, offset: Vec3<S>) -> bool {
-        let n = offset - triangle.middle();
+    /// Whether a direction shows that a body and the ground below a triangle are apart.
+    fn passes(&self, triangle: &Triangle<S>, body: &Body<S>, offset: Vec3<S>, n: Vec3<S>) -> bool {
         // Downwards the ground would have to be looked at, too.
         if n.z <= S::ZERO {
             return false;
@@ -202,17 +223,8 @@ impl<S: Scalar> Search<S> {
         let ground = Placed { shape, pose: &pose };
         let mut touching = Points::new();
         patch(pair, ground, best, simplex, self.margin, &mut touching);
-        let deeper = |p: &Point<S>, q: &Point<S>| p.distance < q.distance;
-        let first = touching.first().copied();
-        let deepest = first.map(|first| {
-            let points = touching.iter();
-            points.fold(first, |p, q| if deeper(q, &p) { *q } else { p })
-        });
-        let replace = |old: &mut Option<Point<S>>| {
-            if old.is_none_or(|old| deepest.is_some_and(|p| deeper(&p, &old))) {
-                *old = deepest;
-            }
-        };
+        let mut deepest = None;
+        touching.iter().for_each(|p| deepen(&mut deepest, Some(*p)));
         let normal = triangle.normal();
         let level = (best.normal - normal).norm() <= S::new(LEVEL) * same_direction();
         let over = Over {
@@ -223,12 +235,12 @@ impl<S: Scalar> Search<S> {
             offset: pair.offset,
         };
         if level || triangle.admits(best.normal) {
-            replace(&mut self.deepest);
+            deepen(&mut self.deepest, deepest);
             if !level || !over.touch(self.margin, &mut self.found) {
                 touching.into_iter().for_each(|p| self.found.add(p));
             }
         } else {
-            replace(&mut self.sideways);
+            deepen(&mut self.sideways, deepest);
             if over.touch(self.margin, &mut self.doubtful) {
                 self.shallowest = Real::max(self.shallowest, distance);
             }
