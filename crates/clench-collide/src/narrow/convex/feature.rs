@@ -8,7 +8,7 @@ use clench_math::{Scalar, Vec3};
 /// Most corners of a feature. A face of a hull that has more is seen with every second, third, ... of them and the furthest one.
 pub(crate) const MOST_CORNERS: usize = 24;
 /// An edge counts as lying against the plane up to this tilt (5°), as a face does.
-pub(super) const EDGE_SINE: f64 = 0.087;
+const EDGE_SINE: f64 = 0.087;
 /// A cap tilted by less has its deepest point at every corner, as far as anyone can tell.
 const TILT: f64 = 5e-6;
 
@@ -90,18 +90,10 @@ impl<S: Scalar> Feature<S> {
             self.face(hull, face, vertex);
             return;
         }
-        // The rise and the length of the best edge, squared: its sine is their quotient's root.
-        let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
-        for &neighbor in hull.neighbors(vertex) {
-            let end = Vec3::from_f64(hull.vertices()[neighbor as usize].to_array());
-            let edge = end - corner;
-            let (rise, length) = (edge.dot(d).squared(), edge.norm_squared());
-            if rise * best.1 <= best.0 * length {
-                best = (rise, length, Some((neighbor as usize, end)));
-            }
-        }
+        let neighbors = hull.neighbors(vertex).iter().map(|&k| k as usize);
+        let ends = neighbors.map(|k| (k, Vec3::from_f64(hull.vertices()[k].to_array())));
         self.corners.push(corner);
-        if let Some((neighbor, end)) = best.2 {
+        if let Some((neighbor, end)) = most_level(corner, ends, d) {
             self.corners.insert(usize::from(vertex < neighbor), end);
         }
     }
@@ -141,6 +133,25 @@ impl<S: Scalar> Feature<S> {
             }
         }
     }
+}
+
+/// Of the edges from a corner to some ends, which are numbered, the one that is most nearly level across the unit direction `d`,
+/// if one is level enough.
+pub(super) fn most_level<S: Scalar>(
+    corner: Vec3<S>,
+    ends: impl Iterator<Item = (usize, Vec3<S>)>,
+    d: Vec3<S>,
+) -> Option<(usize, Vec3<S>)> {
+    // The rise and the length of the best edge, squared: its sine is their quotient's root.
+    let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
+    for (number, end) in ends {
+        let edge = end - corner;
+        let (rise, length) = (edge.dot(d).squared(), edge.norm_squared());
+        if rise * best.1 <= best.0 * length {
+            best = (rise, length, Some((number, end)));
+        }
+    }
+    best.2
 }
 
 /// Sixteen directions round a circle.

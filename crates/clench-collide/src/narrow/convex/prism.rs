@@ -1,6 +1,6 @@
 //! A triangle of terrain with the ground below it: a convex body of six corners.
 
-use super::feature::{EDGE_SINE, Feature};
+use super::feature::{Feature, most_level};
 use crate::hull::FACE_COSINE;
 use clench_math::{Scalar, Vec3};
 
@@ -86,17 +86,10 @@ impl<S: Scalar> Prism<S> {
         }
         let first = self.furthest(d);
         let corner = self.corners[first];
-        let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
-        for next in NEIGHBORS[first] {
-            let edge = self.corners[next] - corner;
-            let (rise, square) = (edge.dot(d).squared(), edge.norm_squared());
-            if rise * best.1 <= best.0 * square {
-                best = (rise, square, Some(next));
-            }
-        }
+        let ends = NEIGHBORS[first].into_iter().map(|k| (k, self.corners[k]));
         feature.corners.push(corner);
         feature
             .corners
-            .extend(best.2.map(|next| self.corners[next]));
+            .extend(most_level(corner, ends, d).map(|(_, end)| end));
     }
 }

@@ -119,15 +119,22 @@ pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>
         return pair.gap(start);
     }
     match cap(pair, start) {
-        Some((cap, None)) => cap,
-        Some((_, Some(beside))) => climb(pair, beside, flats),
+        Some(Cap::Touches(gap)) => gap,
+        Some(Cap::Passes(beside)) => climb(pair, beside, flats),
         None => climb(pair, start, flats),
     }
 }
 
-/// The gap of the best cap that faces `n` more or less, if better than that of `n`; and if the gap grows beside it, where to
-/// look.
-fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<(Gap<S>, Option<Vec3<S>>)> {
+/// What a flat cap has to say.
+enum Cap<S> {
+    /// The gap across it, the largest around.
+    Touches(Gap<S>),
+    /// The gap grows beside it: a direction to look along.
+    Passes(Vec3<S>),
+}
+
+/// The best cap that faces `n` more or less, if the gap across it is larger than that of `n`.
+fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
     let mut best = None;
     let mut found = None;
     let z = Vec3::new(S::ZERO, S::ZERO, S::ONE);
@@ -154,21 +161,21 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<(Gap<S>, Option<Vec3<S>>
         let lateral = vertex.w + to_middle;
         let lateral = lateral - axis * axis.dot(lateral);
         let (toward, distance) = lateral.normalize();
-        let beside = (distance > radius * (S::ONE + S::new(1e-9)) && distance > S::new(1e-15))
-            .then(|| {
-                // Beside the axis, for on it the rim has no direction.
-                let start = axis + toward * S::EPSILON.sqrt();
-                let [bend] = pair.curvature(start, [(toward, toward)]);
-                let turn = (distance - radius) / (bend + gap).max(pair.tolerance);
-                let turn = turn.clamp(S::EPSILON.sqrt(), S::new(LARGEST_TURN));
-                (axis + toward * turn).normalize().0
-            });
-        let capped = Gap {
-            normal: axis,
-            gap,
-            settled: beside.is_none(),
-        };
-        found = Some((capped, beside));
+        let passes = distance > radius * (S::ONE + S::new(1e-9)) && distance > S::new(1e-15);
+        found = Some(if passes {
+            // Beside the axis, for on it the rim has no direction.
+            let start = axis + toward * S::EPSILON.sqrt();
+            let [bend] = pair.curvature(start, [(toward, toward)]);
+            let turn = (distance - radius) / (bend + gap).max(pair.tolerance);
+            let turn = turn.clamp(S::EPSILON.sqrt(), S::new(LARGEST_TURN));
+            Cap::Passes((axis + toward * turn).normalize().0)
+        } else {
+            Cap::Touches(Gap {
+                normal: axis,
+                gap,
+                settled: true,
+            })
+        });
     }
     found
 }

@@ -115,9 +115,9 @@ struct Search<S> {
 }
 
 /// Takes the deeper of two points.
-fn deepen<S: Scalar>(deepest: &mut Option<Point<S>>, point: Option<Point<S>>) {
-    if deepest.is_none_or(|old| point.is_some_and(|p| p.distance < old.distance)) {
-        *deepest = point;
+fn deepen<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
+    if deepest.is_none_or(|old| point.distance < old.distance) {
+        *deepest = Some(point);
     }
 }
 
@@ -147,7 +147,8 @@ impl<S: Scalar> Search<S> {
         let offset = self.offset - triangle.origin;
         let local = -self.rotation.transpose_mul(normal);
         let lowest = self.rotation * body.support(local, local) + offset;
-        let distance = normal.dot(lowest) - body.radius;
+        let height = normal.dot(lowest);
+        let distance = height - body.radius;
         if distance > self.margin {
             return;
         }
@@ -155,11 +156,12 @@ impl<S: Scalar> Search<S> {
             return;
         }
         // No deeper than what is known: then only what lies on the face or stands out can add to it.
+        let rotation = self.rotation;
         let over = Over {
             triangle,
             normal,
             body,
-            rotation: &self.rotation,
+            rotation: &rotation,
             offset,
         };
         if distance >= self.known() - self.tolerance
@@ -171,18 +173,17 @@ impl<S: Scalar> Search<S> {
             return;
         }
         // Deep within its walls: then no way out of the prism is shorter than through its face.
-        let height = normal.dot(lowest);
         let foot = lowest - normal * height.max(S::ZERO);
         if triangle.surrounds(foot, (-height).max(S::ZERO)) {
-            deepen(&mut self.deepest, Some(over.contact(lowest)));
+            deepen(&mut self.deepest, over.contact(lowest));
             over.touch(self.margin, &mut self.found);
             return;
         }
         let prism = triangle.prism();
-        let pair = Pair::between(Body::of_prism(&prism), body.clone(), self.rotation, offset);
+        let pair = Pair::between(Body::of_prism(&prism), body.clone(), rotation, offset);
         let (start, mut simplex) = begin(&pair);
         match nearest(&pair, start, self.margin, &mut simplex) {
-            Ok(best) => self.judge(triangle, &pair, distance, best, &simplex),
+            Ok(best) => self.judge(&over, &pair, distance, best, &simplex),
             Err(gap) => self.apart = gap.normal,
         }
     }
@@ -209,38 +210,28 @@ impl<S: Scalar> Search<S> {
     /// Adds the contacts of a triangle, given its distance along its normal and the largest gap of its prism.
     fn judge(
         &mut self,
-        triangle: &Triangle<S>,
+        over: &Over<S>,
         pair: &Pair<S>,
         distance: S,
         best: Gap<S>,
         simplex: &Simplex<S>,
     ) {
         let pose = Pose {
-            position: triangle.origin,
+            position: over.triangle.origin,
             rotation: Mat3::IDENTITY,
         };
         let shape = &Shape::new(ShapeKind::HeightField, Vec3::ZERO);
         let ground = Placed { shape, pose: &pose };
         let mut touching = Points::new();
         patch(pair, ground, best, simplex, self.margin, &mut touching);
-        let mut deepest = None;
-        touching.iter().for_each(|p| deepen(&mut deepest, Some(*p)));
-        let normal = triangle.normal();
-        let level = (best.normal - normal).norm() <= S::new(LEVEL) * same_direction();
-        let over = Over {
-            triangle,
-            normal,
-            body: &pair.b,
-            rotation: &pair.rotation,
-            offset: pair.offset,
-        };
-        if level || triangle.admits(best.normal) {
-            deepen(&mut self.deepest, deepest);
+        let level = (best.normal - over.normal).norm() <= S::new(LEVEL) * same_direction();
+        if level || over.triangle.admits(best.normal) {
+            touching.iter().for_each(|p| deepen(&mut self.deepest, *p));
             if !level || !over.touch(self.margin, &mut self.found) {
                 touching.into_iter().for_each(|p| self.found.add(p));
             }
         } else {
-            deepen(&mut self.sideways, deepest);
+            touching.iter().for_each(|p| deepen(&mut self.sideways, *p));
             if over.touch(self.margin, &mut self.doubtful) {
                 self.shallowest = Real::max(self.shallowest, distance);
             }
