@@ -40,21 +40,22 @@ impl<S: Scalar> Prism<S> {
 
     /// The radius of a sphere about the origin that holds it, m.
     pub fn reach(&self) -> S {
-        let squares = self.corners.iter().map(|v| v.norm_squared());
-        squares.fold(S::ZERO, |most, s| most.max(s)).sqrt()
+        let most = |along: [S; 4]| along.into_iter().fold(S::ZERO, |most, x| most.max(x.abs()));
+        let [p, q, r, below, ..] = self.corners;
+        let [x, y] = [[p.x, q.x, r.x, p.x], [p.y, q.y, r.y, p.y]].map(most);
+        Vec3::new(x, y, most([p.z, q.z, r.z, below.z])).norm()
     }
 
     /// The number of the corner that is furthest along `d`.
     #[inline]
     fn furthest(&self, d: Vec3<S>) -> usize {
         let first = if d.z < S::ZERO { 3 } else { 0 };
-        let [p, q, r] = [0, 1, 2].map(|k| self.corners[first + k].dot(d));
-        let mut best = (p, first);
-        if q > best.0 {
-            best = (q, first + 1);
-        }
-        if r > best.0 {
-            best = (r, first + 2);
+        let mut best = (self.corners[first].dot(d), first);
+        for k in [first + 1, first + 2] {
+            let along = self.corners[k].dot(d);
+            if along > best.0 {
+                best = (along, k);
+            }
         }
         best.1
     }

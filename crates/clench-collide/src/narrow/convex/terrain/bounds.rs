@@ -1,6 +1,6 @@
-//! Where a body is seen from above: its extent along the axes and along the diagonals of cells.
+//! Where a body is, seen from above and along some slopes: which triangles it may reach.
 
-use super::grid::Grid;
+use super::grid::{Grid, Node};
 use crate::narrow::convex::body::Body;
 use clench_math::{Mat3, Scalar, Vec3};
 
@@ -11,6 +11,8 @@ pub(super) struct Bounds {
     /// Between two lines along the diagonals of cells, and between two along their other diagonals: the least and most of
     /// x·dy − y·dx and x·dy + y·dx, with the lengths dx, dy of a cell.
     diagonals: [(f64, f64); 2],
+    /// The least z − x, z + x, z − y and z + y.
+    slopes: [f64; 4],
     /// The lowest point of the body.
     pub lowest: Vec3<f64>,
 }
@@ -34,22 +36,28 @@ impl Bounds {
             let point = *rotation * body.support(local, local) + offset;
             (point, ((point.dot(d) + around) * length).to_f64())
         };
-        let extent = |d: Vec3<f64>| (-furthest(-d).1, furthest(d).1);
-        let axes = Mat3::IDENTITY.rows.map(extent);
+        let most = |d: Vec3<f64>| furthest(d).1;
+        let extent = |d: Vec3<f64>| (-most(-d), most(d));
         let [dx, dy] = grid.step;
+        let (x, y) = (
+            extent(Vec3::new(1.0, 0.0, 0.0)),
+            extent(Vec3::new(0.0, 1.0, 0.0)),
+        );
+        let (lowest, bottom) = furthest(Vec3::new(0.0, 0.0, -1.0));
+        let top = most(Vec3::new(0.0, 0.0, 1.0));
+        let slopes = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
         Some(Bounds {
-            low: Vec3::from_array(axes.map(|(low, _)| low)),
-            high: Vec3::from_array(axes.map(|(_, high)| high)),
+            low: Vec3::new(x.0, y.0, -bottom),
+            high: Vec3::new(x.1, y.1, top),
             diagonals: [Vec3::new(dy, -dx, 0.0), Vec3::new(dy, dx, 0.0)].map(extent),
-            lowest: {
-                let (point, _) = furthest(Vec3::new(0.0, 0.0, -1.0));
-                Vec3::from_array(point.to_array().map(S::to_f64))
-            },
+            slopes: slopes.map(|(x, y)| -most(Vec3::new(x, y, -1.0))),
+            lowest: Vec3::from_array(lowest.to_array().map(S::to_f64)),
         })
     }
 
-    /// Whether they reach the left and the right triangle of a cell, given where its lowest corner is.
-    pub fn reach(&self, [x, y]: [f64; 2], grid: &Grid) -> [bool; 2] {
+    /// Whether they reach the left and the right triangle of a cell.
+    pub fn reach(&self, cell: Node, grid: &Grid) -> [bool; 2] {
+        let [x, y] = grid.corner(cell);
         let [dx, dy] = grid.step;
         let area = dx * dy;
         let (aside, along) = (x * dy - y * dx, x * dy + y * dx);
@@ -58,9 +66,14 @@ impl Bounds {
             self.diagonals[1],
         );
         let near = along <= to && along + 2.0 * area >= from;
+        let slopes = self.slopes;
+        let steep = (slopes[0] + x).max(slopes[1] - x - dx);
+        let steep = steep.max(slopes[2] + y).max(slopes[3] - y - dy);
+        let below = self.low.z.max(steep);
+        let [left, right] = grid.tops(cell);
         [
-            near && aside - area <= high && aside >= low,
-            near && aside <= high && aside + area >= low,
+            near && aside - area <= high && aside >= low && left >= below,
+            near && aside <= high && aside + area >= low && right >= below,
         ]
     }
 }

@@ -2,12 +2,12 @@
 
 use super::bounds::Bounds;
 use crate::HeightField;
-use crate::narrow::convex::prism::Prism;
+use crate::narrow::convex::{pair::Gap, prism::Prism};
 use clench_math::{Real, Scalar, Vec3};
 use std::ops::RangeInclusive;
 
 /// Row and column of a grid point; those beyond the border do not exist.
-type Node = [i64; 2];
+pub(super) type Node = [i64; 2];
 
 /// Directions count as one up to this angle, rad.
 pub(super) fn same_direction<S: Scalar>() -> S {
@@ -67,6 +67,13 @@ impl<'a> Grid<'a> {
         ]
     }
 
+    /// How high the left and the right triangle of a cell reach, m.
+    pub fn tops(&self, [row, column]: Node) -> [f64; 2] {
+        let height = |r, c| self.height([row + r, column + c]);
+        let both = height(0, 0).max(height(1, 1));
+        [both.max(height(1, 0)), both.max(height(0, 1))]
+    }
+
     fn height(&self, [row, column]: Node) -> f64 {
         self.elevation * self.field.heights()[row as usize * self.field.columns() + column as usize]
     }
@@ -119,12 +126,6 @@ impl<'a, S: Scalar> Triangle<'a, S> {
     pub fn middle(&self) -> Vec3<S> {
         let [p, q, r] = self.corners;
         (p + q + r) * S::new(1.0 / 3.0)
-    }
-
-    /// Whether all of it is lower than a height, m.
-    pub fn is_below(&self, height: S) -> bool {
-        let [_, q, r] = self.corners;
-        self.origin.z + q.z.max(r.z).max(S::ZERO) < height
     }
 
     /// Whether a point is within the ground below it, and at least so far from walls and bottom, m.
@@ -193,25 +194,30 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         (0..3).all(bends_up)
     }
 
-    /// Whether `n` is a normal of the whole field where the prism reaches furthest along it: not where the field goes on beyond
-    /// the prism's wall, or rises beyond its edge.
-    pub fn admits(&self, n: Vec3<S>) -> bool {
+    /// The feature that reaches furthest along the normal of a gap.
+    pub fn ridge(&self, gap: Gap<S>) -> Ridge<S> {
+        let n = gap.normal;
         let flat = n.z < -same_direction::<S>();
-        let level = |v: Vec3<S>| {
-            if flat {
-                Vec3::new(v.x, v.y, S::ZERO)
-            } else {
-                v
-            }
-        };
-        let corners = self.corners.map(level);
+        let corners = self.corners.map(|corner| level(corner, flat));
         let reach = corners.map(|v| v.dot(n));
         let most = reach[0].max(reach[1]).max(reach[2]);
         let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
-        let touches = reach.map(|r| r >= most - size * same_direction());
+        Ridge {
+            gap,
+            nodes: self.nodes,
+            touches: reach.map(|r| r >= most - size * same_direction()),
+        }
+    }
+
+    /// Whether a feature's direction is a normal of the whole field there: not where the field goes on beyond the prism's wall, or
+    /// rises beyond its edge.
+    pub fn admits(&self, ridge: &Ridge<S>) -> bool {
+        let (n, touches) = (ridge.gap.normal, ridge.touches);
+        let flat = n.z < -same_direction::<S>();
+        let corners = self.corners.map(|corner| level(corner, flat));
         let below = |from: Vec3<S>, to: Option<Vec3<S>>| {
             to.is_none_or(|to| {
-                let edge = level(to) - from;
+                let edge = level(to, flat) - from;
                 edge.dot(n) <= edge.norm() * same_direction()
             })
         };
@@ -224,6 +230,29 @@ impl<'a, S: Scalar> Triangle<'a, S> {
                 !touches[k] || AROUND.into_iter().all(beside)
             }),
         }
+    }
+
+    /// Whether it has all corners of a feature.
+    pub fn has(&self, ridge: &Ridge<S>) -> bool {
+        let mut corners = ridge.nodes.iter().zip(ridge.touches);
+        corners.all(|(node, touches)| !touches || self.nodes.contains(node))
+    }
+}
+
+/// A corner, an edge or the face of a triangle, and the gap along a normal there.
+pub(super) struct Ridge<S> {
+    pub gap: Gap<S>,
+    nodes: [Node; 3],
+    /// Which of the nodes belong to it.
+    touches: [bool; 3],
+}
+
+/// A point, or, of a direction that leads downwards, what is below and above it.
+fn level<S: Scalar>(v: Vec3<S>, flat: bool) -> Vec3<S> {
+    if flat {
+        Vec3::new(v.x, v.y, S::ZERO)
+    } else {
+        v
     }
 }
 

@@ -27,10 +27,11 @@ use crate::narrow::{
     one_by_one::{Point, Points, one_by_one},
 };
 use crate::{Asset, Contacts, Pose, Shape, ShapeKind};
+use arrayvec::ArrayVec;
 use bounds::Bounds;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 use face::Over;
-use grid::{Grid, Triangle, same_direction};
+use grid::{Grid, Ridge, Triangle, same_direction};
 use spread::Spread;
 
 /// How many times as far as the shortest way out of any prism a face may still be a way out of the field.
@@ -38,6 +39,9 @@ const DETOUR: f64 = 2.0;
 
 /// Directions within so many times what counts as one are that of a face: more than a triangle's corners tell apart.
 const LEVEL: f64 = 8.0;
+
+/// So many ridges are remembered; those after them may be found more than once.
+const RIDGES: usize = 4;
 
 /// The contacts of a height field and a shape that is bounded and convex.
 pub(in crate::narrow) fn terrain<T: Real>(
@@ -64,12 +68,9 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
         return;
     };
     let mut look_at = |cell| {
-        let reached = bounds.reach(grid.corner(cell), &grid);
+        let reached = bounds.reach(cell, &grid);
         for half in (0..2).filter(|half| reached[*half]) {
-            let triangle = Triangle::of_cell(&grid, cell, half);
-            if !triangle.is_below(S::new(bounds.low.z)) {
-                search.look_at(&triangle, &body);
-            }
+            search.look_at(&Triangle::of_cell(&grid, cell, half), &body);
         }
     };
     // What is deepest saves much of the work on the rest.
@@ -84,7 +85,8 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
             }
         }
     }
-    for point in search.finish().points() {
+    search.finish();
+    for point in search.found.points() {
         points.push(Point {
             position: a.pose.point(point.position),
             normal: a.pose.rotation * point.normal,
@@ -106,6 +108,8 @@ struct Search<S> {
     doubtful: Spread<S>,
     /// The least distance along directions that count, and a contact that has it.
     deepest: Option<Point<S>>,
+    /// What stands out and touches. The triangles around it all do so there.
+    ridges: ArrayVec<Ridge<S>, RIDGES>,
     /// The largest distance along normals of doubtful faces.
     shallowest: S,
     /// The least distance along directions that do not count, and its contact.
@@ -135,6 +139,7 @@ impl<S: Scalar> Search<S> {
             found: Spread::new(size, tolerance),
             doubtful: Spread::new(size, tolerance),
             deepest: None,
+            ridges: ArrayVec::new(),
             shallowest: -S::INFINITY,
             sideways: None,
             apart: Vec3::ZERO,
@@ -143,16 +148,16 @@ impl<S: Scalar> Search<S> {
 
     /// Adds the contacts of a triangle.
     fn look_at(&mut self, triangle: &Triangle<S>, body: &Body<S>) {
-        let normal = triangle.normal();
         let offset = self.offset - triangle.origin;
+        if self.passes(triangle, body, offset, offset - triangle.middle()) {
+            return;
+        }
+        let normal = triangle.normal();
         let local = -self.rotation.transpose_mul(normal);
         let lowest = self.rotation * body.support(local, local) + offset;
         let height = normal.dot(lowest);
         let distance = height - body.radius;
         if distance > self.margin {
-            return;
-        }
-        if self.passes(triangle, body, offset, offset - triangle.middle()) {
             return;
         }
         // No deeper than what is known: then only what lies on the face or stands out can add to it.
@@ -181,6 +186,13 @@ impl<S: Scalar> Search<S> {
         }
         let prism = triangle.prism();
         let pair = Pair::between(Body::of_prism(&prism), body.clone(), rotation, offset);
+        // What stands out touches along one normal with all of the ground around it.
+        if let Some(ridge) = self.ridges.iter().find(|ridge| triangle.has(ridge)) {
+            let simplex = Simplex::new(pair.vertex(ridge.gap.normal));
+            let touching = self.patch(&over, &pair, ridge.gap, &simplex);
+            touching.iter().for_each(|p| self.found.add(*p));
+            return;
+        }
         let (start, mut simplex) = begin(&pair);
         match nearest(&pair, start, self.margin, &mut simplex) {
             Ok(best) => self.judge(&over, &pair, distance, best, &simplex),
@@ -196,8 +208,8 @@ impl<S: Scalar> Search<S> {
         }
         let local = -self.rotation.transpose_mul(n);
         let nearest = self.rotation * body.support(local, local) + offset;
-        let [p, q, r] = triangle.corners.map(|corner| n.dot(corner));
-        let gap = n.dot(nearest) - p.max(q).max(r);
+        let [p, q, r] = triangle.corners;
+        let gap = n.dot(nearest) - n.dot(p).max(n.dot(q)).max(n.dot(r));
         let reach = self.margin + body.radius;
         gap > S::ZERO && gap.squared() > reach.squared() * n.norm_squared()
     }
@@ -216,6 +228,36 @@ impl<S: Scalar> Search<S> {
         best: Gap<S>,
         simplex: &Simplex<S>,
     ) {
+        let depth = best.gap - pair.b.radius;
+        let level = (best.normal - over.normal).norm() <= S::new(LEVEL) * same_direction();
+        let ridge = over.triangle.ridge(best);
+        if level || over.triangle.admits(&ridge) {
+            let touching = self.patch(over, pair, best, simplex);
+            touching.iter().for_each(|p| deepen(&mut self.deepest, *p));
+            if !level || !over.touch(self.margin, &mut self.found) {
+                touching.iter().for_each(|p| self.found.add(*p));
+                // Where there is no more room it is found again.
+                let _ = self.ridges.try_push(ridge);
+            }
+        } else {
+            if self.sideways.is_none_or(|old| depth < old.distance) {
+                let touching = self.patch(over, pair, best, simplex);
+                touching.iter().for_each(|p| deepen(&mut self.sideways, *p));
+            }
+            if over.touch(self.margin, &mut self.doubtful) {
+                self.shallowest = Real::max(self.shallowest, distance);
+            }
+        }
+    }
+
+    /// The contacts of the ground below a triangle.
+    fn patch(
+        &self,
+        over: &Over<S>,
+        pair: &Pair<S>,
+        best: Gap<S>,
+        simplex: &Simplex<S>,
+    ) -> Points<S> {
         let pose = Pose {
             position: over.triangle.origin,
             rotation: Mat3::IDENTITY,
@@ -224,22 +266,11 @@ impl<S: Scalar> Search<S> {
         let ground = Placed { shape, pose: &pose };
         let mut touching = Points::new();
         patch(pair, ground, best, simplex, self.margin, &mut touching);
-        let level = (best.normal - over.normal).norm() <= S::new(LEVEL) * same_direction();
-        if level || over.triangle.admits(best.normal) {
-            touching.iter().for_each(|p| deepen(&mut self.deepest, *p));
-            if !level || !over.touch(self.margin, &mut self.found) {
-                touching.into_iter().for_each(|p| self.found.add(p));
-            }
-        } else {
-            touching.iter().for_each(|p| deepen(&mut self.sideways, *p));
-            if over.touch(self.margin, &mut self.doubtful) {
-                self.shallowest = Real::max(self.shallowest, distance);
-            }
-        }
+        touching
     }
 
-    /// All contacts. The body is in the field at least as deep as in any prism.
-    fn finish(mut self) -> Spread<S> {
+    /// Leaves all contacts in what is found. The body is in the field at least as deep as in any prism.
+    fn finish(&mut self) {
         let depth = |p: Option<Point<S>>| p.map_or(S::INFINITY, |p| p.distance);
         let (known, other) = (depth(self.deepest), depth(self.sideways));
         let least = Real::min(known, other * S::new(DETOUR));
@@ -258,6 +289,5 @@ impl<S: Scalar> Search<S> {
                 self.found.add(witness);
             }
         }
-        self.found
     }
 }
