@@ -1,34 +1,34 @@
 //! The point nearest to the origin in the hull of up to four vertices.
 
 use super::pair::Vertex;
+use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
 /// One to four vertices. Of those added one by one, all but the last are known to be needed for the nearest point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Simplex<S> {
-    vertices: [Vertex<S>; 4],
-    len: usize,
+    vertices: ArrayVec<Vertex<S>, 4>,
     /// The nearest point is the sum of weight times vertex.
     weights: [S; 4],
 }
 
 impl<S: Scalar> Simplex<S> {
     pub fn new(vertex: Vertex<S>) -> Self {
+        let mut vertices = ArrayVec::new_const();
+        vertices.push(vertex);
         Simplex {
-            vertices: [vertex; 4],
-            len: 1,
+            vertices,
             weights: [S::ONE, S::ZERO, S::ZERO, S::ZERO],
         }
     }
     /// Some vertices, at most four; which of them the nearest point needs is open.
     pub fn unsolved(vertices: &[Vertex<S>]) -> Self {
         let mut simplex = Simplex::new(vertices[0]);
-        simplex.vertices[..vertices.len()].copy_from_slice(vertices);
-        simplex.len = vertices.len();
+        simplex.vertices.extend(vertices[1..].iter().copied());
         simplex
     }
     pub fn vertices(&self) -> &[Vertex<S>] {
-        &self.vertices[..self.len]
+        &self.vertices
     }
     /// The nearest point as what it is on the first body and on the second, each in its own frame.
     pub fn nearest(&self) -> (Vec3<S>, Vec3<S>) {
@@ -47,9 +47,8 @@ impl<S: Scalar> Simplex<S> {
     /// Adds a vertex and drops those that the nearest point does without. Gives that point, or nothing where the origin is
     /// inside.
     pub fn add(&mut self, vertex: Vertex<S>) -> Option<Vec3<S>> {
-        self.vertices[self.len] = vertex;
-        self.len += 1;
-        let nearest = match self.len {
+        self.vertices.push(vertex);
+        let nearest = match self.vertices.len() {
             2 => self.on_segment(1, 0),
             3 => self.on_triangle(2, 0, 1),
             _ => self.on_tetrahedron()?,
@@ -74,7 +73,7 @@ impl<S: Scalar> Simplex<S> {
             }
         }
         // None is left where no weight is a number.
-        self.len = kept.max(1);
+        self.vertices.truncate(kept.max(1));
     }
 
     fn w(&self, index: usize) -> Vec3<S> {
