@@ -18,6 +18,8 @@ const FACES: [&[usize]; 5] = [
     &[1, 4, 5, 2],
     &[2, 5, 3, 0],
 ];
+/// A unit direction that rises by more is no normal of a wall, by [`FACE_COSINE`].
+const RISE: f64 = 0.1;
 /// The corners that share an edge with each.
 const NEIGHBORS: [[usize; 3]; 6] = [
     [1, 2, 3],
@@ -70,7 +72,13 @@ impl<S: Scalar> Prism<S> {
     pub fn feature(&self, d: Vec3<S>, feature: &mut Feature<S>) {
         // A cosine as the squares of two lengths that it is the quotient of.
         let mut best = (S::new(FACE_COSINE).squared(), S::ONE, None);
-        for face in FACES {
+        // Of directions that rise so far only the top is across.
+        let faces = if d.z > S::new(RISE) {
+            &FACES[..1]
+        } else {
+            &FACES[..]
+        };
+        for &face in faces {
             let [p, q, r] = [face[0], face[1], face[2]].map(|k| self.corners[k]);
             let normal = (q - p).cross(r - p);
             let (along, square) = (normal.dot(d), normal.norm_squared());

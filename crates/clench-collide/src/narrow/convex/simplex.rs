@@ -49,7 +49,7 @@ impl<S: Scalar> Simplex<S> {
     pub fn add(&mut self, vertex: Vertex<S>) -> Option<Vec3<S>> {
         self.vertices.push(vertex);
         let nearest = match self.vertices.len() {
-            2 => self.on_segment(1, 0),
+            2 => on_segment((1, self.w(1)), (0, self.w(0))),
             3 => self.on_triangle(2, 0, 1),
             _ => self.on_tetrahedron()?,
         };
@@ -80,67 +80,8 @@ impl<S: Scalar> Simplex<S> {
         self.vertices[index].w
     }
 
-    fn on_segment(&self, i: usize, j: usize) -> Nearest<S> {
-        let (p, q) = (self.w(i), self.w(j));
-        let along = q - p;
-        let ahead = -p.dot(along);
-        if ahead <= S::ZERO {
-            return Nearest::vertex(i, p);
-        }
-        let square = along.norm_squared();
-        if ahead >= square {
-            return Nearest::vertex(j, q);
-        }
-        Nearest::edge((i, p), (j, q), ahead, square)
-    }
-
-    /// By the regions of space in which a corner, an edge or the inside is nearest (Ericson, Real-Time Collision Detection,
-    /// 5.1.5).
     fn on_triangle(&self, i: usize, j: usize, k: usize) -> Nearest<S> {
-        let (a, b, c) = (self.w(i), self.w(j), self.w(k));
-        let (ab, ac) = (b - a, c - a);
-        let zero = S::ZERO;
-        let (d1, d2) = (-ab.dot(a), -ac.dot(a));
-        if d1 <= zero && d2 <= zero {
-            return Nearest::vertex(i, a);
-        }
-        let (d3, d4) = (-ab.dot(b), -ac.dot(b));
-        if d3 >= zero && d4 <= d3 {
-            return Nearest::vertex(j, b);
-        }
-        let vc = d1 * d4 - d3 * d2;
-        if vc <= zero && d1 >= zero && d3 <= zero {
-            return Nearest::edge((i, a), (j, b), d1, d1 - d3);
-        }
-        let (d5, d6) = (-ab.dot(c), -ac.dot(c));
-        if d6 >= zero && d5 <= d6 {
-            return Nearest::vertex(k, c);
-        }
-        let vb = d5 * d2 - d1 * d6;
-        if vb <= zero && d2 >= zero && d6 <= zero {
-            return Nearest::edge((i, a), (k, c), d2, d2 - d6);
-        }
-        let va = d3 * d6 - d5 * d4;
-        if va <= zero && d4 >= d3 && d5 >= d6 {
-            let (ahead, behind) = (d4 - d3, d5 - d6);
-            return Nearest::edge((j, b), (k, c), ahead, ahead + behind);
-        }
-        let (sum, normal) = (va + vb + vc, ab.cross(ac));
-        let square = normal.norm_squared();
-        if !(sum > zero && square > zero) {
-            // Without area.
-            let sides = [(i, j), (j, k), (k, i)].map(|(i, j)| self.on_segment(i, j));
-            return sides[1..]
-                .iter()
-                .fold(sides[0], |best, side| best.nearer(*side));
-        }
-        let (v, w) = (vb / sum, vc / sum);
-        // Along the normal the point keeps its direction where the weighted sum would lose it.
-        Nearest {
-            point: normal * (normal.dot(a) / square),
-            of: [i, j, k],
-            weights: [S::ONE - v - w, v, w],
-        }
+        on_triangle([i, j, k].map(|k| (k, self.w(k))))
     }
 
     /// The nearest of the three faces with the new vertex, of those that the origin is beyond; nothing if it is beyond none.
@@ -161,15 +102,83 @@ impl<S: Scalar> Simplex<S> {
     }
 }
 
+fn on_segment<S: Scalar>((i, p): (usize, Vec3<S>), (j, q): (usize, Vec3<S>)) -> Nearest<S> {
+    let along = q - p;
+    let ahead = -p.dot(along);
+    if ahead <= S::ZERO {
+        return Nearest::vertex(i, p);
+    }
+    let square = along.norm_squared();
+    if ahead >= square {
+        return Nearest::vertex(j, q);
+    }
+    Nearest::edge((i, p), (j, q), ahead, square)
+}
+
+/// The point of a triangle nearest to the origin, by the regions of space in which a corner, an edge or the inside is nearest
+/// (Ericson, Real-Time Collision Detection, 5.1.5). Its corners have numbers.
+pub(super) fn on_triangle<S: Scalar>(
+    [(i, a), (j, b), (k, c)]: [(usize, Vec3<S>); 3],
+) -> Nearest<S> {
+    let (ab, ac) = (b - a, c - a);
+    let zero = S::ZERO;
+    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
+    if d1 <= zero && d2 <= zero {
+        return Nearest::vertex(i, a);
+    }
+    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
+    if d3 >= zero && d4 <= d3 {
+        return Nearest::vertex(j, b);
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= zero && d1 >= zero && d3 <= zero {
+        return Nearest::edge((i, a), (j, b), d1, d1 - d3);
+    }
+    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
+    if d6 >= zero && d5 <= d6 {
+        return Nearest::vertex(k, c);
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= zero && d2 >= zero && d6 <= zero {
+        return Nearest::edge((i, a), (k, c), d2, d2 - d6);
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= zero && d4 >= d3 && d5 >= d6 {
+        let (ahead, behind) = (d4 - d3, d5 - d6);
+        return Nearest::edge((j, b), (k, c), ahead, ahead + behind);
+    }
+    let (sum, normal) = (va + vb + vc, ab.cross(ac));
+    let square = normal.norm_squared();
+    if !(sum > zero && square > zero) {
+        // Without area.
+        let (a, b, c) = ((i, a), (j, b), (k, c));
+        let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| on_segment(p, q));
+        return sides[1..]
+            .iter()
+            .fold(sides[0], |best, side| best.nearer(*side));
+    }
+    let (v, w) = (vb / sum, vc / sum);
+    // Along the normal the point keeps its direction where the weighted sum would lose it.
+    Nearest {
+        point: normal * (normal.dot(a) / square),
+        of: [i, j, k],
+        weights: [S::ONE - v - w, v, w],
+    }
+}
+
 /// A point as the weighted sum of some vertices.
 #[derive(Clone, Copy)]
-struct Nearest<S> {
-    point: Vec3<S>,
+pub(super) struct Nearest<S> {
+    pub point: Vec3<S>,
     of: [usize; 3],
     weights: [S; 3],
 }
 
 impl<S: Scalar> Nearest<S> {
+    /// Whether it is on no side of a triangle.
+    pub fn is_inside(&self) -> bool {
+        self.of[1] != self.of[2]
+    }
     fn vertex(i: usize, p: Vec3<S>) -> Self {
         Nearest {
             point: p,

@@ -55,7 +55,8 @@ impl Bounds {
         })
     }
 
-    /// Whether they reach the left and the right triangle of a cell.
+    /// Whether they reach the left and the right triangle of a cell. No branches: which it is cannot be predicted.
+    #[inline]
     pub fn reach(&self, cell: Node, grid: &Grid) -> [bool; 2] {
         let [x, y] = grid.corner(cell);
         let [dx, dy] = grid.step;
@@ -65,15 +66,15 @@ impl Bounds {
             [self.diagonals[0].0, self.diagonals[0].1],
             self.diagonals[1],
         );
-        let near = along <= to && along + 2.0 * area >= from;
+        let near = (along <= to) & (along + 2.0 * area >= from);
         let slopes = self.slopes;
         let steep = (slopes[0] + x).max(slopes[1] - x - dx);
         let steep = steep.max(slopes[2] + y).max(slopes[3] - y - dy);
         let below = self.low.z.max(steep);
         let [left, right] = grid.tops(cell);
         [
-            near && aside - area <= high && aside >= low && left >= below,
-            near && aside <= high && aside + area >= low && right >= below,
+            near & (aside - area <= high) & (aside >= low) & (left >= below),
+            near & (aside <= high) & (aside + area >= low) & (right >= below),
         ]
     }
 }

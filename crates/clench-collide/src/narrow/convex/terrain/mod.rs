@@ -9,6 +9,7 @@
 //!
 //! The work grows with the number of cells below the body's bounding box.
 
+mod ball;
 mod bounds;
 mod face;
 mod grid;
@@ -67,8 +68,7 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     let Some([rows, columns]) = grid.window(&bounds) else {
         return;
     };
-    let mut look_at = |cell| {
-        let reached = bounds.reach(cell, &grid);
+    let mut look_at = |cell, reached: [bool; 2]| {
         for half in (0..2).filter(|half| reached[*half]) {
             search.look_at(&Triangle::of_cell(&grid, cell, half), &body);
         }
@@ -76,12 +76,14 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     // What is deepest saves much of the work on the rest.
     let first = grid.cell_at(bounds.lowest);
     if rows.contains(&first[0]) && columns.contains(&first[1]) {
-        look_at(first);
+        look_at(first, bounds.reach(first, &grid));
     }
     for row in rows {
         for column in columns.clone() {
-            if [row, column] != first {
-                look_at([row, column]);
+            let cell = [row, column];
+            let reached = bounds.reach(cell, &grid);
+            if (reached[0] | reached[1]) && cell != first {
+                look_at(cell, reached);
             }
         }
     }
@@ -149,6 +151,9 @@ impl<S: Scalar> Search<S> {
     /// Adds the contacts of a triangle.
     fn look_at(&mut self, triangle: &Triangle<S>, body: &Body<S>) {
         let offset = self.offset - triangle.origin;
+        if body.is_point() && self.ball(triangle, offset, body.radius) {
+            return;
+        }
         if self.passes(triangle, body, offset, offset - triangle.middle()) {
             return;
         }

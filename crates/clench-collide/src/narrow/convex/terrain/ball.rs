@@ -1,0 +1,44 @@
+//! A ball whose middle is above a triangle: what GJK would find, in closed form.
+
+use super::{Search, deepen, grid::Triangle};
+use crate::narrow::convex::{pair::Gap, simplex::on_triangle};
+use crate::narrow::one_by_one::Point;
+use clench_math::{Scalar, Vec3};
+
+/// So many times the tolerance the middle must be off the triangle for the direction between them to be exact.
+const CLEAR: f64 = 1e3;
+
+impl<S: Scalar> Search<S> {
+    /// Adds the contact of a triangle and a ball about `middle`. Whether it could tell: a middle that is lower than the nearest
+    /// point of the triangle may be nearer to the walls below.
+    pub(super) fn ball(&mut self, triangle: &Triangle<S>, middle: Vec3<S>, radius: S) -> bool {
+        let [p, q, r] = triangle.corners;
+        let near = on_triangle([(0, p - middle), (1, q - middle), (2, r - middle)]);
+        let (normal, gap) = (-near.point).normalize();
+        if !(normal.z > S::ZERO && gap > self.tolerance * S::new(CLEAR)) {
+            return false;
+        }
+        let distance = gap - radius;
+        if distance > self.margin {
+            return true;
+        }
+        let known = Gap {
+            normal,
+            gap,
+            settled: true,
+        };
+        let half = S::new(0.5);
+        let point = Point {
+            position: triangle.origin + middle - normal * ((gap + radius) * half),
+            normal,
+            distance,
+        };
+        if near.is_inside() || triangle.admits(&triangle.ridge(known)) {
+            deepen(&mut self.deepest, point);
+            self.found.add(point);
+        } else {
+            deepen(&mut self.sideways, point);
+        }
+        true
+    }
+}
