@@ -1,8 +1,8 @@
-//! The triangles of a height field, one at a time, and which normals a solid has at their corners and edges.
+//! The triangles of a height field, one at a time, and what lies across their edges.
 
 use super::bounds::Bounds;
 use crate::HeightField;
-use crate::narrow::convex::{pair::Gap, prism::Prism};
+use crate::narrow::convex::prism::Prism;
 use clench_math::{Real, Scalar, Vec3};
 use std::ops::RangeInclusive;
 
@@ -82,7 +82,7 @@ impl<'a> Grid<'a> {
 /// A triangle of the surface, in a frame that begins at its first corner.
 pub(super) struct Triangle<'a, S> {
     grid: &'a Grid<'a>,
-    nodes: [Node; 3],
+    pub nodes: [Node; 3],
     /// Where its frame begins, in the field's frame.
     pub origin: Vec3<S>,
     /// Counter-clockwise seen from above.
@@ -147,7 +147,7 @@ impl<'a, S: Scalar> Triangle<'a, S> {
     }
 
     /// A grid point in its frame, if it exists.
-    fn node(&self, node: Node) -> Option<Vec3<S>> {
+    pub fn node(&self, node: Node) -> Option<Vec3<S>> {
         let [row, column] = node;
         let field = self.grid.field;
         let inside = (0..field.rows() as i64).contains(&row)
@@ -164,7 +164,7 @@ impl<'a, S: Scalar> Triangle<'a, S> {
     }
 
     /// The grid point across the edge that is opposite to corner `k`.
-    fn across(&self, k: usize) -> Option<Vec3<S>> {
+    pub fn across(&self, k: usize) -> Option<Vec3<S>> {
         let [p, q, r] = [
             self.nodes[(k + 1) % 3],
             self.nodes[(k + 2) % 3],
@@ -193,68 +193,4 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         };
         (0..3).all(bends_up)
     }
-
-    /// The feature that reaches furthest along the normal of a gap.
-    pub fn ridge(&self, gap: Gap<S>) -> Ridge<S> {
-        let n = gap.normal;
-        let flat = n.z < -same_direction::<S>();
-        let corners = self.corners.map(|corner| level(corner, flat));
-        let reach = corners.map(|v| v.dot(n));
-        let most = reach[0].max(reach[1]).max(reach[2]);
-        let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
-        Ridge {
-            gap,
-            nodes: self.nodes,
-            touches: reach.map(|r| r >= most - size * same_direction()),
-        }
-    }
-
-    /// Whether a feature's direction is a normal of the whole field there: not where the field goes on beyond the prism's wall, or
-    /// rises beyond its edge.
-    pub fn admits(&self, ridge: &Ridge<S>) -> bool {
-        let (n, touches) = (ridge.gap.normal, ridge.touches);
-        let flat = n.z < -same_direction::<S>();
-        let corners = self.corners.map(|corner| level(corner, flat));
-        let below = |from: Vec3<S>, to: Option<Vec3<S>>| {
-            to.is_none_or(|to| {
-                let edge = level(to, flat) - from;
-                edge.dot(n) <= edge.norm() * same_direction()
-            })
-        };
-        match touches.iter().filter(|t| **t).count() {
-            3 => true,
-            2 => (0..3).all(|k| touches[k] || below(corners[(k + 1) % 3], self.across(k))),
-            _ => (0..3).all(|k| {
-                let [row, column] = self.nodes[k];
-                let beside = |[r, c]: Node| below(corners[k], self.node([row + r, column + c]));
-                !touches[k] || AROUND.into_iter().all(beside)
-            }),
-        }
-    }
-
-    /// Whether it has all corners of a feature.
-    pub fn has(&self, ridge: &Ridge<S>) -> bool {
-        let mut corners = ridge.nodes.iter().zip(ridge.touches);
-        corners.all(|(node, touches)| !touches || self.nodes.contains(node))
-    }
 }
-
-/// A corner, an edge or the face of a triangle, and the gap along a normal there.
-pub(super) struct Ridge<S> {
-    pub gap: Gap<S>,
-    nodes: [Node; 3],
-    /// Which of the nodes belong to it.
-    touches: [bool; 3],
-}
-
-/// A point, or, of a direction that leads downwards, what is below and above it.
-fn level<S: Scalar>(v: Vec3<S>, flat: bool) -> Vec3<S> {
-    if flat {
-        Vec3::new(v.x, v.y, S::ZERO)
-    } else {
-        v
-    }
-}
-
-/// From a grid point to those that share an edge with it.
-const AROUND: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];

@@ -13,6 +13,7 @@ mod ball;
 mod bounds;
 mod face;
 mod grid;
+mod ridge;
 mod spread;
 
 use super::{
@@ -32,7 +33,8 @@ use arrayvec::ArrayVec;
 use bounds::Bounds;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 use face::Over;
-use grid::{Grid, Ridge, Triangle, same_direction};
+use grid::{Grid, Triangle, same_direction};
+use ridge::Ridge;
 use spread::Spread;
 
 /// How many times as far as the shortest way out of any prism a face may still be a way out of the field.

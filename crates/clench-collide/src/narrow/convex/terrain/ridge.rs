@@ -1,0 +1,71 @@
+//! What stands out of terrain and touches, and which normals the field has there.
+
+use super::grid::{Node, Triangle, same_direction};
+use crate::narrow::convex::pair::Gap;
+use clench_math::{Scalar, Vec3};
+
+/// A corner, an edge or the face of a triangle, and the gap along a normal there.
+pub(super) struct Ridge<S> {
+    pub gap: Gap<S>,
+    nodes: [Node; 3],
+    /// Which of the nodes belong to it.
+    touches: [bool; 3],
+}
+
+/// From a grid point to those that share an edge with it.
+const AROUND: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];
+
+impl<S: Scalar> Triangle<'_, S> {
+    /// The feature that reaches furthest along the normal of a gap.
+    pub fn ridge(&self, gap: Gap<S>) -> Ridge<S> {
+        let n = gap.normal;
+        let flat = n.z < -same_direction::<S>();
+        let corners = self.corners.map(|corner| level(corner, flat));
+        let reach = corners.map(|v| v.dot(n));
+        let most = reach[0].max(reach[1]).max(reach[2]);
+        let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
+        Ridge {
+            gap,
+            nodes: self.nodes,
+            touches: reach.map(|r| r >= most - size * same_direction()),
+        }
+    }
+
+    /// Whether a feature's direction is a normal of the whole field there: not where the field goes on beyond the prism's wall, or
+    /// rises beyond its edge.
+    pub fn admits(&self, ridge: &Ridge<S>) -> bool {
+        let (n, touches) = (ridge.gap.normal, ridge.touches);
+        let flat = n.z < -same_direction::<S>();
+        let corners = self.corners.map(|corner| level(corner, flat));
+        let below = |from: Vec3<S>, to: Option<Vec3<S>>| {
+            to.is_none_or(|to| {
+                let edge = level(to, flat) - from;
+                edge.dot(n) <= edge.norm() * same_direction()
+            })
+        };
+        match touches.iter().filter(|t| **t).count() {
+            3 => true,
+            2 => (0..3).all(|k| touches[k] || below(corners[(k + 1) % 3], self.across(k))),
+            _ => (0..3).all(|k| {
+                let [row, column] = self.nodes[k];
+                let beside = |[r, c]: Node| below(corners[k], self.node([row + r, column + c]));
+                !touches[k] || AROUND.into_iter().all(beside)
+            }),
+        }
+    }
+
+    /// Whether it has all corners of a feature.
+    pub fn has(&self, ridge: &Ridge<S>) -> bool {
+        let mut corners = ridge.nodes.iter().zip(ridge.touches);
+        corners.all(|(node, touches)| !touches || self.nodes.contains(node))
+    }
+}
+
+/// A point, or, of a direction that leads downwards, what is below and above it.
+fn level<S: Scalar>(v: Vec3<S>, flat: bool) -> Vec3<S> {
+    if flat {
+        Vec3::new(v.x, v.y, S::ZERO)
+    } else {
+        v
+    }
+}
