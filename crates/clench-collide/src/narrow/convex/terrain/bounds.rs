@@ -55,6 +55,16 @@ impl Bounds {
         })
     }
 
+    /// Between which x and y the part is that is lower than some height.
+    pub fn below(&self, height: f64) -> ([f64; 2], [f64; 2]) {
+        let [x, other_x, y, other_y] = self.slopes;
+        let (low, high) = (self.low, self.high);
+        (
+            [low.x.max(other_x - height), low.y.max(other_y - height)],
+            [high.x.min(height - x), high.y.min(height - y)],
+        )
+    }
+
     /// Whether they reach the left and the right triangle of a cell. No branches: which it is cannot be predicted.
     #[inline]
     pub fn reach(&self, cell: Node, grid: &Grid) -> [bool; 2] {

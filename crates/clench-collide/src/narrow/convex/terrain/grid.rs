@@ -44,12 +44,11 @@ impl<'a> Grid<'a> {
         cell.clamp(0.0, (count - 2) as f64) as i64
     }
 
-    /// The rows and columns of cells that bounds reach; nothing where they are off the field.
+    /// The rows and columns of cells that bounds reach, no higher than the highest; nothing where they are off the field.
     pub fn window(&self, bounds: &Bounds) -> Option<[RangeInclusive<i64>; 2]> {
-        let over = |axis: usize| {
-            bounds.low[axis] <= self.half[axis] && bounds.high[axis] >= -self.half[axis]
-        };
-        let cells = |axis| self.cell(axis, bounds.low[axis])..=self.cell(axis, bounds.high[axis]);
+        let (low, high) = bounds.below(self.elevation);
+        let over = |axis: usize| low[axis] <= self.half[axis] && high[axis] >= -self.half[axis];
+        let cells = |axis| self.cell(axis, low[axis])..=self.cell(axis, high[axis]);
         let level = bounds.low.z <= self.elevation && bounds.high.z >= -self.base;
         (over(0) && over(1) && level).then(|| [cells(1), cells(0)])
     }
