@@ -14,11 +14,18 @@ const FACES: usize = 2 * VERTICES - 4;
 /// Vertices nearer than this share of the smaller body are one.
 const SAME: f64 = 1e-6;
 
-/// A side of a face: the face's place and which of its sides, counted from corner to next corner.
+/// A side of a face: the face's number and which of its sides, counted from corner to next corner.
 #[derive(Clone, Copy)]
 struct Side {
     face: u8,
     side: u8,
+}
+
+/// A side with the corners that it leads from and to.
+#[derive(Clone, Copy)]
+struct Edge {
+    side: Side,
+    ends: [u8; 2],
 }
 
 #[derive(Clone, Copy)]
@@ -34,18 +41,16 @@ struct Face<S> {
     distance: S,
 }
 
-/// The polytope. Faces are numbered by their place.
+/// The polytope.
 pub(super) struct Polytope<S> {
     vertices: ArrayVec<Vertex<S>, VERTICES>,
     faces: ArrayVec<Face<S>, FACES>,
-    /// The distance of each face that may still be moved; infinite for others, and where a face was removed.
+    /// The distance of each face that may still be moved; infinite for others.
     distances: ArrayVec<S, FACES>,
-    /// Places of removed faces.
-    free: ArrayVec<u8, FACES>,
     /// Faces that see the vertex to be added.
     seeing: ArrayVec<u8, FACES>,
     /// Around these, in order: sides of the faces that stay.
-    rim: ArrayVec<Side, FACES>,
+    rim: ArrayVec<Edge, FACES>,
     /// How far beyond a face a vertex must be to count, m.
     rounding: S,
     /// The square of the distance up to which vertices count as one, m²: faces between them would be noise.
@@ -63,7 +68,6 @@ impl<S: Scalar> Polytope<S> {
             vertices: ArrayVec::new_const(),
             faces: ArrayVec::new_const(),
             distances: ArrayVec::new_const(),
-            free: ArrayVec::new_const(),
             seeing: ArrayVec::new_const(),
             rim: ArrayVec::new_const(),
             rounding: pair.largest * S::EPSILON * S::new(4.0),
@@ -81,18 +85,22 @@ impl<S: Scalar> Polytope<S> {
             self.vertices.push(*vertex);
         }
         // Seen against d, the first face turns counter-clockwise now.
-        for (corners, across) in [
+        for (number, (corners, across)) in [
             ([0, 1, 2], [(1, 0), (2, 0), (3, 0)]),
             ([1, 0, 3], [(0, 0), (3, 2), (2, 1)]),
             ([2, 1, 3], [(0, 1), (1, 2), (3, 1)]),
             ([0, 2, 3], [(0, 2), (2, 2), (1, 1)]),
-        ] {
-            self.insert(corners, across.map(|(face, side)| Side { face, side }));
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let across = across.map(|(face, side)| Side { face, side });
+            self.insert(number, corners, across);
         }
     }
 
-    /// Adds a face and gives its place.
-    fn insert(&mut self, corners: [u8; 3], across: [Side; 3]) -> u8 {
+    /// Puts a face in the place of that with a number, or after the last.
+    fn insert(&mut self, number: usize, corners: [u8; 3], across: [Side; 3]) {
         let [a, b, c] = corners.map(|k| self.vertices[k as usize].w);
         let normal = (b - a).cross(c - a);
         let area = normal.norm();
@@ -112,14 +120,13 @@ impl<S: Scalar> Polytope<S> {
             distance,
         };
         let movable = if flat { S::INFINITY } else { distance };
-        if let Some(place) = self.free.pop() {
-            self.faces[place as usize] = face;
-            self.distances[place as usize] = movable;
-            return place;
+        if number < self.faces.len() {
+            self.faces[number] = face;
+            self.distances[number] = movable;
+        } else {
+            self.faces.push(face);
+            self.distances.push(movable);
         }
-        self.faces.push(face);
-        self.distances.push(movable);
-        (self.faces.len() - 1) as u8
     }
 
     /// The face nearest to the origin of those that may still be moved, and its distance, infinite if there is none.
@@ -168,16 +175,11 @@ impl<S: Scalar> Polytope<S> {
         for side in self.faces[seen].across {
             self.look(side, vertex.w);
         }
-        let room = self.faces.remaining_capacity() + self.free.len() + self.seeing.len();
-        if !self.rim_is_closed() || room < self.rim.len() {
-            for &place in &self.seeing {
-                self.faces[place as usize].removed = false;
+        if !self.rim_is_closed() {
+            for &face in &self.seeing {
+                self.faces[face as usize].removed = false;
             }
             return false;
-        }
-        for &place in &self.seeing {
-            self.distances[place as usize] = S::INFINITY;
-            self.free.push(place);
         }
         self.vertices.push(*vertex);
         self.fan();
@@ -200,7 +202,13 @@ impl<S: Scalar> Polytope<S> {
         let has_area = face.normal != Vec3::ZERO;
         if has_area && face.normal.dot(w) - face.distance <= self.rounding {
             // A side comes up once, unless the polytope is broken, which shows when the rim is not closed.
-            let _ = self.rim.try_push(entered);
+            let Side { side, .. } = entered;
+            let next = if side == 2 { 0 } else { side + 1 };
+            let ends = [side, next].map(|k| face.corners[k as usize]);
+            let _ = self.rim.try_push(Edge {
+                side: entered,
+                ends,
+            });
             return;
         }
         let across = face.across;
@@ -210,48 +218,50 @@ impl<S: Scalar> Polytope<S> {
         }
     }
 
-    /// The corners that a side leads from and to.
-    fn ends(&self, Side { face, side }: Side) -> (u8, u8) {
-        let corners = self.faces[face as usize].corners;
-        let next = if side == 2 { 0 } else { side + 1 };
-        (corners[side as usize], corners[next as usize])
-    }
-
+    /// Whether the faces that see the vertex are a patch with one border: then it has two sides more than they are.
     fn rim_is_closed(&self) -> bool {
-        let Some(&last) = self.rim.last() else {
+        let Some(last) = self.rim.last() else {
             return false;
         };
-        let mut before = self.ends(last);
-        self.rim.len() >= 3
-            && self.rim.iter().all(|&side| {
-                let ends = self.ends(side);
-                let meets = before.0 == ends.1;
-                before = ends;
+        let mut start = last.ends[0];
+        self.rim.len() == self.seeing.len() + 2
+            && self.rim.iter().all(|edge| {
+                let meets = start == edge.ends[1];
+                start = edge.ends[0];
                 meets
             })
     }
 
-    /// New faces from the rim to the vertex added last.
+    /// New faces from the rim to the vertex added last, in the places of the faces that saw it and two more.
     fn fan(&mut self) {
         let tip = (self.vertices.len() - 1) as u8;
-        let open = Side { face: 0, side: 0 };
-        let (mut first, mut before) = (None, open);
-        for k in 0..self.rim.len() {
-            let outside = self.rim[k];
-            let (from, to) = self.ends(outside);
-            // From corner `to` to `from`, on to the tip and back; the face before it in the rim is across the last side.
-            let face = self.insert([to, from, tip], [outside, open, before]);
-            self.faces[outside.face as usize].across[outside.side as usize] =
-                Side { face, side: 0 };
-            if first.is_some() {
-                self.faces[before.face as usize].across[1] = Side { face, side: 2 };
-            }
-            first.get_or_insert(face);
-            before = Side { face, side: 1 };
-        }
-        if let Some(face) = first {
-            self.faces[face as usize].across[2] = before;
-            self.faces[before.face as usize].across[1] = Side { face, side: 2 };
+        let (old, count) = (self.faces.len(), self.rim.len());
+        let number = |seeing: &[u8], k: usize| match seeing.get(k) {
+            Some(&face) => face,
+            None => (old + k - seeing.len()) as u8,
+        };
+        let mut before = number(&self.seeing, count - 1);
+        let mut face = number(&self.seeing, 0);
+        for k in 0..count {
+            let next = if k + 1 < count { k + 1 } else { 0 };
+            let after = number(&self.seeing, next);
+            let Edge { side, ends } = self.rim[k];
+            // From the end of the rim's side to its start, on to the tip and back: the next face in the rim is across the
+            // second side, the one before across the last.
+            let across = [
+                side,
+                Side {
+                    face: after,
+                    side: 2,
+                },
+                Side {
+                    face: before,
+                    side: 1,
+                },
+            ];
+            self.insert(face as usize, [ends[1], ends[0], tip], across);
+            self.faces[side.face as usize].across[side.side as usize] = Side { face, side: 0 };
+            (before, face) = (face, after);
         }
     }
 }
