@@ -1,15 +1,18 @@
 //! Oriented boxes about two shapes: a quick look, in all lanes at once, before a method that is slow and goes lane by lane.
 //!
 //! Boxes are apart if they are so along a face normal of either (Gottschalk, Lin & Manocha 1996; the nine cross products of edges
-//! would find few more).
+//! would find few more). A sphere is its own bound.
 
 use super::Placed;
 use crate::{ShapeKind, allowance};
 use clench_math::{Real, Vec3};
 
-/// Where the boxes about two bounded shapes are at most `margin` apart along all of their face normals.
+/// Where the boxes about two bounded shapes are at most `margin` apart along all of their face normals; the first may be a sphere.
 #[inline(always)]
 pub(super) fn boxes_near<T: Real>(a: Placed<T>, b: Placed<T>, margin: T) -> T::Mask {
+    if a.shape.kind == ShapeKind::Sphere {
+        return box_near(b, a.pose.position, a.shape.size.x + margin);
+    }
     let (half_a, half_b) = (half_lengths(a), half_lengths(b));
     let turn = a.pose.rotation.transpose() * b.pose.rotation;
     let offset = b.pose.position - a.pose.position;
@@ -29,6 +32,17 @@ pub(super) fn boxes_near<T: Real>(a: Placed<T>, b: Placed<T>, margin: T) -> T::M
         near &= along_b[i].abs().le(reach(half_b[i], column, half_a));
     }
     near
+}
+
+/// Where the box about a shape is at most `reach` from a point.
+#[inline(always)]
+fn box_near<T: Real>(shape: Placed<T>, point: Vec3<T>, reach: T) -> T::Mask {
+    let (place, half) = (shape.pose.local(point), half_lengths(shape));
+    // What is no number stays none and is near nothing.
+    let beyond = |k: usize| T::ZERO.max(place[k].abs() - half[k] * allowance());
+    let gap = Vec3::new(beyond(0), beyond(1), beyond(2));
+    let reach = T::ZERO.max(reach * allowance());
+    gap.norm_squared().le(reach * reach)
 }
 
 /// How far a shape reaches along its own axes.

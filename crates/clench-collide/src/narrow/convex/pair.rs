@@ -63,10 +63,16 @@ impl<S: Scalar> Gap<S> {
 }
 
 impl<'a, S: Scalar> Pair<'a, S> {
+    /// In the frame of the first; that of a sphere is upright, however it is turned.
     pub fn new(a: Placed<'a, S>, b: Placed<'a, S>) -> Self {
-        let offset = a.pose.local(b.pose.position);
-        let rotation = a.pose.rotation.transpose() * b.pose.rotation;
-        Pair::between(Body::new(a.shape), Body::new(b.shape), rotation, offset)
+        let (body_a, body_b) = (Body::new(a.shape), Body::new(b.shape));
+        let (rotation, offset) = if body_a.is_point() {
+            (b.pose.rotation, b.pose.position - a.pose.position)
+        } else {
+            let rotation = a.pose.rotation.transpose() * b.pose.rotation;
+            (rotation, a.pose.local(b.pose.position))
+        };
+        Pair::between(body_a, body_b, rotation, offset)
     }
 
     /// Two bodies, the second where its axes and its origin are in the frame of the first.

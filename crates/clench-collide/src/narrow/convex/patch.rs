@@ -63,20 +63,25 @@ pub(super) fn patch<S: Scalar>(
     // Once more: squares of very short vectors lose digits.
     let n = best.normal.normalize().0;
     let radii = (pair.a.radius, pair.b.radius);
-    let normal = a.pose.rotation * n;
     let half = best.gap * S::new(0.5);
+    let shift = (radii.0 - radii.1) * S::new(0.5);
+    let distance = best.gap - radii.0 - radii.1;
+    if pair.a.is_point() {
+        points.push(Point {
+            position: a.pose.position + n * (half + shift),
+            normal: n,
+            distance,
+        });
+        return;
+    }
+    let normal = a.pose.rotation * n;
     let mut add_one = |middle: Vec3<S>| {
         points.push(Point {
-            position: a
-                .pose
-                .point(middle + n * ((radii.0 - radii.1) * S::new(0.5))),
+            position: a.pose.point(middle + n * shift),
             normal,
-            distance: best.gap - radii.0 - radii.1,
+            distance,
         });
     };
-    if pair.a.is_point() {
-        return add_one(n * half);
-    }
     if pair.b.is_point() {
         return add_one(pair.offset - n * half);
     }
