@@ -269,6 +269,82 @@ fn spheres_are_as_far_as_the_nearest_triangle() {
     assert!(touching > 300 && apart > 100, "{touching}, {apart}");
 }
 
+/// The ground below each triangle as a hull.
+fn prisms(field: &HeightField) -> Vec<Hull> {
+    let bottom = -field.size()[3];
+    let below = |p: V| Vec3::new(p.x, p.y, bottom);
+    let prism = |[p, q, r]: [V; 3]| {
+        let corners = [p, q, r, below(p), below(q), below(r)];
+        Hull::new(&convex_hull(&corners, None).unwrap(), &corners)
+    };
+    triangles(field).into_iter().map(prism).collect()
+}
+
+/// Every shape, near the surface: no cell that counts is passed over.
+#[test]
+fn bodies_are_as_far_as_the_nearest_part_of_the_ground() {
+    let mut random = Random(11);
+    let corners: Vec<V> = (0..20).map(|_| random.direction() * 0.1).collect();
+    let hull = Hull::new(&convex_hull(&corners, None).unwrap(), &corners);
+    let margin = 0.02;
+    let (mut apart, mut sunk, mut away) = (0, 0, 0);
+    for k in 0..60 {
+        let ground = rough(&mut random, 4 + k % 5, 3 + k % 7, [0.02, 0.1, 0.3][k % 3]);
+        let parts = prisms(&ground);
+        for j in 0..20 {
+            let kind = [KINDS.as_slice(), &[ShapeKind::Mesh]].concat()[j % 6];
+            let size = [(); 3].map(|()| random.range(0.02, 0.15));
+            let shape = match kind {
+                ShapeKind::Mesh => Shape::mesh(&hull),
+                _ => Shape::new(kind, Vec3::from_array(size)),
+            };
+            let mut pose = Pose {
+                position: Vec3::new(random.range(-0.6, 0.6), random.range(-0.5, 0.5), 0.8),
+                rotation: random.rotation(),
+            };
+            let to_part = |pose: &Pose<f64>, margin: f64| {
+                let mut least = f64::INFINITY;
+                let mut out = Contacts::new();
+                for part in &parts {
+                    let part = Shape::mesh(part);
+                    collide(&shape, pose, &part, &Pose::IDENTITY, margin, &mut out);
+                    least = least.min(deepest(&out));
+                }
+                least
+            };
+            // Down to a distance at which it may or may not be found, or a little into the ground.
+            let wanted = random.range(-0.004, 0.03);
+            for _ in 0..30 {
+                let left = to_part(&pose, 1.0) - wanted;
+                if left < 1e-4 || pose.position.z < -0.1 {
+                    break;
+                }
+                pose.position.z -= left;
+            }
+            let truth = to_part(&pose, margin);
+            let found = deepest(&touch(&ground, &shape, &pose, margin));
+            if truth > margin {
+                away += 1;
+                assert_eq!(found, f64::INFINITY, "{kind:?}, truth {truth}");
+            } else if truth > 0.0 {
+                apart += 1;
+                assert!(
+                    (found - truth).abs() < 1e-6,
+                    "{kind:?}: {found} for {truth}"
+                );
+            } else {
+                // Out of the field it is at least as far as out of any part.
+                sunk += 1;
+                assert!(found < truth + 1e-6, "{kind:?}: {found} for {truth}");
+            }
+        }
+    }
+    assert!(
+        apart > 400 && sunk > 60 && away > 200,
+        "{apart}, {sunk}, {away}"
+    );
+}
+
 #[test]
 fn a_ridge_carries_a_sphere_between_its_slopes() {
     // One metre high over half a metre: slopes of 63°.

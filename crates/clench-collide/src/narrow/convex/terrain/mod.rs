@@ -63,7 +63,7 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     let grid = Grid::new(field);
     let mut search = Search::new(a, b, margin);
     let body = Body::new(b.shape);
-    let around = body.radius + margin;
+    let around = body.radius + margin + search.tolerance;
     let Some(bounds) = Bounds::new(&body, &search.rotation, search.offset, around, &grid) else {
         return;
     };
