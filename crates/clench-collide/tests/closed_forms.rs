@@ -1,18 +1,21 @@
-//! Cylinders that overlap boxes and cylinders, whose depth is found in closed form: no direction has a larger gap than the one
+//! Cylinders that overlap boxes, cylinders and hulls of few faces, whose depth is found in closed form: no direction has a larger gap than the one
 //! found, and every kind of direction is the one to find in some poses.
 
 mod common;
 
-use clench_collide::{Pose, Shape, ShapeKind, bounding_radius};
+use clench_collide::{Asset, Pose, Shape, ShapeKind, bounding_radius};
 use clench_math::{Mat3, Quat};
-use common::{Random, Scene, V};
+use common::{
+    Random, Scene, V,
+    hulls::{hull_of, round},
+};
 use std::collections::BTreeMap;
 
 /// What touches what, told from a normal that is found exactly: which of a cylinder's axis and the three of a box, or the axes
-/// of two cylinders, it is along or across.
+/// of two cylinders, it is along or across, or how many vertices of a hull are furthest along it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Touch {
-    FaceOfBox,
+    Face,
     Cap,
     EdgeOnSide,
     CornerOnSide,
@@ -26,6 +29,20 @@ fn touch(scene: &Scene, n: V) -> Option<Touch> {
     let own = scene.pose_a.axis().dot(n).abs();
     let cosines = scene.pose_b.rotation.transpose_mul(n).to_array();
     let (one, zero) = (|x: f64| (1.0 - x.abs()) < 1e-12, |x: f64| x.abs() < 1e-12);
+    if let Asset::Hull(hull) = scene.b.asset {
+        let d = -scene.pose_b.rotation.transpose_mul(n);
+        let along = || hull.vertices().iter().map(|v| v.dot(d));
+        let most = along().fold(f64::NEG_INFINITY, f64::max);
+        let near = |x: &f64| *x > most - 1e-12 * hull.radius();
+        return Some(match (along().filter(near).count(), own) {
+            (3.., _) => Touch::Face,
+            (_, z) if one(z) => Touch::Cap,
+            (2, z) if zero(z) => Touch::EdgeOnSide,
+            (_, z) if zero(z) => Touch::CornerOnSide,
+            (2, _) => Touch::EdgeOnRim,
+            _ => return None,
+        });
+    }
     if scene.b.kind == ShapeKind::Cylinder {
         return Some(match (own, cosines[2]) {
             (z, u) if one(z) || one(u) => Touch::Cap,
@@ -35,7 +52,7 @@ fn touch(scene: &Scene, n: V) -> Option<Touch> {
         });
     }
     if cosines.into_iter().any(one) {
-        return Some(Touch::FaceOfBox);
+        return Some(Touch::Face);
     }
     match (one(own), zero(own), cosines.into_iter().any(zero)) {
         (true, ..) => Some(Touch::Cap),
@@ -67,15 +84,38 @@ enum Turns {
     NearlyRight,
 }
 
-fn scene(random: &mut Random, kind: ShapeKind, sizes: Sizes, turns: Turns) -> Scene {
-    let length = |random: &mut Random| match sizes {
-        Sizes::Usual => random.range(0.05, 0.5),
-        Sizes::Flat if random.unit() < 0.2 => 0.0,
-        _ => 10f64.powf(random.range(-3.0, 0.0)),
+/// A ball of few faces, or the ground below a triangle, as flat and as acute as chance has it.
+fn solid(random: &mut Random, size: V) -> Shape<'static, f64> {
+    let mut points = match (random.unit() * 3.0) as usize {
+        0 => round(random, 4, size),
+        1 => {
+            let count = 5 + (random.unit() * 25.0) as usize;
+            round(random, count, size)
+        }
+        _ => {
+            let top: [V; 3] = [0; 3].map(|_| random.direction().scale_by(size));
+            let below = |p: V| V::new(p.x, p.y, -2.0 * size.z);
+            [top, top.map(below)].concat()
+        }
     };
+    let middle = points.iter().fold(V::ZERO, |sum, p| sum + *p) * (1.0 / points.len() as f64);
+    points.iter_mut().for_each(|p| *p -= middle);
+    Shape::mesh(hull_of(&points))
+}
+
+fn scene(random: &mut Random, kind: ShapeKind, sizes: Sizes, turns: Turns) -> Scene {
     let mut shape = |kind| {
-        let size = [0; 3].map(|_| length(random));
-        Shape::new(kind, V::from_array(size))
+        let mut length = || match sizes {
+            Sizes::Usual => random.range(0.05, 0.5),
+            // A flat hull is none.
+            Sizes::Flat if kind != ShapeKind::Mesh && random.unit() < 0.2 => 0.0,
+            _ => 10f64.powf(random.range(-3.0, 0.0)),
+        };
+        let size = V::new(length(), length(), length());
+        match kind {
+            ShapeKind::Mesh => solid(random, size),
+            _ => Shape::new(kind, size),
+        }
     };
     let (a, b) = (shape(ShapeKind::Cylinder), shape(kind));
     let rotation_a = random.quarter_turns();
@@ -163,6 +203,13 @@ fn a_cylinder_in_a_cylinder() {
     let touches = no_direction_has_a_larger_gap(ShapeKind::Cylinder, 32);
     let often = touches.values().all(|count| *count > 10);
     assert!(touches.len() == 4 && often, "{touches:?}");
+}
+
+#[test]
+fn a_cylinder_in_a_hull() {
+    let touches = no_direction_has_a_larger_gap(ShapeKind::Mesh, 33);
+    let often = touches.values().all(|count| *count > 50);
+    assert!(touches.len() == 5 && often, "{touches:?}");
 }
 
 /// Along all directions but those across two rims these overlap by less than a micrometre, and the search for a common point

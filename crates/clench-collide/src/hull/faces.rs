@@ -6,7 +6,7 @@
 
 use super::sectors::Sectors;
 use super::surface::{Edge, edges};
-use super::{Hull, HullSurface, Lists};
+use super::{Crease, FEW_FACES, Hull, HullSurface, Lists};
 use clench_math::Vec3;
 
 /// Corners within this part of the hull's size of a plane are in it: some ulps of the 24 bits in files.
@@ -27,6 +27,7 @@ pub(super) fn build(surface: &HullSurface, points: &[Vec3<f64>]) -> Hull {
         corners: Lists::default(),
         normals: Vec::new(),
         offsets: Vec::new(),
+        creases: Vec::new(),
         center,
         vertices,
         sectors: Sectors::default(),
@@ -41,7 +42,31 @@ pub(super) fn build(surface: &HullSurface, points: &[Vec3<f64>]) -> Hull {
         hull.normals.push(normal);
         hull.corners.push(corners);
     }
+    if hull.normals.len() <= FEW_FACES {
+        let creases = edges.iter().filter_map(|edge| hull.crease(edge, &face_of));
+        hull.creases = creases.collect();
+    }
     hull
+}
+
+impl Hull {
+    /// An edge between triangles, if it is one between faces.
+    fn crease(&self, edge: &Edge, face_of: &[u32]) -> Option<Crease> {
+        let faces = [edge.left, edge.right].map(|triangle| face_of[triangle] as usize);
+        if faces[0] == faces[1] {
+            return None;
+        }
+        let [start, end] = edge.ends.map(|vertex| self.vertices[vertex as usize]);
+        let (along, _) = (end - start).normalize();
+        let [m, n] = faces.map(|face| self.normals[face]);
+        Some(Crease {
+            start,
+            along,
+            moment: start.cross(along),
+            faces,
+            turn: (m.dot(n), m.cross(n).norm()),
+        })
+    }
 }
 
 /// The points that are on the surface, in their order, and its triangles in their numbers. Where the points are mirrored,

@@ -85,8 +85,28 @@ pub struct Hull {
     corners: Lists,
     normals: Vec<Vec3<f64>>,
     offsets: Vec<f64>,
+    /// None where there are many faces.
+    creases: Vec<Crease>,
     center: Vec3<f64>,
     sectors: Sectors,
+}
+
+/// So many faces are few enough to look at all of them.
+pub(crate) const FEW_FACES: usize = 64;
+
+/// An edge between two faces. (Others lie within a face.)
+#[derive(Clone, PartialEq)]
+pub(crate) struct Crease {
+    /// One of its ends, m.
+    pub start: Vec3<f64>,
+    /// The unit direction to the other.
+    pub along: Vec3<f64>,
+    /// The cross product of the two, m.
+    pub moment: Vec3<f64>,
+    /// The face that goes along it, and the one that comes back.
+    pub faces: [usize; 2],
+    /// The cosine and the sine of the angle between their normals.
+    pub turn: (f64, f64),
 }
 
 impl Hull {
@@ -138,6 +158,10 @@ impl Hull {
             }
         }
         best.1
+    }
+    /// The edges between faces; none where there are more than [`FEW_FACES`].
+    pub(crate) fn creases(&self) -> &[Crease] {
+        &self.creases
     }
     /// The unit vector out of a face.
     pub fn normal(&self, face: usize) -> Vec3<f64> {

@@ -31,15 +31,6 @@ impl<S: Scalar> Best<S> {
         }
     }
 
-    /// Takes a better direction for the time being: it may be next to an exact one, which then is welcome if it is as good.
-    #[inline]
-    pub fn offer_inexact(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
-        if gap > self.gap + self.tolerance {
-            (self.gap, self.normal) = (gap, normal());
-            self.bar = gap - self.tolerance;
-        }
-    }
-
     /// A way out that is at least so long is no better.
     #[inline]
     pub fn depth(&self) -> S {

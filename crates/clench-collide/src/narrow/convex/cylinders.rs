@@ -1,6 +1,6 @@
 //! The largest gap of two cylinders that overlap, among the few directions that can have it, unless it may be across two rims.
 //!
-//! As for a cylinder and a box (see [`super::cylinder_box`]) few directions lead out over a smooth point of the boundary of the
+//! As for a cylinder and a polyhedron (see [`super::cylinder_polyhedron`]) few directions lead out over a smooth point of the boundary of the
 //! difference. With the axes z and u these are
 //!
 //! ```text

@@ -31,15 +31,6 @@ impl<S: Scalar> Ellipse<S> {
         }
     }
 
-    /// Whether the chord between two points of the first quarter, the second further around, is at least so deep around a point.
-    #[inline]
-    pub fn chord_is_deep(&self, from: (S, S), to: (S, S), point: (S, S), depth: S) -> bool {
-        let outward = (to.1 - from.1, from.0 - to.0);
-        let deep = outward.0 * (to.0 - point.0) + outward.1 * (to.1 - point.1);
-        let square = outward.0 * outward.0 + outward.1 * outward.1;
-        deep >= S::ZERO && deep * deep >= depth * depth * square
-    }
-
     /// The unit normal in the first quarter that goes through a point with x ≥ 0 and along which the gap between ellipse and point
     /// is the largest around, if there is one.
     #[inline]

@@ -3,7 +3,7 @@
 
 mod best;
 mod body;
-mod cylinder_box;
+mod cylinder_polyhedron;
 mod cylinders;
 mod ellipse;
 mod epa;
@@ -45,8 +45,12 @@ pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut C
 pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
     let pair = Pair::new(a, b);
     let known = match (a.shape.kind, b.shape.kind) {
-        (ShapeKind::Cylinder, ShapeKind::Box) => Some(cylinder_box::largest_gap(&pair)),
+        (ShapeKind::Cylinder, ShapeKind::Box) => Some(cylinder_polyhedron::box_gap(&pair, margin)),
         (ShapeKind::Cylinder, ShapeKind::Cylinder) => cylinders::largest_gap(&pair),
+        (ShapeKind::Cylinder, ShapeKind::Mesh) => pair
+            .b
+            .hull
+            .and_then(|hull| cylinder_polyhedron::hull_gap(&pair, hull, margin)),
         _ => None,
     };
     let known = known.filter(|known| Real::is_finite(known.gap));

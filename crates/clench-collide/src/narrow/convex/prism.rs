@@ -18,6 +18,19 @@ const FACES: [&[usize]; 5] = [
     &[1, 4, 5, 2],
     &[2, 5, 3, 0],
 ];
+/// The ends of each edge, the face that goes along it from the first to the second, and the other, as numbered by
+/// [`Prism::faces`].
+pub(super) const EDGES: [[usize; 4]; 9] = [
+    [0, 1, 0, 2],
+    [1, 2, 0, 3],
+    [2, 0, 0, 4],
+    [5, 4, 1, 3],
+    [4, 3, 1, 2],
+    [3, 5, 1, 4],
+    [0, 3, 2, 4],
+    [1, 4, 3, 2],
+    [2, 5, 4, 3],
+];
 /// A unit direction that rises by more is no normal of a wall, by [`FACE_COSINE`].
 const RISE: f64 = 0.1;
 /// The corners that share an edge with each.
@@ -38,6 +51,27 @@ impl<S: Scalar> Prism<S> {
         Prism {
             corners: [p, q, r, below(p), below(q), below(r)],
         }
+    }
+
+    /// The three on top and those below them.
+    pub fn corners(&self) -> &[Vec3<S>; 6] {
+        &self.corners
+    }
+
+    /// The outward unit normals of top, bottom and walls, and a corner of each.
+    pub fn faces(&self) -> [(Vec3<S>, usize); 5] {
+        let [p, q, r, ..] = self.corners;
+        let wall = |from: Vec3<S>, to: Vec3<S>| {
+            let outward = Vec3::new(to.y - from.y, from.x - to.x, S::ZERO);
+            outward.normalize().0
+        };
+        [
+            ((q - p).cross(r - p).normalize().0, 0),
+            (Vec3::new(S::ZERO, S::ZERO, -S::ONE), 3),
+            (wall(p, q), 0),
+            (wall(q, r), 1),
+            (wall(r, p), 2),
+        ]
     }
 
     /// The radius of a sphere about the origin that holds it, m.

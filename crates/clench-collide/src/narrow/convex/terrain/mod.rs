@@ -19,6 +19,7 @@ mod spread;
 use super::{
     begin,
     body::Body,
+    cylinder_polyhedron::prism_gap,
     nearest,
     pair::{Gap, Pair},
     patch::patch,
@@ -199,6 +200,17 @@ impl<S: Scalar> Search<S> {
             let touching = self.patch(&over, &pair, ridge.gap, &simplex);
             touching.iter().for_each(|p| self.found.add(*p));
             return;
+        }
+        if body.kind() == ShapeKind::Cylinder {
+            let known = prism_gap(&pair, &prism, self.margin);
+            if known.gap > self.margin {
+                self.apart = known.normal;
+                return;
+            }
+            if known.gap <= S::ZERO {
+                let simplex = Simplex::new(pair.vertex(known.normal));
+                return self.judge(&over, &pair, distance, known, &simplex);
+            }
         }
         let (start, mut simplex) = begin(&pair);
         match nearest(&pair, start, self.margin, &mut simplex) {

@@ -1,0 +1,303 @@
+//! The largest gap of a cylinder and a polyhedron of few faces that overlap, among the few directions that can have it.
+//!
+//! Where two bodies overlap, the shortest way out ends at a smooth point of the boundary of their difference: exactly one
+//! direction n leads across it. With a cylinder of axis z and a polyhedron that leaves
+//!
+//! ```text
+//! m, z         a normal of a face; of a cap            z × b       an edge b across the side of the cylinder
+//! n across z   a corner on the side                    n across b  an edge b on the rim
+//! ```
+//!
+//! A corner on the side matters only where all of the polyhedron is beside the axis, and then it is the corner nearest to it.
+//! Seen along b the rim is an ellipse, the edge a point, and n the normal of the ellipse that goes through that point.
+//!
+//! An edge touches along the directions between the normals of its faces. Let g be the gap through the edge on the way from one
+//! of them, m, to a direction n at the angle θ where it is as large as it gets. A support function and its second derivative have
+//! no negative sum, so g″ ≤ −g, and g(n) ≤ g(m) cos θ + g′(m) sin θ. That bounds g′(m) from below, most weakly at the other normal;
+//! g′(m) is how far beyond the edge, seen in the face, the cylinder touches along m. So most edges need not be asked.
+//!
+//! If the bodies are apart some of these directions show it, but then the largest gap may be along another.
+
+use super::{
+    best::Best,
+    ellipse::Ellipse,
+    pair::{Gap, Pair},
+    prism::{self, Prism},
+};
+use crate::hull::{FEW_FACES, Hull};
+use arrayvec::ArrayVec;
+use clench_math::{Mat3, Scalar, Vec3};
+
+/// The largest gap of a prism and a cylinder if it is not positive, else one that is.
+pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -> Gap<S> {
+    let corners = prism.corners();
+    let faces = prism.faces();
+    let reach = faces.map(|(outward, corner)| (outward, outward.dot(corners[corner])));
+    let edges = prism::EDGES.into_iter().map(|[from, to, left, right]| {
+        let (start, faces) = (corners[from], [left, right].map(|face| faces[face].0));
+        let (along, _) = (corners[to] - start).normalize();
+        let cosine = faces[0].dot(faces[1]);
+        Edge {
+            start,
+            along,
+            moment: start.cross(along),
+            faces: [left, right],
+            turn: (cosine, (S::ONE - cosine * cosine).max(S::ZERO).sqrt()),
+        }
+    });
+    let size = pair.b.size();
+    let cylinder = Cylinder {
+        axis: pair.rotation.column(2),
+        middle: pair.offset,
+        radius: size.x,
+        half: size.y,
+    };
+    let corners = corners.iter().copied();
+    let best = cylinder.search(corners, reach.into_iter(), edges, limit, pair.tolerance);
+    Gap {
+        normal: -best.normal,
+        gap: best.gap,
+        settled: true,
+    }
+}
+
+/// The largest gap of a cylinder and a box if it is not positive, else one that is.
+pub(super) fn box_gap<S: Scalar>(pair: &Pair<S>, limit: S) -> Gap<S> {
+    let size = pair.b.size();
+    let sign = |bits: usize, k: usize| [S::ONE, -S::ONE][bits >> k & 1];
+    let unit = |k: usize| Mat3::IDENTITY.rows[k];
+    let corners = (0..8).map(|k| size.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2))));
+    // The face against an axis comes after that along it.
+    let faces = (0..6).map(|k| (unit(k / 2) * sign(k, 0), size[k / 2]));
+    let edges = (0..12).map(|edge| {
+        let (i, j, k) = (edge / 4, (edge / 4 + 1) % 3, (edge / 4 + 2) % 3);
+        let (along, [to_j, to_k]) = (unit(i), [edge & 1, edge >> 1 & 1]);
+        let start = unit(j) * (size[j] * sign(to_j, 0)) + unit(k) * (size[k] * sign(to_k, 0));
+        let faces = [2 * j + to_j, 2 * k + to_k];
+        Edge {
+            start,
+            along,
+            moment: start.cross(along),
+            faces: if to_j == to_k {
+                faces
+            } else {
+                [faces[1], faces[0]]
+            },
+            turn: (S::ZERO, S::ONE),
+        }
+    });
+    let cylinder = Cylinder {
+        axis: pair.rotation.rows[2],
+        middle: -pair.rotation.transpose_mul(pair.offset),
+        radius: pair.a.size().x,
+        half: pair.a.size().y,
+    };
+    let best = cylinder.search(corners, faces, edges, limit, pair.tolerance);
+    Gap {
+        normal: pair.rotation * best.normal,
+        gap: best.gap,
+        settled: true,
+    }
+}
+
+/// The largest gap of a cylinder and a hull if it is not positive, else one that is; nothing where the hull has many faces.
+pub(super) fn hull_gap<S: Scalar>(pair: &Pair<S>, hull: &Hull, limit: S) -> Option<Gap<S>> {
+    if hull.creases().is_empty() {
+        return None;
+    }
+    let real = |v: Vec3<f64>| Vec3::from_f64(v.to_array());
+    let corners = hull.vertices().iter().map(|&v| real(v));
+    let faces = (0..hull.face_count()).map(|k| (real(hull.normal(k)), S::new(hull.offset(k))));
+    let edges = hull.creases().iter().map(|edge| Edge {
+        start: real(edge.start),
+        along: real(edge.along),
+        moment: real(edge.moment),
+        faces: edge.faces,
+        turn: (S::new(edge.turn.0), S::new(edge.turn.1)),
+    });
+    let size = pair.a.size();
+    let cylinder = Cylinder {
+        axis: pair.rotation.rows[2],
+        middle: -pair.rotation.transpose_mul(pair.offset),
+        radius: size.x,
+        half: size.y,
+    };
+    let best = cylinder.search(corners, faces, edges, limit, pair.tolerance);
+    Some(Gap {
+        normal: pair.rotation * best.normal,
+        gap: best.gap,
+        settled: true,
+    })
+}
+
+/// A cylinder in the frame of a polyhedron.
+struct Cylinder<S> {
+    axis: Vec3<S>,
+    middle: Vec3<S>,
+    radius: S,
+    half: S,
+}
+
+/// A face, and where the cylinder touches along its normal.
+struct Face<S> {
+    outward: Vec3<S>,
+    /// How far the cylinder has to go to leave across it, m.
+    depth: S,
+    /// The point of the cylinder that is furthest against it, as its cross product with the normal.
+    moment: Vec3<S>,
+}
+
+/// An edge of the polyhedron.
+struct Edge<S> {
+    /// One of its ends.
+    start: Vec3<S>,
+    /// The unit direction to the other.
+    along: Vec3<S>,
+    /// The cross product of the two.
+    moment: Vec3<S>,
+    /// The number of the face that goes along it, and of the one that comes back.
+    faces: [usize; 2],
+    /// The cosine and the sine of the angle between their normals.
+    turn: (S, S),
+}
+
+impl<S: Scalar> Edge<S> {
+    /// Whether the gap through it may be as large as it gets, and no deeper than `depth`, between its faces.
+    #[inline(always)]
+    fn may_touch(&self, [m, n]: [&Face<S>; 2], depth: S) -> bool {
+        let (cosine, sine) = self.turn;
+        // How far within the edge the cylinder touches a face.
+        let within = [
+            self.along.dot(m.moment) + m.outward.dot(self.moment),
+            -self.along.dot(n.moment) - n.outward.dot(self.moment),
+        ];
+        let near = |within: S, face: &Face<S>| within * sine <= depth - face.depth * cosine;
+        // Both, for nobody can tell which.
+        near(within[0], m) & near(within[1], n)
+    }
+}
+
+impl<S: Scalar> Cylinder<S> {
+    /// The direction from the cylinder to the polyhedron with the largest gap if that is not positive, else one whose gap is; one
+    /// beyond `limit` will do.
+    ///
+    /// Of each face the outward unit normal and how far the polyhedron reaches along it.
+    #[inline(always)]
+    fn search(
+        &self,
+        corners: impl Iterator<Item = Vec3<S>> + Clone,
+        faces: impl Iterator<Item = (Vec3<S>, S)>,
+        edges: impl Iterator<Item = Edge<S>>,
+        limit: S,
+        tolerance: S,
+    ) -> Best<S> {
+        let mut best = Best::new(tolerance);
+        let mut known = ArrayVec::<Face<S>, FEW_FACES>::new();
+        for (outward, offset) in faces {
+            let face = self.face(outward, offset);
+            best.offer(-face.depth, || -outward);
+            if best.gap > limit {
+                return best;
+            }
+            known.push(face);
+        }
+        self.corners(corners, &mut best);
+        for edge in edges {
+            let faces = edge.faces.map(|k| &known[k]);
+            if edge.may_touch(faces, best.depth()) {
+                self.edge(&edge, faces, &mut best);
+            }
+        }
+        best
+    }
+
+    #[inline(always)]
+    fn face(&self, outward: Vec3<S>, offset: S) -> Face<S> {
+        let along = self.axis.dot(outward);
+        let across = self.axis.cross(outward);
+        let level = across.norm();
+        let reach = self.radius * level + self.half * along.abs();
+        let arm = self.radius * along / level.max(S::MIN_POSITIVE) - self.half.copysign(along);
+        Face {
+            outward,
+            depth: reach + offset - outward.dot(self.middle),
+            moment: self.middle.cross(outward) + across * arm,
+        }
+    }
+
+    /// The caps, and the corner nearest to the axis against the side.
+    #[inline(always)]
+    fn corners(&self, corners: impl Iterator<Item = Vec3<S>> + Clone, best: &mut Best<S>) {
+        let (mut low, mut high) = (S::INFINITY, -S::INFINITY);
+        let mut least = (S::INFINITY, Vec3::ZERO);
+        for corner in corners.clone() {
+            let from_middle = corner - self.middle;
+            let along = self.axis.dot(from_middle);
+            (low, high) = (low.min(along), high.max(along));
+            let square = from_middle.norm_squared() - along * along;
+            if square < least.0 {
+                least = (square, from_middle);
+            }
+        }
+        best.offer(low - self.half, || self.axis);
+        best.offer(-high - self.half, || -self.axis);
+        let moment = self.axis.cross(least.1);
+        let (normal, distance) = moment.cross(self.axis).normalize();
+        // A corner on the axis is as far from all of the side.
+        let normal = if distance > S::ZERO {
+            normal
+        } else {
+            self.axis.any_perpendicular()
+        };
+        if distance - self.radius > best.gap {
+            let along = corners.map(|corner| normal.dot(corner));
+            let nearest = along.fold(S::INFINITY, |least, x| least.min(x));
+            let gap = nearest - normal.dot(self.middle) - self.radius;
+            best.offer(gap, || normal);
+        }
+    }
+
+    /// An edge against the side and the rims, along directions that do not point out of either of its faces.
+    fn edge(&self, edge: &Edge<S>, [m, n]: [&Face<S>; 2], best: &mut Best<S>) {
+        let across = edge.along.cross(self.axis);
+        let (cosine, sine) = (edge.along.dot(self.axis).abs(), across.norm());
+        if sine <= S::EPSILON {
+            return;
+        }
+        let across = across * (S::ONE / sine);
+        let inward = [m.outward.cross(edge.along), edge.along.cross(n.outward)];
+        let from_middle = edge.start - self.middle;
+        // Seen along the edge, with x across the axis, the edge is where x is positive.
+        let x = across.dot(from_middle);
+        let side = S::ONE.copysign(x);
+        let (x, out) = (x.abs(), inward.map(|d| across.dot(d) * side));
+        if out[0].min(out[1]) >= S::ZERO {
+            best.offer(x - self.radius, || across * side);
+        } else if out[0].max(out[1]) <= S::ZERO {
+            best.offer(-x - self.radius, || -across * side);
+        }
+        if cosine <= S::EPSILON || self.radius <= S::ZERO {
+            return;
+        }
+        let along = across.cross(edge.along);
+        let (y, up) = (along.dot(from_middle), inward.map(|d| along.dot(d)));
+        let ellipse = Ellipse::new(cosine, sine);
+        let unit = S::ONE / self.radius;
+        for sign in [S::ONE, -S::ONE] {
+            let nowhere = |k: usize| out[k] < S::ZERO && up[k] * sign < S::ZERO;
+            if nowhere(0) || nowhere(1) {
+                continue;
+            }
+            let point = (x * unit, (y * sign - self.half * sine) * unit);
+            let Some((u, v)) = ellipse.normal_through(point) else {
+                continue;
+            };
+            let normal = across * (u * side) + along * (v * sign);
+            if inward.iter().all(|d| normal.dot(*d) >= S::ZERO) {
+                let reach = self.half * self.axis.dot(normal).abs()
+                    + self.radius * self.axis.cross(normal).norm();
+                best.offer(normal.dot(from_middle) - reach, || normal);
+            }
+        }
+    }
+}
