@@ -22,7 +22,7 @@ use super::{
     best::Best,
     ellipse::Ellipse,
     pair::{Gap, Pair},
-    prism::{self, Prism},
+    prism::{EDGES, FACES, Prism},
 };
 use crate::hull::{FEW_FACES, Hull};
 use arrayvec::ArrayVec;
@@ -30,13 +30,13 @@ use clench_math::{Mat3, Scalar, Vec3};
 
 /// The largest gap of a prism and a cylinder if it is not positive, else one that is.
 pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -> Gap<S> {
-    let corners = prism.corners();
-    let faces = prism.faces();
-    let reach = faces.map(|(outward, corner)| (outward, outward.dot(corners[corner])));
-    let edges = prism::EDGES.into_iter().map(|[from, to, left, right]| {
-        let (start, faces) = (corners[from], [left, right].map(|face| faces[face].0));
+    let (corners, normals) = (prism.corners(), prism.normals());
+    let faces = FACES.iter().zip(normals);
+    let faces = faces.map(|(face, normal)| (normal, normal.dot(corners[face[0]])));
+    let edges = EDGES.into_iter().map(|[from, to, left, right]| {
+        let start = corners[from];
         let (along, _) = (corners[to] - start).normalize();
-        let cosine = faces[0].dot(faces[1]);
+        let cosine = normals[left].dot(normals[right]);
         Edge {
             start,
             along,
@@ -45,15 +45,14 @@ pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -
             turn: (cosine, (S::ONE - cosine * cosine).max(S::ZERO).sqrt()),
         }
     });
-    let size = pair.b.size();
     let cylinder = Cylinder {
         axis: pair.rotation.column(2),
         middle: pair.offset,
-        radius: size.x,
-        half: size.y,
+        radius: pair.b.size().x,
+        half: pair.b.size().y,
     };
     let corners = corners.iter().copied();
-    let best = cylinder.search(corners, reach.into_iter(), edges, limit, pair.tolerance);
+    let best = cylinder.search(corners, faces, edges, limit, pair.tolerance);
     Gap {
         normal: -best.normal,
         gap: best.gap,
@@ -64,40 +63,30 @@ pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -
 /// The largest gap of a cylinder and a box if it is not positive, else one that is.
 pub(super) fn box_gap<S: Scalar>(pair: &Pair<S>, limit: S) -> Gap<S> {
     let size = pair.b.size();
+    // Of each axis first what is along it, then what is against it.
     let sign = |bits: usize, k: usize| [S::ONE, -S::ONE][bits >> k & 1];
     let unit = |k: usize| Mat3::IDENTITY.rows[k];
     let corners = (0..8).map(|k| size.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2))));
-    // The face against an axis comes after that along it.
     let faces = (0..6).map(|k| (unit(k / 2) * sign(k, 0), size[k / 2]));
     let edges = (0..12).map(|edge| {
         let (i, j, k) = (edge / 4, (edge / 4 + 1) % 3, (edge / 4 + 2) % 3);
-        let (along, [to_j, to_k]) = (unit(i), [edge & 1, edge >> 1 & 1]);
+        let (to_j, to_k) = (edge & 1, edge >> 1 & 1);
+        let (along, face_j, face_k) = (unit(i), 2 * j + to_j, 2 * k + to_k);
         let start = unit(j) * (size[j] * sign(to_j, 0)) + unit(k) * (size[k] * sign(to_k, 0));
-        let faces = [2 * j + to_j, 2 * k + to_k];
+        let faces = if to_j == to_k {
+            [face_j, face_k]
+        } else {
+            [face_k, face_j]
+        };
         Edge {
             start,
             along,
             moment: start.cross(along),
-            faces: if to_j == to_k {
-                faces
-            } else {
-                [faces[1], faces[0]]
-            },
+            faces,
             turn: (S::ZERO, S::ONE),
         }
     });
-    let cylinder = Cylinder {
-        axis: pair.rotation.rows[2],
-        middle: -pair.rotation.transpose_mul(pair.offset),
-        radius: pair.a.size().x,
-        half: pair.a.size().y,
-    };
-    let best = cylinder.search(corners, faces, edges, limit, pair.tolerance);
-    Gap {
-        normal: pair.rotation * best.normal,
-        gap: best.gap,
-        settled: true,
-    }
+    Cylinder::first(pair).gap(pair, corners, faces, edges, limit)
 }
 
 /// The largest gap of a cylinder and a hull if it is not positive, else one that is; nothing where the hull has many faces.
@@ -108,26 +97,14 @@ pub(super) fn hull_gap<S: Scalar>(pair: &Pair<S>, hull: &Hull, limit: S) -> Opti
     let real = |v: Vec3<f64>| Vec3::from_f64(v.to_array());
     let corners = hull.vertices().iter().map(|&v| real(v));
     let faces = (0..hull.face_count()).map(|k| (real(hull.normal(k)), S::new(hull.offset(k))));
-    let edges = hull.creases().iter().map(|edge| Edge {
-        start: real(edge.start),
-        along: real(edge.along),
-        moment: real(edge.moment),
-        faces: edge.faces,
-        turn: (S::new(edge.turn.0), S::new(edge.turn.1)),
+    let edges = hull.creases().iter().map(|crease| Edge {
+        start: real(crease.start),
+        along: real(crease.along),
+        moment: real(crease.moment),
+        faces: crease.faces,
+        turn: (S::new(crease.turn.0), S::new(crease.turn.1)),
     });
-    let size = pair.a.size();
-    let cylinder = Cylinder {
-        axis: pair.rotation.rows[2],
-        middle: -pair.rotation.transpose_mul(pair.offset),
-        radius: size.x,
-        half: size.y,
-    };
-    let best = cylinder.search(corners, faces, edges, limit, pair.tolerance);
-    Some(Gap {
-        normal: pair.rotation * best.normal,
-        gap: best.gap,
-        settled: true,
-    })
+    Some(Cylinder::first(pair).gap(pair, corners, faces, edges, limit))
 }
 
 /// A cylinder in the frame of a polyhedron.
@@ -178,6 +155,34 @@ impl<S: Scalar> Edge<S> {
 }
 
 impl<S: Scalar> Cylinder<S> {
+    /// The first of a pair, in the frame of the second.
+    fn first(pair: &Pair<S>) -> Self {
+        Cylinder {
+            axis: pair.rotation.rows[2],
+            middle: -pair.rotation.transpose_mul(pair.offset),
+            radius: pair.a.size().x,
+            half: pair.a.size().y,
+        }
+    }
+
+    /// What the search finds, in the frame of the first of a pair.
+    #[inline(always)]
+    fn gap(
+        &self,
+        pair: &Pair<S>,
+        corners: impl Iterator<Item = Vec3<S>> + Clone,
+        faces: impl Iterator<Item = (Vec3<S>, S)>,
+        edges: impl Iterator<Item = Edge<S>>,
+        limit: S,
+    ) -> Gap<S> {
+        let best = self.search(corners, faces, edges, limit, pair.tolerance);
+        Gap {
+            normal: pair.rotation * best.normal,
+            gap: best.gap,
+            settled: true,
+        }
+    }
+
     /// The direction from the cylinder to the polyhedron with the largest gap if that is not positive, else one whose gap is; one
     /// beyond `limit` will do.
     ///

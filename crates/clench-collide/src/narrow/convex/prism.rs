@@ -11,15 +11,14 @@ pub(super) struct Prism<S> {
 }
 
 /// The top, the bottom and the walls, counter-clockwise seen from outside.
-const FACES: [&[usize]; 5] = [
+pub(super) const FACES: [&[usize]; 5] = [
     &[0, 1, 2],
     &[5, 4, 3],
     &[0, 3, 4, 1],
     &[1, 4, 5, 2],
     &[2, 5, 3, 0],
 ];
-/// The ends of each edge, the face that goes along it from the first to the second, and the other, as numbered by
-/// [`Prism::faces`].
+/// The ends of each edge, the face that goes along it from the first to the second, and the other.
 pub(super) const EDGES: [[usize; 4]; 9] = [
     [0, 1, 0, 2],
     [1, 2, 0, 3],
@@ -58,19 +57,19 @@ impl<S: Scalar> Prism<S> {
         &self.corners
     }
 
-    /// The outward unit normals of top, bottom and walls, and a corner of each.
-    pub fn faces(&self) -> [(Vec3<S>, usize); 5] {
+    /// The outward unit normals of its faces.
+    pub fn normals(&self) -> [Vec3<S>; 5] {
         let [p, q, r, ..] = self.corners;
         let wall = |from: Vec3<S>, to: Vec3<S>| {
             let outward = Vec3::new(to.y - from.y, from.x - to.x, S::ZERO);
             outward.normalize().0
         };
         [
-            ((q - p).cross(r - p).normalize().0, 0),
-            (Vec3::new(S::ZERO, S::ZERO, -S::ONE), 3),
-            (wall(p, q), 0),
-            (wall(q, r), 1),
-            (wall(r, p), 2),
+            (q - p).cross(r - p).normalize().0,
+            Vec3::new(S::ZERO, S::ZERO, -S::ONE),
+            wall(p, q),
+            wall(q, r),
+            wall(r, p),
         ]
     }
 

@@ -23,6 +23,7 @@ use super::{
     nearest,
     pair::{Gap, Pair},
     patch::patch,
+    prism::Prism,
     simplex::Simplex,
 };
 use crate::narrow::{
@@ -201,22 +202,30 @@ impl<S: Scalar> Search<S> {
             touching.iter().for_each(|p| self.found.add(*p));
             return;
         }
-        if body.kind() == ShapeKind::Cylinder {
-            let known = prism_gap(&pair, &prism, self.margin);
-            if known.gap > self.margin {
-                self.apart = known.normal;
-                return;
-            }
-            if known.gap <= S::ZERO {
-                let simplex = Simplex::new(pair.vertex(known.normal));
-                return self.judge(&over, &pair, distance, known, &simplex);
-            }
-        }
-        let (start, mut simplex) = begin(&pair);
-        match nearest(&pair, start, self.margin, &mut simplex) {
-            Ok(best) => self.judge(&over, &pair, distance, best, &simplex),
+        match self.largest_gap(&pair, &prism) {
+            Ok((best, simplex)) => self.judge(&over, &pair, distance, best, &simplex),
             Err(gap) => self.apart = gap.normal,
         }
+    }
+
+    /// The largest gap of the ground below a triangle and a body, or, if they are more than the margin apart, one that shows it.
+    fn largest_gap(
+        &self,
+        pair: &Pair<S>,
+        prism: &Prism<S>,
+    ) -> Result<(Gap<S>, Simplex<S>), Gap<S>> {
+        if pair.b.kind() == ShapeKind::Cylinder {
+            let known = prism_gap(pair, prism, self.margin);
+            if known.gap > self.margin {
+                return Err(known);
+            }
+            // Of bodies that are apart it tells no distance.
+            if known.gap <= S::ZERO && Real::is_finite(known.gap) {
+                return Ok((known, Simplex::new(pair.vertex(known.normal))));
+            }
+        }
+        let (start, mut simplex) = begin(pair);
+        nearest(pair, start, self.margin, &mut simplex).map(|best| (best, simplex))
     }
 
     /// Whether a direction shows that a body and the ground below a triangle are apart.
