@@ -201,14 +201,14 @@ impl<S: Scalar> Polytope<S> {
         // One without area has no normal and goes with its neighbours.
         let has_area = face.normal != Vec3::ZERO;
         if has_area && face.normal.dot(w) - face.distance <= self.rounding {
-            // A side comes up once, unless the polytope is broken, which shows when the rim is not closed.
-            let Side { side, .. } = entered;
-            let next = if side == 2 { 0 } else { side + 1 };
-            let ends = [side, next].map(|k| face.corners[k as usize]);
-            let _ = self.rim.try_push(Edge {
+            let from = entered.side as usize;
+            let to = if from == 2 { 0 } else { from + 1 };
+            let edge = Edge {
                 side: entered,
-                ends,
-            });
+                ends: [face.corners[from], face.corners[to]],
+            };
+            // A side comes up once, unless the polytope is broken, which shows when the rim is not closed.
+            let _ = self.rim.try_push(edge);
             return;
         }
         let across = face.across;
@@ -248,18 +248,8 @@ impl<S: Scalar> Polytope<S> {
             let Edge { side, ends } = self.rim[k];
             // From the end of the rim's side to its start, on to the tip and back: the next face in the rim is across the
             // second side, the one before across the last.
-            let across = [
-                side,
-                Side {
-                    face: after,
-                    side: 2,
-                },
-                Side {
-                    face: before,
-                    side: 1,
-                },
-            ];
-            self.insert(face as usize, [ends[1], ends[0], tip], across);
+            let [second, last] = [(after, 2), (before, 1)].map(|(face, side)| Side { face, side });
+            self.insert(face as usize, [ends[1], ends[0], tip], [side, second, last]);
             self.faces[side.face as usize].across[side.side as usize] = Side { face, side: 0 };
             (before, face) = (face, after);
         }

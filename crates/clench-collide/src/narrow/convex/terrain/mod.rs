@@ -5,7 +5,8 @@
 //! next one, which is no way out of the field; so a direction counts only where it is a normal of the whole surface: of a
 //! face, of an edge or a corner that stands out, or of the field's sides. Along the normal of a face the contacts are the
 //! corners of what the body shows to it, clipped to the triangle. Where a prism's best direction does not count, its face
-//! does, unless that is a long way round: the foot of a cliff is not left over the top.
+//! does, unless that is a long way round: the foot of a cliff is not left over the top. What stands out belongs to several
+//! prisms, whose gaps along its normal are the same, so one of them is searched.
 //!
 //! The work grows with the number of cells below the body's bounding box.
 
