@@ -1,5 +1,5 @@
-//! Cylinders that overlap boxes, cylinders and hulls of few faces, whose depth is found in closed form: no direction has a larger gap than the one
-//! found, and every kind of direction is the one to find in some poses.
+//! Cylinders that overlap boxes, cylinders and hulls of few faces, whose depth is found in closed form: no direction has a larger
+//! gap than the one found, and every kind of direction is the one to find in some poses.
 
 mod common;
 

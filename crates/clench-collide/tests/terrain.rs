@@ -1,21 +1,16 @@
-//! Shapes on height fields: as on a plane where the field is flat, as by brute force over its triangles elsewhere.
+//! Shapes on height fields: as on a plane where the field is flat, on ridges, in grooves, at cliffs and borders, and in trouble.
 
 mod common;
 
 use clench_collide::{
-    Contacts, HeightField, Hull, MAX_POINTS, Pose, Shape, ShapeKind, collide, convex_hull,
-    supported,
+    Contacts, HeightField, MAX_POINTS, Pose, Shape, ShapeKind, collide, supported,
 };
 use clench_math::{Lanes, Mask, Mat3, Real, Vec3};
-use common::{Random, V, convert_pose};
-
-const KINDS: [ShapeKind; 5] = [
-    ShapeKind::Sphere,
-    ShapeKind::Capsule,
-    ShapeKind::Ellipsoid,
-    ShapeKind::Cylinder,
-    ShapeKind::Box,
-];
+use common::{
+    Random, V, convert_pose,
+    fields::{KINDS, deepest, rough, touch},
+    hulls::hull_of,
+};
 
 fn field(
     rows: usize,
@@ -31,11 +26,6 @@ fn flat(rows: usize, columns: usize) -> HeightField {
     field(rows, columns, [0.5, 0.4, 0.1, 0.2], |_, _| 0.0)
 }
 
-fn rough(random: &mut Random, rows: usize, columns: usize, elevation: f64) -> HeightField {
-    let heights = (0..rows * columns).map(|_| random.unit()).collect();
-    HeightField::new(rows, columns, heights, [0.5, 0.4, elevation, 0.2]).unwrap()
-}
-
 fn at(x: f64, y: f64, z: f64) -> Pose<f64> {
     Pose {
         position: Vec3::new(x, y, z),
@@ -48,59 +38,6 @@ fn compose(a: &Pose<f64>, b: &Pose<f64>) -> Pose<f64> {
         position: a.point(b.position),
         rotation: a.rotation * b.rotation,
     }
-}
-
-fn touch(field: &HeightField, shape: &Shape<f64>, pose: &Pose<f64>, margin: f64) -> Contacts<f64> {
-    let mut out = Contacts::new();
-    collide(
-        &Shape::height_field(field),
-        &Pose::IDENTITY,
-        shape,
-        pose,
-        margin,
-        &mut out,
-    );
-    out
-}
-
-fn deepest(contacts: &Contacts<f64>) -> f64 {
-    let distances = contacts.as_slice().iter().map(|c| c.distance);
-    distances.fold(f64::INFINITY, f64::min)
-}
-
-/// The corners of all triangles of the surface.
-fn triangles(field: &HeightField) -> Vec<[V; 3]> {
-    let mut found = Vec::new();
-    for row in 0..field.rows() - 1 {
-        for column in 0..field.columns() - 1 {
-            let p = |r, c| field.point(row + r, column + c);
-            found.push([p(0, 0), p(1, 1), p(1, 0)]);
-            found.push([p(0, 0), p(0, 1), p(1, 1)]);
-        }
-    }
-    found
-}
-
-/// The point of a triangle nearest to a point: over the plane, or on a side.
-fn nearest([a, b, c]: [V; 3], p: V) -> V {
-    let n = (b - a).cross(c - a).normalize().0;
-    let foot = p - n * n.dot(p - a);
-    let sides = [(a, b), (b, c), (c, a)];
-    if sides
-        .iter()
-        .all(|(a, b)| (*b - *a).cross(foot - *a).dot(n) >= 0.0)
-    {
-        return foot;
-    }
-    let on_side = |(a, b): (V, V)| {
-        let t = (p - a).dot(b - a) / (b - a).norm_squared();
-        a + (b - a) * t.clamp(0.0, 1.0)
-    };
-    let points = sides.map(on_side);
-    let best = points
-        .into_iter()
-        .min_by(|q, r| (*q - p).norm().total_cmp(&(*r - p).norm()));
-    best.unwrap()
 }
 
 #[test]
@@ -202,147 +139,6 @@ fn a_box_that_lies_flat_stands_on_its_corners() {
             }
         }
     }
-}
-
-#[test]
-fn spheres_are_as_far_as_the_nearest_triangle() {
-    let mut random = Random(3);
-    let (mut touching, mut apart) = (0, 0);
-    for k in 0..60 {
-        let ground = rough(&mut random, 2 + k % 9, 3 + k % 7, [0.02, 0.1, 0.3][k % 3]);
-        let surface = triangles(&ground);
-        for _ in 0..30 {
-            let radius = random.range(0.02, 0.15);
-            let (x, y) = (random.range(-0.35, 0.35), random.range(-0.25, 0.25));
-            let center = Vec3::new(x, y, random.range(0.0, 0.45));
-            let points = surface.iter().map(|t| nearest(*t, center));
-            let foot = points
-                .min_by(|p, q| (*p - center).norm().total_cmp(&(*q - center).norm()))
-                .unwrap();
-            let above = surface.iter().all(|[a, b, c]| {
-                let n = (*b - *a).cross(*c - *a);
-                let over = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| {
-                    (q.x - p.x) * (center.y - p.y) - (q.y - p.y) * (center.x - p.x) >= 0.0
-                });
-                !over || n.dot(center - *a) > 0.0
-            });
-            if !above {
-                continue;
-            }
-            let truth = (foot - center).norm() - radius;
-            let found = touch(
-                &ground,
-                &Shape::new(ShapeKind::Sphere, Vec3::new(radius, 0.0, 0.0)),
-                &at(center.x, center.y, center.z),
-                0.01,
-            );
-            if truth > 0.01 {
-                apart += 1;
-                assert!(found.as_slice().is_empty());
-                continue;
-            }
-            touching += 1;
-            let first = found
-                .as_slice()
-                .iter()
-                .min_by(|p, q| p.distance.total_cmp(&q.distance));
-            let first = first.expect("a contact");
-            assert!(
-                (first.distance - truth).abs() < 1e-9,
-                "{} for {truth}",
-                first.distance
-            );
-            let normal = (center - foot).normalize().0;
-            assert!(
-                (first.frame.rows[0] - normal).norm() < 1e-6,
-                "{:?} for {normal:?}",
-                first.frame.rows[0]
-            );
-            // Every other point is where the sphere touches some triangle, too.
-            for c in found.as_slice() {
-                let on = c.position - c.frame.rows[0] * (0.5 * c.distance);
-                let off = surface.iter().map(|t| (nearest(*t, on) - on).norm());
-                assert!(off.fold(f64::INFINITY, f64::min) < 1e-9);
-            }
-        }
-    }
-    assert!(touching > 300 && apart > 100, "{touching}, {apart}");
-}
-
-/// The ground below each triangle as a hull.
-fn prisms(field: &HeightField) -> Vec<Hull> {
-    let bottom = -field.size()[3];
-    let below = |p: V| Vec3::new(p.x, p.y, bottom);
-    let prism = |[p, q, r]: [V; 3]| {
-        let corners = [p, q, r, below(p), below(q), below(r)];
-        Hull::new(&convex_hull(&corners, None).unwrap(), &corners)
-    };
-    triangles(field).into_iter().map(prism).collect()
-}
-
-/// Every shape, near the surface: no cell that counts is passed over.
-#[test]
-fn bodies_are_as_far_as_the_nearest_part_of_the_ground() {
-    let mut random = Random(11);
-    let corners: Vec<V> = (0..20).map(|_| random.direction() * 0.1).collect();
-    let hull = Hull::new(&convex_hull(&corners, None).unwrap(), &corners);
-    let margin = 0.02;
-    let (mut apart, mut sunk, mut away) = (0, 0, 0);
-    for k in 0..60 {
-        let ground = rough(&mut random, 4 + k % 5, 3 + k % 7, [0.02, 0.1, 0.3][k % 3]);
-        let parts = prisms(&ground);
-        for j in 0..20 {
-            let kind = [KINDS.as_slice(), &[ShapeKind::Mesh]].concat()[j % 6];
-            let size = [(); 3].map(|()| random.range(0.02, 0.15));
-            let shape = match kind {
-                ShapeKind::Mesh => Shape::mesh(&hull),
-                _ => Shape::new(kind, Vec3::from_array(size)),
-            };
-            let mut pose = Pose {
-                position: Vec3::new(random.range(-0.6, 0.6), random.range(-0.5, 0.5), 0.8),
-                rotation: random.rotation(),
-            };
-            let to_part = |pose: &Pose<f64>, margin: f64| {
-                let mut least = f64::INFINITY;
-                let mut out = Contacts::new();
-                for part in &parts {
-                    let part = Shape::mesh(part);
-                    collide(&shape, pose, &part, &Pose::IDENTITY, margin, &mut out);
-                    least = least.min(deepest(&out));
-                }
-                least
-            };
-            // Down to a distance at which it may or may not be found, or a little into the ground.
-            let wanted = random.range(-0.004, 0.03);
-            for _ in 0..30 {
-                let left = to_part(&pose, 1.0) - wanted;
-                if left < 1e-4 || pose.position.z < -0.1 {
-                    break;
-                }
-                pose.position.z -= left;
-            }
-            let truth = to_part(&pose, margin);
-            let found = deepest(&touch(&ground, &shape, &pose, margin));
-            if truth > margin {
-                away += 1;
-                assert_eq!(found, f64::INFINITY, "{kind:?}, truth {truth}");
-            } else if truth > 0.0 {
-                apart += 1;
-                assert!(
-                    (found - truth).abs() < 1e-6,
-                    "{kind:?}: {found} for {truth}"
-                );
-            } else {
-                // Out of the field it is at least as far as out of any part.
-                sunk += 1;
-                assert!(found < truth + 1e-6, "{kind:?}: {found} for {truth}");
-            }
-        }
-    }
-    assert!(
-        apart > 400 && sunk > 60 && away > 200,
-        "{apart}, {sunk}, {away}"
-    );
 }
 
 #[test]
@@ -450,7 +246,7 @@ fn a_body_sunk_into_fine_cells_is_lifted_out() {
 fn contacts_move_with_both_and_are_the_same_in_lanes() {
     let mut random = Random(7);
     let corners: Vec<V> = (0..20).map(|_| random.direction() * 0.1).collect();
-    let hull = Hull::new(&convex_hull(&corners, None).unwrap(), &corners);
+    let hull = hull_of(&corners);
     for k in 0..120 {
         let ground = rough(&mut random, 3 + k % 8, 3 + k % 5, 0.1);
         let kind = [KINDS.as_slice(), &[ShapeKind::Mesh]].concat()[k % 6];
@@ -460,7 +256,7 @@ fn contacts_move_with_both_and_are_the_same_in_lanes() {
             random.range(0.03, 0.1),
         );
         let shape = match kind {
-            ShapeKind::Mesh => Shape::mesh(&hull),
+            ShapeKind::Mesh => Shape::mesh(hull),
             _ => Shape::new(kind, size),
         };
         let pose = Pose {

@@ -1,10 +1,50 @@
-//! Height fields to collide: made once, since their shapes are borrowed for as long as the tests run.
+//! Height fields to collide, and what touches them.
 
 use super::Random;
-use clench_collide::HeightField;
+use clench_collide::{Contacts, HeightField, Pose, Shape, ShapeKind, collide};
 use std::sync::OnceLock;
 
-/// Flat, gentle and wild ones, some huge, some tiny, some a thousand times as high as wide.
+/// What may stand on a field, but for hulls.
+pub const KINDS: [ShapeKind; 5] = [
+    ShapeKind::Sphere,
+    ShapeKind::Capsule,
+    ShapeKind::Ellipsoid,
+    ShapeKind::Cylinder,
+    ShapeKind::Box,
+];
+
+/// A field of a metre by 80 cm with random heights, on 20 cm of ground.
+pub fn rough(random: &mut Random, rows: usize, columns: usize, elevation: f64) -> HeightField {
+    let heights = (0..rows * columns).map(|_| random.unit()).collect();
+    HeightField::new(rows, columns, heights, [0.5, 0.4, elevation, 0.2]).unwrap()
+}
+
+/// The contacts of a field at the origin and a shape.
+pub fn touch(
+    field: &HeightField,
+    shape: &Shape<f64>,
+    pose: &Pose<f64>,
+    margin: f64,
+) -> Contacts<f64> {
+    let mut out = Contacts::new();
+    collide(
+        &Shape::height_field(field),
+        &Pose::IDENTITY,
+        shape,
+        pose,
+        margin,
+        &mut out,
+    );
+    out
+}
+
+/// The least distance of some contacts.
+pub fn deepest(contacts: &Contacts<f64>) -> f64 {
+    let distances = contacts.as_slice().iter().map(|c| c.distance);
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+/// Flat, gentle and wild ones that live as long as the tests, some huge, some tiny, some a thousand times as high as wide.
 pub fn troubled() -> &'static [HeightField] {
     static FIELDS: OnceLock<Vec<HeightField>> = OnceLock::new();
     FIELDS.get_or_init(|| {

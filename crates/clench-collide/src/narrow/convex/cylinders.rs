@@ -1,7 +1,7 @@
 //! The largest gap of two cylinders that overlap, among the few directions that can have it, unless it may be across two rims.
 //!
-//! As for a cylinder and a polyhedron (see [`super::cylinder_polyhedron`]) few directions lead out over a smooth point of the boundary of the
-//! difference. With the axes z and u these are
+//! As for a cylinder and a polyhedron (see [`super::cylinder_polyhedron`]) few directions lead out over a smooth point of the
+//! boundary of the difference. With the axes z and u these are
 //!
 //! ```text
 //! z, u       a cap                     n across z or u  a rim on the side of the other: the normal of an ellipse

@@ -66,6 +66,7 @@ pub(super) fn patch<S: Scalar>(
     let half = best.gap * S::new(0.5);
     let shift = (radii.0 - radii.1) * S::new(0.5);
     let distance = best.gap - radii.0 - radii.1;
+    // Its frame is upright: see [`Pair::new`].
     if pair.a.is_point() {
         points.push(Point {
             position: a.pose.position + n * (half + shift),

@@ -57,11 +57,11 @@ impl Bounds {
 
     /// Between which x and y the part is that is lower than some height.
     pub fn below(&self, height: f64) -> ([f64; 2], [f64; 2]) {
-        let [x, other_x, y, other_y] = self.slopes;
+        let [minus_x, plus_x, minus_y, plus_y] = self.slopes;
         let (low, high) = (self.low, self.high);
         (
-            [low.x.max(other_x - height), low.y.max(other_y - height)],
-            [high.x.min(height - x), high.y.min(height - y)],
+            [low.x.max(plus_x - height), low.y.max(plus_y - height)],
+            [high.x.min(height - minus_x), high.y.min(height - minus_y)],
         )
     }
 
