@@ -83,7 +83,9 @@ fn flags_switch_features_and_solver_options() {
                        constraint='disable' energy='enable' multiccd='disable' sleep='disable'/></option>
          <option><flag contact='enable'/></option>",
     );
-    assert!(model.physics.flags.contact && !model.physics.flags.gravity);
+    let flags = model.physics.flags;
+    assert!(flags.contact && !flags.gravity && !flags.multiccd);
+    assert!(read("").physics.flags.multiccd);
     assert_eq!(model.options.warmstart, Some(false));
     assert_eq!(model.options.islands, Some(Switch::Off));
     assert_eq!(model.options.disable_constraint, Some(true));

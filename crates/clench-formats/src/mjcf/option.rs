@@ -167,6 +167,7 @@ fn element_flags(element: &Element, flags: &mut Flags) -> Result<(), LoadError> 
         ("actuation", &mut flags.actuation),
         ("refsafe", &mut flags.refsafe),
         ("eulerdamp", &mut flags.eulerdamp),
+        ("multiccd", &mut flags.multiccd),
     ];
     for (name, target) in targets {
         element.set_keyword(name, &SWITCHES, target)?;

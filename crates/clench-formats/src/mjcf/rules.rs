@@ -91,6 +91,8 @@ pub(crate) const RULES: &[Rule] = &[
         read: "timestep gravity wind density viscosity integrator cone jacobian solver impratio tolerance \
             ls_tolerance noslip_tolerance iterations ls_iterations noslip_iterations o_margin o_solref o_solimp \
             o_friction actuatorgroupdisable",
+        // MuJoCo's general collision stops at a tolerance or after so many iterations; ours goes on to the last digit.
+        // The rest is for sensors, signed distance fields and sleep, which are refused where a file asks for them.
         ignored: "magnetic ccd_tolerance ccd_iterations sdf_iterations sdf_initpoints sleep_tolerance",
         once: "flag",
         ..NONE
@@ -98,8 +100,9 @@ pub(crate) const RULES: &[Rule] = &[
     Rule {
         element: "flag",
         read: "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart \
-            filterparent actuation refsafe island eulerdamp override",
-        ignored: "autoreset energy fwdinv midphase multiccd nativeccd sensor",
+            filterparent actuation refsafe island eulerdamp multiccd override",
+        // `nativeccd` and `midphase` choose between algorithms that look for the same contacts.
+        ignored: "autoreset energy fwdinv midphase nativeccd sensor",
         later: "diagexact=disable invdiscrete=disable ipc=disable sleep=disable speculative=disable",
         ..NONE
     },

@@ -416,6 +416,8 @@ pub struct Flags {
     pub island: bool,
     /// Euler integrates joint damping implicitly.
     pub eulerdamp: bool,
+    /// Several contacts of a pair of polyhedra, cylinders or other shapes that general algorithms collide.
+    pub multiccd: bool,
 }
 
 impl Default for Flags {
@@ -436,6 +438,7 @@ impl Default for Flags {
             refsafe: true,
             island: true,
             eulerdamp: true,
+            multiccd: true,
         }
     }
 }
