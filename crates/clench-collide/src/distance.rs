@@ -61,7 +61,7 @@ pub fn distance<S: Scalar>(
         let size = bounding_radius(b);
         let furthest = S::new(field.radius()) + size + (pose_b.position - pose_a.position).norm();
         let most = Real::min(reach, furthest);
-        reach = Real::max(size, furthest * S::new(LEAST_REACH));
+        reach = Real::max(size, furthest * S::new(MIN_SEARCH_SHARE));
         while reach < most {
             collide(a, pose_a, b, pose_b, reach, &mut contacts);
             if !contacts.as_slice().is_empty() {
@@ -93,4 +93,4 @@ pub fn distance<S: Scalar>(
 }
 
 /// Where the search over a height field begins, as a share of the distance to its furthest point.
-const LEAST_REACH: f64 = 1e-3;
+const MIN_SEARCH_SHARE: f64 = 1e-3;

@@ -10,13 +10,13 @@ use super::{Bound, allowance, near};
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// This part of the shapes is not larger than a cube.
-const SMALLER: f64 = 0.9;
+const SMALL_SHARE: f64 = 0.9;
 /// A shape of more cubes than this along an axis is compared with all others.
-const WIDEST: f64 = 4.0;
+const MAX_CELLS: f64 = 4.0;
 /// Cubes are numbered up to this along an axis; shapes beyond are compared with all others.
-const FARTHEST: f64 = 1e9;
+const MAX_CELL: f64 = 1e9;
 /// Buckets of the hash table, for each shape.
-const BUCKETS: usize = 4;
+const BUCKETS_PER_SHAPE: usize = 4;
 
 /// Finds the near pairs of a scene. Its buffers grow to the largest scene seen.
 #[derive(Clone, Debug, Default)]
@@ -126,7 +126,7 @@ impl Grid {
         let sides = self.boxes.iter().map(Box3::side);
         self.sides.extend(sides.filter(|side| side.is_finite()));
         let count = self.sides.len();
-        let rank = ((count as f64 * SMALLER) as usize).min(count.saturating_sub(1));
+        let rank = ((count as f64 * SMALL_SHARE) as usize).min(count.saturating_sub(1));
         let per_metre = match count {
             0 => 1.0,
             _ => {
@@ -141,8 +141,8 @@ impl Grid {
         self.is_wide.clear();
         for (index, one) in self.boxes.iter().enumerate() {
             let corners = one.low.iter().chain(&one.high);
-            let fits = one.side() * per_metre <= WIDEST
-                && corners.map(|x| x.abs() * per_metre).all(|x| x <= FARTHEST);
+            let fits = one.side() * per_metre <= MAX_CELLS
+                && corners.map(|x| x.abs() * per_metre).all(|x| x <= MAX_CELL);
             self.is_wide.push(!fits);
             if !fits {
                 self.wide.push(index as u32);
@@ -160,7 +160,7 @@ impl Grid {
             entries,
             ..
         } = self;
-        let buckets = (BUCKETS * boxes.len()).next_power_of_two();
+        let buckets = (BUCKETS_PER_SHAPE * boxes.len()).next_power_of_two();
         let each = |put: &mut dyn FnMut(usize, Entry)| {
             for (index, one) in boxes.iter().enumerate() {
                 if is_wide[index] {

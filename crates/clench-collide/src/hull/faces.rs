@@ -5,7 +5,7 @@
 //! through the farthest vertex along its normal, so that no vertex is beyond it.
 
 use super::sectors::Sectors;
-use super::surface::{Edge, edges};
+use super::surface::{MeshEdge, edges};
 use super::{Crease, FEW_FACES, Hull, HullSurface, Lists};
 use clench_math::Vec3;
 
@@ -51,7 +51,7 @@ pub(super) fn build(surface: &HullSurface, points: &[Vec3<f64>]) -> Hull {
 
 impl Hull {
     /// An edge between triangles, if it is one between faces.
-    fn crease(&self, edge: &Edge, face_of: &[u32]) -> Option<Crease> {
+    fn crease(&self, edge: &MeshEdge, face_of: &[u32]) -> Option<Crease> {
         let faces = [edge.left, edge.right].map(|triangle| face_of[triangle] as usize);
         if faces[0] == faces[1] {
             return None;
@@ -110,7 +110,7 @@ fn newell(vertices: &[Vec3<f64>], corners: &[u32]) -> Vec3<f64> {
 fn merge(
     vertices: &[Vec3<f64>],
     triangles: &[[u32; 3]],
-    edges: &[Edge],
+    edges: &[MeshEdge],
     center: Vec3<f64>,
 ) -> (Vec<Vec<u32>>, Vec<u32>) {
     let size = (vertices.iter()).fold(0.0, |size, &v| f64::max(size, (v - center).norm()));
@@ -182,9 +182,9 @@ fn outline(triangles: &[[u32; 3]], members: &[usize]) -> Option<Vec<u32>> {
     (at == first && corners.len() == rim.len()).then_some(corners)
 }
 
-fn neighbors(count: usize, edges: &[Edge]) -> Lists {
+fn neighbors(count: usize, edges: &[MeshEdge]) -> Lists {
     let mut pairs: Vec<[u32; 2]> = (edges.iter())
-        .flat_map(|&Edge { ends: [a, b], .. }| [[a, b], [b, a]])
+        .flat_map(|&MeshEdge { ends: [a, b], .. }| [[a, b], [b, a]])
         .collect();
     pairs.sort_unstable();
     lists(count, &pairs)

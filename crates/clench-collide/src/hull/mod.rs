@@ -91,7 +91,7 @@ pub struct Hull {
     sectors: Sectors,
 }
 
-/// So many faces are few enough to look at all of them.
+/// Hulls of at most this many faces are searched face by face.
 pub(crate) const FEW_FACES: usize = 64;
 
 /// An edge between two faces. (Others lie within a face.)
@@ -192,7 +192,7 @@ impl Hull {
     pub fn support(&self, direction: Vec3<f64>) -> usize {
         let candidates = self.sectors.candidates(direction);
         let (fours, rest) = candidates.as_chunks::<4>();
-        // Selections instead of branches, for nobody can tell where these would go.
+        // Selections instead of branches, which could not be predicted.
         let farther = |a: (u32, f64), b: (u32, f64)| {
             let is = b.1 > a.1;
             (if is { b.0 } else { a.0 }, if is { b.1 } else { a.1 })

@@ -1,7 +1,7 @@
 //! Quickhull (Barber, Dobkin and Huhdanpaa 1996) with exact predicates.
 //!
 //! Start from a tetrahedron; each other point belongs to some triangle that it is strictly outside of. While a triangle has
-//! such points, take the farthest: the triangles that see it go, and a cone from it to their rim closes the hole. Whether a
+//! such points, take the farthest: the triangles visible from it go, and a cone from it to the horizon closes the hole. Whether a
 //! point is outside is the sign of a determinant, which `robust` finds without error, so the triangles that a point sees
 //! always form a disk and the surface stays closed and convex, however thin or fine it is. Distances, which are rounded, only
 //! choose the order.
@@ -27,12 +27,12 @@ struct Facet {
     farthest: (f64, u32),
     alive: bool,
     /// The last round in which it was asked whether it sees the point.
-    seen: u32,
+    visited: u32,
 }
 
 /// An edge between facets that see a point and one that does not.
 #[derive(Clone, Copy)]
-struct RimEdge {
+struct HorizonRidge {
     from: u32,
     to: u32,
     /// The facet behind it, and which of its edges it is.
@@ -150,7 +150,7 @@ impl Quickhull<'_> {
             outside: Vec::new(),
             farthest: (f64::NEG_INFINITY, NONE),
             alive: true,
-            seen: 0,
+            visited: 0,
         }
     }
 
@@ -172,8 +172,8 @@ impl Quickhull<'_> {
     fn assign(&mut self, candidates: &[u32], first: usize) {
         for &point in candidates {
             let position = self.points[point as usize];
-            let seeing = |facet: &&mut Facet| side(self.points, facet.corners, point) > 0;
-            if let Some(facet) = self.facets[first..].iter_mut().find(seeing) {
+            let visible_from = |facet: &&mut Facet| side(self.points, facet.corners, point) > 0;
+            if let Some(facet) = self.facets[first..].iter_mut().find(visible_from) {
                 let corner = self.points[facet.corners[0] as usize];
                 let distance = facet.normal.dot(position - corner);
                 facet.outside.push(point);
@@ -207,17 +207,17 @@ impl Quickhull<'_> {
     fn add(&mut self, facet: u32) -> Result<(), HullError> {
         let point = self.facets[facet as usize].farthest.1;
         let mut orphans = Vec::new();
-        let rim = self.remove_seen(facet, point, &mut orphans);
+        let horizon = self.remove_visible(facet, point, &mut orphans);
         let first = self.facets.len();
-        for (i, edge) in rim.iter().enumerate() {
+        for (i, edge) in horizon.iter().enumerate() {
             self.starting_at[edge.from as usize] = (first + i) as u32;
         }
-        for edge in &rim {
+        for edge in &horizon {
             let next = self.starting_at[edge.to as usize];
             let new = self.facet([edge.from, edge.to, point], [edge.behind.0, next, NONE]);
             self.facets.push(new);
         }
-        for (i, edge) in rim.iter().enumerate() {
+        for (i, edge) in horizon.iter().enumerate() {
             let new = (first + i) as u32;
             let next = self.starting_at[edge.to as usize];
             let (behind, side) = edge.behind;
@@ -228,7 +228,7 @@ impl Quickhull<'_> {
             self.facets[next as usize].across[2] = new;
             self.facets[behind as usize].across[side] = new;
         }
-        for edge in &rim {
+        for edge in &horizon {
             self.starting_at[edge.from as usize] = NONE;
         }
         orphans.retain(|&orphan| orphan != point);
@@ -236,12 +236,17 @@ impl Quickhull<'_> {
         Ok(())
     }
 
-    /// Removes the facets that see a point, from one that does on, and returns the rim of the hole.
-    fn remove_seen(&mut self, from: u32, point: u32, orphans: &mut Vec<u32>) -> Vec<RimEdge> {
+    /// Removes the facets that see a point, from one that does on, and returns the horizon of the hole.
+    fn remove_visible(
+        &mut self,
+        from: u32,
+        point: u32,
+        orphans: &mut Vec<u32>,
+    ) -> Vec<HorizonRidge> {
         self.round += 1;
-        let mut rim = Vec::new();
+        let mut horizon = Vec::new();
         let mut stack = vec![from];
-        self.facets[from as usize].seen = self.round;
+        self.facets[from as usize].visited = self.round;
         self.facets[from as usize].alive = false;
         while let Some(f) = stack.pop() {
             let (corners, across) = {
@@ -251,8 +256,8 @@ impl Quickhull<'_> {
             };
             for (edge, &other) in across.iter().enumerate() {
                 let neighbor = &mut self.facets[other as usize];
-                if neighbor.alive && neighbor.seen != self.round {
-                    neighbor.seen = self.round;
+                if neighbor.alive && neighbor.visited != self.round {
+                    neighbor.visited = self.round;
                     neighbor.alive = side(self.points, neighbor.corners, point) <= 0;
                     if !neighbor.alive {
                         stack.push(other);
@@ -261,7 +266,7 @@ impl Quickhull<'_> {
                 if neighbor.alive {
                     let [from, to] = [corners[edge], corners[(edge + 1) % 3]];
                     let side = neighbor.corners.iter().position(|&c| c == to);
-                    rim.push(RimEdge {
+                    horizon.push(HorizonRidge {
                         from,
                         to,
                         behind: (other, side.unwrap_or(0)),
@@ -269,6 +274,6 @@ impl Quickhull<'_> {
                 }
             }
         }
-        rim
+        horizon
     }
 }

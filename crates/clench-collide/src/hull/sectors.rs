@@ -1,4 +1,4 @@
-//! Which vertices of a hull may be the farthest along a direction: few enough to look at all of them.
+//! Which vertices of a hull may be the farthest along a direction: few enough to compare all of them.
 //!
 //! Directions are told apart by comparisons alone: the signs of their coordinates, which is larger than which, and in which half
 //! or quarter of the largest each is. Those of one sector lie between a few corners. Where a vertex has a neighbor that is
@@ -9,9 +9,9 @@ use super::Lists;
 use clench_math::Vec3;
 
 /// Of more candidates than this one is kept, to climb from.
-const MOST: usize = 32;
+const MAX_CANDIDATES: usize = 32;
 /// Hulls of more vertices have sectors of quarters, others of halves.
-const MANY: usize = 128;
+const FINE_FROM: usize = 128;
 /// Which coordinates are the largest, the second and the least.
 const ORDERS: [[usize; 3]; 6] = [
     [0, 1, 2],
@@ -36,7 +36,7 @@ impl Sectors {
         neighbors: &Lists,
         farthest: impl Fn(Vec3<f64>, usize) -> usize,
     ) -> Self {
-        let fine = vertices.len() > MANY;
+        let fine = vertices.len() > FINE_FROM;
         let mut lists = Vec::new();
         let mut last = 0;
         for corners in all_corners(if fine { 4 } else { 2 }) {
@@ -135,7 +135,7 @@ fn candidates(
             }
         }
         next += 1;
-        if found.len() > MOST {
+        if found.len() > MAX_CANDIDATES {
             return vec![first];
         }
     }

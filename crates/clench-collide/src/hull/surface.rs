@@ -5,9 +5,9 @@ use super::quickhull::{side, triangles};
 use clench_math::Vec3;
 
 /// Coordinates beyond this (m) have products that overflow.
-const LARGEST: f64 = 1e60;
+const MAX_COORDINATE: f64 = 1e60;
 /// Coordinates below this (m) have products that vanish: they count as zero.
-const SMALLEST: f64 = 1e-60;
+const MIN_COORDINATE: f64 = 1e-60;
 
 /// The surface of the convex hull of some points: triangles of their indices.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,11 +48,11 @@ pub fn convex_hull(
     if let Some(bound) = max_vertices.filter(|&bound| bound < 4) {
         return Err(HullError::Bound(bound));
     }
-    let usable = |p: &Vec3<f64>| p.to_array().iter().all(|x| x.abs() <= LARGEST);
+    let usable = |p: &Vec3<f64>| p.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
     if let Some(bad) = points.iter().position(|p| !usable(p)) {
         return Err(HullError::NotFinite(bad));
     }
-    let flush = |x: f64| if x.abs() < SMALLEST { 0.0 } else { x };
+    let flush = |x: f64| if x.abs() < MIN_COORDINATE { 0.0 } else { x };
     let points: Vec<Vec3<f64>> = (points.iter())
         .map(|p| Vec3::new(flush(p.x), flush(p.y), flush(p.z)))
         .collect();
@@ -92,7 +92,7 @@ fn between(points: &[Vec3<f64>], triangles: &[[u32; 3]]) -> Vec<u32> {
 }
 
 /// An edge between two triangles.
-pub(super) struct Edge {
+pub(super) struct MeshEdge {
     pub ends: [u32; 2],
     /// The triangle that goes along it from its first end to its second.
     pub left: usize,
@@ -100,7 +100,7 @@ pub(super) struct Edge {
 }
 
 /// The edges of a closed surface.
-pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
+pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<MeshEdge> {
     let mut halves: Vec<(u32, u32, bool, usize)> = Vec::with_capacity(3 * triangles.len());
     for (t, corners) in triangles.iter().enumerate() {
         for i in 0..3 {
@@ -111,7 +111,7 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     halves.sort_unstable();
     let pairs = halves.chunks_exact(2);
     pairs
-        .map(|pair| Edge {
+        .map(|pair| MeshEdge {
             ends: [pair[0].0, pair[0].1],
             left: pair[0].3,
             right: pair[1].3,

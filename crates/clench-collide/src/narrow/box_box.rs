@@ -10,7 +10,7 @@
 
 use super::{
     Placed, convex,
-    one_by_one::{Points, one_by_one},
+    per_lane::{Points, per_lane},
 };
 use crate::{Contacts, Pose};
 use clench_math::{Mat3, Real, Scalar, Vec3};
@@ -29,7 +29,7 @@ pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
 }
 
 pub(super) fn box_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    one_by_one(a, b, margin, out, points);
+    per_lane(a, b, margin, out, points);
 }
 
 fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {

@@ -2,7 +2,7 @@
 
 use super::{
     box_box::{BoxPair, tolerance},
-    one_by_one::{Point, Points},
+    per_lane::{Point, Points},
     polygon::Polygon,
 };
 use clench_math::{Scalar, Vec3};

@@ -4,7 +4,7 @@
 //! segment enters the box, no sphere on it tells how far the capsule must move to be free, and the general convex search
 //! does.
 
-use super::{Placed, convex, one_by_one::one_by_one_where};
+use super::{Placed, convex, per_lane::per_lane_where};
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
@@ -98,7 +98,7 @@ pub(super) fn capsule_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &
     }
     let sunk = near & enters(center, half, size);
     if sunk.any() {
-        one_by_one_where(sunk, a, b, margin, out, convex::points);
+        per_lane_where(sunk, a, b, margin, out, convex::points);
     }
     let beside = near & !sunk;
     if beside.any() {

@@ -1,4 +1,4 @@
-//! Oriented boxes about two shapes: a quick look, in all lanes at once, before a method that is slow and goes lane by lane.
+//! Oriented boxes about two shapes: a quick test, in all lanes at once, before a slow method that runs per lane.
 //!
 //! Boxes are apart if they are so along a face normal of either (Gottschalk, Lin & Manocha 1996; the nine cross products of edges
 //! would find few more). A sphere is its own bound.

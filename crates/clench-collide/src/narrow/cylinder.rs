@@ -3,13 +3,13 @@
 use super::{
     Placed,
     ball::across_axes,
+    penetration::{deepest, penetration_depth},
     segment::Segment,
-    way_out::{deepest, way_out},
 };
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
-/// Steps to the nearest point of a segment. Four to eight are usual; so many halvings would leave a rounding error of it.
+/// Steps to the nearest point of a segment. Four to eight are usual; after this many halvings only rounding is left.
 const STEPS: usize = 54;
 /// A capsule lies along a cap or a side that it is tilted against by less (5°).
 const LEVEL_SINE: f64 = 0.087;
@@ -42,7 +42,7 @@ impl<T: Real> Cylinder<T> {
         let off_side = from_axis - self.radius;
         let (up, out) = (above_cap.max(T::ZERO), off_side.max(T::ZERO));
         let length = (up * up + out * out).sqrt();
-        // Within the cylinder the nearer of cap and side decides; beyond both, the rim.
+        // Within the cylinder the nearer of cap and side decides; beyond both, the circle where they meet.
         let within = length.lt(T::new(1e-15));
         let cap = T::select(above_cap.gt(off_side), T::ONE, T::ZERO);
         let inverse = T::ONE / T::select(within, T::ONE, length);
@@ -100,7 +100,7 @@ pub(super) fn sphere_cylinder<T: Real>(
 /// The deepest point, and where the capsule lies along the cap or the side both ends of that stretch.
 ///
 /// Once the capsule's middle segment enters the cylinder, the signed distance of its points no longer tells how far the
-/// capsule must move to be free, and [`way_out`] does.
+/// capsule must move to be free, while [`penetration_depth`] does.
 #[kernel]
 pub(super) fn capsule_cylinder<T: Real>(
     a: Placed<T>,
@@ -153,7 +153,7 @@ pub(super) fn capsule_cylinder<T: Real>(
     let inside = active & entered;
     if inside.any() {
         let (radius_b, half_b) = (cylinder.radius, cylinder.half_length);
-        let (depth, outward) = way_out(radius_b, half_b, &segment);
+        let (depth, outward) = penetration_depth(radius_b, half_b, &segment);
         let center = segment.at(deepest(radius_b, half_b, &segment, outward, nearest));
         add_ball(center, radius, (-depth, outward), b, inside, out);
     }

@@ -10,12 +10,12 @@ mod boxes;
 mod capsule;
 mod convex;
 mod cylinder;
-mod one_by_one;
+mod penetration;
+mod per_lane;
 mod plane;
 mod plane_mesh;
 mod polygon;
 mod segment;
-mod way_out;
 
 use crate::{Contacts, Pose, Shape, ShapeKind};
 use clench_math::Real;

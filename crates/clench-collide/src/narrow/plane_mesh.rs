@@ -6,29 +6,29 @@
 
 use super::{
     Placed,
-    convex::MOST_CORNERS,
-    one_by_one::{Point, Points, one_by_one},
+    convex::MAX_CORNERS,
+    per_lane::{Point, Points, per_lane},
 };
 use crate::{Asset, Contacts, Hull, PATCH_POINTS};
 use arrayvec::ArrayVec;
 use clench_math::{Real, Scalar, Vec3};
 
 /// The deepest vertex and the corners of a face.
-const MOST: usize = MOST_CORNERS + 1;
+const MAX_CANDIDATES: usize = MAX_CORNERS + 1;
 /// Distances that differ by less than this share are equal.
 const TIE: f64 = 1e-6;
 
 pub(super) fn plane_mesh<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    one_by_one(a, b, margin, out, points);
+    per_lane(a, b, margin, out, points);
 }
 
 /// A vertex in the hull's frame, and its height above the plane.
 #[derive(Clone, Copy)]
-struct Spot<S> {
+struct Candidate<S> {
     at: Vec3<S>,
     height: S,
-    /// The square of the distance to the nearest spot that is kept.
-    alone: S,
+    /// The square of the distance to the nearest candidate that is kept.
+    separation: S,
 }
 
 fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut Points<S>) {
@@ -41,13 +41,17 @@ fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut 
     let near = |vertex: u32| {
         let at = Vec3::from_f64(hull.vertices()[vertex as usize].to_array());
         let height = origin + up.dot(at);
-        let alone = S::INFINITY;
-        (height <= margin).then_some(Spot { at, height, alone })
+        let separation = S::INFINITY;
+        (height <= margin).then_some(Candidate {
+            at,
+            height,
+            separation,
+        })
     };
-    let mut spots = ArrayVec::new();
-    around_deepest(hull, -up, near, &mut spots);
-    spread(&mut spots);
-    for Spot { at, height, .. } in spots {
+    let mut candidates = ArrayVec::new();
+    around_deepest(hull, -up, near, &mut candidates);
+    sample_farthest(&mut candidates);
+    for Candidate { at, height, .. } in candidates {
         let position = mesh.pose.point(at) - normal * (height * S::new(0.5));
         points.push(Point {
             position,
@@ -61,59 +65,60 @@ fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut 
 fn around_deepest<S: Scalar>(
     hull: &Hull,
     down: Vec3<S>,
-    near: impl Fn(u32) -> Option<Spot<S>>,
-    spots: &mut ArrayVec<Spot<S>, MOST>,
+    near: impl Fn(u32) -> Option<Candidate<S>>,
+    candidates: &mut ArrayVec<Candidate<S>, MAX_CANDIDATES>,
 ) {
     let down = Vec3::from_array(down.to_array().map(S::to_f64));
     let deepest = hull.support(down);
-    let mut seen = ArrayVec::<u32, MOST>::new();
-    let mut look = |vertex: u32, seen: &mut ArrayVec<u32, MOST>| {
+    let mut visited = ArrayVec::<u32, MAX_CANDIDATES>::new();
+    let mut visit = |vertex: u32, visited: &mut ArrayVec<u32, MAX_CANDIDATES>| {
         // Most are not near.
-        if let Some(spot) = near(vertex)
-            && !seen.contains(&vertex)
+        if let Some(candidate) = near(vertex)
+            && !visited.contains(&vertex)
         {
-            seen.push(vertex);
-            spots.push(spot);
+            visited.push(vertex);
+            candidates.push(candidate);
         }
     };
-    look(deepest as u32, &mut seen);
-    if seen.is_empty() {
+    visit(deepest as u32, &mut visited);
+    if visited.is_empty() {
         return;
     }
     if let Some(face) = hull.face_across(deepest, down) {
         let corners = hull.corners(face);
-        for corner in corners.iter().step_by(corners.len().div_ceil(MOST_CORNERS)) {
-            look(*corner, &mut seen);
+        for corner in corners.iter().step_by(corners.len().div_ceil(MAX_CORNERS)) {
+            visit(*corner, &mut visited);
         }
     }
     let mut next = 0;
-    while next < seen.len() {
-        for &neighbor in hull.neighbors(seen[next] as usize) {
-            if seen.len() >= PATCH_POINTS {
+    while next < visited.len() {
+        for &neighbor in hull.neighbors(visited[next] as usize) {
+            if visited.len() >= PATCH_POINTS {
                 return;
             }
-            look(neighbor, &mut seen);
+            visit(neighbor, &mut visited);
         }
         next += 1;
     }
 }
 
 /// Leaves at most [`PATCH_POINTS`]: the first, the one furthest from it, the one furthest from both, and so on.
-fn spread<S: Scalar>(spots: &mut ArrayVec<Spot<S>, MOST>) {
-    if spots.len() <= PATCH_POINTS {
+fn sample_farthest<S: Scalar>(candidates: &mut ArrayVec<Candidate<S>, MAX_CANDIDATES>) {
+    if candidates.len() <= PATCH_POINTS {
         return;
     }
     for kept in 1..PATCH_POINTS {
-        let last = spots[kept - 1].at;
+        let last = candidates[kept - 1].at;
         let mut best = (S::ZERO, kept);
-        for (k, spot) in spots.iter_mut().enumerate().skip(kept) {
-            spot.alone = Real::min((spot.at - last).norm_squared(), spot.alone);
+        for (k, candidate) in candidates.iter_mut().enumerate().skip(kept) {
+            candidate.separation =
+                Real::min((candidate.at - last).norm_squared(), candidate.separation);
             // Rounding must not choose between equals.
-            if spot.alone > best.0 * S::new(1.0 + TIE) {
-                best = (spot.alone, k);
+            if candidate.separation > best.0 * S::new(1.0 + TIE) {
+                best = (candidate.separation, k);
             }
         }
-        spots.swap(kept, best.1);
+        candidates.swap(kept, best.1);
     }
-    spots.truncate(PATCH_POINTS);
+    candidates.truncate(PATCH_POINTS);
 }

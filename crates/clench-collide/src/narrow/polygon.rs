@@ -1,13 +1,13 @@
-//! Convex polygons as seen along a direction, and what is left of one within another.
+//! Convex polygons projected along a direction, and clipping them.
 
-use super::convex::MOST_CORNERS;
+use super::convex::MAX_CORNERS;
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 use std::cmp::Ordering;
 
 /// Room for corners. Of each side of a face, both ends of a chord may be corners of its overlap with another, and so may all
 /// corners of both.
-pub(super) const CAPACITY: usize = 4 * MOST_CORNERS;
+pub(super) const CAPACITY: usize = 4 * MAX_CORNERS;
 
 /// A convex polygon, or a segment (two corners): x and y in the plane across the line of sight, z the height along it.
 #[derive(Clone, Debug)]

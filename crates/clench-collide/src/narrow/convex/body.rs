@@ -26,10 +26,10 @@ pub(super) struct Body<'a, S> {
     /// Of the ball that is added to the core, m.
     pub radius: S,
     /// Of a sphere about the origin that holds the body, m.
-    pub reach: S,
+    pub bounding_radius: S,
     /// Of a mesh.
     pub hull: Option<&'a Hull>,
-    /// Of a height field, the part that is looked at.
+    /// Of a height field, the prism under the triangle at hand.
     prism: Option<&'a Prism<S>>,
 }
 
@@ -50,7 +50,7 @@ impl<'a, S: Scalar> Body<'a, S> {
             kind: shape.kind,
             size,
             radius,
-            reach: crate::bounding_radius(shape),
+            bounding_radius: crate::bounding_radius(shape),
             hull: match shape.asset {
                 Asset::Hull(hull) => Some(hull),
                 _ => None,
@@ -65,7 +65,7 @@ impl<'a, S: Scalar> Body<'a, S> {
             kind: ShapeKind::HeightField,
             size: Vec3::ZERO,
             radius: S::ZERO,
-            reach: prism.reach(),
+            bounding_radius: prism.bounding_radius(),
             hull: None,
             prism: Some(prism),
         }
@@ -76,7 +76,7 @@ impl<'a, S: Scalar> Body<'a, S> {
         self.kind == ShapeKind::Sphere
     }
 
-    /// The point of the core that is nearest to a point, of cores whose size tells it.
+    /// The point of the core that is nearest to a point, for the kinds whose size gives it in closed form.
     pub fn nearest(&self, point: impl FnOnce() -> Vec3<S>) -> Option<Vec3<S>> {
         let s = self.size;
         let within = |x: S, half: S| x.clamp(-half, half);
@@ -119,7 +119,7 @@ impl<'a, S: Scalar> Body<'a, S> {
                 scaled.scale_by(s) * (S::ONE / length) - unit * self.radius
             }
             ShapeKind::Cylinder => {
-                let (x, y) = rim(d);
+                let (x, y) = radial_direction(d);
                 Vec3::new(x * s.x, y * s.x, s.y.copysign(side.z))
             }
             ShapeKind::Box => Vec3::new(
@@ -157,7 +157,7 @@ impl<'a, S: Scalar> Body<'a, S> {
                 }
             }
             ShapeKind::Cylinder => {
-                let (x, y) = rim(d);
+                let (x, y) = radial_direction(d);
                 let level = (d.x * d.x + d.y * d.y).sqrt().max(S::EPSILON);
                 Curvature {
                     share: -s.x / level,
@@ -215,7 +215,7 @@ impl<'a, S: Scalar> Body<'a, S> {
 
 /// How the supporting point of a core moves with the direction: the matrix λ (Q − p pᵀ) − ρ 1 with a diagonal Q.
 ///
-/// Of an ellipsoid Q = S², p = S² d / |S d| and λ = 1 / |S d|. Of the rim of a cylinder p is the direction along it, and −λ
+/// Of an ellipsoid Q = S², p = S² d / |S d| and λ = 1 / |S d|. Of the cap circle of a cylinder p is the direction along it, and −λ
 /// its radius over the part of d in its plane.
 pub(super) struct Curvature<S> {
     share: S,
@@ -241,9 +241,9 @@ impl<S: Scalar> Curvature<S> {
     }
 }
 
-/// The unit direction of `d` seen along z; x where it points along z.
+/// The unit direction of `d` projected across z: where on a cap's circle a cylinder supports it; x where `d` points along z.
 #[inline]
-pub(super) fn rim<S: Scalar>(d: Vec3<S>) -> (S, S) {
+pub(super) fn radial_direction<S: Scalar>(d: Vec3<S>) -> (S, S) {
     let level = (d.x * d.x + d.y * d.y).sqrt();
     if level > S::MIN_POSITIVE {
         let inverse = S::ONE / level;

@@ -1,26 +1,26 @@
 //! The largest gap of a cylinder and a polyhedron of few faces that overlap, among the few directions that can have it.
 //!
-//! Where two bodies overlap, the shortest way out ends at a smooth point of the boundary of their difference: exactly one
-//! direction n leads across it. With a cylinder of axis z and a polyhedron that leaves
+//! Where two bodies overlap, the penetration depth is attained at a smooth point of the boundary of their difference, which has
+//! exactly one normal n. With a cylinder of axis z and a polyhedron that leaves
 //!
 //! ```text
 //! m, z         a normal of a face; of a cap            z × b       an edge b across the side of the cylinder
-//! n across z   a corner on the side                    n across b  an edge b on the rim
+//! n across z   a corner on the side                    n across b  an edge b on the cap circle
 //! ```
 //!
 //! A corner on the side matters only where all of the polyhedron is beside the axis, and then it is the corner nearest to it.
-//! Seen along b the rim is an ellipse, the edge a point, and n the normal of the ellipse that goes through that point.
+//! ProjectedFeature along b the cap circle is an ellipse, the edge a point, and n the normal of the ellipse that goes through that point.
 //!
 //! An edge touches along the directions between the normals of its faces. Let g be the gap through the edge on the way from one
 //! of them, m, to a direction n at the angle θ where it is as large as it gets. A support function and its second derivative have
 //! no negative sum, so g″ ≤ −g, and g(n) ≤ g(m) cos θ + g′(m) sin θ. That bounds g′(m) from below, most weakly at the other normal;
-//! g′(m) is how far beyond the edge, seen in the face, the cylinder touches along m. So most edges need not be asked.
+//! g′(m) is how far beyond the edge, in the face's plane, the cylinder touches along m. So most edges need not be searched.
 //!
 //! If the bodies are apart some of these directions show it, but then the largest gap may be along another.
 
 use super::{
-    best::Best,
     ellipse::Ellipse,
+    largest_gap::LargestGap,
     pair::{Gap, Pair},
     prism::{EDGES, FACES, Prism},
 };
@@ -37,7 +37,7 @@ pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -
         let start = corners[from];
         let (along, _) = (corners[to] - start).normalize();
         let cosine = normals[left].dot(normals[right]);
-        Edge {
+        PolyhedronEdge {
             start,
             along,
             moment: start.cross(along),
@@ -78,7 +78,7 @@ pub(super) fn box_gap<S: Scalar>(pair: &Pair<S>, limit: S) -> Gap<S> {
         } else {
             [face_k, face_j]
         };
-        Edge {
+        PolyhedronEdge {
             start,
             along,
             moment: start.cross(along),
@@ -97,7 +97,7 @@ pub(super) fn hull_gap<S: Scalar>(pair: &Pair<S>, hull: &Hull, limit: S) -> Opti
     let real = |v: Vec3<f64>| Vec3::from_f64(v.to_array());
     let corners = hull.vertices().iter().map(|&v| real(v));
     let faces = (0..hull.face_count()).map(|k| (real(hull.normal(k)), S::new(hull.offset(k))));
-    let edges = hull.creases().iter().map(|crease| Edge {
+    let edges = hull.creases().iter().map(|crease| PolyhedronEdge {
         start: real(crease.start),
         along: real(crease.along),
         moment: real(crease.moment),
@@ -125,7 +125,7 @@ struct Face<S> {
 }
 
 /// An edge of the polyhedron.
-struct Edge<S> {
+struct PolyhedronEdge<S> {
     /// One of its ends.
     start: Vec3<S>,
     /// The unit direction to the other.
@@ -138,7 +138,7 @@ struct Edge<S> {
     turn: (S, S),
 }
 
-impl<S: Scalar> Edge<S> {
+impl<S: Scalar> PolyhedronEdge<S> {
     /// Whether the gap through it may be as large as it gets, and no deeper than `depth`, between its faces.
     #[inline(always)]
     fn may_touch(&self, [m, n]: [&Face<S>; 2], depth: S) -> bool {
@@ -149,7 +149,7 @@ impl<S: Scalar> Edge<S> {
             -self.along.dot(n.moment) - n.outward.dot(self.moment),
         ];
         let near = |within: S, face: &Face<S>| within * sine <= depth - face.depth * cosine;
-        // Both, for nobody can tell which.
+        // Both, without a branch that cannot be predicted.
         near(within[0], m) & near(within[1], n)
     }
 }
@@ -172,7 +172,7 @@ impl<S: Scalar> Cylinder<S> {
         pair: &Pair<S>,
         corners: impl Iterator<Item = Vec3<S>> + Clone,
         faces: impl Iterator<Item = (Vec3<S>, S)>,
-        edges: impl Iterator<Item = Edge<S>>,
+        edges: impl Iterator<Item = PolyhedronEdge<S>>,
         limit: S,
     ) -> Gap<S> {
         let best = self.search(corners, faces, edges, limit, pair.tolerance);
@@ -192,11 +192,11 @@ impl<S: Scalar> Cylinder<S> {
         &self,
         corners: impl Iterator<Item = Vec3<S>> + Clone,
         faces: impl Iterator<Item = (Vec3<S>, S)>,
-        edges: impl Iterator<Item = Edge<S>>,
+        edges: impl Iterator<Item = PolyhedronEdge<S>>,
         limit: S,
         tolerance: S,
-    ) -> Best<S> {
-        let mut best = Best::new(tolerance);
+    ) -> LargestGap<S> {
+        let mut best = LargestGap::new(tolerance);
         let mut known = ArrayVec::<Face<S>, FEW_FACES>::new();
         for (outward, offset) in faces {
             let face = self.face(outward, offset);
@@ -232,7 +232,7 @@ impl<S: Scalar> Cylinder<S> {
 
     /// The caps, and the corner nearest to the axis against the side.
     #[inline(always)]
-    fn corners(&self, corners: impl Iterator<Item = Vec3<S>> + Clone, best: &mut Best<S>) {
+    fn corners(&self, corners: impl Iterator<Item = Vec3<S>> + Clone, best: &mut LargestGap<S>) {
         let (mut low, mut high) = (S::INFINITY, -S::INFINITY);
         let mut least = (S::INFINITY, Vec3::ZERO);
         for corner in corners.clone() {
@@ -262,8 +262,8 @@ impl<S: Scalar> Cylinder<S> {
         }
     }
 
-    /// An edge against the side and the rims, along directions that do not point out of either of its faces.
-    fn edge(&self, edge: &Edge<S>, [m, n]: [&Face<S>; 2], best: &mut Best<S>) {
+    /// An edge against the side and the cap circles, along directions that do not point out of either of its faces.
+    fn edge(&self, edge: &PolyhedronEdge<S>, [m, n]: [&Face<S>; 2], best: &mut LargestGap<S>) {
         let across = edge.along.cross(self.axis);
         let (cosine, sine) = (edge.along.dot(self.axis).abs(), across.norm());
         if sine <= S::EPSILON {
@@ -272,7 +272,7 @@ impl<S: Scalar> Cylinder<S> {
         let across = across * (S::ONE / sine);
         let inward = [m.outward.cross(edge.along), edge.along.cross(n.outward)];
         let from_middle = edge.start - self.middle;
-        // Seen along the edge, with x across the axis, the edge is where x is positive.
+        // ProjectedFeature along the edge, with x across the axis, the edge is where x is positive.
         let x = across.dot(from_middle);
         let side = S::ONE.copysign(x);
         let (x, out) = (x.abs(), inward.map(|d| across.dot(d) * side));

@@ -1,27 +1,28 @@
-//! The largest gap of two cylinders that overlap, among the few directions that can have it, unless it may be across two rims.
+//! The largest gap of two cylinders that overlap, among the few directions that can have it, unless it may be across two cap
+//! circles.
 //!
-//! As for a cylinder and a polyhedron (see [`super::cylinder_polyhedron`]) few directions lead out over a smooth point of the
-//! boundary of the difference. With the axes z and u these are
+//! As for a cylinder and a polyhedron (see [`super::cylinder_polyhedron`]) few directions are normals at a smooth point of
+//! the boundary of the difference. With the axes z and u these are
 //!
 //! ```text
-//! z, u       a cap                     n across z or u  a rim on the side of the other: the normal of an ellipse
-//! z × u      a side across a side      any other n      a rim across a rim
+//! z, u       a cap                     n across z or u  a circle on the side of the other: the normal of an ellipse
+//! z × u      a side across a side      any other n      a circle across a circle
 //! ```
 //!
-//! Seen along its axis a cylinder is a circle, the other a rectangle with halves of an ellipse at its ends; their middle lines are
-//! the same, so the shortest way out is over the quarter that the offset points to.
+//! ProjectedFeature along its axis a cylinder is a circle, the other a rectangle with halves of an ellipse at its ends; their middle lines are
+//! the same, so the smallest depth is in the quarter that the offset points to.
 //!
-//! A way out across two rims that is shorter than d leads from one to the other: each passes within d of both the cap and the
+//! A direction across two cap circles with a depth below d joins one to the other: each passes within d of both the cap and the
 //! side of the other cylinder, inside. Where they do not, the other directions are all there are.
 
 use super::{
-    best::Best,
     ellipse::Ellipse,
+    largest_gap::LargestGap,
     pair::{Gap, Pair},
 };
 use clench_math::{Scalar, Vec3};
 
-/// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two rims,
+/// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two cap circles,
 /// or no common point is at hand; nothing where the axes are parallel.
 pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
     let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
@@ -47,7 +48,7 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
         cylinder(1, axes[1].cross(across), -pair.offset),
     ];
 
-    let mut best = Best::new(pair.tolerance);
+    let mut best = LargestGap::new(pair.tolerance);
     let mut offer = |direction: Vec3<S>| {
         let normal = direction * S::ONE.copysign(direction.dot(pair.offset));
         best.offer(pair.gap(normal).gap, || normal);
@@ -66,7 +67,7 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
         }
     }
     let settled = best.gap > S::ZERO
-        || (!rims_cross(&cylinders, (cosine, sine), -best.gap)
+        || (!circles_cross(&cylinders, (cosine, sine), -best.gap)
             && (axes_pass(&cylinders, sine) || deepest_inside(pair, best.normal)));
     Some(Gap {
         normal: best.normal,
@@ -75,11 +76,11 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
     })
 }
 
-/// Whether two rims may be a shorter way out than `depth`.
-fn rims_cross<S: Scalar>([a, b]: &[Cylinder<S>; 2], angle: (S, S), depth: S) -> bool {
+/// Whether a direction across two cap circles may have a smaller depth than `depth`.
+fn circles_cross<S: Scalar>([a, b]: &[Cylinder<S>; 2], angle: (S, S), depth: S) -> bool {
     ENDS.into_iter().any(|ends| {
         let [end, other] = ends.map(S::new);
-        a.near_rim(b, [end, other], angle, depth) && b.near_rim(a, [other, end], angle, depth)
+        a.near_circle(b, [end, other], angle, depth) && b.near_circle(a, [other, end], angle, depth)
     })
 }
 
@@ -113,14 +114,14 @@ struct Cylinder<S> {
 }
 
 impl<S: Scalar> Cylinder<S> {
-    /// Whether a rim of another cylinder passes within `depth` of this one's cap and side, inside, at one of its ends; `ends` tell
-    /// which, and which rim. (Or it may pass.)
+    /// Whether a cap circle of another cylinder passes within `depth` of this one's cap and side, inside, at one of its ends; `ends` select
+    /// that end and the circle. (Or it may pass.)
     ///
-    /// The rim runs through (x + r C, y − r γ S, z + r σ S) with C = cos θ and S = sin θ, where γ and σ are the cosine and the
-    /// sine between the axes. Within `depth` of the cap S is in an interval; there the rim is in one of two rectangles, seen
-    /// along the axis, that must reach into a ring.
+    /// The cap circle runs through (x + r C, y − r γ S, z + r σ S) with C = cos θ and S = sin θ, where γ and σ are the cosine and the
+    /// sine between the axes. Within `depth` of the cap S is in an interval; there the cap circle is in one of two rectangles,
+    /// projected along the axis, that must reach into a ring.
     #[inline]
-    fn near_rim(&self, other: &Self, ends: [S; 2], (cosine, sine): (S, S), depth: S) -> bool {
+    fn near_circle(&self, other: &Self, ends: [S; 2], (cosine, sine): (S, S), depth: S) -> bool {
         let [x, y, z] = self.offset;
         let arm = other.half * ends[1];
         let (y, z) = (y + arm * sine, (z + arm * cosine) * ends[0]);

@@ -1,6 +1,6 @@
 //! How deep two cores overlap: the expanding polytope algorithm (van den Bergen 2001).
 //!
-//! The difference of the cores holds the origin, and its boundary point nearest to the origin is the shortest way out.
+//! The difference of the cores holds the origin, and its boundary point nearest to the origin gives the penetration depth and direction.
 //! A polytope of its vertices grows: the face nearest to the origin is replaced by faces to the vertex that is furthest
 //! along its normal. Any direction m bounds the depth from above by how far the difference reaches along it, the
 //! polytope's nearest face bounds it from below:
@@ -10,21 +10,21 @@
 //! ```
 //!
 //! Bodies with flat faces end exactly, at a face that cannot be moved. For curved bodies the upper bound comes from
-//! Newton's method, to the last digits, and the lower bound needs only show that no other way out is noticeably shorter.
+//! Newton's method, to the last digits, and the lower bound need only show that no other direction gives a noticeably smaller depth.
 //! Where the polytope runs out of room before it has, in the middle of thin round bodies, the directions across two creases
-//! of the gap are tried too: ways out that are nearly all the same are shortest there.
+//! of the gap are tried too: among depths that are nearly equal the smallest lies there.
 
 use super::{
     pair::{Gap, Pair, Vertex},
     polytope::{Polytope, VERTICES},
-    refine::{Flats, refine},
+    refine::{ActiveEdges, refine},
     simplex::Simplex,
 };
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// Rounds until an answer is given, certain or not. Most move a face, some find that it cannot be moved.
 const ROUNDS: usize = 2 * VERTICES;
-/// How far, as a share of the smaller body, another way out of curved bodies may be shorter than the one found.
+/// By how much, as a share of the smaller body, the true depth of curved bodies may be smaller than the one found.
 const SLACK: f64 = 1e-4;
 /// Newton's method is tried where a face can be moved by less than this share of the smaller body.
 const NEAR: f64 = 0.1;
@@ -65,7 +65,7 @@ fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>;
 }
 
 /// The given vertex that is furthest; if that is not far, the furthest along or against any of the directions, if further.
-/// Where that is nearer than `least`, what a direction says of the gap.
+/// The gap along a direction, where the face is nearer than `least`.
 fn furthest<S: Scalar>(
     pair: &Pair<S>,
     given: &[Vertex<S>],
@@ -109,12 +109,12 @@ fn expand<S: Scalar>(
 ) -> Gap<S> {
     let mut best = pair.gap(start);
     let mut touching = polytope.corners(0);
-    // Whether Newton's method has said what there is to say of the best direction.
+    // Whether Newton's method has already refined the best direction.
     let mut refined = false;
     let mut known = false;
     for _ in 0..ROUNDS {
         let (nearest, distance) = polytope.nearest();
-        // How much shorter a way out over the nearest face may still be.
+        // By how much the depth through the nearest face may still be smaller.
         let slack = if best.settled {
             (pair.smallest * S::new(SLACK)).max(pair.tolerance)
         } else {
@@ -147,11 +147,11 @@ fn expand<S: Scalar>(
         }
         if !polytope.add(nearest, &vertex) {
             // As far out as rounding lets it be.
-            polytope.retire(nearest);
+            polytope.close(nearest);
         }
         if better && pair.curved && movable < pair.smallest.max(distance) * S::new(NEAR) {
-            let flats = Flats::of(pair, &polytope.vertices(corners));
-            refined |= best.improve(refine(pair, raw.normal, &flats), pair.tolerance);
+            let active = ActiveEdges::of(pair, &polytope.vertices(corners));
+            refined |= best.improve(refine(pair, raw.normal, &active), pair.tolerance);
         }
     }
     let touching = polytope.vertices(touching);

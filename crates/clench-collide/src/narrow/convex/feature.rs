@@ -1,20 +1,20 @@
 //! What of a body lies against a plane: a face, an edge or a corner.
 
-use super::body::{Body, rim};
+use super::body::{Body, radial_direction};
 use crate::{Hull, ShapeKind, hull::FACE_COSINE};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// Most corners of a feature. A face of a hull that has more is seen with every second, third, ... of them and the furthest one.
-pub(crate) const MOST_CORNERS: usize = 24;
+/// Most corners of a feature. A face of a hull that has more is represented by every second, third, ... of them and the furthest one.
+pub(crate) const MAX_CORNERS: usize = 24;
 /// An edge counts as lying against the plane up to this tilt (5°), as a face does.
 const EDGE_SINE: f64 = 0.087;
-/// A cap tilted by less has its deepest point at every corner, as far as anyone can tell.
+/// A cap tilted by less is level to rounding: all its corners are equally deep.
 const TILT: f64 = 5e-6;
 
 /// A face, counter-clockwise seen from outside, an edge (two corners) or a corner of a core.
 pub(super) struct Feature<S> {
-    pub corners: ArrayVec<Vec3<S>, MOST_CORNERS>,
+    pub corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
     /// The outward normal of a face.
     pub normal: Vec3<S>,
     /// The radius of a round cap about the z axis, which its corners only stand for.
@@ -102,7 +102,7 @@ impl<S: Scalar> Feature<S> {
     fn face(&mut self, hull: &Hull, face: usize, vertex: usize) {
         let at = |v: u32| Vec3::from_f64(hull.vertices()[v as usize].to_array());
         let corners = hull.corners(face);
-        let stride = corners.len().div_ceil(MOST_CORNERS - 1);
+        let stride = corners.len().div_ceil(MAX_CORNERS - 1);
         self.corners.clear();
         for (k, &corner) in corners.iter().enumerate() {
             if k % stride == 0 || corner as usize == vertex {
@@ -113,16 +113,16 @@ impl<S: Scalar> Feature<S> {
     }
 
     /// The cap of a cylinder: corners that do not turn with the tilt, so that a standing cylinder stands still, and between
-    /// them the deepest point of the rim.
+    /// them the deepest point of the cap's circle.
     fn cap(&mut self, size: Vec3<S>, d: Vec3<S>) {
         let up = S::ONE.copysign(d.z);
         self.normal = Vec3::new(S::ZERO, S::ZERO, up);
         self.radius = Some(size.x);
         let height = size.y * up;
-        let tip = rim(d);
+        let tip = radial_direction(d);
         let mut tilted = (d.x * d.x + d.y * d.y).sqrt() > S::new(TILT);
         let at = |(x, y): (S, S)| Vec3::new(x * size.x, y * size.x, height);
-        for k in 0..RIM.len() {
+        for k in 0..CAP_CIRCLE.len() {
             let (from, to) = (direction::<S>(k, up), direction::<S>(k + 1, up));
             self.corners.push(at(from));
             let after = from.0 * tip.1 - from.1 * tip.0;
@@ -155,7 +155,7 @@ pub(super) fn most_level<S: Scalar>(
 }
 
 /// Sixteen directions round a circle.
-const RIM: [(f64, f64); 16] = {
+const CAP_CIRCLE: [(f64, f64); 16] = {
     // Cosine and sine of 22.5°, 45° and 67.5°.
     const C: f64 = 0.923_879_532_511_286_7;
     const D: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -182,6 +182,6 @@ const RIM: [(f64, f64); 16] = {
 
 /// Direction `k` around, the other way about if `up` is −1.
 fn direction<S: Scalar>(k: usize, up: S) -> (S, S) {
-    let (x, y) = RIM[k % RIM.len()];
+    let (x, y) = CAP_CIRCLE[k % CAP_CIRCLE.len()];
     (S::new(x), S::new(y) * up)
 }

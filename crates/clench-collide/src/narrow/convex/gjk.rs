@@ -14,7 +14,7 @@
 
 use super::{
     pair::{Gap, Pair},
-    refine::{Flats, refine},
+    refine::{ActiveEdges, refine},
     simplex::Simplex,
 };
 use clench_math::{Scalar, Vec3};
@@ -129,11 +129,11 @@ fn search<S: Scalar>(
         }
         v = nearest;
         if newton && length - gap < pair.smallest * S::new(NEAR) {
-            let flats = Flats::of(pair, simplex.vertices());
+            let active = ActiveEdges::of(pair, simplex.vertices());
             let known = best.normal;
-            best.improve(refine(pair, n, &flats), pair.tolerance);
+            best.improve(refine(pair, n, &active), pair.tolerance);
             if best.normal != known {
-                for vertex in flats.vertices(pair, best.normal) {
+                for vertex in active.vertices(pair, best.normal) {
                     match simplex.add(vertex) {
                         Some(nearest) => v = nearest,
                         None => return End::Inside,

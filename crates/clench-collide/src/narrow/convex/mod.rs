@@ -1,14 +1,15 @@
 //! Any two convex shapes, by their support functions: how far apart or how deep they are, along which normal, and the points
 //! where they touch.
 
-mod best;
 mod body;
+mod clipping;
 mod cylinder_polyhedron;
 mod cylinders;
 mod ellipse;
 mod epa;
 mod feature;
 mod gjk;
+mod largest_gap;
 mod pair;
 mod patch;
 mod polytope;
@@ -16,17 +17,16 @@ mod prism;
 mod refine;
 mod simplex;
 mod terrain;
-mod view;
 
 use super::{
     Placed,
     boxes::boxes_near,
-    one_by_one::{Points, one_by_one_where},
+    per_lane::{Points, per_lane_where},
 };
 use crate::{Contacts, ShapeKind};
 use clench_math::{Mask, Real, Scalar, Vec3};
 use epa::epa;
-pub(super) use feature::MOST_CORNERS;
+pub(super) use feature::MAX_CORNERS;
 use gjk::{Cores, gjk};
 use pair::{Gap, Pair};
 use patch::patch;
@@ -37,7 +37,7 @@ pub(super) use terrain::terrain;
 pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     let near = boxes_near(a, b, margin);
     if near.any() {
-        one_by_one_where(near, a, b, margin, out, points);
+        per_lane_where(near, a, b, margin, out, points);
     }
 }
 
@@ -57,7 +57,7 @@ pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &
     if known.is_some_and(|known| known.gap > margin) {
         return;
     }
-    // Of bodies that are apart it tells no distance.
+    // For bodies that are apart it gives no distance.
     if let Some(certain) = known.filter(|known| known.settled && known.gap <= S::ZERO) {
         return patch_along(&pair, a, certain, margin, points);
     }

@@ -1,4 +1,4 @@
-//! Two bodies seen from the first, and the gap between them along a direction.
+//! Two bodies in the frame of the first, and the gap between them along a direction.
 //!
 //! Along a unit direction n from the first body to the second the gap is g(n) = n·w(n), where w(n) = b(−n) − a(n) leads from
 //! the point of the first that is furthest along n to that of the second furthest against it. The signed distance of the
@@ -77,9 +77,9 @@ impl<'a, S: Scalar> Pair<'a, S> {
 
     /// Two bodies, the second where its axes and its origin are in the frame of the first.
     pub fn between(a: Body<'a, S>, b: Body<'a, S>, rotation: Mat3<S>, offset: Vec3<S>) -> Self {
-        let smallest = Real::min(a.reach, b.reach);
+        let smallest = Real::min(a.bounding_radius, b.bounding_radius);
         let [x, y, z] = offset.to_array().map(S::abs);
-        let largest = a.reach + b.reach + x + y + z;
+        let largest = a.bounding_radius + b.bounding_radius + x + y + z;
         let rounding = largest * S::EPSILON * S::new(64.0);
         Pair {
             curved: a.curved() | b.curved(),

@@ -4,15 +4,15 @@
 //! are kept that span the largest area, and the deepest.
 
 use super::{
+    clipping::ProjectedFeature,
     feature::Feature,
     pair::{Gap, Pair, Vertex, across},
     simplex::Simplex,
-    view::Seen,
 };
 use crate::PATCH_POINTS;
 use crate::narrow::{
     Placed,
-    one_by_one::{Point, Points},
+    per_lane::{Point, Points},
     polygon::{CAPACITY, Polygon},
 };
 use arrayvec::ArrayVec;
@@ -105,8 +105,8 @@ pub(super) fn patch<S: Scalar>(
     }
     let (side, other) = across(n);
     let view = Mat3::from_rows(side, other, n);
-    let seen_a = Seen::new(&feature_a, Vec3::ZERO, &view, false);
-    let seen_b = Seen::new(
+    let projected_a = ProjectedFeature::new(&feature_a, Vec3::ZERO, &view, false);
+    let projected_b = ProjectedFeature::new(
         &feature_b,
         view * pair.offset,
         &(view * pair.rotation),
@@ -118,11 +118,11 @@ pub(super) fn patch<S: Scalar>(
     // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
     for beyond in [S::ZERO, pair.tolerance, slack] {
         spots.clear();
-        seen_a.overlap(&seen_b, beyond, &mut over);
+        projected_a.overlap(&projected_b, beyond, &mut over);
         for p in over.corners() {
-            let on_a = seen_a.height(*p);
+            let on_a = projected_a.height(*p);
             // Just beyond a corner the features' planes go on, but the bodies do not.
-            let on_b = seen_b.height(*p).max(on_a + best.gap);
+            let on_b = projected_b.height(*p).max(on_a + best.gap);
             spots.push(Spot {
                 x: p.x,
                 y: p.y,

@@ -1,14 +1,14 @@
 //! A convex polytope about the origin that grows vertex by vertex.
 //!
 //! Its triangles know what lies across each side. A new vertex removes the triangles that see it, which are found by walking
-//! from one of them, and closes the rim of the hole with triangles to itself. Triangles keep their signed distance, so an
+//! from one of them, and the hole is closed by triangles from its border, the horizon, to the new vertex. Triangles keep their signed distance, so an
 //! origin that rounding has put outside does no harm.
 
 use super::pair::{Pair, Vertex};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// Room for vertices; a polytope of so many has 2·VERTICES − 4 triangles.
+/// Room for vertices; a polytope of this many has 2·VERTICES − 4 triangles.
 pub(super) const VERTICES: usize = 128;
 const FACES: usize = 2 * VERTICES - 4;
 /// Vertices nearer than this share of the smaller body are one.
@@ -16,25 +16,25 @@ const SAME: f64 = 1e-6;
 
 /// A side of a face: the face's number and which of its sides, counted from corner to next corner.
 #[derive(Clone, Copy)]
-struct Side {
+struct HalfEdge {
     face: u8,
     side: u8,
 }
 
-/// A side with the corners that it leads from and to.
+/// An edge of the horizon: the side of a face that stays, with the corners that it goes from and to.
 #[derive(Clone, Copy)]
-struct Edge {
-    side: Side,
+struct HorizonEdge {
+    side: HalfEdge,
     ends: [u8; 2],
 }
 
 #[derive(Clone, Copy)]
 struct Face<S> {
-    /// Counter-clockwise seen from outside.
+    /// Counter-clockwise visible from outside.
     corners: [u8; 3],
     removed: bool,
     /// The same edges as sides of the faces across.
-    across: [Side; 3],
+    across: [HalfEdge; 3],
     /// Outward unit vector; zero if the face has no area.
     normal: Vec3<S>,
     /// From the origin, signed.
@@ -47,10 +47,10 @@ pub(super) struct Polytope<S> {
     faces: ArrayVec<Face<S>, FACES>,
     /// The distance of each face that may still be moved; infinite for others.
     distances: ArrayVec<S, FACES>,
-    /// Faces that see the vertex to be added.
-    seeing: ArrayVec<u8, FACES>,
-    /// Around these, in order: sides of the faces that stay.
-    rim: ArrayVec<Edge, FACES>,
+    /// Faces visible from the vertex to be added.
+    visible: ArrayVec<u8, FACES>,
+    /// The horizon, in order: sides of the faces that stay.
+    horizon: ArrayVec<HorizonEdge, FACES>,
     /// How far beyond a face a vertex must be to count, m.
     rounding: S,
     /// The square of the distance up to which vertices count as one, m²: faces between them would be noise.
@@ -68,8 +68,8 @@ impl<S: Scalar> Polytope<S> {
             vertices: ArrayVec::new_const(),
             faces: ArrayVec::new_const(),
             distances: ArrayVec::new_const(),
-            seeing: ArrayVec::new_const(),
-            rim: ArrayVec::new_const(),
+            visible: ArrayVec::new_const(),
+            horizon: ArrayVec::new_const(),
             rounding: pair.largest * S::EPSILON * S::new(4.0),
             same: same * same,
             middle: Vec3::ZERO,
@@ -84,7 +84,7 @@ impl<S: Scalar> Polytope<S> {
         for vertex in [a, b, c, d] {
             self.vertices.push(*vertex);
         }
-        // Seen against d, the first face turns counter-clockwise now.
+        // ProjectedFeature against d, the first face turns counter-clockwise now.
         for (number, (corners, across)) in [
             ([0, 1, 2], [(1, 0), (2, 0), (3, 0)]),
             ([1, 0, 3], [(0, 0), (3, 2), (2, 1)]),
@@ -94,17 +94,17 @@ impl<S: Scalar> Polytope<S> {
         .into_iter()
         .enumerate()
         {
-            let across = across.map(|(face, side)| Side { face, side });
+            let across = across.map(|(face, side)| HalfEdge { face, side });
             self.insert(number, corners, across);
         }
     }
 
     /// Puts a face in the place of that with a number, or after the last.
-    fn insert(&mut self, number: usize, corners: [u8; 3], across: [Side; 3]) {
+    fn insert(&mut self, number: usize, corners: [u8; 3], across: [HalfEdge; 3]) {
         let [a, b, c] = corners.map(|k| self.vertices[k as usize].w);
         let normal = (b - a).cross(c - a);
         let area = normal.norm();
-        // A face without area, to rounding, may even look inwards.
+        // A face without area, to rounding, may even find_horizon inwards.
         let flat = normal.dot(a - self.middle) <= area * self.rounding;
         let normal = if flat {
             Vec3::ZERO
@@ -144,8 +144,8 @@ impl<S: Scalar> Polytope<S> {
     pub fn normal(&self, face: usize) -> Vec3<S> {
         self.faces[face].normal
     }
-    /// A face is as far out as it can be.
-    pub fn retire(&mut self, face: usize) {
+    /// Closes a face: it is part of the boundary of the difference and is not expanded again.
+    pub fn close(&mut self, face: usize) {
         self.distances[face] = S::INFINITY;
     }
     /// Whether there is no room for another vertex.
@@ -161,39 +161,39 @@ impl<S: Scalar> Polytope<S> {
         numbers.map(|k| self.vertices[k as usize])
     }
 
-    /// Replaces the faces that see a vertex by faces to it; `seen` is one of them. Nothing happens, and the answer is no,
-    /// if the vertex is one of theirs or rounding has spoilt their rim.
-    pub fn add(&mut self, seen: usize, vertex: &Vertex<S>) -> bool {
+    /// Replaces the faces that see a vertex by faces to it; `visible` is one of them. Nothing happens, and the answer is no,
+    /// if the vertex is one of theirs or rounding has broken the horizon.
+    pub fn add(&mut self, visible: usize, vertex: &Vertex<S>) -> bool {
         let from = |k: u8| (self.vertices[k as usize].w - vertex.w).norm_squared();
-        let corners = self.faces[seen].corners;
+        let corners = self.faces[visible].corners;
         if self.is_full() || corners.into_iter().any(|k| from(k) <= self.same) {
             return false;
         }
-        self.seeing.clear();
-        self.rim.clear();
-        self.remove(seen);
-        for side in self.faces[seen].across {
-            self.look(side, vertex.w);
+        self.visible.clear();
+        self.horizon.clear();
+        self.remove(visible);
+        for side in self.faces[visible].across {
+            self.find_horizon(side, vertex.w);
         }
-        if !self.rim_is_closed() {
-            for &face in &self.seeing {
+        if !self.horizon_is_closed() {
+            for &face in &self.visible {
                 self.faces[face as usize].removed = false;
             }
             return false;
         }
         self.vertices.push(*vertex);
-        self.fan();
+        self.stitch();
         true
     }
 
     fn remove(&mut self, face: usize) {
         self.faces[face].removed = true;
-        self.seeing.push(face as u8);
+        self.visible.push(face as u8);
     }
 
-    /// Removes a face, entered across one of its sides, and those behind it as far as they see `w`; lists the sides where
-    /// that ends.
-    fn look(&mut self, entered: Side, w: Vec3<S>) {
+    /// Removes a face, entered across one of its sides, and its neighbours as far as they are visible from `w`; lists the sides
+    /// where that ends, the horizon.
+    fn find_horizon(&mut self, entered: HalfEdge, w: Vec3<S>) {
         let face = &self.faces[entered.face as usize];
         if face.removed {
             return;
@@ -203,54 +203,55 @@ impl<S: Scalar> Polytope<S> {
         if has_area && face.normal.dot(w) - face.distance <= self.rounding {
             let from = entered.side as usize;
             let to = if from == 2 { 0 } else { from + 1 };
-            let edge = Edge {
+            let edge = HorizonEdge {
                 side: entered,
                 ends: [face.corners[from], face.corners[to]],
             };
-            // A side comes up once, unless the polytope is broken, which shows when the rim is not closed.
-            let _ = self.rim.try_push(edge);
+            // A side is listed once, unless the polytope is broken, and then the horizon is not closed.
+            let _ = self.horizon.try_push(edge);
             return;
         }
         let across = face.across;
         self.remove(entered.face as usize);
         for turn in 1..3 {
-            self.look(across[(entered.side as usize + turn) % 3], w);
+            self.find_horizon(across[(entered.side as usize + turn) % 3], w);
         }
     }
 
     /// Whether the faces that see the vertex are a patch with one border: then it has two sides more than they are.
-    fn rim_is_closed(&self) -> bool {
-        let Some(last) = self.rim.last() else {
+    fn horizon_is_closed(&self) -> bool {
+        let Some(last) = self.horizon.last() else {
             return false;
         };
         let mut start = last.ends[0];
-        self.rim.len() == self.seeing.len() + 2
-            && self.rim.iter().all(|edge| {
+        self.horizon.len() == self.visible.len() + 2
+            && self.horizon.iter().all(|edge| {
                 let meets = start == edge.ends[1];
                 start = edge.ends[0];
                 meets
             })
     }
 
-    /// New faces from the rim to the vertex added last, in the places of the faces that saw it and two more.
-    fn fan(&mut self) {
+    /// Stitches new faces from the horizon to the vertex added last, in the places of the visible faces and two more.
+    fn stitch(&mut self) {
         let tip = (self.vertices.len() - 1) as u8;
-        let (old, count) = (self.faces.len(), self.rim.len());
-        let number = |seeing: &[u8], k: usize| match seeing.get(k) {
+        let (old, count) = (self.faces.len(), self.horizon.len());
+        let number = |visible: &[u8], k: usize| match visible.get(k) {
             Some(&face) => face,
-            None => (old + k - seeing.len()) as u8,
+            None => (old + k - visible.len()) as u8,
         };
-        let mut before = number(&self.seeing, count - 1);
-        let mut face = number(&self.seeing, 0);
+        let mut before = number(&self.visible, count - 1);
+        let mut face = number(&self.visible, 0);
         for k in 0..count {
             let next = if k + 1 < count { k + 1 } else { 0 };
-            let after = number(&self.seeing, next);
-            let Edge { side, ends } = self.rim[k];
-            // From the end of the rim's side to its start, on to the tip and back: the next face in the rim is across the
+            let after = number(&self.visible, next);
+            let HorizonEdge { side, ends } = self.horizon[k];
+            // From the end of the horizon's side to its start, on to the tip and back: the next face in the horizon is across the
             // second side, the one before across the last.
-            let [second, last] = [(after, 2), (before, 1)].map(|(face, side)| Side { face, side });
+            let [second, last] =
+                [(after, 2), (before, 1)].map(|(face, side)| HalfEdge { face, side });
             self.insert(face as usize, [ends[1], ends[0], tip], [side, second, last]);
-            self.faces[side.face as usize].across[side.side as usize] = Side { face, side: 0 };
+            self.faces[side.face as usize].across[side.side as usize] = HalfEdge { face, side: 0 };
             (before, face) = (face, after);
         }
     }

@@ -74,7 +74,7 @@ impl<S: Scalar> Prism<S> {
     }
 
     /// The radius of a sphere about the origin that holds it, m.
-    pub fn reach(&self) -> S {
+    pub fn bounding_radius(&self) -> S {
         let most = |along: [S; 4]| along.into_iter().fold(S::ZERO, |most, x| most.max(x.abs()));
         let [p, q, r, below, ..] = self.corners;
         let [x, y] = [[p.x, q.x, r.x, p.x], [p.y, q.y, r.y, p.y]].map(most);
@@ -105,7 +105,7 @@ impl<S: Scalar> Prism<S> {
     pub fn feature(&self, d: Vec3<S>, feature: &mut Feature<S>) {
         // A cosine as the squares of two lengths that it is the quotient of.
         let mut best = (S::new(FACE_COSINE).squared(), S::ONE, None);
-        // Of directions that rise so far only the top is across.
+        // A direction that rises this steeply can be the normal of the top alone.
         let faces = if d.z > S::new(RISE) {
             &FACES[..1]
         } else {

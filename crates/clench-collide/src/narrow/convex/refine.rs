@@ -21,29 +21,29 @@ const STEPS: usize = 12;
 /// How often a step that loses is halved before Newton's method is given up.
 const HALVINGS: usize = 3;
 /// The largest turn of a step, rad.
-const LARGEST_TURN: f64 = 0.3;
+const MAX_TURN: f64 = 0.3;
 /// The last step turns by less than this in double precision; then the next would turn by some times its square.
-const LAST_TURN: f64 = 2e-6;
+const CONVERGED_TURN: f64 = 2e-6;
 
 /// Directions of the edges that touch, orthonormal: none, an edge, or two that span a face (or cross).
-pub(super) struct Flats<S> {
+pub(super) struct ActiveEdges<S> {
     directions: ArrayVec<Vec3<S>, 2>,
 }
 
-impl<S: Scalar> Flats<S> {
+impl<S: Scalar> ActiveEdges<S> {
     /// The span of the edges between the corners that some vertices are made of.
     pub fn of(pair: &Pair<S>, vertices: &[Vertex<S>]) -> Self {
-        let mut flats = Flats {
+        let mut active = ActiveEdges {
             directions: ArrayVec::new(),
         };
         let corners = |v: &Vertex<S>| (pair.a.corner(v.a), pair.b.corner(v.b));
         let (a, b) = corners(&vertices[0]);
         for vertex in &vertices[1..] {
             let (other_a, other_b) = corners(vertex);
-            flats.extend(other_a - a);
-            flats.extend(pair.rotation * (other_b - b));
+            active.extend(other_a - a);
+            active.extend(pair.rotation * (other_b - b));
         }
-        flats
+        active
     }
 
     fn extend(&mut self, edge: Vec3<S>) {
@@ -106,30 +106,30 @@ impl<S: Scalar> Gap<S> {
     /// Makes the direction exact, if it is not, where a curved body touches with the feature that some vertices span.
     pub fn settle(&mut self, pair: &Pair<S>, vertices: &[Vertex<S>]) {
         if pair.curved && !self.settled {
-            let flats = Flats::of(pair, vertices);
-            self.improve(refine(pair, self.normal, &flats), pair.tolerance);
+            let active = ActiveEdges::of(pair, vertices);
+            self.improve(refine(pair, self.normal, &active), pair.tolerance);
         }
     }
 }
 
 /// The largest gap in the neighbourhood of a direction.
-pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> {
-    let start = flats.project(start);
-    if flats.directions.is_full() {
+pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> Gap<S> {
+    let start = active.project(start);
+    if active.directions.is_full() {
         return pair.gap(start);
     }
     match cap(pair, start) {
         Some(Cap::Touches(gap)) => gap,
-        Some(Cap::Passes(beside)) => climb(pair, beside, flats),
-        None => climb(pair, start, flats),
+        Some(Cap::Passes(beside)) => climb(pair, beside, active),
+        None => climb(pair, start, active),
     }
 }
 
-/// What a flat cap has to say.
+/// The gap near the axis of a flat cap.
 enum Cap<S> {
     /// The gap across it, the largest around.
     Touches(Gap<S>),
-    /// The gap grows beside it: a direction to look along.
+    /// The gap grows beside it: a direction to start from.
     Passes(Vec3<S>),
 }
 
@@ -142,7 +142,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
     for (k, (body, axis)) in caps.into_iter().enumerate() {
         let Some(radius) = body.cap() else { continue };
         let cosine = axis.dot(n);
-        if cosine.abs() < S::new(LARGEST_TURN.cos()) {
+        if cosine.abs() < S::new(MAX_TURN.cos()) {
             continue;
         }
         let axis = axis * S::ONE.copysign(cosine);
@@ -163,11 +163,11 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
         let (toward, distance) = lateral.normalize();
         let passes = distance > radius * (S::ONE + S::new(1e-9)) && distance > S::new(1e-15);
         found = Some(if passes {
-            // Beside the axis, for on it the rim has no direction.
+            // Beside the axis, for on the axis itself no point of the circle is distinguished.
             let start = axis + toward * S::EPSILON.sqrt();
             let [bend] = pair.curvature(start, [(toward, toward)]);
             let turn = (distance - radius) / (bend + gap).max(pair.tolerance);
-            let turn = turn.clamp(S::EPSILON.sqrt(), S::new(LARGEST_TURN));
+            let turn = turn.clamp(S::EPSILON.sqrt(), S::new(MAX_TURN));
             Cap::Passes((axis + toward * turn).normalize().0)
         } else {
             Cap::Touches(Gap {
@@ -181,8 +181,8 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
 }
 
 /// Newton's iteration; a step that loses is halved.
-fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> {
-    let last = S::new(LAST_TURN).max(S::EPSILON * S::new(256.0));
+fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> Gap<S> {
+    let last = S::new(CONVERGED_TURN).max(S::EPSILON * S::new(256.0));
     let mut w = pair.vertex(start).w;
     let mut best = Gap {
         normal: start,
@@ -190,12 +190,12 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> 
         settled: false,
     };
     for _ in 0..STEPS {
-        let Some((mut turn, down)) = step(pair, &best, w, flats) else {
+        let Some((mut turn, down)) = step(pair, &best, w, active) else {
             return best;
         };
         let size = turn.norm();
-        if size > S::new(LARGEST_TURN) {
-            turn = turn * (S::new(LARGEST_TURN) / size);
+        if size > S::new(MAX_TURN) {
+            turn = turn * (S::new(MAX_TURN) / size);
         }
         let mut halvings = 0;
         let before = best.gap;
@@ -213,9 +213,9 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, flats: &Flats<S>) -> Gap<S> 
             halvings += 1;
             turn = turn * S::new(0.5);
         }
-        // On the rim next to a cap's axis the smallest turn counts.
+        // Where a cap's circle touches, next to the axis, even the smallest turn changes the gap.
         if size <= last && best.gap - before <= pair.tolerance {
-            best.settled = down && flats.hold(pair, best.normal);
+            best.settled = down && active.hold(pair, best.normal);
             return best;
         }
     }
@@ -227,10 +227,10 @@ fn step<S: Scalar>(
     pair: &Pair<S>,
     at: &Gap<S>,
     w: Vec3<S>,
-    flats: &Flats<S>,
+    active: &ActiveEdges<S>,
 ) -> Option<(Vec3<S>, bool)> {
     let (n, gap) = (at.normal, at.gap);
-    if let [f] = flats.directions[..] {
+    if let [f] = active.directions[..] {
         let e = n.cross(f);
         let [bend] = pair.curvature(n, [(e, e)]);
         let bend = bend + gap;

@@ -1,8 +1,8 @@
 //! A ball whose middle is above a triangle: what GJK would find, in closed form.
 
-use super::{Search, deepen, grid::Triangle};
+use super::{Search, grid::Triangle, keep_deeper};
 use crate::narrow::convex::{pair::Gap, simplex::on_triangle};
-use crate::narrow::one_by_one::Point;
+use crate::narrow::per_lane::Point;
 use clench_math::{Scalar, Vec3};
 
 /// So many times the tolerance the middle must be off the triangle for the direction between them to be exact.
@@ -33,11 +33,11 @@ impl<S: Scalar> Search<S> {
             normal,
             distance,
         };
-        if near.is_inside() || triangle.admits(&triangle.ridge(known)) {
-            deepen(&mut self.deepest, point);
+        if near.is_inside() || triangle.admits_normal(&triangle.feature(known)) {
+            keep_deeper(&mut self.deepest, point);
             self.found.add(point);
         } else {
-            deepen(&mut self.sideways, point);
+            keep_deeper(&mut self.rejected, point);
         }
         true
     }

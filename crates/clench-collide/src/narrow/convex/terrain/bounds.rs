@@ -1,4 +1,4 @@
-//! Where a body is, seen from above and along some slopes: which triangles it may reach.
+//! Bounds of a body along the axes and along slopes: which triangles it may touch.
 
 use super::grid::{Grid, Node};
 use crate::narrow::convex::body::Body;
@@ -26,7 +26,7 @@ impl Bounds {
         around: S,
         grid: &Grid,
     ) -> Option<Self> {
-        let known = body.reach + offset.norm_squared();
+        let known = body.bounding_radius + offset.norm_squared();
         if !(known.to_f64().is_finite() && around > -S::INFINITY) {
             return None;
         }

@@ -127,7 +127,7 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         (p + q + r) * S::new(1.0 / 3.0)
     }
 
-    /// Whether a point is within the ground below it, and at least so far from walls and bottom, m.
+    /// Whether a point is within the ground below it, and at least `distance` from walls and bottom, m.
     pub fn surrounds(&self, point: Vec3<S>, distance: S) -> bool {
         let within = |k: usize| {
             let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);

@@ -1,21 +1,21 @@
 //! Height fields against convex shapes.
 //!
 //! Under each triangle of the surface lies a prism down to the base, and together they are the field. The distance of a body
-//! that is outside is the least of its distances to the prisms. One that has sunk in may leave a single prism sideways, into the
-//! next one, which is no way out of the field; so a direction counts only where it is a normal of the whole surface: of a
-//! face, of an edge or a corner that stands out, or of the field's sides. Along the normal of a face the contacts are the
-//! corners of what the body shows to it, clipped to the triangle. Where a prism's best direction does not count, its face
-//! does, unless that is a long way round: the foot of a cliff is not left over the top. What stands out belongs to several
-//! prisms, whose gaps along its normal are the same, so one of them is searched.
+//! that is outside is the least of its distances to the prisms. One that has sunk in may leave a single prism rejected, into the
+//! next one, which does not separate it from the field; so a direction counts only where it is a normal of the whole surface: of
+//! a face, of a convex edge or vertex (whose normals are its Voronoi region), or of the field's sides. Along the normal of a face
+//! the contact manifold is the body's feature clipped to the triangle. Where a prism's best direction does not count, its face
+//! does, unless its depth is much larger: at the foot of a cliff a body is not pushed out over the top. A convex edge or vertex
+//! belongs to several prisms, whose gaps along its normal are the same, so one of them is searched.
 //!
 //! The work grows with the number of cells below the body's bounding box.
 
 mod ball;
 mod bounds;
-mod face;
+mod face_clip;
 mod grid;
-mod ridge;
-mod spread;
+mod manifold;
+mod voronoi;
 
 use super::{
     begin,
@@ -29,25 +29,26 @@ use super::{
 };
 use crate::narrow::{
     Placed,
-    one_by_one::{Point, Points, one_by_one},
+    per_lane::{Point, Points, per_lane},
 };
 use crate::{Asset, Contacts, Pose, Shape, ShapeKind};
 use arrayvec::ArrayVec;
 use bounds::Bounds;
 use clench_math::{Mat3, Real, Scalar, Vec3};
-use face::Over;
+use face_clip::FaceClip;
 use grid::{Grid, Triangle, same_direction};
-use ridge::Ridge;
-use spread::Spread;
+use manifold::Manifold;
+use voronoi::VoronoiFeature;
 
-/// How many times as far as the shortest way out of any prism a face may still be a way out of the field.
-const DETOUR: f64 = 2.0;
+/// A face counts if its depth is at most this many times the smallest depth of any prism.
+const FACE_DEPTH_RATIO: f64 = 2.0;
 
-/// Directions within so many times what counts as one are that of a face: more than a triangle's corners tell apart.
-const LEVEL: f64 = 8.0;
+/// A direction counts as the face's normal within this many times the tolerance for equal directions: rounding of a triangle's
+/// corners turns its normal by no more.
+const FACE_NORMAL_RATIO: f64 = 8.0;
 
-/// So many ridges are remembered; those after them may be found more than once.
-const RIDGES: usize = 4;
+/// How many convex edges and vertices are remembered; others may be searched more than once.
+const MAX_FEATURES: usize = 4;
 
 /// The contacts of a height field and a shape that is bounded and convex.
 pub(in crate::narrow) fn terrain<T: Real>(
@@ -56,7 +57,7 @@ pub(in crate::narrow) fn terrain<T: Real>(
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    one_by_one(a, b, margin, out, points);
+    per_lane(a, b, margin, out, points);
 }
 
 fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
@@ -73,22 +74,22 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     let Some([rows, columns]) = grid.window(&bounds) else {
         return;
     };
-    let mut look_at = |cell, reached: [bool; 2]| {
+    let mut add_triangle = |cell, reached: [bool; 2]| {
         for half in (0..2).filter(|half| reached[*half]) {
-            search.look_at(&Triangle::of_cell(&grid, cell, half), &body);
+            search.add_triangle(&Triangle::of_cell(&grid, cell, half), &body);
         }
     };
     // What is deepest saves much of the work on the rest.
     let first = grid.cell_at(bounds.lowest);
     if rows.contains(&first[0]) && columns.contains(&first[1]) {
-        look_at(first, bounds.reach(first, &grid));
+        add_triangle(first, bounds.reach(first, &grid));
     }
     for row in rows {
         for column in columns.clone() {
             let cell = [row, column];
             let reached = bounds.reach(cell, &grid);
             if (reached[0] | reached[1]) && cell != first {
-                look_at(cell, reached);
+                add_triangle(cell, reached);
             }
         }
     }
@@ -102,7 +103,7 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     }
 }
 
-/// What is known after some of the triangles.
+/// The search over triangles: the contacts found so far, and what spares later searches.
 struct Search<S> {
     /// The body in the field's frame.
     rotation: Mat3<S>,
@@ -110,23 +111,23 @@ struct Search<S> {
     margin: S,
     /// How exact distances are, m.
     tolerance: S,
-    found: Spread<S>,
-    /// Contacts with faces that may not be the shortest way out.
-    doubtful: Spread<S>,
+    found: Manifold<S>,
+    /// Contacts with faces whose depth may not be the smallest.
+    provisional: Manifold<S>,
     /// The least distance along directions that count, and a contact that has it.
     deepest: Option<Point<S>>,
-    /// What stands out and touches. The triangles around it all do so there.
-    ridges: ArrayVec<Ridge<S>, RIDGES>,
-    /// The largest distance along normals of doubtful faces.
+    /// Convex edges and vertices that touch. The triangles around one all touch there.
+    features: ArrayVec<VoronoiFeature<S>, MAX_FEATURES>,
+    /// The largest distance along normals of faces with provisional contacts.
     shallowest: S,
     /// The least distance along directions that do not count, and its contact.
-    sideways: Option<Point<S>>,
+    rejected: Option<Point<S>>,
     /// The direction along which the last triangle's ground was apart from the body: the next one's may be so, too.
     apart: Vec3<S>,
 }
 
 /// Takes the deeper of two points.
-fn deepen<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
+fn keep_deeper<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
     if deepest.is_none_or(|old| point.distance < old.distance) {
         *deepest = Some(point);
     }
@@ -143,23 +144,23 @@ impl<S: Scalar> Search<S> {
             offset,
             margin,
             tolerance,
-            found: Spread::new(size, tolerance),
-            doubtful: Spread::new(size, tolerance),
+            found: Manifold::new(size, tolerance),
+            provisional: Manifold::new(size, tolerance),
             deepest: None,
-            ridges: ArrayVec::new(),
+            features: ArrayVec::new(),
             shallowest: -S::INFINITY,
-            sideways: None,
+            rejected: None,
             apart: Vec3::ZERO,
         }
     }
 
     /// Adds the contacts of a triangle.
-    fn look_at(&mut self, triangle: &Triangle<S>, body: &Body<S>) {
+    fn add_triangle(&mut self, triangle: &Triangle<S>, body: &Body<S>) {
         let offset = self.offset - triangle.origin;
         if body.is_point() && self.ball(triangle, offset, body.radius) {
             return;
         }
-        if self.passes(triangle, body, offset, offset - triangle.middle()) {
+        if self.is_separating(triangle, body, offset, offset - triangle.middle()) {
             return;
         }
         let normal = triangle.normal();
@@ -170,41 +171,41 @@ impl<S: Scalar> Search<S> {
         if distance > self.margin {
             return;
         }
-        // No deeper than what is known: then only what lies on the face or stands out can add to it.
+        // No deeper than the deepest distance so far: then only the face itself or a convex feature can add contacts.
         let rotation = self.rotation;
-        let over = Over {
+        let clip = FaceClip {
             triangle,
             normal,
             body,
             rotation: &rotation,
             offset,
         };
-        if distance >= self.known() - self.tolerance
-            && (over.touch(self.margin, &mut self.found) || triangle.is_hollow(normal))
+        if distance >= self.deepest_distance() - self.tolerance
+            && (clip.touch(self.margin, &mut self.found) || triangle.is_hollow(normal))
         {
             return;
         }
-        if self.passes(triangle, body, offset, self.apart) {
+        if self.is_separating(triangle, body, offset, self.apart) {
             return;
         }
-        // Deep within its walls: then no way out of the prism is shorter than through its face.
+        // Deep within its walls: then no depth of the prism is smaller than through its face.
         let foot = lowest - normal * height.max(S::ZERO);
         if triangle.surrounds(foot, (-height).max(S::ZERO)) {
-            deepen(&mut self.deepest, over.contact(lowest));
-            over.touch(self.margin, &mut self.found);
+            keep_deeper(&mut self.deepest, clip.contact(lowest));
+            clip.touch(self.margin, &mut self.found);
             return;
         }
         let prism = triangle.prism();
         let pair = Pair::between(Body::of_prism(&prism), body.clone(), rotation, offset);
-        // What stands out touches along one normal with all of the ground around it.
-        if let Some(ridge) = self.ridges.iter().find(|ridge| triangle.has(ridge)) {
-            let simplex = Simplex::new(pair.vertex(ridge.gap.normal));
-            let touching = self.patch(&over, &pair, ridge.gap, &simplex);
+        // A convex edge or vertex touches along one normal with all of the prisms around it.
+        if let Some(feature) = self.features.iter().find(|feature| triangle.has(feature)) {
+            let simplex = Simplex::new(pair.vertex(feature.gap.normal));
+            let touching = self.patch(&clip, &pair, feature.gap, &simplex);
             touching.iter().for_each(|p| self.found.add(*p));
             return;
         }
         match self.largest_gap(&pair, &prism) {
-            Ok((best, simplex)) => self.judge(&over, &pair, distance, best, &simplex),
+            Ok((best, simplex)) => self.classify(&clip, &pair, distance, best, &simplex),
             Err(gap) => self.apart = gap.normal,
         }
     }
@@ -220,7 +221,7 @@ impl<S: Scalar> Search<S> {
             if known.gap > self.margin {
                 return Err(known);
             }
-            // Of bodies that are apart it tells no distance.
+            // For bodies that are apart it gives no distance.
             if known.gap <= S::ZERO && Real::is_finite(known.gap) {
                 return Ok((known, Simplex::new(pair.vertex(known.normal))));
             }
@@ -230,8 +231,14 @@ impl<S: Scalar> Search<S> {
     }
 
     /// Whether a direction shows that a body and the ground below a triangle are apart.
-    fn passes(&self, triangle: &Triangle<S>, body: &Body<S>, offset: Vec3<S>, n: Vec3<S>) -> bool {
-        // Downwards the ground would have to be looked at, too.
+    fn is_separating(
+        &self,
+        triangle: &Triangle<S>,
+        body: &Body<S>,
+        offset: Vec3<S>,
+        n: Vec3<S>,
+    ) -> bool {
+        // Downwards the prism's bottom would have to be considered too.
         if n.z <= S::ZERO {
             return false;
         }
@@ -244,36 +251,41 @@ impl<S: Scalar> Search<S> {
     }
 
     /// The least distance along directions that count, so far.
-    fn known(&self) -> S {
+    fn deepest_distance(&self) -> S {
         self.deepest.map_or(S::INFINITY, |p| p.distance)
     }
 
     /// Adds the contacts of a triangle, given its distance along its normal and the largest gap of its prism.
-    fn judge(
+    fn classify(
         &mut self,
-        over: &Over<S>,
+        clip: &FaceClip<S>,
         pair: &Pair<S>,
         distance: S,
         best: Gap<S>,
         simplex: &Simplex<S>,
     ) {
         let depth = best.gap - pair.b.radius;
-        let level = (best.normal - over.normal).norm() <= S::new(LEVEL) * same_direction();
-        let ridge = over.triangle.ridge(best);
-        if level || over.triangle.admits(&ridge) {
-            let touching = self.patch(over, pair, best, simplex);
-            touching.iter().for_each(|p| deepen(&mut self.deepest, *p));
-            if !level || !over.touch(self.margin, &mut self.found) {
+        let level =
+            (best.normal - clip.normal).norm() <= S::new(FACE_NORMAL_RATIO) * same_direction();
+        let feature = clip.triangle.feature(best);
+        if level || clip.triangle.admits_normal(&feature) {
+            let touching = self.patch(clip, pair, best, simplex);
+            touching
+                .iter()
+                .for_each(|p| keep_deeper(&mut self.deepest, *p));
+            if !level || !clip.touch(self.margin, &mut self.found) {
                 touching.iter().for_each(|p| self.found.add(*p));
                 // Where there is no more room it is found again.
-                let _ = self.ridges.try_push(ridge);
+                let _ = self.features.try_push(feature);
             }
         } else {
-            if self.sideways.is_none_or(|old| depth < old.distance) {
-                let touching = self.patch(over, pair, best, simplex);
-                touching.iter().for_each(|p| deepen(&mut self.sideways, *p));
+            if self.rejected.is_none_or(|old| depth < old.distance) {
+                let touching = self.patch(clip, pair, best, simplex);
+                touching
+                    .iter()
+                    .for_each(|p| keep_deeper(&mut self.rejected, *p));
             }
-            if over.touch(self.margin, &mut self.doubtful) {
+            if clip.touch(self.margin, &mut self.provisional) {
                 self.shallowest = Real::max(self.shallowest, distance);
             }
         }
@@ -282,13 +294,13 @@ impl<S: Scalar> Search<S> {
     /// The contacts of the ground below a triangle.
     fn patch(
         &self,
-        over: &Over<S>,
+        clip: &FaceClip<S>,
         pair: &Pair<S>,
         best: Gap<S>,
         simplex: &Simplex<S>,
     ) -> Points<S> {
         let pose = Pose {
-            position: over.triangle.origin,
+            position: clip.triangle.origin,
             rotation: Mat3::IDENTITY,
         };
         let shape = &Shape::new(ShapeKind::HeightField, Vec3::ZERO);
@@ -301,19 +313,19 @@ impl<S: Scalar> Search<S> {
     /// Leaves all contacts in what is found. The body is in the field at least as deep as in any prism.
     fn finish(&mut self) {
         let depth = |p: Option<Point<S>>| p.map_or(S::INFINITY, |p| p.distance);
-        let (known, other) = (depth(self.deepest), depth(self.sideways));
-        let least = Real::min(known, other * S::new(DETOUR));
+        let (counted, other) = (depth(self.deepest), depth(self.rejected));
+        let least = Real::min(counted, other * S::new(FACE_DEPTH_RATIO));
         let least = match self.deepest {
             Some(_) => least,
             None => Real::min(least, self.shallowest),
         };
-        for point in self.doubtful.points() {
+        for point in self.provisional.points() {
             if point.distance >= least - self.tolerance {
                 self.found.add(*point);
             }
         }
-        // What no face shows: a corner in a groove, or a body between faces.
-        for witness in [self.deepest, self.sideways].into_iter().flatten() {
+        // Contacts that no face has: a corner in a groove, or a body between faces.
+        for witness in [self.deepest, self.rejected].into_iter().flatten() {
             if self.found.deepest() > witness.distance + self.tolerance {
                 self.found.add(witness);
             }

@@ -1,4 +1,4 @@
-//! Pairs whose decisions branch too much for lanes: each environment is done on its own.
+//! Pairs whose decisions branch too much for lanes: each lane is computed on its own, in scalar code.
 
 use super::Placed;
 use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, Shape, frame_from_normal};
@@ -17,18 +17,18 @@ pub(super) struct Point<S> {
 pub(super) type Points<S> = ArrayVec<Point<S>, MAX_POINTS>;
 
 /// Puts the points that `pair` finds for each lane into `out`, which is empty; those of equal rank share a slot.
-pub(super) fn one_by_one<T: Real>(
+pub(super) fn per_lane<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
     margin: T,
     out: &mut Contacts<T>,
     pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
 ) {
-    one_by_one_where(T::Mask::splat(true), a, b, margin, out, pair);
+    per_lane_where(T::Mask::splat(true), a, b, margin, out, pair);
 }
 
 /// The same for some of the lanes.
-pub(super) fn one_by_one_where<T: Real>(
+pub(super) fn per_lane_where<T: Real>(
     wanted: T::Mask,
     a: Placed<T>,
     b: Placed<T>,

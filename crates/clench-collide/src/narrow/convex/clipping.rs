@@ -1,10 +1,10 @@
-//! Features as seen along the contact's normal, and where two of them overlap.
+//! Features projected along the contact's normal, and clipping one against the other.
 //!
-//! In the view an edge is a segment and a face a convex polygon, with a height that is linear over it. One is clipped by the
-//! sides of the other. A round cap is its circle where it matters: what is left of a segment or a polygon over it are their
+//! In the projection an edge is a segment and a face a convex polygon, with a height that is linear over it. One is clipped
+//! against the sides of the other. A round cap is its circle where it matters: what is left of a segment or a polygon over it are their
 //! corners within the circle, the ends of their chords, and such points of the circle as lie in the polygon.
 
-use super::feature::{Feature, MOST_CORNERS};
+use super::feature::{Feature, MAX_CORNERS};
 use crate::narrow::polygon::Polygon;
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
@@ -12,9 +12,9 @@ use clench_math::{Mat3, Scalar, Vec3};
 /// Edges at less than this angle lie side by side; others cross.
 const PARALLEL: f64 = 1e-3;
 
-/// An edge or a face in the view: x and y across the normal, z along it.
-pub(super) struct Seen<S> {
-    corners: ArrayVec<Vec3<S>, MOST_CORNERS>,
+/// An edge or a face, projected: x and y across the normal, z along it.
+pub(super) struct ProjectedFeature<S> {
+    corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
     /// The slope of its height.
     slope: (S, S),
     /// The round cap that the polygon stands for.
@@ -29,8 +29,9 @@ struct Disc<S> {
     radius: S,
 }
 
-impl<S: Scalar> Seen<S> {
-    /// A feature whose body has this origin and these axes in the view; `below` if it is seen from inside its body.
+impl<S: Scalar> ProjectedFeature<S> {
+    /// A feature whose body has this origin and these axes in the projection; `below` if the normal points out of its body, which
+    /// turns the order of corners round.
     pub fn new(feature: &Feature<S>, origin: Vec3<S>, axes: &Mat3<S>, below: bool) -> Self {
         let mut corners = ArrayVec::new();
         let place = |corner: &Vec3<S>| origin + *axes * *corner;
@@ -54,7 +55,7 @@ impl<S: Scalar> Seen<S> {
             center: origin,
             radius,
         });
-        Seen {
+        ProjectedFeature {
             corners,
             slope,
             disc,
@@ -65,15 +66,15 @@ impl<S: Scalar> Seen<S> {
         self.corners.len() == 2
     }
 
-    /// The height above a point of the view.
+    /// The height of the feature's plane at a point of the projection.
     pub fn height(&self, p: Vec3<S>) -> S {
         let origin = self.corners[0];
         origin.z + self.slope.0 * (p.x - origin.x) + self.slope.1 * (p.y - origin.y)
     }
 
-    /// Fills `over` with where this and another overlap in the view, or are at most `slack` m from it: the corners of a polygon,
+    /// Fills `over` with where this and another overlap in the projection, or are at most `slack` m from it: the corners of a polygon,
     /// the ends of a segment, or a point. The heights of these are open.
-    pub fn overlap(&self, other: &Seen<S>, slack: S, over: &mut Polygon<S>) {
+    pub fn overlap(&self, other: &ProjectedFeature<S>, slack: S, over: &mut Polygon<S>) {
         over.clear();
         if let (&[p, p_end], &[q, q_end]) = (&self.corners[..], &other.corners[..])
             && !parallel(p_end - p, q_end - q)
@@ -91,7 +92,7 @@ impl<S: Scalar> Seen<S> {
             (other, self)
         };
         match &by.disc {
-            Some(disc) => by.over_disc(disc, cut, slack, over),
+            Some(disc) => by.clip_to_disc(disc, cut, slack, over),
             None => {
                 cut.corners.iter().for_each(|corner| over.push(*corner));
                 by.clip(over, slack);
@@ -111,7 +112,7 @@ impl<S: Scalar> Seen<S> {
         }
     }
 
-    /// Whether a point of the view is over this face.
+    /// Whether a point of the projection lies in this face.
     fn covers(&self, p: Vec3<S>, slack: S) -> bool {
         if let Some(disc) = &self.disc {
             let (x, y) = self.in_plane(disc, p);
@@ -124,14 +125,20 @@ impl<S: Scalar> Seen<S> {
         })
     }
 
-    /// The coordinates, in the plane of this cap and from its middle, of the point over or under a point of the view.
+    /// The coordinates, in the plane of this cap and from its middle, of the point above or below a point of the projection.
     fn in_plane(&self, disc: &Disc<S>, p: Vec3<S>) -> (S, S) {
         let arm = Vec3::new(p.x, p.y, self.height(p)) - disc.center;
         (disc.x.dot(arm), disc.y.dot(arm))
     }
 
-    /// What of an edge or a face is over this round cap.
-    fn over_disc(&self, disc: &Disc<S>, cut: &Seen<S>, slack: S, over: &mut Polygon<S>) {
+    /// The part of an edge or a face within this round cap.
+    fn clip_to_disc(
+        &self,
+        disc: &Disc<S>,
+        cut: &ProjectedFeature<S>,
+        slack: S,
+        over: &mut Polygon<S>,
+    ) {
         if let [p, q] = cut.corners[..] {
             let (from, to) = self.chord(disc, p, q);
             for t in [from, to] {
@@ -183,7 +190,7 @@ fn parallel<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> bool {
     turn(u, v).squared() <= lengths * S::new(PARALLEL * PARALLEL)
 }
 
-/// Where two segments cross in the view, or come nearest to that.
+/// Where two segments cross in the projection, or come nearest to that.
 fn crossing<S: Scalar>((p, p_end): (Vec3<S>, Vec3<S>), (q, q_end): (Vec3<S>, Vec3<S>)) -> Vec3<S> {
     let (u, v, offset) = (p_end - p, q_end - q, q - p);
     let inverse = S::ONE / turn(u, v);

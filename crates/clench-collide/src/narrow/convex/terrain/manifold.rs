@@ -1,9 +1,9 @@
-//! Contact points on terrain, few enough: those that lie on one plane are replaced by the corners around them, and of too
-//! many the nearest to each other are thinned out.
+//! The contact manifold on terrain: points on one plane are replaced by the corners of their convex hull, and of more than
+//! there is room for, those nearest to each other are dropped.
 
 use super::grid::same_direction;
 use crate::narrow::convex::pair::across;
-use crate::narrow::one_by_one::Point;
+use crate::narrow::per_lane::Point;
 use crate::{MAX_POINTS, PATCH_POINTS};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
@@ -13,7 +13,7 @@ use std::ops::Range;
 const SAME: f64 = 1e-5;
 
 /// At most [`MAX_POINTS`] points, and the deepest is among them.
-pub(super) struct Spread<S> {
+pub(super) struct Manifold<S> {
     points: ArrayVec<Point<S>, { MAX_POINTS + 1 }>,
     /// The size of the body, m.
     size: S,
@@ -31,9 +31,9 @@ fn ground<S: Scalar>(point: &Point<S>) -> Vec3<S> {
     point.position - point.normal * (point.distance * S::new(0.5))
 }
 
-impl<S: Scalar> Spread<S> {
+impl<S: Scalar> Manifold<S> {
     pub fn new(size: S, tolerance: S) -> Self {
-        Spread {
+        Manifold {
             points: ArrayVec::new(),
             size,
             same: size * S::new(SAME),
@@ -51,10 +51,10 @@ impl<S: Scalar> Spread<S> {
         distances.fold(S::INFINITY, |least, d| least.min(d))
     }
 
-    /// Adds a point, if it says more than those that are there.
+    /// Adds a point, unless it is redundant.
     pub fn add(&mut self, point: Point<S>) {
         let facet = self.facet(&point);
-        if self.says_nothing(&self.points[facet.clone()], &point) {
+        if self.is_redundant(&self.points[facet.clone()], &point) {
             return;
         }
         let mut corners: Facet<S> = self.points.drain(facet).collect();
@@ -92,7 +92,7 @@ impl<S: Scalar> Spread<S> {
     }
 
     /// Whether a point lies within the area of a facet, or on one of its points, and no deeper.
-    fn says_nothing(&self, facet: &[Point<S>], point: &Point<S>) -> bool {
+    fn is_redundant(&self, facet: &[Point<S>], point: &Point<S>) -> bool {
         let deepest = facet
             .iter()
             .fold(S::INFINITY, |least, p| least.min(p.distance));

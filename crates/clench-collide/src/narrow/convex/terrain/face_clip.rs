@@ -1,16 +1,16 @@
-//! What a body shows to the face of a triangle.
+//! The feature of a body that faces a triangle, clipped to it.
 
 use super::grid::Triangle;
-use super::spread::Spread;
+use super::manifold::Manifold;
 use crate::narrow::convex::{body::Body, feature::Feature, pair::across};
-use crate::narrow::{one_by_one::Point, polygon::Polygon};
+use crate::narrow::{per_lane::Point, polygon::Polygon};
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// A corner this far outside a triangle, as a share of the body, still belongs to it.
 const BESIDE: f64 = 1e-9;
 
 /// A triangle, and the body in its frame.
-pub(super) struct Over<'a, S> {
+pub(super) struct FaceClip<'a, S> {
     pub triangle: &'a Triangle<'a, S>,
     /// The triangle's unit normal.
     pub normal: Vec3<S>,
@@ -27,12 +27,12 @@ struct Side<S> {
     slack: S,
 }
 
-impl<S: Scalar> Over<'_, S> {
-    /// Adds a contact for each corner of what the body shows, clipped to the triangle, that is near enough. Whether there are
-    /// any.
+impl<S: Scalar> FaceClip<'_, S> {
+    /// Adds a contact for each corner of the body's feature, clipped to the triangle, that is near enough. Returns whether there
+    /// are any.
     ///
     /// Where the surface goes on in the same plane, the cut has no corner.
-    pub fn touch(&self, margin: S, found: &mut Spread<S>) -> bool {
+    pub fn touch(&self, margin: S, found: &mut Manifold<S>) -> bool {
         let feature = Feature::new(self.body, -self.rotation.transpose_mul(self.normal));
         let [p, q, r] = self.triangle.corners;
         // Each opposite to the corner of its number.
@@ -73,7 +73,7 @@ impl<S: Scalar> Over<'_, S> {
     fn side(&self, from: Vec3<S>, to: Vec3<S>) -> Side<S> {
         let out = (to - from).cross(self.normal);
         let size = out.x.abs().max(out.y.abs()).max(out.z.abs());
-        let slack = self.body.reach * S::new(BESIDE) * size;
+        let slack = self.body.bounding_radius * S::new(BESIDE) * size;
         Side {
             out,
             limit: out.dot(from) + slack,
@@ -90,7 +90,7 @@ impl<S: Scalar> Over<'_, S> {
     }
 
     /// Adds the contact below a point of the body's core, if it is near enough.
-    fn add(&self, point: Vec3<S>, margin: S, found: &mut Spread<S>) -> bool {
+    fn add(&self, point: Vec3<S>, margin: S, found: &mut Manifold<S>) -> bool {
         let contact = self.contact(point);
         let near = contact.distance <= margin;
         if near {

@@ -1,9 +1,9 @@
-//! The best of a few directions.
+//! The largest gap among a few directions.
 
 use clench_math::{Scalar, Vec3};
 
 /// The largest gap so far, and its direction.
-pub(super) struct Best<S> {
+pub(super) struct LargestGap<S> {
     pub gap: S,
     pub normal: Vec3<S>,
     /// What the gap along an exact direction must exceed: between equals, to the tolerance, the first one is kept.
@@ -11,10 +11,10 @@ pub(super) struct Best<S> {
     tolerance: S,
 }
 
-impl<S: Scalar> Best<S> {
+impl<S: Scalar> LargestGap<S> {
     /// No gap as yet, and any direction.
     pub fn new(tolerance: S) -> Self {
-        Best {
+        LargestGap {
             gap: -S::INFINITY,
             normal: Vec3::new(S::ZERO, S::ZERO, S::ONE),
             bar: -S::INFINITY,
@@ -31,7 +31,7 @@ impl<S: Scalar> Best<S> {
         }
     }
 
-    /// A way out that is at least so long is no better.
+    /// The penetration depth that another direction must undercut to be taken.
     #[inline]
     pub fn depth(&self) -> S {
         (-self.bar).max(S::ZERO)

@@ -1,11 +1,12 @@
-//! What stands out of terrain and touches, and which normals the field has there.
+//! Convex vertices and edges of terrain that touch a body, and whether a direction lies in their Voronoi region: whether it is a
+//! normal of the field there.
 
 use super::grid::{Node, Triangle, same_direction};
 use crate::narrow::convex::pair::Gap;
 use clench_math::{Scalar, Vec3};
 
 /// A corner, an edge or the face of a triangle, and the gap along a normal there.
-pub(super) struct Ridge<S> {
+pub(super) struct VoronoiFeature<S> {
     pub gap: Gap<S>,
     nodes: [Node; 3],
     /// Which of the nodes belong to it.
@@ -17,14 +18,14 @@ const AROUND: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];
 
 impl<S: Scalar> Triangle<'_, S> {
     /// The feature that reaches furthest along the normal of a gap.
-    pub fn ridge(&self, gap: Gap<S>) -> Ridge<S> {
+    pub fn feature(&self, gap: Gap<S>) -> VoronoiFeature<S> {
         let n = gap.normal;
         let flat = n.z < -same_direction::<S>();
         let corners = self.corners.map(|corner| level(corner, flat));
         let reach = corners.map(|v| v.dot(n));
         let most = reach[0].max(reach[1]).max(reach[2]);
         let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
-        Ridge {
+        VoronoiFeature {
             gap,
             nodes: self.nodes,
             touches: reach.map(|r| r >= most - size * same_direction()),
@@ -33,8 +34,8 @@ impl<S: Scalar> Triangle<'_, S> {
 
     /// Whether a feature's direction is a normal of the whole field there: not where the field goes on beyond the prism's wall, or
     /// rises beyond its edge.
-    pub fn admits(&self, ridge: &Ridge<S>) -> bool {
-        let (n, touches) = (ridge.gap.normal, ridge.touches);
+    pub fn admits_normal(&self, feature: &VoronoiFeature<S>) -> bool {
+        let (n, touches) = (feature.gap.normal, feature.touches);
         let flat = n.z < -same_direction::<S>();
         let corners = self.corners.map(|corner| level(corner, flat));
         let below = |from: Vec3<S>, to: Option<Vec3<S>>| {
@@ -55,8 +56,8 @@ impl<S: Scalar> Triangle<'_, S> {
     }
 
     /// Whether it has all corners of a feature.
-    pub fn has(&self, ridge: &Ridge<S>) -> bool {
-        let mut corners = ridge.nodes.iter().zip(ridge.touches);
+    pub fn has(&self, feature: &VoronoiFeature<S>) -> bool {
+        let mut corners = feature.nodes.iter().zip(feature.touches);
         corners.all(|(node, touches)| !touches || self.nodes.contains(node))
     }
 }

@@ -9,7 +9,7 @@
 //!
 //! The depth is the least g. Where all terms are smooth the Hessian of g on the sphere has the eigenvalue −g < 0, so a
 //! least g > 0 lies on a crease: at n = ±z; among the horizontal n; or among the n across u. The second family is the
-//! distance from a point to a stadium's rim. In the third, with a = z × u, b = u × a (scaled to unit length),
+//! distance from a point to the boundary of a stadium. In the third, with a = z × u, b = u × a (scaled to unit length),
 //! n = a cos θ + b sin θ, x = tan θ, k = r |u·z|, and a, b turned so that c·a, c·b ≥ 0, the slope of g has the sign of
 //!
 //! ```text
@@ -26,7 +26,11 @@ const HALVINGS: usize = 54;
 
 /// The depth of a segment in a cylinder about the origin along z, and the unit direction in which to move it out.
 #[kernel]
-pub(super) fn way_out<T: Real>(radius: T, half_length: T, segment: &Segment<T>) -> (T, Vec3<T>) {
+pub(super) fn penetration_depth<T: Real>(
+    radius: T,
+    half_length: T,
+    segment: &Segment<T>,
+) -> (T, Vec3<T>) {
     let Segment {
         center,
         axis,
@@ -42,8 +46,8 @@ pub(super) fn way_out<T: Real>(radius: T, half_length: T, segment: &Segment<T>) 
         a,
         towards(center, z),
         b,
-        off_the_side(segment, a),
-        over_the_rim(radius, half_length, segment, a, b),
+        radial_direction(segment, a),
+        direction_across_segment(radius, half_length, segment, a, b),
     ];
     let mut best = (T::splat(T::Scalar::INFINITY), a);
     for n in candidates {
@@ -62,9 +66,9 @@ fn towards<T: Real>(center: Vec3<T>, n: Vec3<T>) -> Vec3<T> {
     Vec3::select(n.dot(center).lt(T::ZERO), -n, n)
 }
 
-/// The best horizontal direction: from the cylinder's axis to the nearest point of the segment, both seen from above.
+/// The best horizontal direction: from the cylinder's axis to the nearest point of the segment, both projected along the axis.
 #[inline(always)]
-fn off_the_side<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
+fn radial_direction<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
     let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
     let (c, u) = (flat(segment.center), flat(segment.axis));
     let square = u.norm_squared().max(T::new(1e-15));
@@ -78,7 +82,7 @@ fn off_the_side<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
 
 /// The best direction across the segment, between `a` and `b`.
 #[inline(always)]
-fn over_the_rim<T: Real>(
+fn direction_across_segment<T: Real>(
     radius: T,
     half_length: T,
     segment: &Segment<T>,
@@ -120,8 +124,8 @@ fn over_the_rim<T: Real>(
     n * (T::ONE / n.norm())
 }
 
-/// Where along the segment it is deepest, seen along the `outward` direction that [`way_out`] found: at an end, or, where
-/// that direction is across the segment, below the rim or the side. Any point will do between two parallel flats; then
+/// Where along the segment it is deepest, along the `outward` direction that [`penetration_depth`] found: at an end, or, where
+/// that direction is across the segment, below the circle of the cap or the side. Any point will do between two parallel flats; then
 /// it is `otherwise`.
 #[kernel]
 pub(super) fn deepest<T: Real>(
@@ -139,15 +143,15 @@ pub(super) fn deepest<T: Real>(
     let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
     let level = flat(outward).norm();
     let upward = outward.z.abs();
-    // The point of the rim furthest along the direction.
-    let mut rim = flat(outward) * (radius / T::select(level.lt(tiny), T::ONE, level));
-    rim.z = half_length.copysign(outward.z);
-    let below_rim = u.dot(rim - c);
+    // The point of the circle of the cap furthest along the direction.
+    let mut circle_point = flat(outward) * (radius / T::select(level.lt(tiny), T::ONE, level));
+    circle_point.z = half_length.copysign(outward.z);
+    let below_circle = u.dot(circle_point - c);
     let level_part = flat(u).norm_squared();
     let parallel = level_part.lt(tiny * tiny);
     let below_side = -(flat(c).dot(u)) / T::select(parallel, T::ONE, level_part);
     let below_side = T::select(parallel, otherwise, below_side);
-    let across = T::select(upward.lt(tiny), below_side, below_rim);
+    let across = T::select(upward.lt(tiny), below_side, below_circle);
     let across = T::select(level.lt(tiny), otherwise, across);
     T::select(slope.abs().lt(tiny), segment.clamp(across), end)
 }
