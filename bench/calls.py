@@ -12,7 +12,7 @@ import numpy as np
 from scene import ROOT
 from timing import alternate, ratio
 
-RUST = os.environ.get("BATCH_STEP", str(ROOT / "target/release/examples/batch_step"))
+RUST = os.environ.get("BATCH_STEP", str(ROOT / "target/dist/examples/batch_step"))
 WARM = 100  # steps before the clock starts
 
 

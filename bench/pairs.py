@@ -16,7 +16,7 @@ import numpy as np
 
 from scene import ROOT
 
-PAIRS = os.environ.get("PAIRS", str(ROOT / "target/release/examples/pairs"))
+PAIRS = os.environ.get("PAIRS", str(ROOT / "target/dist/examples/pairs"))
 TIMER = int(mujoco.mjtTimer.mjTIMER_COL_NARROW)
 TURNS = 3
 RUNS = 7

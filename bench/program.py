@@ -11,7 +11,7 @@ import numpy as np
 
 from scene import ROOT
 
-CLENCH = os.environ.get("CLENCH", str(ROOT / "target/release/clench"))
+CLENCH = os.environ.get("CLENCH", str(ROOT / "target/dist/clench"))
 
 
 class Clench:

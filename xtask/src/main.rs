@@ -24,7 +24,7 @@ Commands:
                       package  the Python package, built and installed in .venv by pip; its types
                       pytest   its tests, every example in a short form among them
                       parity   `clench` against MuJoCo, with pytest
-  bench [ARG...]    Build the release `clench` and time it against MuJoCo.
+  bench [ARG...]    Build `clench` with the `dist` profile, as it is shipped, and time it against MuJoCo.
                     Arguments go to bench/speed.py; try `cargo xtask bench --help`.
   soak [--only NAME] [SEED]
                     batch: step 10,000 environments 1,000 times under random controls, resets and poison; none may

@@ -1,14 +1,14 @@
 //! The Python package, as its users get it: built and installed by pip, its types checked, its tests run.
 
 use crate::python::{interpreter, prepare};
-use crate::run::{command, run, target};
+use crate::run::{Profile, command, run, target};
 
 /// Installs the package, and holds its types to what was installed.
 ///
 /// # Errors
 /// What failed, and what to check.
 pub fn check() -> Result<(), String> {
-    install()?;
+    install(Profile::Release)?;
     let mypy = ["-m", "mypy", "--config-file", "python/pyproject.toml"];
     let mut types = command(interpreter(), &mypy);
     types.args(["python/clench", "python/examples", "python/tests"]);
@@ -20,13 +20,17 @@ pub fn check() -> Result<(), String> {
 ///
 /// # Errors
 /// What failed, and what to check.
-pub fn install() -> Result<(), String> {
+pub fn install(profile: Profile) -> Result<(), String> {
     prepare()?;
     println!("building the package and installing it in .venv");
     let mut install = command(
         interpreter(),
         &["-m", "pip", "install", "--quiet", "./python[gymnasium]"],
     );
+    install.arg(format!(
+        "--config-settings=build-args=--profile={}",
+        profile.name()
+    ));
     // A relative one would mean another folder there, as pip builds in `python`.
     install.env("CARGO_TARGET_DIR", target());
     run(install).map_err(|e| {

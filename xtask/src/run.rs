@@ -16,15 +16,29 @@ pub fn target() -> PathBuf {
     root().join(chosen)
 }
 
-/// The release `clench` program, where cargo puts it.
-pub fn clench() -> PathBuf {
-    released("clench")
+/// How cargo compiles what is not a test.
+#[derive(Clone, Copy)]
+pub enum Profile {
+    /// Quick to build.
+    Release,
+    /// What is shipped and timed: slower to build, a few percent faster.
+    Dist,
 }
 
-/// A release program, where cargo puts it.
-pub fn released(name: &str) -> PathBuf {
-    let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
-    target().join("release").join(name)
+impl Profile {
+    /// Its name in `Cargo.toml`, and that of its folder.
+    pub fn name(self) -> &'static str {
+        match self {
+            Profile::Release => "release",
+            Profile::Dist => "dist",
+        }
+    }
+
+    /// A program built with it, where cargo puts it.
+    pub fn program(self, name: &str) -> PathBuf {
+        let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+        target().join(self.name()).join(name)
+    }
 }
 
 /// A command that will run in the workspace's root.

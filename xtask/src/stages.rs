@@ -2,7 +2,7 @@
 
 use crate::package;
 use crate::python;
-use crate::run::{cargo, clench, command, released, run};
+use crate::run::{Profile, cargo, command, run};
 use std::time::Instant;
 
 /// One check: its name on the command line, what to do when it fails, and how to run it.
@@ -102,14 +102,15 @@ pub fn test(names: &[String]) -> Result<(), String> {
 /// # Errors
 /// What could not be built, installed or run.
 pub fn bench(args: &[String]) -> Result<(), String> {
-    build()?;
-    release("clench", ["--example", "batch_step"])?;
-    release("clench-collide", ["--example", "pairs"])?;
-    package::install()?;
+    let profile = Profile::Dist;
+    compile(profile, "clench-cli", ["--bin", "clench"])?;
+    compile(profile, "clench", ["--example", "batch_step"])?;
+    compile(profile, "clench-collide", ["--example", "pairs"])?;
+    package::install(profile)?;
     let mut script = command(python::interpreter(), &["bench/speed.py"]);
-    script.args(args).env("CLENCH", clench());
-    script.env("BATCH_STEP", released("examples/batch_step"));
-    script.env("PAIRS", released("examples/pairs"));
+    script.args(args).env("CLENCH", profile.program("clench"));
+    script.env("BATCH_STEP", profile.program("examples/batch_step"));
+    script.env("PAIRS", profile.program("examples/pairs"));
     run(script)
 }
 
@@ -178,14 +179,14 @@ fn doc() -> Result<(), String> {
 }
 
 fn build() -> Result<(), String> {
-    release("clench-cli", ["--bin", "clench"])
+    compile(Profile::Release, "clench-cli", ["--bin", "clench"])
 }
 
 /// Builds a target of a package alone; but with the Python package named beside it, both share what they are built of. Else a
 /// dependency of both would have other features in each, and the kernels would be compiled twice.
-fn release(package: &str, target: [&str; 2]) -> Result<(), String> {
+fn compile(profile: Profile, package: &str, target: [&str; 2]) -> Result<(), String> {
     let packages = ["--package", package, "--package", "clench-python"];
-    let mut build = cargo(&["build", "--quiet", "--release"]);
+    let mut build = cargo(&["build", "--quiet", "--profile", profile.name()]);
     build.args(packages).args(target);
     run(build)
 }
@@ -195,6 +196,6 @@ fn parity() -> Result<(), String> {
         python::interpreter(),
         &["-m", "pytest", "--quiet", "parity"],
     );
-    pytest.env("CLENCH", clench());
+    pytest.env("CLENCH", Profile::Release.program("clench"));
     run(pytest)
 }
