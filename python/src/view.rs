@@ -1,4 +1,4 @@
-//! Rows of numbers as NumPy arrays, without a copy. The only unsafe code of the package stands here.
+//! Rows of numbers as NumPy arrays, without a copy. Making such an array is `unsafe`, here and in the callers that hand in rows.
 //!
 //! A table of `clench` keeps its numbers in one place as long as it lives. A view is a NumPy array over that place whose base
 //! is a [`Keeper`]: as long as anyone holds the view, the table lives. Rust touches the numbers only inside calls, Python only

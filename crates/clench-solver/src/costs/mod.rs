@@ -97,7 +97,8 @@ pub(crate) struct RankOne<T> {
     pub side: Option<(usize, T)>,
 }
 
-/// Everything the solver may know about a constraint.
+/// What Newton, CG and the line search ask of a constraint's cost. (Noslip, continuation and the checks of input match on
+/// [`Cost`] where they need more.)
 ///
 /// `y` is J a − aref. A lane without the constraint has D = 0: it adds nothing, and its pieces never change.
 pub(crate) trait BlockCost<T: Real> {
