@@ -1,18 +1,17 @@
 //! The `clench` program: `simulate`, `forward` and `inspect` a robot file.
 //!
-//! One module a subcommand, plus what they share: options that override the file (`options`), the JSON of states and
-//! results (`protocol`), NumPy's files (`npy`), tables for people (`table`). Physics lives in the library.
+//! One module a subcommand, plus what they share: options that override the file (`options`), tables for people (`table`), and
+//! what the library beside this file reads and writes. Physics lives in the library `clench`.
 
 mod forward;
 mod inspect;
-mod npy;
 mod options;
-mod protocol;
 mod simulate;
 mod table;
 
 use cap::Cap;
 use clap::{Parser, Subcommand};
+use clench_cli::{npy, protocol};
 use std::alloc::System;
 use std::process::ExitCode;
 
