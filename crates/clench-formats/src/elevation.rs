@@ -1,5 +1,6 @@
 //! Files of heights: PNG images and MuJoCo's binary grids.
 
+use crate::spending::Spending;
 use std::io::Cursor;
 
 /// Rows of heights, along y from the negative end.
@@ -10,28 +11,23 @@ pub(crate) struct Elevation {
     pub heights: Vec<f64>,
 }
 
-/// Heights of a field, at most, where hardly anything is written of them: 4096 × 4096.
-pub(crate) const MOST_HEIGHTS: usize = 1 << 24;
-/// Pixels that a byte of a larger image may stand for. Images of terrain are far from it, deflated emptiness is a thousand.
-const MOST_PIXELS_A_BYTE: usize = 16;
+/// What a height takes in all, bytes: it stands in the builder and in the model, and is a pixel before.
+pub(crate) const HEIGHT: u64 = 24;
 
 /// Reads an image: white is high. Of a coloured one the red channel counts, of 16 bits the upper 8, as in MuJoCo.
 ///
 /// # Errors
 /// What is wrong with the bytes.
-pub(crate) fn read_png(bytes: &[u8]) -> Result<Elevation, String> {
+pub(crate) fn read_png(bytes: &[u8], spending: &mut Spending) -> Result<Elevation, String> {
     let wrong = |error: png::DecodingError| format!("not a valid PNG image: {error}");
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(wrong)?;
     let (width, height) = reader.info().size();
-    let most = MOST_HEIGHTS.max(bytes.len().saturating_mul(MOST_PIXELS_A_BYTE));
-    if u64::from(width) * u64::from(height) > most as u64 {
-        return Err(format!(
-            "a PNG image of {} bytes and {width} x {height} pixels is no terrain",
-            bytes.len()
-        ));
-    }
+    let pixels = u64::from(width).saturating_mul(u64::from(height));
+    spending
+        .bytes(pixels.saturating_mul(HEIGHT))
+        .map_err(|excess| format!("an image of {width} x {height} pixels: {excess}"))?;
     let size = reader.output_buffer_size();
     let mut pixels = vec![0; size.ok_or("the PNG image is too large")?];
     let frame = reader.next_frame(&mut pixels).map_err(wrong)?;
@@ -52,7 +48,7 @@ pub(crate) fn read_png(bytes: &[u8]) -> Result<Elevation, String> {
 ///
 /// # Errors
 /// What is wrong with the bytes.
-pub(crate) fn read_grid(bytes: &[u8]) -> Result<Elevation, String> {
+pub(crate) fn read_grid(bytes: &[u8], spending: &mut Spending) -> Result<Elevation, String> {
     let (words, rest) = bytes.as_chunks::<4>();
     let [rows, columns, heights @ ..] = words else {
         return Err("too short for a height field".to_owned());
@@ -65,6 +61,7 @@ pub(crate) fn read_grid(bytes: &[u8]) -> Result<Elevation, String> {
             bytes.len()
         ));
     }
+    spending.bytes(HEIGHT * heights.len() as u64)?;
     Ok(Elevation {
         rows: rows as usize,
         columns: columns as usize,

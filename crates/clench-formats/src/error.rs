@@ -1,6 +1,6 @@
 //! What can be wrong with a model file, and where.
 
-use clench_rigid::builder::{BuildError, Origin};
+use clench_rigid::builder::{BuildError, Origin, shorten};
 use std::sync::Arc;
 
 /// A model file that cannot be loaded: the file, the line, the element, and what is wrong with it.
@@ -26,7 +26,7 @@ impl LoadError {
             file: file.clone(),
             line: None,
             element: None,
-            message: message.into(),
+            message: shorten(&message.into()),
         }
     }
 
@@ -41,7 +41,7 @@ impl LoadError {
     /// An error about an element.
     pub(crate) fn element(origin: &Origin, element: String, message: impl Into<String>) -> Self {
         LoadError {
-            element: Some(element),
+            element: Some(shorten(&element)),
             ..LoadError::line(&origin.file, origin.line, message)
         }
     }

@@ -9,20 +9,29 @@ mod elevation;
 mod error;
 mod mesh;
 mod mjcf;
+mod spending;
 
 pub use error::LoadError;
 
-use clench_rigid::Model;
 use clench_rigid::builder::ModelBuilder;
+use clench_rigid::{Budget, Model};
 use std::path::Path;
 
-/// Loads a model file.
+/// Loads a model file, within the usual [`Budget`].
 ///
 /// # Errors
 /// [`LoadError`] where [`read`] fails or the model cannot be built: dangling names, moving bodies without mass, ...
 pub fn load(path: impl AsRef<Path>) -> Result<Model, LoadError> {
+    load_within(path, Budget::default())
+}
+
+/// Loads a model file that may ask for more memory and work than usual, or for less.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_within(path: impl AsRef<Path>, budget: Budget) -> Result<Model, LoadError> {
     let path = path.as_ref();
-    read(path)?.build().map_err(|error| {
+    mjcf::read_file(path, budget)?.build().map_err(|error| {
         let mut error = LoadError::from(error);
         if error.line.is_none() {
             error.file = path.to_string_lossy().into();
@@ -51,7 +60,15 @@ pub fn load(path: impl AsRef<Path>) -> Result<Model, LoadError> {
 /// # Errors
 /// As [`load`]; the file name of an error is empty.
 pub fn load_str(text: &str) -> Result<Model, LoadError> {
-    Ok(read_str(text)?.build()?)
+    load_str_within(text, Budget::default())
+}
+
+/// Loads a model from text that may ask for more memory and work than usual, or for less.
+///
+/// # Errors
+/// As [`load_str`].
+pub fn load_str_within(text: &str, budget: Budget) -> Result<Model, LoadError> {
+    Ok(mjcf::read_text(text, budget)?.build()?)
 }
 
 /// Reads a model file into a builder, before anything is computed.
@@ -60,7 +77,7 @@ pub fn load_str(text: &str) -> Result<Model, LoadError> {
 /// [`LoadError`] where the file cannot be read, is not well-formed, breaks a rule of the format, or asks for something
 /// that is not supported yet.
 pub fn read(path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
-    mjcf::read_file(path.as_ref())
+    mjcf::read_file(path.as_ref(), Budget::default())
 }
 
 /// Reads a model from text, as [`read`]; includes are found from the working directory.
@@ -68,5 +85,5 @@ pub fn read(path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
 /// # Errors
 /// As [`read`]; the file name of an error is empty.
 pub fn read_str(text: &str) -> Result<ModelBuilder, LoadError> {
-    mjcf::read_text(text)
+    mjcf::read_text(text, Budget::default())
 }

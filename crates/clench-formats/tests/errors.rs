@@ -104,7 +104,8 @@ fn nesting_has_a_bottom() {
             "</body>".repeat(depth)
         );
         assert!(rejected(&text).message.contains("deep"));
-        assert!(rejected(&"<a>".repeat(depth)).message.contains("deep"));
+        let open = rejected(&"<a>".repeat(depth));
+        assert!(open.message.contains("not well-formed"), "{open}");
     }
 }
 
@@ -227,11 +228,11 @@ fn contradictions() {
     );
     expect("<replicate count='0'/>", "replicate", "positive");
     let nested = "<replicate count='2000'><replicate count='2000'/></replicate>";
-    expect(nested, "replicate", "more than 100000 replicas");
+    expect(nested, "replicate", "more than 500000 elements");
     expect(
         "<replicate count='2000000000'/>",
         "replicate",
-        "more than 100000 replicas",
+        "more than 500000 elements",
     );
     expect(
         "<body><replicate count='2'><joint/></replicate></body>",

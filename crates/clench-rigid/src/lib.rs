@@ -6,6 +6,7 @@
 //! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.
 
 pub mod batch;
+pub mod budget;
 pub mod builder;
 mod check;
 pub mod constraint;
@@ -20,10 +21,12 @@ mod query;
 pub mod readout;
 pub mod settings;
 mod sim;
+mod singular;
 mod state;
 pub mod workspace;
 
 pub use batch::{Batch, BatchOptions, EnvStatus, Precision};
+pub use budget::Budget;
 pub use error::{Fault, SimError};
 pub use model::{Model, Params};
 pub use output::Output;

@@ -1,7 +1,8 @@
 //! Meshes that a model asks for by name and parameters, MJCF's `builtin`: points and triangles as MuJoCo makes them, with 24 bits
 //! a coordinate.
 
-use super::Triangles;
+use super::{Triangles, bytes};
+use crate::spending::Spending;
 use clench_math::Vec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -17,14 +18,25 @@ const NOT_YET: &[&str] = &[
     "square",
     "disc",
 ];
-/// The most that a resolution can be asked to be, so that a few letters do not fill the memory.
+/// The most that a resolution can be asked to be.
 const FINEST: usize = 1000;
 
 /// Makes the mesh of a name.
 ///
 /// # Errors
 /// A name that is not known, a wrong number of parameters, or one that cannot be.
-pub(crate) fn make(name: &str, parameters: &[f64]) -> Result<Triangles, String> {
+pub(crate) fn make(
+    name: &str,
+    parameters: &[f64],
+    spending: &mut Spending,
+) -> Result<Triangles, String> {
+    // More than any of them has: a grid of the resolution.
+    let resolution = match name {
+        "supersphere" | "supertorus" => parameters.first().map_or(0, |&n| n as usize),
+        _ => 0,
+    };
+    let vertices = resolution.min(FINEST).pow(2);
+    spending.bytes(bytes(vertices, 2 * vertices))?;
     let count = |number: f64, least: usize, most: usize| {
         // As in MuJoCo, what is behind the point does not count.
         let whole = number.trunc();

@@ -19,6 +19,11 @@ pub(crate) struct Triangles {
     pub faces: Vec<[u32; 3]>,
 }
 
+/// What a mesh takes in all, bytes: in the builder, in the model, as a hull, and in a tree for rays.
+pub(crate) fn bytes(vertices: usize, faces: usize) -> u64 {
+    (vertices as u64).saturating_mul(200) + (faces as u64).saturating_mul(150)
+}
+
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {

@@ -15,23 +15,24 @@ pub(crate) fn check_materials(root: &Element) -> Result<(), LoadError> {
         .filter_map(|material| material.text("name"))
         .collect();
     for section in sections(root, "worldbody") {
-        check_below(section, &known)?;
+        let mut pending = vec![section];
+        while let Some(element) = pending.pop() {
+            check_material(element, &known)?;
+            pending.extend(element.children.iter().rev());
+        }
     }
     Ok(())
 }
 
-fn check_below(element: &Element, known: &BTreeSet<&str>) -> Result<(), LoadError> {
-    if let Some(name) = element
-        .text("material")
-        .filter(|name| !known.contains(name))
-    {
-        let hint = schema::suggestion(name, known.iter().copied());
-        return Err(element.error(format!("there is no material \"{name}\"{hint}")));
+fn check_material(element: &Element, known: &BTreeSet<&str>) -> Result<(), LoadError> {
+    let unknown = |name: &&str| !known.contains(name);
+    match element.text("material").filter(unknown) {
+        Some(name) => {
+            let hint = schema::suggestion(name, known.iter().copied());
+            Err(element.error(format!("there is no material \"{name}\"{hint}")))
+        }
+        None => Ok(()),
     }
-    for child in &element.children {
-        check_below(child, known)?;
-    }
-    Ok(())
 }
 
 /// What is needed of materials to know what can be seen.

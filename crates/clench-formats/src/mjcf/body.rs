@@ -7,8 +7,9 @@ use super::document::Element;
 use super::joint;
 use super::orientation::{Orientation, Pose};
 use crate::LoadError;
+use crate::spending::Spending;
 use clench_math::{Mat3, Quat, Vec3};
-use clench_rigid::builder::{BodySpec, InertiaSpec, InertialSpec, JointSpec};
+use clench_rigid::builder::{BodySpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, SiteSpec};
 use std::collections::HashSet;
 
 /// Reads the body tree into a list of bodies, parents before children.
@@ -17,13 +18,13 @@ pub(crate) struct BodyReader<'a> {
     classes: &'a Classes,
     looks: &'a Looks,
     bodies: &'a mut Vec<BodySpec>,
+    spending: &'a mut Spending,
     /// Names in the file that stand for several elements of the model.
     pub replicated: HashSet<String>,
-    replicas: usize,
 }
 
-/// More replicas than a file can mean to have; nested ones multiply, and a short file must not fill the memory.
-const MAX_REPLICAS: usize = 100_000;
+/// What is read of an element stands in the builder, then in the model, and for a while in both.
+const COPIES: usize = 3;
 
 /// Where in the tree the reader is.
 #[derive(Clone)]
@@ -38,6 +39,30 @@ struct Place {
     suffix: String,
     /// The body that the innermost replicas are repeated in.
     replicated_in: Option<usize>,
+}
+
+/// An element whose children are being read.
+struct Level<'e> {
+    element: &'e Element,
+    /// The next child.
+    next: usize,
+    place: Place,
+    replicas: Option<Replicas>,
+}
+
+/// Where the replicas of a `<replicate>` stand.
+struct Replicas {
+    /// How many there are, and the one being read.
+    count: usize,
+    current: usize,
+    /// Where `<replicate>` itself stands.
+    around: Place,
+    class: usize,
+    separator: String,
+    euler: [f64; 3],
+    /// From each to the next, and from the first to the current one.
+    step: Pose,
+    displaced: Pose,
 }
 
 /// The world, before anything is on it.
@@ -56,14 +81,15 @@ impl<'a> BodyReader<'a> {
         classes: &'a Classes,
         looks: &'a Looks,
         bodies: &'a mut Vec<BodySpec>,
+        spending: &'a mut Spending,
     ) -> Self {
         BodyReader {
             notation,
             classes,
             looks,
             bodies,
+            spending,
             replicated: HashSet::new(),
-            replicas: 0,
         }
     }
 
@@ -76,23 +102,48 @@ impl<'a> BodyReader<'a> {
             suffix: String::new(),
             replicated_in: None,
         };
-        self.read_children(element, &world)
-    }
-
-    // The recursion over the tree goes through here, so what needs room on the stack is done in functions of its own.
-    fn read_children(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        for child in &element.children {
-            match child.tag.as_str() {
-                "body" => self.read_body(child, place)?,
-                "frame" => self.read_frame(child, place)?,
-                "replicate" => self.read_replicate(child, place)?,
-                _ => self.read_part(child, place)?,
+        let mut open = vec![Level::new(element, world)];
+        while let Some(level) = open.last_mut() {
+            let Some(child) = level.element.children.get(level.next) else {
+                if !self.begin_next_replica(level)? {
+                    open.pop();
+                }
+                continue;
+            };
+            level.next += 1;
+            if !level.place.suffix.is_empty() {
+                let excess = |excess| child.error(excess);
+                self.spending.elements(1).map_err(excess)?;
+                self.charge(child, 0, &[&level.place.suffix])?;
             }
+            let place = &level.place;
+            let entered = match child.tag.as_str() {
+                "body" => Some(self.enter_body(child, place)?),
+                "frame" => Some(self.enter_frame(child, place)?),
+                "replicate" => Some(self.enter_replicate(child, place)?),
+                _ => {
+                    self.read_part(child, place)?;
+                    None
+                }
+            };
+            open.extend(entered);
         }
         Ok(())
     }
 
-    fn read_body(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+    /// Takes the memory of an element of this size with these texts.
+    fn charge(&mut self, element: &Element, size: usize, texts: &[&str]) -> Result<(), LoadError> {
+        let texts: usize = texts.iter().map(|text| text.len()).sum();
+        let bytes = COPIES * (size + texts);
+        let charged = self.spending.bytes(bytes as u64);
+        charged.map_err(|excess| element.error(excess))
+    }
+
+    fn enter_body<'e>(
+        &mut self,
+        element: &'e Element,
+        place: &Place,
+    ) -> Result<Level<'e>, LoadError> {
         self.push_body(element, place)?;
         let inside = Place {
             body: self.bodies.len() - 1,
@@ -100,14 +151,13 @@ impl<'a> BodyReader<'a> {
             frame: Pose::IDENTITY,
             ..place.clone()
         };
-        self.read_children(element, &inside)
+        Ok(Level::new(element, inside))
     }
 
-    #[inline(never)]
     fn push_body(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let pose = place.frame.then(Pose::read(element, self.notation)?);
         let mut body = BodySpec {
-            name: self.named(element, place),
+            name: self.named(element, place)?,
             parent: place.body,
             pos: pose.pos,
             quat: pose.quat,
@@ -116,61 +166,76 @@ impl<'a> BodyReader<'a> {
         };
         element.set_boolean("mocap", &mut body.mocap)?;
         element.set_number("gravcomp", &mut body.gravcomp)?;
+        self.charge(element, size_of::<BodySpec>(), &[&body.name])?;
         self.bodies.push(body);
         Ok(())
     }
 
-    fn read_frame(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+    fn enter_frame<'e>(&self, element: &'e Element, place: &Place) -> Result<Level<'e>, LoadError> {
         let class = self.classes.named_by(element, "class", place.class)?;
         let inside = Place {
             class: self.classes.named_by(element, "childclass", class)?,
             frame: place.frame.then(Pose::read(element, self.notation)?),
             ..place.clone()
         };
-        self.read_children(element, &inside)
+        Ok(Level::new(element, inside))
     }
 
-    /// Reads the children several times, each time displaced once more, with the number of the replica in their names.
-    fn read_replicate(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+    /// The first of the replicas; each stands displaced once more, and its number in the names in it.
+    fn enter_replicate<'e>(
+        &self,
+        element: &'e Element,
+        place: &Place,
+    ) -> Result<Level<'e>, LoadError> {
         let count = element
             .count("count")?
             .ok_or_else(|| element.missing("count"))?;
         if count == 0 {
             return Err(element.error("count must be positive"));
         }
-        self.replicas = self.replicas.saturating_add(count);
-        if self.replicas > MAX_REPLICAS {
-            return Err(element.error(format!("there are more than {MAX_REPLICAS} replicas")));
-        }
         let offset = Vec3::from_array(element.numbers("offset")?.unwrap_or_default());
         let euler: [f64; 3] = element.numbers("euler")?.unwrap_or_default();
         let class = self.classes.named_by(element, "class", place.class)?;
-        let class = self.classes.named_by(element, "childclass", class)?;
-        let (separator, digits) = (element.string("sep"), count.to_string().len());
-        let turn = self.notation.euler(euler);
-        let mut displaced = Pose::IDENTITY;
-        for replica in 0..count {
-            // As in MuJoCo, angles are multiplied rather than rotations accumulated, so that no error builds up.
-            displaced.quat = self
-                .notation
-                .euler(euler.map(|angle| angle * replica as f64));
-            let inside = Place {
-                class,
-                frame: place.frame.then(displaced),
-                suffix: format!("{separator}{replica:0digits$}{}", place.suffix),
-                replicated_in: Some(place.body),
-                ..place.clone()
-            };
-            self.read_children(element, &inside)?;
-            displaced = displaced.then(Pose {
+        let replicas = Replicas {
+            count,
+            current: 0,
+            around: place.clone(),
+            class: self.classes.named_by(element, "childclass", class)?,
+            separator: element.string("sep"),
+            euler,
+            step: Pose {
                 pos: offset,
-                quat: turn,
-            });
-        }
-        Ok(())
+                quat: self.notation.euler(euler),
+            },
+            displaced: Pose::IDENTITY,
+        };
+        Ok(Level {
+            place: replicas.place(),
+            replicas: Some(replicas),
+            ..Level::new(element, place.clone())
+        })
     }
 
-    #[inline(never)]
+    /// Goes back to the first child, for the next replica; false where there is none.
+    fn begin_next_replica(&mut self, level: &mut Level) -> Result<bool, LoadError> {
+        let Some(replicas) = &mut level.replicas else {
+            return Ok(false);
+        };
+        replicas.current += 1;
+        if replicas.current == replicas.count {
+            return Ok(false);
+        }
+        let excess = |excess| level.element.error(excess);
+        self.spending.elements(1).map_err(excess)?;
+        replicas.displaced = replicas.displaced.then(replicas.step);
+        // As in MuJoCo, angles are multiplied rather than rotations accumulated, so that no error builds up.
+        let angles = replicas.euler.map(|angle| angle * replicas.current as f64);
+        replicas.displaced.quat = self.notation.euler(angles);
+        level.place = replicas.place();
+        level.next = 0;
+        Ok(true)
+    }
+
     fn read_part(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let in_world = |what| Err(element.error(format!("the world cannot have {what}")));
         let of_a_body = matches!(element.tag.as_str(), "inertial" | "joint" | "freejoint");
@@ -186,7 +251,7 @@ impl<'a> BodyReader<'a> {
             "joint" => self.read_joint(element, place)?,
             "freejoint" => {
                 let joint = joint::read_free(element)?;
-                self.push_joint(joint, element, place);
+                self.push_joint(joint, element, place)?;
             }
             "geom" => self.read_geom(element, place)?,
             "site" => self.read_site(element, place)?,
@@ -220,14 +285,15 @@ impl<'a> BodyReader<'a> {
     }
 
     /// The name of an element with what replicas append to it; what has no name keeps none.
-    fn named(&mut self, element: &Element, place: &Place) -> String {
+    fn named(&mut self, element: &Element, place: &Place) -> Result<String, LoadError> {
         let name = element.string("name");
         if name.is_empty() || place.suffix.is_empty() {
-            return name;
+            return Ok(name);
         }
+        self.charge(element, 0, &[&name, &place.suffix])?;
         let full = format!("{name}{}", place.suffix);
         self.replicated.insert(name);
-        full
+        Ok(full)
     }
 
     fn class(&self, element: &Element, place: &Place) -> Result<usize, LoadError> {
@@ -238,24 +304,32 @@ impl<'a> BodyReader<'a> {
         let mut joint = self.classes[self.class(element, place)?].joint.clone();
         joint::read(element, &mut joint)?;
         let joint = joint::finish(joint, self.notation, &place.frame);
-        self.push_joint(joint, element, place);
-        Ok(())
+        self.push_joint(joint, element, place)
     }
 
-    fn push_joint(&mut self, joint: JointSpec, element: &Element, place: &Place) {
-        let name = self.named(element, place);
+    fn push_joint(
+        &mut self,
+        joint: JointSpec,
+        element: &Element,
+        place: &Place,
+    ) -> Result<(), LoadError> {
+        let name = self.named(element, place)?;
+        self.charge(element, size_of::<JointSpec>(), &[&name])?;
         self.bodies[place.body].joints.push(JointSpec {
             name,
             origin: Some(element.origin.clone()),
             ..joint
         });
+        Ok(())
     }
 
     fn read_geom(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let mut geom = self.classes[self.class(element, place)?].geom.clone();
         geom.read(element)?;
+        let bytes = size_of::<GeomSpec>() + geom.text_length();
+        self.charge(element, bytes, &[])?;
         let mut geom = geom.finish(element, self.notation, self.looks, &place.frame)?;
-        geom.name = self.named(element, place);
+        geom.name = self.named(element, place)?;
         self.bodies[place.body].geoms.push(geom);
         Ok(())
     }
@@ -264,9 +338,36 @@ impl<'a> BodyReader<'a> {
         let mut site = self.classes[self.class(element, place)?].site.clone();
         site.read(element)?;
         let mut site = site.finish(element, self.notation, &place.frame)?;
-        site.name = self.named(element, place);
+        site.name = self.named(element, place)?;
+        self.charge(element, size_of::<SiteSpec>(), &[&site.name])?;
         self.bodies[place.body].sites.push(site);
         Ok(())
+    }
+}
+
+impl<'e> Level<'e> {
+    /// An element that is read once.
+    fn new(element: &'e Element, place: Place) -> Self {
+        Level {
+            element,
+            next: 0,
+            place,
+            replicas: None,
+        }
+    }
+}
+
+impl Replicas {
+    /// Where the current one stands.
+    fn place(&self) -> Place {
+        let (number, digits) = (self.current, self.count.to_string().len());
+        Place {
+            class: self.class,
+            frame: self.around.frame.then(self.displaced),
+            suffix: format!("{}{number:0digits$}{}", self.separator, self.around.suffix),
+            replicated_in: Some(self.around.body),
+            ..self.around.clone()
+        }
     }
 }
 

@@ -14,7 +14,9 @@ use super::mesh::MeshDraft;
 use super::site::SiteDraft;
 use super::tendon;
 use crate::LoadError;
+use crate::spending::Spending;
 use clench_rigid::builder::{JointSpec, PairSpec, TendonSpec};
+use std::collections::HashMap;
 
 /// One class: what each kind of element starts as.
 #[derive(Clone, Debug)]
@@ -34,15 +36,18 @@ pub(crate) struct Class {
 }
 
 /// All classes of a model; the first is `main`, which everything starts from.
-#[derive(Clone, Debug)]
-pub(crate) struct Classes(Vec<Class>);
+#[derive(Debug)]
+pub(crate) struct Classes {
+    list: Vec<Class>,
+    by_name: HashMap<String, usize>,
+}
 
 /// The class `main`.
 pub(crate) const MAIN: usize = 0;
 
 impl Default for Classes {
     fn default() -> Self {
-        Classes(vec![Class {
+        let main = Class {
             name: "main".to_owned(),
             parent: None,
             mesh: MeshDraft::default(),
@@ -54,58 +59,88 @@ impl Default for Classes {
             equality: EqualityDraft::default(),
             tendon: TendonSpec::default(),
             actuator: ActuatorDraft::default(),
-        }])
+        };
+        Classes {
+            by_name: HashMap::from([(main.name.clone(), MAIN)]),
+            list: vec![main],
+        }
     }
 }
 
 impl std::ops::Index<usize> for Classes {
     type Output = Class;
     fn index(&self, class: usize) -> &Class {
-        &self.0[class]
+        &self.list[class]
     }
 }
 
 impl Classes {
     /// Reads one top-level `<default>`, which is (more of) the class `main`.
-    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub fn read(&mut self, element: &Element, spending: &mut Spending) -> Result<(), LoadError> {
         match element.text("class") {
-            None | Some("" | "main") => self.read_class(element, MAIN),
-            Some(_) => Err(element.error("the top-level default class is called \"main\"")),
+            None | Some("" | "main") => {}
+            Some(_) => return Err(element.error("the top-level default class is called \"main\"")),
         }
+        // Classes whose own elements are read, each with those nested in it that are still to come.
+        let mut open = vec![(MAIN, self.read_own(element, MAIN)?)];
+        while let Some((class, nested)) = open.last_mut() {
+            let Some(child) = nested.next() else {
+                open.pop();
+                continue;
+            };
+            let class = self.derive(child, *class, spending)?;
+            open.push((class, self.read_own(child, class)?));
+        }
+        Ok(())
     }
 
-    fn read_class(&mut self, element: &Element, class: usize) -> Result<(), LoadError> {
+    /// Reads the elements of a class; gives the classes nested in it.
+    fn read_own<'a>(
+        &mut self,
+        element: &'a Element,
+        class: usize,
+    ) -> Result<impl Iterator<Item = &'a Element> + use<'a>, LoadError> {
         for child in &element.children {
             self.read_element(child, class)?;
         }
-        for child in element
-            .children
-            .iter()
-            .filter(|child| child.tag == "default")
-        {
-            let name = child.text("class").unwrap_or_default();
-            if name.is_empty() {
-                return Err(child.error("a nested default needs a class"));
-            }
-            if self.find(name).is_some() {
-                return Err(child.error(format!("the default class \"{name}\" exists already")));
-            }
-            self.0.push(Class {
-                name: name.to_owned(),
-                parent: Some(class),
-                ..self.0[class].clone()
-            });
-            self.read_class(child, self.0.len() - 1)?;
+        let nested = |child: &&Element| child.tag == "default";
+        Ok(element.children.iter().filter(nested))
+    }
+
+    /// Adds a class that is as its parent so far.
+    fn derive(
+        &mut self,
+        element: &Element,
+        parent: usize,
+        spending: &mut Spending,
+    ) -> Result<usize, LoadError> {
+        let name = element.text("class").unwrap_or_default();
+        if name.is_empty() {
+            return Err(element.error("a nested default needs a class"));
         }
-        Ok(())
+        if self.by_name.contains_key(name) {
+            return Err(element.error(format!("the default class \"{name}\" exists already")));
+        }
+        let inherited = self.list[parent].geom.text_length();
+        spending
+            .bytes((size_of::<Class>() + 2 * name.len() + inherited) as u64)
+            .map_err(|excess| element.error(excess))?;
+        let class = self.list.len();
+        self.by_name.insert(name.to_owned(), class);
+        self.list.push(Class {
+            name: name.to_owned(),
+            parent: Some(parent),
+            ..self.list[parent].clone()
+        });
+        Ok(class)
     }
 
     fn read_element(&mut self, element: &Element, class: usize) -> Result<(), LoadError> {
         if let Some(shortcut) = Shortcut::from_tag(&element.tag) {
             let law = self.law(class, shortcut);
-            return self.0[class].actuator.read(element, shortcut, law);
+            return self.list[class].actuator.read(element, shortcut, law);
         }
-        let class = &mut self.0[class];
+        let class = &mut self.list[class];
         match element.tag.as_str() {
             "mesh" => class.mesh.read(element),
             "material" => assets::read_alpha(element, &mut class.material_alpha),
@@ -122,15 +157,15 @@ impl Classes {
 
     /// The law that a class lends to an actuator written with `shortcut`.
     pub fn law(&self, class: usize, shortcut: Shortcut) -> Law {
-        let ancestors = std::iter::successors(Some(class), |&class| self.0[class].parent);
+        let ancestors = std::iter::successors(Some(class), |&class| self.list[class].parent);
         ancestors
-            .map(|class| &self.0[class].actuator)
+            .map(|class| &self.list[class].actuator)
             .find(|actuator| actuator.lends_law_to(shortcut))
             .map_or_else(Law::default, |actuator| actuator.law)
     }
 
     fn find(&self, name: &str) -> Option<usize> {
-        self.0.iter().position(|class| class.name == name)
+        self.by_name.get(name).copied()
     }
 
     /// The class that an attribute of the element names, or `otherwise`.
@@ -144,7 +179,7 @@ impl Classes {
             return Ok(otherwise);
         };
         self.find(name).ok_or_else(|| {
-            let known = self.0.iter().map(|class| class.name.as_str());
+            let known = self.list.iter().map(|class| class.name.as_str());
             let hint = super::schema::suggestion(name, known);
             element.error(format!("there is no default class \"{name}\"{hint}"))
         })
@@ -152,6 +187,6 @@ impl Classes {
 
     /// The class of an element outside the body tree.
     pub fn of(&self, element: &Element) -> Result<&Class, LoadError> {
-        Ok(&self.0[self.named_by(element, "class", MAIN)?])
+        Ok(&self.list[self.named_by(element, "class", MAIN)?])
     }
 }

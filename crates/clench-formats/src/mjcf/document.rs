@@ -1,17 +1,25 @@
 //! The elements of a file, each with the place where it was written.
 //!
-//! An owned tree rather than `roxmltree`'s own, because includes splice the elements of several files into one.
+//! An owned tree rather than `roxmltree`'s own, because includes splice the elements of several files into one. Nothing here or
+//! in the readers recurses over it, so that a deep file needs no more stack than a flat one.
 
 use crate::LoadError;
+use crate::spending::Spending;
 use clench_rigid::builder::Origin;
 use roxmltree::{Document, Node};
 use std::sync::Arc;
 
-/// Deepest nesting of elements, as in MuJoCo: readers recurse, and a file must not overflow the stack.
+/// Deepest nesting of elements, as in MuJoCo.
 pub(crate) const MAX_DEPTH: usize = 500;
+/// Most attributes of an element; no element of MJCF has a quarter of them. The parser compares each with all before it.
+const MOST_ATTRIBUTES: usize = 200;
+/// Most declarations of namespaces, which mean nothing here. The parser copies them from element to element.
+const MOST_NAMESPACES: usize = 20;
+/// What an element or attribute takes while a file is parsed, and after, besides its own text, bytes.
+const MARK: u64 = 300;
 
 /// An element with its attributes and children; text and comments are dropped.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Element {
     pub tag: String,
     pub attributes: Vec<(String, String)>,
@@ -19,11 +27,25 @@ pub(crate) struct Element {
     pub origin: Origin,
 }
 
+/// Children are taken apart one by one: a compiler's own code would recurse.
+impl Drop for Element {
+    fn drop(&mut self) {
+        let mut pending = std::mem::take(&mut self.children);
+        while let Some(mut element) = pending.pop() {
+            pending.append(&mut element.children);
+        }
+    }
+}
+
 /// The root element of a file's content.
 ///
 /// # Errors
-/// Where it is not UTF-8, empty, not well-formed, or nested too deeply.
-pub(crate) fn parse(bytes: &[u8], file: &Arc<str>) -> Result<Element, LoadError> {
+/// Where it is not UTF-8, empty, not well-formed, nested too deeply, has names in a namespace, or is larger than the budget.
+pub(crate) fn parse(
+    bytes: &[u8],
+    file: &Arc<str>,
+    spending: &mut Spending,
+) -> Result<Element, LoadError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = 1 + count_newlines(&bytes[..error.valid_up_to()]);
         LoadError::line(file, line, "the text is not valid UTF-8")
@@ -31,7 +53,7 @@ pub(crate) fn parse(bytes: &[u8], file: &Arc<str>) -> Result<Element, LoadError>
     if text.trim().is_empty() {
         return Err(LoadError::file(file, "the file is empty"));
     }
-    check_depth(text, file)?;
+    check_marks(text, file, spending)?;
     let document = Document::parse(text).map_err(|error| {
         LoadError::line(
             file,
@@ -39,8 +61,12 @@ pub(crate) fn parse(bytes: &[u8], file: &Arc<str>) -> Result<Element, LoadError>
             format!("not well-formed XML: {error}"),
         )
     })?;
-    let newlines: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
-    Ok(convert(document.root_element(), file, &newlines))
+    Converter {
+        text,
+        file,
+        newlines: text.match_indices('\n').map(|(at, _)| at).collect(),
+    }
+    .convert(document.root_element(), spending)
 }
 
 /// What to say about elements below `MAX_DEPTH`.
@@ -52,74 +78,124 @@ fn count_newlines(bytes: &[u8]) -> u32 {
     bytes.iter().filter(|&&b| b == b'\n').count() as u32
 }
 
-/// Bounds the nesting before the parser, which recurses, sees the text.
+/// Bounds what the parser does that grows with the square of a file, before it does.
 ///
-/// Counts `<name` against `</` and `/>`, stepping over comments, CDATA, instructions and quoted values; text that is
-/// not well-formed may be counted wrongly, but never as less deep than a parser would follow it.
-fn check_depth(text: &str, file: &Arc<str>) -> Result<(), LoadError> {
-    let mut depth = 0usize;
-    let mut at = 0;
+/// A value cannot contain `<`, so a tag has no more attributes than there are `=` up to the next `<`.
+fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(), LoadError> {
+    let (mut marks, mut namespaces, mut at) = (0, 0, 0);
     while let Some(found) = text[at..].find('<') {
         let start = at + found;
         let rest = &text[start..];
         let skip = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")]
             .into_iter()
             .find(|(open, _)| rest.starts_with(open));
-        if let Some((_, close)) = skip {
-            match rest.find(close) {
-                Some(end) => at = start + end + close.len(),
-                None => return Ok(()),
-            }
-            continue;
-        }
-        let end = tag_end(rest);
-        let tag = &rest[..end];
-        if tag.starts_with("</") {
-            depth = depth.saturating_sub(1);
-        } else if !tag.starts_with("<!") {
-            depth += 1;
-            if depth > MAX_DEPTH {
+        let length = match skip {
+            // `<!-->` opens a comment and does not close it.
+            Some((open, close)) => match rest[open.len()..].find(close) {
+                Some(end) => open.len() + end + close.len(),
+                None => rest.len(),
+            },
+            None => {
+                let tag = rest[1..].split('<').next().unwrap_or_default();
+                let attributes = tag.bytes().filter(|&b| b == b'=').count();
+                namespaces += tag.matches("xmlns").count();
+                let excess = if attributes > MOST_ATTRIBUTES {
+                    format!("an element has more than {MOST_ATTRIBUTES} attributes")
+                } else if namespaces > MOST_NAMESPACES {
+                    format!("there are more than {MOST_NAMESPACES} declarations of namespaces")
+                } else {
+                    marks += 1 + attributes as u64;
+                    at = start + 1 + tag.len();
+                    continue;
+                };
                 let line = 1 + count_newlines(&text.as_bytes()[..start]);
-                return Err(LoadError::line(file, line, too_deep()));
+                return Err(LoadError::line(file, line, excess));
             }
-            depth -= usize::from(tag.ends_with("/>"));
-        }
-        at = start + end;
+        };
+        marks += 1;
+        at = start + length;
     }
-    Ok(())
+    let bytes = 3 * text.len() as u64 + MARK * marks;
+    spending
+        .bytes(bytes)
+        .map_err(|excess| LoadError::file(file, excess))
 }
 
-/// Length of the tag that `text` begins with, up to and including its `>` outside quotes.
-fn tag_end(text: &str) -> usize {
-    let mut quote = None;
-    for (at, byte) in text.bytes().enumerate() {
-        match (quote, byte) {
-            (Some(q), b) if q == b => quote = None,
-            (Some(_), _) => {}
-            (None, b'"' | b'\'') => quote = Some(byte),
-            (None, b'>') => return at + 1,
-            (None, _) => {}
-        }
-    }
-    text.len()
+/// Turns the parser's elements into ours.
+struct Converter<'a> {
+    text: &'a str,
+    file: &'a Arc<str>,
+    /// Where lines end, bytes.
+    newlines: Vec<usize>,
 }
 
-fn convert(node: Node, file: &Arc<str>, newlines: &[usize]) -> Element {
-    let line = 1 + newlines.partition_point(|&at| at < node.range().start) as u32;
-    Element {
-        tag: node.tag_name().name().to_owned(),
-        attributes: node
-            .attributes()
-            .map(|a| (a.name().to_owned(), a.value().to_owned()))
-            .collect(),
-        children: node
-            .children()
-            .filter(Node::is_element)
-            .map(|child| convert(child, file, newlines))
-            .collect(),
-        origin: Origin {
-            file: file.clone(),
-            line,
-        },
+impl Converter<'_> {
+    /// The tree below a node.
+    fn convert(&self, root: Node, spending: &mut Spending) -> Result<Element, LoadError> {
+        // The elements that the node is in, the outermost first.
+        let mut open: Vec<Element> = Vec::new();
+        let mut node = root;
+        loop {
+            let mut element = self.element(node)?;
+            spending
+                .elements(1)
+                .map_err(|excess| element.error(excess))?;
+            if open.len() >= MAX_DEPTH {
+                return Err(element.error(too_deep()));
+            }
+            if let Some(child) = node.first_element_child() {
+                open.push(element);
+                node = child;
+                continue;
+            }
+            // The element is complete, and so are those that end with it.
+            loop {
+                let (Some(mut parent), Some(above)) = (open.pop(), node.parent_element()) else {
+                    return Ok(element);
+                };
+                parent.children.push(element);
+                if let Some(sibling) = node.next_sibling_element() {
+                    open.push(parent);
+                    node = sibling;
+                    break;
+                }
+                (element, node) = (parent, above);
+            }
+        }
+    }
+
+    /// An element without its children.
+    ///
+    /// # Errors
+    /// Where its name or that of an attribute is in a namespace: MJCF has none, so MuJoCo knows no such name either.
+    fn element(&self, node: Node) -> Result<Element, LoadError> {
+        let start = node.range().start;
+        let element = Element {
+            tag: node.tag_name().name().to_owned(),
+            attributes: node
+                .attributes()
+                .map(|a| (a.name().to_owned(), a.value().to_owned()))
+                .collect(),
+            children: Vec::new(),
+            origin: Origin {
+                file: self.file.clone(),
+                line: 1 + self.newlines.partition_point(|&at| at < start) as u32,
+            },
+        };
+        if let Some(namespace) = node.tag_name().namespace() {
+            let name =
+                self.text[start + 1..].split(|c: char| c.is_whitespace() || "/>".contains(c));
+            let name = name.into_iter().next().unwrap_or_default();
+            return Err(element.error(format!(
+                "unknown element <{name}>: it is in the namespace \"{namespace}\", and MJCF has none"
+            )));
+        }
+        if let Some(attribute) = node.attributes().find(|a| a.namespace().is_some()) {
+            let name = &self.text[attribute.range_qname()];
+            return Err(element.error(format!(
+                "unknown attribute \"{name}\": it is in a namespace, and MJCF has none"
+            )));
+        }
+        Ok(element)
     }
 }

@@ -6,6 +6,7 @@
 use super::compiler::Notation;
 use super::document::Element;
 use crate::LoadError;
+use crate::spending::Spending;
 use std::path::{Path, PathBuf};
 
 /// Where a model's files are.
@@ -36,7 +37,11 @@ impl<'a> Files<'a> {
     }
 
     /// Reads the file that an element names, if it names one.
-    pub fn read(&self, element: &Element) -> Result<Option<Content>, LoadError> {
+    pub fn read(
+        &self,
+        element: &Element,
+        spending: &mut Spending,
+    ) -> Result<Option<Content>, LoadError> {
         let Some(name) = element.text("file").filter(|name| !name.is_empty()) else {
             return Ok(None);
         };
@@ -54,7 +59,7 @@ impl<'a> Files<'a> {
             element.error(format!("cannot find the file \"{}\"", places[0].display()))
         })?;
         let unreadable =
-            |error| element.error(format!("cannot read \"{}\": {error}", path.display()));
+            |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
         let part = |part: Option<&std::ffi::OsStr>| {
             part.map(|text| text.to_string_lossy().into_owned())
                 .unwrap_or_default()
@@ -62,7 +67,7 @@ impl<'a> Files<'a> {
         Ok(Some(Content {
             stem: part(path.file_stem()),
             extension: part(path.extension()),
-            bytes: std::fs::read(path).map_err(unreadable)?,
+            bytes: spending.read(path).map_err(unreadable)?,
             path: path.clone(),
         }))
     }

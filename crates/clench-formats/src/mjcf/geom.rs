@@ -104,6 +104,11 @@ impl GeomDraft {
         element.set_number("density", &mut self.density)
     }
 
+    /// Length of the texts in it, bytes.
+    pub fn text_length(&self) -> usize {
+        self.spec.mesh.len() + self.spec.hfield.len() + self.material.len()
+    }
+
     /// The geom in its body: shorthand resolved, carried along with the frame that it is written in.
     pub fn finish(
         mut self,

@@ -3,14 +3,19 @@
 use super::document::Element;
 use super::files::Files;
 use crate::LoadError;
-use crate::elevation::{Elevation, MOST_HEIGHTS, read_grid, read_png};
+use crate::elevation::{Elevation, HEIGHT, read_grid, read_png};
+use crate::spending::Spending;
 use clench_rigid::builder::HeightFieldSpec;
 
-pub(crate) fn read(element: &Element, files: &Files) -> Result<HeightFieldSpec, LoadError> {
+pub(crate) fn read(
+    element: &Element,
+    files: &Files,
+    spending: &mut Spending,
+) -> Result<HeightFieldSpec, LoadError> {
     let mut name = element.string("name");
     let rows = element.count("nrow")?.unwrap_or(0);
     let columns = element.count("ncol")?.unwrap_or(0);
-    let found = match files.read(element)? {
+    let found = match files.read(element, spending)? {
         Some(_) if rows > 0 || columns > 0 => {
             return Err(element.error("nrow and ncol cannot be given with a file"));
         }
@@ -29,9 +34,9 @@ pub(crate) fn read(element: &Element, files: &Files) -> Result<HeightFieldSpec, 
                 None => file.extension.eq_ignore_ascii_case("png"),
             };
             let reader = if is_image { read_png } else { read_grid };
-            file.parse(element, |bytes| reader(&bytes))?
+            file.parse(element, |bytes| reader(&bytes, spending))?
         }
-        None => written(element, rows, columns)?,
+        None => written(element, rows, columns, spending)?,
     };
     if name.is_empty() {
         return Err(element.error("a height field needs a name or a file"));
@@ -47,11 +52,18 @@ pub(crate) fn read(element: &Element, files: &Files) -> Result<HeightFieldSpec, 
 }
 
 /// Heights in the model: rows from the positive end of y, as one sees them; flat where none are given.
-fn written(element: &Element, rows: usize, columns: usize) -> Result<Elevation, LoadError> {
+fn written(
+    element: &Element,
+    rows: usize,
+    columns: usize,
+    spending: &mut Spending,
+) -> Result<Elevation, LoadError> {
     let count = rows.saturating_mul(columns);
     if count == 0 {
         return Err(element.error("a height field needs a file, or nrow and ncol"));
     }
+    let taken = spending.bytes(HEIGHT.saturating_mul(count as u64));
+    taken.map_err(|excess| element.error(excess))?;
     let heights = match element.list("elevation")? {
         Some(heights) if heights.len() == count => (heights.chunks_exact(columns).rev())
             .flatten()
@@ -63,9 +75,6 @@ fn written(element: &Element, rows: usize, columns: usize) -> Result<Elevation, 
                 heights.len()
             );
             return Err(element.error(message));
-        }
-        None if count > MOST_HEIGHTS => {
-            return Err(element.error(format!("there are more than {MOST_HEIGHTS} heights")));
         }
         None => vec![0.0; count],
     };

@@ -5,8 +5,10 @@
 
 use super::document::{self, Element, MAX_DEPTH};
 use crate::LoadError;
+use crate::spending::Spending;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Splices included files into the trees of a model.
@@ -30,38 +32,59 @@ impl Includes {
         }
     }
 
-    /// Replaces every include below `element`, which itself was read from a file in `directory`.
+    /// Replaces every include below `root`, which itself was read from a file in `directory`.
     ///
     /// # Errors
     /// Where an included file is missing, unreadable, empty, broken, or included already.
     pub fn expand(
         &mut self,
-        element: &mut Element,
+        root: &mut Element,
         directory: &Path,
-        depth: usize,
+        spending: &mut Spending,
     ) -> Result<(), LoadError> {
-        if depth > MAX_DEPTH {
-            return Err(element.error(document::too_deep()));
-        }
-        let mut expanded = Vec::with_capacity(element.children.len());
-        for mut child in std::mem::take(&mut element.children) {
+        // The lists of children that the reader is in, the outermost first.
+        let mut open = vec![Siblings::of(root, directory.into(), 1)];
+        while let Some(siblings) = open.last_mut() {
+            let Some(mut child) = siblings.left.next() else {
+                let done = std::mem::take(&mut siblings.done);
+                let owner = siblings.owner.take();
+                open.pop();
+                match (owner, open.last_mut()) {
+                    // What an included file holds stands in place of the include.
+                    (None, Some(around)) => around.done.extend(done),
+                    (Some(mut element), Some(around)) => {
+                        element.children = done;
+                        around.done.push(element);
+                    }
+                    (_, None) => root.children = done,
+                }
+                continue;
+            };
+            let (directory, depth) = (siblings.directory.clone(), siblings.depth);
             if child.tag == "include" {
-                expanded.extend(self.include(&child, directory, depth)?);
-            } else {
-                self.expand(&mut child, directory, depth + 1)?;
-                expanded.push(child);
+                let (mut included, directory) = self.include(&child, &directory, spending)?;
+                open.push(Siblings::of(&mut included, directory, depth));
+                continue;
             }
+            if depth >= MAX_DEPTH {
+                return Err(child.error(document::too_deep()));
+            }
+            let inside = Siblings::of(&mut child, directory, depth + 1);
+            open.push(Siblings {
+                owner: Some(child),
+                ..inside
+            });
         }
-        element.children = expanded;
         Ok(())
     }
 
+    /// The root of the file that an include names, and the file's directory.
     fn include(
         &mut self,
         element: &Element,
         directory: &Path,
-        depth: usize,
-    ) -> Result<Vec<Element>, LoadError> {
+        spending: &mut Spending,
+    ) -> Result<(Element, Rc<Path>), LoadError> {
         if !element.children.is_empty() {
             return Err(element.error("an include cannot have children"));
         }
@@ -71,16 +94,42 @@ impl Includes {
             .find(|path| path.is_file())
             .ok_or_else(|| element.error(format!("cannot find the file \"{name}\"")))?;
         let unreadable =
-            |error| element.error(format!("cannot read \"{}\": {error}", path.display()));
-        if !self.seen.insert(path.canonicalize().map_err(unreadable)?) {
+            |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
+        let canonical = path.canonicalize();
+        let canonical = canonical.map_err(|error| unreadable(error.to_string()))?;
+        if !self.seen.insert(canonical) {
             return Err(element.error(format!("\"{name}\" is already included")));
         }
-        let bytes = std::fs::read(&path).map_err(unreadable)?;
-        let mut root = document::parse(&bytes, &Arc::from(path.to_string_lossy()))?;
+        let bytes = spending.read(&path).map_err(unreadable)?;
+        let root = document::parse(&bytes, &Arc::from(path.to_string_lossy()), spending)?;
         if root.children.is_empty() {
             return Err(element.error(format!("\"{name}\" holds no elements to include")));
         }
-        self.expand(&mut root, path.parent().unwrap_or(Path::new("")), depth)?;
-        Ok(root.children)
+        Ok((root, path.parent().unwrap_or(Path::new("")).into()))
+    }
+}
+
+/// The children of an element while includes among them are replaced.
+struct Siblings {
+    /// The element; `None` for the root of a file, whose children are all that counts.
+    owner: Option<Element>,
+    left: std::vec::IntoIter<Element>,
+    done: Vec<Element>,
+    /// Where the file is that they were read from.
+    directory: Rc<Path>,
+    /// How deep the element is that they are in; the root is at 1.
+    depth: usize,
+}
+
+impl Siblings {
+    /// Takes the children of an element.
+    fn of(element: &mut Element, directory: Rc<Path>, depth: usize) -> Self {
+        Siblings {
+            owner: None,
+            left: std::mem::take(&mut element.children).into_iter(),
+            done: Vec::new(),
+            directory,
+            depth,
+        }
     }
 }

@@ -4,6 +4,7 @@ use super::document::Element;
 use super::files::Files;
 use crate::LoadError;
 use crate::mesh::{self, Format, Triangles, builtin};
+use crate::spending::Spending;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{MeshInertia, MeshSpec};
 
@@ -34,7 +35,12 @@ impl MeshDraft {
     }
 
     /// The mesh, with what only an element itself can say.
-    pub fn finish(mut self, element: &Element, files: &Files) -> Result<MeshSpec, LoadError> {
+    pub fn finish(
+        mut self,
+        element: &Element,
+        files: &Files,
+        spending: &mut Spending,
+    ) -> Result<MeshSpec, LoadError> {
         self.read(element)?;
         let mut mesh = self.0;
         mesh.name = element.string("name");
@@ -46,8 +52,13 @@ impl MeshDraft {
             mesh.refquat = Quat::from_f64(quat);
         }
         let found = match element.text("builtin") {
-            Some(builtin) => make(element, builtin)?,
-            None => read_or_written(element, files, &mut mesh.name)?,
+            Some(builtin) => make(element, builtin, spending)?,
+            None => {
+                let found = read_or_written(element, files, &mut mesh.name, spending)?;
+                let taken = spending.bytes(mesh::bytes(found.vertices.len(), found.faces.len()));
+                taken.map_err(|excess| element.error(excess))?;
+                found
+            }
         };
         if mesh.name.is_empty() {
             return Err(element.error("a mesh needs a name or a file"));
@@ -62,7 +73,7 @@ impl MeshDraft {
 }
 
 /// The mesh that `builtin` names.
-fn make(element: &Element, builtin: &str) -> Result<Triangles, LoadError> {
+fn make(element: &Element, builtin: &str, spending: &mut Spending) -> Result<Triangles, LoadError> {
     for other in ["file", "vertex"] {
         if element.text(other).is_some() {
             return Err(element.error(format!("{other} and builtin cannot both be given")));
@@ -70,7 +81,7 @@ fn make(element: &Element, builtin: &str) -> Result<Triangles, LoadError> {
     }
     let parameters = element.list("params")?;
     let parameters = parameters.ok_or_else(|| element.missing("params"))?;
-    builtin::make(builtin, &parameters).map_err(|message| element.error(message))
+    builtin::make(builtin, &parameters, spending).map_err(|message| element.error(message))
 }
 
 /// The mesh in a file, which also gives a name to one without, or in the model.
@@ -78,12 +89,13 @@ fn read_or_written(
     element: &Element,
     files: &Files,
     name: &mut String,
+    spending: &mut Spending,
 ) -> Result<Triangles, LoadError> {
     let written = Triangles {
         vertices: read_vertices(element)?,
         faces: read_faces(element)?,
     };
-    let Some(mut file) = files.read(element)? else {
+    let Some(mut file) = files.read(element, spending)? else {
         return Ok(written);
     };
     if name.is_empty() {

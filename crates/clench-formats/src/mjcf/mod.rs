@@ -27,8 +27,10 @@ mod site;
 mod tendon;
 
 use crate::LoadError;
+use crate::spending::Spending;
 use actuator::Shortcut;
 use body::BodyReader;
+use clench_rigid::Budget;
 use clench_rigid::builder::ModelBuilder;
 use compiler::Notation;
 use defaults::{Classes, MAIN};
@@ -55,22 +57,22 @@ const REFERENCES: &[&str] = &[
 ];
 
 /// Reads the model in a file.
-pub(crate) fn read_file(path: &Path) -> Result<ModelBuilder, LoadError> {
+pub(crate) fn read_file(path: &Path, budget: Budget) -> Result<ModelBuilder, LoadError> {
     let file = Arc::from(path.to_string_lossy());
+    let mut spending = Spending::new(budget);
     let unreadable = |error| LoadError::file(&file, format!("cannot read the file: {error}"));
-    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let bytes = spending.read(path).map_err(unreadable)?;
     let directory = path.parent().unwrap_or(Path::new(""));
-    read(&bytes, &file, Includes::new(Some(path)), directory)
+    let includes = Includes::new(Some(path));
+    read(&bytes, &file, includes, directory, &mut spending)
 }
 
 /// Reads a model from text.
-pub(crate) fn read_text(text: &str) -> Result<ModelBuilder, LoadError> {
-    read(
-        text.as_bytes(),
-        &Arc::from(""),
-        Includes::new(None),
-        Path::new(""),
-    )
+pub(crate) fn read_text(text: &str, budget: Budget) -> Result<ModelBuilder, LoadError> {
+    let (file, directory) = (Arc::from(""), Path::new(""));
+    let mut spending = Spending::new(budget);
+    let includes = Includes::new(None);
+    read(text.as_bytes(), &file, includes, directory, &mut spending)
 }
 
 fn read(
@@ -78,17 +80,18 @@ fn read(
     file: &Arc<str>,
     mut includes: Includes,
     directory: &Path,
+    spending: &mut Spending,
 ) -> Result<ModelBuilder, LoadError> {
-    let mut root = document::parse(bytes, file)?;
+    let mut root = document::parse(bytes, file, spending)?;
     match root.tag.as_str() {
         "mujoco" => {}
         "robot" => return Err(root.error("URDF is not supported yet")),
         _ => return Err(root.error("the root element of a model is <mujoco>")),
     }
-    includes.expand(&mut root, directory, 1)?;
+    includes.expand(&mut root, directory, spending)?;
     schema::check(&root)?;
     assets::check_materials(&root)?;
-    read_model(&root, directory)
+    read_model(&root, directory, spending)
 }
 
 /// The sections of a kind, in order.
@@ -103,8 +106,13 @@ fn entries<'a>(root: &'a Element, tag: &str) -> impl Iterator<Item = &'a Element
     sections(root, tag).flat_map(|section| &section.children)
 }
 
-fn read_model(root: &Element, directory: &Path) -> Result<ModelBuilder, LoadError> {
+fn read_model(
+    root: &Element,
+    directory: &Path,
+    spending: &mut Spending,
+) -> Result<ModelBuilder, LoadError> {
     let mut builder = ModelBuilder {
+        budget: spending.budget,
         name: root.text("model").unwrap_or("MuJoCo Model").to_owned(),
         bodies: vec![body::world()],
         ..ModelBuilder::default()
@@ -121,21 +129,26 @@ fn read_model(root: &Element, directory: &Path) -> Result<ModelBuilder, LoadErro
     builder.options = builder.options.or(option::format_defaults());
     let mut classes = Classes::default();
     for section in sections(root, "default") {
-        classes.read(section)?;
+        classes.read(section, spending)?;
     }
     let files = Files::new(directory, &notation);
     for element in entries(root, "asset") {
         match element.tag.as_str() {
             "mesh" => {
                 let draft = classes.of(element)?.mesh.clone();
-                builder.meshes.push(draft.finish(element, &files)?);
+                builder
+                    .meshes
+                    .push(draft.finish(element, &files, spending)?);
             }
-            "hfield" => builder.height_fields.push(hfield::read(element, &files)?),
+            "hfield" => {
+                let field = hfield::read(element, &files, spending)?;
+                builder.height_fields.push(field);
+            }
             _ => {}
         }
     }
     let looks = assets::Looks::read(root, &classes)?;
-    let mut bodies = BodyReader::new(&notation, &classes, &looks, &mut builder.bodies);
+    let mut bodies = BodyReader::new(&notation, &classes, &looks, &mut builder.bodies, spending);
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }

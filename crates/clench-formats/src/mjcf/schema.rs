@@ -32,24 +32,54 @@ fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
     of(&format!("{parent}/{tag}")).or_else(|| of(tag))
 }
 
-fn check_element(element: &Element, rule: &Rule) -> Result<(), LoadError> {
-    for (name, value) in &element.attributes {
-        check_attribute(element, rule, name, value)?;
-    }
-    for (position, child) in element.children.iter().enumerate() {
+/// An element whose children are being checked.
+struct Level<'a> {
+    element: &'a Element,
+    rule: &'static Rule,
+    /// The next child.
+    next: usize,
+}
+
+fn check_element(root: &Element, rule: &'static Rule) -> Result<(), LoadError> {
+    check_attributes(root, rule)?;
+    let mut open = vec![Level {
+        element: root,
+        rule,
+        next: 0,
+    }];
+    while let Some(Level {
+        element,
+        rule,
+        next,
+    }) = open.last_mut()
+    {
+        let Some(child) = element.children.get(*next) else {
+            open.pop();
+            continue;
+        };
         let child_rule = check_child(element, rule, child)?;
         let once = words(rule.once).any(|tag| tag == child.tag);
-        if once
-            && element.children[..position]
-                .iter()
-                .any(|other| other.tag == child.tag)
-        {
+        let before = &element.children[..*next];
+        if once && before.iter().any(|other| other.tag == child.tag) {
             return Err(child.error(format!("there can be only one in <{}>", element.tag)));
         }
         if element.tag == "default" {
             reject_in_default(child)?;
         }
-        check_element(child, child_rule)?;
+        *next += 1;
+        check_attributes(child, child_rule)?;
+        open.push(Level {
+            element: child,
+            rule: child_rule,
+            next: 0,
+        });
+    }
+    Ok(())
+}
+
+fn check_attributes(element: &Element, rule: &Rule) -> Result<(), LoadError> {
+    for (name, value) in &element.attributes {
+        check_attribute(element, rule, name, value)?;
     }
     Ok(())
 }
@@ -128,11 +158,15 @@ fn words(text: &'static str) -> impl Iterator<Item = &'static str> {
     text.split_ascii_whitespace()
 }
 
+/// Longer names are compared with none: the work grows with the product of the lengths.
+const LONGEST_SUGGESTED: usize = 100;
+
 /// `; did you mean "..."?` if some known name is near to a mistaken one.
 pub(crate) fn suggestion<'a>(mistaken: &str, known: impl Iterator<Item = &'a str>) -> String {
     let distance =
         |name: &str| strsim::damerau_levenshtein(&mistaken.to_lowercase(), &name.to_lowercase());
-    let nearest = known.map(|name| (distance(name), name)).min();
+    let short = |name: &&str| name.len().max(mistaken.len()) <= LONGEST_SUGGESTED;
+    let nearest = (known.filter(short).map(|name| (distance(name), name))).min();
     match nearest {
         Some((distance, name)) if distance <= 2.max(mistaken.len() / 3) => {
             format!("; did you mean \"{name}\"?")

@@ -3,8 +3,8 @@
 use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
-    BuildError, ModelBuilder, actuators, bodies, check, contacts, equalities, keyframes, tendons,
-    weights,
+    BuildError, ModelBuilder, actuators, bodies, budget, check, contacts, equalities, keyframes,
+    tendons, weights,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -41,6 +41,7 @@ impl ModelBuilder {
         assets.keep(self, &mut model);
         weights::require_inertia(&model, &order)?;
         weights::masses(self, &mut model);
+        budget::matrices(self, &model)?;
         model.tree = Arc::new(tree(&model)?);
         contacts::add_all(self, &names, &mut model)?;
         tendons::add_all(self, &names, &mut model)?;
@@ -51,6 +52,7 @@ impl ModelBuilder {
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
         let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
         weights::derive(self, &springdampers, &mut pose0, &mut model)?;
+        budget::keyframes(self, &model)?;
         keyframes::add_all(self, &mut model)?;
         Ok(model)
     }
@@ -83,6 +85,7 @@ impl ModelBuilder {
             flags: physics.flags,
             override_contacts: physics.contact_override.is_some(),
             options: self.options,
+            budget: self.budget,
             params: Params {
                 timestep: physics.timestep,
                 gravity: Vec3::from_array(physics.gravity),

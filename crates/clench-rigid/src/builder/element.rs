@@ -22,8 +22,7 @@ pub(super) trait Element {
         };
         BuildError {
             origin: self.origin().cloned(),
-            element,
-            message: message.into(),
+            ..BuildError::new(element, message)
         }
     }
 

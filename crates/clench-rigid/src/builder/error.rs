@@ -40,13 +40,34 @@ impl fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
+/// Texts longer than this are cut in messages, bytes.
+const LONGEST: usize = 600;
+/// What is left of both ends of a text that is cut.
+const ENDS: usize = 250;
+
+/// A text for a message: as it is, or its beginning and end where it is long.
+pub fn shorten(text: &str) -> String {
+    if text.len() <= LONGEST {
+        return text.to_owned();
+    }
+    let boundary = |from: usize| (from..text.len()).find(|&at| text.is_char_boundary(at));
+    let head = boundary(ENDS).unwrap_or(0);
+    let tail = boundary(text.len() - ENDS).unwrap_or(text.len());
+    let left_out = tail - head;
+    format!(
+        "{} [... {left_out} bytes ...] {}",
+        &text[..head],
+        &text[tail..]
+    )
+}
+
 impl BuildError {
     /// An error of something that is not an element with an origin of its own.
     pub(super) fn new(element: impl Into<String>, message: impl Into<String>) -> Self {
         BuildError {
             origin: None,
-            element: element.into(),
-            message: message.into(),
+            element: shorten(&element.into()),
+            message: shorten(&message.into()),
         }
     }
 
@@ -58,7 +79,7 @@ impl BuildError {
 
     /// The same error, saying also on which body the element is.
     pub(super) fn of_body(mut self, body: &str) -> Self {
-        self.element = format!("{} of {body}", self.element);
+        self.element = shorten(&format!("{} of {body}", self.element));
         self
     }
 }

@@ -28,6 +28,7 @@
 mod actuators;
 mod assets;
 mod bodies;
+mod budget;
 mod build;
 mod by_hand;
 mod check;
@@ -55,13 +56,14 @@ pub use elements::{
     BodySpec, DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomMass, GeomSpec, InertiaSpec, InertialSpec,
     JointSpec, SiteSpec,
 };
-pub use error::{BuildError, Origin};
+pub use error::{BuildError, Origin, shorten};
 pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
 pub use relations::{
     ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec,
     TendonSpec, TransmissionSpec,
 };
 
+use crate::Budget;
 use clench_solver::RigidOptions;
 
 /// A model as its author wrote it.
@@ -75,6 +77,8 @@ pub struct ModelBuilder {
     pub physics: PhysicsSpec,
     /// Solver options that the source sets; they rank below a user's and above the design's defaults.
     pub options: RigidOptions,
+    /// What building the model, and each of its steps, may ask for.
+    pub budget: Budget,
     /// Bodies in order of appearance, parents before children; the first is the world.
     pub bodies: Vec<BodySpec>,
     /// Meshes that geoms refer to.
@@ -105,6 +109,7 @@ impl Default for ModelBuilder {
             compiler: CompilerSpec::default(),
             physics: PhysicsSpec::default(),
             options: RigidOptions::default(),
+            budget: Budget::default(),
             bodies: vec![BodySpec::new("world")],
             meshes: Vec::new(),
             height_fields: Vec::new(),

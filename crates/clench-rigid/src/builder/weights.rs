@@ -8,6 +8,7 @@ use super::check::describe;
 use super::{BuildError, ModelBuilder};
 use crate::dynamics::inertia::composite_inertia;
 use crate::model::{JointKind, Model};
+use crate::singular::first_bad_pivot;
 use crate::workspace::Positions;
 use clench_math::Motion;
 use clench_solver::{TreeFactor, TreeMatrix};
@@ -102,11 +103,7 @@ impl InverseInertia {
                 factor,
                 row: vec![0.0; model.nv],
             }),
-            false => Err(BuildError::new(
-                "model",
-                "the mass matrix is not positive definite in the initial configuration: masses, inertias or armatures \
-                 are too small, too different, or not finite",
-            )),
+            false => Err(singular(model, mass)),
         }
     }
 
@@ -117,6 +114,24 @@ impl InverseInertia {
         self.factor.solve_half(&model.tree, &mut self.row);
         self.row.iter().map(|x| x * x).sum()
     }
+}
+
+/// The error of a mass matrix that cannot be factored: where that shows.
+fn singular(model: &Model, mass: TreeMatrix<f64>) -> BuildError {
+    let message = "in the initial configuration the mass matrix is not positive definite";
+    let why = "masses, inertias or armatures are too small, too different, or not finite";
+    let Some(dof) = first_bad_pivot(&model.tree, mass.values) else {
+        return BuildError::new("model", format!("{message}: {why}"));
+    };
+    let joint = &model.joints[model.dofs[dof].joint];
+    let body = &model.bodies[joint.body];
+    let name = match joint.name.as_str() {
+        "" => "unnamed joint".to_owned(),
+        name => format!("joint \"{name}\""),
+    };
+    let mut error = BuildError::new(name, format!("{message} at this joint (dof {dof}): {why}"));
+    error.origin = joint.origin.clone().or_else(|| body.origin.clone());
+    error.of_body(&describe(&body.name, joint.body))
 }
 
 fn mean(values: &[f64]) -> f64 {

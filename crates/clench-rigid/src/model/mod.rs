@@ -16,6 +16,7 @@ pub use structure::{
     HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair, Site, Tendon, Transmission,
 };
 
+use crate::Budget;
 use clench_collide::Asset;
 use clench_solver::{RigidOptions, Tree};
 use std::collections::HashSet;
@@ -72,6 +73,8 @@ pub struct Model {
     pub override_contacts: bool,
     /// Solver options of the file, over its format's defaults.
     pub options: RigidOptions,
+    /// What a step may ask for.
+    pub budget: Budget,
     /// Every number of the model.
     pub params: Params<f64>,
     /// Things worth telling the user once.
