@@ -65,6 +65,9 @@ impl Model {
     /// ----------
     /// path : str or os.PathLike
     ///     The file. What it includes is found from its folder.
+    /// budget : float
+    ///     How many times the usual memory and work the model may ask for, in loading and in each step. Usual are 2 GiB, 500 000
+    ///     elements, 100 000 contacts, 2**25 numbers in a matrix.
     ///
     /// Returns
     /// -------
@@ -73,10 +76,14 @@ impl Model {
     /// Raises
     /// ------
     /// LoadError
-    ///     A file that cannot be read, is not well-formed, or asks for something that cannot be.
+    ///     A file that cannot be read, is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let model = py.detach(|| clench::load(&path)).map_err(load_error)?;
+    #[pyo3(signature = (path, *, budget = 1.0))]
+    fn from_file(py: Python<'_>, path: PathBuf, budget: f64) -> PyResult<Self> {
+        let budget = clench::Budget::default().times(budget);
+        let model = py
+            .detach(|| clench::load_within(&path, budget))
+            .map_err(load_error)?;
         Ok(Model(Arc::new(model)))
     }
 
@@ -86,6 +93,8 @@ impl Model {
     /// ----------
     /// text : str
     ///     What the file would contain. What it includes is found from the working directory.
+    /// budget : float
+    ///     As of :meth:`from_file`.
     ///
     /// Returns
     /// -------
@@ -94,10 +103,14 @@ impl Model {
     /// Raises
     /// ------
     /// LoadError
-    ///     A text that is not well-formed, or asks for something that cannot be.
+    ///     A text that is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    fn from_xml(py: Python<'_>, text: &str) -> PyResult<Self> {
-        let model = py.detach(|| clench::load_str(text)).map_err(load_error)?;
+    #[pyo3(signature = (text, *, budget = 1.0))]
+    fn from_xml(py: Python<'_>, text: &str, budget: f64) -> PyResult<Self> {
+        let budget = clench::Budget::default().times(budget);
+        let model = py
+            .detach(|| clench::load_str_within(text, budget))
+            .map_err(load_error)?;
         Ok(Model(Arc::new(model)))
     }
 

@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use clench::prelude::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
-use clench::{Model, RigidOptions, Sim};
+use clench::{Budget, Model, RigidOptions, Sim};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -13,6 +13,9 @@ pub struct ModelArguments {
     /// Model file (MJCF)
     #[arg(help_heading = "Arguments")]
     pub model: PathBuf,
+    /// Allow the model this many times the usual memory and work
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    budget: f64,
 
     #[command(flatten)]
     overrides: Overrides,
@@ -101,7 +104,8 @@ impl From<SwitchName> for Switch {
 impl ModelArguments {
     /// Loads the model, and says on standard error what the loader wants known.
     pub fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
-        let mut model: Model = clench::load(&self.model)?;
+        let budget = Budget::default().times(self.budget);
+        let mut model: Model = clench::load_within(&self.model, budget)?;
         for note in &model.notes {
             eprintln!("note: {note}");
         }

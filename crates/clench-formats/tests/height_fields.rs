@@ -80,7 +80,10 @@ fn height_fields_come_from_numbers_and_files() {
         ("file='nowhere.png'", "nowhere.png"),
         ("name='h' file='short.bin'", "short.bin"),
         ("name='h' file='cut.png'", "cut.png"),
-        ("name='h' file='claims.png'", "claims.png\": an image of 50000 x 50000"),
+        (
+            "name='h' file='claims.png'",
+            "claims.png\": an image of 50000 x 50000",
+        ),
         ("nrow='2' ncol='2'", "name"),
     ] {
         let error = field(attributes).expect_err(attributes);

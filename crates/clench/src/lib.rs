@@ -179,11 +179,11 @@ pub use clench_math as math;
 pub use clench_rigid as rigid;
 pub use clench_solver as solver;
 
-pub use clench_formats::{LoadError, load, load_str};
+pub use clench_formats::{LoadError, load, load_str, load_str_within, load_within};
 pub use clench_rigid::batch::Controls;
 pub use clench_rigid::{
-    Batch, BatchOptions, EnvStatus, Fault, Model, Output, Precision, RayFilter, RayHit, Sim,
-    SimError, State,
+    Batch, BatchOptions, Budget, EnvStatus, Fault, Model, Output, Precision, RayFilter, RayHit,
+    Sim, SimError, State,
 };
 pub use clench_solver::RigidOptions;
 
