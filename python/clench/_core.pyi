@@ -583,6 +583,7 @@ class Sim(_Outputs):
         limit: float | None = None,
     ) -> Separation | None: ...
 
+    actuator_power: Final[float]  # Power that actuators put in, W; those that brake do not count.
     contact_count: Final[float]
     solver_iterations: Final[float]
 
@@ -645,6 +646,7 @@ class Batch(_Outputs):
     def sim(self, env: SupportsIndex) -> Sim: ...
     def __len__(self) -> int: ...
 
+    actuator_power: Final[NDArray[Any]]  # (n,)
     contact_count: Final[NDArray[Any]]  # (n,)
     solver_iterations: Final[NDArray[Any]]  # (n,)
 

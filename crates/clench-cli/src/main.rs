@@ -1,17 +1,22 @@
 //! The `clench` program: `simulate`, `forward` and `inspect` a robot file.
 //!
-//! One module a subcommand, plus what they share: options that override the file (`options`), tables for people (`table`), and
-//! what the library beside this file reads and writes. Physics lives in the library `clench`.
+//! One module a subcommand, plus what they share: options that override the file (`options`), files that replace others when
+//! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`), and what the library
+//! beside this file reads and writes. Physics lives in the library `clench`.
 
 mod forward;
 mod inspect;
+mod interrupt;
+mod message;
 mod options;
+mod replacement;
 mod simulate;
 mod table;
 
 use cap::Cap;
 use clap::{Parser, Subcommand};
-use clench_cli::{npy, protocol};
+use clench_cli::{limits, npy, protocol};
+use message::tell;
 use std::alloc::System;
 use std::process::ExitCode;
 
@@ -56,14 +61,14 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Forward(arguments) => forward::run(&arguments),
-        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Forward(arguments) => forward::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Inspect(arguments) => inspect::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            tell(format_args!("error: {error:#}"));
             ExitCode::from(BAD_INPUT)
         }
     }

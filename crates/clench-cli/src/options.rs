@@ -1,5 +1,6 @@
 //! What all subcommands share: the model, and options that override the file's.
 
+use crate::message::tell;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use clench::prelude::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
@@ -107,7 +108,7 @@ impl ModelArguments {
         let budget = Budget::default().times(self.budget);
         let mut model: Model = clench::load_within(&self.model, budget)?;
         for note in &model.notes {
-            eprintln!("note: {note}");
+            tell(format_args!("note: {note}"));
         }
         if let Some(timestep) = self.overrides.timestep {
             ensure!(

@@ -1,5 +1,7 @@
 //! A run of many environments side by side.
 
+use super::energy::{EnergyAccount, STEPS_A_LOOK, next_steps};
+use super::quality::{Verdict, verdict};
 use super::record::{BATCH_OUTPUTS, BatchRecorder};
 use super::report::{BatchReport, DivergenceReport, Failure, Report, stages};
 use super::summary::{is_conservative, status};
@@ -8,14 +10,16 @@ use crate::ALLOCATOR;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use clench::math::{Instructions, Scalar};
-use clench::rigid::batch::Controls;
+use clench::rigid::batch::{Controls, Recording};
 use clench::rigid::{EnvStatus, Precision};
 use clench::{Batch, BatchOptions, RigidOptions};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Steps that a batch takes at a call where nothing is to be seen in between.
-const STEPS_A_CALL: usize = 50;
+/// Steps of environments that a batch takes at a call, after which signals are looked at: about a second's work.
+const ENV_STEPS_A_CALL: usize = 1 << 19;
+/// Steps that it takes at least: so many are done before environments are grouped anew.
+const LEAST_STEPS_A_CALL: usize = 8;
 /// How many failed environments a report names.
 const NAMED_FAILURES: usize = 10;
 
@@ -85,16 +89,18 @@ pub fn run<S: Precision>(
     let model = Arc::clone(&run.model);
     let mut batch = heap.taken_by(|| Batch::<S>::with_options(model, envs as usize, options))?;
     start(&mut batch, run)?;
+    let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;
-    let record = arguments.record.as_ref();
-    let rows = run.steps / arguments.every;
-    let mut recorder = record
-        .map(|path| BatchRecorder::create(path, &run.model, batch.count(), rows))
+    let mut account = EnergyAccount::open(&run.model, energies.iter().copied());
+    let mut recorder = (run.record.as_ref())
+        .map(|options| BatchRecorder::create(options, &run.model, batch.count()))
         .transpose()?;
-    if recorder.is_some() {
-        heap.taken_by(|| batch.record(&BATCH_OUTPUTS))?;
-    }
-    let steps_a_call = recorder.as_ref().map_or(STEPS_A_CALL, |_| arguments.every);
+    let every = recorder.as_ref().map(|_| arguments.every);
+    let traced: &[&str] = match &account {
+        Some(_) if run.model.nu() > 0 => &["actuator_power"],
+        _ => &[],
+    };
+    let most = (ENV_STEPS_A_CALL / batch.count()).max(LEAST_STEPS_A_CALL);
     let controls = run.controls.as_ref().map(|rows| narrow(rows.values()));
     let nu = run.model.nu();
     batch.clear_figures();
@@ -102,37 +108,76 @@ pub fn run<S: Precision>(
     let progress = run.progress();
     let mut spent = Duration::ZERO;
     let (mut steps, mut running) = (0, batch.count());
-    while steps < run.steps && running > 0 {
-        let end = run.steps.min(steps + steps_a_call);
+    while steps < run.steps && running > 0 && run.interrupt.signal().is_none() {
+        let range = next_steps(steps, run.steps, every, most);
+        let end = range.end;
+        let look = account.is_some() && (end.is_multiple_of(STEPS_A_LOOK) || end == run.steps);
+        let recorded = recorder.iter().flat_map(|_| BATCH_OUTPUTS);
+        let outputs = Vec::from_iter(recorded.chain(look.then_some("energy")));
+        heap.taken_by(|| batch.record(&outputs))?;
         let ctrl = controls.as_ref().map(|rows| &rows[steps * nu..end * nu]);
         let controls = ctrl.map_or(Controls::Held, Controls::Shared);
         let begin = Instant::now();
-        let recording = heap.taken_by(|| batch.rollout(end - steps, controls, &[]))?;
+        let recording = heap.taken_by(|| batch.rollout(range.len(), controls, traced))?;
         spent += begin.elapsed();
         (steps, running) = (end, recording.summary.running);
-        if let Some(recorder) = &mut recorder
-            && steps.is_multiple_of(arguments.every)
-        {
+        if let Some(account) = &mut account {
+            watch(account, &recording, &batch);
+        }
+        if let Some(recorder) = &mut recorder {
             let held = batch.state.ctrl.row(0);
-            recorder.after_step(&batch, ctrl.map_or(held, |rows| &rows[rows.len() - nu..]));
+            let last = ctrl.map_or(held, |rows| &rows[rows.len() - nu..]);
+            recorder.after_steps(steps, &batch, last);
         }
         progress.set_position(steps as u64);
     }
     progress.finish_and_clear();
     batch.run_clocks(false);
-    if let Some(recorder) = recorder {
-        recorder.write(&run.model, batch.count())?;
+    let recorded_rows = recorder.map(BatchRecorder::write).transpose()?;
+    let verdict = verdict(&run.model, &batch.quality(), account.as_ref());
+    let mut report = report(&batch, done(&batch, &times, steps), spent, &heap, verdict);
+    report.recorded_rows = recorded_rows;
+    let free = report.failure.is_none() && batch.quality().constrained == 0;
+    if free && is_conservative(&run.model) {
+        report.energy_drift = drift(&energies, &self::energies(&mut batch, &mut heap)?);
     }
-    let mut report = report(&batch, steps, spent, &heap);
-    report.energy_drift = match report.failure {
-        None if batch.quality().constrained == 0 => drift(&mut batch, &mut heap, energies)?,
-        _ => None,
-    };
     let env_steps = batch.divergence().env_steps;
     let total = spent * batch.threads() as u32;
     let profile = arguments.profile.then(|| batch.profile());
     report.profile = profile.map(|profile| stages(&profile, total, env_steps));
     Ok(report)
+}
+
+/// Takes the steps of a call into the account of energy, and what they led to if that was looked at.
+fn watch<S: Precision>(account: &mut EnergyAccount, recording: &Recording<S>, batch: &Batch<S>) {
+    if let Some(powers) = recording.get("actuator_power") {
+        for (env, powers) in powers.iter().enumerate() {
+            // Steps that were not done are no numbers.
+            let done = powers.iter().map(|x| x.to_f64()).filter(|x| !x.is_nan());
+            account.supply(env, done.sum());
+        }
+    }
+    if let Some(energies) = batch.output("energy") {
+        let running = |&(env, _): &(usize, _)| batch.status(env) == EnvStatus::Running;
+        for (env, energy) in energies.iter().enumerate().filter(running) {
+            account.look(env, [energy[0], energy[1]].map(|x| x.to_f64()));
+        }
+    }
+}
+
+/// How many of `steps` steps the environment that came furthest has done, and its time, s; `start` are the times at which they
+/// started.
+fn done<S: Precision>(batch: &Batch<S>, start: &[f64], steps: usize) -> (usize, f64) {
+    let timestep = batch.model().params.timestep;
+    if batch.statuses().contains(&EnvStatus::Running) {
+        return (steps, steps as f64 * timestep);
+    }
+    let ends = batch.state.time.as_slice().iter().map(|x| x.to_f64());
+    let furthest = ends
+        .zip(start)
+        .map(|(end, start)| end - start)
+        .fold(0.0, f64::max);
+    ((furthest / timestep).round() as usize, furthest)
 }
 
 /// What a batch takes of the heap, in bytes.
@@ -179,36 +224,36 @@ fn start<S: Precision>(batch: &mut Batch<S>, run: &Run) -> Result<()> {
     Ok(())
 }
 
-/// The mechanical energy of each environment, J; `None` where it means nothing.
-fn energies<S: Precision>(batch: &mut Batch<S>, heap: &mut Heap) -> Result<Option<Vec<f64>>> {
-    if !is_conservative(batch.model()) {
-        return Ok(None);
-    }
+/// The potential and the kinetic energy of each environment, J.
+fn energies<S: Precision>(batch: &mut Batch<S>, heap: &mut Heap) -> Result<Vec<[f64; 2]>> {
     batch.record(&["energy"])?;
     heap.taken_by(|| batch.forward())?;
     let energies = batch.output("energy").map(|rows| {
-        let total = |parts: &[S]| parts.iter().map(|x| x.to_f64()).sum();
-        rows.iter().map(total).collect()
+        let parts = |parts: &[S]| [parts[0], parts[1]].map(|x| x.to_f64());
+        rows.iter().map(parts).collect()
     });
     batch.record(&[])?;
-    Ok(energies)
+    Ok(energies.unwrap_or_default())
 }
 
-/// The largest change of energy since the environments had these.
-fn drift<S: Precision>(
-    batch: &mut Batch<S>,
-    heap: &mut Heap,
-    start: Option<Vec<f64>>,
-) -> Result<Option<f64>> {
-    let Some((start, end)) = start.zip(energies(batch, heap)?) else {
-        return Ok(None);
-    };
-    let changes = end.iter().zip(&start).map(|(end, start)| end - start);
-    Ok(changes.max_by(|a, b| a.abs().total_cmp(&b.abs())))
+/// The largest change of energy of all environments.
+fn drift(start: &[[f64; 2]], end: &[[f64; 2]]) -> Option<f64> {
+    let total = |energies: &[f64; 2]| energies.iter().sum::<f64>();
+    let changes = end
+        .iter()
+        .zip(start)
+        .map(|(end, start)| total(end) - total(start));
+    changes.max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
 /// The figures of a run of so many steps.
-fn report<S: Precision>(batch: &Batch<S>, steps: usize, spent: Duration, heap: &Heap) -> Report {
+fn report<S: Precision>(
+    batch: &Batch<S>,
+    (steps, simulated_time): (usize, f64),
+    spent: Duration,
+    heap: &Heap,
+    verdict: Verdict,
+) -> Report {
     let (divergence, quality) = (batch.divergence(), batch.quality());
     let seconds = spent.as_secs_f64();
     let rate = |amount: f64| amount / seconds.max(f64::MIN_POSITIVE);
@@ -218,6 +263,8 @@ fn report<S: Precision>(batch: &Batch<S>, steps: usize, spent: Duration, heap: &
     let scratch = heap.taken.saturating_sub(heap.given_back + rows);
     Report {
         status: status(!failures.is_empty(), 0, quality.unconverged),
+        quality: verdict.word,
+        warnings: verdict.warnings,
         seconds,
         steps,
         envs: batch.count(),
@@ -225,7 +272,7 @@ fn report<S: Precision>(batch: &Batch<S>, steps: usize, spent: Duration, heap: &
         precision: 8 * size_of::<S>(),
         instructions: batch.options().instructions.map_or("scalar", name),
         nv: batch.model().nv,
-        simulated_time: steps as f64 * timestep,
+        simulated_time,
         steps_per_second: rate(divergence.env_steps as f64),
         real_time_factor: rate(divergence.env_steps as f64 * timestep),
         iterations_mean: divergence.iterations_per_env(),
@@ -236,6 +283,7 @@ fn report<S: Precision>(batch: &Batch<S>, steps: usize, spent: Duration, heap: &
         unconverged_steps: quality.unconverged,
         overflow_steps: 0,
         energy_drift: None,
+        recorded_rows: None,
         failure: failures.first().map(|first| {
             let (failed, count) = (failures.len(), batch.count());
             let Failure { env, reason } = first;

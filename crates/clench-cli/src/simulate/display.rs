@@ -74,6 +74,10 @@ impl Display for Report {
                 format_args!("in {steps} steps, by --max-contacts"),
             )?;
         }
+        if let Some(rows) = self.recorded_rows {
+            line(f, "recorded", format_args!("{rows} rows"))?;
+        }
+        line(f, "quality", self.quality)?;
         line(f, "status", self.status)?;
         match &self.profile {
             Some(stages) => write!(f, "\n{}", table(stages)),

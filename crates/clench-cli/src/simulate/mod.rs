@@ -4,31 +4,41 @@
 
 mod batch;
 mod display;
+mod energy;
+mod quality;
 mod record;
 mod report;
 mod single;
 mod start;
 mod summary;
 
+use crate::interrupt::Interrupt;
+use crate::limits::{MAX_DEFAULT_STEPS, MAX_STEPS, MemoryArguments};
+use crate::message::tell;
 use crate::npy::{Rows, read_rows};
 use crate::options::ModelArguments;
-use anyhow::{Result, bail, ensure};
+use crate::replacement::require_other;
+use anyhow::{Context, Result, bail, ensure};
 use batch::BatchArguments;
 use clap::{Args, ValueEnum};
 use clench::Model;
 use indicatif::{ProgressBar, ProgressStyle};
+use record::RecordOptions;
+use report::Report;
 use start::{StartArguments, Starts};
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// Steps the model from its initial state, or a keyframe, and prints a summary: speed of stepping alone, contacts and
 /// solver iterations a step, the worst duality gap (how far a solution's cost may lie above the minimum, proven), the
 /// worst penetration, and the energy drift where nothing in the model adds or removes energy. Of a batch also: how unlike
-/// its environments are, memory, and the environments that failed, if any did.
+/// its environments are, memory, and the environments that failed, if any did. A word says what the run is worth, see below;
+/// what is wrong with it also comes as warnings on standard error.
 #[derive(Args)]
-#[command(after_help = RECORD)]
+#[command(after_help = DETAILS)]
 pub struct Arguments {
     /// Steps to take [default: one simulated second, or as many as --ctrl has rows]
     #[arg(long, value_name = "N", conflicts_with = "time")]
@@ -39,7 +49,7 @@ pub struct Arguments {
     /// Controls as a NumPy array (N, nu): row k for step k, the same in every environment
     #[arg(long, value_name = "FILE.npy")]
     ctrl: Option<PathBuf>,
-    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays
+    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays, in place of an old file once all is done
     #[arg(long, value_name = "OUT.npz")]
     record: Option<PathBuf>,
     /// Record every K-th step
@@ -61,16 +71,33 @@ pub struct Arguments {
     #[command(flatten)]
     batch: BatchArguments,
 
+    #[command(flatten)]
+    memory: MemoryArguments,
+
     // Last, because its heading in the help holds for all that follows.
     #[command(flatten)]
     model: ModelArguments,
 }
 
-const RECORD: &str = "\
+const DETAILS: &str = "\
 A record holds, a row for each recorded step: time, qpos, qvel and ctrl after the step; contacts, penetration (m),
 iterations, gradient, improvement, gap and status of its solve (0 unconstrained, 1 proven by the gap, 2 converged,
 3 no progress at the working precision, 4 iteration limit, 5 not finite). That of a batch holds time, qpos, qvel, ctrl,
-contacts and iterations, environment by environment; one that has failed repeats its last good row.";
+contacts and iterations, environment by environment; one that has failed repeats its last good row.
+
+The quality of a run is `good`, or the gravest of:
+  energy_growth         mechanical energy rose by more than twice what actuators put in and what lifting each body by its own
+                        radius of gyration takes, and a fifth of the kinetic energy (not judged where mocap bodies, gravity
+                        compensation or wind may give energy too)
+  deep_penetration      in more than one of a thousand steps a contact was deeper than half the thickness of one of its geoms,
+                        and deeper than its softness explains: at rest under its force, or in an impact at 5 m/s
+  constraint_violation  in more than one of a thousand steps an equality or a limit was violated by more than 0.1 (m or rad),
+                        and by more than its softness explains
+  unconverged           more than one of a hundred solves stopped at the iteration limit
+
+Ctrl-C (SIGINT) and SIGTERM end a run after the step it is in: the record is written, the summary says `interrupted`, and the
+exit code is 130 or 143. A second one ends the program at once, without a record. The exit code is 2 for bad input and for
+runs that failed.";
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Bits {
@@ -94,6 +121,8 @@ struct Run<'a> {
     starts: Starts<'a>,
     controls: Option<Rows>,
     steps: usize,
+    record: Option<RecordOptions<'a>>,
+    interrupt: Interrupt,
 }
 
 impl Run<'_> {
@@ -112,37 +141,82 @@ impl Run<'_> {
 }
 
 /// Runs the simulation, writes the record, prints the summary.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let envs = arguments.batch.envs;
+    let limit = arguments.memory.limit();
+    if let Some(path) = &arguments.record {
+        let inputs = [
+            ("the model", Some(arguments.model.model.as_path())),
+            ("--ctrl", arguments.ctrl.as_deref()),
+            ("--states", arguments.start.states()),
+        ];
+        require_other(("--record", path), &inputs)?;
+    }
     let controls = arguments.ctrl.as_ref();
-    let controls = controls.map(|path| read_rows("--ctrl", path, model.nu()));
+    let controls = controls.map(|path| read_rows("--ctrl", path, model.nu(), limit));
     let controls = controls.transpose()?;
     let count = controls.as_ref().map(Rows::count);
+    let steps = steps_to_take(arguments, model.params.timestep, count)?;
     let run = Run {
-        starts: arguments.start.starts(&model, envs.unwrap_or(1) as usize)?,
-        steps: steps_to_take(arguments, model.params.timestep, count)?,
+        starts: (arguments.start).starts(&model, envs.unwrap_or(1) as usize, limit)?,
+        steps,
         model: Arc::clone(&model),
         controls,
+        record: arguments.record.as_ref().map(|path| RecordOptions {
+            path,
+            every: arguments.every,
+            rows: steps / arguments.every,
+            limit,
+        }),
+        interrupt: Interrupt::listen()?,
     };
-    let report = match (envs, arguments.precision) {
+    let mut report = match (envs, arguments.precision) {
         (None, Bits::Double) => single::run::<f64>(arguments, &run, options)?,
         (None, Bits::Single) => single::run::<f32>(arguments, &run, options)?,
         (Some(envs), Bits::Double) => batch::run::<f64>(arguments, &run, envs, options)?,
         (Some(envs), Bits::Single) => batch::run::<f32>(arguments, &run, envs, options)?,
     };
-    let mut out = io::stdout().lock();
-    if arguments.json {
-        writeln!(out, "{}", serde_json::to_string(&report)?)?;
-    } else {
-        write!(out, "{report}")?;
+    // A run that was over before the signal came was not interrupted.
+    let signal =
+        (run.interrupt.signal()).filter(|_| report.failure.is_none() && report.steps < steps);
+    if signal.is_some() {
+        report.status = "interrupted";
     }
-    match report.failure {
-        Some(message) => bail!(message),
-        None => Ok(()),
+    for warning in &report.warnings {
+        tell(format_args!("warning: {warning}"));
     }
+    let printed = print(arguments, &report);
+    if let Some(message) = report.failure {
+        bail!(message);
+    }
+    if let Some(signal) = signal {
+        let (name, done) = (signal.name, report.steps);
+        let recorded = match (&arguments.record, report.recorded_rows) {
+            (Some(path), Some(rows)) => format!(", {rows} rows are recorded in {}", path.display()),
+            _ => String::new(),
+        };
+        tell(format_args!(
+            "interrupted by {name}: {done} of {steps} steps are done{recorded}"
+        ));
+        return Ok(ExitCode::from(signal.exit_code()));
+    }
+    printed?;
+    Ok(ExitCode::SUCCESS)
 }
 
+fn print(arguments: &Arguments, report: &Report) -> Result<()> {
+    let mut out = io::stdout().lock();
+    let text = if arguments.json {
+        format!("{}\n", serde_json::to_string(report)?)
+    } else {
+        report.to_string()
+    };
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    written.context("standard output")
+}
+
+/// How many steps a run has, where a file of controls has so many rows.
 fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> Result<usize> {
     let wanted = match (arguments.steps, arguments.time) {
         (Some(steps), _) => steps,
@@ -153,12 +227,23 @@ fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> R
             );
             let steps = (time / timestep).round();
             ensure!(
-                steps < 1e15,
-                "--time: {time} s are more steps than can be taken"
+                steps < MAX_STEPS,
+                "--time: {time} s in steps of {timestep} s are {steps:.3e} steps, more than the {MAX_STEPS:.0e} that can be taken"
             );
             steps as usize
         }
-        (None, None) => rows.unwrap_or((1.0 / timestep).round() as usize),
+        (None, None) => match rows {
+            Some(rows) => rows,
+            None => {
+                let steps = (1.0 / timestep).round();
+                ensure!(
+                    steps <= MAX_DEFAULT_STEPS,
+                    "one second in steps of {timestep:e} s is {steps:.3e} steps, more than the {MAX_DEFAULT_STEPS:.0e} that are \
+                     taken unasked: choose with --steps or --time"
+                );
+                steps as usize
+            }
+        },
     };
     if let Some(rows) = rows {
         ensure!(

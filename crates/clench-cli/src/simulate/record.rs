@@ -1,206 +1,267 @@
 //! Rows of what happened after every K-th step, for an `.npz` file.
 
+use super::summary::worst_penetration;
+use crate::limits::MemoryLimit;
 use crate::npy::Npz;
-use crate::simulate::summary::worst_penetration;
-use anyhow::{Context, Result};
+use crate::replacement::Replacement;
+use anyhow::{Context, Result, ensure};
 use clench::math::Scalar;
 use clench::rigid::Precision;
 use clench::{Batch, Model, Sim};
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// The outputs of a batch that a record holds beside states.
 pub const BATCH_OUTPUTS: [&str; 2] = ["contact_count", "solver_iterations"];
 
-/// A file that a record goes to.
-struct Target {
-    path: PathBuf,
-    file: File,
+/// How the name of a record must end.
+const EXTENSION: &str = "npz";
+
+/// What a record is to be.
+pub struct RecordOptions<'a> {
+    /// Its file.
+    pub path: &'a Path,
+    /// Each so many-th step has a row.
+    pub every: usize,
+    /// Rows of the whole run.
+    pub rows: usize,
+    /// How much memory it may take.
+    pub limit: MemoryLimit,
 }
 
-impl Target {
-    /// The file is made at once: a path that cannot be written should not cost the user a run.
-    fn create(path: &Path) -> Result<Self> {
-        let file = File::create(path).with_context(|| format!("--record {}", path.display()))?;
-        Ok(Target {
-            path: path.to_path_buf(),
+impl RecordOptions<'_> {
+    /// A record of these columns, with room for all rows of so many environments: a path that cannot be written, or a lack of
+    /// memory, should not cost the user a run.
+    fn begin(&self, envs: usize, batch: bool, columns: Vec<Column>) -> Result<Record> {
+        let context = || format!("--record {}", self.path.display());
+        ensure!(
+            (self.path.extension()).is_some_and(|end| end.eq_ignore_ascii_case(EXTENSION)),
+            "--record {}: a record is an archive of NumPy arrays, and its name must end in .{EXTENSION}",
+            self.path.display()
+        );
+        let file = Replacement::begin(self.path).with_context(context)?;
+        let mut record = Record {
+            path: self.path.to_path_buf(),
             file,
-        })
+            every: self.every,
+            rows: 0,
+            envs,
+            batch,
+            columns,
+        };
+        let numbers: usize = record.columns.iter().map(|c| c.envs * c.width()).sum();
+        let bytes = numbers * size_of::<f64>();
+        let rows = self.rows;
+        (self.limit)
+            .admit(format_args!("{rows} rows"), rows as u64, bytes)
+            .with_context(|| format!("{}: record fewer steps, see --every", context()))?;
+        for column in &mut record.columns {
+            let room = rows * column.envs * column.width();
+            (column.values.try_reserve_exact(room)).with_context(|| {
+                format!("{}: {rows} rows take more memory than there is", context())
+            })?;
+        }
+        Ok(record)
+    }
+}
+
+/// Numbers of one name.
+struct Column {
+    name: &'static str,
+    /// How many numbers a row has; none for a number that stands alone.
+    size: Option<usize>,
+    /// Whether they are integers.
+    whole: bool,
+    /// How many environments have numbers of their own: all, or one for all.
+    envs: usize,
+    values: Vec<f64>,
+}
+
+impl Column {
+    fn of_row(name: &'static str, size: usize) -> Self {
+        let size = Some(size);
+        Column {
+            size,
+            ..Column::number(name)
+        }
+    }
+    fn number(name: &'static str) -> Self {
+        Column {
+            name,
+            size: None,
+            whole: false,
+            envs: 1,
+            values: Vec::new(),
+        }
+    }
+    fn count(name: &'static str) -> Self {
+        let whole = true;
+        Column {
+            whole,
+            ..Column::number(name)
+        }
+    }
+    fn of_each(self, envs: usize) -> Self {
+        Column { envs, ..self }
     }
 
-    fn fill(self, write: impl FnOnce(&mut Npz) -> Result<()>) -> Result<()> {
-        let mut npz = Npz::new(self.file);
-        write(&mut npz)
-            .and_then(|()| npz.finish())
-            .with_context(|| format!("--record {}", self.path.display()))
+    fn width(&self) -> usize {
+        self.size.unwrap_or(1)
+    }
+
+    /// The numbers environment by environment, where they came step by step, of `rows` steps and `envs` environments.
+    fn by_env(&self, rows: usize, envs: usize) -> impl Iterator<Item = f64> {
+        let width = self.width();
+        (0..envs * rows * width).map(move |i| {
+            let (row, number) = (i / width, i % width);
+            let (env, step) = (row / rows, row % rows);
+            self.values[(step * self.envs + env % self.envs) * width + number]
+        })
+    }
+}
+
+/// A record in the making.
+struct Record {
+    path: PathBuf,
+    file: Replacement,
+    every: usize,
+    rows: usize,
+    envs: usize,
+    /// Whether arrays have an axis of environments.
+    batch: bool,
+    columns: Vec<Column>,
+}
+
+impl Record {
+    fn wants(&self, steps: usize) -> bool {
+        steps.is_multiple_of(self.every)
+    }
+
+    /// Appends a row: the numbers of each column.
+    fn push<'a, S: Scalar>(&mut self, row: impl IntoIterator<Item = &'a [S]>) {
+        for (column, values) in self.columns.iter_mut().zip(row) {
+            column.values.extend(values.iter().map(|x| x.to_f64()));
+        }
+        self.rows += 1;
+    }
+
+    /// Writes the arrays, each with rows as an axis, before it that of environments if there is one, and puts the file in its
+    /// place. How many rows there are.
+    fn write(self) -> Result<usize> {
+        let (rows, envs) = (self.rows, self.envs);
+        let context = || format!("--record {}", self.path.display());
+        let write = || {
+            let mut npz = Npz::new(self.file.file()?);
+            for column in &self.columns {
+                let outer = self.batch.then_some(envs);
+                let shape: Vec<usize> =
+                    outer.into_iter().chain([rows]).chain(column.size).collect();
+                let values = column.by_env(rows, envs);
+                if column.whole {
+                    npz.array(column.name, &shape, values.map(|x| x as i64))?;
+                } else {
+                    npz.array(column.name, &shape, values)?;
+                }
+            }
+            npz.finish()
+        };
+        write().with_context(context)?;
+        self.file
+            .finish()
+            .with_context(|| format!("--record {}", self.path.display()))?;
+        Ok(rows)
     }
 }
 
 /// The record of one environment.
-pub struct Recorder {
-    every: usize,
-    time: Vec<f64>,
-    qpos: Vec<f64>,
-    qvel: Vec<f64>,
-    ctrl: Vec<f64>,
-    contacts: Vec<i64>,
-    penetration: Vec<f64>,
-    iterations: Vec<i64>,
-    gradient: Vec<f64>,
-    improvement: Vec<f64>,
-    gap: Vec<f64>,
-    status: Vec<i64>,
-    target: Target,
-}
+///
+/// Arrays: `time` (n), `qpos` (n, nq), `qvel` (n, nv), `ctrl` (n, nu), `contacts`, `penetration`, `iterations`, `gradient`,
+/// `improvement`, `gap`, `status` (n).
+pub struct Recorder(Record);
 
 impl Recorder {
-    /// An empty record that keeps every `every`-th step.
-    pub fn create(path: &Path, every: usize) -> Result<Self> {
-        Ok(Recorder {
-            every,
-            time: Vec::new(),
-            qpos: Vec::new(),
-            qvel: Vec::new(),
-            ctrl: Vec::new(),
-            contacts: Vec::new(),
-            penetration: Vec::new(),
-            iterations: Vec::new(),
-            gradient: Vec::new(),
-            improvement: Vec::new(),
-            gap: Vec::new(),
-            status: Vec::new(),
-            target: Target::create(path)?,
-        })
+    /// An empty record.
+    pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
+        let columns = vec![
+            Column::number("time"),
+            Column::of_row("qpos", model.nq),
+            Column::of_row("qvel", model.nv),
+            Column::of_row("ctrl", model.nu()),
+            Column::count("contacts"),
+            Column::number("penetration"),
+            Column::count("iterations"),
+            Column::number("gradient"),
+            Column::number("improvement"),
+            Column::number("gap"),
+            Column::count("status"),
+        ];
+        options.begin(1, false, columns).map(Recorder)
     }
 
-    /// Appends the state that step number `step` (from 0) led to, and the statistics of its solve.
-    pub fn after_step<T: Precision>(&mut self, step: usize, sim: &Sim<T>) {
-        if !(step + 1).is_multiple_of(self.every) {
+    /// Appends the state that `steps` steps led to, if it is wanted, and the statistics of the last one's solve.
+    pub fn after_steps<T: Precision>(&mut self, steps: usize, sim: &Sim<T>) {
+        if !self.0.wants(steps) {
             return;
         }
-        self.time.push(sim.state.time.to_f64());
-        extend(&mut self.qpos, &sim.state.qpos);
-        extend(&mut self.qvel, &sim.state.qvel);
-        extend(&mut self.ctrl, &sim.state.ctrl);
-        let stats = sim.stats();
-        self.contacts.push(sim.contacts().len() as i64);
-        self.penetration.push(worst_penetration(sim));
-        self.iterations.push(stats.iterations as i64);
-        self.gradient.push(stats.gradient);
-        self.improvement.push(stats.improvement);
-        self.gap.push(stats.gap);
-        self.status.push(stats.status as i64);
+        let widen = |values: &[T]| Vec::from_iter(values.iter().map(|x| x.to_f64()));
+        let (state, stats) = (&sim.state, sim.stats());
+        let row = [
+            vec![state.time.to_f64()],
+            widen(&state.qpos),
+            widen(&state.qvel),
+            widen(&state.ctrl),
+            vec![sim.contacts().len() as f64],
+            vec![worst_penetration(sim)],
+            vec![stats.iterations as f64],
+            vec![stats.gradient],
+            vec![stats.improvement],
+            vec![stats.gap],
+            vec![f64::from(stats.status as u8)],
+        ];
+        self.0.push(row.iter().map(Vec::as_slice));
     }
 
-    /// Writes the record.
-    ///
-    /// Arrays: `time` (n), `qpos` (n, nq), `qvel` (n, nv), `ctrl` (n, nu), `contacts`, `penetration`, `iterations`,
-    /// `gradient`, `improvement`, `gap`, `status` (n).
-    pub fn write(self, model: &Model) -> Result<()> {
-        let n = self.time.len();
-        self.target.fill(|npz| {
-            npz.array("time", &[n], self.time)?;
-            npz.array("qpos", &[n, model.nq], self.qpos)?;
-            npz.array("qvel", &[n, model.nv], self.qvel)?;
-            npz.array("ctrl", &[n, model.nu()], self.ctrl)?;
-            npz.array("contacts", &[n], self.contacts)?;
-            npz.array("penetration", &[n], self.penetration)?;
-            npz.array("iterations", &[n], self.iterations)?;
-            npz.array("gradient", &[n], self.gradient)?;
-            npz.array("improvement", &[n], self.improvement)?;
-            npz.array("gap", &[n], self.gap)?;
-            npz.array("status", &[n], self.status)
-        })
+    /// Writes the record; how many rows it has.
+    pub fn write(self) -> Result<usize> {
+        self.0.write()
     }
 }
 
 /// The record of a batch. Numbers come step by step and are written environment by environment.
-pub struct BatchRecorder {
-    time: Vec<f64>,
-    qpos: Vec<f64>,
-    qvel: Vec<f64>,
-    contacts: Vec<f64>,
-    iterations: Vec<f64>,
-    /// The same in all environments.
-    ctrl: Vec<f64>,
-    target: Target,
-}
+///
+/// Arrays: `time` (envs, n), `qpos` (envs, n, nq), `qvel` (envs, n, nv), `ctrl` (envs, n, nu), `contacts`, `iterations`
+/// (envs, n).
+pub struct BatchRecorder(Record);
 
 impl BatchRecorder {
-    /// An empty record with room for `rows` steps of `envs` environments: like a path that cannot be written, a lack of
-    /// memory should not cost the user a run.
-    pub fn create(path: &Path, model: &Model, envs: usize, rows: usize) -> Result<Self> {
-        let target = Target::create(path)?;
-        let room = |width: usize| {
-            let numbers = rows.saturating_mul(envs).saturating_mul(width);
-            let mut values = Vec::new();
-            let outcome = values.try_reserve_exact(numbers);
-            outcome.with_context(|| {
-                let shape = format!("{envs} environments and {rows} steps");
-                format!(
-                    "--record {}: {shape} need more memory than there is",
-                    path.display()
-                )
-            })?;
-            anyhow::Ok(values)
-        };
-        Ok(BatchRecorder {
-            time: room(1)?,
-            qpos: room(model.nq)?,
-            qvel: room(model.nv)?,
-            contacts: room(1)?,
-            iterations: room(1)?,
-            ctrl: Vec::new(),
-            target,
-        })
+    /// An empty record.
+    pub fn create(options: &RecordOptions, model: &Model, envs: usize) -> Result<Self> {
+        let columns = vec![
+            Column::number("time").of_each(envs),
+            Column::of_row("qpos", model.nq).of_each(envs),
+            Column::of_row("qvel", model.nv).of_each(envs),
+            // The same in all environments.
+            Column::of_row("ctrl", model.nu()),
+            Column::count("contacts").of_each(envs),
+            Column::count("iterations").of_each(envs),
+        ];
+        options.begin(envs, true, columns).map(BatchRecorder)
     }
 
-    /// Appends the states, and what the last step gave out; `ctrl` are its controls.
-    pub fn after_step<S: Precision>(&mut self, batch: &Batch<S>, ctrl: &[S]) {
-        extend(&mut self.time, batch.state.time.as_slice());
-        extend(&mut self.qpos, batch.state.qpos.as_slice());
-        extend(&mut self.qvel, batch.state.qvel.as_slice());
-        let outputs = [&mut self.contacts, &mut self.iterations];
-        for (column, name) in outputs.into_iter().zip(BATCH_OUTPUTS) {
-            let rows = batch.output(name);
-            extend(column, rows.map_or(&[], |rows| rows.as_slice()));
+    /// Appends the states that `steps` steps led to, if they are wanted, and what the last step gave out; `ctrl` are its
+    /// controls.
+    pub fn after_steps<S: Precision>(&mut self, steps: usize, batch: &Batch<S>, ctrl: &[S]) {
+        if !self.0.wants(steps) {
+            return;
         }
-        extend(&mut self.ctrl, ctrl);
+        let state = &batch.state;
+        let states = [&state.time, &state.qpos, &state.qvel].map(|rows| rows.as_slice());
+        let output = |name| batch.output(name).map_or(&[][..], |rows| rows.as_slice());
+        let outputs = BATCH_OUTPUTS.map(output);
+        self.0.push(states.into_iter().chain([ctrl]).chain(outputs));
     }
 
-    /// Writes the record.
-    ///
-    /// Arrays: `time` (envs, n), `qpos` (envs, n, nq), `qvel` (envs, n, nv), `ctrl` (envs, n, nu), `contacts`, `iterations`
-    /// (envs, n).
-    pub fn write(self, model: &Model, envs: usize) -> Result<()> {
-        let n = self.time.len() / envs;
-        // From steps of environments to environments of steps; `count` environments take part in each step.
-        let by_env = |values: Vec<f64>, count: usize, width: usize| {
-            (0..envs * n * width).map(move |i| {
-                let (row, column) = (i / width, i % width);
-                let (env, step) = (row / n, row % n);
-                values[(step * count + env % count) * width + column]
-            })
-        };
-        let whole = |x: f64| x as i64;
-        let Model { nq, nv, .. } = *model;
-        self.target.fill(|npz| {
-            npz.array("time", &[envs, n], by_env(self.time, envs, 1))?;
-            npz.array("qpos", &[envs, n, nq], by_env(self.qpos, envs, nq))?;
-            npz.array("qvel", &[envs, n, nv], by_env(self.qvel, envs, nv))?;
-            npz.array(
-                "ctrl",
-                &[envs, n, model.nu()],
-                by_env(self.ctrl, 1, model.nu()),
-            )?;
-            let contacts = by_env(self.contacts, envs, 1).map(whole);
-            npz.array("contacts", &[envs, n], contacts)?;
-            let iterations = by_env(self.iterations, envs, 1).map(whole);
-            npz.array("iterations", &[envs, n], iterations)
-        })
+    /// Writes the record; how many rows it has.
+    pub fn write(self) -> Result<usize> {
+        self.0.write()
     }
-}
-
-fn extend<T: Scalar>(to: &mut Vec<f64>, values: &[T]) {
-    to.extend(values.iter().map(|x| x.to_f64()));
 }

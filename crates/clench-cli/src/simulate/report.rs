@@ -7,12 +7,16 @@ use std::time::Duration;
 /// The figures of a finished run. Means and counts are over steps of environments.
 #[derive(Serialize)]
 pub struct Report {
-    /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out) or
-    /// `failed`.
+    /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out),
+    /// `interrupted` or `failed`.
     pub status: &'static str,
+    /// What the run is worth in a word, see [`verdict`](super::quality::verdict).
+    pub quality: &'static str,
+    /// What can be said against it.
+    pub warnings: Vec<String>,
     /// Wall time of stepping alone, s.
     pub seconds: f64,
-    /// Steps of the run, which every environment that did not fail has done.
+    /// Steps that every environment that did not fail has done; if all failed, those of the one that came furthest.
     pub steps: usize,
     pub envs: usize,
     pub threads: usize,
@@ -21,7 +25,7 @@ pub struct Report {
     /// How environments lie side by side.
     pub instructions: &'static str,
     pub nv: usize,
-    /// Seconds that an environment went through.
+    /// Seconds that these environments went through.
     pub simulated_time: f64,
     /// Steps of environments in a second of wall time.
     pub steps_per_second: f64,
@@ -43,6 +47,9 @@ pub struct Report {
     /// Where the time went, if that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<Vec<StageReport>>,
+    /// Rows of the record, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded_rows: Option<usize>,
     /// What went wrong, if something did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,

@@ -1,8 +1,10 @@
 //! A run of one environment.
 
+use super::energy::{EnergyAccount, STEPS_A_LOOK};
+use super::quality::verdict;
 use super::record::Recorder;
 use super::report::{Report, stages};
-use super::summary::Summary;
+use super::summary::{Summary, energy};
 use super::{Arguments, Run};
 use anyhow::Result;
 use clench::rigid::Precision;
@@ -18,15 +20,18 @@ pub fn run<T: Precision>(
 ) -> Result<Report> {
     let mut sim = Sim::<T>::with_options(Arc::clone(&run.model), options)?;
     start(&mut sim, run)?;
-    let record = arguments.record.as_ref();
-    let mut recorder = record
-        .map(|path| Recorder::create(path, arguments.every))
+    let mut recorder = (run.record.as_ref())
+        .map(|options| Recorder::create(options, &run.model))
         .transpose()?;
     let mut summary = Summary::new(&mut sim)?;
+    let mut account = EnergyAccount::open(&run.model, [energy(&mut sim)?]);
     sim.run_clocks(arguments.profile);
     let progress = run.progress();
     let mut spent = Duration::ZERO;
     for step in 0..run.steps {
+        if run.interrupt.signal().is_some() {
+            break;
+        }
         if let Some(rows) = &run.controls {
             let ctrl = sim.state.ctrl.iter_mut().zip(rows.row(step));
             ctrl.for_each(|(to, &from)| *to = T::new(from));
@@ -40,21 +45,46 @@ pub fn run<T: Precision>(
             break;
         }
         summary.after_step(&sim);
+        if let Some(account) = &mut account {
+            watch(account, step, arguments.profile, &mut sim)?;
+        }
         if let Some(recorder) = &mut recorder {
-            recorder.after_step(step, &sim);
+            recorder.after_steps(step + 1, &sim);
         }
         progress.inc(1);
     }
-    progress.finish_and_clear();
-    if let Some(recorder) = recorder {
-        recorder.write(&run.model)?;
+    if let Some(account) = &mut account {
+        account.look(0, energy(&mut sim)?);
     }
+    progress.finish_and_clear();
+    let recorded_rows = recorder.map(Recorder::write).transpose()?;
     sim.run_clocks(false);
-    let mut report = summary.finish(&mut sim, spent.as_secs_f64());
+    let verdict = verdict(&run.model, summary.quality(), account.as_ref());
+    let mut report = summary.finish(&mut sim, spent.as_secs_f64(), verdict);
+    report.recorded_rows = recorded_rows;
     report.profile = arguments
         .profile
         .then(|| stages(&sim.profile(), spent, report.steps as u64));
     Ok(report)
+}
+
+/// Takes a step into the account of energy, which no profile shows.
+fn watch<T: Precision>(
+    account: &mut EnergyAccount,
+    step: usize,
+    profile: bool,
+    sim: &mut Sim<T>,
+) -> Result<()> {
+    if sim.model().nu() > 0 {
+        let power = sim.output("actuator_power")?;
+        account.supply(0, power[0].to_f64());
+    }
+    if (step + 1).is_multiple_of(STEPS_A_LOOK) {
+        sim.run_clocks(false);
+        account.look(0, energy(sim)?);
+        sim.run_clocks(profile);
+    }
+    Ok(())
 }
 
 fn start<T: Precision>(sim: &mut Sim<T>, run: &Run) -> Result<()> {

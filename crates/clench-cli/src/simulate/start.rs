@@ -1,5 +1,6 @@
 //! The states that a run starts from: the model's or a keyframe, then given positions and velocities, then noise.
 
+use crate::limits::MemoryLimit;
 use crate::npy::{Rows, read_rows};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
@@ -7,7 +8,7 @@ use clench::Model;
 use clench::rigid::dynamics::integrate::integrate_positions;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Where a run starts.
 #[derive(Args)]
@@ -37,8 +38,18 @@ pub struct Starts<'a> {
 }
 
 impl StartArguments {
+    /// The file of initial states, if there is one.
+    pub fn states(&self) -> Option<&Path> {
+        self.states.as_deref()
+    }
+
     /// Looks everything up for a run of so many environments.
-    pub fn starts<'a>(&self, model: &'a Model, envs: usize) -> Result<Starts<'a>> {
+    pub fn starts<'a>(
+        &self,
+        model: &'a Model,
+        envs: usize,
+        limit: MemoryLimit,
+    ) -> Result<Starts<'a>> {
         ensure!(
             self.noise.is_finite() && self.noise >= 0.0,
             "--noise: {} is not a number that states can be moved by",
@@ -47,7 +58,7 @@ impl StartArguments {
         let keyframe = self.keyframe.as_ref();
         let states = self.states.as_ref();
         let width = model.nq + model.nv;
-        let states = states.map(|path| read_rows("--states", path, width));
+        let states = states.map(|path| read_rows("--states", path, width, limit));
         let states = states.transpose()?;
         if let Some(rows) = &states {
             let count = rows.count();

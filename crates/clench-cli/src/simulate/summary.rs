@@ -1,21 +1,17 @@
 //! What is noted of the steps of one environment.
 
+use super::quality::Verdict;
 use super::report::Report;
+use clench::rigid::batch::Quality;
 use clench::rigid::{Precision, SimError};
-use clench::solver::Status;
 use clench::{Model, Sim};
 
 /// Accumulates over the steps of a run.
 pub struct Summary {
-    steps: usize,
     iterations: usize,
     contacts: usize,
-    most_contacts: usize,
-    worst_gap: f64,
-    worst_penetration: f64,
-    unconverged: u64,
     overflows: u64,
-    constrained: bool,
+    quality: Quality,
     start_energy: f64,
     start_time: f64,
     failure: Option<String>,
@@ -24,17 +20,12 @@ pub struct Summary {
 impl Summary {
     /// Starts at the simulation's present state.
     pub fn new<T: Precision>(sim: &mut Sim<T>) -> Result<Self, SimError> {
-        let start_energy = total_energy(sim)?;
+        let start_energy = energy(sim)?.iter().sum();
         Ok(Summary {
-            steps: 0,
             iterations: 0,
             contacts: 0,
-            most_contacts: 0,
-            worst_gap: 0.0,
-            worst_penetration: 0.0,
-            unconverged: 0,
             overflows: 0,
-            constrained: false,
+            quality: Quality::default(),
             start_energy,
             start_time: sim.state.time.to_f64(),
             failure: None,
@@ -43,17 +34,10 @@ impl Summary {
 
     /// Takes note of a step.
     pub fn after_step<T: Precision>(&mut self, sim: &Sim<T>) {
-        let stats = sim.stats();
-        let contacts = sim.contacts().len();
-        self.steps += 1;
-        self.iterations += stats.iterations;
-        self.contacts += contacts;
-        self.most_contacts = self.most_contacts.max(contacts);
-        self.worst_gap = self.worst_gap.max(stats.gap);
-        self.worst_penetration = self.worst_penetration.max(worst_penetration(sim));
-        self.unconverged += u64::from(stats.status == Status::IterationLimit);
+        self.quality.note(sim);
+        self.iterations += sim.stats().iterations;
+        self.contacts += sim.contacts().len();
         self.overflows += u64::from(sim.contact_overflow());
-        self.constrained |= sim.workspace().problem.nrow() > 0;
     }
 
     /// Takes note of the error that ended the run in step `step`.
@@ -61,41 +45,52 @@ impl Summary {
         self.failure = Some(format!("step {step}: {error}"));
     }
 
+    /// How well the steps went.
+    pub fn quality(&self) -> &Quality {
+        &self.quality
+    }
+
     /// The figures of the run, which took `seconds` of stepping.
-    pub fn finish<T: Precision>(self, sim: &mut Sim<T>, seconds: f64) -> Report {
+    pub fn finish<T: Precision>(self, sim: &mut Sim<T>, seconds: f64, verdict: Verdict) -> Report {
         let simulated_time = sim.state.time.to_f64() - self.start_time;
-        let per_step = |total: usize| total as f64 / self.steps.max(1) as f64;
+        let steps = self.quality.steps;
+        let per_step = |total: usize| total as f64 / steps.max(1) as f64;
         let energy_drift = self.energy_drift(sim);
+        let quality = self.quality;
         Report {
-            status: status(self.failure.is_some(), self.overflows, self.unconverged),
+            status: status(self.failure.is_some(), self.overflows, quality.unconverged),
+            quality: verdict.word,
+            warnings: verdict.warnings,
             seconds,
-            steps: self.steps,
+            steps: steps as usize,
             envs: 1,
             threads: 1,
             precision: 8 * size_of::<T>(),
             instructions: "scalar",
             nv: sim.model().nv,
             simulated_time,
-            steps_per_second: self.steps as f64 / seconds.max(f64::MIN_POSITIVE),
+            steps_per_second: steps as f64 / seconds.max(f64::MIN_POSITIVE),
             real_time_factor: simulated_time / seconds.max(f64::MIN_POSITIVE),
             iterations_mean: per_step(self.iterations),
             contacts_mean: per_step(self.contacts),
-            contacts_max: self.most_contacts as u64,
-            gap_max: self.worst_gap,
-            penetration_max: self.worst_penetration,
-            unconverged_steps: self.unconverged,
+            contacts_max: quality.contacts_max,
+            gap_max: quality.gap_max,
+            penetration_max: quality.penetration_max,
+            unconverged_steps: quality.unconverged,
             overflow_steps: self.overflows,
             energy_drift,
             batch: None,
             profile: None,
+            recorded_rows: None,
             failure: self.failure,
         }
     }
 
     fn energy_drift<T: Precision>(&self, sim: &mut Sim<T>) -> Option<f64> {
-        let closed = !self.constrained && self.failure.is_none() && is_conservative(sim.model());
-        let end = if closed { total_energy(sim).ok() } else { None };
-        end.map(|energy| energy - self.start_energy)
+        let free = self.quality.constrained == 0 && self.failure.is_none();
+        let end = (free && is_conservative(sim.model())).then(|| energy(sim).ok());
+        let end: f64 = end.flatten()?.iter().sum();
+        Some(end - self.start_energy)
     }
 }
 
@@ -126,7 +121,8 @@ pub fn is_conservative(model: &Model) -> bool {
         && p.viscosity == 0.0
 }
 
-fn total_energy<T: Precision>(sim: &mut Sim<T>) -> Result<f64, SimError> {
+/// The potential and the kinetic energy of a simulation, J.
+pub fn energy<T: Precision>(sim: &mut Sim<T>) -> Result<[f64; 2], SimError> {
     let energy = sim.energy()?;
-    Ok((energy.potential + energy.kinetic).to_f64())
+    Ok([energy.potential, energy.kinetic].map(|x| x.to_f64()))
 }

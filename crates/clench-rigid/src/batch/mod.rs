@@ -22,7 +22,7 @@ mod stepper;
 pub use divergence::Divergence;
 pub use options::BatchOptions;
 pub use precision::Precision;
-pub use quality::Quality;
+pub use quality::{DeepContact, Quality, Violation};
 pub use record::{Controls, Recording};
 pub use rows::Rows;
 pub use run::Summary;

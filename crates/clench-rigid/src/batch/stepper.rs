@@ -4,7 +4,7 @@ use super::divergence::Divergence;
 use super::group::{Group, MOST_LANES};
 use super::parameters::ParamRows;
 use super::precision::Lanewise;
-use super::quality::Quality;
+use super::quality::{Place, Quality};
 use super::record::{Controls, Targets};
 use super::state_rows::{Inputs, Motion};
 use crate::check;
@@ -196,7 +196,13 @@ where
             job.places[env].store(gray_rank(signatures[lane]), Relaxed);
         }
         self.tally.divergence.count(&self.ws, group.len);
-        self.tally.quality.count(&self.ws, group.len, good);
+        let place = Place {
+            model: job.model,
+            params: &self.params,
+            settings: job.settings,
+            ws: &self.ws,
+        };
+        self.tally.quality.count(place, group.len, good);
     }
 
     /// Copies what a step gave out to where it is wanted.

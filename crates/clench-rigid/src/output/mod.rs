@@ -107,6 +107,8 @@ outputs! {
     actuator_velocity [m.nu()] => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
     /// Forces of actuators (nu).
     actuator_force [m.nu()] => out.extend_from_slice(&s.ws.force.actuator_force);
+    /// Power that actuators put in, W: the sum over those that drive. Those that brake do not count.
+    actuator_power [] => out.push(driving_power(s.ws));
     /// Forces of actuators along dofs (nv).
     qfrc_actuator [m.nv] => out.extend_from_slice(&s.ws.force.qfrc_actuator);
     /// Passive forces along dofs (nv).
@@ -171,6 +173,12 @@ fn inertias<T: Real>(values: &[Inertia<T>], out: &mut Vec<T>) {
         out.extend_from_slice(&inertia.moment.to_array());
         out.push(inertia.mass);
     }
+}
+
+fn driving_power<T: Real>(ws: &Workspace<T>) -> T {
+    let velocities = &ws.velocity.actuator_velocity;
+    let powers = (ws.force.actuator_force.iter().zip(velocities)).map(|(&f, &v)| f * v);
+    powers.fold(T::ZERO, |sum, power| sum + power.max(T::ZERO))
 }
 
 fn count_contacts<T: Real>(ws: &Workspace<T>) -> T {

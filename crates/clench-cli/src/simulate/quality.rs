@@ -1,0 +1,99 @@
+//! What a run is worth, in a word and in warnings.
+
+use super::energy::EnergyAccount;
+use clench::Model;
+use clench::rigid::batch::Quality;
+use clench::rigid::constraint::ConstraintSource;
+
+/// Constraints that are violated in so few of the steps are an incident and not the run.
+const INCIDENT: f64 = 1e-3;
+/// Solves that stop at the iteration limit in so few of the steps change little.
+const FEW_UNCONVERGED: f64 = 1e-2;
+
+/// The verdict on a run.
+pub struct Verdict {
+    /// `good`, or the gravest that can be said against it.
+    pub word: &'static str,
+    /// All that can be said against it, the gravest first.
+    pub warnings: Vec<String>,
+}
+
+/// Judges a run of a model.
+pub fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAccount>) -> Verdict {
+    let steps = quality.steps;
+    let share = |count: u64| count as f64 / steps.max(1) as f64;
+    let mut found = Vec::new();
+    if let Some((envs, worst)) = energy.and_then(EnergyAccount::grown) {
+        let (env, growth, supplied) = (worst.env, worst.growth, worst.supplied);
+        let count = if envs == 1 {
+            "1 environment".into()
+        } else {
+            format!("{envs} environments")
+        };
+        found.push((
+            "energy_growth",
+            format!(
+                "the mechanical energy of {count} rose from nowhere, that of environment {env} by {growth:.3} J where actuators \
+                 put in {supplied:.3} J: is the time step too long, or a force too stiff?"
+            ),
+        ));
+    }
+    if let Some(deepest) = quality.deepest
+        && share(quality.deep) > INCIDENT
+    {
+        let [a, b] = deepest
+            .geoms
+            .map(|g| element("geom", &model.geoms[g].name, g));
+        let (deep, depth) = (quality.deep, 1e3 * deepest.depth);
+        found.push((
+            "deep_penetration",
+            format!(
+                "in {deep} of {steps} steps a contact was deeper than half a geom and than softness explains, at worst {depth:.0} \
+                 mm between {a} and {b}: do geoms start inside each other, or is the time step too long?"
+            ),
+        ));
+    }
+    if let Some(worst) = quality.worst_violation
+        && share(quality.violated) > INCIDENT
+    {
+        let which = source(model, worst.source);
+        let (violated, size) = (quality.violated, worst.size);
+        found.push((
+            "constraint_violation",
+            format!(
+                "in {violated} of {steps} steps an equality or a limit was violated by more than 0.1 (m or rad) and than softness \
+                 explains, at worst {which} by {size:.3}"
+            ),
+        ));
+    }
+    if share(quality.unconverged) > FEW_UNCONVERGED {
+        let unconverged = quality.unconverged;
+        found.push((
+            "unconverged",
+            format!(
+                "the solves of {unconverged} of {steps} steps stopped at the iteration limit: see --iterations and --tolerance"
+            ),
+        ));
+    }
+    Verdict {
+        word: found.first().map_or("good", |(word, _)| word),
+        warnings: found.into_iter().map(|(_, warning)| warning).collect(),
+    }
+}
+
+fn source(model: &Model, source: ConstraintSource) -> String {
+    let kind = match source {
+        ConstraintSource::JointLimit(_) => "the limit of joint",
+        ConstraintSource::TendonLimit(_) => "the limit of tendon",
+        _ => "equality",
+    };
+    element(kind, source.name(model), source.index())
+}
+
+/// What a person calls an element: its name, or its number where it has none.
+fn element(kind: &str, name: &str, index: usize) -> String {
+    match name {
+        "" => format!("{kind} {index}"),
+        name => format!("{kind} {name:?}"),
+    }
+}
