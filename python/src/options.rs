@@ -17,8 +17,8 @@ use pyo3::types::{PyDict, PyTuple};
 /// iterations : int, optional
 ///     Most iterations of a solve; 50 by default, 100 in models from MJCF.
 /// tolerance : float, optional
-///     A solve stops where gradient and last improvement, over mean inertia times nv, are below; 1e-8 by default, 1e-5
-///     in single precision. Zero asks for the working precision.
+///     A solve stops where gradient and last improvement ("CG": the duality gap), over mean inertia times nv, are below;
+///     1e-8 by default, 1e-5 in single precision. Zero asks for the working precision.
 /// ls_iterations : int, optional
 ///     Most evaluations of a line search; 50 by default.
 /// ls_tolerance : float, optional

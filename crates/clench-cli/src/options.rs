@@ -29,7 +29,7 @@ struct Overrides {
     /// Constraint solver
     #[arg(long, ignore_case = true)]
     solver: Option<SolverName>,
-    /// Stop when gradient and improvement, scaled by inertia, are below this
+    /// Stop when gradient and improvement (CG: the duality gap), scaled by inertia, are below this
     #[arg(long, value_name = "X")]
     tolerance: Option<f64>,
     /// Most solver iterations a step

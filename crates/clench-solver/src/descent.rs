@@ -16,6 +16,8 @@ pub(crate) trait Direction<T: Real> {
     fn prepare(&mut self, problem: &Problem<T>, settings: &Settings);
     /// Forgets what it has learned in the lanes of `mask`, whose iterate or problem was changed.
     fn restart(&mut self, mask: T::Mask);
+    /// The duality gap at the iterate, for a method that stops by it.
+    fn gap(&mut self, problem: &Problem<T>, iterate: &Iterate<T>) -> T;
     /// Writes the next direction into `course.ray`, which holds the last one.
     fn find(&mut self, problem: &Problem<T>, progress: &Progress<T>, course: &mut Course<T>);
 }
@@ -204,8 +206,13 @@ impl<T: Real> Progress<T> {
         // A full Newton step over a quadratic stretch ends at the minimum: the size of that step
         // says nothing more.
         let exact = self.same_hessian & T::Mask::splat(D::NEWTON);
-        let settled = stats.improvement.le(self.tolerance) | exact;
-        let converged = stats.gradient.le(self.tolerance) & settled & !softened;
+        let converged = if D::NEWTON {
+            let settled = stats.improvement.le(self.tolerance) | exact;
+            stats.gradient.le(self.tolerance) & settled & !softened
+        } else {
+            let gap = self.scale * direction.gap(problem, iterate);
+            gap.le(self.tolerance)
+        };
         self.end(converged, Status::Converged, stats);
 
         let rounding = T::splat(T::Scalar::EPSILON) * T::new(NEGLIGIBLE) * cost;

@@ -49,6 +49,10 @@ pub(crate) struct Precision<T> {
 /// How precisely a root is worth finding whatever the tolerance, over the square root of the working precision: a slope
 /// relative to the slope at 0, or a step relative to α. The next iteration corrects what is left.
 const RESOLUTION: f64 = 0.01;
+/// What a tolerance may accept at most (Wolfe's conditions; Nocedal & Wright 2006, §3.1): a slope of this part of the slope
+/// at 0, and a decrease of at least this part of what the slope at 0 promises.
+const CURVATURE: f64 = 0.1;
+const DECREASE: f64 = 1e-4;
 /// The rounding error of a slope, over the working precision, relative to the inertial part of it.
 const NOISE: f64 = 4.0;
 
@@ -144,15 +148,22 @@ impl<T: Real> Ray<T> {
         let length = dot(&self.direction, &self.direction).sqrt();
         // The slope is a difference of two that nearly cancel: below their rounding it means nothing.
         let noise = T::new(NOISE) * epsilon * self.first.abs();
-        let flat = (precision.slope * length)
-            .max(noise)
-            .max(-(resolution * start));
+        let exact = noise.max(-(resolution * start));
+        let loose = (precision.slope * length).min(-(T::new(CURVATURE) * start));
         let mut bracket = Bracket::new(guess);
         let mut open = descends;
         for _ in 0..precision.evaluations {
             let slope = self.slope(problem, iterate, bracket.alpha);
             step.evaluations += count(open);
-            open &= slope.first.abs().gt(flat);
+            let steepness = slope.first.abs();
+            open &= steepness.gt(exact);
+            // However loose the tolerance, the cost has to fall: beyond a kink the slope can be small where it has risen.
+            let near = open & steepness.le(loose);
+            if near.any() {
+                let change = self.change(problem, iterate, bracket.alpha);
+                let enough = T::new(DECREASE) * bracket.alpha * start;
+                open &= !(near & change.le(enough));
+            }
             open &= bracket.narrow(slope, resolution, open);
             if !open.any() {
                 break;

@@ -8,7 +8,7 @@ use crate::descent::{Course, Direction, Progress};
 use crate::hessian::Hessian;
 use crate::iterate::Iterate;
 use crate::{Problem, Settings, SolvePart, SolveStats, Switch};
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// Holds the factored Hessian.
 #[derive(Clone, Debug)]
@@ -54,6 +54,12 @@ impl<T: Real> Direction<T> for Newton<T> {
     #[inline(always)]
     fn restart(&mut self, mask: T::Mask) {
         self.updatable &= !mask;
+    }
+
+    /// Newton stops by gradient and improvement: the forces of stiff constraints are off by more than a small gap tells.
+    #[inline(always)]
+    fn gap(&mut self, _: &Problem<T>, _: &Iterate<T>) -> T {
+        T::splat(T::Scalar::INFINITY)
     }
 
     #[kernel]

@@ -96,8 +96,8 @@ options! {
     constraint_solver: ConstraintSolver = |_| ConstraintSolver::Newton;
     /// Most iterations of a solve; 50.
     iterations: usize = |_| 50;
-    /// Stop where gradient norm and last improvement, over mean inertia × nv, are below; 1e-8, 1e-5 in single precision.
-    /// Zero asks for the working precision.
+    /// Stop where gradient norm and last improvement (CG: the duality gap), over mean inertia × nv, are below; 1e-8, 1e-5 in
+    /// single precision. Zero asks for the working precision.
     tolerance: f64 = |single| if single { 1e-5 } else { 1e-8 };
     /// Most evaluations of a line search; 50.
     ls_iterations: usize = |_| 50;

@@ -10,7 +10,8 @@ pub enum Status {
     Unconstrained,
     /// The starting point was proven good enough, by the duality gap, before any iteration.
     Proven,
-    /// Gradient and last improvement are below the tolerance, or a full step over a purely quadratic stretch ended there.
+    /// Newton: gradient and last improvement are below the tolerance, or a full step over a purely quadratic stretch ended
+    /// there. CG: the duality gap is below it.
     Converged,
     /// The working precision allows no further progress. With a tolerance of zero this is success.
     NoProgress,
