@@ -126,7 +126,7 @@ class Model:
     body_mass: Final[_Floats]  # (nbody,) Mass.
     body_subtreemass: Final[_Floats]  # (nbody,) Mass of the body and all below it.
     body_inertia: Final[_Floats]  # (nbody, 3) Principal moments.
-    body_gravcomp: Final[_Floats]  # (nbody,) Share of the weight that is lifted.
+    body_gravcomp: Final[_Floats]  # (nbody,) Share of the weight that is lifted; if none is positive, none counts.
     body_invweight0: Final[_Floats]  # (nbody, 2) Mean inverse inertia at qpos0: of translation, of rotation.
     body_parentid: Final[_Codes]  # (nbody,) The parent; the world is its own.
     body_rootid: Final[_Codes]  # (nbody,) The ancestor below the world.

@@ -118,7 +118,7 @@ pub struct Forces<T> {
     pub qfrc_smooth: Vec<T>,
     /// Scalar force of each actuator (nu).
     pub actuator_force: Vec<T>,
-    /// Total force of the actuators of each tendon with a limit on it, before that limit (ntendon).
+    /// Total force of the actuators of each tendon with a limit on it, after all limits (ntendon).
     pub ten_actuator_force: Vec<T>,
     /// Rate of change of each activation (na).
     pub act_dot: Vec<T>,

@@ -5,8 +5,10 @@ mod machines;
 use clench_math::Quat;
 use clench_rigid::Sim;
 use clench_rigid::builder::{
-    ActuatorSpec, BodySpec, GeomSpec, JointSpec, ModelBuilder, TendonSpec, TransmissionSpec,
+    ActuatorSpec, BodySpec, GeomMass, GeomSpec, JointSpec, ModelBuilder, TendonSpec,
+    TransmissionSpec,
 };
+use clench_rigid::model::{DynamicsKind, Integrator};
 use machines::{distance, sim, world};
 use std::f64::consts::TAU;
 
@@ -59,6 +61,40 @@ fn a_tendon_limit_scales_its_actuators_alike() {
 }
 
 #[test]
+fn an_actuator_cut_by_its_own_range_leaves_the_others_of_its_tendon_their_damping() {
+    let mut builder = sliders();
+    builder.physics.gravity = [0.0; 3];
+    builder.physics.integrator = Integrator::ImplicitFast;
+    builder.physics.timestep = 0.01;
+    for body in &mut builder.bodies[1..] {
+        body.geoms[0].mass = GeomMass::Mass(1.0);
+    }
+    let mut tendon = TendonSpec::fixed("t", &[("x", 1.0), ("z", 0.5)]);
+    tendon.actuatorfrcrange = [-3.0, 3.0];
+    builder.tendons.push(tendon);
+    let target = || TransmissionSpec::Tendon("t".into());
+    builder.actuators = vec![
+        ActuatorSpec::velocity("a", target(), 5.0),
+        ActuatorSpec::velocity("b", target(), 3.0),
+    ];
+    let accelerations = |builder: &ModelBuilder, ctrl: &[f64]| {
+        let mut sim = forward(builder, ctrl);
+        sim.step().expect("finite");
+        Vec::from_iter(sim.state.qvel.iter().map(|v| v / 0.01))
+    };
+    // From MuJoCo 4.0. Both are held by the tendon's range, which rounding leaves by a little.
+    for ctrl in [[0.5, 0.2], [0.1, 3.0], [3.0, 0.1]] {
+        assert!(distance(&accelerations(&builder, &ctrl), &[3.0, 1.5]) < 1e-12);
+    }
+    // The first is cut further, and what is left is within the tendon's range.
+    builder.actuators[0].forcerange = [-2.0, 2.0];
+    let found = accelerations(&builder, &[0.5, 0.2]);
+    assert!(distance(&found, &[2.505_480_739_1, 1.280_717_201_6]) < 1e-9);
+    let found = accelerations(&builder, &[0.1, 3.0]);
+    assert!(distance(&found, &[3.0, 1.5]) < 1e-12);
+}
+
+#[test]
 fn a_joint_limit_holds_all_actuation_and_compensated_weight() {
     let mut builder = sliders();
     builder.bodies[2].gravcomp = 1.0;
@@ -94,15 +130,21 @@ fn a_switched_off_group_does_nothing() {
     assert_eq!(sim.workspace().force.actuator_force, [0.0, 2.0]);
 }
 
-#[test]
-fn a_servo_on_a_ball_takes_the_short_way_round() {
+/// A box on a ball joint.
+fn ball() -> ModelBuilder {
     let mut builder = world("ball");
     builder.add_body(
         ModelBuilder::WORLD,
         BodySpec::new("ball")
             .joint(JointSpec::ball("ball"))
-            .geom(GeomSpec::cuboid([0.1, 0.2, 0.3])),
+            .geom(GeomSpec::cuboid([0.1, 0.2, 0.3]).mass(1.0)),
     );
+    builder
+}
+
+#[test]
+fn a_servo_on_a_ball_takes_the_short_way_round() {
+    let mut builder = ball();
     let target = TransmissionSpec::Joint("ball".into());
     let mut servo = ActuatorSpec::position("servo", target, 3.0, 0.0);
     servo.gear = [0.0, 0.0, 2.0, 0.0, 0.0, 0.0];
@@ -117,4 +159,79 @@ fn a_servo_on_a_ball_takes_the_short_way_round() {
         let force = sim.workspace().force.actuator_force[0];
         assert!((force - 3.0 * error).abs() < 1e-12, "{setpoint}: {force}");
     }
+}
+
+/// A servo of gain 3 along z behind a filter of 0.1 s.
+fn filtered(dynamics: DynamicsKind) -> ModelBuilder {
+    let mut builder = ball();
+    let target = TransmissionSpec::Joint("ball".into());
+    let mut servo = ActuatorSpec::position("servo", target, 3.0, 0.0);
+    servo.gear = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+    servo.dynamics = dynamics;
+    servo.dynprm[0] = 0.1;
+    builder.actuators = vec![servo];
+    builder
+}
+
+#[test]
+fn a_filtered_servo_on_a_ball_takes_the_short_way_round() {
+    // Angle, activation, control; then, from MuJoCo 4.0: rate, what the gain multiplies, and the activation after 2 ms with a
+    // filter and with an exact one.
+    let cases = [
+        ([0.0, 0.0, 3.0], [30.0, 0.0, 0.06, 0.059_403_980]),
+        ([2.5, 5.0, 3.0], [-20.0, 5.0, 4.96, 4.960_397_347]),
+        (
+            [2.5, 2.4, 9.0],
+            [3.168_146_928, 2.4, 2.406_336_294, 2.406_273_351],
+        ),
+        (
+            [2.5, 9.0, 9.0],
+            [0.0, 2.716_814_693, 2.716_814_693, 2.716_814_693],
+        ),
+        (
+            [2.5, 40.0, 20.0],
+            [-11.504_440_785, 2.300_888_157, 2.277_879_275, 2.278_107_838],
+        ),
+    ];
+    for (k, dynamics) in [DynamicsKind::Filter, DynamicsKind::FilterExact]
+        .into_iter()
+        .enumerate()
+    {
+        let mut sim = sim(&filtered(dynamics));
+        for ([angle, act, ctrl], expected) in cases {
+            sim.reset();
+            let turned = Quat::from_axis_angle(clench_math::Vec3::new(0.0, 0.0, 1.0), angle);
+            turned.write(&mut sim.state.qpos);
+            sim.state.act[0] = act;
+            sim.set_ctrl(&[ctrl]).expect("one control");
+            sim.step().expect("finite");
+            let force = &sim.workspace().force;
+            let input = force.actuator_force[0] / 3.0 + angle;
+            let found = [force.act_dot[0], input, sim.state.act[0]];
+            let expected = [expected[0], expected[1], expected[2 + k]];
+            assert!(
+                distance(&found, &expected) < 1e-8,
+                "{dynamics:?} from {angle}, {act} to {ctrl}: {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_filtered_servo_on_a_ball_swings_through_half_a_turn_like_mujoco() {
+    let mut builder = filtered(DynamicsKind::FilterExact);
+    builder.actuators[0].gainprm[0] = 1.0;
+    builder.actuators[0].biasprm[1..3].copy_from_slice(&[-1.0, -0.01]);
+    builder.physics.timestep = 0.002;
+    let mut sim = sim(&builder);
+    sim.set_ctrl(&[3.0]).expect("one control");
+    sim.state.qvel[2] = 2.0;
+    for _ in 0..2500 {
+        sim.step().expect("finite");
+    }
+    // From MuJoCo 4.0.
+    let expected = [0.299_221_711_967, 0.0, 0.0, 0.954_183_612_880];
+    let found = &sim.state.qpos;
+    assert!(distance(found, &expected) < 1e-9, "{found:?}");
+    assert!((sim.state.qvel[2] - 1.587_289_956_270).abs() < 1e-9);
 }

@@ -270,6 +270,24 @@ fn full_compensation_floats() {
 }
 
 #[test]
+fn weight_is_added_only_where_some_is_lifted() {
+    let builder = floating();
+    let mut sim = sim(&builder);
+    let mut compensated = |shares: [f64; 6]| {
+        sim.set_param("body_gravcomp", &[&[0.0][..], &shares].concat())
+            .expect("a share a body");
+        sim.forward().expect("finite");
+        sim.workspace().force.qfrc_gravcomp.clone()
+    };
+    let nothing = compensated([-1.0, -2.0, 0.0, -0.5, 0.0, 0.0]);
+    assert_eq!(nothing, [0.0; 14]);
+    let third = compensated([0.0, 0.0, 0.25, 0.0, 0.0, 0.0]);
+    let both = compensated([-1.0, 0.0, 0.25, 0.0, 0.0, 0.0]);
+    let weight = 9.81 * sim.params().body_mass[1];
+    assert!((both[2] - third[2] + weight).abs() < 1e-12);
+}
+
+#[test]
 fn applied_forces_accelerate_the_centre_of_mass() {
     let mut builder = floating();
     builder.physics.gravity = [0.0; 3];

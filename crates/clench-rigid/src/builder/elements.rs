@@ -25,7 +25,7 @@ pub struct BodySpec {
     pub inertial: Option<InertialSpec>,
     /// Moved by the user, not by forces; child of the world, without joints.
     pub mocap: bool,
-    /// Share of the body's weight that is lifted.
+    /// Share of the body's weight that is lifted. As in MuJoCo, shares below zero count only if some body's is positive.
     pub gravcomp: f64,
     /// Joints, in the order in which they act.
     pub joints: Vec<JointSpec>,

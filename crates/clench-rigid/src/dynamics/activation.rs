@@ -25,7 +25,7 @@ fn time_constant<T: Real>(params: &Params<T>, u: usize) -> T {
     params.actuator_dynprm[u][0].max(T::new(SHORTEST))
 }
 
-/// The rate of change of each activation (na).
+/// The rate of change of each activation (na). A filtered servo on a circle turns towards its control by the shorter way.
 #[kernel]
 pub fn activation_rates<T: Real>(
     model: &Model,
@@ -40,7 +40,8 @@ pub fn activation_rates<T: Real>(
             DynamicsKind::None => T::ZERO,
             DynamicsKind::Integrator => ctrl,
             DynamicsKind::Filter | DynamicsKind::FilterExact => {
-                (ctrl - state.act[a]) / time_constant(params, u)
+                let act = state.act[a];
+                (nearest_setpoint(model, params, u, ctrl, act) - act) / time_constant(params, u)
             }
         };
     }
@@ -92,8 +93,8 @@ pub fn input<T: Real>(
     nearest_setpoint(model, params, u, input, pos.actuator_length[u])
 }
 
-/// The setpoint of a position servo on a ball joint, moved by whole turns to the one nearest to the actuator's length;
-/// other inputs pass unchanged.
+/// The setpoint of a position servo on a ball joint, moved by whole turns to the one nearest to `near`; other inputs pass
+/// unchanged.
 ///
 /// A servo has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
 #[inline(always)]
@@ -102,7 +103,7 @@ pub fn nearest_setpoint<T: Real>(
     params: &Params<T>,
     u: usize,
     input: T,
-    length: T,
+    near: T,
 ) -> T {
     let actuator = &model.actuators[u];
     let on_ball = match actuator.transmission {
@@ -111,13 +112,7 @@ pub fn nearest_setpoint<T: Real>(
         }
         Transmission::Tendon(_) => false,
     };
-    let servo = on_ball
-        && actuator.gain == GainKind::Fixed
-        && actuator.bias == BiasKind::Affine
-        && matches!(
-            actuator.dynamics,
-            DynamicsKind::None | DynamicsKind::Integrator
-        );
+    let servo = on_ball && actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
     if !servo {
         return input;
     }
@@ -126,6 +121,6 @@ pub fn nearest_setpoint<T: Real>(
     if !wraps.any() {
         return input;
     }
-    let turns = (input - length) / T::select(wraps, turn, T::ONE) + T::new(0.5);
+    let turns = (input - near) / T::select(wraps, turn, T::ONE) + T::new(0.5);
     T::select(wraps, input - turn * turns.floor(), input)
 }

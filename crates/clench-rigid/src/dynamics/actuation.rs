@@ -39,6 +39,9 @@ pub fn actuation<T: Real>(
             let [low, high] = params.actuator_forcerange[u];
             force.actuator_force[u] = force.actuator_force[u].clamp(low, high);
         }
+        if let Some(t) = limited_tendon(model, actuator.transmission) {
+            force.ten_actuator_force[t] += force.actuator_force[u];
+        }
         let moment = &pos.actuator_moment[u * model.nv..(u + 1) * model.nv];
         for dof in transmission_dofs(model, actuator.transmission) {
             force.qfrc_actuator[dof] += moment[dof] * force.actuator_force[u];
@@ -68,20 +71,25 @@ fn scalar_force<T: Real>(
     }
 }
 
+/// The tendon that an actuator pulls on, if their total force is limited.
+#[inline(always)]
+fn limited_tendon(model: &Model, transmission: Transmission) -> Option<usize> {
+    match transmission {
+        Transmission::Tendon(t) if model.tendons[t].actfrclimited => Some(t),
+        _ => None,
+    }
+}
+
 /// Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
 #[inline(always)]
 fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut Forces<T>) {
-    let limited = |transmission| match transmission {
-        Transmission::Tendon(t) if model.tendons[t].actfrclimited => Some(t),
-        _ => None,
-    };
     for (u, actuator) in model.actuators.iter().enumerate() {
-        if let Some(t) = limited(actuator.transmission) {
+        if let Some(t) = limited_tendon(model, actuator.transmission) {
             force.ten_actuator_force[t] += force.actuator_force[u];
         }
     }
     for (u, actuator) in model.actuators.iter().enumerate() {
-        if let Some(t) = limited(actuator.transmission) {
+        if let Some(t) = limited_tendon(model, actuator.transmission) {
             let total = force.ten_actuator_force[t];
             let [low, high] = params.tendon_actfrcrange[t];
             let zero = total.eq(T::ZERO);
@@ -91,6 +99,7 @@ fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut F
             force.actuator_force[u] *= scale;
         }
     }
+    force.ten_actuator_force.fill(T::ZERO);
 }
 
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! Advancing the state by a time step, once its rates of change are known.
 
 use crate::dynamics::activation::{nearest_setpoint, next_activation};
-use crate::model::{DynamicsKind, JointKind, Model, Params};
+use crate::model::{JointKind, Model, Params};
 use crate::state::State;
 use crate::workspace::{Positions, Workspace};
 use clench_math::{Quat, Real, Vec3, kernel};
@@ -86,7 +86,7 @@ pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T
     }
 }
 
-/// Moves activations by `act_dot`; those of disabled actuators stay where they are.
+/// Moves activations by `act_dot`; those of disabled actuators stay where they are, but for whole turns on a circle.
 #[kernel]
 pub fn advance_activations<T: Real>(
     model: &Model,
@@ -105,10 +105,8 @@ pub fn advance_activations<T: Real>(
         } else {
             act_dot[a]
         };
-        act[a] = next_activation(model, params, u, act[a], rate);
-        if actuator.dynamics == DynamicsKind::Integrator {
-            act[a] = nearest_setpoint(model, params, u, act[a], pos.actuator_length[u]);
-        }
+        let next = next_activation(model, params, u, act[a], rate);
+        act[a] = nearest_setpoint(model, params, u, next, pos.actuator_length[u]);
     }
 }
 

@@ -100,7 +100,8 @@ fn dampers<T: Real>(
     }
 }
 
-/// Each body's weight, or the share of it that `gravcomp` says, is held at its centre of mass.
+/// Each body's weight, or the share of it that `gravcomp` says, is held at its centre of mass. As in MuJoCo, shares below
+/// zero, which add weight, do so only where some body's share is positive.
 #[inline(always)]
 fn gravity_compensation<T: Real>(
     model: &Model,
@@ -108,12 +109,16 @@ fn gravity_compensation<T: Real>(
     pos: &Positions<T>,
     force: &mut Forces<T>,
 ) {
-    let none = |share: &T| share.eq(T::ZERO).all();
-    if !model.flags.gravity || params.body_gravcomp.iter().all(none) {
+    let mut lifted = T::Mask::splat(false);
+    for share in &params.body_gravcomp {
+        lifted |= share.gt(T::ZERO);
+    }
+    if !model.flags.gravity || !lifted.any() {
         return;
     }
     for b in 0..model.nbody() {
-        let lift = params.gravity * -(params.body_mass[b] * params.body_gravcomp[b]);
+        let share = T::select(lifted, params.body_gravcomp[b], T::ZERO);
+        let lift = params.gravity * -(params.body_mass[b] * share);
         force.cfrc_body[b] = force_at(model, pos, b, pos.xipos[b], lift, Vec3::ZERO);
     }
     force.cfrc_body[0] = Force::ZERO;

@@ -11,8 +11,11 @@ use crate::dynamics::transmission::transmission_dofs;
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Mask, Real, Scalar, kernel};
 use clench_solver::TreeMatrix;
+
+/// A sum of scaled forces is at the end of a range if it misses it by so little of it (as in MuJoCo), or by rounding.
+const SUM_ROUNDING: f64 = 1e-10;
 
 /// `matrix += scale · D`.
 #[kernel]
@@ -100,7 +103,7 @@ fn actuator_slope<T: Real>(
     }
     match actuator.transmission {
         Transmission::Tendon(t) if model.tendons[t].actfrclimited => {
-            held |= saturated(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
+            held |= reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
         }
         Transmission::Joint(j) | Transmission::JointInParent(j)
             if model.joints[j].actfrclimited =>
@@ -111,6 +114,14 @@ fn actuator_slope<T: Real>(
         _ => {}
     }
     T::select(held, T::ZERO, slope)
+}
+
+/// Whether a sum of forces that were scaled into a range is at one of its ends. As in MuJoCo, where actuators reach the
+/// range of their tendon and one of them is then cut by its own, what is left of the sum decides.
+#[inline(always)]
+fn reached<T: Real>(sum: T, [low, high]: [T; 2]) -> T::Mask {
+    let rounding = T::new(SUM_ROUNDING).max(T::splat(T::Scalar::EPSILON) * T::new(16.0));
+    sum.le(low + low.abs() * rounding) | sum.ge(high - high.abs() * rounding)
 }
 
 /// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i.
