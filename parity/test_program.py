@@ -117,6 +117,38 @@ def test_a_line_search_cut_short_is_no_success():
     assert summary["status"] == "iteration_limit" and summary["unconverged_steps"] > 0
 
 
+STIFF = """
+<mujoco>
+  <option gravity="0 0 0"/>
+  <worldbody>
+    <body name="mass"><joint name="spring" type="slide" stiffness="1.7e6"/><geom size="0.1" mass="1"/></body>
+    <body name="other" pos="9 0 0"><joint type="slide"/><geom size="0.1"/></body>
+  </worldbody>
+  <keyframe><key name="pulled" qpos="0.001 0" qvel="0 1"/></keyframe>
+</mujoco>"""
+
+
+def test_a_motion_that_diverges_begins_anew_where_mujocos_does(tmp_path):
+    path = tmp_path / "stiff.xml"
+    path.write_text(STIFF)
+    steps = ("--keyframe", "pulled", "--steps", 30)
+    done = program.run("simulate", path, *steps, "--json")
+    summary = json.loads(done.stdout.splitlines()[-1])
+    assert summary["status"] == "failed"
+    assert f'joint "spring" of body "mass" ({path}:5)' in summary["failure"]
+
+    record, summary = program.simulate(path, *steps, "--autoreset")
+    assert (summary["status"], summary["resets"]) == ("reset", 1)
+    model = mujoco.MjModel.from_xml_string(STIFF)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    for step in range(30):
+        mujoco.mj_step(model, data)
+        assert record["time"][step] == pytest.approx(data.time, abs=1e-15)
+        np.testing.assert_allclose(record["qpos"][step], data.qpos, rtol=1e-12, atol=1e-15)
+    assert data.time < 0.05 and data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number == 1
+
+
 @pytest.mark.parametrize("command", ["simulate", "inspect"])
 def test_a_reader_that_leaves_is_no_error(command):
     """`clench inspect MODEL | true`."""

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 __all__ = ["State"]
 
-# What the bytes hold is said by this number: readers refuse what is newer than they know.
-_VERSION = 1
+# What the bytes hold is said by this number: readers refuse what is newer than they know. Before version 2, times were of
+# the precision of all other numbers.
+_VERSION = 2
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -26,7 +27,9 @@ class State:
 
     Parameters
     ----------
-    time, qpos, qvel, act, ctrl, qfrc_applied, xfrc_applied, mocap_pos, mocap_quat, qacc_warmstart : numpy.ndarray
+    time : numpy.ndarray
+        s, float64 in every precision.
+    qpos, qvel, act, ctrl, qfrc_applied, xfrc_applied, mocap_pos, mocap_quat, qacc_warmstart : numpy.ndarray
         Numbers, all float64 or all float32.
     eq_active : numpy.ndarray
         Switches of equality constraints, bool.
@@ -56,8 +59,9 @@ class State:
         """The fields by name, their types checked: fields can be replaced."""
         arrays = {field.name: getattr(self, field.name) for field in fields(self)}
         numbers = np.dtype(np.float32 if getattr(self.qpos, "dtype", None) == np.float32 else np.float64)
+        special = {"time": np.dtype(np.float64), "eq_active": np.dtype(np.bool_)}
         for name, array in arrays.items():
-            wanted = np.dtype(np.bool_) if name == "eq_active" else numbers
+            wanted = special.get(name, numbers)
             found = getattr(array, "dtype", type(array).__name__)
             if not isinstance(array, np.ndarray) or found != wanted:
                 raise TypeError(f"{name} of a state must be an array of {wanted}, not {found}")
@@ -109,6 +113,8 @@ class State:
             raise ValueError(f"these bytes hold no state: {error}") from error
         if not 1 <= version <= _VERSION:
             raise ValueError(f"this state has version {version}, and this clench reads versions 1 to {_VERSION}")
+        if version == 1 and "time" in arrays:
+            arrays["time"] = arrays["time"].astype(np.float64)
         try:
             return State(**arrays)
         except TypeError as error:

@@ -17,6 +17,6 @@ class EnvStatus(IntEnum):
     SINGULAR = 2
     """Its mass matrix was not positive definite."""
     DIVERGED = 3
-    """Its motion left the range of numbers."""
+    """Its motion left all bounds: positions, velocities or accelerations beyond 1e10 or not finite."""
     CONTACT_OVERFLOW = 4
     """It had more contacts than `max_contacts` allows."""

@@ -134,7 +134,9 @@ impl Batch {
 
     /// Advances every running environment.
     ///
-    /// Other Python threads run meanwhile; what they write to the arrays of this batch meets the step half-way.
+    /// Other Python threads run meanwhile; what they write to the arrays of this batch meets the step half-way. With the option
+    /// `autoreset` an environment that diverges does the step from the initial state instead, controls and applied forces
+    /// included, which counts in `resets`.
     ///
     /// Parameters
     /// ----------
@@ -246,6 +248,16 @@ impl Batch {
         Ok(PyArray1::from_iter(py, runs))
     }
 
+    /// numpy.ndarray : How often each environment started over from the initial state (n), with the option `autoreset`, int64. A
+    /// copy.
+    #[getter]
+    fn resets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let guard = lock(&self.inner, "batch")?;
+        let resets = each!(&*guard, batch => batch.resets());
+        let counts = resets.iter().map(|&count| count as i64);
+        Ok(PyArray1::from_iter(py, counts))
+    }
+
     /// Why an environment cannot go on.
     ///
     /// Parameters
@@ -329,9 +341,10 @@ impl Batch {
 
     /// Keeps outputs from now on, beside those that are kept already.
     ///
-    /// Every step and forward leaves them as of its last forward pass, as MuJoCo leaves its fields: those that follow from
-    /// positions are of the start of the last time step (with the Runge-Kutta integrator, of its last stage). They are zero
-    /// before the first step. Rows of environments that do not run stay as they are.
+    /// They are computed at once. Every step and forward leaves them as of its last forward pass, as MuJoCo leaves its fields: those
+    /// that follow from positions are of the start of the last time step (with the Runge-Kutta integrator, of its last stage).
+    /// Where positions, velocities, mocap poses or parameters of an environment were written since, asking for an output by
+    /// name (`output`, ``batch.xpos``) computes that environment's anew. Rows of environments that do not run stay as they are.
     ///
     /// Parameters
     /// ----------
@@ -367,7 +380,7 @@ impl Batch {
     ///     An output that is not recorded.
     fn output(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
         let output = Output::find(name).map_err(sim_error)?;
-        let view = self.recorded.get(py, output)?;
+        let view = self.fresh(py, output)?;
         view.ok_or_else(|| PyValueError::new_err(not_recorded(name)))
     }
 
@@ -376,7 +389,7 @@ impl Batch {
             let known = Vec::from_iter(Output::ALL.iter().map(|output| output.name()));
             return Err(no_attribute("Batch", name, &known));
         };
-        let view = self.recorded.get(py, output)?;
+        let view = self.fresh(py, output)?;
         view.ok_or_else(|| PyAttributeError::new_err(not_recorded(name)))
     }
 
@@ -529,6 +542,19 @@ impl Batch {
 }
 
 impl Batch {
+    /// The view of an output, if it is recorded, up to date but while another thread steps this batch.
+    fn fresh(&self, py: Python<'_>, output: Output) -> PyResult<Option<Py<PyAny>>> {
+        let view = self.recorded.get(py, output)?;
+        if view.is_some()
+            && let Ok(mut guard) = lock(&self.inner, "batch")
+        {
+            let any = &mut *guard;
+            let done = py.detach(|| each!(any, batch => batch.refresh()));
+            done.map_err(sim_error)?;
+        }
+        Ok(view)
+    }
+
     /// An environment, by its index.
     fn env(&self, index: &Bound<'_, PyAny>) -> PyResult<usize> {
         let found = match index.extract::<usize>() {

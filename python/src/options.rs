@@ -45,6 +45,9 @@ use pyo3::types::{PyDict, PyTuple};
 ///     Whether uncoupled parts are solved separately; where the model has more than one tree by default.
 /// warmstart : bool, optional
 ///     Whether a solve starts from the last acceleration; True by default.
+/// autoreset : bool, optional
+///     Whether a simulation that diverges goes on from its initial state, and counts it in ``resets``; False by default: it
+///     raises an error, and an environment of a batch stands still.
 ///
 /// Raises
 /// ------
@@ -143,4 +146,6 @@ options! {
     islands: switch;
     /// bool or None : Whether a solve starts from the last acceleration.
     warmstart: boolean;
+    /// bool or None : Whether a simulation that diverges goes on from its initial state.
+    autoreset: boolean;
 }

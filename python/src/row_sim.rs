@@ -23,6 +23,13 @@ impl<S: Precision> RowSim<S> {
         Ok(&mut self.sim)
     }
 
+    /// The same, where all is known that follows from it.
+    pub(crate) fn refreshed(&mut self) -> Result<&clench::Sim<S>, SimError> {
+        let sim = self.current()?;
+        sim.refresh()?;
+        Ok(sim)
+    }
+
     /// Steps up to the first that fails, whose state is the one before it.
     pub(crate) fn step(&mut self, steps: usize) -> Result<(), SimError> {
         let sim = self.current()?;

@@ -17,7 +17,6 @@ use crate::state_views::StateViews;
 use crate::stats::SolverStats;
 use crate::view::{Keeper, read_only};
 use clench::math::{Real, Scalar};
-use clench::rigid::readout;
 use clench::{Output, RayFilter};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -26,9 +25,11 @@ use std::sync::{Arc, Mutex};
 
 /// A model in motion: one environment.
 ///
-/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) are live: write them between steps. What a step or `forward` computed is read
-/// as copies: outputs by their names, such as ``sim.xpos`` (see `clench.OUTPUTS`), and `contacts`, `constraints`,
-/// `solver_stats`. As in MuJoCo, what follows from positions is after a step that of the step's start.
+/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) are live: write them between steps. What follows from the state is read as
+/// copies: outputs by their names, such as ``sim.xpos`` (see `clench.OUTPUTS`), `contacts`, `constraints`, and what `ray`,
+/// `distance` and `mass_matrix` answer. After a step they are, as in MuJoCo, those of the step's start. Where nothing is known
+/// yet, or positions, velocities, mocap poses or parameters were written since, they are computed from the present state when you
+/// ask. Controls and applied forces that you write count from the next step or `forward` on.
 ///
 /// Parameters
 /// ----------
@@ -108,8 +109,9 @@ impl Sim {
     /// Raises
     /// ------
     /// SimulationError
-    ///     Numbers that are not finite in the state; a motion that diverges; a singular mass matrix. The state is then as before
-    ///     the step that failed.
+    ///     Numbers that are not finite in the state; a motion that diverges (also positions, velocities or accelerations beyond
+    ///     1e10); a singular mass matrix. The state is then as before the step that failed. With the option `autoreset` the step
+    ///     is done from the initial state instead, controls and applied forces included, and counts in `resets`.
     /// BusyError
     ///     While another thread is in a call of this simulation.
     #[pyo3(signature = (n = Count(1)), text_signature = "($self, n=1)")]
@@ -237,18 +239,18 @@ impl Sim {
         Ok(names)
     }
 
-    /// Contacts : The contacts of the last step or forward.
+    /// Contacts : The contacts, at the positions that queries see (see `Sim`).
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Contacts>> {
-        let guard = lock(&self.inner, "simulation")?;
-        each_sim!(&*guard, own => Contacts::of(py, &own.sim))
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => Contacts::of(py, own.refreshed().map_err(sim_error)?))
     }
 
-    /// Constraints : The constraint rows of the last step or forward, with their forces.
+    /// Constraints : The constraint rows, with their forces, in the state that queries see (see `Sim`).
     #[getter]
     fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Constraints>> {
-        let guard = lock(&self.inner, "simulation")?;
-        each_sim!(&*guard, own => Constraints::of(py, &own.sim))
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => Constraints::of(py, own.refreshed().map_err(sim_error)?))
     }
 
     /// SolverStats : How the last solve went; with the Runge-Kutta integrator, that of the last stage.
@@ -258,6 +260,13 @@ impl Sim {
         Ok(each_sim!(&*guard, own => own.sim.stats()).into())
     }
 
+    /// int : How many steps and forward passes started over from the initial state, with the option `autoreset`.
+    #[getter]
+    fn resets(&self) -> PyResult<u64> {
+        let guard = lock(&self.inner, "simulation")?;
+        Ok(each_sim!(&*guard, own => own.sim.resets()))
+    }
+
     /// bool : Whether the last step or forward found more contacts than `max_contacts` allows, and left some out.
     #[getter]
     fn contact_overflow(&self) -> PyResult<bool> {
@@ -265,20 +274,21 @@ impl Sim {
         Ok(each_sim!(&*guard, own => own.sim.contact_overflow()))
     }
 
-    /// The joint-space mass matrix of the last step or forward.
+    /// The joint-space mass matrix, of the positions that queries see (see `Sim`).
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
     ///     Dense (nv, nv), float64.
     fn mass_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let guard = lock(&self.inner, "simulation")?;
-        let values = each_sim!(&*guard, own => readout::mass_matrix(own.sim.workspace(), 0));
+        let mut guard = lock(&self.inner, "simulation")?;
+        let values = each_sim!(&mut *guard, own => own.current().and_then(|sim| sim.mass_matrix()));
+        let values = values.map_err(sim_error)?;
         let nv = self.model.get().inner().nv;
         Ok(PyArray1::from_vec(py, values).reshape([nv, nv])?.into_any())
     }
 
-    /// The geom that a ray hits first, where the last step or forward found the geoms.
+    /// The geom that a ray hits first, where geoms are as queries see them (see `Sim`).
     ///
     /// As MuJoCo's ``mj_ray``: planes are hit from above and within their size (where that is positive), meshes on their
     /// own triangles, from either side; a ray that begins inside another shape hits it where it leaves, and rays pass through what
@@ -323,16 +333,16 @@ impl Sim {
             let chosen = indices("groups", groups, filter.groups.len())?;
             filter.groups = std::array::from_fn(|group| chosen.contains(&group));
         }
-        let guard = lock(&self.inner, "simulation")?;
-        each_sim!(&*guard, own => {
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => {
             let (origin, direction) = (queries::vector("origin", origin)?, queries::direction(direction)?);
-            let hit = own.sim.ray(origin, direction, &filter);
+            let hit = own.current().and_then(|sim| sim.ray(origin, direction, &filter)).map_err(sim_error)?;
             let name = |geom: usize| &*model.geoms[geom].name;
             hit.map(|hit| RayHit::new(py, &hit, name(hit.geom), origin, direction)).transpose()
         })
     }
 
-    /// How far apart two geoms were in the last step or forward, whatever they collide with.
+    /// How far apart two geoms are, where queries see them (see `Sim`), whatever they collide with.
     ///
     /// As MuJoCo's ``mj_geomDistance``. A mesh counts as its convex hull.
     ///
@@ -364,9 +374,10 @@ impl Sim {
         if limit.is_nan() {
             return Err(PyValueError::new_err("limit is not a number"));
         }
-        let guard = lock(&self.inner, "simulation")?;
-        each_sim!(&*guard, own => {
-            let found = own.sim.distance(geom1, geom2, Real::new(limit)).map_err(sim_error)?;
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let found = own.current().and_then(|sim| sim.distance(geom1, geom2, Real::new(limit)));
+            let found = found.map_err(sim_error)?;
             found.map(|found| Separation::new(py, &found)).transpose()
         })
     }

@@ -44,7 +44,7 @@ macro_rules! views {
                 copy_to(self.$field.bind(values.py()), values)
             })*
 
-            /// float or numpy.ndarray : Time, s: a number for a `Sim`, an array (n) for a `Batch`.
+            /// float or numpy.ndarray : Time, s: a number for a `Sim`, an array (n) for a `Batch`, float64 in every precision.
             #[getter]
             fn time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
                 let time = self.time.bind(py);

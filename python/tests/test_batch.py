@@ -219,6 +219,32 @@ def test_ways_to_fail() -> None:
 
 
 @pytest.mark.parametrize("precision", ["64", "32"])
+def test_autoreset(precision: Any) -> None:
+    options = clench.RigidOptions(autoreset=True)
+    batch = clench.Batch(ball(), 3, precision, options=options)
+    batch.qpos[:, 2] = 5
+    batch.qvel[1, 0] = 1e11
+    assert batch.step(2) == 0 and batch.running.all()
+    np.testing.assert_array_equal(batch.resets, [0, 1, 0])
+    assert batch.qpos[1, 2] < 4 < batch.qpos[0, 2]
+    fresh = clench.Batch(ball(), 1, precision)
+    fresh.step(2)
+    np.testing.assert_array_equal(batch.qpos[1], fresh.qpos[0])
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_the_clock_has_64_bits(precision: Any) -> None:
+    batch = clench.Batch(ball(), 2, precision)
+    assert batch.time.dtype == np.float64 and batch.state.time.dtype == np.float64
+    batch.time[:] = 30_000
+    batch.step(100)
+    np.testing.assert_allclose(batch.time, 30_000 + 100 * batch.model.timestep, rtol=0, atol=1e-7)
+    sim = clench.Sim(ball(), precision=precision)
+    sim.time = 1e6 + 0.001
+    assert sim.time == 1e6 + 0.001 and clench.State.from_bytes(sim.state.to_bytes()).time == sim.time
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
 @pytest.mark.parametrize("field", clench.PARAMETERS)
 def test_parameters_of_environments(field: str, precision: Any) -> None:
     model = puppet()
@@ -303,12 +329,13 @@ def test_recorded_outputs() -> None:
     assert list(batch.outputs) == ["xpos"]
     xpos = batch.xpos
     assert xpos is batch.output("xpos") and xpos.shape == (3, batch.model.nbody, 3)
-    assert not xpos.flags.writeable and (xpos == 0).all()
+    assert not xpos.flags.writeable
+    np.testing.assert_array_equal(xpos[1], batch.sim(1).xpos)
     batch.step()
-    assert (xpos != 0).any()
     batch.record("cvel", "xpos", "cvel")
     assert list(batch.outputs) == ["xpos", "cvel"] and batch.xpos is xpos
-    assert batch.cvel.shape == (3, batch.model.nbody, 6) and (batch.cvel == 0).all()
+    assert batch.cvel.shape == (3, batch.model.nbody, 6)
+    np.testing.assert_array_equal(batch.cvel[2], batch.sim(2).cvel)
     batch.record(*clench.OUTPUTS)
     assert list(batch.outputs[:2]) == ["xpos", "cvel"] and set(batch.outputs) == set(clench.OUTPUTS)
     batch.record()
@@ -349,18 +376,20 @@ def test_outputs_that_are_not_recorded() -> None:
 def test_forward_of_some() -> None:
     batch = clench.Batch(example("quadruped"), 4, record=["xpos", "qacc", "cfrc_ext"])
     batch.step(20)
-    before, state = {name: batch.output(name).copy() for name in batch.outputs}, batch.state
+    # Held: whoever asks again gets what was written into account.
+    views = {name: batch.output(name) for name in batch.outputs}
+    before, state = {name: view.copy() for name, view in views.items()}, batch.state
     batch.qpos[:, 2] += 0.5
     moved = batch.state
     assert batch.forward([True, False, True, False]) == 0
     assert same_state(batch.state, moved)
     for name in batch.outputs:
         for env in (1, 3):
-            assert same_bits(batch.output(name)[env], before[name][env]), name
+            assert same_bits(views[name][env], before[name][env]), name
         for env in (0, 2):
             sim = batch.sim(env)
             sim.forward()
-            assert same_bits(batch.output(name)[env], sim.output(name)), name
+            assert same_bits(views[name][env], sim.output(name)), name
     assert batch.forward() == 0
     np.testing.assert_allclose(batch.xpos[:, 1, 2], moved.qpos[:, 2])
     batch.qpos[:] = np.nan

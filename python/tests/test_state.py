@@ -191,7 +191,7 @@ def foreign() -> dict[str, bytes]:
         "a pickle": pickle.dumps([1, 2, 3]),
         "an archive": archive.getvalue(),
         "an array larger than memory": huge.getvalue(),
-        "later": repacked(data, version=np.int64(2)),
+        "later": repacked(data, version=np.int64(3)),
         "much later": repacked(data, version=np.float64(1e300)),
         "never": repacked(data, version=np.float64(np.nan)),
         "without version": repacked(data, version=None),
@@ -220,8 +220,14 @@ def test_bytes_of_something_else(name: str) -> None:
 
 
 def test_later_versions_say_so() -> None:
-    with pytest.raises(ValueError, match="version 2"):
+    with pytest.raises(ValueError, match="version 3"):
         clench.State.from_bytes(foreign()["later"])
+
+
+def test_times_of_the_first_version_had_the_precision_of_the_rest() -> None:
+    state = moving("sim", "32").state
+    old = repacked(state.to_bytes(), version=np.int64(1), time=state.time.astype(np.float32))
+    assert clench.State.from_bytes(old).time == np.float32(state.time)
 
 
 @pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])

@@ -68,6 +68,9 @@ struct Overrides {
     /// Start each solve from the unconstrained acceleration
     #[arg(long)]
     no_warmstart: bool,
+    /// Go on from the initial state when the simulation diverges, and say how often
+    #[arg(long)]
+    autoreset: bool,
     /// Time step
     #[arg(long, value_name = "SECONDS")]
     timestep: Option<f64>,
@@ -150,6 +153,7 @@ impl Overrides {
             enable_joint_limit: self.no_joint_limit.then_some(false),
             disable_constraint: self.no_constraint.then_some(true),
             warmstart: self.no_warmstart.then_some(false),
+            autoreset: self.autoreset.then_some(true),
             ..RigidOptions::default()
         }
     }

@@ -91,6 +91,15 @@ fn flags_switch_features_and_solver_options() {
     assert_eq!(model.options.disable_constraint, Some(true));
 }
 
+/// MuJoCo begins anew where a motion diverges unless a file forbids it; here a file must ask for it.
+#[test]
+fn a_file_says_whether_a_motion_that_diverges_begins_anew() {
+    let flag = |value: &str| read(&format!("<option><flag autoreset='{value}'/></option>"));
+    assert_eq!(flag("enable").options.autoreset, Some(true));
+    assert_eq!(flag("disable").options.autoreset, Some(false));
+    assert_eq!(read("").options.autoreset, None);
+}
+
 #[test]
 fn contact_override_needs_its_flag() {
     let values = "o_margin='0.1' o_solref='0.5' o_friction='2'";

@@ -40,6 +40,17 @@ pub trait Mask:
     fn set_lane(&mut self, i: usize, value: bool);
 }
 
+/// A time for each environment, s, in double precision whatever the precision of its other numbers: a clock adds up small
+/// steps, a million times.
+pub trait Clock: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// The same time in every lane.
+    fn splat(time: f64) -> Self;
+    /// The time of lane `i`.
+    fn lane(self, i: usize) -> f64;
+    /// Sets the time of lane `i`.
+    fn set_lane(&mut self, i: usize, time: f64);
+}
+
 /// A real number for each environment, with IEEE arithmetic lane by lane.
 ///
 /// Every operation on lanes equals the scalar operation to the bit (which of the NaNs comes out is left open). No fused
@@ -69,6 +80,8 @@ pub trait Real:
     type Scalar: Scalar;
     /// One truth value a lane.
     type Mask: Mask;
+    /// One time a lane.
+    type Clock: Clock;
     /// How many environments share this number.
     const LANES: usize;
     /// Zero.
@@ -181,7 +194,9 @@ pub trait Real:
 }
 
 /// A `Real` of one lane, which can also be compared and branched on directly.
-pub trait Scalar: Real<Scalar = Self, Mask = bool> + PartialOrd + std::fmt::Display {
+pub trait Scalar:
+    Real<Scalar = Self, Mask = bool, Clock = f64> + PartialOrd + std::fmt::Display
+{
     /// The distance from 1 to the next larger number.
     const EPSILON: Self;
     /// Positive infinity.
@@ -196,6 +211,36 @@ pub trait Scalar: Real<Scalar = Self, Mask = bool> + PartialOrd + std::fmt::Disp
     fn to_f64(self) -> f64;
     /// Runs a task in lanes of these instructions; `None` if the processor lacks them.
     fn in_lanes<K: LaneTask<Self>>(instructions: Instructions, task: K) -> Option<K::Output>;
+}
+
+impl Clock for f64 {
+    #[inline(always)]
+    fn splat(time: f64) -> f64 {
+        time
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, _: usize, time: f64) {
+        *self = time;
+    }
+}
+
+impl<const N: usize> Clock for [f64; N] {
+    #[inline(always)]
+    fn splat(time: f64) -> Self {
+        [time; N]
+    }
+    #[inline(always)]
+    fn lane(self, i: usize) -> f64 {
+        self[i]
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, time: f64) {
+        self[i] = time;
+    }
 }
 
 impl Mask for bool {

@@ -30,6 +30,7 @@ macro_rules! scalar {
             impl Real for $t {
                 type Scalar = $t;
                 type Mask = bool;
+                type Clock = f64;
                 const LANES: usize = 1;
                 const ZERO: $t = 0.0;
                 const ONE: $t = 1.0;

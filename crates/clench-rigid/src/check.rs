@@ -4,9 +4,32 @@
 use crate::contact::Contact;
 use crate::error::{Fault, SimError};
 use crate::model::Model;
+use crate::place::{joint_of, massless};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, Scalar, kernel};
+use clench_math::{Clock, Mask, Real, Scalar, kernel};
+
+/// Positions, velocities and accelerations beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
+const FARTHEST: f64 = 1e10;
+
+/// How large the numbers of a field may be.
+#[derive(Clone, Copy)]
+enum Bound {
+    /// At most [`FARTHEST`].
+    Near,
+    /// Finite.
+    Finite,
+}
+
+impl Bound {
+    #[inline(always)]
+    fn of<T: Real>(self) -> T {
+        match self {
+            Bound::Near => T::new(FARTHEST),
+            Bound::Finite => T::splat(T::Scalar::MAX),
+        }
+    }
+}
 
 /// The right length and only finite numbers.
 pub(crate) fn check_values<T: Scalar>(
@@ -15,7 +38,7 @@ pub(crate) fn check_values<T: Scalar>(
     expected: usize,
 ) -> Result<(), SimError> {
     check_length(field, values.len(), expected)?;
-    match first_not_finite(values, 0) {
+    match first_beyond(values, 0, Bound::Finite) {
         None => Ok(()),
         Some((index, value)) => Err(SimError::Fault(Fault::NotFinite {
             field,
@@ -40,10 +63,12 @@ pub(crate) fn check_length(
     })
 }
 
-fn first_not_finite<T: Real>(values: &[T], lane: usize) -> Option<(usize, f64)> {
-    let value = |i: usize| values[i].lane(lane).to_f64();
-    let index = (0..values.len()).find(|&i| !value(i).is_finite())?;
-    Some((index, value(index)))
+/// The first number of a lane that is beyond a bound, or none at all.
+fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usize, f64)> {
+    let value = |i: usize| values[i].lane(lane);
+    let most = bound.of::<T::Scalar>();
+    let index = (0..values.len()).find(|&i| !value(i).abs().le(most))?;
+    Some((index, value(index).to_f64()))
 }
 
 /// A state of the model's lengths.
@@ -55,48 +80,53 @@ pub(crate) fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), 
     Ok(())
 }
 
-/// Shows every number of a state to `look`: field, index of the first number in the field, numbers.
+/// Shows every number of a state but its time to `look`: field, its bound, index of the first number in the field, numbers.
 #[inline(always)]
-fn each_input<T: Real>(s: &State<T>, mut look: impl FnMut(&'static str, usize, &[T])) {
-    look("time", 0, &[s.time]);
-    look("qpos", 0, &s.qpos);
-    look("qvel", 0, &s.qvel);
-    look("act", 0, &s.act);
-    look("ctrl", 0, &s.ctrl);
-    look("qfrc_applied", 0, &s.qfrc_applied);
-    look("qacc_warmstart", 0, &s.qacc_warmstart);
+fn each_input<T: Real>(s: &State<T>, mut look: impl FnMut(&'static str, Bound, usize, &[T])) {
+    look("qpos", Bound::Near, 0, &s.qpos);
+    look("qvel", Bound::Near, 0, &s.qvel);
+    look("act", Bound::Finite, 0, &s.act);
+    look("ctrl", Bound::Finite, 0, &s.ctrl);
+    look("qfrc_applied", Bound::Finite, 0, &s.qfrc_applied);
+    look("qacc_warmstart", Bound::Finite, 0, &s.qacc_warmstart);
     for (b, f) in s.xfrc_applied.iter().enumerate() {
-        look("xfrc_applied", 6 * b, &f.linear.to_array());
-        look("xfrc_applied", 6 * b + 3, &f.angular.to_array());
+        look("xfrc_applied", Bound::Finite, 6 * b, &f.linear.to_array());
+        look(
+            "xfrc_applied",
+            Bound::Finite,
+            6 * b + 3,
+            &f.angular.to_array(),
+        );
     }
     for (m, p) in s.mocap_pos.iter().enumerate() {
-        look("mocap_pos", 3 * m, &p.to_array());
+        look("mocap_pos", Bound::Finite, 3 * m, &p.to_array());
     }
     for (m, q) in s.mocap_quat.iter().enumerate() {
-        look("mocap_quat", 4 * m, &q.to_array());
+        look("mocap_quat", Bound::Finite, 4 * m, &q.to_array());
     }
 }
 
-/// Shows to `look` what a step must leave finite.
+/// Shows to `look` what a step must leave within bounds.
 #[inline(always)]
 fn each_result<T: Real>(
     state: &State<T>,
     ws: &Workspace<T>,
-    mut look: impl FnMut(&'static str, &[T]),
+    mut look: impl FnMut(&'static str, Bound, &[T]),
 ) {
-    look("qacc", &ws.qacc);
-    look("qfrc_constraint", &ws.qfrc_constraint);
-    look("qvel", &state.qvel);
-    look("qpos", &state.qpos);
-    look("act", &state.act);
+    look("qacc", Bound::Near, &ws.qacc);
+    look("qfrc_constraint", Bound::Finite, &ws.qfrc_constraint);
+    look("qvel", Bound::Near, &state.qvel);
+    look("qpos", Bound::Near, &state.qpos);
+    look("act", Bound::Finite, &state.act);
 }
 
-/// The lanes in which all numbers are finite.
+/// The lanes in which all numbers are within a bound.
 #[inline(always)]
-fn finite<T: Real>(values: &[T]) -> T::Mask {
+fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
+    let most = bound.of();
     let mut mask = T::Mask::splat(true);
     for x in values {
-        mask &= x.is_finite();
+        mask &= x.abs().le(most);
     }
     mask
 }
@@ -105,25 +135,39 @@ fn finite<T: Real>(values: &[T]) -> T::Mask {
 #[kernel]
 pub(crate) fn good_inputs<T: Real>(s: &State<T>) -> T::Mask {
     let mut good = T::Mask::splat(true);
+    for lane in 0..T::LANES {
+        good.set_lane(lane, s.time.lane(lane).is_finite());
+    }
     each_input(
         s,
         #[inline(always)]
-        |_, _, values| good &= finite(values),
+        |_, bound, _, values| good &= within(values, bound),
     );
     good
 }
 
 /// What is wrong with the state of a lane that is not good.
-pub(crate) fn input_fault<T: Real>(s: &State<T>, lane: usize) -> Fault {
-    let mut found = ("time", 0, s.time.lane(lane).to_f64());
-    each_input(s, |field, start, values| {
-        if found.2.is_finite()
-            && let Some((i, value)) = first_not_finite(values, lane)
+pub(crate) fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> Fault {
+    let time = s.time.lane(lane);
+    let mut found = (!time.is_finite()).then_some(("time", 0, time));
+    each_input(s, |field, bound, start, values| {
+        if found.is_none()
+            && let Some((i, value)) = first_beyond(values, lane, bound)
         {
-            found = (field, start + i, value);
+            found = Some((field, start + i, value));
         }
     });
-    let (field, index, value) = found;
+    let (field, index, value) = found.unwrap_or(("time", 0, time));
+    if value.is_finite() {
+        let place = joint_of(model, field, index);
+        return Fault::Diverged {
+            time,
+            field,
+            index,
+            value,
+            place,
+        };
+    }
     Fault::NotFinite {
         field,
         index,
@@ -131,7 +175,7 @@ pub(crate) fn input_fault<T: Real>(s: &State<T>, lane: usize) -> Fault {
     }
 }
 
-/// The lanes in which a step or forward went well: finite accelerations and constraint forces, and a finite state.
+/// The lanes in which a step or forward went well: accelerations, constraint forces and state within bounds.
 #[kernel]
 pub(crate) fn good_results<T: Real>(state: &State<T>, ws: &Workspace<T>) -> T::Mask {
     let mut good = !ws.singular & !ws.solver.stats().failed();
@@ -139,36 +183,39 @@ pub(crate) fn good_results<T: Real>(state: &State<T>, ws: &Workspace<T>) -> T::M
         state,
         ws,
         #[inline(always)]
-        |_, values| good &= finite(values),
+        |_, bound, values| good &= within(values, bound),
     );
     good
 }
 
 /// What is wrong with what a step from `time` produced in a lane that is not good.
 pub(crate) fn result_fault<T: Real>(
+    model: &Model,
     time: f64,
     state: &State<T>,
     ws: &Workspace<T>,
     lane: usize,
 ) -> Fault {
     if ws.singular.lane(lane) {
-        return Fault::Singular { time };
+        let place = massless(model, ws, lane);
+        return Fault::Singular { time, place };
     }
-    // Where every number is finite, the solver met one that was not.
-    let mut found = ("gap", 0, f64::NAN);
-    each_result(state, ws, |field, values| {
-        if found.0 == "gap"
-            && let Some((index, value)) = first_not_finite(values, lane)
+    let mut found = None;
+    each_result(state, ws, |field, bound, values| {
+        if found.is_none()
+            && let Some((index, value)) = first_beyond(values, lane, bound)
         {
-            found = (field, index, value);
+            found = Some((field, index, value));
         }
     });
-    let (field, index, value) = found;
+    // Where every number is within bounds, the solver met one that was not.
+    let (field, index, value) = found.unwrap_or(("gap", 0, f64::NAN));
     Fault::Diverged {
         time,
         field,
         index,
         value,
+        place: joint_of(model, field, index),
     }
 }
 

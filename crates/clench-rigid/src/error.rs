@@ -3,6 +3,7 @@
 use crate::contact::UnsupportedPair;
 use crate::settings::OptionError;
 use clench_math::Instructions;
+use std::sync::Arc;
 
 /// Why a simulation cannot start, take an input, or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -129,7 +130,7 @@ impl SimError {
 
 /// Why an environment cannot go on. Fields of the state are named, and their numbers counted, as in the rows of a
 /// [`Batch`](crate::Batch): `xfrc_applied` has six a body, the force first.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// An input that is infinite or not a number.
     #[error("{field}[{index}] is {value}")]
@@ -143,15 +144,20 @@ pub enum Fault {
     },
     /// The mass matrix of the configuration is not positive definite.
     #[error(
-        "at t = {time} s the mass matrix is not positive definite: some dof moves no mass, or the state has diverged"
+        "at t = {time} s the mass matrix is not positive definite{}: some dof moves no mass, or the state has diverged",
+        at(place)
     )]
     Singular {
         /// Time of the state that cannot move on, s.
         time: f64,
+        /// The joint that moves no mass, with its body and where it was written.
+        place: Option<Arc<str>>,
     },
-    /// The motion left the range of numbers.
+    /// The motion left all bounds: a number is not finite, or a position, velocity or acceleration is beyond 1e10 (MuJoCo's
+    /// `mjMAXVAL`).
     #[error(
-        "the simulation diverged in the step from t = {time} s: {field}[{index}] became {value}"
+        "the simulation diverged in the step from t = {time} s: {field}[{index}] became {value}{}",
+        at(place)
     )]
     Diverged {
         /// Time of the last good state, s.
@@ -162,6 +168,8 @@ pub enum Fault {
         index: usize,
         /// What it became.
         value: f64,
+        /// The joint that it is of, with its body and where it was written.
+        place: Option<Arc<str>>,
     },
     /// More contacts than the options allow. A [`Sim`](crate::Sim) leaves the rest out and says so; an environment of a
     /// batch stops.
@@ -174,4 +182,10 @@ pub enum Fault {
         /// How many may be.
         limit: usize,
     },
+}
+
+fn at(place: &Option<Arc<str>>) -> String {
+    place
+        .as_ref()
+        .map_or_else(String::new, |place| format!(" at {place}"))
 }

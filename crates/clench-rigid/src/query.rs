@@ -3,6 +3,7 @@
 use crate::Precision;
 use crate::contact::shape;
 use crate::error::SimError;
+use crate::known::Extent;
 use crate::sim::{Sim, no_such};
 use clench_collide::{
     Asset, Hit, Pose, Ray, Separation, Shape, ShapeKind, allowance, distance, ray,
@@ -43,16 +44,19 @@ pub struct RayHit<T> {
 }
 
 impl<T: Precision> Sim<T> {
-    /// The geom that a ray hits first, where the last step or [`forward`](Self::forward) found the geoms, as MuJoCo's
-    /// `mj_ray`: planes are hit from above and within their size (where that is positive), meshes on their own triangles, from
+    /// The geom that a ray hits first, where geoms are as in [`refresh`](Self::refresh), as MuJoCo's `mj_ray`: planes are hit from above and within their size (where that is positive), meshes on their own triangles, from
     /// either side. A ray that begins inside another shape hits it where it leaves (MuJoCo's rays inside a height field also
     /// end where the terrain meets its base). A direction without length hits nothing.
+    ///
+    /// # Errors
+    /// As [`refresh`](Self::refresh).
     pub fn ray(
-        &self,
+        &mut self,
         origin: Vec3<T>,
         direction: Vec3<T>,
         filter: &RayFilter,
-    ) -> Option<RayHit<T>> {
+    ) -> Result<Option<RayHit<T>>, SimError> {
+        self.know(Extent::Positions)?;
         let ray = Ray { origin, direction };
         let mut best: Option<RayHit<T>> = None;
         for geom in 0..self.model().geoms.len() {
@@ -68,18 +72,18 @@ impl<T: Precision> Sim<T> {
                 });
             }
         }
-        best
+        Ok(best)
     }
 
-    /// How far apart two geoms were in the last step or [`forward`](Self::forward), whatever they collide with, as MuJoCo's
+    /// How far apart two geoms are, where they are as in [`refresh`](Self::refresh), whatever they collide with, as MuJoCo's
     /// `mj_geomDistance`: signed, with the nearest points, the first geom's first. Nothing if they are further apart than `limit`
     /// metres, which may be infinite, or have no distance: two planes or height fields, or a mesh that is flat. A mesh counts
     /// as its convex hull.
     ///
     /// # Errors
-    /// A geom that the model does not have.
+    /// A geom that the model does not have; else as [`refresh`](Self::refresh).
     pub fn distance(
-        &self,
+        &mut self,
         geom1: usize,
         geom2: usize,
         limit: T,
@@ -88,6 +92,7 @@ impl<T: Precision> Sim<T> {
         if let Some(index) = [geom1, geom2].into_iter().find(|geom| *geom >= count) {
             return Err(no_such("geom", index, count));
         }
+        self.know(Extent::Positions)?;
         let (a, b) = (self.solid(geom1), self.solid(geom2));
         let (pose_a, pose_b) = (self.pose(geom1), self.pose(geom2));
         Ok(distance(&a, &pose_a, &b, &pose_b, limit))

@@ -5,9 +5,11 @@ use crate::check::{self, check_contact, check_values};
 use crate::contact::{Contact, check_supported};
 use crate::dynamics::energy::{Energy, energy};
 use crate::error::SimError;
+use crate::known::{Extent, Known};
 use crate::model::{Model, ParamField, Params};
 use crate::output::{Output, Source};
 use crate::profile::{Profile, Stage};
+use crate::readout;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -30,6 +32,8 @@ pub struct Sim<T: Precision = f64> {
     ws: Workspace<T>,
     initial: State<T>,
     last_good: State<T>,
+    known: Known<T>,
+    resets: u64,
 }
 
 impl<T: Precision> Sim<T> {
@@ -58,6 +62,8 @@ impl<T: Precision> Sim<T> {
             settings,
             ws: Workspace::new(&model),
             last_good: initial.clone(),
+            known: Known::new(),
+            resets: 0,
             initial,
             model,
         })
@@ -65,10 +71,38 @@ impl<T: Precision> Sim<T> {
 
     /// Advances the state by one time step.
     ///
+    /// With the option `autoreset` a step that cannot be done starts over from the initial state, controls and applied forces
+    /// included, and counts in [`resets`](Self::resets).
+    ///
     /// # Errors
-    /// A state of wrong lengths or with numbers that are not finite; a motion that diverges or a mass matrix that is
-    /// singular. The state is then as before the step.
+    /// A state of wrong lengths or with numbers that are not finite; a motion that diverges (numbers that are not finite, or
+    /// positions, velocities or accelerations beyond 1e10) or a mass matrix that is singular. The state is then as before
+    /// the step.
     pub fn step(&mut self) -> Result<(), SimError> {
+        self.or_from_the_start(Self::try_step)
+    }
+
+    /// Does a step or forward pass; if that meets a fault, once more from the initial state, where the options say so.
+    fn or_from_the_start(
+        &mut self,
+        pass: impl Fn(&mut Self) -> Result<(), SimError>,
+    ) -> Result<(), SimError> {
+        match pass(self) {
+            Err(SimError::Fault(_)) if self.settings.solver.autoreset => {
+                let before = self.state.clone();
+                self.reset();
+                let again = pass(self);
+                match again {
+                    Ok(()) => self.resets += 1,
+                    Err(_) => self.state.copy_from(&before),
+                }
+                again
+            }
+            done => done,
+        }
+    }
+
+    fn try_step(&mut self) -> Result<(), SimError> {
         self.ws.clock.start();
         self.check_state()?;
         self.last_good.copy_from(&self.state);
@@ -81,6 +115,7 @@ impl<T: Precision> Sim<T> {
             &mut self.ws,
         );
         let result = self.check_result(self.last_good.time);
+        self.note(&result);
         if result.is_err() {
             self.state.copy_from(&self.last_good);
         }
@@ -88,11 +123,16 @@ impl<T: Precision> Sim<T> {
         result
     }
 
-    /// Computes everything that follows from the state, and leaves the state alone.
+    /// Computes everything that follows from the state, and leaves the state alone, but for a reset as in
+    /// [`step`](Self::step).
     ///
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<(), SimError> {
+        self.or_from_the_start(Self::try_forward)
+    }
+
+    fn try_forward(&mut self) -> Result<(), SimError> {
         self.check_state()?;
         T::forward(
             &self.model,
@@ -101,7 +141,46 @@ impl<T: Precision> Sim<T> {
             &self.state,
             &mut self.ws,
         );
-        self.check_result(self.state.time)
+        let result = self.check_result(self.state.time);
+        self.note(&result);
+        result
+    }
+
+    /// Notes what is known after a step or forward pass.
+    fn note(&mut self, result: &Result<(), SimError>) {
+        match result {
+            Ok(()) => self.known.note(Extent::Everything, &self.state),
+            Err(_) => self.known.forget(),
+        }
+    }
+
+    /// Computes what follows from the state where that is not known: before the first step or [`forward`](Self::forward), and
+    /// after someone wrote positions, velocities, mocap poses or parameters, or reset the simulation. Nothing is done where it is
+    /// known; after a step that is, as in MuJoCo, what follows from the state at its start. Controls and applied forces that were
+    /// written count from the next step or forward pass on.
+    ///
+    /// Queries such as [`ray`](Self::ray) and [`output`](Self::output) do so themselves; call it before you look at the
+    /// [`workspace`](Self::workspace) or [`contacts`](Self::contacts).
+    ///
+    /// # Errors
+    /// As [`step`](Self::step); nothing is reset.
+    pub fn refresh(&mut self) -> Result<(), SimError> {
+        self.know(Extent::Everything)
+    }
+
+    /// Sees to it that so much is known.
+    pub(crate) fn know(&mut self, wanted: Extent) -> Result<(), SimError> {
+        if wanted <= self.known.extent(&self.state) {
+            return Ok(());
+        }
+        if wanted == Extent::Everything {
+            return self.try_forward();
+        }
+        self.check_state()?;
+        self.ws.clock.start();
+        T::position_stage(&self.model, &self.params, &self.state, &mut self.ws);
+        self.known.note(Extent::Positions, &self.state);
+        Ok(())
     }
 
     fn check_state(&self) -> Result<(), SimError> {
@@ -109,15 +188,15 @@ impl<T: Precision> Sim<T> {
         if check::good_inputs(&self.state) {
             return Ok(());
         }
-        Err(check::input_fault(&self.state, 0).into())
+        Err(check::input_fault(&self.model, &self.state, 0).into())
     }
 
     /// Of a step from `time`.
-    fn check_result(&self, time: T) -> Result<(), SimError> {
+    fn check_result(&self, time: f64) -> Result<(), SimError> {
         if check::good_results(&self.state, &self.ws) {
             return Ok(());
         }
-        Err(check::result_fault(time.to_f64(), &self.state, &self.ws, 0).into())
+        Err(check::result_fault(&self.model, time, &self.state, &self.ws, 0).into())
     }
 
     /// As [`forward`](Self::forward), but with these contacts instead of detected ones. A contact takes part where it is
@@ -142,6 +221,7 @@ impl<T: Precision> Sim<T> {
     /// Back to the model's initial state.
     pub fn reset(&mut self) {
         self.state.copy_from(&self.initial);
+        self.known.forget();
     }
 
     /// To a keyframe of the model; what a keyframe does not hold is as in the initial state.
@@ -154,6 +234,7 @@ impl<T: Precision> Sim<T> {
         };
         self.state.copy_from(&self.initial);
         self.state.set_keyframe(key);
+        self.known.forget();
         Ok(())
     }
 
@@ -206,6 +287,7 @@ impl<T: Precision> Sim<T> {
         Model::loosen(&mut self.model, field, &row);
         self.params.write_lane(field, 0, &row);
         self.params.derive(&self.model, field);
+        self.known.forget();
         Ok(())
     }
 
@@ -237,6 +319,7 @@ impl<T: Precision> Sim<T> {
     /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is checked or
     /// derived anew, as [`set_param`](Self::set_param) does.
     pub fn params_mut(&mut self) -> &mut Params<T> {
+        self.known.forget();
         &mut self.params
     }
     /// The options that the user set.
@@ -247,11 +330,12 @@ impl<T: Precision> Sim<T> {
     pub fn settings(&self) -> &StepSettings {
         &self.settings
     }
-    /// What the last step or forward computed. After a step, positions and contacts are those at its start.
+    /// What was computed last, by a step, forward pass or [`refresh`](Self::refresh). After a step, positions and contacts are
+    /// those at its start.
     pub fn workspace(&self) -> &Workspace<T> {
         &self.ws
     }
-    /// The contacts of the last step or forward. [`contact_rows`](crate::readout::contact_rows) adds their forces and wrenches.
+    /// The contacts that were found last, by a step, forward pass or [`refresh`](Self::refresh). [`contact_rows`](crate::readout::contact_rows) adds their forces and wrenches.
     pub fn contacts(&self) -> &[Contact<T>] {
         &self.ws.contacts
     }
@@ -259,12 +343,26 @@ impl<T: Precision> Sim<T> {
     pub fn stats(&self) -> LaneStats {
         self.ws.solver.stats().lane(0)
     }
+    /// How many steps and forward passes started over from the initial state, with the option `autoreset`.
+    pub fn resets(&self) -> u64 {
+        self.resets
+    }
     /// Whether the last step or forward found more contacts than the options allow, and left some out.
     pub fn contact_overflow(&self) -> bool {
         self.ws.collision.overflow
     }
 
-    /// An output of the last step or forward, by its name in [`Output`].
+    /// The mass matrix, dense (nv × nv), where bodies are as in [`refresh`](Self::refresh).
+    ///
+    /// # Errors
+    /// As [`refresh`](Self::refresh).
+    pub fn mass_matrix(&mut self) -> Result<Vec<f64>, SimError> {
+        self.know(Extent::Positions)?;
+        Ok(readout::mass_matrix(&self.ws, 0))
+    }
+
+    /// An output of the last step or forward, by its name in [`Output`]; one that is not known is computed, as
+    /// [`refresh`](Self::refresh) says.
     ///
     /// # Errors
     /// A name that no output has; a state as [`step`](Self::step) refuses it.
@@ -275,6 +373,7 @@ impl<T: Precision> Sim<T> {
             return Ok(vec![energy.potential, energy.kinetic]);
         }
         self.check_state()?;
+        self.know(output.extent())?;
         let mut source = Source {
             model: &self.model,
             params: &self.params,

@@ -1,13 +1,13 @@
 //! What a user saves and restores.
 
 use crate::model::{Keyframe, Model};
-use clench_math::{Force, Mask, Quat, Real, Vec3, broadcast};
+use clench_math::{Clock, Force, Mask, Quat, Real, Scalar, Vec3, broadcast};
 
 /// The state of one environment (or of the lanes of a group): everything that the next step depends on.
 #[derive(Clone, Debug)]
 pub struct State<T: Real> {
-    /// s.
-    pub time: T,
+    /// s, in double precision.
+    pub time: T::Clock,
     /// Position coordinates (nq).
     pub qpos: Vec<T>,
     /// Velocities (nv).
@@ -58,7 +58,7 @@ impl<T: Real> State<T> {
         let cast = |v: &[f64]| v.iter().map(|&x| T::new(x)).collect::<Vec<_>>();
         let mocap_bodies = || (0..model.nbody()).filter(|&b| model.bodies[b].mocap.is_some());
         State {
-            time: T::ZERO,
+            time: T::Clock::splat(0.0),
             qpos: cast(&model.params.qpos0),
             qvel: vec![T::ZERO; model.nv],
             act: vec![T::ZERO; model.na],
@@ -95,6 +95,24 @@ impl<T: Real> State<T> {
         ]
     }
 
+    /// Lets time pass.
+    #[inline(always)]
+    pub(crate) fn pass(&mut self, time: T) {
+        for lane in 0..T::LANES {
+            let now = self.time.lane(lane);
+            self.time.set_lane(lane, now + time.lane(lane).to_f64());
+        }
+    }
+
+    /// The time in the precision of all other numbers.
+    pub(crate) fn rounded_time(&self) -> T {
+        let mut time = T::ZERO;
+        for lane in 0..T::LANES {
+            time.set_lane(lane, T::Scalar::new(self.time.lane(lane)));
+        }
+        time
+    }
+
     /// Takes over another state of the same model, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.time = other.time;
@@ -112,7 +130,7 @@ impl<T: Real> State<T> {
 
     /// Takes over what a keyframe of the model holds, the same in every lane.
     pub fn set_keyframe(&mut self, key: &Keyframe) {
-        self.time = T::new(key.time);
+        self.time = T::Clock::splat(key.time);
         for (to, from) in [
             (&mut self.qpos, &key.qpos),
             (&mut self.qvel, &key.qvel),

@@ -499,3 +499,74 @@ fn figures_of_divergence_count_what_environments_do() {
     together[0].clear_figures();
     assert_eq!(together[0].divergence(), Divergence::default());
 }
+
+#[test]
+fn what_is_recorded_anew_is_of_the_present_state_at_once() {
+    let model = model(&walker());
+    let envs: Vec<usize> = (0..11).collect();
+    let wide = with(Instructions::widest(), 2, RigidOptions::new());
+    let mut batch = batch::<f64>(&model, &envs, wide);
+    for record in [["site_xpos", "cvel"], ["xpos", "cvel"]] {
+        batch.record(&record).expect("known");
+        for env in 0..11 {
+            let mut sim = batch.sim(env).expect("it exists");
+            for name in record {
+                let found = batch.output(name).expect("kept").row(env);
+                let expected = sim.output(name).expect("known");
+                assert_bits(found, &expected, &|| format!("{name} of {env}"));
+            }
+        }
+    }
+    // What was kept before stays that of the last step.
+    batch.step().expect("valid");
+    let before = batch.output("xpos").expect("kept").as_slice().to_vec();
+    let figures = (batch.divergence(), batch.quality());
+    batch.record(&["xpos", "subtree_com"]).expect("known");
+    batch.refresh().expect("valid");
+    assert_eq!(batch.output("xpos").expect("kept").as_slice(), before);
+    assert_eq!((batch.divergence(), batch.quality()), figures);
+    let mut sim = batch.sim(3).expect("it exists");
+    let found = batch.output("subtree_com").expect("kept").row(3);
+    assert_bits(found, &sim.output("subtree_com").expect("known"), &|| {
+        "of the present".into()
+    });
+}
+
+#[test]
+fn outputs_follow_what_was_written_when_they_are_refreshed() {
+    let model = model(&walker());
+    let envs: Vec<usize> = (0..23).collect();
+    let wide = with(Instructions::widest(), 2, RigidOptions::new());
+    let mut batch = batch::<f64>(&model, &envs, wide);
+    let names = ["xpos", "qacc", "cvel", "energy"];
+    batch.record(&names).expect("known");
+    batch.step_n(30).expect("valid");
+    let table = |batch: &Batch, name: &str| batch.output(name).expect("kept").as_slice().to_vec();
+    let before = names.map(|name| table(&batch, name));
+    batch.refresh().expect("valid");
+    assert_eq!(names.map(|name| table(&batch, name)), before, "of the step");
+    // Written by hand, reset, given parameters of its own, and brought where no step can start from.
+    batch.state.qpos.row_mut(3)[2] += 1.0;
+    batch.state.qvel.row_mut(4)[5] = 2.0;
+    batch.reset(5).expect("it exists");
+    let masses = batch.param("body_mass", 6).expect("known");
+    batch.randomize("body_mass", &[6], &masses).expect("valid");
+    batch.state.qpos.row_mut(7)[0] = f64::NAN;
+    batch.refresh().expect("valid");
+    assert_eq!(batch.status(7), EnvStatus::Running, "nobody notices");
+    for env in 0..23 {
+        for (name, before) in names.iter().zip(&before) {
+            let rows = batch.output(name).expect("kept");
+            let found = rows.row(env);
+            if (3..=6).contains(&env) {
+                let mut sim = batch.sim(env).expect("it exists");
+                let expected = sim.output(name).expect("known");
+                assert_bits(found, &expected, &|| format!("{name} of {env}"));
+            } else {
+                let width = rows.width();
+                assert_eq!(found, &before[env * width..][..width], "{name} of {env}");
+            }
+        }
+    }
+    assert_eq!(batch.step().expect("valid").failed, 1);
+}

@@ -25,7 +25,6 @@ fn errors_of_a_step(builder: &ModelBuilder, cone: FrictionCone) -> [f64; 2] {
         drive(&mut double, &envs, step);
         let (from, to) = (&double.state, &mut single.state);
         for (from, to) in [
-            (&from.time, &mut to.time),
             (&from.qpos, &mut to.qpos),
             (&from.qvel, &mut to.qvel),
             (&from.ctrl, &mut to.ctrl),
@@ -35,6 +34,7 @@ fn errors_of_a_step(builder: &ModelBuilder, cone: FrictionCone) -> [f64; 2] {
                 *to = from as f32;
             }
         }
+        (to.time.as_mut_slice()).copy_from_slice(from.time.as_slice());
         (to.eq_active.as_mut_slice()).copy_from_slice(from.eq_active.as_slice());
         assert_eq!(double.step().expect("valid").failed, 0);
         assert_eq!(single.step().expect("valid").failed, 0);

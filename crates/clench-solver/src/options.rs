@@ -125,6 +125,8 @@ options! {
     islands: Switch = |_| Switch::Auto;
     /// Whether a solve starts from the acceleration given to it; true.
     warmstart: bool = |_| true;
+    /// Whether a simulation that diverges goes on from its initial state, where it would stop with an error; false.
+    autoreset: bool = |_| false;
 }
 
 impl RigidOptions {

@@ -137,7 +137,8 @@ pub fn run<S: Precision>(
     let verdict = verdict(&run.model, &batch.quality(), account.as_ref());
     let mut report = report(&batch, done(&batch, &times, steps), spent, &heap, verdict);
     report.recorded_rows = recorded_rows;
-    let free = report.failure.is_none() && batch.quality().constrained == 0;
+    let whole = report.failure.is_none() && report.resets == 0;
+    let free = whole && batch.quality().constrained == 0;
     if free && is_conservative(&run.model) {
         report.energy_drift = drift(&energies, &self::energies(&mut batch, &mut heap)?);
     }
@@ -226,13 +227,12 @@ fn start<S: Precision>(batch: &mut Batch<S>, run: &Run) -> Result<()> {
 
 /// The potential and the kinetic energy of each environment, J.
 fn energies<S: Precision>(batch: &mut Batch<S>, heap: &mut Heap) -> Result<Vec<[f64; 2]>> {
-    batch.record(&["energy"])?;
-    heap.taken_by(|| batch.forward())?;
+    heap.taken_by(|| batch.record(&["energy"]))?;
     let energies = batch.output("energy").map(|rows| {
         let parts = |parts: &[S]| [parts[0], parts[1]].map(|x| x.to_f64());
         rows.iter().map(parts).collect()
     });
-    batch.record(&[])?;
+    heap.taken_by(|| batch.record(&[]))?;
     Ok(energies.unwrap_or_default())
 }
 
@@ -259,10 +259,11 @@ fn report<S: Precision>(
     let rate = |amount: f64| amount / seconds.max(f64::MIN_POSITIVE);
     let timestep = batch.model().params.timestep;
     let failures = failures(batch);
+    let resets = batch.resets().iter().sum();
     let rows = batch.count() * batch.bytes_per_env();
     let scratch = heap.taken.saturating_sub(heap.given_back + rows);
     Report {
-        status: status(!failures.is_empty(), 0, quality.unconverged),
+        status: status(!failures.is_empty(), resets, 0, quality.unconverged),
         quality: verdict.word,
         warnings: verdict.warnings,
         seconds,
@@ -282,6 +283,7 @@ fn report<S: Precision>(
         penetration_max: quality.penetration_max,
         unconverged_steps: quality.unconverged,
         overflow_steps: 0,
+        resets,
         energy_drift: None,
         recorded_rows: None,
         failure: failures.first().map(|first| {

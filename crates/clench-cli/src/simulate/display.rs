@@ -74,6 +74,14 @@ impl Display for Report {
                 format_args!("in {steps} steps, by --max-contacts"),
             )?;
         }
+        if self.resets > 0 {
+            let resets = self.resets;
+            line(
+                f,
+                "diverged",
+                format_args!("{resets} times, and started over by --autoreset"),
+            )?;
+        }
         if let Some(rows) = self.recorded_rows {
             line(f, "recorded", format_args!("{rows} rows"))?;
         }

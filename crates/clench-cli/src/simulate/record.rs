@@ -136,9 +136,13 @@ impl Record {
         steps.is_multiple_of(self.every)
     }
 
-    /// Appends a row: the numbers of each column.
-    fn push<'a, S: Scalar>(&mut self, row: impl IntoIterator<Item = &'a [S]>) {
-        for (column, values) in self.columns.iter_mut().zip(row) {
+    /// Appends a row: the numbers of the first column, which are times, and of each of the others.
+    fn push<'a, S: Scalar>(&mut self, times: &[f64], others: impl IntoIterator<Item = &'a [S]>) {
+        let mut columns = self.columns.iter_mut();
+        if let Some(first) = columns.next() {
+            first.values.extend_from_slice(times);
+        }
+        for (column, values) in columns.zip(others) {
             column.values.extend(values.iter().map(|x| x.to_f64()));
         }
         self.rows += 1;
@@ -205,7 +209,6 @@ impl Recorder {
         let widen = |values: &[T]| Vec::from_iter(values.iter().map(|x| x.to_f64()));
         let (state, stats) = (&sim.state, sim.stats());
         let row = [
-            vec![state.time.to_f64()],
             widen(&state.qpos),
             widen(&state.qvel),
             widen(&state.ctrl),
@@ -217,7 +220,7 @@ impl Recorder {
             vec![stats.gap],
             vec![f64::from(stats.status as u8)],
         ];
-        self.0.push(row.iter().map(Vec::as_slice));
+        self.0.push(&[state.time], row.iter().map(Vec::as_slice));
     }
 
     /// Writes the record; how many rows it has.
@@ -254,10 +257,11 @@ impl BatchRecorder {
             return;
         }
         let state = &batch.state;
-        let states = [&state.time, &state.qpos, &state.qvel].map(|rows| rows.as_slice());
+        let states = [&state.qpos, &state.qvel].map(|rows| rows.as_slice());
         let output = |name| batch.output(name).map_or(&[][..], |rows| rows.as_slice());
         let outputs = BATCH_OUTPUTS.map(output);
-        self.0.push(states.into_iter().chain([ctrl]).chain(outputs));
+        let others = states.into_iter().chain([ctrl]).chain(outputs);
+        self.0.push(state.time.as_slice(), others);
     }
 
     /// Writes the record; how many rows it has.

@@ -7,8 +7,8 @@ use std::time::Duration;
 /// The figures of a finished run. Means and counts are over steps of environments.
 #[derive(Serialize)]
 pub struct Report {
-    /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out),
-    /// `interrupted` or `failed`.
+    /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out), `reset`
+    /// (some step diverged and started over), `interrupted` or `failed`.
     pub status: &'static str,
     /// What the run is worth in a word, see [`verdict`](super::quality::verdict).
     pub quality: &'static str,
@@ -39,6 +39,8 @@ pub struct Report {
     pub unconverged_steps: u64,
     /// Steps that found more contacts than the options allow, and went on. An environment of a batch fails instead.
     pub overflow_steps: u64,
+    /// Steps that started over from the initial state because the simulation diverged, with `--autoreset`.
+    pub resets: u64,
     /// Change of the mechanical energy over the run, J, the largest of all environments; only where nothing adds or removes
     /// energy.
     pub energy_drift: Option<f64>,

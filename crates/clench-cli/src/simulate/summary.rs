@@ -13,7 +13,6 @@ pub struct Summary {
     overflows: u64,
     quality: Quality,
     start_energy: f64,
-    start_time: f64,
     failure: Option<String>,
 }
 
@@ -27,7 +26,6 @@ impl Summary {
             overflows: 0,
             quality: Quality::default(),
             start_energy,
-            start_time: sim.state.time.to_f64(),
             failure: None,
         })
     }
@@ -52,13 +50,19 @@ impl Summary {
 
     /// The figures of the run, which took `seconds` of stepping.
     pub fn finish<T: Precision>(self, sim: &mut Sim<T>, seconds: f64, verdict: Verdict) -> Report {
-        let simulated_time = sim.state.time.to_f64() - self.start_time;
         let steps = self.quality.steps;
+        // Not by the clock, which resets turn back.
+        let simulated_time = steps as f64 * sim.params().timestep.to_f64();
         let per_step = |total: usize| total as f64 / steps.max(1) as f64;
         let energy_drift = self.energy_drift(sim);
         let quality = self.quality;
         Report {
-            status: status(self.failure.is_some(), self.overflows, quality.unconverged),
+            status: status(
+                self.failure.is_some(),
+                sim.resets(),
+                self.overflows,
+                quality.unconverged,
+            ),
             quality: verdict.word,
             warnings: verdict.warnings,
             seconds,
@@ -78,6 +82,7 @@ impl Summary {
             penetration_max: quality.penetration_max,
             unconverged_steps: quality.unconverged,
             overflow_steps: self.overflows,
+            resets: sim.resets(),
             energy_drift,
             batch: None,
             profile: None,
@@ -87,7 +92,8 @@ impl Summary {
     }
 
     fn energy_drift<T: Precision>(&self, sim: &mut Sim<T>) -> Option<f64> {
-        let free = self.quality.constrained == 0 && self.failure.is_none();
+        let whole = self.failure.is_none() && sim.resets() == 0;
+        let free = self.quality.constrained == 0 && whole;
         let end = (free && is_conservative(sim.model())).then(|| energy(sim).ok());
         let end: f64 = end.flatten()?.iter().sum();
         Some(end - self.start_energy)
@@ -95,12 +101,13 @@ impl Summary {
 }
 
 /// A run's status in a word.
-pub fn status(failed: bool, overflows: u64, unconverged: u64) -> &'static str {
-    match (failed, overflows, unconverged) {
+pub fn status(failed: bool, resets: u64, overflows: u64, unconverged: u64) -> &'static str {
+    match (failed, resets, overflows, unconverged) {
         (true, ..) => "failed",
-        (false, 0, 0) => "ok",
-        (false, 0, _) => "iteration_limit",
-        _ => "contact_overflow",
+        (false, 0, 0, 0) => "ok",
+        (false, 0, 0, _) => "iteration_limit",
+        (false, 0, ..) => "contact_overflow",
+        _ => "reset",
     }
 }
 

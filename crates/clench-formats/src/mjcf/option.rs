@@ -183,6 +183,10 @@ fn solver_flags(element: &Element, options: &mut RigidOptions) -> Result<(), Loa
     options.warmstart = element
         .keyword("warmstart", &SWITCHES)?
         .or(options.warmstart);
+    // Only what a file says: where it says nothing, a simulation that diverges stops.
+    options.autoreset = element
+        .keyword("autoreset", &SWITCHES)?
+        .or(options.autoreset);
     if let Some(island) = element.keyword("island", &SWITCHES)? {
         options.islands = Some(if island { Switch::Auto } else { Switch::Off });
     }

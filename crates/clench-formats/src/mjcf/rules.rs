@@ -100,9 +100,9 @@ pub(crate) const RULES: &[Rule] = &[
     Rule {
         element: "flag",
         read: "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart \
-            filterparent actuation refsafe island eulerdamp multiccd override",
+            filterparent actuation refsafe island eulerdamp multiccd autoreset override",
         // `nativeccd` and `midphase` choose between algorithms that look for the same contacts.
-        ignored: "autoreset energy fwdinv midphase nativeccd sensor",
+        ignored: "energy fwdinv midphase nativeccd sensor",
         later: "diagexact=disable invdiscrete=disable ipc=disable sleep=disable speculative=disable",
         ..NONE
     },

@@ -140,6 +140,7 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Neg for Lanes<S, N, I> {
 impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
     type Scalar = S;
     type Mask = LaneMask<S, N, I>;
+    type Clock = [f64; N];
     const LANES: usize = N;
     const ZERO: Self = Lanes(I::ZERO);
     const ONE: Self = Lanes(I::ONE);

@@ -26,6 +26,18 @@ impl<'a, S: Lanewise> Cells<'a, S> {
         &self.cells[env * self.width..][..self.width]
     }
 
+    /// The number of an environment, where a row has one.
+    #[inline(always)]
+    pub fn get(&self, env: usize) -> S {
+        S::load(&self.row(env)[0])
+    }
+
+    /// Sets the number of an environment, where a row has one.
+    #[inline(always)]
+    pub fn set(&self, env: usize, value: S) {
+        S::store(&self.row(env)[0], value);
+    }
+
     /// Copies the row of an environment into lane `lane` of `out`, as long as a row.
     #[inline(always)]
     pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, out: &mut [T]) {

@@ -15,6 +15,7 @@ mod record;
 mod reset;
 mod rows;
 mod run;
+mod seen;
 mod snapshot;
 mod state_rows;
 mod stepper;
@@ -40,16 +41,18 @@ use parameters::ParamRows;
 use rayon::ThreadPool;
 use record::{OutputRows, row_bytes};
 use rows::{per_env, rehearse};
+use seen::Seen;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use stepper::Stepper;
 
-/// Bytes that an environment takes besides its rows: whether it runs, and its place in groups.
-const BESIDES: usize = size_of::<EnvStatus>() + size_of::<AtomicU64>() + size_of::<u32>();
+/// Bytes that an environment takes besides its rows: whether it runs, how often it was reset, and its place in groups.
+const BESIDES: usize =
+    size_of::<EnvStatus>() + size_of::<u64>() + size_of::<AtomicU64>() + size_of::<u32>();
 
 /// Whether an environment takes part in steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum EnvStatus {
     /// It does.
     Running,
@@ -69,8 +72,10 @@ pub struct Batch<S: Precision = f64> {
     options: BatchOptions,
     settings: StepSettings,
     status: Vec<EnvStatus>,
+    resets: Vec<u64>,
     params: Vec<ParamRows<S>>,
     outputs: Vec<OutputRows<S>>,
+    seen: Option<Seen<S>>,
     initial: State<S>,
     scratch: State<S>,
     /// Where each environment stands among all by its last contacts.
@@ -145,8 +150,10 @@ impl<S: Precision> Batch<S> {
             state,
             settings,
             status: per_env(count, || EnvStatus::Running)?,
+            resets: per_env(count, || 0)?,
             params: Vec::new(),
             outputs: Vec::new(),
+            seen: None,
             scratch: initial.clone(),
             initial,
             places: per_env(count, || AtomicU64::new(0))?,
@@ -189,12 +196,13 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept, whether it runs,
-    /// and its place in groups.
+    /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept and for which state they
+    /// hold, whether it runs, and its place in groups.
     pub fn bytes_per_env(&self) -> usize {
         let state = StateRows::<S>::row_bytes(&self.model);
         let params: usize = self.params.iter().map(ParamRows::row_bytes).sum();
-        state + params + row_bytes(&self.outputs) + BESIDES
+        let seen = self.seen.as_ref().map_or(0, Seen::row_bytes);
+        state + params + row_bytes(&self.outputs) + seen + BESIDES
     }
 
     /// How many environments there are.
@@ -230,7 +238,12 @@ impl<S: Precision> Batch<S> {
     /// # Panics
     /// If there is no such environment, as slices do.
     pub fn status(&self, env: usize) -> EnvStatus {
-        self.status[env]
+        self.status[env].clone()
+    }
+    /// How often each environment started over from the initial state, with the option `autoreset`, since the last
+    /// [`clear_figures`](Self::clear_figures).
+    pub fn resets(&self) -> &[u64] {
+        &self.resets
     }
     /// How unlike the environments of groups were since the last [`clear_figures`](Self::clear_figures).
     pub fn divergence(&self) -> Divergence {
@@ -254,8 +267,9 @@ impl<S: Precision> Batch<S> {
         }
         profile
     }
-    /// Begins the figures of [`divergence`](Self::divergence) and [`quality`](Self::quality) anew.
+    /// Begins the figures of [`divergence`](Self::divergence), [`quality`](Self::quality) and [`resets`](Self::resets) anew.
     pub fn clear_figures(&mut self) {
+        self.resets.fill(0);
         self.divergence = Divergence::default();
         self.quality = Quality::default();
     }

@@ -55,6 +55,9 @@ impl<S: Precision> Batch<S> {
         for (&env, row) in envs.iter().zip(values.chunks(width.max(1))) {
             Model::loosen(&mut self.model, field, row);
             self.param_rows(field)?.row_mut(env).copy_from_slice(row);
+            if let Some(seen) = &mut self.seen {
+                seen.forget(env);
+            }
             if let Some((follower, params)) = &mut follower {
                 params.write_lane(field, 0, row);
                 params.derive(&self.model, field);

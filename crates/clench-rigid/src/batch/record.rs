@@ -3,11 +3,14 @@
 use super::cells::Cells;
 use super::precision::Lanewise;
 use super::rows::rehearse;
+use super::seen::Seen;
+use super::stepper::Pass;
 use super::{Batch, EnvStatus, Precision, Rows, Summary};
 use crate::check::check_length;
 use crate::error::SimError;
 use crate::output::Output;
 use std::array::from_fn;
+use std::mem::{replace, swap};
 
 /// So many steps of environments are done before a rollout asks whether to go on: a fraction of a second.
 const ENV_STEPS_A_PORTION: usize = 1 << 16;
@@ -102,23 +105,42 @@ fn find<'a, S>(outputs: &'a [OutputRows<S>], name: &str) -> Option<&'a Rows<S>> 
 }
 
 impl<S: Precision> Batch<S> {
-    /// Keeps these outputs, by the names in [`Output`], from now on, and no others. Every step and forward leaves them as of its
-    /// last forward pass, in rows that [`output`](Self::output) shows; for environments that do not run, and those that fail,
-    /// rows stay as they are. Tables of outputs that were kept before stay where they are.
+    /// Keeps these outputs, by the names in [`Output`], from now on, and no others. Those that are new are computed at once from
+    /// the states of running environments. Every step and forward leaves them as of its last forward pass, in rows that
+    /// [`output`](Self::output) shows; for environments that do not run, and those that fail, rows stay as they are, zero at
+    /// first. Tables of outputs that were kept before stay where they are.
     ///
     /// # Errors
-    /// A name that no output has; more memory than there is. What is kept is then as before.
+    /// A name that no output has; more memory than there is; else as [`forward`](Self::forward). What is kept is then as before.
     pub fn record(&mut self, names: &[&str]) -> Result<(), SimError> {
         let wanted = each_once(names)?;
         let mut new = wanted.clone();
         new.retain(|output| self.outputs.iter().all(|own| own.output != *output));
-        let new = self.tables(&new, 1, S::ZERO)?;
+        let mut new = self.tables(&new, 1, S::ZERO)?;
+        if !new.is_empty() {
+            // What is new is computed at once and by itself: what was kept before stays as it is, and holds for what it held.
+            let first = match self.seen {
+                None => Some(Seen::new(&self.model, self.count())?),
+                Some(_) => None,
+            };
+            let before = replace(&mut self.seen, first);
+            swap(&mut self.outputs, &mut new);
+            let computed = self.query(None);
+            swap(&mut self.outputs, &mut new);
+            if before.is_some() || computed.is_err() {
+                self.seen = before;
+            }
+            computed?;
+        }
         self.outputs.retain(|own| wanted.contains(&own.output));
         self.outputs.extend(new);
+        if self.outputs.is_empty() {
+            self.seen = None;
+        }
         Ok(())
     }
 
-    /// An output that is kept (n, width), zero before the first step; `None` if it is not.
+    /// An output that is kept (n, width); `None` if it is not. [`refresh`](Self::refresh) first where states were written.
     pub fn output(&self, name: &str) -> Option<&Rows<S>> {
         find(&self.outputs, name)
     }
@@ -177,14 +199,19 @@ impl<S: Precision> Batch<S> {
             self.start_from(initial);
         }
         let portion = (ENV_STEPS_A_PORTION / self.count().max(1)).max(1);
-        let (mut failed, mut first) = (0, 0_usize);
+        let (mut failed, mut resets, mut first) = (0, 0, 0_usize);
         let summary = loop {
             let range = first..steps.min(first.saturating_add(portion));
             first = range.end;
-            let part = self.run(true, range, steps, controls, None, &mut outputs)?;
+            let part = self.run(Pass::Step, range, steps, controls, None, &mut outputs)?;
             failed += part.failed;
+            resets += part.resets;
             if first == steps || part.running == 0 || !go_on() {
-                break Summary { failed, ..part };
+                break Summary {
+                    failed,
+                    resets,
+                    ..part
+                };
             }
         };
         Ok(Recording {
@@ -204,7 +231,7 @@ impl<S: Precision> Batch<S> {
         let (nq, nv) = (self.model.nq, self.model.nv);
         for (env, row) in initial.chunks_exact(self.moving()).enumerate() {
             let state = &mut self.state;
-            state.time.row_mut(env).copy_from_slice(&row[..1]);
+            state.time.row_mut(env)[0] = row[0].to_f64();
             state.qpos.row_mut(env).copy_from_slice(&row[1..][..nq]);
             (state.qvel.row_mut(env)).copy_from_slice(&row[1 + nq..][..nv]);
             (state.act.row_mut(env)).copy_from_slice(&row[1 + nq + nv..]);

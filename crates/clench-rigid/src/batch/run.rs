@@ -1,7 +1,8 @@
 //! Stepping a batch: environments are grouped, threads claim groups, and what went wrong becomes a status.
 
 use super::record::{OutputRows, targets};
-use super::stepper::{Job, Stepper};
+use super::seen::Seen;
+use super::stepper::{Job, Pass, Stepper};
 use super::{Batch, Controls, EnvStatus, Precision};
 use crate::check::check_length;
 use crate::error::SimError;
@@ -19,10 +20,16 @@ pub struct Summary {
     pub failed: usize,
     /// Environments that run on.
     pub running: usize,
+    /// How often environments started over from the initial state in this call, with the option `autoreset`.
+    pub resets: usize,
 }
 
 impl<S: Precision> Batch<S> {
     /// Advances every running environment by one time step.
+    ///
+    /// With the option `autoreset` a step that cannot be done (but for too many contacts) starts over from the initial state,
+    /// applied forces, mocap poses and switches included, and counts in [`resets`](Self::resets). Controls start over too, but
+    /// for those of a rollout.
     ///
     /// # Errors
     /// Tables of [`state`](Self::state) that are not those of this batch; a batch of several threads after a fork.
@@ -35,7 +42,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
-        self.run(true, 0..steps, steps, Controls::Held, None, &mut [])
+        self.run(Pass::Step, 0..steps, steps, Controls::Held, None, &mut [])
     }
 
     /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
@@ -44,7 +51,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<Summary, SimError> {
-        self.run(false, 0..1, 1, Controls::Held, None, &mut [])
+        self.run(Pass::Forward, 0..1, 1, Controls::Held, None, &mut [])
     }
 
     /// As [`forward`](Self::forward), only for the running environments where `mask` is true. Of the others nothing changes:
@@ -54,13 +61,40 @@ impl<S: Precision> Batch<S> {
     /// As [`step`](Self::step), and a mask of another length than there are environments.
     pub fn forward_mask(&mut self, mask: &[bool]) -> Result<Summary, SimError> {
         check_length("mask", mask.len(), self.count())?;
-        self.run(false, 0..1, 1, Controls::Held, Some(mask), &mut [])
+        self.run(Pass::Forward, 0..1, 1, Controls::Held, Some(mask), &mut [])
+    }
+
+    /// Computes the outputs that are kept anew for running environments whose positions, velocities, mocap poses or parameters were
+    /// written, or that were reset, since the last step or forward pass. Nothing is done for the others: after a step outputs are, as
+    /// in MuJoCo, those of the start of the last time step. Where a state cannot be stepped from, outputs stay as they are; the
+    /// next step or forward pass says so.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn refresh(&mut self) -> Result<(), SimError> {
+        self.check_state()?;
+        let Some(seen) = &self.seen else {
+            return Ok(());
+        };
+        let runs = |env: usize| self.status[env] == EnvStatus::Running;
+        let stale = |env: usize| runs(env) && !seen.holds(env, &self.state);
+        let stale = Vec::from_iter((0..self.count()).map(stale));
+        if stale.contains(&true) {
+            self.query(Some(&stale))?;
+        }
+        Ok(())
+    }
+
+    /// A forward pass that nobody notices but in outputs.
+    pub(super) fn query(&mut self, mask: Option<&[bool]>) -> Result<(), SimError> {
+        self.run(Pass::Query, 0..1, 1, Controls::Held, mask, &mut [])?;
+        Ok(())
     }
 
     /// Does those in `range` of `steps` steps, or one forward pass, of every running environment that is not masked out.
     pub(super) fn run(
         &mut self,
-        advance: bool,
+        pass: Pass,
         range: Range<usize>,
         steps: usize,
         controls: Controls<S>,
@@ -71,16 +105,14 @@ impl<S: Precision> Batch<S> {
         self.check_threads()?;
         // All groupings of a call run inside the pool, so that its threads need not be woken for each.
         Ok(match self.pool.clone() {
-            None => self.run_here(advance, range, steps, controls, mask, trace),
-            Some(pool) => {
-                pool.install(|| self.run_here(advance, range, steps, controls, mask, trace))
-            }
+            None => self.run_here(pass, range, steps, controls, mask, trace),
+            Some(pool) => pool.install(|| self.run_here(pass, range, steps, controls, mask, trace)),
         })
     }
 
     fn run_here(
         &mut self,
-        advance: bool,
+        pass: Pass,
         range: Range<usize>,
         steps: usize,
         controls: Controls<S>,
@@ -90,6 +122,7 @@ impl<S: Precision> Batch<S> {
         let mut summary = Summary {
             failed: 0,
             running: 0,
+            resets: 0,
         };
         for first in range.clone().step_by(STEPS_A_GROUP) {
             self.regroup(mask);
@@ -105,14 +138,15 @@ impl<S: Precision> Batch<S> {
                 params: &self.params,
                 targets: targets(&mut self.outputs, trace),
                 places: &self.places,
-                advance,
+                pass,
+                seen: self.seen.as_mut().map(Seen::share),
                 controls,
                 first,
                 end: range.end.min(first.saturating_add(STEPS_A_GROUP)),
                 steps,
             };
             spread(&mut self.steppers, &self.order, &job);
-            summary.failed += self.settle();
+            self.settle(&mut summary);
         }
         let running = |status: &&EnvStatus| **status == EnvStatus::Running;
         summary.running = self.status.iter().filter(running).count();
@@ -121,7 +155,8 @@ impl<S: Precision> Batch<S> {
 
     /// Lists the environments that run and are not masked out, those of like contacts side by side.
     fn regroup(&mut self, mask: Option<&[bool]>) {
-        let running = |env: &u32| self.status[*env as usize] == EnvStatus::Running;
+        let status = &self.status;
+        let running = |env: &u32| status[*env as usize] == EnvStatus::Running;
         let wanted = |env: &u32| mask.is_none_or(|mask| mask[*env as usize]);
         self.order.clear();
         let envs = 0..self.status.len() as u32;
@@ -132,19 +167,22 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Takes over what the steppers have to report; how many environments failed.
-    fn settle(&mut self) -> usize {
-        let mut failed = 0;
+    /// Takes over what the steppers have to report.
+    fn settle(&mut self, summary: &mut Summary) {
         for stepper in &mut self.steppers {
             let tally = stepper.tally();
+            for env in tally.resets.drain(..) {
+                self.state.write_inputs(env as usize, &self.initial);
+                self.resets[env as usize] += 1;
+                summary.resets += 1;
+            }
             for (env, fault) in tally.faults.drain(..) {
                 self.status[env as usize] = EnvStatus::Failed(fault);
-                failed += 1;
+                summary.failed += 1;
             }
             self.divergence += std::mem::take(&mut tally.divergence);
             self.quality += std::mem::take(&mut tally.quality);
         }
-        failed
     }
 }
 

@@ -46,7 +46,7 @@ impl<S: Precision> Batch<S> {
         }
         Ok(Snapshot {
             state,
-            status: envs.iter().map(|&env| self.status[env]).collect(),
+            status: envs.iter().map(|&env| self.status[env].clone()).collect(),
             envs: envs.to_vec(),
         })
     }
@@ -70,7 +70,7 @@ impl<S: Precision> Batch<S> {
         snapshot.state.check_shapes(self.model(), envs.len())?;
         for (row, &env) in envs.iter().enumerate() {
             self.state.copy_row(env, &snapshot.state, row);
-            self.status[env] = snapshot.status[row];
+            self.status[env] = snapshot.status[row].clone();
         }
         Ok(())
     }

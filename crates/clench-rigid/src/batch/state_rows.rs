@@ -10,16 +10,15 @@ use crate::model::Model;
 use crate::model::flat::{set_lane, write_quats, write_vectors};
 use crate::sim::no_such;
 use crate::state::State;
-use clench_math::{Mask, Real, write_lane};
-use std::slice::{from_mut, from_ref};
+use clench_math::{Clock, Mask, Real, write_lane};
 use zerocopy::IntoBytes;
 
 /// The states of the environments of a batch, field by field, a row an environment. To be read and written between steps;
 /// what a step reads is checked first.
 #[derive(Debug)]
 pub struct StateRows<S> {
-    /// s (n, 1).
-    pub time: Rows<S>,
+    /// s (n, 1), in double precision.
+    pub time: Rows<f64>,
     /// Position coordinates (n, nq).
     pub qpos: Rows<S>,
     /// Velocities (n, nv).
@@ -52,7 +51,7 @@ impl<S: Precision> StateRows<S> {
         rehearse(count, Self::row_bytes(model))?;
         let rows = |width| Rows::new(count, width, S::ZERO);
         Ok(StateRows {
-            time: rows(1)?,
+            time: Rows::new(count, 1, 0.0)?,
             qpos: rows(model.nq)?,
             qvel: rows(model.nv)?,
             act: rows(model.na)?,
@@ -66,10 +65,9 @@ impl<S: Precision> StateRows<S> {
         })
     }
 
-    /// The tables of numbers.
-    fn numbers(&self) -> [&Rows<S>; 10] {
+    /// The tables of numbers in the batch's precision.
+    fn numbers(&self) -> [&Rows<S>; 9] {
         [
-            &self.time,
             &self.qpos,
             &self.qvel,
             &self.act,
@@ -82,9 +80,8 @@ impl<S: Precision> StateRows<S> {
         ]
     }
 
-    fn numbers_mut(&mut self) -> [&mut Rows<S>; 10] {
+    fn numbers_mut(&mut self) -> [&mut Rows<S>; 9] {
         [
-            &mut self.time,
             &mut self.qpos,
             &mut self.qvel,
             &mut self.act,
@@ -106,7 +103,8 @@ impl<S: Precision> StateRows<S> {
     pub(super) fn row_bytes(model: &Model) -> usize {
         let all: usize = model.state_lengths().iter().map(|(_, length)| length).sum();
         let switches = model.equalities.len();
-        (all - switches) * size_of::<S>() + switches
+        let times = 1;
+        (all - switches - times) * size_of::<S>() + switches + times * size_of::<f64>()
     }
 
     /// How many rows each table has, and of how many numbers.
@@ -149,6 +147,7 @@ impl<S: Precision> StateRows<S> {
         for (rows, other) in self.numbers_mut().into_iter().zip(other.numbers()) {
             rows.row_mut(to).copy_from_slice(other.row(from));
         }
+        self.time.row_mut(to).copy_from_slice(other.time.row(from));
         let switches = other.eq_active.row(from);
         self.eq_active.row_mut(to).copy_from_slice(switches);
     }
@@ -159,7 +158,7 @@ impl<S: Precision> StateRows<S> {
     /// A row that there is not; a state of other lengths, which is then as before.
     pub fn read(&self, env: usize, state: &mut State<S>) -> Result<(), SimError> {
         self.check_row(env, state)?;
-        write_lane(self.time.row(env), 0, from_mut(&mut state.time));
+        state.time = self.time.row(env)[0];
         write_lane(self.qpos.row(env), 0, &mut state.qpos);
         write_lane(self.qvel.row(env), 0, &mut state.qvel);
         write_lane(self.act.row(env), 0, &mut state.act);
@@ -188,6 +187,13 @@ impl<S: Precision> StateRows<S> {
         self.qpos.row_mut(env).copy_from_slice(&state.qpos);
         self.qvel.row_mut(env).copy_from_slice(&state.qvel);
         self.act.row_mut(env).copy_from_slice(&state.act);
+        (self.qacc_warmstart.row_mut(env)).copy_from_slice(&state.qacc_warmstart);
+        self.write_inputs(env, state);
+        Ok(())
+    }
+
+    /// Copies what a step only reads of a state, all but what it moves, into row `env`.
+    pub(super) fn write_inputs(&mut self, env: usize, state: &State<S>) {
         self.ctrl.row_mut(env).copy_from_slice(&state.ctrl);
         let forces = self.xfrc_applied.row_mut(env).chunks_exact_mut(6);
         for (row, force) in forces.zip(&state.xfrc_applied) {
@@ -204,8 +210,6 @@ impl<S: Precision> StateRows<S> {
             quat.write(row);
         }
         (self.eq_active.row_mut(env)).copy_from_slice(&state.eq_active);
-        (self.qacc_warmstart.row_mut(env)).copy_from_slice(&state.qacc_warmstart);
-        Ok(())
     }
 
     /// The tables as a step sees them.
@@ -231,7 +235,7 @@ impl<S: Precision> StateRows<S> {
 
 /// What a step reads and writes.
 pub struct Motion<'a, S: Lanewise> {
-    time: Cells<'a, S>,
+    time: Cells<'a, f64>,
     qpos: Cells<'a, S>,
     qvel: Cells<'a, S>,
     act: Cells<'a, S>,
@@ -241,7 +245,7 @@ pub struct Motion<'a, S: Lanewise> {
 impl<S: Lanewise> Motion<'_, S> {
     /// Copies the row of an environment into lane `lane`.
     pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
-        self.time.read(env, lane, from_mut(&mut state.time));
+        state.time.set_lane(lane, self.time.get(env));
         self.qpos.read(env, lane, &mut state.qpos);
         self.qvel.read(env, lane, &mut state.qvel);
         self.act.read(env, lane, &mut state.act);
@@ -251,7 +255,7 @@ impl<S: Lanewise> Motion<'_, S> {
 
     /// Copies lane `lane` into the row of an environment.
     pub fn write<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
-        self.time.write(env, lane, from_ref(&state.time));
+        self.time.set(env, state.time.lane(lane));
         self.qpos.write(env, lane, &state.qpos);
         self.qvel.write(env, lane, &state.qvel);
         self.act.write(env, lane, &state.act);

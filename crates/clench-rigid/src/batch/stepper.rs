@@ -6,6 +6,7 @@ use super::parameters::ParamRows;
 use super::precision::Lanewise;
 use super::quality::{Place, Quality};
 use super::record::{Controls, Targets};
+use super::seen::SeenCells;
 use super::state_rows::{Inputs, Motion};
 use crate::check;
 use crate::error::Fault;
@@ -16,7 +17,7 @@ use crate::profile::{Profile, Stage};
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Force, LaneTask, Mask, Real, Scalar, write_lane};
+use clench_math::{Clock, Force, LaneTask, Mask, Real, write_lane};
 use clench_solver::MaxContacts;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -30,8 +31,10 @@ pub struct Job<'a, S: Lanewise> {
     pub params: &'a [ParamRows<S>],
     /// Where each environment stands in an order that puts those of like contacts side by side.
     pub places: &'a [AtomicU64],
-    /// Whether states advance, or stay and only what follows from them is computed.
-    pub advance: bool,
+    /// What is done.
+    pub pass: Pass,
+    /// For which states outputs hold, where any are kept.
+    pub seen: Option<SeenCells<'a, S>>,
     /// Where outputs go.
     pub targets: Targets<'a, S>,
     pub controls: Controls<'a, S>,
@@ -41,11 +44,24 @@ pub struct Job<'a, S: Lanewise> {
     pub steps: usize,
 }
 
+/// What a call does with environments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pass {
+    /// Their states advance.
+    Step,
+    /// Their states stay, and what follows from them is computed.
+    Forward,
+    /// The same for somebody who only asks: nothing fails and nothing is counted.
+    Query,
+}
+
 /// What a stepper has to report.
 #[derive(Default)]
 pub struct Tally {
     /// Environments that cannot go on, and why.
     pub faults: Vec<(u32, Fault)>,
+    /// Environments that started over from the initial state.
+    pub resets: Vec<u32>,
     pub divergence: Divergence,
     pub quality: Quality,
 }
@@ -78,13 +94,26 @@ impl<S: Lanewise> LaneTask<S> for MakeStepper<'_> {
 
 pub struct LaneStepper<T: Real> {
     state: State<T>,
+    /// The model's initial state.
+    initial: State<T>,
     params: Params<T>,
     ws: Workspace<T>,
     /// Whether the state holds forces on bodies.
     pushed: bool,
     /// The output that is being copied.
     output: Vec<T>,
+    /// Environments that are to start over from the initial state, with the step in which they do.
+    restarts: Vec<(u32, usize)>,
     tally: Tally,
+}
+
+/// Where the environments of a group begin.
+#[derive(Clone, Copy, PartialEq)]
+enum Start {
+    /// In the state in their rows.
+    Rows,
+    /// In the model's initial state.
+    Initial,
 }
 
 impl<T: Real> LaneStepper<T>
@@ -94,10 +123,12 @@ where
     fn new(model: &Model) -> Self {
         LaneStepper {
             state: State::new(model),
+            initial: State::new(model),
             params: model.params.broadcast(),
             ws: Workspace::new(model),
             pushed: false,
             output: Vec::new(),
+            restarts: Vec::new(),
             tally: Tally::default(),
         }
     }
@@ -124,6 +155,37 @@ where
         self.pushed = pushed;
     }
 
+    /// Does the steps of a job from `step` on.
+    fn advance(
+        &mut self,
+        mut group: Group<T>,
+        mut start: Start,
+        mut step: usize,
+        job: &Job<T::Scalar>,
+    ) {
+        while step < job.end && group.len > 0 {
+            self.ws.clock.start();
+            self.gather(&group, job);
+            if start == Start::Initial {
+                self.state.copy_from(&self.initial);
+            }
+            while step < job.end && group.len > 0 {
+                self.control(&group, step, job);
+                if !self.admit(&mut group, (start, step), job) {
+                    break;
+                }
+                self.ws.clock.lap(Stage::Rows as usize);
+                let whole = self.step(&mut group, (start, step), job);
+                self.ws.clock.lap(Stage::Rows as usize);
+                step += 1;
+                start = Start::Rows;
+                if !whole {
+                    break;
+                }
+            }
+        }
+    }
+
     /// Puts the controls of a rollout's step into the lanes.
     fn control(&mut self, group: &Group<T>, step: usize, job: &Job<T::Scalar>) {
         let nu = self.state.ctrl.len();
@@ -135,42 +197,73 @@ where
     }
 
     /// Lets go of the environments whose state no step can start from. Whether all stay.
-    fn admit(&mut self, group: &mut Group<T>) -> bool {
+    fn admit(
+        &mut self,
+        group: &mut Group<T>,
+        (start, step): (Start, usize),
+        job: &Job<T::Scalar>,
+    ) -> bool {
         let good = check::good_inputs(&self.state);
         if !good.all() {
-            let state = &self.state;
-            let fault = |lane| check::input_fault(state, lane);
-            report(group, good, &mut self.tally.faults, fault);
+            for (lane, env) in group.iter().filter(|&(lane, _)| !good.lane(lane)) {
+                let fault = check::input_fault(job.model, &self.state, lane);
+                self.fail((env, fault), (start, step), job);
+            }
             group.keep(good);
         }
         good.all()
     }
 
+    /// Notes that an environment cannot go on, or that it is to start over, if it has not just done so.
+    fn fail(
+        &mut self,
+        (env, fault): (usize, Fault),
+        (start, step): (Start, usize),
+        job: &Job<T::Scalar>,
+    ) {
+        if job.pass == Pass::Query {
+            return;
+        }
+        let bounded = matches!(fault, Fault::ContactOverflow { .. });
+        if job.settings.solver.autoreset && start == Start::Rows && !bounded {
+            self.restarts.push((env as u32, step));
+        } else {
+            self.tally.faults.push((env as u32, fault));
+        }
+    }
+
     /// One step of all lanes. Environments that fail in it leave the group and keep the rows that they have. Whether all
     /// stay.
-    fn step(&mut self, group: &mut Group<T>, step: usize, job: &Job<T::Scalar>) -> bool {
+    fn step(
+        &mut self,
+        group: &mut Group<T>,
+        (start, step): (Start, usize),
+        job: &Job<T::Scalar>,
+    ) -> bool {
         let (model, settings) = (job.model, job.settings);
         let time = self.state.time;
         let (state, params, ws) = (&mut self.state, &self.params, &mut self.ws);
-        if job.advance {
+        if job.pass == Pass::Step {
             pipeline::step(model, params, settings, state, ws);
         } else {
             pipeline::forward(model, params, settings, state, ws);
         }
         let overflow = ws.collision.overflow;
-        let finite = check::good_results(state, ws);
-        let good = finite & !overflow;
-        if !good.all() {
-            let (state, ws, most) = (&self.state, &self.ws, settings.solver.max_contacts);
-            report(group, good, &mut self.tally.faults, |lane| {
-                let time = time.lane(lane).to_f64();
-                match most {
-                    MaxContacts::Limit(limit) if finite.lane(lane) => {
-                        Fault::ContactOverflow { time, limit }
-                    }
-                    _ => check::result_fault(time, state, ws, lane),
+        let within = check::good_results(state, ws);
+        let good = within & !overflow;
+        for (lane, env) in group.iter().filter(|&(lane, _)| !good.lane(lane)) {
+            let time = time.lane(lane);
+            let fault = match settings.solver.max_contacts {
+                MaxContacts::Limit(limit) if within.lane(lane) => {
+                    Fault::ContactOverflow { time, limit }
                 }
-            });
+                _ => check::result_fault(model, time, &self.state, &self.ws, lane),
+            };
+            self.fail((env, fault), (start, step), job);
+        }
+        if start == Start::Initial && good.all() {
+            let envs = group.iter().map(|(_, env)| env as u32);
+            self.tally.resets.extend(envs);
         }
         self.scatter(group, good, job);
         self.record(group, good, step, job);
@@ -190,10 +283,13 @@ where
             }
         }
         for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
-            if job.advance {
+            if job.pass == Pass::Step {
                 job.motion.write(env, lane, &self.state);
             }
             job.places[env].store(gray_rank(signatures[lane]), Relaxed);
+        }
+        if job.pass == Pass::Query {
+            return;
         }
         self.tally.divergence.count(&self.ws, group.len);
         let place = Place {
@@ -208,6 +304,11 @@ where
     /// Copies what a step gave out to where it is wanted.
     fn record(&mut self, group: &Group<T>, good: T::Mask, step: usize, job: &Job<T::Scalar>) {
         let last = step + 1 == job.steps;
+        if let Some(seen) = job.seen.as_ref().filter(|_| last) {
+            for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
+                seen.note(env, lane, &self.state);
+            }
+        }
         for (&output, target) in Output::ALL.iter().zip(&job.targets) {
             let kept = target.last.as_ref().filter(|_| last);
             if kept.is_none() && target.trace.is_none() {
@@ -231,18 +332,6 @@ where
                 }
             }
         }
-    }
-}
-
-/// Notes the faults of the lanes that are not good.
-fn report<T: Real>(
-    group: &Group<T>,
-    good: T::Mask,
-    faults: &mut Vec<(u32, Fault)>,
-    fault: impl Fn(usize) -> Fault,
-) {
-    for (lane, env) in group.iter().filter(|&(lane, _)| !good.lane(lane)) {
-        faults.push((env as u32, fault(lane)));
     }
 }
 
@@ -271,24 +360,10 @@ where
     }
 
     fn run(&mut self, envs: &[u32], job: &Job<T::Scalar>) {
-        let mut group = Group::new(envs);
-        let mut step = job.first;
-        while step < job.end && group.len > 0 {
-            self.ws.clock.start();
-            self.gather(&group, job);
-            while step < job.end && group.len > 0 {
-                self.control(&group, step, job);
-                if !self.admit(&mut group) {
-                    break;
-                }
-                self.ws.clock.lap(Stage::Rows as usize);
-                let whole = self.step(&mut group, step, job);
-                self.ws.clock.lap(Stage::Rows as usize);
-                step += 1;
-                if !whole {
-                    break;
-                }
-            }
+        self.advance(Group::new(envs), Start::Rows, job.first, job);
+        // Each by itself, which changes no bit of what comes out.
+        while let Some((env, step)) = self.restarts.pop() {
+            self.advance(Group::new(&[env]), Start::Initial, step, job);
         }
     }
 

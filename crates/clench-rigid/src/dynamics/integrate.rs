@@ -141,5 +141,5 @@ pub fn advance_semi_implicit<T: Real>(
     advance_activations(model, params, pos, act_dot, &mut state.act);
     add_scaled(&mut state.qvel, &ws.integration.qacc, h);
     integrate_positions(model, &mut state.qpos, &state.qvel, h);
-    state.time += h;
+    state.pass(h);
 }

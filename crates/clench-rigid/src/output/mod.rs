@@ -6,6 +6,7 @@ mod forces;
 
 use crate::dynamics::energy::energy;
 use crate::error::SimError;
+use crate::known::Extent;
 use crate::model::{Model, Params};
 use crate::pipeline::position_stage;
 use crate::state::State;
@@ -21,7 +22,7 @@ pub(crate) struct Source<'a, T: Real> {
 }
 
 macro_rules! outputs {
-    ($m:ident, $s:ident, $out:ident; $($(#[$doc:meta])* $name:ident [$($size:expr),*] => $read:expr;)*) => {
+    ($m:ident, $s:ident, $out:ident; $($(#[$doc:meta])* $name:ident [$($size:expr),*] of $extent:ident => $read:expr;)*) => {
         /// A row of numbers that every environment has.
         #[allow(non_camel_case_types)] // Named as users name them.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,6 +45,11 @@ macro_rules! outputs {
                 match self { $(Output::$name => vec![$($size),*],)* }
             }
 
+            /// What must be known to read it.
+            pub(crate) fn extent(self) -> Extent {
+                match self { $(Output::$name => Extent::$extent,)* }
+            }
+
             /// Appends its numbers to `out`. [`energy`](Self::energy) replaces the positions in the workspace by those of the
             /// state: it comes last.
             pub(crate) fn read<T: Real>(self, $s: &mut Source<T>, $out: &mut Vec<T>) {
@@ -55,81 +61,81 @@ macro_rules! outputs {
 
 outputs! {
     m, s, out;
-    /// Time of the state, s.
-    time [] => out.push(s.state.time);
+    /// Time of the state, s, rounded to the precision of the other outputs.
+    time [] of Nothing => out.push(s.state.rounded_time());
     /// Position coordinates of the state (nq).
-    qpos [m.nq] => out.extend_from_slice(&s.state.qpos);
+    qpos [m.nq] of Nothing => out.extend_from_slice(&s.state.qpos);
     /// Velocities of the state (nv).
-    qvel [m.nv] => out.extend_from_slice(&s.state.qvel);
+    qvel [m.nv] of Nothing => out.extend_from_slice(&s.state.qvel);
     /// Activations of the state (na).
-    act [m.na] => out.extend_from_slice(&s.state.act);
+    act [m.na] of Nothing => out.extend_from_slice(&s.state.act);
 
     /// Accelerations (nv).
-    qacc [m.nv] => out.extend_from_slice(&s.ws.qacc);
+    qacc [m.nv] of Everything => out.extend_from_slice(&s.ws.qacc);
     /// Positions of bodies, m (nbody, 3).
-    xpos [m.nbody(), 3] => vectors(&s.ws.position.xpos, out);
+    xpos [m.nbody(), 3] of Positions => vectors(&s.ws.position.xpos, out);
     /// Orientations of bodies (nbody, 4).
-    xquat [m.nbody(), 4] => quats(&s.ws.position.xquat, out);
+    xquat [m.nbody(), 4] of Positions => quats(&s.ws.position.xquat, out);
     /// The same as matrices, row by row (nbody, 9).
-    xmat [m.nbody(), 9] => matrices(&s.ws.position.xmat, out);
+    xmat [m.nbody(), 9] of Positions => matrices(&s.ws.position.xmat, out);
     /// Centres of mass of bodies, m (nbody, 3).
-    xipos [m.nbody(), 3] => vectors(&s.ws.position.xipos, out);
+    xipos [m.nbody(), 3] of Positions => vectors(&s.ws.position.xipos, out);
     /// Orientations of inertial frames, row by row (nbody, 9).
-    ximat [m.nbody(), 9] => matrices(&s.ws.position.ximat, out);
+    ximat [m.nbody(), 9] of Positions => matrices(&s.ws.position.ximat, out);
     /// Joint anchors, m (njnt, 3).
-    xanchor [m.joints.len(), 3] => vectors(&s.ws.position.xanchor, out);
+    xanchor [m.joints.len(), 3] of Positions => vectors(&s.ws.position.xanchor, out);
     /// Joint axes (njnt, 3).
-    xaxis [m.joints.len(), 3] => vectors(&s.ws.position.xaxis, out);
+    xaxis [m.joints.len(), 3] of Positions => vectors(&s.ws.position.xaxis, out);
     /// Positions of geoms, m (ngeom, 3).
-    geom_xpos [m.geoms.len(), 3] => vectors(&s.ws.position.geom_xpos, out);
+    geom_xpos [m.geoms.len(), 3] of Positions => vectors(&s.ws.position.geom_xpos, out);
     /// Orientations of geoms, row by row (ngeom, 9).
-    geom_xmat [m.geoms.len(), 9] => matrices(&s.ws.position.geom_xmat, out);
+    geom_xmat [m.geoms.len(), 9] of Positions => matrices(&s.ws.position.geom_xmat, out);
     /// Positions of sites, m (nsite, 3).
-    site_xpos [m.sites.len(), 3] => vectors(&s.ws.position.site_xpos, out);
+    site_xpos [m.sites.len(), 3] of Positions => vectors(&s.ws.position.site_xpos, out);
     /// Orientations of sites, row by row (nsite, 9).
-    site_xmat [m.sites.len(), 9] => matrices(&s.ws.position.site_xmat, out);
+    site_xmat [m.sites.len(), 9] of Positions => matrices(&s.ws.position.site_xmat, out);
     /// Centre of mass of each body and all below it, m (nbody, 3).
-    subtree_com [m.nbody(), 3] => vectors(&s.ws.position.subtree_com, out);
+    subtree_com [m.nbody(), 3] of Positions => vectors(&s.ws.position.subtree_com, out);
     /// Inertia of each body about the centre of mass of its tree: xx, yy, zz, xy, xz, yz, mass times offset, mass
     /// (nbody, 10).
-    cinert [m.nbody(), 10] => inertias(&s.ws.position.cinert, out);
+    cinert [m.nbody(), 10] of Positions => inertias(&s.ws.position.cinert, out);
     /// Velocity of each body, angular, then linear at the centre of mass of its tree (nbody, 6).
-    cvel [m.nbody(), 6] => motions(&s.ws.velocity.cvel, out);
+    cvel [m.nbody(), 6] of Everything => motions(&s.ws.velocity.cvel, out);
     /// Motion of each dof at unit velocity, likewise (nv, 6).
-    cdof [m.nv, 6] => motions(&s.ws.position.cdof, out);
+    cdof [m.nv, 6] of Positions => motions(&s.ws.position.cdof, out);
     /// Lengths of tendons (ntendon).
-    ten_length [m.tendons.len()] => out.extend_from_slice(&s.ws.position.ten_length);
+    ten_length [m.tendons.len()] of Positions => out.extend_from_slice(&s.ws.position.ten_length);
     /// Velocities of tendons (ntendon).
-    ten_velocity [m.tendons.len()] => out.extend_from_slice(&s.ws.velocity.ten_velocity);
+    ten_velocity [m.tendons.len()] of Everything => out.extend_from_slice(&s.ws.velocity.ten_velocity);
     /// Lengths of actuators (nu).
-    actuator_length [m.nu()] => out.extend_from_slice(&s.ws.position.actuator_length);
+    actuator_length [m.nu()] of Positions => out.extend_from_slice(&s.ws.position.actuator_length);
     /// Velocities of actuators (nu).
-    actuator_velocity [m.nu()] => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
+    actuator_velocity [m.nu()] of Everything => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
     /// Forces of actuators (nu).
-    actuator_force [m.nu()] => out.extend_from_slice(&s.ws.force.actuator_force);
+    actuator_force [m.nu()] of Everything => out.extend_from_slice(&s.ws.force.actuator_force);
     /// Power that actuators put in, W: the sum over those that drive. Those that brake do not count.
-    actuator_power [] => out.push(driving_power(s.ws));
+    actuator_power [] of Everything => out.push(driving_power(s.ws));
     /// Forces of actuators along dofs (nv).
-    qfrc_actuator [m.nv] => out.extend_from_slice(&s.ws.force.qfrc_actuator);
+    qfrc_actuator [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_actuator);
     /// Passive forces along dofs (nv).
-    qfrc_passive [m.nv] => out.extend_from_slice(&s.ws.force.qfrc_passive);
+    qfrc_passive [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_passive);
     /// Coriolis, centrifugal and gravitational forces along dofs, on the left of the equation of motion (nv).
-    qfrc_bias [m.nv] => out.extend_from_slice(&s.ws.force.qfrc_bias);
+    qfrc_bias [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_bias);
     /// All forces along dofs but those of constraints (nv).
-    qfrc_smooth [m.nv] => out.extend_from_slice(&s.ws.force.qfrc_smooth);
+    qfrc_smooth [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_smooth);
     /// Constraint forces along dofs (nv).
-    qfrc_constraint [m.nv] => out.extend_from_slice(&s.ws.qfrc_constraint);
+    qfrc_constraint [m.nv] of Everything => out.extend_from_slice(&s.ws.qfrc_constraint);
     /// What acts on each body from outside: applied forces, contacts, connects and welds. Torque, then force, about the
     /// centre of mass of its tree (nbody, 6). As in MuJoCo, a weld's rotational rows count as its torque.
-    cfrc_ext [m.nbody(), 6] => forces::external(s, out);
+    cfrc_ext [m.nbody(), 6] of Everything => forces::external(s, out);
     /// Force and torque of contacts on each body at its centre of mass, world axes (nbody, 6), in the form of `xfrc_applied`.
-    contact_force [m.nbody(), 6] => forces::of_contacts(s, out);
+    contact_force [m.nbody(), 6] of Everything => forces::of_contacts(s, out);
     /// How many contacts there are.
-    contact_count [] => out.push(count_contacts(s.ws));
+    contact_count [] of Everything => out.push(count_contacts(s.ws));
     /// Iterations of the constraint solver.
-    solver_iterations [] => out.push(s.ws.solver.stats().iterations);
+    solver_iterations [] of Everything => out.push(s.ws.solver.stats().iterations);
     /// Potential and kinetic energy of the state, J.
-    energy [2] => read_energy(s, out);
+    energy [2] of Nothing => read_energy(s, out);
 }
 
 impl Output {

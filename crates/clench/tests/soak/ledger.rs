@@ -7,16 +7,15 @@ use clench::rigid::{Batch, EnvStatus, Fault, Precision};
 use std::fmt::{self, Display, Formatter};
 
 /// What a step may change of a state.
-fn motion<S: Precision>(state: &StateRows<S>) -> [&Rows<S>; 5] {
+fn motion<S: Precision>(state: &StateRows<S>) -> [&Rows<S>; 4] {
     let StateRows {
-        time,
         qpos,
         qvel,
         act,
         qacc_warmstart,
         ..
     } = state;
-    [time, qpos, qvel, act, qacc_warmstart]
+    [qpos, qvel, act, qacc_warmstart]
 }
 
 /// The same bits, NaN included.
@@ -37,7 +36,8 @@ pub struct Expectation {
 pub struct Ledger<S> {
     expected: Vec<Expectation>,
     running: Vec<bool>,
-    before: [Vec<S>; 5],
+    times: Vec<f64>,
+    before: [Vec<S>; 4],
     pub resets: usize,
     pub poisoned: usize,
     not_finite: usize,
@@ -51,6 +51,7 @@ impl<S: Precision> Ledger<S> {
         Ledger {
             expected: vec![Expectation::default(); batch.count()],
             running: vec![true; batch.count()],
+            times: batch.state.time.as_slice().to_vec(),
             before: motion(&batch.state).map(|rows| rows.as_slice().to_vec()),
             resets: 0,
             poisoned: 0,
@@ -70,6 +71,7 @@ impl<S: Precision> Ledger<S> {
         for (copy, rows) in self.before.iter_mut().zip(motion(&batch.state)) {
             copy.copy_from_slice(rows.as_slice());
         }
+        (self.times).copy_from_slice(batch.state.time.as_slice());
         for (running, status) in self.running.iter_mut().zip(batch.statuses()) {
             *running = *status == EnvStatus::Running;
         }
@@ -105,10 +107,10 @@ impl<S: Precision> Ledger<S> {
     }
 
     fn check_advanced(&self, batch: &Batch<S>, env: usize) {
-        let timestep = S::new(batch.model().params.timestep);
+        let timestep = S::new(batch.model().params.timestep).to_f64();
         let time = batch.state.time.row(env)[0];
         assert!(
-            time == self.before[0][env] + timestep,
+            time == self.times[env] + timestep,
             "time of environment {env}"
         );
         for rows in motion(&batch.state) {
@@ -119,6 +121,11 @@ impl<S: Precision> Ledger<S> {
 
     /// A failed environment keeps its last good state.
     fn check_kept(&self, batch: &Batch<S>, env: usize) {
+        let time = batch.state.time.row(env);
+        assert!(
+            same(time, &self.times[env..=env]),
+            "time of environment {env}"
+        );
         for (rows, before) in motion(&batch.state).into_iter().zip(&self.before) {
             let before = &before[env * rows.width()..][..rows.width()];
             assert!(same(rows.row(env), before), "environment {env} moved");

@@ -14,8 +14,19 @@ pub struct Poison {
 
 /// Writes a bad number somewhere into the state of an environment.
 pub fn poison<S: Precision>(state: &mut StateRows<S>, env: usize, dice: &mut Dice) -> Poison {
+    let values = [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        S::MAX.to_f64(),
+        -S::MAX.to_f64(),
+        1e30,
+        -1e12,
+        1e6,
+        S::MIN_POSITIVE.to_f64(),
+    ];
+    let value = values[dice.below(values.len())];
     let mut fields = [
-        ("time", &mut state.time),
         ("qpos", &mut state.qpos),
         ("qvel", &mut state.qvel),
         ("ctrl", &mut state.ctrl),
@@ -23,24 +34,20 @@ pub fn poison<S: Precision>(state: &mut StateRows<S>, env: usize, dice: &mut Dic
         ("xfrc_applied", &mut state.xfrc_applied),
         ("qacc_warmstart", &mut state.qacc_warmstart),
     ];
-    let chosen = dice.below(fields.len());
-    let (field, rows) = &mut fields[chosen];
-    let row = rows.row_mut(env);
-    let values = [
-        S::new(f64::NAN),
-        S::INFINITY,
-        -S::INFINITY,
-        S::MAX,
-        -S::MAX,
-        S::new(1e30),
-        S::new(-1e12),
-        S::new(1e6),
-        S::MIN_POSITIVE,
-    ];
-    let value = values[dice.below(values.len())];
-    row[dice.below(row.len())] = value;
+    let chosen = dice.below(fields.len() + 1);
+    let field = match fields.get_mut(chosen) {
+        Some((field, rows)) => {
+            let row = rows.row_mut(env);
+            row[dice.below(row.len())] = S::new(value);
+            *field
+        }
+        None => {
+            state.time.row_mut(env)[0] = value;
+            "time"
+        }
+    };
     Poison {
         field,
-        finite: value.to_f64().is_finite(),
+        finite: value.is_finite(),
     }
 }

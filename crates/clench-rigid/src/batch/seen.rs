@@ -1,0 +1,85 @@
+//! For which positions and velocities recorded outputs hold.
+
+use super::cells::Cells;
+use super::precision::Lanewise;
+use super::{Precision, Rows, StateRows};
+use crate::error::SimError;
+use crate::model::Model;
+use crate::state::State;
+use clench_math::Real;
+
+/// What each environment's state was when its outputs were last recorded, as far as they depend on it. Kept only while
+/// outputs are.
+pub struct Seen<S> {
+    qpos: Rows<S>,
+    qvel: Rows<S>,
+    mocap_pos: Rows<S>,
+    mocap_quat: Rows<S>,
+}
+
+impl<S: Precision> Seen<S> {
+    /// Nothing seen yet.
+    pub fn new(model: &Model, count: usize) -> Result<Self, SimError> {
+        // Not equal to itself, nor to any other number.
+        let rows = |width| Rows::new(count, width, S::new(f64::NAN));
+        Ok(Seen {
+            qpos: rows(model.nq)?,
+            qvel: rows(model.nv)?,
+            mocap_pos: rows(3 * model.nmocap)?,
+            mocap_quat: rows(4 * model.nmocap)?,
+        })
+    }
+
+    /// Bytes that an environment takes.
+    pub fn row_bytes(&self) -> usize {
+        let tables = [&self.qpos, &self.qvel, &self.mocap_pos, &self.mocap_quat];
+        tables.iter().map(|rows| rows.row_bytes()).sum()
+    }
+
+    /// Whether what was recorded of environment `env` holds for its state.
+    pub fn holds(&self, env: usize, state: &StateRows<S>) -> bool {
+        self.qpos.row(env) == state.qpos.row(env)
+            && self.qvel.row(env) == state.qvel.row(env)
+            && self.mocap_pos.row(env) == state.mocap_pos.row(env)
+            && self.mocap_quat.row(env) == state.mocap_quat.row(env)
+    }
+
+    /// What was recorded of environment `env` holds no longer.
+    pub fn forget(&mut self, env: usize) {
+        self.qpos.row_mut(env).fill(S::new(f64::NAN));
+        self.qvel.row_mut(env).fill(S::new(f64::NAN));
+    }
+
+    pub fn share(&mut self) -> SeenCells<'_, S> {
+        SeenCells {
+            qpos: Cells::new(&mut self.qpos),
+            qvel: Cells::new(&mut self.qvel),
+            mocap_pos: Cells::new(&mut self.mocap_pos),
+            mocap_quat: Cells::new(&mut self.mocap_quat),
+        }
+    }
+}
+
+/// The tables as a step writes them.
+pub struct SeenCells<'a, S: Lanewise> {
+    qpos: Cells<'a, S>,
+    qvel: Cells<'a, S>,
+    mocap_pos: Cells<'a, S>,
+    mocap_quat: Cells<'a, S>,
+}
+
+impl<S: Lanewise> SeenCells<'_, S> {
+    /// Notes the state of an environment, of which outputs were recorded.
+    pub fn note<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
+        self.qpos.write(env, lane, &state.qpos);
+        self.qvel.write(env, lane, &state.qvel);
+        let positions = state.mocap_pos.iter().map(|position| position.to_array());
+        for (m, position) in positions.enumerate() {
+            self.mocap_pos.write_part(env, 3 * m, lane, &position);
+        }
+        for (m, turn) in state.mocap_quat.iter().enumerate() {
+            self.mocap_quat
+                .write_part(env, 4 * m, lane, &turn.to_array());
+        }
+    }
+}

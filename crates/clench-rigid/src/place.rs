@@ -1,0 +1,75 @@
+//! Joints as error messages name them: by name, with their body and where they were written.
+
+use crate::model::{Integrator, Joint, Model};
+use crate::workspace::Workspace;
+use clench_math::{Real, Scalar};
+use clench_solver::{Tree, TreeMatrix};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The joint of a number of the motion: `index` of `field`, in the order of the model's coordinates or dofs. `None` for fields
+/// that are not of joints.
+pub(crate) fn joint_of(model: &Model, field: &str, index: usize) -> Option<Arc<str>> {
+    let range = |joint: &Joint| -> Option<Range<usize>> {
+        match field {
+            "qpos" => Some(joint.qpos..joint.qpos + joint.kind.nq()),
+            "qvel" | "qacc" | "qfrc_constraint" | "qfrc_applied" | "qacc_warmstart" => {
+                Some(joint.dof..joint.dof + joint.kind.nv())
+            }
+            _ => None,
+        }
+    };
+    let mut joints = model.joints.iter();
+    let found = joints.find(|joint| range(joint).is_some_and(|range| range.contains(&index)));
+    found.map(|joint| describe(model, joint))
+}
+
+/// Such as `joint "elbow" of body "arm" (arm.xml:12)`.
+fn describe(model: &Model, joint: &Joint) -> Arc<str> {
+    let body = &model.bodies[joint.body];
+    let kind = format!("{:?}", joint.kind).to_lowercase();
+    let mut text = match joint.name.as_str() {
+        "" => format!("the {kind} joint of "),
+        name => format!("joint \"{name}\" of "),
+    };
+    text += &match body.name.as_str() {
+        "" => format!("body {}", joint.body),
+        name => format!("body \"{name}\""),
+    };
+    if let Some(origin) = joint.origin.as_ref().or(body.origin.as_ref()) {
+        text += &format!(" ({origin})");
+    }
+    text.into()
+}
+
+/// The joint where the mass matrix of a lane, or the matrix of the implicit integrator, is not positive definite.
+pub(crate) fn massless<T: Real>(model: &Model, ws: &Workspace<T>, lane: usize) -> Option<Arc<str>> {
+    let implicit = || match model.integrator {
+        Integrator::Euler | Integrator::ImplicitFast => {
+            bad_pivot(&model.tree, &ws.integration.matrix, lane)
+        }
+        Integrator::Rk4 => None,
+    };
+    let dof = bad_pivot(&model.tree, &ws.problem.mass, lane).or_else(implicit)?;
+    joint_of(model, "qvel", dof)
+}
+
+/// Where the factorization LᵀDL, which begins at the last dof, meets the first pivot that is not positive.
+fn bad_pivot<T: Real>(tree: &Tree, matrix: &TreeMatrix<T>, lane: usize) -> Option<usize> {
+    let dense = matrix.to_dense(tree);
+    let mut rest: Vec<f64> = dense.iter().map(|x| x.lane(lane).to_f64()).collect();
+    let n = tree.nv();
+    (0..n).rev().find(|&i| {
+        let pivot = rest[i * n + i];
+        if !(pivot > 0.0 && pivot.is_finite()) {
+            return true;
+        }
+        for j in 0..i {
+            let factor = rest[i * n + j] / pivot;
+            for k in 0..i {
+                rest[j * n + k] -= factor * rest[i * n + k];
+            }
+        }
+        false
+    })
+}
