@@ -4,6 +4,7 @@ What precedes the solver differs by rounding alone (1e-10); accelerations agree 
 messages begin.
 """
 
+import mujoco
 import numpy as np
 
 import oracle
@@ -12,9 +13,11 @@ from compare import assert_close, largest
 
 ROUNDING = 1e-10
 SOLVED = 1e-8
+SEARCH = 1e-5  # metres: how exactly MuJoCo searches for distances of convex shapes
 SMALL_VIOLATION = 1e-4  # metres: a violation is a difference of positions of some metres, known to 1e-14
 SMALL_ROW = 1e-5  # metres: a lever is a difference of positions of about a metre, known to 1e-15
 KIND = dict(enumerate(("equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon", *3 * ["contact"])))
+SEARCHED = (mujoco.mjtSensor.mjSENS_GEOMDIST, mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO)
 
 
 def mass_matrix(what, ours, theirs):
@@ -67,3 +70,32 @@ def constraint_forces(what, ours, theirs):
     for k, contact in enumerate(theirs.contacts):
         actual = ours["contacts"][k]["force"]
         assert_close(f"{what}contact {k} force", actual, contact["force"], 10 * SOLVED, scale)
+
+
+def sensors(model, what, ours, theirs, solved=10 * SOLVED):
+    """Every sensor: to rounding before the solver, to `solved` after it, and distances as exactly as MuJoCo searches for them."""
+    for k in range(model.nsensor):
+        kind = mujoco.mjtSensor(model.sensor_type[k])
+        numbers = slice(model.sensor_adr[k], model.sensor_adr[k] + model.sensor_dim[k])
+        expected = theirs.sensordata[numbers]
+        if kind in SEARCHED:
+            tolerance = SEARCH
+        elif model.sensor_needstage[k] == mujoco.mjtStage.mjSTAGE_ACC:
+            tolerance = solved
+        else:
+            tolerance = 10 * ROUNDING
+        name = f"{what}sensor {k} {kind.name} {model.sensor(k).name}"
+        actual = ours.get("sensordata", [])[numbers]
+        if kind == mujoco.mjtSensor.mjSENS_TOUCH and on_the_border(model, k, theirs):
+            continue
+        assert_close(name, actual, expected, tolerance, largest(expected, floor=1.0))
+
+
+def on_the_border(model, sensor, theirs):
+    """Whether rounding decides if a contact counts: MuJoCo's own sum is another one where the site's volume is a millionth larger."""
+    site = model.sensor_objid[sensor]
+    size = model.site_size[site].copy()
+    model.site_size[site] = size * (1 + 1e-6)
+    larger = oracle.reference(model, theirs.state).sensordata[model.sensor_adr[sensor]]
+    model.site_size[site] = size
+    return larger != theirs.sensordata[model.sensor_adr[sensor]]

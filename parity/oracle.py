@@ -49,8 +49,10 @@ def reference(model, state):
     forces = [f"qfrc_{name}" for name in ("constraint", "bias", "passive", "actuator", "smooth")]
     efc = ("type", "pos", "vel", "aref", "D", "KBIP", "margin", "force")
     return types.SimpleNamespace(
+        state=state,
         mass=mass,
         jacobian=jacobian(model, data),
+        sensordata=data.sensordata.copy(),
         contacts=[contact(model, data, k) for k in range(data.ncon)],
         **{name: getattr(data, name).copy() for name in ("qvel", "qacc", "qacc_smooth", *forces)},
         **{f"efc_{name}": getattr(data, f"efc_{name}")[: data.nefc].copy() for name in efc},

@@ -1,22 +1,12 @@
 """Models of other people's packages, genesis-world, dm-control and gym-aloha, which `cargo xtask test python` puts into .venv/models.
 
-`public.txt` lists all that MuJoCo loads, each with what Clench refuses it for, if it does. Where that is sensors or skins, which move
-nothing, a copy without them is compared instead.
+`public.txt` lists all that MuJoCo loads, each with what Clench refuses it for, if it does.
 """
 
-import functools
 import pathlib
-import re
-import tempfile
-import warnings
-
-import mujoco
 
 HERE = pathlib.Path(__file__).resolve().parent
 FOLDER = HERE.parent / ".venv/models"
-MOVE_NOTHING = re.compile(r"in <sensor>|<skin> in")
-
-copies = tempfile.TemporaryDirectory()
 
 
 def listed():
@@ -31,22 +21,9 @@ def refused():
 
 
 def compared():
-    return [name for name, reason in listed() if reason is None or MOVE_NOTHING.search(reason)]
+    return [name for name, reason in listed() if reason is None]
 
 
-@functools.lru_cache(maxsize=None)
 def path(name):
-    """The file to compare: the one named, or a copy without sensors and skins."""
-    original = FOLDER / name
-    if dict(listed()).get(name) is None:
-        return original
-    spec = mujoco.MjSpec.from_file(str(original))
-    for element in [*spec.sensors, *spec.skins]:
-        spec.delete(element)
-    spec.meshdir, spec.texturedir = (str(original.parent / folder) for folder in (spec.meshdir, spec.texturedir))
-    copy = pathlib.Path(copies.name) / name.replace("/", "-")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that an attribute is deprecated
-        spec.compile()
-        copy.write_text(spec.to_xml())
-    return copy
+    """Where a listed file is."""
+    return FOLDER / name

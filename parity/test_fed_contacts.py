@@ -52,3 +52,8 @@ def test_acceleration(model, cone, solver):
 def test_constraint_forces(model, cone, solver):
     for case in numbered(model, cone, solver):
         agreement.constraint_forces(*case)
+
+
+def test_sensors(model, cone):
+    for case in numbered(model, cone):
+        agreement.sensors(oracle.load(model), *case)

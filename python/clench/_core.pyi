@@ -32,7 +32,7 @@ __all__ = [
 
 _Precision: TypeAlias = Literal["64", "32"]
 _Kind: TypeAlias = Literal[
-    "body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair", "mesh", "hfield"
+    "body", "joint", "geom", "site", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"
 ]
 _Cost: TypeAlias = Literal["quadratic", "one_sided", "huber", "pyramid", "elliptic"]
 _Status: TypeAlias = Literal["unconstrained", "proven", "converged", "no_progress", "iteration_limit", "non_finite"]
@@ -84,6 +84,10 @@ class Model:
     @property
     def neq(self) -> int: ...
     @property
+    def nsensor(self) -> int: ...
+    @property
+    def nsensordata(self) -> int: ...
+    @property
     def nkey(self) -> int: ...
     @property
     def nmocap(self) -> int: ...
@@ -100,6 +104,7 @@ class Model:
     def site(self, which: str | SupportsIndex) -> Element: ...
     def tendon(self, which: str | SupportsIndex) -> Element: ...
     def actuator(self, which: str | SupportsIndex) -> Element: ...
+    def sensor(self, which: str | SupportsIndex) -> Element: ...
     def equality(self, which: str | SupportsIndex) -> Element: ...
     def keyframe(self, which: str | SupportsIndex) -> Element: ...
     def pair(self, which: str | SupportsIndex) -> Element: ...
@@ -110,6 +115,7 @@ class Model:
     timestep: Final[float]  # Seconds a step.
     gravity: Final[_Floats]  # (3,) Acceleration of gravity.
     wind: Final[_Floats]  # (3,) Velocity of the medium.
+    magnetic: Final[_Floats]  # (3,) The magnetic field, which magnetometers measure.
     density: Final[float]  # Density of the medium.
     viscosity: Final[float]  # Viscosity of the medium.
     override_margin: Final[float]  # Margin of every contact, with the flag override.
@@ -185,6 +191,7 @@ class Model:
     geom_priority: Final[_Codes]  # (ngeom,) Whose parameters win.
     geom_group: Final[_Codes]  # (ngeom,) Group.
 
+    site_size: Final[_Floats]  # (nsite, 3) Size of the site's volume, as a geom's.
     site_pos: Final[_Floats]  # (nsite, 3) Position in the body frame.
     site_quat: Final[_Floats]  # (nsite, 4) Orientation in the body frame.
     site_bodyid: Final[_Codes]  # (nsite,) The body that carries it.
@@ -228,6 +235,11 @@ class Model:
     actuator_forcelimited: Final[_Flags]  # (nu,) Whether its force is clamped.
     actuator_actlimited: Final[_Flags]  # (nu,) Whether its activation is clamped.
     actuator_actearly: Final[_Flags]  # (nu,) Whether the activation as of the end of the step acts.
+
+    sensor_adr: Final[_Codes]  # (nsensor,) The first of its numbers in sensordata.
+    sensor_dim: Final[_Codes]  # (nsensor,) How many numbers.
+    sensor_cutoff: Final[_Floats]  # (nsensor,) Bound of its numbers, where positive.
+    sensor_noise: Final[_Floats]  # (nsensor,) Standard deviation of the noise that is expected; none is added.
 
     eq_anchor1: Final[_Floats]  # (neq, 3) Anchor or weld point in the first body's frame.
     eq_anchor2: Final[_Floats]  # (neq, 3) Anchor or weld point in the second body's frame.
@@ -294,7 +306,7 @@ class Element:
     active0: Final[bool]  # equality
     actlimited: Final[bool]  # actuator
     actrange: Final[_Floats]  # (2,) actuator
-    adr: Final[int]  # tendon, hfield
+    adr: Final[int]  # tendon, sensor, hfield
     anchor1: Final[_Floats]  # (3,) equality
     anchor2: Final[_Floats]  # (3,) equality
     axis: Final[_Floats]  # (3,) joint
@@ -307,10 +319,11 @@ class Element:
     ctrl: Final[_Floats]  # (nu,) keyframe
     ctrllimited: Final[bool]  # actuator
     ctrlrange: Final[_Floats]  # (2,) actuator
+    cutoff: Final[float]  # sensor
     damping: Final[float]  # tendon
     data: Final[_Floats]  # (nrow, ncol) hfield
     dataid: Final[int]  # geom
-    dim: Final[int]  # pair
+    dim: Final[int]  # sensor, pair
     dofadr: Final[int]  # body, joint
     dofnum: Final[int]  # body
     dynprm: Final[_Floats]  # (10,) actuator
@@ -348,6 +361,7 @@ class Element:
     mquat: Final[_Floats]  # (nmocap, 4) keyframe
     ncol: Final[int]  # hfield
     nrow: Final[int]  # hfield
+    noise: Final[float]  # sensor
     num: Final[int]  # tendon
     obj1id: Final[int]  # equality
     obj2id: Final[int]  # equality
@@ -364,7 +378,7 @@ class Element:
     range: Final[_Floats]  # (2,) joint, tendon
     rbound: Final[float]  # geom
     rootid: Final[int]  # body
-    size: Final[_Floats]  # (3,) geom, (4,) hfield
+    size: Final[_Floats]  # (3,) geom, site, (4,) hfield
     solimp: Final[_Floats]  # (5,) joint, geom, equality, pair
     solimp_fri: Final[_Floats]  # (5,) tendon
     solimp_lim: Final[_Floats]  # (5,) tendon
@@ -535,6 +549,7 @@ class _Outputs(StateViews):
     qfrc_constraint: Final[NDArray[Any]]  # (nv,) Constraint forces.
     cfrc_ext: Final[NDArray[Any]]  # (nbody, 6) What acts from outside, about the centre of mass of the tree, torque first.
     contact_force: Final[NDArray[Any]]  # (nbody, 6) Contacts, at the body's centre of mass, force first.
+    sensordata: Final[NDArray[Any]]  # (nsensordata,) What the sensors measured.
     energy: Final[NDArray[Any]]  # (2,) Potential and kinetic energy of the state.
 
 @final

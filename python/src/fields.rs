@@ -153,6 +153,10 @@ const STRUCTURE: &[Reader] = &[
         flags(&m.actuators, |a| a.actlimited)
     }),
     ("actuator_actearly", |m| flags(&m.actuators, |a| a.actearly)),
+    ("sensor_adr", |m| codes(&m.sensors, |s| id(s.numbers.start))),
+    ("sensor_dim", |m| codes(&m.sensors, |s| id(s.numbers.len()))),
+    ("sensor_cutoff", |m| reals(&m.sensors, |s| s.cutoff)),
+    ("sensor_noise", |m| reals(&m.sensors, |s| s.noise)),
     ("eq_type", |m| {
         codes(&m.equalities, |e| equality(e.target).0)
     }),
@@ -190,6 +194,13 @@ fn flags<E>(elements: &[E], flag: impl Fn(&E) -> bool) -> Field {
     Field {
         shape: vec![elements.len()],
         numbers: Numbers::Flag(elements.iter().map(flag).collect()),
+    }
+}
+
+fn reals<E>(elements: &[E], number: impl Fn(&E) -> f64) -> Field {
+    Field {
+        shape: vec![elements.len()],
+        numbers: Numbers::Real(elements.iter().map(number).collect()),
     }
 }
 

@@ -15,6 +15,7 @@ pub(crate) enum Kind {
     Site,
     Tendon,
     Actuator,
+    Sensor,
     Equality,
     Keyframe,
     Pair,
@@ -23,13 +24,14 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    const ALL: [Kind; 11] = [
+    const ALL: [Kind; 12] = [
         Kind::Body,
         Kind::Joint,
         Kind::Geom,
         Kind::Site,
         Kind::Tendon,
         Kind::Actuator,
+        Kind::Sensor,
         Kind::Equality,
         Kind::Keyframe,
         Kind::Pair,
@@ -52,6 +54,7 @@ impl Kind {
             Kind::Site => "site",
             Kind::Tendon => "tendon",
             Kind::Actuator => "actuator",
+            Kind::Sensor => "sensor",
             Kind::Equality => "equality",
             Kind::Keyframe => "keyframe",
             Kind::Pair => "pair",
@@ -69,6 +72,7 @@ impl Kind {
             Kind::Site => "site_",
             Kind::Tendon => "tendon_",
             Kind::Actuator => "actuator_",
+            Kind::Sensor => "sensor_",
             Kind::Equality => "eq_",
             Kind::Keyframe => "key_",
             Kind::Pair => "pair_",
@@ -86,6 +90,7 @@ impl Kind {
             Kind::Site => model.sites.iter().map(|e| &*e.name).collect(),
             Kind::Tendon => model.tendons.iter().map(|e| &*e.name).collect(),
             Kind::Actuator => model.actuators.iter().map(|e| &*e.name).collect(),
+            Kind::Sensor => model.sensors.iter().map(|e| &*e.name).collect(),
             Kind::Equality => model.equalities.iter().map(|e| &*e.name).collect(),
             Kind::Keyframe => model.keyframes.iter().map(|e| &*e.name).collect(),
             Kind::Pair => model.pairs.iter().map(|e| &*e.name).collect(),

@@ -198,6 +198,16 @@ impl Model {
     fn neq(&self) -> usize {
         self.0.equalities.len()
     }
+    /// int : Number of sensors.
+    #[getter]
+    fn nsensor(&self) -> usize {
+        self.0.sensors.len()
+    }
+    /// int : Numbers that all sensors give.
+    #[getter]
+    fn nsensordata(&self) -> usize {
+        self.0.nsensordata()
+    }
     /// int : Number of keyframes.
     #[getter]
     fn nkey(&self) -> usize {
@@ -228,7 +238,7 @@ impl Model {
     ///
     /// Parameters
     /// ----------
-    /// kind : {"body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair", "mesh", "hfield"}
+    /// kind : {"body", "joint", "geom", "site", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"}
     ///     What to name.
     ///
     /// Returns
@@ -271,6 +281,10 @@ impl Model {
     #[doc = named!("equality constraint")]
     fn equality(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
         Element::find(&self.0, Kind::Equality, which)
+    }
+    #[doc = named!("sensor")]
+    fn sensor(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Sensor, which)
     }
     #[doc = named!("keyframe")]
     fn keyframe(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {

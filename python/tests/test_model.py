@@ -27,6 +27,7 @@ KINDS = {
     "site": "site_",
     "tendon": "tendon_",
     "actuator": "actuator_",
+    "sensor": "sensor_",
     "equality": "eq_",
     "keyframe": "key_",
     "pair": "pair_",
@@ -34,13 +35,14 @@ KINDS = {
     "hfield": "hfield_",
 }
 SIZES = ["nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ntendon", "neq", "nkey", "nmocap", "npair"]
-SIZES += ["nmesh", "nhfield"]
+SIZES += ["nmesh", "nhfield", "nsensor", "nsensordata"]
 
 # What MuJoCo keeps in its options, by its name there.
 OPTIONS = {
     "timestep": "timestep",
     "gravity": "gravity",
     "wind": "wind",
+    "magnetic": "magnetic",
     "density": "density",
     "viscosity": "viscosity",
     "override_margin": "o_margin",

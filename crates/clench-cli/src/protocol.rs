@@ -222,6 +222,9 @@ pub struct ResultLine<'a> {
     qfrc_bias: &'a [f64],
     qfrc_passive: &'a [f64],
     qfrc_actuator: &'a [f64],
+    /// What the sensors of the model measured.
+    #[serde(skip_serializing_if = "<[f64]>::is_empty")]
+    sensordata: &'a [f64],
     contacts: Vec<ContactResult>,
     /// More contacts were found than the options allow: some are left out.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -291,6 +294,7 @@ impl<'a> ResultLine<'a> {
             qfrc_bias: &ws.force.qfrc_bias,
             qfrc_passive: &ws.force.qfrc_passive,
             qfrc_actuator: &ws.force.qfrc_actuator,
+            sensordata: &ws.sensors.data,
             contacts: (0..sim.contacts().len())
                 .map(|i| ContactResult::new(sim, i))
                 .collect(),

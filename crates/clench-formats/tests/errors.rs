@@ -322,11 +322,10 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         expect(line, element, later);
     }
     for (line, element) in [
-        ("<sensor><clock/></sensor>", "clock"),
+        ("<sensor><tactile/></sensor>", "tactile"),
         ("<tendon><spatial/></tendon>", "spatial"),
         ("<deformable><flex/></deformable>", "flex"),
         ("<extension><plugin/></extension>", "plugin"),
-        ("<asset><skin/></asset>", "skin"),
         ("<asset><model/></asset>", "model"),
         ("<equality><flex/></equality>", "flex"),
         ("<option integrator='implicit'/>", "option"),

@@ -21,6 +21,7 @@ mod place;
 pub mod profile;
 mod query;
 pub mod readout;
+pub mod sensor;
 pub mod settings;
 mod sim;
 mod singular;

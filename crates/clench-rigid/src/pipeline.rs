@@ -17,6 +17,7 @@ use crate::dynamics::transmission::transmission;
 use crate::dynamics::velocity::velocities;
 use crate::model::{Integrator, Model, Params};
 use crate::profile::Stage;
+use crate::sensor;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -70,8 +71,21 @@ pub fn force_stage<T: Real>(
     ws.clock.lap(Stage::Force as usize);
 }
 
-/// Forward dynamics: everything that follows from the state, up to `ws.qacc` and the constraint forces.
+/// Everything that follows from the state: forward dynamics, and what sensors measure.
 pub fn forward<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    forward_dynamics(model, params, settings, state, ws);
+    sensor::evaluate(model, params, state, ws);
+    ws.clock.lap(Stage::Sensors as usize);
+}
+
+/// Forward dynamics, up to `ws.qacc` and the constraint forces.
+fn forward_dynamics<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
@@ -99,7 +113,7 @@ pub fn step<T: Real>(
         Integrator::Euler => euler(model, params, state, ws),
         Integrator::ImplicitFast => implicit_fast(model, params, state, ws),
         Integrator::Rk4 => rk4(model, params, state, ws, |state, ws| {
-            forward(model, params, settings, state, ws);
+            forward_dynamics(model, params, settings, state, ws);
         }),
     }
     state.qacc_warmstart.copy_from_slice(&ws.qacc);

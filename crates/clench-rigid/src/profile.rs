@@ -24,6 +24,8 @@ pub enum Stage {
     Assembly,
     /// The solve; its parts are listed in its place.
     Solve,
+    /// What sensors measure.
+    Sensors,
     /// From acceleration to the next state.
     Integration,
     /// Rows in and out of lanes, and checks.
@@ -32,7 +34,7 @@ pub enum Stage {
 
 impl Stage {
     /// How many there are.
-    pub const COUNT: usize = 11;
+    pub const COUNT: usize = 12;
 }
 
 /// Times the stages of steps.
@@ -68,6 +70,7 @@ impl Profile {
             part("line search", SolvePart::LineSearch),
             part("evaluation", SolvePart::Evaluation),
             ("solve rest", rest),
+            step("sensors", Stage::Sensors),
             step("integration", Stage::Integration),
             step("rows and checks", Stage::Rows),
         ];

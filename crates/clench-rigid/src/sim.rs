@@ -60,7 +60,11 @@ impl<T: Precision> Sim<T> {
             params: model.params.broadcast(),
             options,
             settings,
-            ws: Workspace::new(&model),
+            ws: {
+                let mut ws = Workspace::new(&model);
+                ws.sensors.wanted = true;
+                ws
+            },
             last_good: initial.clone(),
             known: Known::new(),
             resets: 0,

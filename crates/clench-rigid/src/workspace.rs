@@ -5,6 +5,7 @@ use crate::constraint::ConstraintRecord;
 use crate::contact::{Collision, Contact};
 use crate::dynamics::integrate::Integration;
 use crate::profile::{Profile, StepClock};
+use crate::sensor::SensorReadings;
 use clench_math::{Force, Inertia, Mask, Mat3, Motion, Quat, Real, Vec3};
 use clench_solver::{Problem, Solver};
 
@@ -151,6 +152,8 @@ pub struct Workspace<T: Real> {
     pub qacc: Vec<T>,
     /// Constraint forces along dofs (nv).
     pub qfrc_constraint: Vec<T>,
+    /// What sensors measure.
+    pub sensors: SensorReadings<T>,
     /// What integrators need besides.
     pub integration: Integration<T>,
     /// Where the time goes, once it runs; see also the solver's.
@@ -195,6 +198,7 @@ impl<T: Real> Workspace<T> {
             solver: Solver::new(&model.tree),
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
+            sensors: SensorReadings::new(model),
             integration: Integration::new(model),
             clock: StepClock::default(),
             singular: T::Mask::splat(false),

@@ -23,6 +23,7 @@ mod option;
 mod orientation;
 mod rules;
 mod schema;
+mod sensor;
 mod site;
 mod tendon;
 
@@ -32,6 +33,7 @@ use actuator::Shortcut;
 use body::BodyReader;
 use clench_rigid::Budget;
 use clench_rigid::builder::ModelBuilder;
+use clench_rigid::model::SensorKind;
 use compiler::Notation;
 use defaults::{Classes, MAIN};
 use document::Element;
@@ -54,6 +56,10 @@ const REFERENCES: &[&str] = &[
     "geom2",
     "site1",
     "site2",
+    "body",
+    "site",
+    "objname",
+    "refname",
 ];
 
 /// Reads the model in a file.
@@ -153,7 +159,7 @@ fn read_model(
         bodies.read_world(section)?;
     }
     let replicated = bodies.replicated;
-    for section in ["contact", "equality", "tendon", "actuator"] {
+    for section in ["contact", "equality", "tendon", "actuator", "sensor"] {
         for element in entries(root, section) {
             reject_replicated(element, &replicated)?;
         }
@@ -205,6 +211,11 @@ fn read_references(
         let mut draft = classes[class].actuator.clone();
         draft.read(element, shortcut, classes.law(class, shortcut))?;
         builder.actuators.push(draft.finish(element)?);
+    }
+    for element in entries(root, "sensor") {
+        if let Some(kind) = SensorKind::find(&element.tag) {
+            builder.sensors.push(sensor::read(element, kind)?);
+        }
     }
     for element in entries(root, "keyframe") {
         builder.keyframes.push(keyframe::read(element)?);

@@ -122,6 +122,7 @@ fn read_physics(element: &Element, builder: &mut ModelBuilder) -> Result<(), Loa
     }
     element.set_numbers("gravity", &mut physics.gravity)?;
     element.set_numbers("wind", &mut physics.wind)?;
+    element.set_numbers("magnetic", &mut physics.magnetic)?;
     element.refuse_negative(&["density", "viscosity"])?;
     element.set_number("density", &mut physics.density)?;
     element.set_number("viscosity", &mut physics.viscosity)?;
@@ -168,6 +169,7 @@ fn element_flags(element: &Element, flags: &mut Flags) -> Result<(), LoadError> 
         ("refsafe", &mut flags.refsafe),
         ("eulerdamp", &mut flags.eulerdamp),
         ("multiccd", &mut flags.multiccd),
+        ("sensor", &mut flags.sensor),
     ];
     for (name, target) in targets {
         element.set_keyword(name, &SWITCHES, target)?;

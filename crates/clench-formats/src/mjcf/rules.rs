@@ -21,7 +21,7 @@ pub(crate) struct Rule {
     pub later_children: &'static str,
 }
 
-const NONE: Rule = Rule {
+pub(crate) const NONE: Rule = Rule {
     element: "",
     read: "",
     ignored: "",
@@ -88,21 +88,21 @@ pub(crate) const RULES: &[Rule] = &[
     ),
     Rule {
         element: "option",
-        read: "timestep gravity wind density viscosity integrator cone jacobian solver impratio tolerance \
+        read: "timestep gravity wind magnetic density viscosity integrator cone jacobian solver impratio tolerance \
             ls_tolerance noslip_tolerance iterations ls_iterations noslip_iterations o_margin o_solref o_solimp \
             o_friction actuatorgroupdisable",
         // MuJoCo's general collision stops at a tolerance or after so many iterations; ours goes on to the last digit.
         // The rest is for sensors, signed distance fields and sleep, which are refused where a file asks for them.
-        ignored: "magnetic ccd_tolerance ccd_iterations sdf_iterations sdf_initpoints sleep_tolerance",
+        ignored: "ccd_tolerance ccd_iterations sdf_iterations sdf_initpoints sleep_tolerance",
         once: "flag",
         ..NONE
     },
     Rule {
         element: "flag",
         read: "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart \
-            filterparent actuation refsafe island eulerdamp multiccd autoreset override",
+            filterparent actuation refsafe island eulerdamp multiccd autoreset sensor override",
         // `nativeccd` and `midphase` choose between algorithms that look for the same contacts.
-        ignored: "energy fwdinv midphase nativeccd sensor",
+        ignored: "energy fwdinv midphase nativeccd",
         later: "diagexact=disable invdiscrete=disable ipc=disable sleep=disable speculative=disable",
         ..NONE
     },
@@ -127,17 +127,9 @@ pub(crate) const RULES: &[Rule] = &[
         ..NONE
     },
     section("extension", "", "plugin"),
-    section("deformable", "", "flex skin"),
-    section(
-        "sensor",
-        "",
-        "touch accelerometer velocimeter gyro force torque magnetometer camprojection rangefinder jointpos \
-        jointvel tendonpos tendonvel actuatorpos actuatorvel actuatorfrc jointactuatorfrc tendonactuatorfrc \
-        ballquat ballangvel jointlimitpos jointlimitvel jointlimitfrc tendonlimitpos tendonlimitvel \
-        tendonlimitfrc framepos framequat framexaxis frameyaxis framezaxis framelinvel frameangvel \
-        framelinacc frameangacc subtreecom subtreelinvel subtreeangmom insidesite distance normal fromto \
-        contact e_potential e_kinetic clock tactile user plugin",
-    ),
+    section("deformable", "skin", "flex"),
+    // Which kinds of sensor there are, and with which attributes, says the table of sensors.
+    section("sensor", "", "camprojection contact tactile plugin"),
     // The tree of bodies.
     section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
     Rule {
@@ -196,8 +188,8 @@ pub(crate) const RULES: &[Rule] = &[
     },
     Rule {
         element: "site",
-        read: "name class type group pos fromto quat axisangle euler xyaxes zaxis",
-        ignored: "material rgba size user",
+        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis",
+        ignored: "material rgba user",
         later: "mesh",
         ..NONE
     },
@@ -378,7 +370,7 @@ pub(crate) const RULES: &[Rule] = &[
         slidercrank crankbroken frustum bv bvactive",
         "",
     ),
-    section("asset", "texture material mesh hfield", "skin model"),
+    section("asset", "texture material mesh hfield skin", "model"),
     ignored(
         "texture",
         "name class type colorspace content_type embed file gridsize gridlayout fileright fileleft fileup \
@@ -406,6 +398,13 @@ pub(crate) const RULES: &[Rule] = &[
         read: "inertia maxhullvert scale",
         ..NONE
     },
+    // A skin is drawn over bodies and follows them.
+    ignored(
+        "skin",
+        "name file vertex texcoord face inflate material rgba group",
+        "bone",
+    ),
+    ignored("bone", "body bindpos bindquat vertid vertweight", ""),
     Rule {
         element: "hfield",
         read: "name file content_type nrow ncol elevation size",

@@ -5,7 +5,9 @@
 
 use super::document::Element;
 use super::rules::{RULES, Rule};
+use super::sensor;
 use crate::LoadError;
+use clench_rigid::model::SensorKind;
 
 /// Attributes that an element has in the model, but not in a default class.
 const NOT_IN_DEFAULTS: &[&str] = &[
@@ -28,6 +30,9 @@ pub(crate) fn check(root: &Element) -> Result<(), LoadError> {
 
 /// The rule of an element below a parent: one for that parent alone, or one for anywhere.
 fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
+    if parent == "sensor" {
+        return sensor::rule(tag);
+    }
     let of = |name: &str| RULES.iter().find(|rule| rule.element == name);
     of(&format!("{parent}/{tag}")).or_else(|| of(tag))
 }
@@ -93,7 +98,16 @@ fn check_child(
     if words(rule.later_children).any(|later| later == tag) {
         return Err(child.error(format!("<{tag}> in <{}> is not supported yet", element.tag)));
     }
-    let known = || words(rule.children).chain(words(rule.once));
+    let sensors = match element.tag.as_str() {
+        "sensor" => SensorKind::ALL,
+        _ => &[],
+    };
+    let sensors = || sensors.iter().map(|kind| kind.name());
+    let known = || {
+        words(rule.children)
+            .chain(words(rule.once))
+            .chain(sensors())
+    };
     let allowed = known().any(|name| name == tag);
     find(&element.tag, tag).filter(|_| allowed).ok_or_else(|| {
         let hint = suggestion(tag, known().chain(words(rule.later_children)));

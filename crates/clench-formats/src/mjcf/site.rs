@@ -1,4 +1,4 @@
-//! `<site>`: its pose matters, its shape is only seen.
+//! `<site>`: a frame, and the volume in which sensors feel.
 
 use super::compiler::Notation;
 use super::document::Element;
@@ -13,6 +13,7 @@ use clench_rigid::builder::SiteSpec;
 #[derive(Clone, Debug)]
 pub(crate) struct SiteDraft {
     kind: ShapeKind,
+    size: [f64; 3],
     pos: [f64; 3],
     orientation: Orientation,
     fromto: Option<[f64; 6]>,
@@ -23,6 +24,7 @@ impl Default for SiteDraft {
     fn default() -> Self {
         SiteDraft {
             kind: ShapeKind::Sphere,
+            size: [0.005; 3],
             pos: [0.0; 3],
             orientation: Orientation::default(),
             fromto: None,
@@ -45,6 +47,7 @@ impl SiteDraft {
             }
             _ => {}
         }
+        element.overlay("size", &mut self.size)?;
         element.set_numbers("pos", &mut self.pos)?;
         self.orientation.read(element)?;
         self.fromto = element.numbers("fromto")?.or(self.fromto);
@@ -53,13 +56,13 @@ impl SiteDraft {
 
     /// The site in its body, carried along with the frame that it is written in.
     pub fn finish(
-        self,
+        mut self,
         element: &Element,
         notation: &Notation,
         frame: &Pose,
     ) -> Result<SiteSpec, LoadError> {
         let pose = match self.fromto {
-            Some(points) => place_segment(points, self.pos, self.kind, &mut [0.0; 3], element)?,
+            Some(points) => place_segment(points, self.pos, self.kind, &mut self.size, element)?,
             None => Pose {
                 pos: Vec3::from_array(self.pos),
                 quat: self.orientation.resolve(notation, element)?,
@@ -70,6 +73,8 @@ impl SiteDraft {
             name: element.string("name"),
             pos: pose.pos,
             quat: pose.quat,
+            kind: self.kind,
+            size: self.size,
             group: self.group,
             origin: Some(element.origin.clone()),
         })

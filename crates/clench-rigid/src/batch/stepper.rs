@@ -360,6 +360,8 @@ where
     }
 
     fn run(&mut self, envs: &[u32], job: &Job<T::Scalar>) {
+        let sensors = &job.targets[Output::sensordata as usize];
+        self.ws.sensors.wanted = sensors.last.is_some() || sensors.trace.is_some();
         self.advance(Group::new(envs), Start::Rows, job.first, job);
         // Each by itself, which changes no bit of what comes out.
         while let Some((env, step)) = self.restarts.pop() {

@@ -4,7 +4,7 @@ use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
     BuildError, ModelBuilder, actuators, bodies, budget, check, contacts, equalities, keyframes,
-    tendons, weights,
+    sensors, tendons, weights,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -46,6 +46,7 @@ impl ModelBuilder {
         contacts::add_all(self, &names, &mut model)?;
         tendons::add_all(self, &names, &mut model)?;
         actuators::add_all(self, &names, &mut model)?;
+        sensors::add_all(self, &names, &mut model)?;
 
         let mut pose0 = initial_pose(&model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
@@ -70,6 +71,7 @@ impl ModelBuilder {
             sites: Vec::new(),
             tendons: Vec::new(),
             actuators: Vec::new(),
+            sensors: Vec::new(),
             equalities: Vec::new(),
             pairs: Vec::new(),
             excludes: HashSet::new(),
@@ -90,6 +92,7 @@ impl ModelBuilder {
                 timestep: physics.timestep,
                 gravity: Vec3::from_array(physics.gravity),
                 wind: Vec3::from_array(physics.wind),
+                magnetic: Vec3::from_array(physics.magnetic),
                 density: physics.density,
                 viscosity: physics.viscosity,
                 override_margin: contacts.margin,

@@ -6,6 +6,7 @@ use super::{
     ActuatorSpec, BodySpec, BuildError, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
     InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec, TendonSpec,
 };
+use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 
 /// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
@@ -61,6 +62,7 @@ fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
     )?;
     require(finite(&physics.gravity), "gravity", "finite")?;
     require(finite(&physics.wind), "wind", "finite")?;
+    require(finite(&physics.magnetic), "magnetic", "finite")?;
     require(not_negative(physics.density), "density", "zero or more")?;
     require(not_negative(physics.viscosity), "viscosity", "zero or more")?;
     require(
@@ -177,7 +179,20 @@ pub(super) fn require_condim(element: &impl Element, condim: u32) -> Result<(), 
 }
 
 fn check_site(s: &SiteSpec) -> Result<(), BuildError> {
-    check_pose(s, s.pos, s.quat)
+    check_pose(s, s.pos, s.quat)?;
+    let used = match s.kind {
+        ShapeKind::Sphere => 1,
+        ShapeKind::Capsule | ShapeKind::Cylinder => 2,
+        ShapeKind::Ellipsoid | ShapeKind::Box => 3,
+        ShapeKind::Plane | ShapeKind::HeightField | ShapeKind::Mesh => {
+            return Err(s.error("must be a sphere, capsule, ellipsoid, cylinder or box"));
+        }
+    };
+    s.require_finite("size", &s.size)?;
+    match s.size[..used].iter().find(|&&size| size <= 0.0) {
+        Some(bad) => Err(s.error(format!("size must be positive, but has {bad}"))),
+        None => Ok(()),
+    }
 }
 
 fn check_tendon(t: &TendonSpec) -> Result<(), BuildError> {

@@ -2,7 +2,7 @@
 
 use super::{
     ActuatorSpec, BodySpec, BuildError, EqualitySpec, ExcludeSpec, GeomSpec, HeightFieldSpec,
-    JointSpec, KeyframeSpec, MeshSpec, Origin, PairSpec, SiteSpec, TendonSpec,
+    JointSpec, KeyframeSpec, MeshSpec, Origin, PairSpec, SensorSpec, SiteSpec, TendonSpec,
 };
 
 /// An element of the author's description, as error messages see it.
@@ -75,6 +75,7 @@ elements! {
     HeightFieldSpec => "height field",
     TendonSpec => "tendon",
     ActuatorSpec => "actuator",
+    SensorSpec => "sensor",
     EqualitySpec => "equality constraint",
     PairSpec => "contact pair",
     ExcludeSpec => "contact exclude",

@@ -235,8 +235,8 @@ impl Default for GeomSpec {
     }
 }
 
-/// A named frame on a body.
-#[derive(Clone, Debug, Default)]
+/// A named frame on a body, with a volume in which sensors feel.
+#[derive(Clone, Debug)]
 pub struct SiteSpec {
     /// Name, possibly empty.
     pub name: String,
@@ -244,8 +244,27 @@ pub struct SiteSpec {
     pub pos: Vec3<f64>,
     /// Orientation in the body frame.
     pub quat: Quat<f64>,
+    /// Shape of its volume: sphere, capsule, ellipsoid, cylinder or box.
+    pub kind: ShapeKind,
+    /// Size of that, as a geom's, m.
+    pub size: [f64; 3],
     /// Group.
     pub group: i32,
     /// Where it was written.
     pub origin: Option<Origin>,
+}
+
+/// A ball of 5 mm, as in MuJoCo.
+impl Default for SiteSpec {
+    fn default() -> Self {
+        SiteSpec {
+            name: String::new(),
+            pos: Vec3::ZERO,
+            quat: Quat::IDENTITY,
+            kind: ShapeKind::Sphere,
+            size: [0.005; 3],
+            group: 0,
+            origin: None,
+        }
+    }
 }

@@ -68,7 +68,9 @@ pub(super) fn add_site(spec: &SiteSpec, b: usize, moved: Moved, model: &mut Mode
     model.sites.push(Site {
         name: spec.name.clone(),
         body: b,
+        kind: spec.kind,
     });
+    model.params.site_size.push(Vec3::from_array(spec.size));
     let (pos, quat) = place(moved, spec.pos, spec.quat);
     model.params.site_pos.push(pos);
     model.params.site_quat.push(quat);

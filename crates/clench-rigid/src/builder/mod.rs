@@ -46,6 +46,7 @@ mod physics;
 mod placed;
 mod relations;
 mod resolve;
+mod sensors;
 mod shapes;
 mod solid;
 mod tendons;
@@ -64,6 +65,8 @@ pub use relations::{
 };
 
 use crate::Budget;
+pub use sensors::{FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject};
+
 use clench_solver::RigidOptions;
 
 /// A model as its author wrote it.
@@ -89,6 +92,8 @@ pub struct ModelBuilder {
     pub tendons: Vec<TendonSpec>,
     /// Actuators.
     pub actuators: Vec<ActuatorSpec>,
+    /// Sensors.
+    pub sensors: Vec<SensorSpec>,
     /// Equality constraints.
     pub equalities: Vec<EqualitySpec>,
     /// Geom pairs that collide whatever their masks say.
@@ -115,6 +120,7 @@ impl Default for ModelBuilder {
             height_fields: Vec::new(),
             tendons: Vec::new(),
             actuators: Vec::new(),
+            sensors: Vec::new(),
             equalities: Vec::new(),
             pairs: Vec::new(),
             excludes: Vec::new(),

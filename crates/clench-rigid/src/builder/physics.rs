@@ -66,6 +66,8 @@ pub struct PhysicsSpec {
     pub gravity: [f64; 3],
     /// Velocity of the medium, m/s.
     pub wind: [f64; 3],
+    /// The magnetic field, which magnetometers measure.
+    pub magnetic: [f64; 3],
     /// Density of the medium, kg/m³.
     pub density: f64,
     /// Viscosity of the medium, Pa s.
@@ -111,6 +113,7 @@ impl Default for PhysicsSpec {
             timestep: 0.002,
             gravity: [0.0, 0.0, -9.81],
             wind: [0.0; 3],
+            magnetic: [0.0, -0.5, 0.0],
             density: 0.0,
             viscosity: 0.0,
             integrator: Integrator::Euler,

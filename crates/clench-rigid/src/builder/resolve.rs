@@ -53,6 +53,7 @@ pub(super) struct AllNames<'a> {
     pub geoms: Names<'a>,
     pub sites: Names<'a>,
     pub tendons: Names<'a>,
+    pub actuators: Names<'a>,
 }
 
 impl<'a> AllNames<'a> {
@@ -63,7 +64,7 @@ impl<'a> AllNames<'a> {
     pub fn new(builder: &'a ModelBuilder, order: &[usize]) -> Result<Self, BuildError> {
         let in_order = || order.iter().map(|&b| &builder.bodies[b]);
         let kept = |geom: &&GeomSpec| !is_discarded(builder, geom);
-        Names::new(&builder.actuators)?;
+        Names::new(&builder.sensors)?;
         Names::new(&builder.equalities)?;
         Names::new(&builder.pairs)?;
         Names::new(&builder.excludes)?;
@@ -74,6 +75,7 @@ impl<'a> AllNames<'a> {
             geoms: Names::new(in_order().flat_map(|b| &b.geoms).filter(kept))?,
             sites: Names::new(in_order().flat_map(|b| &b.sites))?,
             tendons: Names::new(&builder.tendons)?,
+            actuators: Names::new(&builder.actuators)?,
         })
     }
 }

@@ -27,6 +27,8 @@ lookups! {
     tendon in tendons;
     /// Index of the actuator of that name.
     actuator in actuators;
+    /// Index of the sensor of that name.
+    sensor in sensors;
     /// Index of the equality constraint of that name.
     equality in equalities;
     /// Index of the keyframe of that name.

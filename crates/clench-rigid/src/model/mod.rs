@@ -8,9 +8,11 @@ mod fields;
 pub(crate) mod flat;
 mod lookup;
 mod params;
+mod sensor;
 mod structure;
 
 pub use params::{ParamField, Params};
+pub use sensor::{Attachment, FrameObject, Sensor, SensorData, SensorKind, SensorTarget};
 pub use structure::{
     Actuator, BiasKind, Body, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom,
     HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair, Site, Tendon, Transmission,
@@ -43,6 +45,8 @@ pub struct Model {
     pub tendons: Vec<Tendon>,
     /// Actuators.
     pub actuators: Vec<Actuator>,
+    /// Sensors.
+    pub sensors: Vec<Sensor>,
     /// Equality constraints.
     pub equalities: Vec<Equality>,
     /// Explicit geom pairs.
@@ -89,6 +93,10 @@ impl Model {
     /// Number of actuators, each with one control.
     pub fn nu(&self) -> usize {
         self.actuators.len()
+    }
+    /// Numbers that all sensors give.
+    pub fn nsensordata(&self) -> usize {
+        self.sensors.last().map_or(0, |sensor| sensor.numbers.end)
     }
     /// The hull or the heights of a geom that is a mesh or a height field.
     #[inline(always)]

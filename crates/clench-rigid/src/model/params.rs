@@ -83,6 +83,8 @@ params! {
     gravity: Vec3<T>, Finite;
     /// Velocity of the medium.
     wind: Vec3<T>, Finite;
+    /// The magnetic field, which magnetometers measure.
+    magnetic: Vec3<T>, Finite;
     /// Density of the medium.
     density: T, NotNegative;
     /// Viscosity of the medium.
@@ -171,6 +173,8 @@ params! {
     /// Impedance.
     geom_solimp: Vec<[T; 5]>, Finite;
 
+    /// Size of the site's volume, as a geom's.
+    site_size: Vec<Vec3<T>>, NotNegative;
     /// Position in the body frame.
     site_pos: Vec<Vec3<T>>, Finite;
     /// Orientation in the body frame.

@@ -194,13 +194,15 @@ pub struct HeightField {
     pub shape: clench_collide::HeightField,
 }
 
-/// A named frame on a body.
+/// A named frame on a body, with a volume in which sensors feel.
 #[derive(Clone, Debug)]
 pub struct Site {
     /// Name, possibly empty.
     pub name: String,
     /// Body that carries it.
     pub body: usize,
+    /// Shape of its volume.
+    pub kind: ShapeKind,
 }
 
 /// A fixed tendon: Σ coef · joint position.
@@ -416,6 +418,8 @@ pub struct Flags {
     pub island: bool,
     /// Euler integrates joint damping implicitly.
     pub eulerdamp: bool,
+    /// Sensors.
+    pub sensor: bool,
     /// Several contacts of a pair of polyhedra, cylinders or other shapes that general algorithms collide.
     pub multiccd: bool,
 }
@@ -438,6 +442,7 @@ impl Default for Flags {
             refsafe: true,
             island: true,
             eulerdamp: true,
+            sensor: true,
             multiccd: true,
         }
     }

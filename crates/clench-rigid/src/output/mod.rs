@@ -4,6 +4,8 @@
 
 mod forces;
 
+pub(crate) use forces::external as external_forces;
+
 use crate::dynamics::energy::energy;
 use crate::error::SimError;
 use crate::known::Extent;
@@ -134,6 +136,8 @@ outputs! {
     contact_count [] of Everything => out.push(count_contacts(s.ws));
     /// Iterations of the constraint solver.
     solver_iterations [] of Everything => out.push(s.ws.solver.stats().iterations);
+    /// What the sensors measured (nsensordata).
+    sensordata [m.nsensordata()] of Everything => out.extend_from_slice(&s.ws.sensors.data);
     /// Potential and kinetic energy of the state, J.
     energy [2] of Nothing => read_energy(s, out);
 }

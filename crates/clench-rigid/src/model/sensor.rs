@@ -1,0 +1,260 @@
+//! What a model measures: the table of kinds of sensor, and the sensors of a model.
+
+use crate::builder::Origin;
+use std::fmt;
+use std::ops::Range;
+
+/// What a kind of sensor is attached to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Attachment {
+    /// Nothing: it measures the whole simulation.
+    Nothing,
+    /// A site.
+    Site,
+    /// A slide or hinge joint.
+    ScalarJoint,
+    /// A ball joint.
+    Ball,
+    /// Any joint.
+    Joint,
+    /// A tendon.
+    Tendon,
+    /// An actuator.
+    Actuator,
+    /// A body, and all below it.
+    Body,
+    /// A frame of an object, and perhaps one relative to which it is measured.
+    Frame,
+    /// A frame, measured in the world alone.
+    WorldFrame,
+    /// A site, and an object that may be inside it.
+    Inside,
+    /// Two geoms, or all geoms of a body.
+    Geoms,
+    /// Numbers of a user's program: it is zero here.
+    User,
+}
+
+impl fmt::Display for Attachment {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Attachment::Nothing => "nothing",
+            Attachment::Site => "a site",
+            Attachment::ScalarJoint => "a slide or hinge joint",
+            Attachment::Ball => "a ball joint",
+            Attachment::Joint => "a joint",
+            Attachment::Tendon => "a tendon",
+            Attachment::Actuator => "an actuator",
+            Attachment::Body => "a body",
+            Attachment::Frame | Attachment::WorldFrame => "a frame",
+            Attachment::Inside => "a site and an object",
+            Attachment::Geoms => "two geoms or bodies",
+            Attachment::User => "numbers of a user's own",
+        })
+    }
+}
+
+/// What the numbers of a sensor can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorData {
+    /// Any numbers; a cutoff holds them between its negative and itself.
+    Real,
+    /// Numbers of at least zero, at most the cutoff.
+    Positive,
+    /// A unit vector; it has no cutoff.
+    Axis,
+    /// A unit quaternion; it has no cutoff.
+    Quaternion,
+}
+
+macro_rules! sensor_kinds {
+    ($($(#[$doc:meta])* $kind:ident $name:literal $attachment:ident $dim:literal $data:ident;)*) => {
+        /// Kinds of sensor. Numbers, frames and signs are MuJoCo's.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum SensorKind {
+            $($(#[$doc])* $kind,)*
+        }
+
+        impl SensorKind {
+            /// Every kind.
+            pub const ALL: &[SensorKind] = &[$(SensorKind::$kind),*];
+
+            /// Its name, which is that of its element in MJCF.
+            pub fn name(self) -> &'static str {
+                match self { $(SensorKind::$kind => $name,)* }
+            }
+            /// What it is attached to.
+            pub fn attachment(self) -> Attachment {
+                match self { $(SensorKind::$kind => Attachment::$attachment,)* }
+            }
+            /// How many numbers it gives; a user's sensor says so itself.
+            pub fn dim(self) -> usize {
+                match self { $(SensorKind::$kind => $dim,)* }
+            }
+            /// What its numbers can be.
+            pub fn data(self) -> SensorData {
+                match self { $(SensorKind::$kind => SensorData::$data,)* }
+            }
+        }
+    };
+}
+
+sensor_kinds! {
+    /// Sum of the normal forces of contacts of the site's body within the site's volume, N.
+    Touch "touch" Site 1 Positive;
+    /// Linear acceleration with gravity's upward reaction, in the site's frame, m/s².
+    Accelerometer "accelerometer" Site 3 Real;
+    /// Linear velocity in the site's frame, m/s.
+    Velocimeter "velocimeter" Site 3 Real;
+    /// Angular velocity in the site's frame, rad/s.
+    Gyro "gyro" Site 3 Real;
+    /// Force of the site's body on its parent through their joints, in the site's frame, N.
+    Force "force" Site 3 Real;
+    /// The same as a torque about the site, N m.
+    Torque "torque" Site 3 Real;
+    /// The magnetic field in the site's frame.
+    Magnetometer "magnetometer" Site 3 Real;
+    /// Distance to the nearest geom along the site's z axis, −1 where there is none, m.
+    Rangefinder "rangefinder" Site 1 Real;
+    /// Position of a slide or hinge joint, m or rad.
+    JointPos "jointpos" ScalarJoint 1 Real;
+    /// Its velocity.
+    JointVel "jointvel" ScalarJoint 1 Real;
+    /// Actuator force along its dof, gravity compensation included where it counts as actuation, N or N m.
+    JointActuatorFrc "jointactuatorfrc" ScalarJoint 1 Real;
+    /// Orientation of a ball joint.
+    BallQuat "ballquat" Ball 4 Quaternion;
+    /// Its angular velocity in the child's frame, rad/s.
+    BallAngVel "ballangvel" Ball 3 Real;
+    /// Distance of a joint to its limit less the margin; zero where no limit acts.
+    JointLimitPos "jointlimitpos" Joint 1 Real;
+    /// Its rate of change.
+    JointLimitVel "jointlimitvel" Joint 1 Real;
+    /// The limit's force.
+    JointLimitFrc "jointlimitfrc" Joint 1 Real;
+    /// Length of a tendon, m.
+    TendonPos "tendonpos" Tendon 1 Real;
+    /// Its velocity, m/s.
+    TendonVel "tendonvel" Tendon 1 Real;
+    /// Total force of its actuators, N.
+    TendonActuatorFrc "tendonactuatorfrc" Tendon 1 Real;
+    /// Distance of a tendon to its limit less the margin; zero where no limit acts.
+    TendonLimitPos "tendonlimitpos" Tendon 1 Real;
+    /// Its rate of change.
+    TendonLimitVel "tendonlimitvel" Tendon 1 Real;
+    /// The limit's force.
+    TendonLimitFrc "tendonlimitfrc" Tendon 1 Real;
+    /// Length of an actuator's transmission.
+    ActuatorPos "actuatorpos" Actuator 1 Real;
+    /// Its velocity.
+    ActuatorVel "actuatorvel" Actuator 1 Real;
+    /// The actuator's force.
+    ActuatorFrc "actuatorfrc" Actuator 1 Real;
+    /// Position of a frame, m.
+    FramePos "framepos" Frame 3 Real;
+    /// Its orientation.
+    FrameQuat "framequat" Frame 4 Quaternion;
+    /// Its x axis.
+    FrameXAxis "framexaxis" Frame 3 Axis;
+    /// Its y axis.
+    FrameYAxis "frameyaxis" Frame 3 Axis;
+    /// Its z axis.
+    FrameZAxis "framezaxis" Frame 3 Axis;
+    /// Its linear velocity, m/s.
+    FrameLinVel "framelinvel" Frame 3 Real;
+    /// Its angular velocity, rad/s.
+    FrameAngVel "frameangvel" Frame 3 Real;
+    /// Its linear acceleration with gravity's upward reaction, world axes, m/s².
+    FrameLinAcc "framelinacc" WorldFrame 3 Real;
+    /// Its angular acceleration, world axes, rad/s².
+    FrameAngAcc "frameangacc" WorldFrame 3 Real;
+    /// Centre of mass of a body and all below it, m.
+    SubtreeCom "subtreecom" Body 3 Real;
+    /// Velocity of that, m/s.
+    SubtreeLinVel "subtreelinvel" Body 3 Real;
+    /// Angular momentum of a body and all below it about their centre of mass, kg m²/s.
+    SubtreeAngMom "subtreeangmom" Body 3 Real;
+    /// 1 where an object's position is inside the site's volume, else 0.
+    InsideSite "insidesite" Inside 1 Positive;
+    /// Smallest signed distance of two geoms or sets of geoms, at most the cutoff, m.
+    Distance "distance" Geoms 1 Real;
+    /// The direction from the first to the second along which that is measured; zero where they are further apart.
+    Normal "normal" Geoms 3 Axis;
+    /// The nearest points of both; zero where they are further apart, m.
+    FromTo "fromto" Geoms 6 Real;
+    /// Potential energy, J.
+    PotentialEnergy "e_potential" Nothing 1 Real;
+    /// Kinetic energy, J.
+    KineticEnergy "e_kinetic" Nothing 1 Real;
+    /// Time, s.
+    Clock "clock" Nothing 1 Real;
+    /// What a user's own program measures; zero here.
+    User "user" User 0 Real;
+}
+
+impl SensorKind {
+    /// The kind of that name.
+    pub fn find(name: &str) -> Option<Self> {
+        let mut kinds = SensorKind::ALL.iter().copied();
+        kinds.find(|kind| kind.name() == name)
+    }
+}
+
+/// A frame that a sensor measures, or relative to which it does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameObject {
+    /// The inertial frame of a body.
+    Inertial(usize),
+    /// The frame of a body.
+    Body(usize),
+    /// The frame of a geom.
+    Geom(usize),
+    /// A site.
+    Site(usize),
+}
+
+/// What a sensor measures.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SensorTarget {
+    /// The whole simulation, or what only a user's program knows.
+    Nothing,
+    /// An element, of the kind that the sensor's [`Attachment`] names.
+    Element(usize),
+    /// A frame, and one relative to which it is measured (else the world).
+    Frame {
+        /// What is measured.
+        object: FrameObject,
+        /// Where from.
+        reference: Option<FrameObject>,
+    },
+    /// Whether an object is inside a site.
+    Inside {
+        /// The site.
+        site: usize,
+        /// The object.
+        object: FrameObject,
+    },
+    /// Two sets of geoms.
+    Geoms([Range<usize>; 2]),
+}
+
+/// A sensor.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    /// Name, possibly empty.
+    pub name: String,
+    /// What it measures.
+    pub kind: SensorKind,
+    /// Of what.
+    pub target: SensorTarget,
+    /// What its numbers can be.
+    pub data: SensorData,
+    /// Bound of its numbers, where positive.
+    pub cutoff: f64,
+    /// Standard deviation of the noise that the author expects; none is added.
+    pub noise: f64,
+    /// Where its numbers are in `sensordata`.
+    pub numbers: Range<usize>,
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}

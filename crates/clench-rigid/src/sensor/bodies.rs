@@ -1,0 +1,143 @@
+//! Accelerations of bodies and forces between them, constraints included, and the momenta of subtrees.
+//!
+//! A recursive Newton–Euler pass with the joint accelerations found (Featherstone 2008, §5.3): a body's acceleration takes the force
+//! I a + v ×* I v, of which what acts from outside is one part; the joints to its parent and children carry the rest.
+
+use super::Reading;
+use crate::model::{Model, Params, SensorKind};
+use crate::output::{Source, external_forces};
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Force, Motion, Real, Vec3, kernel};
+
+/// Accelerations of bodies, and what their joints carry.
+#[derive(Clone, Debug)]
+pub(super) struct BodyForces<T> {
+    /// Spatial accelerations about the centre of mass of each body's tree, gravity's upward reaction included (nbody).
+    pub cacc: Vec<Motion<T>>,
+    /// Force of each body's parent on it through their joints, about the same point (nbody).
+    pub cfrc_int: Vec<Force<T>>,
+    /// What acts on each body from outside, six numbers a body.
+    external: Vec<T>,
+}
+
+impl<T: Real> BodyForces<T> {
+    pub fn new(model: &Model) -> Self {
+        let count = match model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {
+            true => model.nbody(),
+            false => 0,
+        };
+        BodyForces {
+            cacc: vec![Motion::ZERO; count],
+            cfrc_int: vec![Force::ZERO; count],
+            external: Vec::with_capacity(6 * count),
+        }
+    }
+}
+
+/// Whether a kind of sensor reads accelerations or forces of bodies.
+pub(super) fn is_needed(kind: SensorKind) -> bool {
+    matches!(
+        kind,
+        SensorKind::Accelerometer
+            | SensorKind::Force
+            | SensorKind::Torque
+            | SensorKind::FrameLinAcc
+            | SensorKind::FrameAngAcc
+    )
+}
+
+/// Computes accelerations and forces from the last forward pass.
+#[kernel]
+pub(super) fn update<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let mut bodies = std::mem::take(&mut ws.sensors.bodies);
+    bodies.external.clear();
+    let source = Source {
+        model,
+        params,
+        state,
+        ws,
+    };
+    external_forces(&source, &mut bodies.external);
+    let gravity = match model.flags.gravity {
+        true => params.gravity,
+        false => Vec3::ZERO,
+    };
+    bodies.cacc[0] = Motion::new(Vec3::ZERO, -gravity);
+    bodies.cfrc_int[0] = Force::ZERO;
+    for (b, body) in model.bodies.iter().enumerate().skip(1) {
+        let mut cacc = bodies.cacc[body.parent];
+        for i in body.dofs.clone() {
+            cacc += ws.velocity.cdof_dot[i] * state.qvel[i] + ws.position.cdof[i] * ws.qacc[i];
+        }
+        let (inertia, cvel) = (ws.position.cinert[b], ws.velocity.cvel[b]);
+        let external = &bodies.external[6 * b..6 * b + 6];
+        let external = Force::new(Vec3::from_slice(external), Vec3::from_slice(&external[3..]));
+        bodies.cacc[b] = cacc;
+        bodies.cfrc_int[b] = inertia * cacc + cvel.cross_force(inertia * cvel) - external;
+    }
+    for b in (1..model.nbody()).rev() {
+        let parent = model.bodies[b].parent;
+        let force = bodies.cfrc_int[b];
+        bodies.cfrc_int[parent] += force;
+    }
+    ws.sensors.bodies = bodies;
+}
+
+impl<T> Default for BodyForces<T> {
+    fn default() -> Self {
+        BodyForces {
+            cacc: Vec::new(),
+            cfrc_int: Vec::new(),
+            external: Vec::new(),
+        }
+    }
+}
+
+/// How a body and all below it move.
+pub(super) struct Subtree<T> {
+    /// Velocity of their centre of mass.
+    pub velocity: Vec3<T>,
+    /// Angular momentum about it.
+    pub angular_momentum: Vec3<T>,
+}
+
+impl<T: Real> Reading<'_, T> {
+    /// What a site's body carries through its joints, world axes, about the site.
+    pub(super) fn force_at(&self, site: usize) -> Force<T> {
+        let body = self.model.sites[site].body;
+        let force = self.ws.sensors.bodies.cfrc_int[body];
+        let root = self.model.bodies[body].root;
+        let arm = self.ws.position.site_xpos[site] - self.ws.position.subtree_com[root];
+        Force::new(force.angular - arm.cross(force.linear), force.linear)
+    }
+
+    /// Adds up the momenta of a body and all below it.
+    pub(super) fn subtree(&self, body: usize) -> Subtree<T> {
+        let (model, pos) = (self.model, &self.ws.position);
+        let mut momentum = Force::ZERO;
+        for b in body..model.nbody() {
+            // Bodies are numbered depth first: a subtree ends where a body hangs on one before it.
+            if b > body && model.bodies[b].parent < body {
+                break;
+            }
+            let root = pos.subtree_com[model.bodies[b].root];
+            let own = pos.cinert[b] * self.ws.velocity.cvel[b];
+            // From the centre of mass of the body's tree to the world's origin, which all trees share.
+            momentum += Force::new(own.angular + root.cross(own.linear), own.linear);
+        }
+        let mass = self.params.body_subtreemass[body];
+        let com = pos.subtree_com[body];
+        let massless = mass.le(T::ZERO);
+        let inverse = T::ONE / T::select(massless, T::ONE, mass);
+        Subtree {
+            velocity: Vec3::select(massless, Vec3::ZERO, momentum.linear * inverse),
+            angular_momentum: momentum.angular - com.cross(momentum.linear),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! The smallest distance of two sets of geoms. Distances are searched for in each lane alone.
+
+use super::Reading;
+use crate::contact::shape;
+use crate::model::{Sensor, SensorKind};
+use clench_collide::{Asset, Pose, Separation, Shape, distance};
+use clench_math::{Mat3, Real, Vec3};
+use std::ops::Range;
+
+impl<T: Real> Reading<'_, T> {
+    /// A distance, its direction or its ends, up to the cutoff.
+    pub(super) fn read_distance(&self, sensor: &Sensor, sets: &[Range<usize>; 2], out: &mut [T]) {
+        for lane in 0..T::LANES {
+            let limit = T::Scalar::new(sensor.cutoff);
+            let nearest = self.nearest(sets, limit, lane);
+            let mut put = |numbers: &[T::Scalar]| {
+                for (to, &from) in out.iter_mut().zip(numbers) {
+                    to.set_lane(lane, from);
+                }
+            };
+            match (sensor.kind, nearest) {
+                (SensorKind::Distance, found) => put(&[found.map_or(limit, |f| f.distance)]),
+                (SensorKind::Normal, Some(found)) => put(&found.normal.to_array()),
+                (SensorKind::FromTo, Some(found)) => {
+                    let points = found.points.map(Vec3::to_array);
+                    put(points.as_flattened());
+                }
+                _ => put(&[<T::Scalar as Real>::ZERO; 6]),
+            }
+        }
+    }
+
+    /// The nearest pair of geoms of two sets, the first of several; nothing beyond the limit.
+    fn nearest(
+        &self,
+        [first, second]: &[Range<usize>; 2],
+        limit: T::Scalar,
+        lane: usize,
+    ) -> Option<Separation<T::Scalar>> {
+        let mut best: Option<Separation<T::Scalar>> = None;
+        for a in first.clone() {
+            for b in second.clone() {
+                let (shape_a, pose_a) = self.solid(a, lane);
+                let (shape_b, pose_b) = self.solid(b, lane);
+                let bound = best.map_or(limit, |best| best.distance);
+                if let Some(found) = distance(&shape_a, &pose_a, &shape_b, &pose_b, bound)
+                    && best.is_none_or(|best| found.distance < best.distance)
+                {
+                    best = Some(found);
+                }
+            }
+        }
+        best
+    }
+
+    /// A geom in one lane, with a hull even if it does not collide.
+    fn solid(&self, geom: usize, lane: usize) -> (Shape<'_, T::Scalar>, Pose<T::Scalar>) {
+        let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
+        let whole = shape(self.model, self.params, geom);
+        let asset = match self.model.geoms[geom].mesh {
+            Some(mesh) => self.model.meshes[mesh]
+                .any_hull()
+                .map_or(Asset::None, Asset::Hull),
+            None => whole.asset,
+        };
+        let shape = Shape {
+            kind: whole.kind,
+            size: vector(whole.size),
+            asset,
+        };
+        let pose = Pose {
+            position: vector(self.ws.position.geom_xpos[geom]),
+            rotation: Mat3 {
+                rows: self.ws.position.geom_xmat[geom].rows.map(vector),
+            },
+        };
+        (shape, pose)
+    }
+}

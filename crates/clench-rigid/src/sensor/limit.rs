@@ -1,0 +1,40 @@
+//! Limits of joints and tendons as constraints.
+
+use super::Reading;
+use crate::constraint::ConstraintSource;
+use clench_math::{Mask, Real};
+
+/// The row of a limit; zero where it does not act.
+pub(super) struct Limit<T> {
+    /// Distance to the limit less the margin.
+    pub pos: T,
+    /// Its rate of change.
+    pub vel: T,
+    /// The limit's force.
+    pub force: T,
+}
+
+impl<T: Real> Reading<'_, T> {
+    /// The first limit of a joint or tendon that acts.
+    pub(super) fn limit(&self, source: ConstraintSource) -> Limit<T> {
+        let ws = self.ws;
+        let mut limit = Limit {
+            pos: T::ZERO,
+            vel: T::ZERO,
+            force: T::ZERO,
+        };
+        let mut found = T::Mask::splat(false);
+        for (block, record) in ws.record.blocks.iter().enumerate() {
+            let first = record.active & !found;
+            if record.source != source || !first.any() {
+                continue;
+            }
+            let row = ws.problem.block(block).row;
+            limit.pos = T::select(first, ws.record.pos[row] - record.margin, limit.pos);
+            limit.vel = T::select(first, ws.record.vel[row], limit.vel);
+            limit.force = T::select(first, ws.solver.force()[row], limit.force);
+            found |= first;
+        }
+        limit
+    }
+}

@@ -1,0 +1,67 @@
+//! Volumes of sites: what touches there, and what is inside.
+
+use super::Reading;
+use clench_collide::{Pose, Ray, Shape, ShapeKind, ray};
+use clench_math::{Mask, Real, Vec3};
+
+impl<T: Real> Reading<'_, T> {
+    /// The sum of the normal forces of those contacts of a site's body whose line of force meets the site's volume on its way into
+    /// the body.
+    pub(super) fn touch(&self, site: usize) -> T {
+        let (shape, pose) = self.volume(site);
+        let own = self.model.sites[site].body;
+        let mut sum = T::ZERO;
+        for contact in &self.ws.contacts {
+            let bodies = contact.geoms.map(|geom| self.model.geoms[geom].body);
+            let Some(block) = contact.block.filter(|_| bodies.contains(&own)) else {
+                continue;
+            };
+            let active = self.ws.record.blocks[block].active;
+            let normal = self.ws.solver.force()[self.ws.problem.block(block).row];
+            let pressed = active & normal.gt(T::ZERO);
+            if !pressed.any() {
+                continue;
+            }
+            let sign = if bodies[1] == own { -T::ONE } else { T::ONE };
+            let line = Ray {
+                origin: contact.pos,
+                direction: contact.frame.rows[0] * sign,
+            };
+            let met = ray(&shape, &pose, &line).distance.lt(T::new(f64::INFINITY));
+            sum += T::select(pressed & met, normal, T::ZERO);
+        }
+        sum
+    }
+
+    /// 1 where a point is inside a site's volume, else 0.
+    pub(super) fn is_inside(&self, site: usize, point: Vec3<T>) -> T {
+        let (shape, pose) = self.volume(site);
+        let (p, size) = (pose.local(point), shape.size);
+        let level = p.x * p.x + p.y * p.y;
+        let inside = match shape.kind {
+            ShapeKind::Sphere => p.norm_squared().le(size.x.squared()),
+            ShapeKind::Capsule => {
+                let end = (p.z.abs() - size.y).max(T::ZERO);
+                (level + end * end).le(size.x.squared())
+            }
+            ShapeKind::Ellipsoid => {
+                let scaled = Vec3::new(p.x / size.x, p.y / size.y, p.z / size.z);
+                scaled.norm_squared().le(T::ONE)
+            }
+            ShapeKind::Cylinder => level.le(size.x.squared()) & p.z.abs().le(size.y),
+            ShapeKind::Box => p.x.abs().le(size.x) & p.y.abs().le(size.y) & p.z.abs().le(size.z),
+            ShapeKind::Plane | ShapeKind::HeightField | ShapeKind::Mesh => T::Mask::splat(false),
+        };
+        T::select(inside, T::ONE, T::ZERO)
+    }
+
+    fn volume(&self, site: usize) -> (Shape<'static, T>, Pose<T>) {
+        let pos = &self.ws.position;
+        let shape = Shape::new(self.model.sites[site].kind, self.params.site_size[site]);
+        let pose = Pose {
+            position: pos.site_xpos[site],
+            rotation: pos.site_xmat[site],
+        };
+        (shape, pose)
+    }
+}
