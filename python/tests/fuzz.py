@@ -50,6 +50,7 @@ OPTIONS = {
     "impratio": (1e-300, 1, 10, 1e300),
     "islands": (True, False, "auto"),
     "warmstart": (True, False),
+    "autoreset": (True, False),
 }
 COSTS = ("quadratic", "one_sided", "huber", "pyramid", "elliptic")
 KINDS = ("body", "joint", "geom", "site", "tendon", "actuator", "equality", "keyframe", "pair", "mesh", "hfield")

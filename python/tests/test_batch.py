@@ -37,10 +37,11 @@ def test_state_arrays_are_the_state(precision: Any) -> None:
         "qacc_warmstart": (model.nv,),
     }
     number = np.float64 if precision == "64" else np.float32
+    special = {"time": np.float64, "eq_active": bool}
     for name, shape in shapes.items():
         array = getattr(batch, name)
         assert array.shape == (3, *shape), name
-        assert array.dtype == (bool if name == "eq_active" else number), name
+        assert array.dtype == special.get(name, number), name
         assert array is getattr(batch, name), name
         assert array.flags.writeable and array.flags.c_contiguous and not array.flags.owndata, name
     np.testing.assert_array_equal(batch.qpos, np.tile(model.qpos0.astype(number), (3, 1)))
@@ -424,7 +425,8 @@ def test_sizes() -> None:
     # Time, 7 positions, 6 velocities, applied forces and accelerations, 6 forces of both bodies.
     numbers = 1 + 7 + 6 + 6 + 6 + 12
     assert plain.bytes_per_env >= 8 * numbers
-    assert recording.bytes_per_env == plain.bytes_per_env + 8 * (2 * 6 + 2)
+    # What is recorded, and the positions and velocities for which it holds.
+    assert recording.bytes_per_env == plain.bytes_per_env + 8 * (2 * 6 + 2 + 7 + 6)
     assert single.bytes_per_env < plain.bytes_per_env
     before = plain.bytes_per_env
     plain.randomize("body_mass", np.ones((100, 2)))

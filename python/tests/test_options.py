@@ -30,10 +30,11 @@ VALUES: dict[str, Any] = {
     "impratio": 10.0,
     "islands": False,
     "warmstart": False,
+    "autoreset": True,
 }
 COUNTS = ["iterations", "ls_iterations", "noslip_iterations", "max_contacts"]
 NOT_NEGATIVE = ["tolerance", "ls_tolerance", "noslip_tolerance", "constraint_timeconst"]
-BOOLEANS = ["enable_joint_limit", "disable_constraint", "warmstart"]
+BOOLEANS = ["enable_joint_limit", "disable_constraint", "warmstart", "autoreset"]
 SWITCHES = ["sparse_solve", "islands"]
 
 

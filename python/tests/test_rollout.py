@@ -25,7 +25,7 @@ def start(batch: clench.Batch) -> NDArray[Any]:
 def begin(batch: clench.Batch, initial: NDArray[Any]) -> None:
     """Puts environments there by hand."""
     nq, nv = batch.model.nq, batch.model.nv
-    batch.time = initial[:, 0]
+    batch.time = initial[:, 0].astype(batch.qpos.dtype)  # As a rollout takes it over.
     batch.qpos = initial[:, 1 : 1 + nq]
     batch.qvel = initial[:, 1 + nq : 1 + nq + nv]
     batch.act = initial[:, 1 + nq + nv :]
