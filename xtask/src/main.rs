@@ -1,9 +1,13 @@
-//! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed, `cargo xtask soak`
-//! looks long for rare failures.
+//! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed; `soak`, `fuzz`, `sanitize`
+//! and `audit` look long for what is rare.
 
+mod audit;
+mod fuzz;
 mod package;
 mod python;
 mod run;
+mod sanitize;
+mod soak;
 mod stages;
 
 use std::process::ExitCode;
@@ -27,11 +31,19 @@ Commands:
   bench [ARG...]    Build `clench` with the `dist` profile, as it is shipped, and time it against MuJoCo.
                     Arguments go to bench/speed.py; try `cargo xtask bench --help`.
   soak [--only NAME] [SEED]
-                    batch: step 10,000 environments 1,000 times under random controls, resets and poison; none may
-                    be lost, disturb another, or leak.
-                    collide: a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones;
-                    nothing may panic, hang, or be no number.
-                    `test` runs a short form of both.
+                    Look long for rare failures. `test` runs a short form of each. SOAK_SCALE=10 does a tenth of the steps.
+                      batch       step 10,000 environments 1,000 times under random controls, resets and poison; none may
+                                  be lost, disturb another, or leak
+                      endurance   the same, 10,000 times
+                      resume      save a batch every 100 steps; what is resumed from there arrives where it would have
+                      collide     a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones;
+                                  nothing may panic, hang, or be no number
+                      recordings  end `clench simulate --record` by kill -9; no half a file may be left
+  fuzz [--only TARGET] [--seconds N] [--address]
+                    Search for bytes that break a reader, an hour each, with libFuzzer; needs a C++ compiler. --address checks
+                    every access to memory. See docs/testing.md.
+  sanitize [ARG...] Run the Rust tests under AddressSanitizer, or those that the arguments choose, which go to `cargo test`.
+  audit             Licences, duplicate crates and advisories of dependencies; needs cargo-deny.
 
 Needs Python 3.11 or later with venv. A package index must be reachable on the first run, and for the stage `package`.";
 
@@ -40,7 +52,10 @@ fn main() -> ExitCode {
     let outcome = match args.first().map(String::as_str) {
         Some("test") => stages::test(&args[1..]),
         Some("bench") => stages::bench(&args[1..]),
-        Some("soak") => stages::soak(&args[1..]),
+        Some("soak") => soak::soak(&args[1..]),
+        Some("fuzz") => fuzz::fuzz(&args[1..]),
+        Some("sanitize") => sanitize::sanitize(&args[1..]),
+        Some("audit") => audit::audit(),
         Some("help" | "-h" | "--help") => {
             println!("{HELP}");
             Ok(())

@@ -72,7 +72,7 @@ pub fn run(mut command: Command) -> Result<(), String> {
 }
 
 /// A command as one would type it.
-fn shown(command: &Command) -> String {
+pub fn shown(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words
         .map(|w| w.to_string_lossy().into_owned())

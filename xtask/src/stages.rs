@@ -1,4 +1,4 @@
-//! The stages of `cargo xtask test`, in order, and what takes longer: `cargo xtask bench` and `soak`.
+//! The stages of `cargo xtask test`, in order, and `cargo xtask bench`.
 
 use crate::package;
 use crate::python;
@@ -112,44 +112,6 @@ pub fn bench(args: &[String]) -> Result<(), String> {
     script.env("BATCH_STEP", profile.program("examples/batch_step"));
     script.env("PAIRS", profile.program("examples/pairs"));
     run(script)
-}
-
-/// What takes long and looks for rare failures: many environments under random controls, resets and poison, and a million
-/// poses of every pair of shapes. `args` may choose one, by `--only`, and hold a seed.
-///
-/// # Errors
-/// Arguments that mean nothing, or what a soak found.
-pub fn soak(args: &[String]) -> Result<(), String> {
-    let (only, rest) = match args {
-        [flag, only, rest @ ..] if flag == "--only" => (Some(only.as_str()), rest),
-        _ => (None, args),
-    };
-    let seed = match rest {
-        [] => 1,
-        [seed] => seed
-            .parse::<u64>()
-            .map_err(|_| format!("`{seed}` is not a seed: give a whole number"))?,
-        _ => return Err("soak takes `--only NAME` and a seed, in that order".into()),
-    };
-    let soaks = [
-        ("batch", "clench", "soak"),
-        ("collide", "clench-collide", "trouble"),
-    ];
-    let mut known = false;
-    for (name, package, test) in soaks {
-        if only.is_none_or(|only| only == name) {
-            known = true;
-            let mut test = cargo(&["test", "--release", "--package", package, "--test", test]);
-            test.args(["--", "--ignored", "--nocapture"]);
-            test.env("SOAK_SEED", seed.to_string());
-            run(test)?;
-        }
-    }
-    if known {
-        Ok(())
-    } else {
-        Err("soak knows `--only batch` and `--only collide`".into())
-    }
 }
 
 fn fmt() -> Result<(), String> {

@@ -7,7 +7,7 @@ use clench::rigid::{Batch, EnvStatus, Fault, Precision};
 use std::fmt::{self, Display, Formatter};
 
 /// What a step may change of a state.
-fn motion<S: Precision>(state: &StateRows<S>) -> [&Rows<S>; 4] {
+pub fn motion<S: Precision>(state: &StateRows<S>) -> [&Rows<S>; 4] {
     let StateRows {
         qpos,
         qvel,

@@ -1,11 +1,13 @@
 //! Many environments for long, under random controls, random resets and random poison: none is lost, none disturbs another,
-//! nothing leaks.
+//! nothing leaks, and who is saved and resumed arrives where it would have.
 //!
-//! The short form is an ordinary test; `cargo xtask soak` runs the long one. `SOAK_SEED` chooses other random numbers.
+//! The short forms are ordinary tests; `cargo xtask soak` runs the long ones. `SOAK_SEED` chooses other random numbers,
+//! `SOAK_SCALE=10` a tenth of the steps.
 
 mod dice;
 mod ledger;
 mod poison;
+mod resume;
 mod watch;
 
 use cap::Cap;
@@ -44,31 +46,63 @@ const POISONS: u64 = 400;
 /// than any before. A byte a step of each environment would be seven times as much in the long form.
 const GROWTH: isize = 1 << 20;
 
-#[test]
-fn short() {
+/// A humanoid in double and a quadruped in single precision, of so many environments and steps.
+fn soak_both(envs: usize, steps: usize) {
     let size = |model, max_contacts| Plan {
         model,
         max_contacts,
-        envs: 200,
-        steps: 400,
+        envs,
+        steps,
         watched: 200,
     };
     soak::<f64>(&size("humanoid", 8));
     soak::<f32>(&size("quadruped", 5));
 }
 
-#[test]
-#[ignore = "takes minutes: cargo xtask soak"]
-fn long() {
+fn resume_both(envs: usize, steps: usize) {
     let size = |model, max_contacts| Plan {
         model,
         max_contacts,
-        envs: 10_000,
-        steps: 1_000,
-        watched: 200,
+        envs,
+        steps,
+        watched: 0,
     };
-    soak::<f64>(&size("humanoid", 8));
-    soak::<f32>(&size("quadruped", 5));
+    resume::resume::<f64>(&size("humanoid", 8));
+    resume::resume::<f32>(&size("quadruped", 5));
+}
+
+#[test]
+fn short() {
+    soak_both(200, 400);
+}
+
+#[test]
+fn a_resumed_run_arrives_where_the_run_it_left_arrives() {
+    resume_both(60, 300);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo xtask soak --only batch"]
+fn long() {
+    soak_both(10_000, 1_000 / scale());
+}
+
+#[test]
+#[ignore = "takes an hour: cargo xtask soak --only endurance"]
+fn endurance() {
+    soak_both(10_000, 10_000 / scale());
+}
+
+#[test]
+#[ignore = "takes minutes: cargo xtask soak --only resume"]
+fn resume_long() {
+    resume_both(1_000, 10_000 / scale());
+}
+
+/// What the steps of a long form are divided by.
+fn scale() -> usize {
+    let text = std::env::var("SOAK_SCALE").unwrap_or("1".into());
+    text.parse().expect("SOAK_SCALE is a whole number")
 }
 
 fn seed() -> u64 {
@@ -77,7 +111,7 @@ fn seed() -> u64 {
 }
 
 fn soak<S: Precision>(plan: &Plan) {
-    let mut batch = batch::<S>(plan);
+    let mut batch = batch_with::<S>(plan, BatchOptions::default());
     let mut watch = Watch::new(&batch, plan.watched);
     let mut ledger = Ledger::new(&batch);
     let mut dice = Dice::new(seed());
@@ -116,7 +150,7 @@ fn soak<S: Precision>(plan: &Plan) {
     all_come_back(&mut batch);
 }
 
-fn batch<S: Precision>(plan: &Plan) -> Batch<S> {
+fn batch_with<S: Precision>(plan: &Plan, options: BatchOptions) -> Batch<S> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
     let file = folder.join(plan.model).with_extension("xml");
     let model = clench::load(file).expect("our own model loads");
@@ -125,7 +159,7 @@ fn batch<S: Precision>(plan: &Plan) -> Batch<S> {
             max_contacts: Some(MaxContacts::Limit(plan.max_contacts)),
             ..RigidOptions::new()
         },
-        ..BatchOptions::default()
+        ..options
     };
     Batch::with_options(Arc::new(model), plan.envs, options).expect("a batch of our own model")
 }

@@ -1,0 +1,35 @@
+//! Fuzz targets: each is a function that reads any bytes with one of our readers, and says whether they were accepted.
+//!
+//! None may panic, hang or fill the memory, and what a reader accepts must be usable. `cargo xtask fuzz` searches for bytes that
+//! break this, guided by coverage; the tests of this crate replay what is in `seeds` and `regressions`.
+
+mod checksums;
+mod contacts;
+mod files;
+mod mjcf;
+mod npy;
+mod shapes;
+mod states;
+mod trial;
+
+pub use contacts::contacts;
+pub use mjcf::mjcf;
+pub use npy::npy;
+pub use shapes::{grid, msh, obj, png, stl};
+pub use states::states;
+
+/// A target by name, which is also that of its folders.
+pub type Target = (&'static str, fn(&[u8]) -> bool);
+
+/// All targets.
+pub const TARGETS: [Target; 9] = [
+    ("mjcf", mjcf),
+    ("stl", stl),
+    ("obj", obj),
+    ("msh", msh),
+    ("png", png),
+    ("grid", grid),
+    ("npy", npy),
+    ("states", states),
+    ("contacts", contacts),
+];

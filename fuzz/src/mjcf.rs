@@ -1,0 +1,42 @@
+//! Model files, with other files beside them that they can name.
+
+use crate::{files, trial};
+use std::cell::Cell;
+
+/// What lies beside a model, by name.
+const BESIDE: [(&str, &[u8]); 6] = [
+    ("cube.stl", include_bytes!("../seeds/stl/cube.stl")),
+    ("cube.obj", include_bytes!("../seeds/obj/cube.obj")),
+    ("cube.msh", include_bytes!("../seeds/msh/cube.msh")),
+    ("hills.png", include_bytes!("../seeds/png/hills.png")),
+    ("hills.bin", include_bytes!("../seeds/grid/hills.bin")),
+    ("part.xml", include_bytes!("../seeds/mjcf/part.xml")),
+];
+/// An error is read by people: long values in it are cut. Paths, which users choose, come on top.
+const LONGEST_ERROR: usize = 4000;
+
+/// Reads a model, and tries it where it is one.
+pub fn mjcf(data: &[u8]) -> bool {
+    thread_local! {
+        static PREPARED: Cell<bool> = const { Cell::new(false) };
+    }
+    if !PREPARED.replace(true) {
+        for (name, bytes) in BESIDE {
+            files::write(name, bytes);
+        }
+    }
+    let path = files::write("model.xml", data);
+    match clench::load_within(&path, trial::budget()) {
+        Ok(model) => {
+            trial::run(model);
+            true
+        }
+        Err(error) => {
+            let message = error.to_string();
+            assert!(message.len() < LONGEST_ERROR, "a long error: {message}");
+            let named = message.contains("model.xml") || message.contains("part.xml");
+            assert!(named, "an error that names no file: {message}");
+            false
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What is done with a model that was read: whatever it says, nothing may panic, and no result may be other than finite.
+
+use clench::math::Vec3;
+use clench::{Budget, Model, RayFilter, Sim};
+use std::sync::Arc;
+
+/// What a model may ask for: so little that a step takes a moment, for a fuzzer takes thousands in a second. What it bounds is
+/// counted in the same way whatever the bounds are.
+pub fn budget() -> Budget {
+    Budget::default().times(1.0 / 256.0)
+}
+
+/// Steps of a trial.
+const STEPS: usize = 3;
+
+/// Steps a model, and asks it some questions.
+pub fn run(model: Model) {
+    let Ok(mut sim) = Sim::<f64>::new(Arc::new(model)) else {
+        return;
+    };
+    for _ in 0..STEPS {
+        if sim.step().is_err() {
+            break;
+        }
+        check_result(&sim);
+    }
+    if sim.forward().is_err() {
+        return;
+    }
+    let _ = sim.ray(
+        Vec3::new(0.1, 0.2, 5.0),
+        Vec3::new(0.0, 0.1, -1.0),
+        &RayFilter::default(),
+    );
+    if let Some(last) = sim.model().geoms.len().checked_sub(1) {
+        let _ = sim.distance(0, last, f64::INFINITY);
+    }
+    let _ = sim.energy();
+}
+
+/// What a step or a forward pass without an error leaves behind is finite.
+pub fn check_result(sim: &Sim<f64>) {
+    let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
+    assert!(finite(&sim.state.qpos) && finite(&sim.state.qvel) && finite(&sim.state.act));
+    assert!(finite(&sim.workspace().qacc) && finite(&sim.workspace().qfrc_constraint));
+}
+
+/// A model with something of everything that a state can set.
+pub fn machine() -> Arc<Model> {
+    let text = include_str!("../seeds/mjcf/machine.xml");
+    Arc::new(clench::load_str(text).expect("our own model"))
+}

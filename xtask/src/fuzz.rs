@@ -1,0 +1,216 @@
+//! `cargo xtask fuzz`: searches for bytes that break a reader, by libFuzzer, on stable Rust.
+
+use crate::run::{cargo, command, root, run, shown, target};
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+
+/// The words of MJCF, from the reader's own rules.
+#[allow(dead_code)]
+#[path = "../../crates/clench-formats/src/mjcf/rules.rs"]
+mod rules;
+
+/// The targets, by the names of their folders in `fuzz/seeds`.
+const TARGETS: [&str; 9] = [
+    "mjcf", "stl", "obj", "msh", "png", "grid", "npy", "states", "contacts",
+];
+
+/// What the compiler adds so that libFuzzer sees which code runs: its coverage pass is part of stable Rust.
+const COVERAGE: &str = "--cfg fuzzing -Cpasses=sancov-module \
+    -Cllvm-args=-sanitizer-coverage-level=4 \
+    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
+    -Cllvm-args=-sanitizer-coverage-pc-table \
+    -Cllvm-args=-sanitizer-coverage-trace-compares";
+
+/// How `fuzz` is to be run.
+struct Plan<'a> {
+    targets: Vec<&'a str>,
+    seconds: u64,
+    address: bool,
+}
+
+impl<'a> Plan<'a> {
+    fn of(args: &'a [String]) -> Result<Self, String> {
+        let mut plan = Plan {
+            targets: TARGETS.to_vec(),
+            seconds: 3600,
+            address: false,
+        };
+        let mut args = args.iter().map(String::as_str);
+        while let Some(arg) = args.next() {
+            match arg {
+                "--address" => plan.address = true,
+                "--only" => {
+                    let name = args.next().unwrap_or_default();
+                    if !TARGETS.contains(&name) {
+                        let known = TARGETS.join(", ");
+                        return Err(format!("`{name}` is no target: there are {known}"));
+                    }
+                    plan.targets = vec![name];
+                }
+                "--seconds" => {
+                    let text = args.next().unwrap_or_default();
+                    let number = text.parse().ok().filter(|seconds| *seconds > 0);
+                    plan.seconds = number.ok_or("--seconds needs a whole number above 0")?;
+                }
+                _ => {
+                    return Err(format!(
+                        "fuzz takes --only, --seconds and --address, not `{arg}`"
+                    ));
+                }
+            }
+        }
+        Ok(plan)
+    }
+}
+
+/// Fuzzes the targets, each in turn, up to the first that finds something.
+///
+/// # Errors
+/// Arguments that mean nothing, a compiler that cannot do it, or the target that found something.
+pub fn fuzz(args: &[String]) -> Result<(), String> {
+    let plan = Plan::of(args)?;
+    let programs = build(plan.address)?;
+    let dictionary = work().join("mjcf.dict");
+    write(&dictionary, &dictionary_of_rules())?;
+    let mut summary = String::new();
+    for name in &plan.targets {
+        let outcome = search(name, &programs.join(name), &dictionary, plan.seconds);
+        let executions = outcome.map_err(|error| format!("{summary}{error}"))?;
+        summary += &format!("{name:<9}{executions} executions in {} s\n", plan.seconds);
+    }
+    println!("{summary}Nothing was found.");
+    Ok(())
+}
+
+/// Where the fuzzer's programs and what it learns are.
+fn work() -> PathBuf {
+    target().join("fuzzer")
+}
+
+/// The triple that rustc builds for: named, so that build scripts and macros are built without instruments.
+pub fn host() -> Result<String, String> {
+    let output = command("rustc", &["-vV"]).output();
+    let text = output.map_err(|error| format!("cannot start rustc: {error}"))?;
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    let host = text.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned)
+        .ok_or_else(|| "rustc does not say what it builds for".into())
+}
+
+fn build(address: bool) -> Result<PathBuf, String> {
+    let host = host()?;
+    let mut build = cargo(&["build", "--package", "clench-fuzz", "--bins"]);
+    build.args(["--features", "libfuzzer", "--target", &host]);
+    let folder = if address {
+        work().join("address")
+    } else {
+        work()
+    };
+    build.arg("--target-dir").arg(&folder);
+    let mut flags = COVERAGE.to_owned();
+    if address {
+        flags += " -Zsanitizer=address";
+        build.env("RUSTC_BOOTSTRAP", "1");
+    }
+    build.env("RUSTFLAGS", flags);
+    run(build)?;
+    Ok(folder.join(host).join("debug"))
+}
+
+/// Runs a target, and says how often its body ran.
+fn search(name: &str, program: &Path, dictionary: &Path, seconds: u64) -> Result<u64, String> {
+    let corpus = work().join("corpus").join(name);
+    let findings = root().join("fuzz/artifacts").join(name);
+    for folder in [&corpus, &findings] {
+        fs::create_dir_all(folder)
+            .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+    }
+    let mut fuzzer = command(
+        program,
+        &["-rss_limit_mb=2048", "-timeout=10", "-print_final_stats=1"],
+    );
+    fuzzer.arg(format!("-max_total_time={seconds}"));
+    fuzzer.arg(format!("-artifact_prefix={}/", findings.display()));
+    if name == "mjcf" {
+        fuzzer.arg(format!("-dict={}", dictionary.display()));
+    }
+    fuzzer.arg(corpus);
+    let mut seeds = vec![
+        root().join("fuzz/seeds").join(name),
+        root().join("fuzz/regressions").join(name),
+    ];
+    if name == "mjcf" {
+        seeds.extend([root().join("models"), root().join("parity/models")]);
+    }
+    fuzzer.args(seeds.iter().filter(|folder| folder.is_dir()));
+    println!("\n==> {name}");
+    let shown = shown(&fuzzer);
+    let mut child = (fuzzer.stderr(Stdio::piped()).spawn())
+        .map_err(|error| format!("cannot start {shown}: {error}"))?;
+    let mut executions = 0;
+    for line in BufReader::new(child.stderr.take().expect("it was asked for")).lines() {
+        let Ok(line) = line else { break };
+        if let Some(number) = line.strip_prefix("stat::number_of_executed_units:") {
+            executions = number.trim().parse().unwrap_or(0);
+        }
+        let _ = writeln!(std::io::stderr(), "{line}");
+    }
+    let status = child.wait().map_err(|error| error.to_string())?;
+    if status.success() {
+        return Ok(executions);
+    }
+    Err(format!(
+        "{name} found something after {executions} executions: see above, and {}.\nMake it small by `{} -minimize_crash=1 -runs=100000 FILE`, mend it, and keep it in fuzz/regressions/{name}.",
+        findings.display(),
+        program.display()
+    ))
+}
+
+/// The elements and attributes of MJCF as libFuzzer reads words: each in the text that it has in a file.
+fn dictionary_of_rules() -> String {
+    let mut words: Vec<String> = Vec::new();
+    for rule in rules::RULES {
+        let tags = [rule.children, rule.once, rule.later_children];
+        let tags = tags.into_iter().flat_map(str::split_ascii_whitespace);
+        words.extend(tags.flat_map(|tag| [format!("<{tag}"), format!("</{tag}>")]));
+        let names = [rule.read, rule.ignored, rule.later];
+        for attribute in names.into_iter().flat_map(str::split_ascii_whitespace) {
+            let (name, value) = attribute.split_once('=').unwrap_or((attribute, ""));
+            words.push(format!(" {name}='{value}"));
+        }
+    }
+    words.sort_unstable();
+    words.dedup();
+    (words.iter().map(|word| format!("\"{word}\"\n"))).collect()
+}
+
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    fs::write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dictionary_has_elements_and_attributes_as_they_are_written() {
+        let dictionary = dictionary_of_rules();
+        for word in [
+            "\"<joint\"",
+            "\"</worldbody>\"",
+            "\" condim='\"",
+            "\" adhesion='0\"",
+        ] {
+            assert!(dictionary.lines().any(|line| line == word), "{word}");
+        }
+    }
+
+    #[test]
+    fn every_target_has_seeds() {
+        for name in TARGETS {
+            assert!(root().join("fuzz/seeds").join(name).is_dir(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! `cargo xtask soak`: what takes long and looks for rare failures.
+
+use crate::run::{cargo, run};
+
+/// The long form of a test.
+struct Soak {
+    name: &'static str,
+    package: &'static str,
+    /// The test's program, and the test in it.
+    test: &'static str,
+    case: &'static str,
+}
+
+const SOAKS: [Soak; 5] = [
+    Soak {
+        name: "batch",
+        package: "clench",
+        test: "soak",
+        case: "long",
+    },
+    Soak {
+        name: "endurance",
+        package: "clench",
+        test: "soak",
+        case: "endurance",
+    },
+    Soak {
+        name: "resume",
+        package: "clench",
+        test: "soak",
+        case: "resume_long",
+    },
+    Soak {
+        name: "collide",
+        package: "clench-collide",
+        test: "trouble",
+        case: "",
+    },
+    Soak {
+        name: "recordings",
+        package: "clench-cli",
+        test: "killed",
+        case: "long",
+    },
+];
+
+/// Runs all soaks. `args` may choose one, by `--only`, and hold a seed.
+///
+/// # Errors
+/// Arguments that mean nothing, or what a soak found.
+pub fn soak(args: &[String]) -> Result<(), String> {
+    let (only, rest) = match args {
+        [flag, only, rest @ ..] if flag == "--only" => (Some(only.as_str()), rest),
+        _ => (None, args),
+    };
+    let seed = match rest {
+        [] => 1,
+        [seed] => seed
+            .parse::<u64>()
+            .map_err(|_| format!("`{seed}` is not a seed: give a whole number"))?,
+        _ => return Err("soak takes `--only NAME` and a seed, in that order".into()),
+    };
+    let chosen: Vec<&Soak> = (SOAKS.iter())
+        .filter(|soak| only.is_none_or(|only| only == soak.name))
+        .collect();
+    if chosen.is_empty() {
+        let names = SOAKS.map(|soak| soak.name).join(", ");
+        return Err(format!("soak knows --only with one of {names}"));
+    }
+    for soak in chosen {
+        let mut test = cargo(&["test", "--release", "--package", soak.package]);
+        test.args(["--test", soak.test, "--", "--ignored", "--nocapture"]);
+        if !soak.case.is_empty() {
+            test.args(["--exact", soak.case]);
+        }
+        test.env("SOAK_SEED", seed.to_string());
+        run(test)?;
+    }
+    Ok(())
+}
