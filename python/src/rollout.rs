@@ -4,11 +4,26 @@ use crate::arrays::{numbers, require_shape, shape_text, shaped};
 use crate::error::sim_error;
 use crate::view::{Keeper, view};
 use clench::{Batch, Controls, Precision};
-use numpy::{Element, PyUntypedArrayMethods};
+use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
+
+/// The numbers of an array.
+struct Copied<S> {
+    shape: Vec<usize>,
+    numbers: Vec<S>,
+}
+
+impl<S: Element + Copy> Copied<S> {
+    fn of(array: PyReadonlyArrayDyn<'_, S>) -> PyResult<Self> {
+        Ok(Copied {
+            shape: array.shape().to_vec(),
+            numbers: array.as_slice()?.to_vec(),
+        })
+    }
+}
 
 /// See `Batch.rollout`.
 pub(crate) fn rollout<'py, S: Precision + Element>(
@@ -20,13 +35,14 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
     steps: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (n, model) = (batch.count(), Arc::clone(batch.model()));
+    // Copies: other threads may write to the arrays while this one steps.
     let ctrl = ctrl
-        .map(|values| numbers::<S>("ctrl", values))
+        .map(|values| Copied::of(numbers::<S>("ctrl", values)?))
         .transpose()?;
     let steps = match (&ctrl, steps) {
         (None, None) => return Err(PyValueError::new_err("rollout needs ctrl or steps")),
         (None, Some(steps)) => steps,
-        (Some(values), steps) => match *values.shape() {
+        (Some(values), steps) => match values.shape[..] {
             [own, _] | [_, own, _] => steps.unwrap_or(own),
             ref other => {
                 let (found, nu) = (shape_text(other), model.nu());
@@ -38,23 +54,20 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
     };
     let controls = match &ctrl {
         None => Controls::Held,
-        Some(values) if values.ndim() == 2 => {
-            require_shape("ctrl", values.shape(), &[steps, model.nu()])?;
-            Controls::Shared(values.as_slice()?)
+        Some(values) if values.shape.len() == 2 => {
+            require_shape("ctrl", &values.shape, &[steps, model.nu()])?;
+            Controls::Shared(&values.numbers)
         }
         Some(values) => {
-            require_shape("ctrl", values.shape(), &[n, steps, model.nu()])?;
-            Controls::Each(values.as_slice()?)
+            require_shape("ctrl", &values.shape, &[n, steps, model.nu()])?;
+            Controls::Each(&values.numbers)
         }
     };
     let needed = [n, 1 + model.nq + model.nv + model.na];
     let initial = initial
-        .map(|values| shaped::<S>("initial", values, &needed))
+        .map(|values| Copied::of(shaped::<S>("initial", values, &needed)?))
         .transpose()?;
-    let start = initial
-        .as_ref()
-        .map(|values| values.as_slice())
-        .transpose()?;
+    let start = initial.as_ref().map(|values| &values.numbers[..]);
     let names = Vec::from_iter(record.iter().map(String::as_str));
     let mut interrupt = Ok(());
     let recording = py.detach(|| {

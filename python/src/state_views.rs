@@ -99,10 +99,10 @@ impl StateViews {
             Vec::from_iter(envs.into_iter().chain(of_row.iter().copied()))
         };
         let (nbody, nmocap) = (model.nbody(), model.nmocap);
-        // SAFETY: the shapes are those of the tables, which `keeper` keeps and nothing replaces.
+        // SAFETY: the shapes are those of the tables, which `keeper` keeps and nothing replaces. NumPy's booleans are bytes too.
         macro_rules! array {
-            ($field:ident $(, $size:expr)*) => {
-                unsafe { view(keeper, rows.$field.as_mut_ptr(), &shape(&[$($size),*])) }?
+            ($field:ident $(as $number:ty)? $(, $size:expr)*) => {
+                unsafe { view(keeper, rows.$field.as_mut_ptr()$(.cast::<$number>())?, &shape(&[$($size),*])) }?
                     .into_any()
                     .unbind()
             };
@@ -117,7 +117,7 @@ impl StateViews {
             xfrc_applied: array!(xfrc_applied, nbody, 6),
             mocap_pos: array!(mocap_pos, nmocap, 3),
             mocap_quat: array!(mocap_quat, nmocap, 4),
-            eq_active: array!(eq_active, model.equalities.len()),
+            eq_active: array!(eq_active as bool, model.equalities.len()),
             qacc_warmstart: array!(qacc_warmstart, model.nv),
         })
     }

@@ -1,9 +1,9 @@
 //! Rows of numbers as NumPy arrays, without a copy. Making such an array is `unsafe`, here and in the callers that hand in rows.
 //!
 //! A table of `clench` keeps its numbers in one place as long as it lives. A view is a NumPy array over that place whose base
-//! is a [`Keeper`]: as long as anyone holds the view, the table lives. Rust touches the numbers only inside calls, Python only
-//! outside of them; who writes from another thread while a call steps gets numbers that are partly old and partly new, since a
-//! step copies each row into scratch of its own, checks it there, and copies results back.
+//! is a [`Keeper`]: as long as anyone holds the view, the table lives. Who writes from another thread while a call steps gets
+//! numbers that are partly old and partly new: a step reads each number once and atomically into scratch of its own, checks it
+//! there, and stores results atomically. Arrays that calls are given are copied before other threads run.
 
 use crate::arrays::shape_text;
 use numpy::ndarray::{ArrayViewD, IxDyn};

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -175,3 +176,30 @@ def test_controls_may_come_in_any_form() -> None:
     ]
     for form in forms:
         np.testing.assert_array_equal(clench.Batch(example("quadruped"), 2).rollout(ctrl=form)["qpos"], expected)
+
+
+def test_controls_are_those_of_the_call() -> None:
+    """Other threads run meanwhile, and may reuse the arrays that were given."""
+    steps, n = 20_000, 4
+
+    def make() -> clench.Batch:
+        return clench.Batch(example("quadruped"), n, threads=1)
+
+    initial, ctrl = start(make()), np.zeros((steps, 12))
+    expected = make().rollout(initial, ctrl, ["qpos"])["qpos"][:, -1]
+    batch = make()
+    found: dict[str, NDArray[Any]] = {}
+    given, states = ctrl.copy(), initial.copy()
+    thread = threading.Thread(target=lambda: found.update(batch.rollout(states, given, ["qpos"])))
+    thread.start()
+    while True:
+        try:
+            batch.status  # noqa: B018
+        except clench.BusyError:
+            break
+        assert thread.is_alive(), "the rollout is over too soon"
+    given[:] = 0.4
+    states[:] = 0.0
+    assert thread.is_alive(), "the rollout is over too soon"
+    thread.join()
+    np.testing.assert_array_equal(found["qpos"][:, -1], expected)

@@ -30,6 +30,43 @@ pub struct State<T: Real> {
     pub qacc_warmstart: Vec<T>,
 }
 
+/// Bit by bit: a NaN equals itself, and 0 does not equal −0.
+impl<T: Real> PartialEq for State<T> {
+    fn eq(&self, other: &Self) -> bool {
+        let numbers = |a: &[T], b: &[T]| {
+            let bits = |values: &[T]| {
+                Vec::from_iter(T::as_scalars(values).iter().map(|x| x.to_f64().to_bits()))
+            };
+            bits(a) == bits(b)
+        };
+        let times = |state: &Self| {
+            Vec::from_iter((0..T::LANES).map(|lane| state.time.lane(lane).to_bits()))
+        };
+        let forces = |state: &Self| {
+            let parts =
+                |force: &Force<T>| [force.linear.to_array(), force.angular.to_array()].concat();
+            Vec::from_iter(state.xfrc_applied.iter().flat_map(parts))
+        };
+        let points =
+            |state: &Self| Vec::from_iter(state.mocap_pos.iter().flat_map(|p| p.to_array()));
+        let turns =
+            |state: &Self| Vec::from_iter(state.mocap_quat.iter().flat_map(|q| q.to_array()));
+        times(self) == times(other)
+            && numbers(&self.qpos, &other.qpos)
+            && numbers(&self.qvel, &other.qvel)
+            && numbers(&self.act, &other.act)
+            && numbers(&self.ctrl, &other.ctrl)
+            && numbers(&self.qfrc_applied, &other.qfrc_applied)
+            && numbers(&forces(self), &forces(other))
+            && numbers(&points(self), &points(other))
+            && numbers(&turns(self), &turns(other))
+            && self.eq_active == other.eq_active
+            && numbers(&self.qacc_warmstart, &other.qacc_warmstart)
+    }
+}
+
+impl<T: Real> Eq for State<T> {}
+
 /// How many numbers each field of a state has.
 pub(crate) type Lengths = [(&'static str, usize); 11];
 

@@ -299,7 +299,7 @@ fn what_failed_does_not_count_as_quality() {
     assert_eq!(diverged, refused);
 }
 
-/// Who writes rows by their address can leave bytes in switches that are neither false nor true.
+/// Who writes rows by their address can leave bytes in switches that are neither those of false nor of true.
 #[test]
 fn a_switch_is_on_whatever_byte_says_so() {
     let model = model(&everything());
@@ -308,13 +308,9 @@ fn a_switch_is_on_whatever_byte_says_so() {
         let end = |on: u8| {
             let options = with(instructions, 1, RigidOptions::new());
             let mut batch = batch::<f64>(&model, &envs, options);
-            let switches = &mut batch.state.eq_active;
-            let (start, width) = (switches.as_mut_ptr().cast::<u8>(), switches.width());
-            assert!(width > 0);
-            for switch in (0..width).map(|i| 3 * width + i) {
-                // SAFETY: within the table, whose bytes only the batch reads.
-                unsafe { start.add(switch).write(on) };
-            }
+            let switches = batch.state.eq_active.row_mut(3);
+            assert!(!switches.is_empty());
+            switches.fill(on);
             assert_eq!(batch.step_n(5).expect("valid").failed, 0);
             let one = batch.sim(3).expect("it exists").state.eq_active;
             (batch.state.qpos.as_slice().to_vec(), one)

@@ -316,7 +316,8 @@ fn rollouts_start_where_they_are_told() {
     for env in 0..n {
         let mut sim = Sim::<f64>::new(model.clone()).expect("valid");
         begin(env, &mut sim.state);
-        sim.state.eq_active = batch.state.eq_active.row(env).to_vec();
+        let switches = batch.state.eq_active.row(env).iter();
+        sim.state.eq_active = switches.map(|&on| on != 0).collect();
         sim.state.time = env as f64;
         sim.state.act.fill(0.1 * env as f64);
         initial.push(sim.state.time);

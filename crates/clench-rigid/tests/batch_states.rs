@@ -3,7 +3,7 @@
 mod batches;
 
 use batches::*;
-use clench_math::Instructions;
+use clench_math::{Instructions, Quat, Vec3};
 use clench_rigid::batch::{Controls, StateRows};
 use clench_rigid::model::JointKind;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, SimError, State};
@@ -46,7 +46,7 @@ fn what_is_restored_moves_on_as_it_would_have() {
     batch.step_n(60).expect("valid");
     let first = states(&batch);
     batch.state.xfrc_applied.as_mut_slice().fill(0.0);
-    batch.state.eq_active.as_mut_slice().fill(true);
+    batch.state.eq_active.as_mut_slice().fill(1);
     batch.reset(5).expect("it exists");
     batch.step_n(10).expect("valid");
     batch.restore(&saved).expect("its own");
@@ -182,7 +182,7 @@ fn states_go_into_rows_and_out_of_them() {
     rows.write(1, &state).expect("of the model");
     let mut found = State::new(&model);
     rows.read(1, &mut found).expect("of the model");
-    assert_eq!(format!("{found:?}"), format!("{state:?}"));
+    assert_eq!(found, state);
     rows.read(2, &mut found).expect("of the model");
     let sum = |state: &State<f64>| state.qpos.iter().map(|x| x.abs()).sum::<f64>();
     assert_eq!((found.time, sum(&found)), (0.0, 0.0), "new rows are zero");
@@ -289,4 +289,30 @@ fn no_environment_and_no_dof_are_fine() {
     still.record(&["xpos", "qacc", "energy"]).expect("known");
     still.step_n(2).expect("valid");
     assert_eq!(still.state.time.as_slice(), [0.004; 3]);
+}
+
+#[test]
+fn states_are_equal_bit_by_bit() {
+    let model = model(&everything());
+    let state = State::<f64>::new(&model);
+    assert_eq!(state, state.clone());
+    let changes: [fn(&mut State<f64>); 11] = [
+        |s| s.time = -0.0,
+        |s| s.qpos[0] = f64::NAN,
+        |s| s.qvel[0] = -0.0,
+        |s| s.act.push(0.0),
+        |s| s.ctrl.push(0.0),
+        |s| s.qfrc_applied[0] = 1.0,
+        |s| s.xfrc_applied[1].angular.z = 1.0,
+        |s| s.mocap_pos.push(Vec3::ZERO),
+        |s| s.mocap_quat.push(Quat::IDENTITY),
+        |s| s.eq_active.push(true),
+        |s| s.qacc_warmstart[0] = f64::MIN_POSITIVE,
+    ];
+    for (i, change) in changes.iter().enumerate() {
+        let mut other = state.clone();
+        change(&mut other);
+        assert_ne!(state, other, "change {i}");
+        assert_eq!(other, other.clone(), "change {i}");
+    }
 }

@@ -7,7 +7,7 @@ use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Instructions, Scalar};
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
 use zerocopy::{Immutable, IntoBytes};
 
 /// A number type of simulations and batches: `f64` or `f32`.
@@ -19,8 +19,8 @@ pub trait Precision: Lanewise {}
 impl Precision for f64 {}
 impl Precision for f32 {}
 
-/// What a batch needs of a number type; outside this crate only its name is known.
-pub trait Lanewise: Scalar + IntoBytes + Immutable {
+/// What rows that threads share are made of.
+pub trait Shared: Copy {
     /// The same number where several threads write.
     type Cell: Sync;
     /// Numbers as cells.
@@ -29,6 +29,39 @@ pub trait Lanewise: Scalar + IntoBytes + Immutable {
     fn load(cell: &Self::Cell) -> Self;
     /// Puts a number into a cell.
     fn store(cell: &Self::Cell, value: Self);
+    /// The bits of the number in a cell.
+    fn bits(cell: &Self::Cell) -> u64;
+}
+
+macro_rules! shared {
+    ($number:ident in $cell:ident, $from:expr, $to:expr) => {
+        impl Shared for $number {
+            type Cell = $cell;
+            fn cells(values: &mut [$number]) -> &[$cell] {
+                let cells: &mut [$cell] = zerocopy::transmute_mut!(values);
+                cells
+            }
+            #[inline(always)]
+            fn load(cell: &$cell) -> $number {
+                $from(cell.load(Relaxed))
+            }
+            #[inline(always)]
+            fn store(cell: &$cell, value: $number) {
+                cell.store($to(value), Relaxed);
+            }
+            #[inline(always)]
+            fn bits(cell: &$cell) -> u64 {
+                u64::from(cell.load(Relaxed))
+            }
+        }
+    };
+}
+shared!(f64 in AtomicU64, f64::from_bits, f64::to_bits);
+shared!(f32 in AtomicU32, f32::from_bits, f32::to_bits);
+shared!(u8 in AtomicU8, u8::from, u8::from);
+
+/// What a batch needs of a number type; outside this crate only its name is known.
+pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {
     /// A thread's scratch in lanes of these instructions; `None` if the processor lacks them. Not generic, so that stepping in
     /// lanes is compiled with this crate and not with each of its users.
     fn stepper(instructions: Instructions, model: &Model) -> Option<Box<dyn Stepper<Self>>>;
@@ -58,21 +91,8 @@ pub trait Lanewise: Scalar + IntoBytes + Immutable {
 }
 
 macro_rules! lanewise {
-    ($scalar:ident in $cell:ident) => {
+    ($scalar:ident) => {
         impl Lanewise for $scalar {
-            type Cell = $cell;
-            fn cells(values: &mut [$scalar]) -> &[$cell] {
-                let cells: &mut [$cell] = zerocopy::transmute_mut!(values);
-                cells
-            }
-            #[inline(always)]
-            fn load(cell: &$cell) -> $scalar {
-                $scalar::from_bits(cell.load(Relaxed))
-            }
-            #[inline(always)]
-            fn store(cell: &$cell, value: $scalar) {
-                cell.store(value.to_bits(), Relaxed);
-            }
             fn stepper(
                 instructions: Instructions,
                 model: &Model,
@@ -108,5 +128,5 @@ macro_rules! lanewise {
         }
     };
 }
-lanewise!(f64 in AtomicU64);
-lanewise!(f32 in AtomicU32);
+lanewise!(f64);
+lanewise!(f32);

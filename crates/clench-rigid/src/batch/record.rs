@@ -229,13 +229,12 @@ impl<S: Precision> Batch<S> {
     /// Lets all environments run from these states, of which [`moving`](Self::moving) numbers are given.
     fn start_from(&mut self, initial: &[S]) {
         let (nq, nv) = (self.model.nq, self.model.nv);
-        for (env, row) in initial.chunks_exact(self.moving()).enumerate() {
-            let state = &mut self.state;
-            state.time.row_mut(env)[0] = row[0].to_f64();
-            state.qpos.row_mut(env).copy_from_slice(&row[1..][..nq]);
-            (state.qvel.row_mut(env)).copy_from_slice(&row[1 + nq..][..nv]);
-            (state.act.row_mut(env)).copy_from_slice(&row[1 + nq + nv..]);
-            state.qacc_warmstart.row_mut(env).fill(S::ZERO);
+        let (motion, _) = self.state.share();
+        for (env, row) in initial
+            .chunks_exact(1 + nq + nv + self.model.na)
+            .enumerate()
+        {
+            motion.start(env, row, nq, nv);
         }
         self.status.fill(EnvStatus::Running);
     }

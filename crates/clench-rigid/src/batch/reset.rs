@@ -1,6 +1,6 @@
 //! Environments one by one: reset, revived, taken out as a simulation.
 
-use super::{Batch, EnvStatus, Precision};
+use super::{Batch, EnvStatus, Precision, StateRows};
 use crate::check::check_length;
 use crate::error::SimError;
 use crate::sim::{Sim, no_such};
@@ -64,7 +64,9 @@ impl<S: Precision> Batch<S> {
         self.check_env(env)?;
         self.check_state()?;
         let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
-        self.state.read(env, &mut sim.state)?;
+        let mut row = StateRows::new(&self.model, 1)?;
+        row.copy_row(0, &self.state, env);
+        row.read(0, &mut sim.state)?;
         for own in &self.params {
             own.read(env, 0, sim.params_mut());
         }

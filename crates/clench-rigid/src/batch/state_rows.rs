@@ -7,11 +7,10 @@ use super::{Precision, Rows};
 use crate::check::check_length;
 use crate::error::SimError;
 use crate::model::Model;
-use crate::model::flat::{set_lane, write_quats, write_vectors};
+use crate::model::flat::set_lane;
 use crate::sim::no_such;
 use crate::state::State;
-use clench_math::{Clock, Mask, Real, write_lane};
-use zerocopy::IntoBytes;
+use clench_math::{Clock, Mask, Real};
 
 /// The states of the environments of a batch, field by field, a row an environment. To be read and written between steps;
 /// what a step reads is checked first.
@@ -36,8 +35,9 @@ pub struct StateRows<S> {
     pub mocap_pos: Rows<S>,
     /// Orientations of mocap bodies (n, 4 nmocap).
     pub mocap_quat: Rows<S>,
-    /// Which equality constraints are on (n, neq).
-    pub eq_active: Rows<bool>,
+    /// Which equality constraints are on (n, neq): all but 0 means on. Bytes, for those who write them by their address may leave
+    /// others than those of false and true.
+    pub eq_active: Rows<u8>,
     /// Acceleration of the previous step, where the solver starts (n, nv).
     pub qacc_warmstart: Rows<S>,
 }
@@ -60,7 +60,7 @@ impl<S: Precision> StateRows<S> {
             xfrc_applied: rows(6 * model.nbody())?,
             mocap_pos: rows(3 * model.nmocap)?,
             mocap_quat: rows(4 * model.nmocap)?,
-            eq_active: Rows::new(count, model.equalities.len(), false)?,
+            eq_active: Rows::new(count, model.equalities.len(), 0)?,
             qacc_warmstart: rows(model.nv)?,
         })
     }
@@ -152,64 +152,35 @@ impl<S: Precision> StateRows<S> {
         self.eq_active.row_mut(to).copy_from_slice(switches);
     }
 
-    /// Copies row `env` into a state of the same model.
+    /// Copies row `env` into a state of the same model. Numbers are read one by one: who writes them meanwhile, by their address,
+    /// leaves some of the old and some of the new.
     ///
     /// # Errors
     /// A row that there is not; a state of other lengths, which is then as before.
-    pub fn read(&self, env: usize, state: &mut State<S>) -> Result<(), SimError> {
+    pub fn read(&mut self, env: usize, state: &mut State<S>) -> Result<(), SimError> {
         self.check_row(env, state)?;
-        state.time = self.time.row(env)[0];
-        write_lane(self.qpos.row(env), 0, &mut state.qpos);
-        write_lane(self.qvel.row(env), 0, &mut state.qvel);
-        write_lane(self.act.row(env), 0, &mut state.act);
-        let warmstart = self.qacc_warmstart.row(env);
-        write_lane(warmstart, 0, &mut state.qacc_warmstart);
-        let inputs = Inputs {
-            ctrl: &self.ctrl,
-            qfrc_applied: &self.qfrc_applied,
-            xfrc_applied: &self.xfrc_applied,
-            mocap_pos: &self.mocap_pos,
-            mocap_quat: &self.mocap_quat,
-            eq_active: &self.eq_active,
-        };
+        let (motion, inputs) = self.share();
+        motion.read(env, 0, state);
         inputs.read(env, 0, state);
         inputs.read_pushes(env, 0, state);
         Ok(())
     }
 
-    /// Copies a state of the same model into row `env`.
+    /// Copies a state of the same model into row `env`, number by number as [`read`](Self::read) does.
     ///
     /// # Errors
     /// A row that there is not; a state of other lengths. The row is then as before.
     pub fn write(&mut self, env: usize, state: &State<S>) -> Result<(), SimError> {
         self.check_row(env, state)?;
-        self.time.row_mut(env)[0] = state.time;
-        self.qpos.row_mut(env).copy_from_slice(&state.qpos);
-        self.qvel.row_mut(env).copy_from_slice(&state.qvel);
-        self.act.row_mut(env).copy_from_slice(&state.act);
-        (self.qacc_warmstart.row_mut(env)).copy_from_slice(&state.qacc_warmstart);
-        self.write_inputs(env, state);
+        let (motion, inputs) = self.share();
+        motion.write(env, 0, state);
+        inputs.write(env, state);
         Ok(())
     }
 
     /// Copies what a step only reads of a state, all but what it moves, into row `env`.
     pub(super) fn write_inputs(&mut self, env: usize, state: &State<S>) {
-        self.ctrl.row_mut(env).copy_from_slice(&state.ctrl);
-        let forces = self.xfrc_applied.row_mut(env).chunks_exact_mut(6);
-        for (row, force) in forces.zip(&state.xfrc_applied) {
-            force.linear.write(row);
-            force.angular.write(&mut row[3..]);
-        }
-        (self.qfrc_applied.row_mut(env)).copy_from_slice(&state.qfrc_applied);
-        let positions = self.mocap_pos.row_mut(env).chunks_exact_mut(3);
-        for (row, pos) in positions.zip(&state.mocap_pos) {
-            pos.write(row);
-        }
-        let turns = self.mocap_quat.row_mut(env).chunks_exact_mut(4);
-        for (row, quat) in turns.zip(&state.mocap_quat) {
-            quat.write(row);
-        }
-        (self.eq_active.row_mut(env)).copy_from_slice(&state.eq_active);
+        self.share().1.write(env, state);
     }
 
     /// The tables as a step sees them.
@@ -222,12 +193,12 @@ impl<S: Precision> StateRows<S> {
             qacc_warmstart: Cells::new(&mut self.qacc_warmstart),
         };
         let inputs = Inputs {
-            ctrl: &self.ctrl,
-            qfrc_applied: &self.qfrc_applied,
-            xfrc_applied: &self.xfrc_applied,
-            mocap_pos: &self.mocap_pos,
-            mocap_quat: &self.mocap_quat,
-            eq_active: &self.eq_active,
+            ctrl: Cells::new(&mut self.ctrl),
+            qfrc_applied: Cells::new(&mut self.qfrc_applied),
+            xfrc_applied: Cells::new(&mut self.xfrc_applied),
+            mocap_pos: Cells::new(&mut self.mocap_pos),
+            mocap_quat: Cells::new(&mut self.mocap_quat),
+            eq_active: Cells::new(&mut self.eq_active),
         };
         (motion, inputs)
     }
@@ -261,43 +232,68 @@ impl<S: Lanewise> Motion<'_, S> {
         self.act.write(env, lane, &state.act);
         self.qacc_warmstart.write(env, lane, &state.qacc_warmstart);
     }
+
+    /// Replaces the row of an environment by time, `nq` positions, `nv` velocities and activations. The solver starts anew.
+    pub fn start(&self, env: usize, row: &[S], nq: usize, nv: usize) {
+        let (time, row) = row.split_at(1);
+        let (qpos, row) = row.split_at(nq);
+        let (qvel, act) = row.split_at(nv);
+        self.time.put(env, time.iter().map(|t| t.to_f64()));
+        self.qpos.put(env, qpos.iter().copied());
+        self.qvel.put(env, qvel.iter().copied());
+        self.act.put(env, act.iter().copied());
+        self.qacc_warmstart
+            .put(env, std::iter::repeat_n(S::ZERO, nv));
+    }
 }
 
 /// What a step only reads.
-pub struct Inputs<'a, S> {
-    ctrl: &'a Rows<S>,
-    qfrc_applied: &'a Rows<S>,
-    xfrc_applied: &'a Rows<S>,
-    mocap_pos: &'a Rows<S>,
-    mocap_quat: &'a Rows<S>,
-    eq_active: &'a Rows<bool>,
+pub struct Inputs<'a, S: Lanewise> {
+    ctrl: Cells<'a, S>,
+    qfrc_applied: Cells<'a, S>,
+    xfrc_applied: Cells<'a, S>,
+    mocap_pos: Cells<'a, S>,
+    mocap_quat: Cells<'a, S>,
+    eq_active: Cells<'a, u8>,
 }
 
 impl<S: Lanewise> Inputs<'_, S> {
     /// Copies the row of an environment into lane `lane`, but for the forces on bodies.
     pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
-        write_lane(self.ctrl.row(env), lane, &mut state.ctrl);
-        write_lane(self.qfrc_applied.row(env), lane, &mut state.qfrc_applied);
-        write_vectors(self.mocap_pos.row(env), lane, &mut state.mocap_pos);
-        write_quats(self.mocap_quat.row(env), lane, &mut state.mocap_quat);
-        // As bytes: who writes them by their address may leave others than those of false and true.
-        let switches = self.eq_active.row(env).as_bytes();
-        for (switch, &on) in state.eq_active.iter_mut().zip(switches) {
+        self.ctrl.read(env, lane, &mut state.ctrl);
+        self.qfrc_applied.read(env, lane, &mut state.qfrc_applied);
+        for (pos, row) in state
+            .mocap_pos
+            .iter_mut()
+            .zip(self.mocap_pos.parts::<3>(env))
+        {
+            set_lane([&mut pos.x, &mut pos.y, &mut pos.z], lane, &row);
+        }
+        for (quat, row) in state
+            .mocap_quat
+            .iter_mut()
+            .zip(self.mocap_quat.parts::<4>(env))
+        {
+            let axes = [&mut quat.w, &mut quat.x, &mut quat.y, &mut quat.z];
+            set_lane(axes, lane, &row);
+        }
+        for (switch, [on]) in state.eq_active.iter_mut().zip(self.eq_active.parts(env)) {
             switch.set_lane(lane, on != 0);
         }
     }
 
     /// Whether forces are applied to any body of an environment; those of −0 count, for outputs show them.
     pub fn pushed(&self, env: usize) -> bool {
-        // To the end, so that the loop runs in registers.
-        let row = self.xfrc_applied.row(env).as_bytes().iter();
-        row.fold(0, |bits, byte| bits | byte) != 0
+        !self.xfrc_applied.is_blank(env)
     }
 
     /// Copies the forces on bodies of an environment into lane `lane`.
     pub fn read_pushes<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
-        let forces = self.xfrc_applied.row(env).chunks_exact(6);
-        for (force, row) in state.xfrc_applied.iter_mut().zip(forces) {
+        for (force, row) in state
+            .xfrc_applied
+            .iter_mut()
+            .zip(self.xfrc_applied.parts::<6>(env))
+        {
             let (linear, angular) = (&mut force.linear, &mut force.angular);
             let axes = [
                 &mut linear.x,
@@ -307,7 +303,20 @@ impl<S: Lanewise> Inputs<'_, S> {
                 &mut angular.y,
                 &mut angular.z,
             ];
-            set_lane(axes, lane, row);
+            set_lane(axes, lane, &row);
         }
+    }
+
+    /// Copies a state into the row of an environment.
+    pub fn write(&self, env: usize, state: &State<S>) {
+        self.ctrl.put(env, state.ctrl.iter().copied());
+        (self.qfrc_applied).put(env, state.qfrc_applied.iter().copied());
+        let forces = state.xfrc_applied.iter();
+        let forces =
+            forces.flat_map(|f| f.linear.to_array().into_iter().chain(f.angular.to_array()));
+        self.xfrc_applied.put(env, forces);
+        (self.mocap_pos).put(env, state.mocap_pos.iter().flat_map(|p| p.to_array()));
+        (self.mocap_quat).put(env, state.mocap_quat.iter().flat_map(|q| q.to_array()));
+        (self.eq_active).put(env, state.eq_active.iter().map(|&on| u8::from(on)));
     }
 }
