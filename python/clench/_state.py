@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import operator
 import zipfile
 from dataclasses import dataclass, fields
@@ -16,6 +17,8 @@ __all__ = ["State"]
 # What the bytes hold is said by this number: readers refuse what is newer than they know. Before version 2, times were of
 # the precision of all other numbers.
 _VERSION = 2
+# The most entries of an archive that are looked at: more than any version has.
+_MAX_ENTRIES = 100
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -24,6 +27,9 @@ class State:
 
     `Sim.state` and `Batch.state` make one, and assigning it brings the simulation back there, to the bit. The arrays are the
     same as those of the simulation, with the environments as first axis for a `Batch`; they can be changed freely.
+
+    Two states are equal if all their arrays are, in type, shape and every bit: a NaN equals itself, 0.0 is not -0.0. What can be
+    changed has no hash.
 
     Parameters
     ----------
@@ -67,6 +73,14 @@ class State:
                 raise TypeError(f"{name} of a state must be an array of {wanted}, not {found}")
         return arrays
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, State):
+            return NotImplemented
+        own, others = self._arrays(), other._arrays()
+        return all(_same_bits(array, others[name]) for name, array in own.items())
+
+    __hash__ = None  # type: ignore[assignment]
+
     def to_bytes(self) -> bytes:
         """Pack the state into bytes.
 
@@ -101,18 +115,23 @@ class State:
         TypeError
             What is not bytes.
         """
+        if not isinstance(data, bytes | bytearray | memoryview):
+            raise TypeError(f"a state is unpacked from bytes, not from {type(data).__name__}")
         stream = io.BytesIO(data)
         if not zipfile.is_zipfile(stream):
             raise ValueError("these bytes hold no state: they are no whole archive of NumPy's")
-        stream.seek(0)
         try:
-            with np.load(stream, allow_pickle=False) as archive:
-                arrays = dict(archive)
-            version = operator.index(arrays.pop("version")[()])
+            with zipfile.ZipFile(stream) as archive:
+                _require_plain(archive, stream.getbuffer().nbytes)
+                version = operator.index(_entry(archive, "version.npy")[()])
+                # Nothing else is looked at before it is known to be understood.
+                if 1 <= version <= _VERSION:
+                    arrays = {name.removesuffix(".npy"): _entry(archive, name) for name in archive.namelist()}
         except Exception as error:  # Readers of damaged archives raise whatever they stumble over.
             raise ValueError(f"these bytes hold no state: {error}") from error
         if not 1 <= version <= _VERSION:
             raise ValueError(f"this state has version {version}, and this clench reads versions 1 to {_VERSION}")
+        del arrays["version"]
         if version == 1 and "time" in arrays:
             arrays["time"] = arrays["time"].astype(np.float64)
         try:
@@ -123,3 +142,39 @@ class State:
     def __repr__(self) -> str:
         envs = "" if self.qpos.ndim == 1 else f" of {len(self.qpos)} environments"
         return f"<clench.State{envs}, {self.qpos.dtype}>"
+
+
+def _same_bits(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+
+
+def _require_plain(archive: zipfile.ZipFile, size: int) -> None:
+    """Refuse an archive, of so many bytes, that would take more memory unpacked than it has itself."""
+    entries = archive.infolist()
+    if len(entries) > _MAX_ENTRIES:
+        raise ValueError(f"the archive has {len(entries)} entries, and at most {_MAX_ENTRIES} are looked at")
+    if len({entry.filename for entry in entries}) < len(entries):
+        raise ValueError("the archive has two entries of one name")
+    for entry in entries:
+        if entry.compress_type != zipfile.ZIP_STORED:
+            raise ValueError(f"{entry.filename} is compressed, and states never are")
+    total = sum(entry.file_size for entry in entries)
+    if total > size:
+        raise ValueError(f"the archive claims to hold {total} bytes, and has {size}")
+
+
+def _entry(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    """An array of an archive, as large as its bytes are and no larger."""
+    stream = io.BytesIO(archive.read(name))
+    read_header = {
+        (1, 0): np.lib.format.read_array_header_1_0,
+        (2, 0): np.lib.format.read_array_header_2_0,
+    }[np.lib.format.read_magic(stream)]
+    shape, fortran_order, dtype = read_header(stream)
+    if dtype.hasobject:
+        raise ValueError(f"{name} holds Python objects")
+    claimed, found = math.prod(shape) * dtype.itemsize, stream.getbuffer().nbytes - stream.tell()
+    if claimed != found:
+        raise ValueError(f"{name} claims {claimed} bytes of numbers, and has {found}")
+    array = np.frombuffer(stream.getbuffer()[stream.tell() :], dtype)
+    return array.reshape(shape, order="F" if fortran_order else "C").copy()

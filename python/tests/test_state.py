@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import copy
 import io
 import pathlib
 import pickle
 import random
 import subprocess
 import sys
+import tracemalloc
+import warnings
 import zipfile
 from typing import Any
 
@@ -180,8 +183,17 @@ def foreign() -> dict[str, bytes]:
     huge = io.BytesIO()
     with zipfile.ZipFile(huge, "w") as file:
         file.writestr("qpos.npy", np.lib.format.magic(1, 0) + b"\x76\x00" + header(10**15))
+    packed = io.BytesIO()
+    np.savez_compressed(packed, version=np.int64(1), qpos=np.zeros(10**7))
+    twice = io.BytesIO()
+    with zipfile.ZipFile(twice, "w") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for _ in range(2):
+            file.writestr("version.npy", array.getvalue())
     return {
         "nothing": b"",
+        "compressed": packed.getvalue(),
+        "two of a name": twice.getvalue(),
         "zeros": bytes(1000),
         "text": b"hello",
         "half": data[: len(data) // 2],
@@ -232,8 +244,62 @@ def test_times_of_the_first_version_had_the_precision_of_the_rest() -> None:
 
 @pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])
 def test_what_is_not_bytes(bad: Any) -> None:
-    with pytest.raises((TypeError, ValueError)):
+    with pytest.raises(TypeError, match=type(bad).__name__):
         clench.State.from_bytes(bad)
+
+
+@pytest.mark.parametrize("kind", [bytes, bytearray, memoryview])
+def test_bytes_of_every_kind(kind: Any) -> None:
+    state = moving("sim").state
+    assert clench.State.from_bytes(kind(state.to_bytes())) == state
+
+
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_equality_is_that_of_every_bit(kind: str) -> None:
+    own = moving(kind)
+    state = own.state
+    assert own.state == own.state == state == pickle.loads(pickle.dumps(state)) == copy.deepcopy(state)
+    assert clench.State.from_bytes(state.to_bytes()) == state and not state != own.state
+    for name in FIELDS:
+        other = own.state
+        array = getattr(other, name)
+        array[...] = ~array if array.dtype == bool else np.nextafter(array, np.inf)
+        assert other != state, name
+        assert array.size == 0 or other != own.state
+    zero, negative, nan = own.state, own.state, own.state
+    zero.qvel[...], negative.qvel[...], nan.qvel[...] = 0.0, -0.0, np.nan
+    assert zero != negative and nan == copy.deepcopy(nan) != zero
+    assert state != moving(kind, "32").state
+    assert state != moving("batch" if kind == "sim" else "sim").state
+    assert state != 3 and state != None and state != vars(state)  # noqa: E711
+
+
+def test_states_have_no_hash() -> None:
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(moving("sim").state)
+
+
+def test_bytes_take_no_more_memory_than_they_are() -> None:
+    """Few bytes that unpack to many, of whatever version."""
+    zeros = np.zeros(10**8)
+    for version in (1, 2):
+        bomb = io.BytesIO()
+        np.savez_compressed(bomb, version=np.int64(version), qpos=zeros)
+        tracemalloc.start()
+        with pytest.raises(ValueError, match="compressed"):
+            clench.State.from_bytes(bomb.getvalue())
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert most < 20 * len(bomb.getvalue()) < zeros.nbytes
+    # One header that claims more than is there.
+    data = moving("sim").state.to_bytes()
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as file, zipfile.ZipFile(io.BytesIO(data)) as old:
+        for name in old.namelist():
+            claimed = np.lib.format.magic(1, 0) + b"\x76\x00" + header(10**10)
+            file.writestr(name, claimed if name == "qpos.npy" else old.read(name))
+    with pytest.raises(ValueError, match="qpos.npy claims 80000000000 bytes"):
+        clench.State.from_bytes(stream.getvalue())
 
 
 def test_damaged_bytes() -> None:
