@@ -89,11 +89,11 @@ The quality of a run is `good`, or the gravest of:
   energy_growth         mechanical energy rose by more than twice what actuators put in and what lifting each body by its own
                         radius of gyration takes, and a fifth of the kinetic energy (not judged where mocap bodies, gravity
                         compensation or wind may give energy too)
-  deep_penetration      in more than one of a thousand steps a contact was deeper than half the thickness of one of its geoms,
+  deep_penetration      in more than 1% of the steps a contact was deeper than half the thickness of one of its geoms,
                         and deeper than its softness explains: at rest under its force, or in an impact at 5 m/s
-  constraint_violation  in more than one of a thousand steps an equality or a limit was violated by more than 0.1 (m or rad),
+  constraint_violation  in more than 5% of the steps an equality or a limit was violated by more than 0.1 (m or rad),
                         and by more than its softness explains
-  unconverged           more than one of a hundred solves stopped at the iteration limit
+  unconverged           the solves of more than 1% of the steps stopped at the iteration limit
 
 Ctrl-C (SIGINT) and SIGTERM end a run after the step it is in: the record is written, the summary says `interrupted`, and the
 exit code is 130 or 143. A second one ends the program at once, without a record. The exit code is 2 for bad input and for

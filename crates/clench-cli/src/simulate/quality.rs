@@ -5,10 +5,14 @@ use clench::Model;
 use clench::rigid::batch::Quality;
 use clench::rigid::constraint::ConstraintSource;
 
-/// Constraints that are violated in so few of the steps are an incident and not the run.
-const INCIDENT: f64 = 1e-3;
-/// Solves that stop at the iteration limit in so few of the steps change little.
-const FEW_UNCONVERGED: f64 = 1e-2;
+/// Deep contacts in so small a share of the steps are an incident and not the run.
+const FEW_DEEP: f64 = 0.01;
+/// So are violations: many models start beyond a limit of theirs, and come back within a few steps.
+const FEW_VIOLATED: f64 = 0.05;
+/// Solves that stop at the iteration limit in so small a share of the steps change little.
+const FEW_UNCONVERGED: f64 = 0.01;
+/// Larger numbers are written with an exponent.
+const LONG: f64 = 1e6;
 
 /// The verdict on a run.
 pub struct Verdict {
@@ -24,7 +28,7 @@ pub fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAccount>)
     let share = |count: u64| count as f64 / steps.max(1) as f64;
     let mut found = Vec::new();
     if let Some((envs, worst)) = energy.and_then(EnergyAccount::grown) {
-        let (env, growth, supplied) = (worst.env, worst.growth, worst.supplied);
+        let (env, growth, supplied) = (worst.env, number(worst.growth), number(worst.supplied));
         let count = if envs == 1 {
             "1 environment".into()
         } else {
@@ -33,36 +37,36 @@ pub fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAccount>)
         found.push((
             "energy_growth",
             format!(
-                "the mechanical energy of {count} rose from nowhere, that of environment {env} by {growth:.3} J where actuators \
-                 put in {supplied:.3} J: is the time step too long, or a force too stiff?"
+                "the mechanical energy of {count} rose from nowhere, that of environment {env} by {growth} J where actuators \
+                 put in {supplied} J: is the time step too long, or a force too stiff?"
             ),
         ));
     }
     if let Some(deepest) = quality.deepest
-        && share(quality.deep) > INCIDENT
+        && share(quality.deep) > FEW_DEEP
     {
         let [a, b] = deepest
             .geoms
             .map(|g| element("geom", &model.geoms[g].name, g));
-        let (deep, depth) = (quality.deep, 1e3 * deepest.depth);
+        let (deep, depth) = (quality.deep, number(1e3 * deepest.depth));
         found.push((
             "deep_penetration",
             format!(
-                "in {deep} of {steps} steps a contact was deeper than half a geom and than softness explains, at worst {depth:.0} \
+                "in {deep} of {steps} steps a contact was deeper than half a geom and than softness explains, at worst {depth} \
                  mm between {a} and {b}: do geoms start inside each other, or is the time step too long?"
             ),
         ));
     }
     if let Some(worst) = quality.worst_violation
-        && share(quality.violated) > INCIDENT
+        && share(quality.violated) > FEW_VIOLATED
     {
         let which = source(model, worst.source);
-        let (violated, size) = (quality.violated, worst.size);
+        let (violated, size) = (quality.violated, number(worst.size));
         found.push((
             "constraint_violation",
             format!(
                 "in {violated} of {steps} steps an equality or a limit was violated by more than 0.1 (m or rad) and than softness \
-                 explains, at worst {which} by {size:.3}"
+                 explains, at worst {which} by {size}"
             ),
         ));
     }
@@ -78,6 +82,14 @@ pub fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAccount>)
     Verdict {
         word: found.first().map_or("good", |(word, _)| word),
         warnings: found.into_iter().map(|(_, warning)| warning).collect(),
+    }
+}
+
+fn number(x: f64) -> String {
+    if x < LONG {
+        format!("{x:.3}")
+    } else {
+        format!("{x:.3e}")
     }
 }
 
