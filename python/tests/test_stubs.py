@@ -35,7 +35,7 @@ def test_shapes_of_outputs_are_true() -> None:
     model = puppet()
     sim, batch = clench.Sim(model), clench.Batch(model, 3, record=clench.OUTPUTS)
     for name, shape in attributes("_Outputs").items():
-        sizes = tuple(getattr(model, size, None) or int(size) for size in re.findall(r"\w+", shape))
+        sizes = tuple(int(size) if size.isdigit() else getattr(model, size) for size in re.findall(r"\w+", shape))
         assert sim.output(name).shape == sizes, name
         assert batch.output(name).shape == (3, *sizes), name
     for name in attributes("Sim"):
