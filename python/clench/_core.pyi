@@ -35,7 +35,7 @@ _Kind: TypeAlias = Literal[
     "body", "joint", "geom", "site", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"
 ]
 _Cost: TypeAlias = Literal["quadratic", "one_sided", "huber", "pyramid", "elliptic"]
-_Status: TypeAlias = Literal["unconstrained", "proven", "converged", "no_progress", "iteration_limit", "non_finite"]
+_Status: TypeAlias = Literal["unconstrained", "proven", "converged", "no_progress", "iteration_limit", "non_finite", "too_large"]
 _Source: TypeAlias = Literal[
     "equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon", "contact"
 ]

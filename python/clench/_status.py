@@ -20,3 +20,5 @@ class EnvStatus(IntEnum):
     """Its motion left all bounds: positions, velocities or accelerations beyond 1e10 or not finite."""
     CONTACT_OVERFLOW = 4
     """It had more contacts than `max_contacts` allows."""
+    OVER_BUDGET = 5
+    """Its step asked for more than the budget that the model was loaded with."""

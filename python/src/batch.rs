@@ -593,5 +593,6 @@ fn code(status: &EnvStatus) -> i8 {
         EnvStatus::Failed(Fault::Singular { .. }) => 2,
         EnvStatus::Failed(Fault::Diverged { .. }) => 3,
         EnvStatus::Failed(Fault::ContactOverflow { .. }) => 4,
+        EnvStatus::Failed(Fault::OverBudget { .. }) => 5,
     }
 }

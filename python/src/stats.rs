@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct SolverStats {
     /// str : How it ended: "unconstrained" (no constraint acted), "proven" (the starting point was good enough), "converged",
-    /// "no_progress" (the working precision allows no more), "iteration_limit" or "non_finite". Over islands, the worst.
+    /// "no_progress" (the working precision allows no more), "iteration_limit", "non_finite" or "too_large" (for the model's budget). Over islands, the
+    /// worst.
     status: &'static str,
     /// int : Iterations; over islands, the most.
     iterations: usize,

@@ -124,6 +124,7 @@ def test_status_codes() -> None:
         ("SINGULAR", 2),
         ("DIVERGED", 3),
         ("CONTACT_OVERFLOW", 4),
+        ("OVER_BUDGET", 5),
     ]
 
 

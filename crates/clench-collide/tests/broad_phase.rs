@@ -83,7 +83,7 @@ fn the_grid_misses_nothing<T: Real>(seed: u64) {
     let (mut found, mut most) = (0, 0);
     for count in [0, 1, 2, 60, 150] {
         let world = World::<T>::random(&mut random, count);
-        grid.pairs(&world.bounds, &world.margins, allowed, &mut pairs);
+        grid.pairs(&world.bounds, &world.margins, allowed, u64::MAX, &mut pairs);
         assert!(pairs.is_sorted() && pairs.iter().all(|&(i, j)| i < j && allowed(i, j)));
 
         let list: Vec<(u32, u32)> = (0..count as u32)
@@ -125,7 +125,13 @@ fn a_warm_grid_does_not_grow() {
     let world = World::<f64>::random(&mut random, 100);
     let (mut grid, mut pairs) = (Grid::new(), Vec::new());
     let mut run = || {
-        grid.pairs(&world.bounds, &world.margins, |_, _| true, &mut pairs);
+        grid.pairs(
+            &world.bounds,
+            &world.margins,
+            |_, _| true,
+            u64::MAX,
+            &mut pairs,
+        );
         (pairs.capacity(), pairs.as_ptr())
     };
     let cold = run();
@@ -197,7 +203,13 @@ fn asked(bounds: &[Bound<f64>]) -> (usize, usize) {
         asked += 1;
         true
     };
-    Grid::new().pairs(bounds, &vec![0.0; bounds.len()], &mut count, &mut pairs);
+    Grid::new().pairs(
+        bounds,
+        &vec![0.0; bounds.len()],
+        &mut count,
+        u64::MAX,
+        &mut pairs,
+    );
     (asked, pairs.len())
 }
 

@@ -17,8 +17,8 @@ pub struct Budget {
     pub bytes: u64,
     /// Elements in the files of a model, those in replicas counted once for each; 500 000.
     pub elements: u64,
-    /// Contacts of an environment in a step, and pairs of geoms whose bounds meet; 100 000 of each. How many contacts one
-    /// wants is another matter, and the option `max_contacts`.
+    /// Contacts of an environment in a step; 250 000. Pairs of geoms whose bounds meet may be four times as many. How many contacts
+    /// one wants is another matter, and the option `max_contacts`.
     pub contacts: u64,
     /// Numbers in one matrix of a step: the mass matrix, the moment arms of actuators, the Jacobian of all contacts, the factor of
     /// an island's Hessian; 2²⁵, which take 256 MiB.
@@ -30,7 +30,7 @@ impl Default for Budget {
         Budget {
             bytes: 2 << 30,
             elements: 500_000,
-            contacts: 100_000,
+            contacts: 250_000,
             matrix: 1 << 25,
         }
     }
@@ -44,6 +44,11 @@ impl Budget {
         contacts: u64::MAX,
         matrix: u64::MAX,
     };
+
+    /// Pairs of geoms whose bounds meet in a step.
+    pub fn pairs(&self) -> u64 {
+        self.contacts.saturating_mul(4)
+    }
 
     /// Every bound times a factor; a factor that is not positive leaves nothing.
     #[must_use]

@@ -1,13 +1,14 @@
 //! Checks of what users hand in and of what a step produced. The usual case, that all is well in every lane, is told by a
 //! mask; which number is wrong is looked for only where one is.
 
-use crate::contact::Contact;
+use crate::contact::{Contact, Excess};
 use crate::error::{Fault, SimError};
 use crate::model::Model;
 use crate::place::{joint_of, massless};
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Real, Scalar, kernel};
+use clench_solver::Status;
 
 /// Positions, velocities and accelerations beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
 const FARTHEST: f64 = 1e10;
@@ -178,7 +179,7 @@ pub(crate) fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> 
 /// The lanes in which a step or forward went well: accelerations, constraint forces and state within bounds.
 #[kernel]
 pub(crate) fn good_results<T: Real>(state: &State<T>, ws: &Workspace<T>) -> T::Mask {
-    let mut good = !ws.singular & !ws.solver.stats().failed();
+    let mut good = !ws.singular & !ws.solver.stats().failed() & ws.collision.excess.le(T::ZERO);
     each_result(
         state,
         ws,
@@ -199,6 +200,11 @@ pub(crate) fn result_fault<T: Real>(
     if ws.singular.lane(lane) {
         let place = massless(model, ws, lane);
         return Fault::Singular { time, place };
+    }
+    let excess = ws.collision.excess.lane(lane).to_f64();
+    if excess > 0.0 || ws.solver.stats().status(lane) == Status::TooLarge {
+        let (what, limit) = Excess::from_code(excess).describe(&model.budget);
+        return Fault::OverBudget { time, what, limit };
     }
     let mut found = None;
     each_result(state, ws, |field, bound, values| {

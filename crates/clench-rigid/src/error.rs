@@ -1,5 +1,6 @@
 //! What can go wrong with a simulation.
 
+use crate::budget::RAISE;
 use crate::contact::UnsupportedPair;
 use crate::settings::OptionError;
 use clench_math::Instructions;
@@ -181,6 +182,16 @@ pub enum Fault {
         time: f64,
         /// How many may be.
         limit: usize,
+    },
+    /// More of something than the model's [`Budget`](crate::Budget) allows.
+    #[error("in the step from t = {time} s there are more than {limit} {what}; {RAISE}")]
+    OverBudget {
+        /// Time of the last good state, s.
+        time: f64,
+        /// Of what.
+        what: &'static str,
+        /// How many may be.
+        limit: u64,
     },
 }
 

@@ -1,6 +1,7 @@
 //! Joints as error messages name them: by name, with their body and where they were written.
 
 use crate::model::{Integrator, Joint, Model};
+use crate::singular::first_bad_pivot;
 use crate::workspace::Workspace;
 use clench_math::{Real, Scalar};
 use clench_solver::{Tree, TreeMatrix};
@@ -54,22 +55,8 @@ pub(crate) fn massless<T: Real>(model: &Model, ws: &Workspace<T>, lane: usize) -
     joint_of(model, "qvel", dof)
 }
 
-/// Where the factorization LᵀDL, which begins at the last dof, meets the first pivot that is not positive.
+/// The dof where the matrix of a lane is not positive definite.
 fn bad_pivot<T: Real>(tree: &Tree, matrix: &TreeMatrix<T>, lane: usize) -> Option<usize> {
-    let dense = matrix.to_dense(tree);
-    let mut rest: Vec<f64> = dense.iter().map(|x| x.lane(lane).to_f64()).collect();
-    let n = tree.nv();
-    (0..n).rev().find(|&i| {
-        let pivot = rest[i * n + i];
-        if !(pivot > 0.0 && pivot.is_finite()) {
-            return true;
-        }
-        for j in 0..i {
-            let factor = rest[i * n + j] / pivot;
-            for k in 0..i {
-                rest[j * n + k] -= factor * rest[i * n + k];
-            }
-        }
-        false
-    })
+    let values = matrix.values.iter().map(|x| x.lane(lane).to_f64());
+    first_bad_pivot(tree, values.collect())
 }

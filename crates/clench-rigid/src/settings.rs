@@ -36,6 +36,7 @@ impl StepSettings {
     pub fn new<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, OptionError> {
         let options = user.or(model.options);
         let mut solver = options.resolve::<T>();
+        solver.max_matrix = usize::try_from(model.budget.matrix).unwrap_or(usize::MAX);
         check(&solver)?;
         // A switch of the file is a setting of the file: what the user says about the same thing wins.
         let mut flags = model.flags;

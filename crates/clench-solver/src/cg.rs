@@ -49,9 +49,10 @@ impl<T: Real> Direction<T> for Cg<T> {
     const PATIENCE: f64 = 20.0;
 
     #[inline(always)]
-    fn prepare(&mut self, _: &Problem<T>, _: &Settings) {
+    fn prepare(&mut self, _: &Problem<T>, _: &Settings) -> bool {
         self.started = false;
         self.fresh = false;
+        true
     }
 
     #[inline(always)]

@@ -12,8 +12,8 @@ pub(crate) trait Direction<T: Real> {
     const NEWTON: bool;
     /// How many iterations without noticeable progress are too many.
     const PATIENCE: f64;
-    /// Called once before the iterations of a solve.
-    fn prepare(&mut self, problem: &Problem<T>, settings: &Settings);
+    /// Called once before the iterations of a solve. False where that would take larger matrices than the settings allow.
+    fn prepare(&mut self, problem: &Problem<T>, settings: &Settings) -> bool;
     /// Forgets what it has learned in the lanes of `mask`, whose iterate or problem was changed.
     fn restart(&mut self, mask: T::Mask);
     /// The duality gap at the iterate, for a method that stops by it.
@@ -74,7 +74,10 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
     let tally = iterate.start(problem, warmstart, ray);
     let mut progress = Progress::new(tally, T::ONE / inertia, tolerance);
     progress.judge_start::<D>(problem, course);
-    direction.prepare(problem, settings);
+    if !direction.prepare(problem, settings) {
+        let all = T::Mask::splat(true);
+        progress.end(all, Status::TooLarge, &mut course.stats);
+    }
     let iterate = &mut course.iterate;
     if D::NEWTON && iterate.softening.start(problem, progress.live).any() {
         progress.curved = iterate.evaluate(problem).curved;

@@ -32,15 +32,15 @@ pub(crate) struct Hessian<T> {
 }
 
 impl<T: Real> Hessian<T> {
-    /// Fits the pattern to a problem.
-    pub fn prepare(&mut self, problem: &Problem<T>, dense: bool) {
+    /// Fits the pattern to a problem. False where it would have more than `most` entries.
+    pub fn prepare(&mut self, problem: &Problem<T>, dense: bool, most: usize) -> bool {
         let tree = problem.tree();
         self.found.clear();
         if !dense {
             find_couplings(tree, &problem.jacobian, &mut self.found);
         }
         if self.parents == tree.parents() && self.dense == dense && self.couplings == self.found {
-            return;
+            return self.tree.nnz() <= most;
         }
         self.dense = dense;
         self.couplings.clear();
@@ -52,11 +52,14 @@ impl<T: Real> Hessian<T> {
             self.found.push(tree.nv() as u32);
             self.found.extend(0..tree.nv() as u32);
         }
-        self.tree
-            .rebuild_coupled(tree, &self.found, &mut self.scratch);
+        if !(self.tree).rebuild_coupled(tree, &self.found, most, &mut self.scratch) {
+            self.parents.clear();
+            return false;
+        }
         self.matrix.values.clear();
         self.matrix.values.resize(self.tree.nnz(), T::ZERO);
         self.factor.resize(&self.tree);
+        true
     }
 
     /// Factors H = M + Jᵀ W J in the lanes of `mask`. `weigh` writes the Hessian block of a constraint.

@@ -37,7 +37,7 @@ impl<T: Real> Direction<T> for Newton<T> {
     const NEWTON: bool = true;
     const PATIENCE: f64 = 2.0;
 
-    fn prepare(&mut self, problem: &Problem<T>, settings: &Settings) {
+    fn prepare(&mut self, problem: &Problem<T>, settings: &Settings) -> bool {
         // Sparse was never slower on trees, by 4% (half-cheetah, 9 dofs) to 18% (humanoid, 23 dofs); a single chain has
         // nothing to gain.
         let chain = problem.nv() * (problem.nv() + 1) / 2;
@@ -46,9 +46,9 @@ impl<T: Real> Direction<T> for Newton<T> {
             Switch::Off => true,
             Switch::Auto => problem.tree().nnz() == chain,
         };
-        self.hessian.prepare(problem, dense);
         self.pieces.resize(problem.npiece, T::ZERO);
         self.updatable = T::Mask::splat(false);
+        self.hessian.prepare(problem, dense, settings.max_matrix)
     }
 
     #[inline(always)]

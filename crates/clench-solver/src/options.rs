@@ -65,6 +65,9 @@ macro_rules! options {
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Settings {
             $( $(#[$doc])* pub $name: $type, )*
+            /// Most numbers in the factor of a Hessian, or in the matrix of `noslip`: a problem, or an island of it, that needs more
+            /// ends as [`Status::TooLarge`](crate::Status::TooLarge). No option: whoever sets up the problem says what it may take.
+            pub max_matrix: usize,
         }
 
         impl RigidOptions {
@@ -85,7 +88,7 @@ macro_rules! options {
                 Settings { $( $name: self.$name.unwrap_or_else(|| {
                     let default: fn(bool) -> $type = $default;
                     default(single_precision)
-                }), )* }
+                }), )* max_matrix: usize::MAX }
             }
         }
     };

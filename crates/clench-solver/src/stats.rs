@@ -19,16 +19,19 @@ pub enum Status {
     IterationLimit,
     /// A number became infinite or undefined; the result of this lane is not usable.
     NonFinite,
+    /// The problem needs larger matrices than the settings allow; it was not solved.
+    TooLarge,
 }
 
 impl Status {
-    pub(crate) const ALL: [Status; 6] = [
+    pub(crate) const ALL: [Status; 7] = [
         Status::Unconstrained,
         Status::Proven,
         Status::Converged,
         Status::NoProgress,
         Status::IterationLimit,
         Status::NonFinite,
+        Status::TooLarge,
     ];
 
     /// Its name in output, such as "no_progress".
@@ -40,6 +43,7 @@ impl Status {
             Status::NoProgress => "no_progress",
             Status::IterationLimit => "iteration_limit",
             Status::NonFinite => "non_finite",
+            Status::TooLarge => "too_large",
         }
     }
 
@@ -140,10 +144,10 @@ impl<T: Real> SolveStats<T> {
         Status::ALL[self.status.lane(lane).to_f64() as usize]
     }
 
-    /// The lanes that ended as [`Status::NonFinite`].
+    /// The lanes that ended as [`Status::NonFinite`] or [`Status::TooLarge`].
     #[inline(always)]
     pub fn failed(&self) -> T::Mask {
-        self.status.eq(Status::NonFinite.code())
+        self.status.ge(Status::NonFinite.code())
     }
 
     /// The statistics of lane `lane`.

@@ -5,7 +5,7 @@ use crate::costs::Pyramid;
 use crate::descent::{Course, minimise, trace};
 use crate::newton::Newton;
 use crate::noslip::Noslip;
-use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats};
+use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats, Status};
 use clench_math::{Real, kernel};
 
 /// Memory for problems solved as a whole.
@@ -46,7 +46,11 @@ impl<T: Real> Workspace<T> {
             let edges = &mut self.edges[b.piece..b.piece + 2 * (b.dim - 1)];
             Pyramid::edge_forces(problem.rows(b), &iterate.residual[b.rows()], edges);
         }
-        if settings.noslip_iterations > 0 {
+        // It holds a response of all dofs to each row.
+        let responses = problem.nrow().saturating_mul(problem.nv());
+        if settings.noslip_iterations > 0 && responses > settings.max_matrix {
+            stats.status = Status::TooLarge.code();
+        } else if settings.noslip_iterations > 0 {
             let scale = T::ONE / trace(problem);
             self.noslip
                 .run(problem, settings, scale, iterate, &mut self.edges, stats);

@@ -28,6 +28,10 @@ pub struct Grid {
     wide: Vec<u32>,
     /// Whether a shape is one of them.
     is_wide: Vec<bool>,
+    /// Whether a shape is fixed; none is where it is shorter.
+    fixed: Vec<bool>,
+    /// The shapes that are not, ascending.
+    moving: Vec<u32>,
     /// Where the entries of a bucket begin, and those of the next.
     starts: Vec<u32>,
     entries: Vec<Entry>,
@@ -90,16 +94,31 @@ impl Grid {
         Grid::default()
     }
 
+    /// An empty grid for scenes of which these shapes are fixed: two of them are never a pair, so that however many may be in one
+    /// place.
+    pub fn with_fixed(fixed: Vec<bool>) -> Self {
+        Grid {
+            fixed,
+            ..Grid::default()
+        }
+    }
+
+    fn is_fixed(&self, shape: u32) -> bool {
+        self.fixed.get(shape as usize).is_some_and(|&fixed| fixed)
+    }
+
     /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
-    /// environment with the margin `margins[i] + margins[j]`.
+    /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `most`: of theirs some are
+    /// left out.
     #[kernel]
     pub fn pairs<T: Real>(
         &mut self,
         bounds: &[Bound<T>],
         margins: &[T],
         mut allowed: impl FnMut(u32, u32) -> bool,
+        most: u64,
         pairs: &mut Vec<(u32, u32)>,
-    ) {
+    ) -> T::Mask {
         pairs.clear();
         self.boxes.clear();
         for (bound, &margin) in bounds.iter().zip(margins) {
@@ -107,17 +126,26 @@ impl Grid {
         }
         let per_metre = self.part_by_size();
         self.list(per_metre);
+        let most = T::new(most as f64);
+        let (mut count, mut over) = (T::ZERO, T::Mask::splat(false));
         let mut check = |i: u32, j: u32| {
             let (i, j) = (i.min(j), i.max(j));
             let (a, b) = (i as usize, j as usize);
             let margin = margins[a] + margins[b];
-            if allowed(i, j) && near(&bounds[a], &bounds[b], margin).any() {
+            if !allowed(i, j) {
+                return;
+            }
+            let found = near(&bounds[a], &bounds[b], margin) & !over;
+            if found.any() {
+                count += T::select(found, T::ONE, T::ZERO);
+                over |= count.gt(most);
                 pairs.push((i, j));
             }
         };
         self.in_cubes(per_metre, &mut check);
         self.with_wide(&mut check);
         pairs.sort_unstable();
+        over
     }
 
     /// Decides the size of the cubes and which shapes are compared with all others. Gives the cubes per metre.
@@ -139,11 +167,16 @@ impl Grid {
         };
         self.wide.clear();
         self.is_wide.clear();
+        self.moving.clear();
         for (index, one) in self.boxes.iter().enumerate() {
             let corners = one.low.iter().chain(&one.high);
             let fits = one.side() * per_metre <= MAX_CELLS
                 && corners.map(|x| x.abs() * per_metre).all(|x| x <= MAX_CELL);
             self.is_wide.push(!fits);
+            let fixed = self.fixed.get(index).is_some_and(|&fixed| fixed);
+            if !fixed {
+                self.moving.push(index as u32);
+            }
             if !fits {
                 self.wide.push(index as u32);
             }
@@ -151,18 +184,24 @@ impl Grid {
         per_metre
     }
 
-    /// Lists the other shapes in their cubes, bucket after bucket.
+    /// Lists the other shapes in their cubes, bucket after bucket, in each the fixed ones last.
     fn list(&mut self, per_metre: f64) {
         let Grid {
             boxes,
             is_wide,
+            fixed,
             starts,
             entries,
             ..
         } = self;
         let buckets = (BUCKETS_PER_SHAPE * boxes.len()).next_power_of_two();
         let each = |put: &mut dyn FnMut(usize, Entry)| {
-            for (index, one) in boxes.iter().enumerate() {
+            let is_fixed = |index: usize| fixed.get(index).is_some_and(|&fixed| fixed);
+            // Buckets are filled from their ends.
+            let fixed_first = (0..boxes.len()).filter(|&index| is_fixed(index));
+            let moving = (0..boxes.len()).filter(|&index| !is_fixed(index));
+            for index in fixed_first.chain(moving) {
+                let one = &boxes[index];
                 if is_wide[index] {
                     continue;
                 }
@@ -199,6 +238,9 @@ impl Grid {
         for range in self.starts.windows(2) {
             let entries = &self.entries[range[0] as usize..range[1] as usize];
             for (k, one) in entries.iter().enumerate() {
+                if self.is_fixed(one.shape) {
+                    break;
+                }
                 let a = &self.boxes[one.shape as usize];
                 for other in &entries[k + 1..] {
                     let b = &self.boxes[other.shape as usize];
@@ -217,11 +259,19 @@ impl Grid {
     /// Pairs with a shape that is compared with all others.
     fn with_wide(&self, check: &mut impl FnMut(u32, u32)) {
         for &one in &self.wide {
-            for (other, b) in self.boxes.iter().enumerate() {
-                let first = !self.is_wide[other] || other > one as usize;
-                if first && self.boxes[one as usize].overlaps(b) {
-                    check(one, other as u32);
+            let mut look = |other: u32| {
+                // Of two wide shapes the second meets the first, but for a fixed one, which looks at moving ones alone.
+                let twice = self.is_wide[other as usize]
+                    && (other <= one || self.is_fixed(one))
+                    && !self.is_fixed(other);
+                let near = || self.boxes[one as usize].overlaps(&self.boxes[other as usize]);
+                if !twice && near() {
+                    check(one, other);
                 }
+            };
+            match self.is_fixed(one) {
+                true => self.moving.iter().copied().for_each(look),
+                false => (0..self.boxes.len() as u32).for_each(&mut look),
             }
         }
     }

@@ -167,7 +167,8 @@ impl Converter<'_> {
     /// An element without its children.
     ///
     /// # Errors
-    /// Where its name or that of an attribute is in a namespace: MJCF has none, so MuJoCo knows no such name either.
+    /// Where its name or that of an attribute has the prefix of a namespace: MJCF has none, and MuJoCo knows no such name either. A
+    /// namespace for all names without a prefix makes no difference.
     fn element(&self, node: Node) -> Result<Element, LoadError> {
         let start = node.range().start;
         let element = Element {
@@ -182,12 +183,11 @@ impl Converter<'_> {
                 line: 1 + self.newlines.partition_point(|&at| at < start) as u32,
             },
         };
-        if let Some(namespace) = node.tag_name().namespace() {
-            let name =
-                self.text[start + 1..].split(|c: char| c.is_whitespace() || "/>".contains(c));
-            let name = name.into_iter().next().unwrap_or_default();
+        let end = |c: char| c.is_whitespace() || "/>".contains(c);
+        let name = self.text[start + 1..].split(end).next().unwrap_or_default();
+        if name.contains(':') {
             return Err(element.error(format!(
-                "unknown element <{name}>: it is in the namespace \"{namespace}\", and MJCF has none"
+                "unknown element <{name}>: its name is in a namespace, and MJCF has none"
             )));
         }
         if let Some(attribute) = node.attributes().find(|a| a.namespace().is_some()) {

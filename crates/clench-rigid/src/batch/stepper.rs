@@ -224,7 +224,10 @@ where
         if job.pass == Pass::Query {
             return;
         }
-        let bounded = matches!(fault, Fault::ContactOverflow { .. });
+        let bounded = matches!(
+            fault,
+            Fault::ContactOverflow { .. } | Fault::OverBudget { .. }
+        );
         if job.settings.solver.autoreset && start == Start::Rows && !bounded {
             self.restarts.push((env as u32, step));
         } else {

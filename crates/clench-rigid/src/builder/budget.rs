@@ -3,34 +3,55 @@
 use super::element::Element;
 use super::{BuildError, ModelBuilder};
 use crate::budget::RAISE;
-use crate::model::Model;
+use crate::model::{EqualityTarget, Model};
 
 /// The matrices of a model whose dofs are known.
 ///
 /// # Errors
-/// A mass matrix, or moment arms of actuators, of more numbers than the budget has.
+/// A mass matrix, or moment arms of actuators or tendons, of more numbers than the budget has.
 pub(super) fn matrices(builder: &ModelBuilder, model: &Model) -> Result<(), BuildError> {
     let mut depths: Vec<u64> = Vec::with_capacity(model.nv);
     for dof in &model.dofs {
         depths.push(1 + dof.parent.map_or(0, |parent| depths[parent]));
     }
-    let moments = (builder.actuators.len() as u64).saturating_mul(model.nv as u64);
+    let about_dofs = |count: usize| (count as u64).saturating_mul(model.nv as u64);
+    admit(builder, "mass matrix", depths.iter().sum())?;
+    let actuators = about_dofs(builder.actuators.len());
+    admit(builder, "matrix of moment arms of actuators", actuators)?;
+    let tendons = about_dofs(builder.tendons.len());
+    admit(builder, "matrix of moment arms of tendons", tendons)
+}
+
+/// The Jacobian of the equalities of a model.
+///
+/// # Errors
+/// More numbers than the budget has.
+pub(super) fn equalities(builder: &ModelBuilder, model: &Model) -> Result<(), BuildError> {
+    let path = |body: usize| {
+        let last = model.bodies[body].last_dof;
+        last.map_or(0, |dof| model.tree.row(dof).len() as u64)
+    };
+    let rows = model
+        .equalities
+        .iter()
+        .map(|equality| match equality.target {
+            EqualityTarget::Connect { body1, body2 } => 3 * (path(body1) + path(body2)),
+            EqualityTarget::Weld { body1, body2 } => 6 * (path(body1) + path(body2)),
+            EqualityTarget::Joint { .. } => 2,
+            EqualityTarget::Tendon { .. } => 2 * model.nv as u64,
+        });
+    admit(builder, "Jacobian of equalities", rows.sum())
+}
+
+fn admit(builder: &ModelBuilder, what: &str, count: u64) -> Result<(), BuildError> {
     let most = builder.budget.matrix;
-    for (what, count) in [
-        ("mass matrix", depths.iter().sum()),
-        (
-            "matrix of moment arms, of each actuator about each dof,",
-            moments,
-        ),
-    ] {
-        if count > most {
-            return Err(BuildError::new(
-                "model",
-                format!("its {what} would have {count} numbers, more than {most}; {RAISE}"),
-            ));
-        }
+    match count > most {
+        true => Err(BuildError::new(
+            "model",
+            format!("its {what} would have {count} numbers, more than {most}; {RAISE}"),
+        )),
+        false => Ok(()),
     }
-    Ok(())
 }
 
 /// The keyframes of a model, each of which is a state.

@@ -50,6 +50,7 @@ impl ModelBuilder {
 
         let mut pose0 = initial_pose(&model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
+        budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
         let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
         weights::derive(self, &springdampers, &mut pose0, &mut model)?;

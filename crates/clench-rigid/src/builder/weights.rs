@@ -114,6 +114,17 @@ impl InverseInertia {
         self.factor.solve_half(&model.tree, &mut self.row);
         self.row.iter().map(|x| x * x).sum()
     }
+
+    /// As `weight`, for a row that is zero but on the path to dof `last`, where `entry` gives it.
+    fn weight_along(&mut self, model: &Model, last: usize, entry: impl Fn(usize) -> f64) -> f64 {
+        let path = model.tree.row(last);
+        let row = &mut self.row[..path.len()];
+        for (x, &dof) in row.iter_mut().zip(path) {
+            *x = entry(dof as usize);
+        }
+        self.factor.solve_half_along(&model.tree, last, row);
+        row.iter().map(|x| x * x).sum()
+    }
 }
 
 /// The error of a mass matrix that cannot be factored: where that shows.
@@ -140,7 +151,7 @@ fn mean(values: &[f64]) -> f64 {
 
 fn dof_weights(inverse: &mut InverseInertia, sliders: &[bool], model: &mut Model) {
     let mut weights: Vec<f64> = (0..model.nv)
-        .map(|dof| inverse.weight(model, |row| row[dof] = 1.0))
+        .map(|last| inverse.weight_along(model, last, |dof| f64::from(u8::from(dof == last))))
         .collect();
     for joint in &model.joints {
         let together = match joint.kind {
@@ -176,12 +187,9 @@ fn body_weights(
         }
         let offset = pose0.xipos[b] - pose0.subtree_com[model.bodies[b].root];
         let mut along = |part: &dyn Fn(Motion<f64>) -> f64| {
-            inverse.weight(model, |row| {
-                let mut next = model.bodies[b].last_dof;
-                while let Some(dof) = next {
-                    row[dof] = part(pose0.cdof[dof]);
-                    next = model.dofs[dof].parent;
-                }
+            let last = model.bodies[b].last_dof;
+            last.map_or(0.0, |last| {
+                inverse.weight_along(model, last, |dof| part(pose0.cdof[dof]))
             })
         };
         let translation = [0, 1, 2].map(|k| along(&|m| m.velocity_at(offset)[k]));

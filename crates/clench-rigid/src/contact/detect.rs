@@ -3,13 +3,49 @@
 use super::reach::{self, Reach, may_touch};
 use super::select::{explicit, geoms_may_collide};
 use super::{Candidate, Contact, candidates, contact_params, contact_range};
-use crate::model::{Model, Params};
+use crate::Budget;
+use crate::model::{Geom, Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::workspace::{Positions, Workspace};
 use clench_collide::{Bound, Contacts, Grid, Pose, Shape, collide};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::MaxContacts;
+
+/// What a step can find more of than the model's budget allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Excess {
+    /// Pairs of geoms whose bounds meet.
+    Pairs = 1,
+    /// Contacts.
+    Contacts,
+    /// Numbers in the Jacobian of the contacts.
+    Jacobian,
+    /// Numbers in the factor of an island's Hessian, or in the matrix of `noslip`.
+    Factor,
+}
+
+impl Excess {
+    /// The excess of a code; `Factor` where it is none of the others.
+    pub(crate) fn from_code(code: f64) -> Excess {
+        let others = [Excess::Pairs, Excess::Contacts, Excess::Jacobian];
+        let found = others.into_iter().find(|&one| f64::from(one as u8) == code);
+        found.unwrap_or(Excess::Factor)
+    }
+
+    /// What there is too much of, and how much there may be.
+    pub(crate) fn describe(self, budget: &Budget) -> (&'static str, u64) {
+        match self {
+            Excess::Pairs => ("pairs of geoms whose bounds meet", budget.pairs()),
+            Excess::Contacts => ("contacts", budget.contacts),
+            Excess::Jacobian => ("numbers in the Jacobian of the contacts", budget.matrix),
+            Excess::Factor => (
+                "numbers in the factor of the Hessian of an island",
+                budget.matrix,
+            ),
+        }
+    }
+}
 
 /// Above this many geoms the pairs are not listed once but looked for in each step: a list grows with the square.
 const MOST_LISTED_GEOMS: usize = 128;
@@ -21,6 +57,9 @@ pub struct Collision<T: Real> {
     pub given: bool,
     /// Lanes in which the last step found more contacts than the options allow.
     pub overflow: T::Mask,
+    /// What the last step found so much of that it exceeds the model's budget, as the code of an [`Excess`]; such lanes have no
+    /// contacts.
+    pub excess: T,
     /// Pairs to look at, in canonical order.
     candidates: Vec<Candidate>,
     /// Those of them that may touch now.
@@ -30,6 +69,8 @@ pub struct Collision<T: Real> {
     reaches: Vec<Reach<T>>,
     points: Contacts<T>,
     count: T,
+    /// Numbers in the Jacobian of the contacts.
+    numbers: T,
 }
 
 #[derive(Clone, Debug)]
@@ -47,25 +88,49 @@ impl<T: Real> Collision<T> {
         Collision {
             given: false,
             overflow: T::Mask::splat(false),
+            excess: T::ZERO,
             candidates: if large { Vec::new() } else { candidates(model) },
-            crowd: large.then(|| Box::new(Crowd::new())),
+            crowd: large.then(|| Box::new(Crowd::new(model))),
             near: Vec::new(),
             reaches: Vec::new(),
             points: Contacts::new(),
             count: T::ZERO,
+            numbers: T::ZERO,
         }
     }
 
-    /// Counts the lanes of a new contact; leaves those that are not full yet.
+    /// Counts the lanes of a new contact, whose Jacobian has `numbers`; leaves those that have room for it.
     #[inline(always)]
-    fn admit(&mut self, active: T::Mask, most: MaxContacts) -> T::Mask {
-        let MaxContacts::Limit(most) = most else {
-            return active;
+    fn admit(
+        &mut self,
+        active: T::Mask,
+        most: MaxContacts,
+        numbers: usize,
+        budget: &Budget,
+    ) -> T::Mask {
+        let full = match most {
+            MaxContacts::Limit(most) => self.count.ge(T::new(most as f64)),
+            MaxContacts::Auto => T::Mask::splat(false),
         };
-        let full = self.count.ge(T::new(most as f64));
         self.overflow |= active & full;
-        self.count += T::select(active & !full, T::ONE, T::ZERO);
-        active & !full
+        let active = active & !full & self.excess.le(T::ZERO);
+        self.count += T::select(active, T::ONE, T::ZERO);
+        self.numbers += T::select(active, T::new(numbers as f64), T::ZERO);
+        self.exceed(
+            self.count.gt(T::new(budget.contacts as f64)),
+            Excess::Contacts,
+        );
+        self.exceed(
+            self.numbers.gt(T::new(budget.matrix as f64)),
+            Excess::Jacobian,
+        );
+        active
+    }
+
+    /// Notes what lanes have too much of.
+    #[inline(always)]
+    fn exceed(&mut self, lanes: T::Mask, excess: Excess) {
+        self.excess = T::select(lanes, T::new(f64::from(excess as u8)), self.excess);
     }
 }
 
@@ -78,17 +143,19 @@ pub fn detect<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let (collision, contacts, pos) = (&mut ws.collision, &mut ws.contacts, &ws.position);
+    collision.excess = T::ZERO;
     if collision.given {
         return;
     }
     contacts.clear();
     collision.overflow = T::Mask::splat(false);
-    collision.count = T::ZERO;
+    (collision.count, collision.numbers) = (T::ZERO, T::ZERO);
     if !settings.flags.constraint || !settings.flags.contact {
         return;
     }
     if let Some(crowd) = &mut collision.crowd {
-        crowd.find(model, params, pos, &mut collision.candidates);
+        let crowded = crowd.find(model, params, pos, &mut collision.candidates);
+        collision.exceed(crowded, Excess::Pairs);
     }
     reach::update(model, params, pos, &mut collision.reaches);
     collision.near.clear();
@@ -105,6 +172,11 @@ pub fn detect<T: Real>(
         if !collision.points.as_slice().is_empty() {
             list(model, params, settings, &candidate, collision, contacts);
         }
+    }
+    // Nothing is computed for a step that cannot be.
+    let within = collision.excess.le(T::ZERO);
+    if !within.all() {
+        contacts.iter_mut().for_each(|c| c.active &= within);
     }
     ws.clock.lap(Stage::NarrowPhase as usize);
 }
@@ -136,9 +208,19 @@ fn list<T: Real>(
     contacts: &mut Vec<Contact<T>>,
 ) {
     let mixed = contact_params(model, params, candidate);
+    let dofs = |geom: u32| {
+        let body = &model.bodies[model.geoms[geom as usize].body];
+        body.last_dof.map_or(0, |dof| model.tree.row(dof).len())
+    };
+    let numbers = mixed.dim * (dofs(candidate.geoms[0]) + dofs(candidate.geoms[1]));
     for i in 0..collision.points.as_slice().len() {
         let point = collision.points.as_slice()[i];
-        let active = collision.admit(point.active, settings.solver.max_contacts);
+        let active = collision.admit(
+            point.active,
+            settings.solver.max_contacts,
+            numbers,
+            &model.budget,
+        );
         if !active.any() {
             continue;
         }
@@ -178,16 +260,19 @@ fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
 }
 
 impl<T: Real> Crowd<T> {
-    fn new() -> Self {
+    fn new(model: &Model) -> Self {
+        let body = |geom: &Geom| &model.bodies[model.bodies[geom.body].weld];
+        let fixed = |geom: &Geom| body(geom).dofs.is_empty();
         Crowd {
-            grid: Grid::new(),
+            grid: Grid::with_fixed(model.geoms.iter().map(fixed).collect()),
             bounds: Vec::new(),
             margins: Vec::new(),
             hits: Vec::new(),
         }
     }
 
-    /// Replaces `candidates` by the explicit pairs and those that are near in any lane.
+    /// Replaces `candidates` by the explicit pairs and those that are near in any lane. Returns the lanes in which that are more than
+    /// the budget allows.
     #[kernel]
     fn find(
         &mut self,
@@ -195,7 +280,7 @@ impl<T: Real> Crowd<T> {
         params: &Params<T>,
         pos: &Positions<T>,
         candidates: &mut Vec<Candidate>,
-    ) {
+    ) -> T::Mask {
         let ngeom = model.geoms.len();
         self.bounds.clear();
         self.margins.clear();
@@ -205,12 +290,14 @@ impl<T: Real> Crowd<T> {
         }
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
         let hits = &mut self.hits;
-        self.grid.pairs(&self.bounds, &self.margins, allowed, hits);
+        let (bounds, margins, most) = (&self.bounds, &self.margins, model.budget.pairs());
+        let crowded = self.grid.pairs(bounds, margins, allowed, most, hits);
         candidates.clear();
         candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
         let found =
             |&(g1, g2): &(u32, u32)| Candidate::new(model, [g1 as usize, g2 as usize], None);
         candidates.extend(hits.iter().map(found));
         candidates.sort_unstable_by_key(|c| c.order(model));
+        crowded
     }
 }

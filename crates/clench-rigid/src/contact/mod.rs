@@ -7,7 +7,7 @@ mod reach;
 mod select;
 
 pub(crate) use detect::shape;
-pub use detect::{Collision, detect};
+pub use detect::{Collision, Excess, detect};
 pub(crate) use mix::mixed_params;
 pub use mix::{ContactParams, contact_params, contact_range};
 pub use select::{Candidate, UnsupportedPair, candidates, check_supported};

@@ -72,7 +72,9 @@ pub(super) fn geoms_may_collide(model: &Model, g1: usize, g2: usize) -> bool {
 /// The first such pair.
 pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
     let unsupported = |c: &Candidate| !supported(c.kinds[0], c.kinds[1]);
-    let Some(candidate) = candidates(model).into_iter().find(unsupported) else {
+    let mut explicit = (0..model.pairs.len()).map(|p| explicit(model, p as u32));
+    let found = explicit.find(unsupported);
+    let Some(candidate) = found.or_else(|| find_unsupported(model)) else {
         return Ok(());
     };
     let geoms = candidate.geoms.map(|g| g as usize);
@@ -91,6 +93,32 @@ pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
         second: name(geoms[1]),
         kinds: format!("{:?} against {:?}", a.kind, b.kind).to_lowercase(),
     })
+}
+
+/// Two geoms that may collide, no explicit pair, of kinds that cannot. Most kinds can, so that few geoms are looked at.
+fn find_unsupported(model: &Model) -> Option<Candidate> {
+    let mut kinds: Vec<(ShapeKind, Vec<usize>)> = Vec::new();
+    for (g, geom) in model.geoms.iter().enumerate() {
+        match kinds.iter_mut().find(|(kind, _)| *kind == geom.kind) {
+            Some((_, geoms)) => geoms.push(g),
+            None => kinds.push((geom.kind, vec![g])),
+        }
+    }
+    kinds.sort_by_key(|&(kind, _)| kind);
+    for (i, (kind1, geoms1)) in kinds.iter().enumerate() {
+        for (kind2, geoms2) in &kinds[i..] {
+            if supported(*kind1, *kind2) {
+                continue;
+            }
+            for &g1 in geoms1 {
+                let mut others = geoms2.iter().copied();
+                if let Some(g2) = others.find(|&g2| geoms_may_collide(model, g1, g2)) {
+                    return Some(Candidate::new(model, [g1.min(g2), g1.max(g2)], None));
+                }
+            }
+        }
+    }
+    None
 }
 
 impl Candidate {

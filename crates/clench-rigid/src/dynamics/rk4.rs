@@ -51,9 +51,11 @@ pub fn rk4<T: Real>(
         state.qacc_warmstart.copy_from_slice(&ws.qacc);
         // What went wrong in one stage went wrong in the step.
         let (singular, overflow) = (ws.singular, ws.collision.overflow);
+        let excess = ws.collision.excess;
         forward(state, ws);
         ws.singular |= singular;
         ws.collision.overflow |= overflow;
+        ws.collision.excess = ws.collision.excess.max(excess);
         let weight = T::new(WEIGHTS[stage + 1]);
         collect(model, state, step, weight, ws);
     }

@@ -235,6 +235,22 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
+    /// As [`solve_half`](Self::solve_half), to the bit, for an x that is zero but on the path to dof `last`: `x` holds what is on it,
+    /// in the order of `tree.row(last)`.
+    pub fn solve_half_along(&self, tree: &Tree, last: usize, x: &mut [T]) {
+        let path = tree.row(last);
+        for (place, &dof) in path.iter().enumerate().rev() {
+            let row = &self.lower[tree.row_start(dof as usize)..][..place];
+            let (above, own) = x.split_at_mut(place);
+            for (above, &multiplier) in above.iter_mut().zip(row) {
+                *above -= multiplier * own[0];
+            }
+        }
+        for (x, &dof) in x.iter_mut().zip(path) {
+            *x *= self.inverse[dof as usize].sqrt();
+        }
+    }
+
     /// `x ← L^(-T) x`.
     #[inline(always)]
     fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {

@@ -189,12 +189,15 @@ impl Tree {
     ///
     /// Liu's algorithm, from the last dof to the first: the tree that holds a neighbour so far comes to hang on the dof.
     /// Of a coupling, only each dof with the next one matters: what lies above hangs on that already.
+    ///
+    /// False, and nothing is done, where the pattern would have more than `most` entries.
     pub(crate) fn rebuild_coupled(
         &mut self,
         tree: &Tree,
         couplings: &[u32],
+        most: usize,
         scratch: &mut Coupling,
-    ) {
+    ) -> bool {
         let nv = tree.nv();
         let Coupling {
             edges,
@@ -226,8 +229,18 @@ impl Tree {
                 parents[root] = Some(low as usize);
             }
         }
+        // From here on `roots` holds the lengths of rows.
+        let mut entries = 0;
+        for i in 0..nv {
+            roots[i] = 1 + parents[i].map_or(0, |parent| roots[parent]);
+            entries += roots[i] as usize;
+        }
+        if entries > most {
+            return false;
+        }
         let ascending = self.rebuild(nv, |i| parents[i]);
         debug_assert!(ascending.is_ok(), "a dof hangs on one of lower number");
+        true
     }
 
     /// Where the rows of the descendants of dof `i` start.
