@@ -4,6 +4,7 @@ mod batches;
 
 use batches::*;
 use clench_math::Instructions;
+use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::{Integrator, JointKind};
 use clench_rigid::{Batch, EnvStatus, Fault, Precision, Sim, SimError, State};
 use clench_solver::{MaxContacts, RigidOptions};
@@ -70,8 +71,13 @@ fn assert_verdict(alone: Result<(), SimError>, together: EnvStatus) {
 
 /// Steps a batch in which random environments are poisoned, mended and reset at random, and beside it a simulation for each:
 /// what happens to one must not show in another.
-fn soak<S: Precision>(instructions: Instructions, threads: usize, steps: usize) {
-    let (model, options) = (model(&walker()), RigidOptions::new());
+fn soak<S: Precision>(
+    builder: &ModelBuilder,
+    instructions: Instructions,
+    threads: usize,
+    steps: usize,
+) {
+    let (model, options) = (model(builder), RigidOptions::new());
     let envs: Vec<usize> = (0..37).collect();
     let mut batch = batch::<S>(&model, &envs, with(instructions, threads, options));
     let mut alone: Vec<Sim<S>> = envs.iter().map(|&e| alone(&model, options, e)).collect();
@@ -128,9 +134,17 @@ fn mend<S: Precision>(batch: &mut Batch<S>, env: usize, state: &State<S>) {
 #[test]
 fn poison_stays_where_it_is() {
     for (i, instructions) in Instructions::all_available().enumerate() {
-        soak::<f64>(instructions, 1 + i % 3, 150);
+        soak::<f64>(&walker(), instructions, 1 + i % 3, 150);
     }
-    soak::<f32>(Instructions::widest(), 2, 150);
+    soak::<f32>(&walker(), Instructions::widest(), 2, 150);
+}
+
+#[test]
+fn poison_stays_where_it_is_among_islands() {
+    for instructions in Instructions::all_available() {
+        soak::<f64>(&loose_parts(), instructions, 1, 150);
+    }
+    soak::<f32>(&loose_parts(), Instructions::widest(), 2, 150);
 }
 
 #[test]

@@ -111,6 +111,36 @@ fn single_precision() {
     assert!(compare::<f32>(&loose_parts(), cg, 300) > 3.0);
 }
 
+/// Two trees that are two islands at some times and in some environments, and one in others.
+#[test]
+fn an_arm_and_a_box_by_newton() {
+    let pyramids = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&arm_and_box(), pyramids, 400) > 3.0);
+    assert!(compare::<f32>(&arm_and_box(), pyramids, 400) > 3.0);
+    let cones = options(ConstraintSolver::Newton, FrictionCone::Elliptic).noslip_iterations(3);
+    assert!(compare::<f64>(&arm_and_box(), cones, 400) > 3.0);
+}
+
+#[test]
+fn an_arm_and_a_box_by_conjugate_gradients() {
+    let pyramids = options(ConstraintSolver::Cg, FrictionCone::Pyramidal).noslip_iterations(2);
+    assert!(compare::<f64>(&arm_and_box(), pyramids, 200) > 3.0);
+    let cones = options(ConstraintSolver::Cg, FrictionCone::Elliptic);
+    assert!(compare::<f64>(&arm_and_box(), cones, 200) > 3.0);
+    assert!(compare::<f32>(&arm_and_box(), cones, 200) > 3.0);
+}
+
+/// Islands of any of many trees, of more than eight in the end, other ones in each environment.
+#[test]
+fn a_crowd_of_bodies() {
+    let pyramids = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&crowd(), pyramids, 200) > 10.0);
+    let cones = options(ConstraintSolver::Newton, FrictionCone::Elliptic);
+    assert!(compare::<f32>(&crowd(), cones, 150) > 8.0);
+    let cg = options(ConstraintSolver::Cg, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&crowd(), cg, 80) > 5.0);
+}
+
 #[test]
 fn every_kind_of_constraint_with_every_integrator() {
     for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {

@@ -5,7 +5,8 @@ mod batches;
 use batches::*;
 use clench_math::Instructions;
 use clench_rigid::batch::Controls;
-use clench_rigid::{Batch, Output, SimError};
+use clench_rigid::builder::ModelBuilder;
+use clench_rigid::{Batch, BatchOptions, Output, SimError};
 use clench_solver::RigidOptions;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering::SeqCst};
@@ -75,10 +76,10 @@ fn limited<R>(limit: usize, task: impl FnOnce() -> R) -> R {
 
 /// Steps several times through the same motion, with faults and resets on the way, and counts the allocations of the best
 /// time: which thread gets which group varies, and each thread's buffers must have grown first.
-fn allocations_of_a_replay(threads: usize, steps: usize) -> usize {
+fn allocations_of_a_replay(builder: &ModelBuilder, options: BatchOptions, steps: usize) -> usize {
     let envs: Vec<usize> = (0..40).collect();
-    let options = with(Instructions::widest(), threads, RigidOptions::new());
-    let mut batch = batch::<f64>(&model(&walker()), &envs, options);
+    let threads = options.threads.unwrap_or(1);
+    let mut batch = batch::<f64>(&model(builder), &envs, options);
     batch
         .record(&["cfrc_ext", "contact_force", "xpos", "energy"])
         .expect("known");
@@ -109,14 +110,23 @@ fn allocations_of_a_replay(threads: usize, steps: usize) -> usize {
 #[test]
 fn a_replay_allocates_nothing() {
     let _turn = alone();
-    assert_eq!(allocations_of_a_replay(1, 600), 0);
+    let options = with(Instructions::widest(), 1, RigidOptions::new());
+    assert_eq!(allocations_of_a_replay(&walker(), options, 600), 0);
+    assert_eq!(allocations_of_a_replay(&arm_and_box(), options, 600), 0);
+    // Grouped, a replay would begin with other neighbours: what a step had in common is what the next one groups by.
+    let ungrouped = BatchOptions {
+        grouping: false,
+        ..options
+    };
+    assert_eq!(allocations_of_a_replay(&crowd(), ungrouped, 200), 0);
 }
 
 #[test]
 fn threads_allocate_nothing_but_the_pools_queue() {
     let _turn = alone();
     // The queue that wakes the pool takes a new block every 63 calls and gives the old one back.
-    let count = allocations_of_a_replay(3, 600);
+    let options = with(Instructions::widest(), 3, RigidOptions::new());
+    let count = allocations_of_a_replay(&walker(), options, 600);
     assert!(count <= 600 / 63 + 3, "{count}");
 }
 

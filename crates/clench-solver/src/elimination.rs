@@ -67,7 +67,8 @@ impl Elimination {
             merge(own, &clique, &mut self.merged);
             self.merged
                 .retain(|&other| other != one && other as usize != tree);
-            std::mem::swap(own, &mut self.merged);
+            // Copied, not swapped: each list keeps its own memory, so that the same graph needs no more the next time.
+            own.clone_from(&self.merged);
             self.queue.push(Reverse((own.len() as u32, one)));
         }
         self.neighbors[tree] = clique;

@@ -93,15 +93,17 @@ impl<T: Real> Iterate<T> {
         self.evaluate(problem)
     }
 
-    /// Computes M (a − a_unc) and J a − aref anew in the lanes of `mask`, without the rounding that steps have added up.
+    /// Computes M (a − a_unc) and J a − aref anew in the lanes of `mask`, without the rounding that steps have added up. The
+    /// gradient is lost.
     #[kernel]
     pub fn refresh(&mut self, problem: &Problem<T>, mask: T::Mask, ray: &mut Ray<T>) {
-        ray.direction.clear();
-        ray.direction.extend_from_slice(&self.qacc);
-        subtract(&mut ray.direction, &problem.qacc_smooth);
+        // Not in the ray's direction: conjugate gradients go on from it in the other lanes.
+        let displacement = &mut self.gradient;
+        displacement.copy_from_slice(&self.qacc);
+        subtract(displacement, &problem.qacc_smooth);
         problem
             .mass
-            .mul(problem.tree(), &ray.direction, &mut ray.mass_direction);
+            .mul(problem.tree(), displacement, &mut ray.mass_direction);
         problem.jacobian.mul(&self.qacc, &mut ray.rows);
         subtract(&mut ray.rows, &problem.aref);
         blend(mask, &mut self.inertial, &ray.mass_direction);

@@ -54,7 +54,12 @@ impl<T: Real> Noslip<T> {
         if self.frictions.is_empty() {
             return;
         }
-        let mut live = T::Mask::splat(true);
+        let mut live = self
+            .frictions
+            .iter()
+            .fold(T::Mask::splat(false), |live, f| {
+                live | problem.rows(&f.block).d[0].gt(T::ZERO)
+            });
         let tolerance = T::new(settings.noslip_tolerance);
         let mut improvement = regularization_cost(problem, &iterate.force, edges);
         for _ in 0..settings.noslip_iterations {

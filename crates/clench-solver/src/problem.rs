@@ -3,8 +3,9 @@
 use crate::check::check_size;
 use crate::costs::{self, Rows};
 use crate::jacobian::{BlockIndex, StoredRows};
+use crate::transfer::Transfer;
 use crate::{Tree, TreeFactor, TreeMatrix};
-use clench_math::Real;
+use clench_math::{Real, kernel};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -43,6 +44,19 @@ pub struct Problem<T> {
     pub(crate) npiece: usize,
     /// The first block that was pushed with an impossible size.
     pub(crate) malformed: Option<(usize, &'static str)>,
+}
+
+/// Which part of a problem to copy.
+pub(crate) struct Part<'a, T: Real> {
+    /// Complete trees; of dofs, a parent comes before its children.
+    pub dofs: &'a [u32],
+    /// Maps a dof to its place in `dofs`.
+    pub local: &'a [u32],
+    pub blocks: &'a [u32],
+    /// The lanes in which each block of the whole acts, and those that have this part: in all others its blocks are absent,
+    /// with zeros for a Jacobian so that nothing that a lane holds there can spoil it.
+    pub acting: &'a [T::Mask],
+    pub lanes: T::Mask,
 }
 
 /// A new block to be filled in: every slice starts as zeros.
@@ -211,14 +225,14 @@ impl<T: Real> Problem<T> {
         }
     }
 
-    /// Becomes the part of `whole` that `dofs` and `blocks` name; `local` maps its dofs to their place in `dofs`.
-    pub(crate) fn gather(
+    /// Becomes a part of `whole`.
+    pub(crate) fn gather<L: Real>(
         &mut self,
-        whole: &Problem<T>,
-        dofs: &[u32],
-        local: &[u32],
-        blocks: &[u32],
+        whole: &Problem<L>,
+        part: &Part<L>,
+        transfer: impl Transfer<L, T>,
     ) {
+        let (dofs, local) = (part.dofs, part.local);
         let from = &*whole.tree;
         let parent = |i: usize| from.parent(dofs[i] as usize).map(|p| local[p] as usize);
         let same =
@@ -234,63 +248,52 @@ impl<T: Real> Problem<T> {
         self.mass.values.clear();
         self.qacc_smooth.clear();
         for &dof in dofs {
-            self.mass
-                .values
-                .extend_from_slice(whole.mass.row(from, dof as usize));
-            self.qacc_smooth.push(whole.qacc_smooth[dof as usize]);
+            let row = whole.mass.row(from, dof as usize).iter();
+            self.mass.values.extend(row.map(|&m| transfer.take(m)));
+            let acceleration = whole.qacc_smooth[dof as usize];
+            self.qacc_smooth.push(transfer.take(acceleration));
         }
-        self.mass_factor.gather(from, &whole.mass_factor, dofs);
+        self.mass_factor
+            .gather(from, &whole.mass_factor, dofs, transfer);
+        self.gather_blocks(whole, part, transfer);
+    }
+
+    /// Copies the blocks of a part.
+    #[kernel]
+    fn gather_blocks<L: Real>(
+        &mut self,
+        whole: &Problem<L>,
+        part: &Part<L>,
+        transfer: impl Transfer<L, T>,
+    ) {
         self.clear_constraints();
-        for &k in blocks {
+        for &k in part.blocks {
             let b = &whole.jacobian.blocks[k as usize];
-            let dofs = whole
-                .jacobian
-                .dofs(b)
-                .iter()
-                .map(|&dof| local[dof as usize]);
+            let lanes = part.lanes & part.acting[k as usize];
+            let dofs = whole.jacobian.dofs(b).iter();
+            let values = whole.jacobian.values(b).iter();
             self.jacobian.push_copy(
                 b,
                 self.aref.len(),
                 self.npiece,
-                dofs,
-                whole.jacobian.values(b).iter().copied(),
+                dofs.map(|&dof| part.local[dof as usize]),
+                values.map(
+                    #[inline(always)]
+                    |&j| transfer.take_in(lanes, j, L::ZERO),
+                ),
             );
             self.npiece += b.pieces().len();
-            self.aref.extend_from_slice(&whole.aref[b.rows()]);
-            self.r.extend_from_slice(&whole.r[b.rows()]);
-            self.d.extend_from_slice(&whole.d[b.rows()]);
-            self.shape.extend_from_slice(&whole.shape[b.rows()]);
-        }
-    }
-
-    /// Becomes lane `lane` of `whole`, with those of its blocks that `blocks` names.
-    pub(crate) fn gather_lane<L: Real<Scalar = T>>(
-        &mut self,
-        whole: &Problem<L>,
-        lane: usize,
-        blocks: &[u32],
-    ) {
-        if !Arc::ptr_eq(&self.tree, &whole.tree) {
-            self.tree = whole.tree.clone();
-        }
-        let copy = |to: &mut Vec<T>, from: &[L]| to.extend(from.iter().map(|x| x.lane(lane)));
-        self.mass.values.clear();
-        self.qacc_smooth.clear();
-        copy(&mut self.mass.values, &whole.mass.values);
-        copy(&mut self.qacc_smooth, &whole.qacc_smooth);
-        self.mass_factor.gather_lane(&whole.mass_factor, lane);
-        self.clear_constraints();
-        for &k in blocks {
-            let b = &whole.jacobian.blocks[k as usize];
-            let values = whole.jacobian.values(b).iter().map(|x| x.lane(lane));
-            let dofs = whole.jacobian.dofs(b).iter().copied();
-            self.jacobian
-                .push_copy(b, self.aref.len(), self.npiece, dofs, values);
-            self.npiece += b.pieces().len();
-            copy(&mut self.aref, &whole.aref[b.rows()]);
-            copy(&mut self.r, &whole.r[b.rows()]);
-            copy(&mut self.d, &whole.d[b.rows()]);
-            copy(&mut self.shape, &whole.shape[b.rows()]);
+            for (to, from, absent) in [
+                (&mut self.aref, &whole.aref, L::ZERO),
+                (&mut self.r, &whole.r, L::ONE),
+                (&mut self.d, &whole.d, L::ZERO),
+                (&mut self.shape, &whole.shape, L::ONE),
+            ] {
+                to.extend(from[b.rows()].iter().map(
+                    #[inline(always)]
+                    |&x| transfer.take_in(lanes, x, absent),
+                ));
+            }
         }
     }
 }

@@ -2,11 +2,10 @@
 
 use crate::check::check_length;
 use crate::islands::Islands;
-use crate::iterate::all_finite;
-use crate::lane::{Lane, Results};
+use crate::results::Results;
 use crate::workspace::Workspace;
-use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Status, Stopwatch, Switch, Tree};
-use clench_math::{Real, kernel};
+use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Stopwatch, Switch, Tree};
+use clench_math::Real;
 
 /// What a solve spends its time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,15 +37,9 @@ pub type SolveClock = Stopwatch<{ SolvePart::COUNT }>;
 /// A solve allocates nothing once problems of this size have been seen.
 #[derive(Clone, Debug)]
 pub struct Solver<T: Real> {
-    qacc: Vec<T>,
-    force: Vec<T>,
-    /// Edge forces of pyramids, at the index of their pieces.
-    edges: Vec<T>,
-    qfrc_constraint: Vec<T>,
-    stats: SolveStats<T>,
+    results: Results<T>,
     whole: Workspace<T>,
     islands: Islands<T>,
-    lane: Option<Box<Lane<T>>>,
 }
 
 impl<T: Real> Solver<T> {
@@ -54,14 +47,13 @@ impl<T: Real> Solver<T> {
     pub fn new(tree: &Tree) -> Self {
         let zeros = vec![T::ZERO; tree.nv()];
         Solver {
-            qacc: zeros.clone(),
-            force: Vec::new(),
-            edges: Vec::new(),
-            qfrc_constraint: zeros,
-            stats: SolveStats::default(),
+            results: Results {
+                qacc: zeros.clone(),
+                qfrc_constraint: zeros,
+                ..Results::default()
+            },
             whole: Workspace::default(),
             islands: Islands::default(),
-            lane: None,
         }
     }
 
@@ -82,121 +74,36 @@ impl<T: Real> Solver<T> {
         let warmstart = warmstart.filter(|_| settings.warmstart);
         let parts = settings.islands != Switch::Off && problem.tree().ntree() > 1;
         if problem.nrow() == 0 {
-            self.reset(problem);
-        } else if parts && T::LANES > 1 {
-            self.solve_lanes(problem, settings, warmstart)?;
+            self.results.reset(problem);
         } else if parts && self.islands.find(problem) {
-            self.solve_islands(problem, settings, warmstart);
+            self.results.reset(problem);
+            let clock = &mut self.whole.course.clock;
+            (self.islands).solve(problem, settings, warmstart, clock, &mut self.results);
         } else {
-            self.solve_whole(problem, settings, warmstart);
+            self.whole.run(problem, settings, warmstart);
+            self.results.set(&self.whole);
         }
-        Ok(&self.stats)
-    }
-
-    /// The results of a problem without constraints.
-    #[kernel]
-    fn reset(&mut self, problem: &Problem<T>) {
-        let finite = all_finite(&problem.qacc_smooth);
-        let status = T::select(
-            finite,
-            Status::Unconstrained.code(),
-            Status::NonFinite.code(),
-        );
-        self.stats = SolveStats {
-            status,
-            ..SolveStats::default()
-        };
-        copy(&mut self.qacc, &problem.qacc_smooth);
-        for (v, len) in [
-            (&mut self.force, problem.nrow()),
-            (&mut self.edges, problem.npiece),
-            (&mut self.qfrc_constraint, problem.nv()),
-        ] {
-            v.clear();
-            v.resize(len, T::ZERO);
-        }
-    }
-
-    fn solve_whole(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
-        self.whole.run(problem, settings, warmstart);
-        self.stats = self.whole.course.stats;
-        copy(&mut self.qacc, &self.whole.course.iterate.qacc);
-        copy(&mut self.force, &self.whole.course.iterate.force);
-        copy(&mut self.edges, &self.whole.edges);
-        copy(
-            &mut self.qfrc_constraint,
-            &self.whole.course.iterate.qfrc_constraint,
-        );
-    }
-
-    fn solve_islands(
-        &mut self,
-        problem: &Problem<T>,
-        settings: &Settings,
-        warmstart: Option<&[T]>,
-    ) {
-        self.reset(problem);
-        let clock = &mut self.whole.course.clock;
-        let (islands, stats) = self.islands.solve(problem, settings, warmstart, clock);
-        self.stats.combine(&stats);
-        for island in islands {
-            let iterate = &island.work.course.iterate;
-            for (local, &dof) in island.dofs.iter().enumerate() {
-                self.qacc[dof as usize] = iterate.qacc[local];
-                self.qfrc_constraint[dof as usize] = iterate.qfrc_constraint[local];
-            }
-            for (from, &k) in island.problem.jacobian.blocks.iter().zip(&island.blocks) {
-                let to = &problem.jacobian.blocks[k as usize];
-                self.force[to.rows()].copy_from_slice(&iterate.force[from.rows()]);
-                let edges = self.edges[to.piece..]
-                    .iter_mut()
-                    .zip(&island.work.edges[from.pieces()]);
-                edges.for_each(|(to, &from)| *to = from);
-            }
-        }
-    }
-
-    fn solve_lanes(
-        &mut self,
-        problem: &Problem<T>,
-        settings: &Settings,
-        warmstart: Option<&[T]>,
-    ) -> Result<(), ProblemError> {
-        self.reset(problem);
-        let lane = self.lane.get_or_insert_with(|| Box::new(Lane::new()));
-        let mut results = Results {
-            qacc: &mut self.qacc,
-            force: &mut self.force,
-            edges: &mut self.edges,
-            qfrc_constraint: &mut self.qfrc_constraint,
-            stats: &mut self.stats,
-        };
-        let clock = &mut self.whole.course.clock;
-        std::mem::swap(lane.clock(), clock);
-        let done = (0..T::LANES)
-            .try_for_each(|k| lane.solve(problem, k, settings, warmstart, &mut results));
-        std::mem::swap(lane.clock(), clock);
-        done
+        Ok(&self.results.stats)
     }
 
     /// The minimiser: generalized acceleration, length nv.
     pub fn qacc(&self) -> &[T] {
-        &self.qacc
+        &self.results.qacc
     }
     /// Constraint force of each row in block coordinates (for a pyramid: contact-frame rows, the sum of its edges).
     pub fn force(&self) -> &[T] {
-        &self.force
+        &self.results.force
     }
     /// Jᵀ f, length nv.
     pub fn qfrc_constraint(&self) -> &[T] {
-        &self.qfrc_constraint
+        &self.results.qfrc_constraint
     }
     /// Forces along the 2 (dim − 1) edges of pyramid `block` of the problem last solved, in the order y₀ + μ₁y₁,
     /// y₀ − μ₁y₁, y₀ + μ₂y₂, ...; empty for other costs.
     pub fn edge_forces(&self, problem: &Problem<T>, block: usize) -> &[T] {
         let b = &problem.jacobian.blocks[block];
         if b.cost == Cost::Pyramid {
-            &self.edges[b.pieces()]
+            &self.results.edges[b.pieces()]
         } else {
             &[]
         }
@@ -207,11 +114,6 @@ impl<T: Real> Solver<T> {
     }
     /// Statistics of the last solve.
     pub fn stats(&self) -> &SolveStats<T> {
-        &self.stats
+        &self.results.stats
     }
-}
-
-fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
-    to.clear();
-    to.extend_from_slice(from);
 }

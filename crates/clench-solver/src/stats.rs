@@ -1,5 +1,6 @@
 //! What a solve reports.
 
+use crate::transfer::Transfer;
 use clench_math::{Real, Scalar};
 
 /// How a solve ended.
@@ -107,36 +108,34 @@ pub struct LaneStats {
 }
 
 impl<T: Real> SolveStats<T> {
-    /// Takes in the statistics of another island.
-    pub(crate) fn combine(&mut self, other: &SolveStats<T>) {
-        self.iterations = self.iterations.max(other.iterations);
-        self.gradient = self.gradient.max(other.gradient);
-        self.improvement = self.improvement.max(other.improvement);
-        self.gap += other.gap;
-        self.piece_changes += other.piece_changes;
-        self.ls_evaluations += other.ls_evaluations;
-        self.factorizations += other.factorizations;
-        self.updates += other.updates;
-        self.noslip_iterations = self.noslip_iterations.max(other.noslip_iterations);
-        self.islands += other.islands;
-        // Codes ascend from good to bad.
-        self.status = self.status.max(other.status);
-    }
-
-    /// Takes lane `lane` from the statistics of a problem solved alone.
-    pub(crate) fn set_lane(&mut self, lane: usize, alone: &SolveStats<T::Scalar>) {
-        self.iterations.set_lane(lane, alone.iterations);
-        self.gradient.set_lane(lane, alone.gradient);
-        self.improvement.set_lane(lane, alone.improvement);
-        self.gap.set_lane(lane, alone.gap);
-        self.piece_changes.set_lane(lane, alone.piece_changes);
-        self.ls_evaluations.set_lane(lane, alone.ls_evaluations);
-        self.factorizations.set_lane(lane, alone.factorizations);
-        self.updates.set_lane(lane, alone.updates);
-        self.noslip_iterations
-            .set_lane(lane, alone.noslip_iterations);
-        self.islands.set_lane(lane, alone.islands);
-        self.status.set_lane(lane, alone.status);
+    /// Takes in the statistics of another island in the lanes that have it.
+    #[inline(always)]
+    pub(crate) fn combine<F: Real>(
+        &mut self,
+        other: &SolveStats<F>,
+        lanes: T::Mask,
+        transfer: impl Transfer<T, F>,
+    ) {
+        // Codes of the status ascend from good to bad.
+        for (worst, other) in [
+            (&mut self.iterations, other.iterations),
+            (&mut self.gradient, other.gradient),
+            (&mut self.improvement, other.improvement),
+            (&mut self.noslip_iterations, other.noslip_iterations),
+            (&mut self.status, other.status),
+        ] {
+            *worst = T::select(lanes, worst.max(transfer.put(other)), *worst);
+        }
+        for (sum, other) in [
+            (&mut self.gap, other.gap),
+            (&mut self.piece_changes, other.piece_changes),
+            (&mut self.ls_evaluations, other.ls_evaluations),
+            (&mut self.factorizations, other.factorizations),
+            (&mut self.updates, other.updates),
+            (&mut self.islands, other.islands),
+        ] {
+            *sum = T::select(lanes, *sum + transfer.put(other), *sum);
+        }
     }
 
     /// How lane `lane` ended.

@@ -3,13 +3,22 @@
 mod common;
 
 use clench_math::{Lanes, Real, Scalar};
-use clench_solver::{Block, ConstraintSolver, Cost, Problem, RigidOptions, Solver, Switch};
+use clench_solver::{
+    Block, ConstraintSolver, Cost, Problem, RigidOptions, Solver, Status, Switch, Tree,
+};
 use common::*;
 
 const N: usize = 4;
 
-/// N problems of one structure, in each of which some blocks are absent; packed, and each alone.
-fn pack<S: Scalar>(rng: &mut Rng, shape: &Shape) -> (Problem<Lanes<S, N>>, Vec<Problem<S>>) {
+/// The share of blocks that a lane does not have.
+const ABSENT: f64 = 0.3;
+
+/// N problems of one structure, in each of which this share of the blocks is absent; packed, and each alone.
+fn pack<S: Scalar>(
+    rng: &mut Rng,
+    shape: &Shape,
+    absent: f64,
+) -> (Problem<Lanes<S, N>>, Vec<Problem<S>>) {
     let seed = rng.bits();
     // The same seed chooses the same structure; the numbers are then drawn anew.
     let template = random_problem(&mut Rng(seed), shape);
@@ -40,7 +49,7 @@ fn pack<S: Scalar>(rng: &mut Rng, shape: &Shape) -> (Problem<Lanes<S, N>>, Vec<P
     for block in template.blocks() {
         let slot = packed.push(block.cost, block.dim, block.dofs);
         for (lane, alone) in alone.iter_mut().enumerate() {
-            if rng.unit() < 0.3 {
+            if rng.unit() < absent {
                 // Idle: no D, and whatever the slot held before, as long as it is finite.
                 slot.r
                     .iter_mut()
@@ -77,26 +86,37 @@ fn same<S: Scalar>(packed: &[Lanes<S, N>], lane: usize, alone: &[S], what: &str)
     assert_eq!(packed, alone, "{what}");
 }
 
+/// On humanoids and forests, as wholes.
 fn compare<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
+    let options = options.islands(Switch::Off);
+    compare_on::<S>(options, costs, rounds, ABSENT, |rng, round| {
+        let forest = random_forest(rng, 17);
+        Shape::new(if round % 2 == 0 { humanoid() } else { forest }, 12)
+    });
+}
+
+/// Solves problems of many shapes side by side and alone; in how many of them lanes had different numbers of islands.
+fn compare_on<S: Scalar>(
+    options: RigidOptions,
+    costs: &[Cost],
+    rounds: usize,
+    absent: f64,
+    mut shape: impl FnMut(&mut Rng, usize) -> Shape,
+) -> usize {
     let mut rng = Rng(11);
     let settings = options.resolve::<S>();
+    // One for all, so that what is left of one problem could be seen in the next.
+    let mut together = Solver::new(&Tree::dense(0));
+    let mut different = 0;
     for round in 0..rounds {
-        let mut shape = Shape::new(
-            if round % 2 == 0 {
-                humanoid()
-            } else {
-                random_forest(&mut rng, 17)
-            },
-            12,
-        );
+        let mut shape = shape(&mut rng, round);
         shape.costs = costs.to_vec();
         shape.stiffness = if round % 5 == 4 {
             (1e3, 1e9)
         } else {
             (1.0, 300.0)
         };
-        let (packed, alone) = pack::<S>(&mut rng, &shape);
-        let mut together = Solver::new(packed.tree());
+        let (packed, alone) = pack::<S>(&mut rng, &shape, absent);
         let warm: Vec<Lanes<S, N>> = (0..packed.nv())
             .map(|_| Lanes::from_fn(|_| S::new(rng.range(-10.0, 10.0))))
             .collect();
@@ -110,16 +130,26 @@ fn compare<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
                 .lane(0);
             let name = format!("round {round} lane {lane} {expected:?}");
             assert_eq!(stats.lane(lane), expected, "{name}");
-            same(together.qacc(), lane, single.qacc(), &name);
-            same(
-                together.qfrc_constraint(),
-                lane,
-                single.qfrc_constraint(),
-                &name,
-            );
-            compare_forces(&packed, &together, lane, problem, &single, &name);
+            compare_results(&packed, &together, lane, problem, &single, &name);
         }
+        let islands = |lane| stats.lane(lane).islands;
+        different += usize::from((1..N).any(|lane| islands(lane) != islands(0)));
     }
+    different
+}
+
+fn compare_results<S: Scalar>(
+    packed: &Problem<Lanes<S, N>>,
+    together: &Solver<Lanes<S, N>>,
+    lane: usize,
+    alone: &Problem<S>,
+    single: &Solver<S>,
+    name: &str,
+) {
+    same(together.qacc(), lane, single.qacc(), name);
+    let (qfrc, expected) = (together.qfrc_constraint(), single.qfrc_constraint());
+    same(qfrc, lane, expected, name);
+    compare_forces(packed, together, lane, alone, single, name);
 }
 
 /// Block by block, skipping those that the lane does not have.
@@ -151,7 +181,7 @@ fn compare_forces<S: Scalar>(
 }
 
 fn options() -> RigidOptions {
-    RigidOptions::new().islands(Switch::Off)
+    RigidOptions::new()
 }
 
 #[test]
@@ -197,6 +227,12 @@ fn conjugate_gradients() {
         &ALL_COSTS,
         20,
     );
+    // To the working precision: lanes begin anew where they seem stuck, and the others go on.
+    let options = options()
+        .constraint_solver(ConstraintSolver::Cg)
+        .tolerance(0.0);
+    compare::<f64>(options, &ALL_COSTS, 20);
+    compare::<f32>(options, &ALL_COSTS, 20);
 }
 
 #[test]
@@ -219,15 +255,131 @@ fn single_precision() {
 fn a_failing_lane_disturbs_no_other() {
     let mut rng = Rng(5);
     let settings = options().resolve::<f64>();
-    let (mut packed, alone) = pack::<f64>(&mut rng, &Shape::new(humanoid(), 10));
+    let (mut packed, alone) = pack::<f64>(&mut rng, &Shape::new(humanoid(), 10), ABSENT);
     packed.qacc_smooth[3].set_lane(2, f64::NAN);
     let mut together = Solver::new(packed.tree());
     let stats = *together.solve(&packed, &settings, None).unwrap();
-    assert_eq!(stats.lane(2).status, clench_solver::Status::NonFinite);
+    assert_eq!(stats.lane(2).status, Status::NonFinite);
     for lane in [0, 1, 3] {
         let mut single = Solver::new(alone[lane].tree());
         let expected = single.solve(&alone[lane], &settings, None).unwrap().lane(0);
         assert_eq!(stats.lane(lane), expected);
         same(together.qacc(), lane, single.qacc(), "qacc");
     }
+}
+
+/// An arm of six dofs, and a free body.
+fn arm_and_body(rng: &mut Rng, _: usize) -> Shape {
+    let parents = (0..12).map(|i: usize| (i % 6 > 0).then(|| i - 1)).collect();
+    let mut shape = Shape::new(parents, 1 + rng.below(8));
+    shape.cross = 0.3;
+    shape
+}
+
+/// Many small trees: few couplings at first, then islands of several trees, in the end large ones.
+fn many_trees(_: &mut Rng, round: usize) -> Shape {
+    let parents = (0..36).map(|i: usize| (i % 3 > 0).then(|| i - 1)).collect();
+    let mut shape = Shape::new(parents, 1 + 2 * (round % 20));
+    shape.cross = 0.4;
+    shape
+}
+
+/// Trees whose dofs alternate.
+fn tangled_trees(rng: &mut Rng, _: usize) -> Shape {
+    let parents = (0..18).map(|i: usize| i.checked_sub(3)).collect();
+    Shape::new(parents, 1 + rng.below(6))
+}
+
+/// With islands, on all shapes: lanes have different ones in many rounds, and where few blocks are absent, the same large ones.
+fn compare_islands<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
+    assert!(options.islands.is_none());
+    for (islands, absent) in [(Switch::Auto, ABSENT), (Switch::On, 0.02)] {
+        let options = options.islands(islands);
+        let two = compare_on::<S>(options, costs, rounds, absent, arm_and_body);
+        let many = compare_on::<S>(options, costs, rounds, absent, many_trees);
+        let tangled = compare_on::<S>(options, costs, rounds / 2, absent, tangled_trees);
+        let different = [two, many, tangled];
+        let enough = |&d: &usize| 5 * d >= rounds || absent < ABSENT;
+        assert!(different.iter().all(enough), "{different:?} of {rounds}");
+    }
+}
+
+#[test]
+fn islands_of_each_lane_by_newton() {
+    compare_islands::<f64>(options(), &ALL_COSTS, 40);
+    compare_islands::<f64>(options().tolerance(0.0), &[Cost::Elliptic], 20);
+    compare_islands::<f64>(options().tolerance(0.0), &[Cost::Pyramid], 20);
+    compare_islands::<f64>(options().sparse_solve(Switch::Off), &ALL_COSTS, 20);
+    compare_islands::<f64>(options().iterations(2).ls_iterations(2), &ALL_COSTS, 20);
+}
+
+#[test]
+fn islands_of_each_lane_by_conjugate_gradients() {
+    let options = options().constraint_solver(ConstraintSolver::Cg);
+    compare_islands::<f64>(options, &ALL_COSTS, 20);
+    compare_islands::<f32>(options, &ALL_COSTS, 20);
+}
+
+#[test]
+fn islands_of_each_lane_without_slip() {
+    compare_islands::<f64>(options().noslip_iterations(10), &ALL_COSTS, 20);
+    compare_islands::<f64>(
+        options().noslip_iterations(50).noslip_tolerance(1e-3),
+        &[Cost::Elliptic, Cost::Huber, Cost::OneSided],
+        20,
+    );
+    compare_islands::<f32>(options().noslip_iterations(10), &[Cost::Pyramid], 20);
+}
+
+#[test]
+fn islands_of_each_lane_in_single_precision() {
+    compare_islands::<f32>(options(), &ALL_COSTS, 40);
+    compare_islands::<f32>(options().tolerance(0.0), &ALL_COSTS, 20);
+}
+
+#[test]
+fn a_lane_that_fails_disturbs_no_island_of_the_others() {
+    let mut rng = Rng(23);
+    let settings = options().resolve::<f64>();
+    let mut together = Solver::new(&Tree::dense(0));
+    let mut failed = 0;
+    for round in 0..120 {
+        let shape = match round % 3 {
+            0 => arm_and_body(&mut rng, round),
+            1 => many_trees(&mut rng, round),
+            _ => tangled_trees(&mut rng, round),
+        };
+        let (mut packed, alone) = pack::<f64>(&mut rng, &shape, ABSENT);
+        let bad = rng.below(N);
+        let number = [f64::NAN, f64::INFINITY, 1e300][rng.below(3)];
+        match rng.below(4) {
+            0 => packed.qacc_smooth[rng.below(12)].set_lane(bad, number),
+            1 => packed.mass.values[rng.below(12)].set_lane(bad, number),
+            2 => packed
+                .mass
+                .values
+                .iter_mut()
+                .for_each(|m| m.set_lane(bad, 0.0)),
+            _ => {
+                let block = packed.block(rng.below(packed.nblock()));
+                let (cost, dim, dofs) = (block.cost, block.dim, block.dofs.to_vec());
+                let block = packed.push(cost, dim, &dofs);
+                block.d[0].set_lane(bad, 1.0);
+                block.r[0].set_lane(bad, 1.0);
+                block.jacobian[0].set_lane(bad, number);
+                block.aref[0].set_lane(bad, -number);
+            }
+        }
+        packed.factor_mass();
+        let stats = *together.solve(&packed, &settings, None).unwrap();
+        failed += u32::from(stats.status(bad) == Status::NonFinite);
+        for lane in (0..N).filter(|&lane| lane != bad) {
+            let mut single = Solver::new(alone[lane].tree());
+            let expected = single.solve(&alone[lane], &settings, None).unwrap().lane(0);
+            let name = format!("round {round} lane {lane}");
+            assert_eq!(stats.lane(lane), expected, "{name}");
+            compare_results(&packed, &together, lane, &alone[lane], &single, &name);
+        }
+    }
+    assert!(failed > 40, "{failed} lanes failed");
 }

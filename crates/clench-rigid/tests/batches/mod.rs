@@ -4,8 +4,10 @@
 #[path = "../scenes/mod.rs"]
 mod scenes;
 
-use clench_math::Instructions;
-use clench_rigid::builder::ModelBuilder;
+use clench_collide::ShapeKind;
+use clench_math::{Instructions, Vec3};
+use clench_rigid::builder::{GeomSpec, ModelBuilder};
+use clench_rigid::model::JointKind;
 use clench_rigid::{Batch, BatchOptions, Model, Precision, Sim, State};
 use clench_solver::RigidOptions;
 pub use scenes::*;
@@ -15,6 +17,63 @@ use std::sync::Arc;
 pub fn walker() -> ModelBuilder {
     let mut b = humanoid();
     b.options = RigidOptions::new();
+    b
+}
+
+/// An arm that hangs over a box on the floor: swinging, it touches the box at some times and in some environments.
+pub fn arm_and_box() -> ModelBuilder {
+    let mut b = world();
+    b.options = RigidOptions::new();
+    b.bodies[0].geoms.push(plane());
+    let (mut parent, mut pos) = (0, [0.0, 0.0, 0.95]);
+    for (name, axis) in [
+        ("shoulder", [0.0, 1.0, 0.0]),
+        ("elbow", [1.0, 0.0, 0.0]),
+        ("wrist", [0.0, 1.0, 0.0]),
+    ] {
+        let mut hinge = joint(JointKind::Hinge, name, axis);
+        hinge.range = [-0.9, 0.9];
+        hinge.limited = Some(true);
+        hinge.frictionloss = 0.05;
+        let mut link = geom(ShapeKind::Capsule, [0.03, 0.11, 0.0]);
+        link.pos = Vec3::from_f64([0.0, 0.0, -0.12]);
+        parent = add(&mut b, parent, name, pos, vec![hinge], vec![link]);
+        pos = [0.0, 0.0, -0.25];
+    }
+    let solid = GeomSpec {
+        condim: 4,
+        ..cuboid([0.12, 0.1, 0.1])
+    };
+    add(&mut b, 0, "box", [0.05, 0.0, 0.1], free(), vec![solid]);
+    b
+}
+
+/// Twelve bodies thrown into a box: they touch in all ways, in the end nearly all of them.
+pub fn crowd() -> ModelBuilder {
+    let mut b = world();
+    b.options = RigidOptions::new();
+    b.bodies[0].geoms.push(plane());
+    for [x, y] in [[0.4, 0.0], [-0.4, 0.0], [0.0, 0.4], [0.0, -0.4]] {
+        let wall = if y == 0.0 {
+            cuboid([0.1, 0.5, 1.0])
+        } else {
+            cuboid([0.5, 0.1, 1.0])
+        };
+        b.bodies[0].geoms.push(wall.at([x, y, 0.9]));
+    }
+    for k in 0..12 {
+        let pos = [
+            0.2 * f64::from(k % 3) - 0.2,
+            0.2 * f64::from(k / 3 % 2) - 0.1,
+            0.15 + 0.21 * f64::from(k / 6),
+        ];
+        let shape = if k % 4 == 3 {
+            cuboid([0.08, 0.07, 0.09])
+        } else {
+            sphere(0.09)
+        };
+        add(&mut b, 0, "", pos, free(), vec![shape]);
+    }
     b
 }
 

@@ -6,6 +6,7 @@
 //! bits**.
 
 use super::{Strand, Tree, TreeMatrix, with_len};
+use crate::transfer::Transfer;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
 /// Columns summed at a time.
@@ -169,28 +170,22 @@ impl<T: Real> TreeFactor<T> {
     }
 
     /// Becomes the part of `whole`, the factor over `tree`, that belongs to the complete trees of `dofs`.
-    pub(crate) fn gather(&mut self, tree: &Tree, whole: &TreeFactor<T>, dofs: &[u32]) {
+    pub(crate) fn gather<L: Real>(
+        &mut self,
+        tree: &Tree,
+        whole: &TreeFactor<L>,
+        dofs: &[u32],
+        transfer: impl Transfer<L, T>,
+    ) {
         self.lower.clear();
         self.diagonal.clear();
         self.inverse.clear();
         for &dof in dofs {
             let dof = dof as usize;
-            self.lower
-                .extend_from_slice(&whole.lower[tree.starts[dof]..tree.starts[dof + 1]]);
-            self.diagonal.push(whole.diagonal[dof]);
-            self.inverse.push(whole.inverse[dof]);
-        }
-    }
-
-    /// Becomes lane `lane` of `whole`.
-    pub(crate) fn gather_lane<L: Real<Scalar = T>>(&mut self, whole: &TreeFactor<L>, lane: usize) {
-        for (to, from) in [
-            (&mut self.lower, &whole.lower),
-            (&mut self.diagonal, &whole.diagonal),
-            (&mut self.inverse, &whole.inverse),
-        ] {
-            to.clear();
-            to.extend(from.iter().map(|x| x.lane(lane)));
+            let row = &whole.lower[tree.starts[dof]..tree.starts[dof + 1]];
+            self.lower.extend(row.iter().map(|&l| transfer.take(l)));
+            self.diagonal.push(transfer.take(whole.diagonal[dof]));
+            self.inverse.push(transfer.take(whole.inverse[dof]));
         }
     }
 

@@ -1,0 +1,103 @@
+//! What a solve gives out.
+
+use crate::islands::Slot;
+use crate::iterate::all_finite;
+use crate::transfer::Transfer;
+use crate::workspace::Workspace;
+use crate::{Problem, SolveStats, Status};
+use clench_math::{Real, kernel};
+
+/// The results of a solve.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Results<T: Real> {
+    pub qacc: Vec<T>,
+    pub force: Vec<T>,
+    /// Edge forces of pyramids, at the index of their pieces.
+    pub edges: Vec<T>,
+    pub qfrc_constraint: Vec<T>,
+    pub stats: SolveStats<T>,
+}
+
+impl<T: Real> Results<T> {
+    /// Those of a problem in which no constraint acts.
+    #[kernel]
+    pub fn reset(&mut self, problem: &Problem<T>) {
+        let finite = all_finite(&problem.qacc_smooth);
+        let status = T::select(
+            finite,
+            Status::Unconstrained.code(),
+            Status::NonFinite.code(),
+        );
+        self.stats = SolveStats {
+            status,
+            ..SolveStats::default()
+        };
+        copy(&mut self.qacc, &problem.qacc_smooth);
+        for (v, len) in [
+            (&mut self.force, problem.nrow()),
+            (&mut self.edges, problem.npiece),
+            (&mut self.qfrc_constraint, problem.nv()),
+        ] {
+            v.clear();
+            v.resize(len, T::ZERO);
+        }
+    }
+
+    /// Those of a problem solved as a whole.
+    pub fn set(&mut self, work: &Workspace<T>) {
+        let iterate = &work.course.iterate;
+        self.stats = work.course.stats;
+        copy(&mut self.qacc, &iterate.qacc);
+        copy(&mut self.force, &iterate.force);
+        copy(&mut self.edges, &work.edges);
+        copy(&mut self.qfrc_constraint, &iterate.qfrc_constraint);
+    }
+
+    /// Adds those of an island of `problem` in some lanes that have it; `acting` are the lanes in which blocks act.
+    #[kernel]
+    pub fn add<F: Real>(
+        &mut self,
+        problem: &Problem<T>,
+        island: &Slot<F>,
+        lanes: T::Mask,
+        acting: &[T::Mask],
+        transfer: impl Transfer<T, F>,
+    ) {
+        let iterate = &island.work.course.iterate;
+        self.stats
+            .combine(&island.work.course.stats, lanes, transfer);
+        for (local, &dof) in island.dofs.iter().enumerate() {
+            let dof = dof as usize;
+            blend(
+                lanes,
+                &mut self.qacc[dof],
+                transfer.put(iterate.qacc[local]),
+            );
+            let force = transfer.put(iterate.qfrc_constraint[local]);
+            blend(lanes, &mut self.qfrc_constraint[dof], force);
+        }
+        for (b, &k) in island.problem.jacobian.blocks.iter().zip(&island.blocks) {
+            let to = &problem.jacobian.blocks[k as usize];
+            let lanes = lanes & acting[k as usize];
+            let force = &iterate.force[b.rows()];
+            for (to, &from) in self.force[to.rows()].iter_mut().zip(force) {
+                blend(lanes, to, transfer.put(from));
+            }
+            let edges = &island.work.edges[b.pieces()];
+            for (to, &from) in self.edges[to.pieces()].iter_mut().zip(edges) {
+                blend(lanes, to, transfer.put(from));
+            }
+        }
+    }
+}
+
+fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
+    to.clear();
+    to.extend_from_slice(from);
+}
+
+/// Takes `from` in the lanes of `mask`.
+#[inline(always)]
+fn blend<T: Real>(mask: T::Mask, to: &mut T, from: T) {
+    *to = T::select(mask, from, *to);
+}
