@@ -3,6 +3,7 @@
 use crate::constraint::constraint_stage;
 use crate::contact::detect;
 use crate::dynamics::actuation::actuation;
+use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::bias::bias_forces;
 use crate::dynamics::com::com_positions;
 use crate::dynamics::euler::euler;
@@ -39,7 +40,12 @@ pub fn position_stage<T: Real>(
     ws.clock.lap(Stage::Kinematics as usize);
     composite_inertia(model, params, pos, &mut ws.problem.mass);
     ws.clock.lap(Stage::Inertia as usize);
-    ws.singular = !ws.problem.factor_mass();
+    ws.singular = !if ws.articulated.is_empty() {
+        ws.problem.factor_mass()
+    } else {
+        let (bodies, factor) = (&mut ws.articulated, &mut ws.problem.mass_factor);
+        articulated_factor(model, params, &ws.position, T::ZERO, bodies, factor)
+    };
     ws.clock.lap(Stage::MassFactorization as usize);
 }
 

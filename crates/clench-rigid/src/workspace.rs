@@ -3,6 +3,7 @@
 use crate::Model;
 use crate::constraint::ConstraintRecord;
 use crate::contact::{Collision, Contact};
+use crate::dynamics::articulated::{ArticulatedInertia, articulated_bodies};
 use crate::dynamics::integrate::Integration;
 use crate::profile::{Profile, StepClock};
 use crate::sensor::SensorReadings;
@@ -154,6 +155,8 @@ pub struct Workspace<T: Real> {
     pub qfrc_constraint: Vec<T>,
     /// What sensors measure.
     pub sensors: SensorReadings<T>,
+    /// Where the mass matrix is factored by articulated bodies: scratch of that (nbody); else empty.
+    pub articulated: Vec<ArticulatedInertia<T>>,
     /// What integrators need besides.
     pub integration: Integration<T>,
     /// Where the time goes, once it runs; see also the solver's.
@@ -199,6 +202,7 @@ impl<T: Real> Workspace<T> {
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
             sensors: SensorReadings::new(model),
+            articulated: articulated_bodies(model),
             integration: Integration::new(model),
             clock: StepClock::default(),
             singular: T::Mask::splat(false),

@@ -1,8 +1,11 @@
 //! Where constraints put their rows: the convex problem, and beside it what a reader wants to know of each row.
 
-use super::softness::Softness;
+use super::softness::{Softness, is_single, least_regularization};
 use clench_math::Real;
 use clench_solver::{Cost, Problem};
+
+/// The most rows of a block.
+const MAX_DIM: usize = 6;
 
 /// What a constraint comes from; the number counts the sources of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +84,8 @@ pub(super) struct Assembly<'a, T: Real> {
     pub problem: &'a mut Problem<T>,
     pub record: &'a mut ConstraintRecord<T>,
     pub qvel: &'a [T],
+    /// Inverse inertia of each dof in the initial configuration.
+    pub weights: &'a [T],
 }
 
 impl<T: Real> Assembly<'_, T> {
@@ -109,6 +114,13 @@ impl<T: Real> Assembly<'_, T> {
         let target = self.problem.push(cost, rows.len(), dofs);
         fill(dofs, target.jacobian);
         blocks.push(block);
+        let mut r = [T::ZERO; MAX_DIM];
+        for (r, row) in r.iter_mut().zip(rows) {
+            *r = row.r;
+        }
+        if is_single::<T>() {
+            raise(cost, rows, target.jacobian, dofs, self.weights, &mut r);
+        }
         for (i, row) in rows.iter().enumerate() {
             let jacobian = &target.jacobian[i * dofs.len()..(i + 1) * dofs.len()];
             let mut velocity = T::ZERO;
@@ -116,12 +128,47 @@ impl<T: Real> Assembly<'_, T> {
                 velocity += j * self.qvel[dof as usize];
             }
             target.aref[i] = row.aref - row.damping * velocity;
-            target.r[i] = row.r;
-            target.d[i] = T::select(block.active, T::ONE / row.r, T::ZERO);
+            target.r[i] = r[i];
+            target.d[i] = T::select(block.active, T::ONE / r[i], T::ZERO);
             target.shape[i] = row.shape;
             pos.push(row.pos);
             vel.push(velocity);
         }
+    }
+}
+
+/// Raises R to what the rounding of single precision leaves of it, see [`least_regularization`]. The rows of a cone are
+/// raised together: their ratios are its shape.
+#[inline(always)]
+fn raise<T: Real>(
+    cost: Cost,
+    rows: &[Row<T>],
+    jacobian: &[T],
+    dofs: &[u32],
+    weights: &[T],
+    r: &mut [T; MAX_DIM],
+) {
+    let mut inertia = [T::ZERO; MAX_DIM];
+    for (i, a) in inertia[..rows.len()].iter_mut().enumerate() {
+        for (&j, &dof) in jacobian[i * dofs.len()..].iter().zip(dofs) {
+            *a += j * j * weights[dof as usize];
+        }
+    }
+    let mut factor = T::ONE;
+    for i in 0..rows.len() {
+        let a = match cost {
+            // Along the edge y₀ + μ y_i, which is what R is of.
+            Cost::Pyramid => inertia[0] + rows[i].shape * rows[i].shape * inertia[i],
+            _ => inertia[i],
+        };
+        let least = least_regularization(a);
+        factor = factor.max(least / r[i]);
+        if let Cost::Quadratic | Cost::OneSided | Cost::Huber = cost {
+            r[i] = r[i].max(least);
+        }
+    }
+    if let Cost::Pyramid | Cost::Elliptic = cost {
+        r.iter_mut().for_each(|r| *r *= factor);
     }
 }
 

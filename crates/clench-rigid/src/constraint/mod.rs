@@ -111,6 +111,7 @@ pub fn assemble<T: Real>(
         problem: &mut ws.problem,
         record: &mut ws.record,
         qvel: &state.qvel,
+        weights: &params.dof_invweight0,
     };
     if settings.flags.equality {
         push_equalities(&scene, &mut out);

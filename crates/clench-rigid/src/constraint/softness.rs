@@ -16,10 +16,12 @@
 //! and limits are MuJoCo 4.0's (Computation, "Constraint model"), with one of our own: no time constant is shorter than
 //! `constraint_timeconst`.
 
-use clench_math::{Mask, Real, array};
+use clench_math::{Mask, Real, Scalar, array};
 
 /// Least R, and least width of the impedance's rise (MuJoCo's `mjMINVAL`).
 const MIN_VALUE: f64 = 1e-15;
+/// The same in roundings: `MIN_VALUE` is 4.5 of double precision's at 1.
+const LEAST_ROUNDINGS: f64 = 4.5;
 /// Bounds of the impedance (MuJoCo's `mjMINIMP`, `mjMAXIMP`).
 const IMPEDANCE_RANGE: [f64; 2] = [0.0001, 0.9999];
 /// What replaces a solref whose numbers have mixed signs.
@@ -71,6 +73,22 @@ impl<T: Real> Softness<T> {
         let d = self.impedance;
         ((T::ONE - d) * a0 / d).max(T::new(MIN_VALUE))
     }
+}
+
+/// Whether numbers `T` are of single precision, whose rounding needs floors and factors of its own.
+#[inline(always)]
+pub fn is_single<T: Real>() -> bool {
+    size_of::<T::Scalar>() < size_of::<f64>()
+}
+
+/// Least R of a row that sees about the inverse inertia `a` at present, in a working precision that is below double. (There
+/// `MIN_VALUE` does, and is MuJoCo's.)
+///
+/// A₀ can be zero where `a` is not, when a centre of mass lies on a joint's axis. The stiffness a / R of such a row, in units
+/// of the inertia that it moves, must not exceed what the working precision can tell from infinity.
+#[inline(always)]
+pub fn least_regularization<T: Real>(a: T) -> T {
+    a * T::splat(T::Scalar::EPSILON) * T::new(LEAST_ROUNDINGS)
 }
 
 #[inline(always)]

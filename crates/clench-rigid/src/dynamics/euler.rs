@@ -3,7 +3,8 @@
 //! The damping force −B v is taken at the end of the step, −B (v + h a): the acceleration that advances the velocity solves
 //! (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second factorization.
 
-use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit};
+use crate::dynamics::articulated::articulated_factor;
+use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit};
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -39,14 +40,21 @@ fn damped_acceleration<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let tree = &model.tree;
-    let matrix = &mut ws.integration.matrix;
-    matrix.values.copy_from_slice(&ws.problem.mass.values);
-    for (i, &damping) in params.dof_damping.iter().enumerate() {
-        if let Some(diagonal) = matrix.row_mut(tree, i).last_mut() {
-            *diagonal += params.timestep * damping;
+    let Integration { matrix, factor, .. } = &mut ws.integration;
+    let positive = if ws.articulated.is_empty() {
+        matrix.values.copy_from_slice(&ws.problem.mass.values);
+        for (i, &damping) in params.dof_damping.iter().enumerate() {
+            if let Some(diagonal) = matrix.row_mut(tree, i).last_mut() {
+                *diagonal += params.timestep * damping;
+            }
         }
-    }
-    solve_implicit(tree, damped, ws);
+        factor.factor(tree, matrix)
+    } else {
+        let (pos, bodies) = (&ws.position, &mut ws.articulated);
+        articulated_factor(model, params, pos, params.timestep, bodies, factor)
+    };
+    ws.singular |= damped & !positive;
+    solve_implicit(tree, ws);
     for (solved, &explicit) in ws.integration.qacc.iter_mut().zip(&ws.qacc) {
         *solved = T::select(damped, *solved, explicit);
     }

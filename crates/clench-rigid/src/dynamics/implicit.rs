@@ -4,13 +4,13 @@
 //! [`slopes`](crate::dynamics::slopes) for D. A free body that is a tree by itself is then solved once more, with its
 //! gyroscopic forces, see [`lone_body`](crate::dynamics::lone_body).
 
-use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit};
+use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit};
 use crate::dynamics::lone_body::{is_lone_body, solve_lone_body};
 use crate::dynamics::slopes::add_velocity_slopes;
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Real, kernel};
 
 /// Advances the state by a time step, from the accelerations and forces of `ws`.
 #[kernel]
@@ -30,7 +30,9 @@ pub fn implicit_fast<T: Real>(
         -params.timestep,
         matrix,
     );
-    solve_implicit(&model.tree, T::Mask::splat(true), ws);
+    let Integration { matrix, factor, .. } = &mut ws.integration;
+    ws.singular |= !factor.factor(&model.tree, matrix);
+    solve_implicit(&model.tree, ws);
     for j in 0..model.joints.len() {
         if is_lone_body(model, j) {
             solve_lone_body(model, params, j, &state.qvel, ws);

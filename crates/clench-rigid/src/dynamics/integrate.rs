@@ -110,17 +110,10 @@ pub fn advance_activations<T: Real>(
     }
 }
 
-/// Solves `integration.matrix` · a = τ + Jᵀf for `integration.qacc`; lanes of `wanted` whose matrix is not positive definite
-/// are marked singular.
+/// Solves with `integration.factor` for `integration.qacc`, from the sum of all forces.
 #[inline(always)]
-pub fn solve_implicit<T: Real>(tree: &Tree, wanted: T::Mask, ws: &mut Workspace<T>) {
-    let Integration {
-        matrix,
-        factor,
-        qacc,
-        ..
-    } = &mut ws.integration;
-    ws.singular |= wanted & !factor.factor(tree, matrix);
+pub fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
+    let Integration { factor, qacc, .. } = &mut ws.integration;
     let forces = ws.force.qfrc_smooth.iter().zip(&ws.qfrc_constraint);
     for (qacc, (&smooth, &constraint)) in qacc.iter_mut().zip(forces) {
         *qacc = smooth + constraint;

@@ -9,6 +9,7 @@
 
 pub mod activation;
 pub mod actuation;
+pub mod articulated;
 pub mod bias;
 pub mod com;
 pub mod energy;

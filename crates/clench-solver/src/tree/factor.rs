@@ -120,6 +120,26 @@ impl<T: Real> TreeFactor<T> {
         positive
     }
 
+    /// Writes row `i` of a factor whose pivot D_i is known, and D_i L_ij as a function of the ancestor j. False in lanes
+    /// whose pivot is not positive: their factor is not usable.
+    #[inline(always)]
+    pub fn set_row(
+        &mut self,
+        tree: &Tree,
+        i: usize,
+        pivot: T,
+        scaled: impl Fn(usize) -> T,
+    ) -> T::Mask {
+        let inverse = T::ONE / pivot;
+        self.diagonal[i] = pivot;
+        self.inverse[i] = inverse;
+        let (start, depth) = (tree.row_start(i), tree.depth(i));
+        for (l, &j) in self.lower[start..start + depth].iter_mut().zip(tree.row(i)) {
+            *l = scaled(j as usize) * inverse;
+        }
+        pivot.gt(T::ZERO) & pivot.is_finite()
+    }
+
     /// Turns the factor of A into that of A + σ x xᵀ, x given along the path to dof `last` and
     /// overwritten. Where σ is zero nothing changes, to the bit. False in lanes where the change
     /// consumes a pivot: their factor is not usable any more.

@@ -81,6 +81,38 @@ fn products_and_solutions_equal_dense_ones() {
 }
 
 #[test]
+fn a_factor_written_row_by_row_solves() {
+    let mut rng = Rng(3);
+    for nv in 1..40 {
+        let tree = random_tree(&mut rng, nv);
+        let mut matrix = TreeMatrix::zeros(&tree);
+        let mut factor = TreeFactor::zeros(&tree);
+        for k in 0..nv {
+            // D_k l lᵀ, l the row of L.
+            let pivot = 0.5 + rng.unit();
+            let mut l = vec![0.0; nv];
+            for &c in tree.row(k) {
+                l[c as usize] = 0.6 * rng.unit() - 0.3;
+            }
+            l[k] = 1.0;
+            for &i in tree.row(k) {
+                let row = matrix.row_mut(&tree, i as usize);
+                for (value, &c) in row.iter_mut().zip(tree.row(i as usize)) {
+                    *value += pivot * l[i as usize] * l[c as usize];
+                }
+            }
+            assert!(factor.set_row(&tree, k, pivot, |j| pivot * l[j]));
+        }
+        let x: Vec<f64> = (0..nv).map(|_| rng.unit()).collect();
+        let mut solution = x.clone();
+        factor.solve(&tree, &mut solution);
+        let product = dense_mul(&matrix.to_dense(&tree), &solution);
+        assert!(far(&product, &x) < 1e-11, "{nv}");
+        assert!(!factor.set_row(&tree, 0, 0.0, |_| 0.0));
+    }
+}
+
+#[test]
 fn a_matrix_that_is_not_positive_is_reported() {
     let tree = Tree::dense(2);
     let matrix = TreeMatrix {

@@ -1,0 +1,182 @@
+//! The factor of the mass matrix by articulated bodies (Featherstone 2008, §7.3), for long chains in single precision.
+//!
+//! Let IA_i be the inertia that is felt at dof i if the joints below it are free, s_i its axis, and M = LᵀDL as everywhere.
+//! Eliminating the dofs below i from M leaves s_jᵀ IA_i s_i in row i, hence
+//!
+//! ```text
+//! u_i = IA_i s_i        D_i = s_i · u_i + armature        D_i L_ij = s_j · u_i    for the ancestors j
+//! IA of what carries dof i:  IA_i − u_i u_iᵀ / D_i
+//! ```
+//!
+//! From M itself the pivot D_i of a link near the root of a chain is a small difference of large numbers: in a chain of 50
+//! links it is 10⁻⁶ of the entry that it is left of, and single precision has nothing left of it. IA is of the pivot's own
+//! size when it is taken about a point nearby, here each body's centre of mass. So D and L come out with the errors of a few
+//! roundings however long the chain. In double precision M's own digits suffice.
+
+use crate::constraint::softness::is_single;
+use crate::model::{JointKind, Model, Params};
+use crate::workspace::Positions;
+use clench_math::{Inertia, Mask, Mat3, Real, Vec3, kernel};
+use clench_solver::TreeFactor;
+
+/// Inertia of an articulated body about a point: moment = rotational ω + coupling v, force = couplingᵀ ω + mass v.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ArticulatedInertia<T> {
+    rotational: Mat3<T>,
+    coupling: Mat3<T>,
+    mass: Mat3<T>,
+}
+
+impl<T: Real> ArticulatedInertia<T> {
+    /// No body at all.
+    pub const ZERO: Self = ArticulatedInertia {
+        rotational: Mat3::ZERO,
+        coupling: Mat3::ZERO,
+        mass: Mat3::ZERO,
+    };
+
+    /// A rigid body about its centre of mass.
+    #[inline(always)]
+    fn rigid(diagonal: Vec3<T>, axes: &Mat3<T>, mass: T) -> Self {
+        let [xx, yy, zz, xy, xz, yz] =
+            Inertia::from_principal(diagonal, axes, Vec3::ZERO, mass).rotational;
+        ArticulatedInertia {
+            rotational: Mat3::from_rows(
+                Vec3::new(xx, xy, xz),
+                Vec3::new(xy, yy, yz),
+                Vec3::new(xz, yz, zz),
+            ),
+            coupling: Mat3::ZERO,
+            mass: Mat3::diagonal(Vec3::new(mass, mass, mass)),
+        }
+    }
+
+    /// Moment and force that accelerate it by (`angular`, `linear`).
+    #[inline(always)]
+    fn mul(&self, angular: Vec3<T>, linear: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
+        (
+            self.rotational * angular + self.coupling * linear,
+            self.coupling.transpose_mul(angular) + self.mass * linear,
+        )
+    }
+
+    /// Takes off u uᵀ / pivot.
+    #[inline(always)]
+    fn release(&mut self, (moment, force): (Vec3<T>, Vec3<T>), inverse_pivot: T) {
+        for i in 0..3 {
+            self.rotational.rows[i] =
+                self.rotational.rows[i] - moment * (moment[i] * inverse_pivot);
+            self.coupling.rows[i] = self.coupling.rows[i] - force * (moment[i] * inverse_pivot);
+            self.mass.rows[i] = self.mass.rows[i] - force * (force[i] * inverse_pivot);
+        }
+    }
+
+    /// Adds `other`, which is about the point at `offset` from this one's.
+    ///
+    /// With r× the matrix of the cross product by the offset: coupling' = coupling + r× mass and
+    /// rotational' = rotational − coupling r× + r× coupling'ᵀ.
+    #[inline(always)]
+    fn add_shifted(&mut self, other: &Self, offset: Vec3<T>) {
+        let moment = |m: &Mat3<T>| {
+            Mat3::from_columns(
+                offset.cross(m.column(0)),
+                offset.cross(m.column(1)),
+                offset.cross(m.column(2)),
+            )
+        };
+        let lever = moment(&other.mass);
+        // −coupling r× is the transpose of r× couplingᵀ.
+        let turned = moment(&other.coupling.transpose()).transpose();
+        for i in 0..3 {
+            self.mass.rows[i] += other.mass.rows[i];
+            self.coupling.rows[i] += other.coupling.rows[i] + lever.rows[i];
+        }
+        let whole = Mat3::from_rows(
+            other.coupling.rows[0] + lever.rows[0],
+            other.coupling.rows[1] + lever.rows[1],
+            other.coupling.rows[2] + lever.rows[2],
+        );
+        let carried = moment(&whole.transpose());
+        for i in 0..3 {
+            self.rotational.rows[i] += other.rotational.rows[i] + turned.rows[i] + carried.rows[i];
+        }
+    }
+}
+
+/// More dofs than this on a path from a root are too many for the factor to be computed from M in single precision: rounding
+/// takes a part of the smallest pivots that grows with the cube of their number, at 20 about a hundredth.
+const MOST_DOFS: usize = 20;
+
+/// Memory for [`articulated_factor`] where numbers `T` and the model need it, else none: the model alone decides.
+pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> {
+    let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();
+    if is_single::<T>() && longest.is_some_and(|n| n > MOST_DOFS) {
+        vec![ArticulatedInertia::ZERO; model.nbody()]
+    } else {
+        Vec::new()
+    }
+}
+
+/// Factors M + `time` · B, B the damping of dofs, into `factor`. False in lanes that met a pivot that is not positive.
+///
+/// `bodies` is memory for all bodies.
+#[kernel]
+pub fn articulated_factor<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    time: T,
+    bodies: &mut [ArticulatedInertia<T>],
+    factor: &mut TreeFactor<T>,
+) -> T::Mask {
+    for (b, body) in bodies.iter_mut().enumerate() {
+        let (inertia, mass) = (params.body_inertia[b], params.body_mass[b]);
+        *body = ArticulatedInertia::rigid(inertia, &pos.ximat[b], mass);
+    }
+    let mut positive = T::Mask::splat(true);
+    for b in (1..model.nbody()).rev() {
+        let centre = pos.xipos[b];
+        for i in model.bodies[b].dofs.clone().rev() {
+            let (angular, linear) = axis(model, pos, i, centre);
+            let (moment, force) = bodies[b].mul(angular, linear);
+            let added = params.dof_armature[i] + time * params.dof_damping[i];
+            let pivot = angular.dot(moment) + linear.dot(force) + added;
+            positive &= factor.set_row(&model.tree, i, pivot, |j| {
+                let (angular, linear) = axis(model, pos, j, centre);
+                angular.dot(moment) + linear.dot(force)
+            });
+            bodies[b].release((moment, force), T::ONE / pivot);
+        }
+        let parent = model.bodies[b].parent;
+        if parent != 0 {
+            let own = bodies[b];
+            bodies[parent].add_shifted(&own, centre - pos.xipos[parent]);
+        }
+    }
+    positive
+}
+
+/// Angular and linear velocity at `point` when dof `i` moves at unit velocity, from the joint's anchor: nothing large cancels
+/// where both are near.
+#[inline(always)]
+fn axis<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    i: usize,
+    point: Vec3<T>,
+) -> (Vec3<T>, Vec3<T>) {
+    let number = model.dofs[i].joint;
+    let joint = &model.joints[number];
+    let translates = match joint.kind {
+        JointKind::Slide => true,
+        JointKind::Free => i - joint.dof < 3,
+        JointKind::Hinge | JointKind::Ball => false,
+    };
+    let motion = pos.cdof[i];
+    if translates {
+        (Vec3::ZERO, motion.linear)
+    } else {
+        let arm = point - pos.xanchor[number];
+        (motion.angular, motion.angular.cross(arm))
+    }
+}
