@@ -44,6 +44,24 @@ def test_contacts_are_listed():
         assert np.allclose(numbers, expected, rtol=1e-4, atol=2e-5)
 
 
+def test_what_is_supported_is_listed():
+    listed = program.run("mjcf", "geom").stdout.splitlines()
+    assert listed[0] == "geom" and all(line.startswith("  ") for line in listed[1:])
+    assert {line.split()[0] for line in listed[1:]} == {"read", "ignored", "refused"}
+    assert " pos " in listed[1] and len(program.run("mjcf").stdout.splitlines()) > 100
+
+
+def test_forward_tells_the_next_state():
+    """The state that `simulate` is in after one step."""
+    path = program.ROOT / "models/quadruped.xml"
+    record, _ = program.simulate(path, "--steps", 1)
+    with program.Forward(path, "--step") as forward:
+        result = forward({})
+    for name in ("time", "qpos", "qvel"):
+        assert np.array_equal(result["next"][name], record[name][-1])
+    assert result["time"] == 0, "the result is that of the state given"
+
+
 def test_json_summary_and_record():
     steps, every = 200, 10
     record, summary = program.simulate(program.ROOT / "models/quadruped.xml", "--steps", steps, "--every", every)

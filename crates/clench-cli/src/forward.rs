@@ -1,7 +1,7 @@
 //! `clench forward`: one JSON state a line in, one JSON result a line out.
 
 use crate::options::ModelArguments;
-use crate::protocol::{ResultLine, StateLine};
+use crate::protocol::{NextState, ResultLine, StateLine, forward};
 use anyhow::{Context, Result};
 use clap::Args;
 use std::io::{self, BufRead, BufWriter, Write};
@@ -18,6 +18,9 @@ pub struct Arguments {
     /// Add the mass matrix
     #[arg(long)]
     mass: bool,
+    /// Add the state one step later, as `next`
+    #[arg(long)]
+    step: bool,
 
     // Last, because its heading in the help holds for all that follows.
     #[command(flatten)]
@@ -36,8 +39,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         }
         sim.reset();
         let state = StateLine::parse(&line).with_context(context)?;
-        state.forward(&mut sim).with_context(context)?;
-        let result = ResultLine::new(&sim, arguments.mass, arguments.jacobian);
+        let given = state.apply(&mut sim).with_context(context)?;
+        let step = || NextState::after(&mut sim, given.as_deref());
+        let next = (arguments.step.then(step).transpose()).with_context(context)?;
+        forward(&mut sim, given.as_deref()).with_context(context)?;
+        let result = ResultLine::new(&sim, next, arguments.mass, arguments.jacobian);
         serde_json::to_writer(&mut out, &result)?;
         out.write_all(b"\n")?;
         out.flush()?;

@@ -1,4 +1,4 @@
-//! The `clench` program: `simulate`, `forward` and `inspect` a robot file.
+//! The `clench` program: `simulate`, `forward` and `inspect` a robot file, and say what files may hold (`mjcf`).
 //!
 //! One module a subcommand, plus what they share: options that override the file (`options`), files that replace others when
 //! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`), and what the library
@@ -8,6 +8,7 @@ mod forward;
 mod inspect;
 mod interrupt;
 mod message;
+mod mjcf;
 mod options;
 mod replacement;
 mod simulate;
@@ -56,6 +57,8 @@ enum Command {
     Forward(forward::Arguments),
     /// Show a model: sizes, tree, options, and the constraints that act
     Inspect(inspect::Arguments),
+    /// Say what of MJCF is read, what is ignored, and what is refused
+    Mjcf(mjcf::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -63,6 +66,7 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Forward(arguments) => forward::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Mjcf(arguments) => mjcf::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {
         Ok(code) => code,

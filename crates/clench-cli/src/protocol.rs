@@ -92,8 +92,8 @@ impl StateLine {
         Ok(state)
     }
 
-    /// Sets the state of a simulation that stands at its defaults, and runs `forward` on it.
-    pub fn forward(self, sim: &mut Sim) -> Result<()> {
+    /// Sets the state of a simulation that stands at its defaults; gives the contacts that replace collision detection.
+    pub fn apply(self, sim: &mut Sim) -> Result<Option<Vec<Contact<f64>>>> {
         let state = &mut sim.state;
         if let Some(time) = self.time {
             state.time = time;
@@ -135,19 +135,51 @@ impl StateLine {
             &mut state.eq_active,
             map(self.eq_active, truth),
         )?;
-        match self.contacts {
-            None => sim.forward()?,
-            Some(lines) => {
-                let contacts = (lines.into_iter().enumerate())
-                    .map(|(i, c)| {
-                        c.into_contact(sim)
-                            .with_context(|| format!("contacts[{i}]"))
-                    })
-                    .collect::<Result<Vec<_>>>()?;
-                sim.forward_with_contacts(&contacts)?;
-            }
+        let given = self.contacts.map(|lines| {
+            (lines.into_iter().enumerate())
+                .map(|(i, c)| {
+                    c.into_contact(sim)
+                        .with_context(|| format!("contacts[{i}]"))
+                })
+                .collect()
+        });
+        given.transpose()
+    }
+}
+
+/// Runs `forward`, with these contacts if there are any given.
+pub fn forward(sim: &mut Sim, given: Option<&[Contact<f64>]>) -> Result<()> {
+    match given {
+        None => sim.forward()?,
+        Some(contacts) => sim.forward_with_contacts(contacts)?,
+    }
+    Ok(())
+}
+
+/// The state one step later.
+#[derive(Serialize)]
+pub struct NextState {
+    time: f64,
+    qpos: Vec<f64>,
+    qvel: Vec<f64>,
+    act: Vec<f64>,
+}
+
+impl NextState {
+    /// Takes a step, with these contacts if there are any given, and takes it back.
+    pub fn after(sim: &mut Sim, given: Option<&[Contact<f64>]>) -> Result<Self> {
+        let before = sim.state.clone();
+        match given {
+            None => sim.step()?,
+            Some(contacts) => sim.step_with_contacts(contacts)?,
         }
-        Ok(())
+        let after = std::mem::replace(&mut sim.state, before);
+        Ok(NextState {
+            time: after.time,
+            qpos: after.qpos,
+            qvel: after.qvel,
+            act: after.act,
+        })
     }
 }
 
@@ -232,6 +264,8 @@ pub struct ResultLine<'a> {
     constraints: Vec<RowResult<'a>>,
     solver: SolverResult,
     #[serde(skip_serializing_if = "Option::is_none")]
+    next: Option<NextState>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     mass: Option<Vec<Vec<f64>>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     jacobian: Option<Vec<Vec<f64>>>,
@@ -281,8 +315,8 @@ struct SolverResult {
 }
 
 impl<'a> ResultLine<'a> {
-    /// What the last `forward` of a simulation computed.
-    pub fn new(sim: &'a Sim, mass: bool, jacobian: bool) -> Self {
+    /// What the last `forward` of a simulation computed, and the state one step later if that is known.
+    pub fn new(sim: &'a Sim, next: Option<NextState>, mass: bool, jacobian: bool) -> Self {
         let ws = sim.workspace();
         let nv = sim.model().nv;
         let stats = sim.stats();
@@ -309,6 +343,7 @@ impl<'a> ResultLine<'a> {
                 improvement: stats.improvement,
                 gap: stats.gap,
             },
+            next,
             mass: mass.then(|| rows(&readout::mass_matrix(ws, 0), nv)),
             jacobian: jacobian.then(|| rows(&readout::jacobian(ws, 0), nv)),
         }

@@ -12,6 +12,7 @@ mod mjcf;
 mod spending;
 
 pub use error::LoadError;
+pub use mjcf::{Support, supported};
 
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::{Budget, Model};

@@ -209,6 +209,22 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// As [`step`](Self::step), and contacts that make no sense.
     pub fn forward_with_contacts(&mut self, contacts: &[Contact<T>]) -> Result<(), SimError> {
+        self.with_contacts(contacts, Self::forward)
+    }
+
+    /// As [`step`](Self::step), but with these contacts instead of detected ones, in every stage of the integrator.
+    ///
+    /// # Errors
+    /// As [`forward_with_contacts`](Self::forward_with_contacts).
+    pub fn step_with_contacts(&mut self, contacts: &[Contact<T>]) -> Result<(), SimError> {
+        self.with_contacts(contacts, Self::step)
+    }
+
+    fn with_contacts(
+        &mut self,
+        contacts: &[Contact<T>],
+        compute: impl FnOnce(&mut Self) -> Result<(), SimError>,
+    ) -> Result<(), SimError> {
         for (index, contact) in contacts.iter().enumerate() {
             check_contact(&self.model, contact)
                 .map_err(|reason| SimError::Contact { index, reason })?;
@@ -217,7 +233,7 @@ impl<T: Precision> Sim<T> {
         self.ws.contacts.extend_from_slice(contacts);
         self.ws.collision.given = true;
         self.ws.collision.overflow = false;
-        let result = self.forward();
+        let result = compute(self);
         self.ws.collision.given = false;
         result
     }

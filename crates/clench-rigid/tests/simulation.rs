@@ -262,6 +262,12 @@ fn given_contacts_replace_detection_once() {
     }
     sim.forward().expect("valid");
     assert!(sim.contacts().is_empty(), "the ball is in the air");
+    let before = sim.state.clone();
+    sim.step_with_contacts(&[contact]).expect("valid");
+    assert!(sim.state.qvel[2] > 0.0, "the contact throws the ball up");
+    sim.state = before;
+    sim.step().expect("valid");
+    assert!(sim.state.qvel[2] < 0.0, "without it the ball falls");
 }
 
 #[test]

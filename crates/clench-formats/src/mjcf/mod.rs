@@ -25,7 +25,10 @@ mod rules;
 mod schema;
 mod sensor;
 mod site;
+mod support;
 mod tendon;
+
+pub use support::{Support, supported};
 
 use crate::LoadError;
 use crate::spending::Spending;

@@ -1,0 +1,37 @@
+//! What of MJCF is read, for users and for tests that must reach all of it.
+
+use super::rules::{RULES, Rule};
+
+/// What the reader does with an MJCF element.
+#[derive(Clone, Debug)]
+pub struct Support {
+    /// Its name, or `parent/name` where the parent gives the name a meaning of its own.
+    pub element: &'static str,
+    /// Attributes that are read.
+    pub read: Vec<&'static str>,
+    /// Attributes that are accepted and do not act on motion.
+    pub ignored: Vec<&'static str>,
+    /// Attributes that are refused; one written as `name=value` is accepted with that value, which does nothing.
+    pub refused: Vec<&'static str>,
+    /// Elements that may stand in it.
+    pub children: Vec<&'static str>,
+}
+
+/// What of MJCF is supported, element by element. An element not listed is refused.
+///
+/// ```
+/// let geom = clench_formats::supported().find(|support| support.element == "geom");
+/// assert!(geom.is_some_and(|geom| geom.read.contains(&"size")));
+/// ```
+pub fn supported() -> impl Iterator<Item = Support> {
+    RULES.iter().map(|rule: &Rule| {
+        let words = |text: &'static str| text.split_ascii_whitespace();
+        Support {
+            element: rule.element,
+            read: words(rule.read).collect(),
+            ignored: words(rule.ignored).collect(),
+            refused: words(rule.later).collect(),
+            children: words(rule.children).chain(words(rule.once)).collect(),
+        }
+    })
+}
