@@ -195,3 +195,16 @@ fn what_is_not_supported_yet_says_so() {
         "<motor joint='j' damping='0' armature='0' lengthrange='0 1'/>",
     );
 }
+
+/// A damping ratio belongs to servos. Of what is no servo the same parameter is a coefficient like any other.
+#[test]
+fn a_damping_ratio_from_a_class_is_a_coefficient_where_the_gain_depends_on_length() {
+    let defaults = "<intvelocity kp='3' dampratio='0.6'/>";
+    let plain = actuator(defaults, "<general joint='j'/>");
+    assert_eq!(
+        (plain.dampratio, servo(&plain)),
+        (Some(0.6), [3.0, -3.0, 0.0])
+    );
+    let affine = actuator(defaults, "<general joint='j' gaintype='affine'/>");
+    assert_eq!((affine.dampratio, servo(&affine)), (None, [3.0, -3.0, 0.6]));
+}

@@ -38,6 +38,41 @@ fn bodies_stand_in_the_order_of_the_file_parents_first() {
     assert_eq!(parents, [0, 0, 1, 0, 3]);
 }
 
+/// As MuJoCo has it: an inertial frame of which nothing is known stands off from the body as the body from its `<frame>`.
+#[test]
+fn a_body_without_mass_in_a_frame_is_bounded_where_it_is_written() {
+    let text = "<mujoco><compiler boundmass='1' boundinertia='1'/><worldbody>
+        <frame pos='1 2 3'><frame pos='4 5 6' euler='90 0 0'>
+          <body pos='0.1 0.2 0.3'><joint/></body>
+        </frame></frame></worldbody></mujoco>";
+    let model = load_str(text).expect("valid");
+    assert!(near(model.params.body_ipos[1], [0.1, 0.2, 0.3]));
+    assert!(near(model.params.body_pos[1], [5.1, 6.7, 9.2]));
+}
+
+/// MuJoCo's shortcut for bodies that only slide: their mass in every direction, where others take the mean over directions.
+#[test]
+fn a_slider_weighs_in_every_direction_unless_it_is_not_simple() {
+    let weight = |simple: &str| {
+        let text = format!(
+            "<mujoco><worldbody><body simple='{simple}'>
+               <joint type='slide'/><geom type='box' size='1 1 1' mass='2'/>
+             </body></worldbody></mujoco>"
+        );
+        load_str(&text).expect("valid").params.body_invweight0[1][0]
+    };
+    assert_eq!(weight("auto"), 0.5);
+    assert!((weight("false") - 0.5 / 3.0).abs() < 1e-15);
+}
+
+#[test]
+fn what_is_only_seen_is_left_out_of_the_world_whatever_inertia_comes_from() {
+    let text = "<mujoco><compiler inertiafromgeom='true' discardvisual='true'/><worldbody>
+        <geom size='1' contype='0' conaffinity='0'/><geom size='1'/>
+        </worldbody></mujoco>";
+    assert_eq!(load_str(text).expect("valid").geoms.len(), 1);
+}
+
 #[test]
 fn orientations_may_be_written_in_five_ways() {
     let half = FRAC_1_SQRT_2;

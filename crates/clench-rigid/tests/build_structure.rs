@@ -189,6 +189,15 @@ fn joint(b: &mut ModelBuilder) -> &mut JointSpec {
 fn geom(b: &mut ModelBuilder) -> &mut GeomSpec {
     &mut b.bodies[1].geoms[0]
 }
+/// A servo that pushes away from its target, so that no damping is critical.
+fn backwards() -> ActuatorSpec {
+    let joint = TransmissionSpec::Joint("a joint".into());
+    ActuatorSpec {
+        dampratio: Some(1.0),
+        ..ActuatorSpec::position("servo", joint, -2.0, 0.0)
+    }
+}
+
 fn motor(target: &str) -> ActuatorSpec {
     ActuatorSpec::motor("motor", TransmissionSpec::Joint(target.into()), 1.0)
 }
@@ -256,6 +265,7 @@ const CASES: &[Case] = &[
     (|b| b.actuators.push(motor("knee")), "actuator \"motor\"", "no joint \"knee\""),
     (|b| b.actuators.push(motor("")), "actuator \"motor\"", "names no joint"),
     (|b| b.actuators.push(ActuatorSpec { dampratio: Some(1.0), ..motor("a joint") }), "actuator \"motor\"", "servo"),
+    (|b| b.actuators.push(backwards()), "actuator \"servo\"", "dampratio needs a gain that is not negative"),
     (|b| b.actuators.push(ActuatorSpec { actrange: [0.0, 1.0], ..motor("a joint") }), "actuator \"motor\"", "no activation"),
     (|b| b.equalities.push(connect("a", "a")), "equality constraint \"eq\"", "itself"),
     (|b| b.equalities.push(connect("a", "c")), "equality constraint \"eq\"", "no body \"c\""),

@@ -236,12 +236,13 @@ impl ActuatorDraft {
         let mut law = self.law;
         check_actdim(element, &law)?;
         // MuJoCo keeps a damping ratio as a positive velocity coefficient of a position-like law, however written.
-        let servo = law.bias == BiasKind::Affine && law.gainprm[0] == -law.biasprm[1];
+        let servo = law.gain == GainKind::Fixed
+            && law.bias == BiasKind::Affine
+            && law.gainprm[0] == -law.biasprm[1];
         let dampratio = (servo && law.biasprm[2] > 0.0).then_some(law.biasprm[2]);
         if dampratio.is_some() {
             law.biasprm[2] = 0.0;
         }
-        let inherits = servo && law.gain == GainKind::Fixed;
         Ok(ActuatorSpec {
             name: element.string("name"),
             transmission: read_transmission(element)?,
@@ -252,7 +253,7 @@ impl ActuatorDraft {
             bias: law.bias,
             biasprm: law.biasprm,
             dampratio,
-            inheritrange: if inherits { law.inheritrange } else { 0.0 },
+            inheritrange: if servo { law.inheritrange } else { 0.0 },
             gear: self.gear,
             ctrlrange: self.ctrlrange,
             ctrllimited: self.ctrllimited,

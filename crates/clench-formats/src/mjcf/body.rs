@@ -155,16 +155,20 @@ impl<'a> BodyReader<'a> {
     }
 
     fn push_body(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        let pose = place.frame.then(Pose::read(element, self.notation)?);
+        let written = Pose::read(element, self.notation)?;
+        let pose = place.frame.then(written);
         let mut body = BodySpec {
             name: self.named(element, place)?,
             parent: place.body,
             pos: pose.pos,
             quat: pose.quat,
+            written: Some((written.pos, written.quat)),
             origin: Some(element.origin.clone()),
             ..BodySpec::default()
         };
         element.set_boolean("mocap", &mut body.mocap)?;
+        let simple = element.keyword("simple", &[("false", false), ("auto", true)])?;
+        body.never_simple = simple == Some(false);
         element.set_number("gravcomp", &mut body.gravcomp)?;
         self.charge(element, size_of::<BodySpec>(), &[&body.name])?;
         self.bodies.push(body);

@@ -134,8 +134,8 @@ pub(crate) const RULES: &[Rule] = &[
     section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
     Rule {
         element: "body",
-        read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp",
-        ignored: "user sleep simple fuse",
+        read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp simple",
+        ignored: "user sleep fuse",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
         ..NONE
@@ -389,7 +389,7 @@ pub(crate) const RULES: &[Rule] = &[
         element: "mesh",
         read: "name class file content_type builtin params vertex face refpos refquat scale inertia maxhullvert \
             material",
-        ignored: "normal texcoord smoothnormal octree_maxdepth",
+        ignored: "normal texcoord smoothnormal",
         later_children: "plugin",
         ..NONE
     },

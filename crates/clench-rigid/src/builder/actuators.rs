@@ -48,6 +48,9 @@ fn add(
     if spec.dampratio.is_some() && !is_servo(spec) {
         return Err(spec.error("dampratio needs a position servo (gainprm[0] = -biasprm[1])"));
     }
+    if spec.dampratio.is_some() && spec.gainprm[0] < 0.0 {
+        return Err(spec.error("dampratio needs a gain that is not negative"));
+    }
     let has_activation = spec.dynamics != DynamicsKind::None;
     if actlimited && !has_activation {
         return Err(spec.error("has an actrange, but no activation"));

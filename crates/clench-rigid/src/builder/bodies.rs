@@ -122,7 +122,7 @@ fn add(
     model.bodies[b].dofs.end = model.nv;
     for geom in &spec.geoms {
         match is_discarded(builder, geom) {
-            true if builder.compiler.inertiafromgeom == InertiaFromGeom::Always => {
+            true if builder.compiler.inertiafromgeom == InertiaFromGeom::Always && !is_world => {
                 let message = "cannot be discarded as visual where all inertia comes from geoms";
                 return Err(within(geom.error(message)));
             }

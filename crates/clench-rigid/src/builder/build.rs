@@ -53,7 +53,7 @@ impl ModelBuilder {
         budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
         let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
-        weights::derive(self, &springdampers, &mut pose0, &mut model)?;
+        weights::derive(self, &order, &springdampers, &mut pose0, &mut model)?;
         budget::keyframes(self, &model)?;
         keyframes::add_all(self, &mut model)?;
         Ok(model)

@@ -21,10 +21,15 @@ pub struct BodySpec {
     pub pos: Vec3<f64>,
     /// Orientation in the parent's frame.
     pub quat: Quat<f64>,
+    /// The pose that is written, where frames of the file carried it to `pos` and `quat`.
+    pub written: Option<(Vec3<f64>, Quat<f64>)>,
     /// Mass properties, if the author gave them.
     pub inertial: Option<InertialSpec>,
     /// Moved by the user, not by forces; child of the world, without joints.
     pub mocap: bool,
+    /// Where the body only slides along coordinate axes, MuJoCo scales its constraints by its mass in every direction. This one's
+    /// are scaled as those of any other body, by the mean over all directions (`simple="false"`).
+    pub never_simple: bool,
     /// Share of the body's weight that is lifted. As in MuJoCo, shares below zero count only if some body's is positive.
     pub gravcomp: f64,
     /// Joints, in the order in which they act.

@@ -55,12 +55,15 @@ pub(super) fn mass_properties(
     };
     let found = match (&counted[..], &body.inertial) {
         ([], Some(inertial)) => given(body, inertial, compiler),
-        // Nothing known: MuJoCo puts the inertial frame at the body's offset from its parent.
-        ([], None) => Ok(MassProperties {
-            pos: body.pos,
-            quat: body.quat.normalize(),
-            ..MassProperties::NONE
-        }),
+        // Nothing known: MuJoCo puts the inertial frame at the body's offset from its parent, or from its innermost <frame>.
+        ([], None) => {
+            let (pos, quat) = body.written.unwrap_or((body.pos, body.quat));
+            Ok(MassProperties {
+                pos,
+                quat: quat.normalize(),
+                ..MassProperties::NONE
+            })
+        }
         ([one], _) => Ok(*one),
         (many, _) => combine(body, many, compiler),
     };

@@ -73,12 +73,15 @@ pub(super) fn require_inertia(model: &Model, order: &[usize]) -> Result<(), Buil
 /// A mass matrix that is not positive definite.
 pub(super) fn derive(
     builder: &ModelBuilder,
+    order: &[usize],
     springdampers: &[[f64; 2]],
     pose0: &mut Positions<f64>,
     model: &mut Model,
 ) -> Result<(), BuildError> {
     let mut inverse = InverseInertia::new(model, pose0)?;
-    let sliders: Vec<bool> = (0..model.nbody()).map(|b| slides_alone(model, b)).collect();
+    let sliders: Vec<bool> = (order.iter().enumerate())
+        .map(|(b, &old)| !builder.bodies[old].never_simple && slides_alone(model, b))
+        .collect();
     dof_weights(&mut inverse, &sliders, model);
     body_weights(&mut inverse, &sliders, pose0, model);
     tendon_weights(&mut inverse, model);
