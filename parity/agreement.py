@@ -25,9 +25,9 @@ def mass_matrix(what, ours, theirs):
     assert_close(what + "mass", ours["mass"], theirs.mass, ROUNDING, np.outer(diagonal, diagonal))
 
 
-def smooth_forces(what, ours, theirs):
-    """Bias, passive and actuator forces share one scale: they come from sums that may cancel."""
-    scale = largest(theirs.qfrc_bias, theirs.qfrc_passive, theirs.qfrc_actuator)
+def smooth_forces(what, ours, theirs, floor=1e-9):
+    """Bias, passive and actuator forces share one scale, at least `floor`: they come from sums that may cancel."""
+    scale = largest(theirs.qfrc_bias, theirs.qfrc_passive, theirs.qfrc_actuator, floor=floor)
     for name in ("qfrc_bias", "qfrc_passive", "qfrc_actuator"):
         assert_close(what + name, ours[name], getattr(theirs, name), ROUNDING, scale)
     scale = oracle.acceleration_scale(theirs)
@@ -43,19 +43,24 @@ def constraint_rows(what, ours, theirs):
         return
     row_size = np.abs(theirs.jacobian).max(axis=1, initial=SMALL_ROW)
     speed = row_size * largest(theirs.qvel)
-    stiffness, damping, impedance = np.abs(theirs.efc_KBIP[:, :3].T)
-    # The reference acceleration is a sum: damping times a velocity, stiffness times a violation.
-    violation = np.abs(theirs.efc_pos - theirs.efc_margin) + SMALL_VIOLATION
-    asked = np.abs(theirs.efc_aref) + damping * speed + stiffness * impedance * violation
     assert_close(what + "pos", program.rows(ours, "pos"), theirs.efc_pos, ROUNDING, 1.0)
     assert_close(what + "jacobian", ours["jacobian"], theirs.jacobian, ROUNDING, row_size[:, None])
     assert_close(what + "vel", program.rows(ours, "vel"), theirs.efc_vel, ROUNDING, speed)
     assert_close(what + "D", program.rows(ours, "D"), theirs.efc_D, ROUNDING, theirs.efc_D)
-    assert_close(what + "aref", program.rows(ours, "aref"), theirs.efc_aref, ROUNDING, asked)
+    assert_close(what + "aref", program.rows(ours, "aref"), theirs.efc_aref, ROUNDING, asked(theirs))
 
 
-def acceleration(what, ours, theirs):
-    assert_close(f"{what}{ours['solver']} qacc", ours["qacc"], theirs.qacc, SOLVED, oracle.acceleration_scale(theirs))
+def asked(theirs):
+    """The scale of each row's reference acceleration, which is a sum: damping times a velocity, stiffness times a violation."""
+    row_size = np.abs(theirs.jacobian).max(axis=1, initial=SMALL_ROW)
+    stiffness, damping, impedance = np.abs(theirs.efc_KBIP[:, :3].T)
+    violation = np.abs(theirs.efc_pos - theirs.efc_margin) + SMALL_VIOLATION
+    speed = row_size * largest(theirs.qvel)
+    return np.abs(theirs.efc_aref) + damping * speed + stiffness * impedance * violation + 1e-9
+
+
+def acceleration(what, ours, theirs, tolerance=SOLVED):
+    assert_close(f"{what}{ours['solver']} qacc", ours["qacc"], theirs.qacc, tolerance, oracle.acceleration_scale(theirs))
 
 
 def constraint_forces(what, ours, theirs):

@@ -19,6 +19,11 @@ def load(path, cone=None):
     model = mujoco.MjModel.from_xml_path(str(path))
     if cone is not None:
         model.opt.cone = CONES[cone]
+    return exact(model)
+
+
+def exact(model):
+    """The model, changed so that Newton runs until no progress is possible, from a cold start."""
     model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
     model.opt.iterations, model.opt.tolerance = 300, 0.0
     model.opt.ls_iterations, model.opt.ls_tolerance = 200, 1e-10
@@ -36,6 +41,31 @@ def references(path, cone):
 
 def reference(model, state):
     """MuJoCo's results on one state."""
+    data = assigned(model, state)
+    mujoco.mj_forward(model, data)
+    return results(model, data, state)
+
+
+def results(model, data, state):
+    """What MuJoCo's forward dynamics of a state left in its data, which a step may have changed since."""
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    forces = [f"qfrc_{name}" for name in ("constraint", "bias", "passive", "actuator", "smooth")]
+    efc = ("type", "id", "pos", "vel", "aref", "D", "KBIP", "margin", "force")
+    return types.SimpleNamespace(
+        state=state,
+        mass=mass,
+        jacobian=jacobian(model, data),
+        sensordata=data.sensordata.copy(),
+        contacts=[contact(model, data, k) for k in range(data.ncon)],
+        qvel=np.array(state["qvel"]) if "qvel" in state else np.zeros(model.nv),
+        **{name: getattr(data, name).copy() for name in ("qacc", "qacc_smooth", *forces)},
+        **{f"efc_{name}": getattr(data, f"efc_{name}")[: data.nefc].copy() for name in efc},
+    )
+
+
+def assigned(model, state):
+    """MuJoCo's data in a state."""
     data = mujoco.MjData(model)
     for name, value in state.items():
         if name == "time":
@@ -43,20 +73,7 @@ def reference(model, state):
         else:
             target = getattr(data, name)
             target[:] = np.reshape(value, target.shape)
-    mujoco.mj_forward(model, data)
-    mass = np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, mass)
-    forces = [f"qfrc_{name}" for name in ("constraint", "bias", "passive", "actuator", "smooth")]
-    efc = ("type", "pos", "vel", "aref", "D", "KBIP", "margin", "force")
-    return types.SimpleNamespace(
-        state=state,
-        mass=mass,
-        jacobian=jacobian(model, data),
-        sensordata=data.sensordata.copy(),
-        contacts=[contact(model, data, k) for k in range(data.ncon)],
-        **{name: getattr(data, name).copy() for name in ("qvel", "qacc", "qacc_smooth", *forces)},
-        **{f"efc_{name}": getattr(data, f"efc_{name}")[: data.nefc].copy() for name in efc},
-    )
+    return data
 
 
 def jacobian(model, data):
@@ -65,7 +82,7 @@ def jacobian(model, data):
     if data.nefc and mujoco.mj_isSparse(model):
         mujoco.mju_sparse2dense(dense, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
     elif data.nefc:
-        dense[:] = data.efc_J.reshape(data.nefc, model.nv)
+        dense[:] = data.efc_J.ravel()[: dense.size].reshape(dense.shape)
     return dense
 
 

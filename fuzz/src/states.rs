@@ -1,7 +1,7 @@
 //! JSON states, as `clench forward` reads them.
 
 use crate::trial::{check_result, machine};
-use clench_cli::protocol::StateLine;
+use clench_cli::protocol::{StateLine, forward};
 use std::sync::LazyLock;
 
 /// Reads a state and computes with it.
@@ -14,7 +14,10 @@ pub fn states(data: &[u8]) -> bool {
     };
     static MACHINE: LazyLock<std::sync::Arc<clench::Model>> = LazyLock::new(machine);
     let mut sim = clench::Sim::<f64>::new(MACHINE.clone()).expect("our own model");
-    let accepted = state.forward(&mut sim).is_ok();
+    let done = state
+        .apply(&mut sim)
+        .and_then(|contacts| forward(&mut sim, contacts.as_deref()));
+    let accepted = done.is_ok();
     if accepted {
         check_result(&sim);
     }

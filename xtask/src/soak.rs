@@ -1,6 +1,8 @@
 //! `cargo xtask soak`: what takes long and looks for rare failures.
 
-use crate::run::{cargo, run};
+use crate::python;
+use crate::run::{Profile, cargo, command, run};
+use crate::stages::build;
 
 /// The long form of a test.
 struct Soak {
@@ -44,6 +46,9 @@ const SOAKS: [Soak; 5] = [
     },
 ];
 
+/// The soak that is a script: random models beside MuJoCo.
+const MODELS: &str = "models";
+
 /// Runs all soaks. `args` may choose one, by `--only`, and hold a seed.
 ///
 /// # Errors
@@ -63,9 +68,13 @@ pub fn soak(args: &[String]) -> Result<(), String> {
     let chosen: Vec<&Soak> = (SOAKS.iter())
         .filter(|soak| only.is_none_or(|only| only == soak.name))
         .collect();
-    if chosen.is_empty() {
+    let models = only.is_none_or(|only| only == MODELS);
+    if chosen.is_empty() && !models {
         let names = SOAKS.map(|soak| soak.name).join(", ");
-        return Err(format!("soak knows --only with one of {names}"));
+        return Err(format!("soak knows --only with one of {MODELS}, {names}"));
+    }
+    if models {
+        soak_models(seed)?;
     }
     for soak in chosen {
         let mut test = cargo(&["test", "--release", "--package", soak.package]);
@@ -77,4 +86,14 @@ pub fn soak(args: &[String]) -> Result<(), String> {
         run(test)?;
     }
     Ok(())
+}
+
+/// Compares many random models with MuJoCo.
+fn soak_models(seed: u64) -> Result<(), String> {
+    build()?;
+    python::prepare()?;
+    let mut script = command(python::interpreter(), &["parity/soak_models.py"]);
+    script.arg(seed.to_string());
+    script.env("CLENCH", Profile::Release.program("clench"));
+    run(script)
 }

@@ -140,7 +140,7 @@ fn doc() -> Result<(), String> {
     run(doc)
 }
 
-fn build() -> Result<(), String> {
+pub(crate) fn build() -> Result<(), String> {
     compile(Profile::Release, "clench-cli", ["--bin", "clench"])
 }
 

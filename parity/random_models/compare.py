@@ -1,0 +1,300 @@
+"""Both engines on one model: what they say of a few states, and where each state goes in a step.
+
+MuJoCo's contacts are fed in, since points of contact may differ and both be right; every step starts from MuJoCo's state, so that a
+difference is seen where it arises. Where both find the same contacts by themselves, everything must agree too; where they find others,
+at least what follows from the pair of geoms.
+"""
+
+import dataclasses
+import json
+import pathlib
+import re
+import tempfile
+
+import mujoco
+import numpy as np
+
+import agreement
+import oracle
+import program
+from compare import assert_close, largest, looser
+from random_models.values import Draw
+from test_own_contacts import CLOSED_FORM, SAME_POINT
+
+STEPS = 3
+ITERATIONS = 60  # of MuJoCo's solver, which goes on after it has converged
+FASTEST = 1.0  # radians or metres a step
+OF_MESHES = 1e4  # times what is allowed elsewhere
+STIFFEST = 1e12  # D of bodies that have no inverse inertia in some direction: their centre of mass is on the axis
+IDLE = 1e-14  # metres: a lever that is nothing but rounding
+NEXT = 1e-8  # of what a step changes
+FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
+CLEARLY = 1e-6  # metres: whether a contact exists is certain
+FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
+
+
+class Refused(Exception):
+    """MuJoCo does not take the model, or cannot step it."""
+
+
+@dataclasses.dataclass
+class Difference:
+    """Where the engines differ: a word for the kind, and the numbers."""
+
+    kind: str
+    message: str
+    lines: str = ""
+
+    def __str__(self):
+        return f"{self.kind}: {self.message}"
+
+
+@dataclasses.dataclass
+class Question:
+    """A state for Clench, and what its answer must agree with."""
+
+    what: str
+    state: dict
+    theirs: object
+    after: dict | None = None  # the state one step later
+    own: bool = False  # contacts are found, not fed
+
+    def later(self, model):
+        """MuJoCo's results on the state one step later."""
+        state = {name: value for name, value in self.state.items() if name != "contacts"}
+        return oracle.reference(model, {**state, **self.after})
+
+
+def compiled(text):
+    """MuJoCo's model of a text, made to solve as exactly as it can."""
+    try:
+        model = oracle.exact(mujoco.MjModel.from_xml_string(text))
+    except ValueError as error:
+        raise Refused(str(error)) from None
+    model.opt.iterations = ITERATIONS
+    return model
+
+
+def examine(text, seed):
+    """The first difference between the engines on a model, on states that the seed decides; None if there is none."""
+    model = compiled(text)
+    questions = list(ask(model, Draw(seed)))
+    with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
+        file.write(text)
+        file.flush()
+        lines = "".join(json.dumps(q.state) + "\n" for q in questions)
+        done = program.run("forward", file.name, *FLAGS, stdin=lines)
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    for question, ours in zip(questions, answers):
+        try:
+            judge(model, question, ours)
+        except AssertionError as error:
+            if model.nmesh and agrees(model, question, ours):
+                continue
+            message = str(error).splitlines()[0]
+            return Difference(kind_of(message.removeprefix(question.what)), message, json.dumps(question.state))
+    if done.returncode != 0:
+        failing = questions[len(answers)]
+        message = done.stderr.replace(file.name, "model.xml").strip().splitlines()[-1]
+        return Difference(kind_of(message, "refused"), message, json.dumps(failing.state))
+    return None
+
+
+def agrees(model, question, ours):
+    """Whether an answer is right as far as meshes let one know: their numbers have 24 bits."""
+    try:
+        with looser(OF_MESHES):
+            judge(model, question, ours)
+    except AssertionError:
+        return False
+    return True
+
+
+def kind_of(message, prefix=""):
+    """The words of a message up to its first number, as what a difference is known by while its model is cut down."""
+    words, message = [], re.sub(r"\{.*?\}|\"[^\"]*\"|error: model.xml:\d*:?", "", message)
+    for word in message.replace("[", " [").split():
+        if any(c.isdigit() for c in word) or len(words) == 6:
+            break
+        words.append(word)
+    return " ".join([prefix, *words]).strip()
+
+
+def ask(model, draw):
+    """The states: the initial one, and some in a row from a random one. Where contacts are found by ourselves too, only if there are any."""
+    rng = np.random.default_rng(draw.getrandbits(32))
+    free = without_contacts(model)
+    initial = mujoco.MjData(free)
+    theirs, after = stepped(free, {"qpos": initial.qpos.tolist(), "qvel": initial.qvel.tolist()})
+    if after is None or not np.isfinite(theirs.qfrc_actuator).all():
+        raise Refused("MuJoCo cannot step it")
+    theirs = oracle.reference(free, {})
+    yield Question("initial: ", {"contacts": []}, theirs)
+    state = random_state(model, draw, rng)
+    stages = model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
+    for step in range(STEPS):
+        what = f"step {step}: "
+        theirs, after = stepped(model, state)
+        if after is None:
+            return
+        if not stages:
+            yield Question(what, oracle.fed(state, theirs), theirs, after)
+        else:  # the later stages of RK4 find contacts of their own
+            theirs = oracle.reference(model, state)
+            yield Question(what, oracle.fed(state, theirs), theirs)
+            free_after = stepped(free, state)[1]
+            if free_after is not None:
+                yield Question(what + "no contacts: ", {**state, "contacts": []}, oracle.reference(free, state), free_after)
+        if theirs.contacts:
+            yield Question(what + "own contacts: ", state, theirs, own=True)
+        state = {**state, **after, "ctrl": controls(model, draw, rng)}
+
+
+def without_contacts(model):
+    free = mujoco.MjModel.__copy__(model)
+    free.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+    return free
+
+
+def stepped(model, state):
+    """MuJoCo's results on a state and the state one step later, None where it complains or something turns too fast to be integrated."""
+    data = oracle.assigned(model, state)
+    mujoco.mj_step(model, data)
+    if any(w.number for w in data.warning) or model.opt.timestep * largest(data.qvel, state["qvel"]) > FASTEST:
+        return None, None
+    after = {"time": data.time, **{name: getattr(data, name).tolist() for name in ("qpos", "qvel", "act")}}
+    return oracle.results(model, data, state), after
+
+
+def controls(model, draw, rng):
+    return (draw.choice((0, 1, 3)) * rng.standard_normal(model.nu)).tolist()
+
+
+def random_state(model, draw, rng):
+    """A state about the initial one or a keyframe, near or far, slow or fast, pulled or not."""
+    data = mujoco.MjData(model)
+    if model.nkey and draw.chance(0.5):
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_integratePos(model, data.qpos, draw.choice((0, 0.03, 0.3)) * rng.standard_normal(model.nv), 1.0)
+    mujoco.mj_forward(model, data)
+    inertia = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, inertia)
+    pulled = draw.choice((0, 1, 10))
+    xfrc_applied = pulled * model.body_mass[:, None] * rng.standard_normal((model.nbody, 6)) * [1, 1, 1, 0.1, 0.1, 0.1]
+    mocap_quat = data.mocap_quat + 0.1 * rng.standard_normal(data.mocap_quat.shape)
+    mocap_quat /= np.linalg.norm(mocap_quat, axis=1, keepdims=True)
+    state = {
+        "time": data.time,
+        "qpos": data.qpos,
+        "qvel": draw.choice((0, 0.1, 1, 5)) * rng.standard_normal(model.nv),
+        "act": draw.choice((0, 1)) * rng.standard_normal(model.na),
+        "ctrl": controls(model, draw, rng),
+        "qfrc_applied": pulled * np.diag(inertia) * rng.standard_normal(model.nv),
+        "xfrc_applied": xfrc_applied,
+        "mocap_pos": data.mocap_pos + 0.05 * rng.standard_normal(data.mocap_pos.shape),
+        "mocap_quat": mocap_quat,
+        "eq_active": data.eq_active.astype(bool) ^ (rng.random(model.neq) < 0.2),
+    }
+    return {name: np.asarray(value).tolist() for name, value in state.items()}
+
+
+def judge(model, question, ours):
+    """Raises an AssertionError where an answer is not what it should be."""
+    what, theirs = question.what, question.theirs
+    if model.nv == 0:
+        return
+    agreement.mass_matrix(what, ours, theirs)
+    agreement.smooth_forces(what, ours, theirs, oracle.SLOW * np.diag(theirs.mass).max())
+    if question.own and not same_contacts(model, what, ours, theirs):
+        return
+    if not question.own:
+        drop_idle_rows(ours, theirs)
+        agreement.constraint_rows(what, ours, theirs)
+    if oracle.distance_to_optimum(theirs) > agreement.SOLVED / 10 or largest(theirs.efc_D) > STIFFEST:
+        return  # MuJoCo has not converged, or rounding decides the forces of rows that are as good as rigid
+    agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
+    if not question.own:
+        forces(what, ours, theirs)
+    if question.after is not None:
+        next_state(model, what, question, ours["next"])
+
+
+def forces(what, ours, theirs):
+    """As `agreement.constraint_forces`, but a row's force is only known as well as its reference acceleration is, times D."""
+    slow = oracle.SLOW * np.diag(theirs.mass)
+    scale = largest(theirs.qfrc_constraint, theirs.qfrc_smooth, slow)
+    assert_close(what + "qfrc_constraint", ours["qfrc_constraint"], theirs.qfrc_constraint, agreement.SOLVED, scale)
+    scale = largest(theirs.efc_force, slow, floor=1e-3) + 1e-3 * theirs.efc_D * agreement.asked(theirs)
+    assert_close(what + "force", program.rows(ours, "force"), theirs.efc_force, 10 * agreement.SOLVED, scale)
+
+
+def drop_idle_rows(ours, theirs):
+    """Takes out equalities that nothing can act on, such as a weld of a body to itself: rounding decides whether they have rows."""
+    sources = [(row["kind"], row["source"]) for row in ours["constraints"]]
+    kept = acted_on(sources, ours["jacobian"], [kind == "equality" for kind, _ in sources])
+    for name in ("constraints", "jacobian"):
+        ours[name] = [ours[name][k] for k in kept]
+    equality = theirs.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+    kept = acted_on(list(zip(theirs.efc_type, theirs.efc_id)), theirs.jacobian, equality)
+    for name in ("jacobian", *(name for name in vars(theirs) if name.startswith("efc_"))):
+        setattr(theirs, name, getattr(theirs, name)[kept])
+
+
+def acted_on(sources, jacobian, equality):
+    """The rows that are no equality, or belong to one that has a lever."""
+    moving = {source for source, row in zip(sources, jacobian) if np.abs(row).max() > IDLE}
+    return [k for k, source in enumerate(sources) if not equality[k] or source in moving]
+
+
+def next_state(model, what, question, ours):
+    """Velocities to a share of what the accelerations involved change them by, positions of what they change in a step."""
+    step, theirs = model.opt.timestep, question.theirs
+    changed = largest(np.subtract(question.after["qvel"], theirs.qvel))
+    stages = (theirs, question.later(model)) if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4 else (theirs,)
+    accelerations = max(map(oracle.acceleration_scale, stages))
+    speed = max(changed, step * accelerations) + 1e-8 * largest(theirs.qvel)
+    assert_close(what + "next qvel", ours["qvel"], question.after["qvel"], NEXT, speed)
+    travel = step * (speed + largest(theirs.qvel))
+    assert_close(what + "next qpos", ours["qpos"], question.after["qpos"], NEXT, travel + 1e-6)
+    assert_close(what + "next act", ours["act"], question.after["act"], NEXT, 1.0)
+    assert_close(what + "next time", ours["time"], question.after["time"], NEXT, step)
+
+
+def same_contacts(model, what, ours, theirs):
+    """Whether both found the same points; what they make of the same pair of geoms must agree in any case."""
+    left = {}
+    for contact in ours["contacts"]:
+        left.setdefault(tuple(contact["geom"]), []).append(contact)
+    same = len(ours["contacts"]) == len(theirs.contacts)
+    for contact in theirs.contacts:
+        pair = tuple(contact["geom"])
+        found = left.get(pair, [])
+        closed = tuple(sorted(int(model.geom_type[g]) for g in pair)) in CLOSED_FORM
+        if not found:
+            same = False
+            # How far apart shapes are within a margin MuJoCo does not always measure the shortest way.
+            bound = min(0, contact["includemargin"]) - CLEARLY
+            assert not closed or contact["dist"] > bound, f"{what}no contact of {names(model, pair)}"
+            continue
+        # Of several pairs of the same two geoms, any.
+        fields = ("dim", "includemargin", "friction")
+        mixed = min(found, key=lambda c: sum(np.abs(np.subtract(c[field], contact[field])).sum() for field in fields))
+        for field in fields:
+            assert_close(f"{what}contact {field}", np.ravel(mixed[field]), np.ravel(contact[field]), 1e-9, 1.0)
+        near = lambda c: np.abs(np.subtract(c["pos"], contact["pos"])).max() < SAME_POINT and abs(c["dist"] - contact["dist"]) < SAME_POINT
+        same = same and any(near(c) and np.abs(np.subtract(c["frame"], contact["frame"])).max() < SAME_POINT for c in found)
+    return same
+
+
+def names(model, pair):
+    kinds = (mujoco.mjtGeom(model.geom_type[g]).name.removeprefix("mjGEOM_").lower() for g in pair)
+    return " and ".join(f"{kind} {model.geom(g).name or g}" for kind, g in zip(kinds, pair))
+
+
+def keep(folder, name, text, difference):
+    """Writes a model with its difference, and the state that shows it, into a folder."""
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    comment = difference.message.replace("--", "- -")
+    (folder / f"{name}.xml").write_text(f"<!-- {comment} -->\n{text}\n")
+    (folder / f"{name}.json").write_text(difference.lines + "\n")

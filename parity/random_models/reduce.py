@@ -1,0 +1,91 @@
+"""Cuts a model down to what a difference needs: elements go, what holds others is unwrapped, attributes go, until nothing more can."""
+
+import copy
+
+from random_models.compare import Refused, examine
+from random_models.generate import written
+
+MOST_TRIALS = 600
+UNWRAPPED = ("frame", "replicate", "body", "default")
+
+
+def reduced(root, seed, difference):
+    """A smaller model that differs in the same way, and how."""
+    root, trials = copy.deepcopy(root), 0
+
+    def still(candidate):
+        nonlocal trials, difference
+        trials += 1
+        try:
+            found = examine(written(candidate), seed)
+        except Refused:
+            return False
+        if found is None or found.kind != difference.kind:
+            return False
+        difference = found
+        return True
+
+    progress = True
+    while progress and trials < MOST_TRIALS:
+        progress = False
+        for change in changes(root):
+            if trials >= MOST_TRIALS:
+                break
+            undo = change()
+            if undo is None:
+                continue
+            if still(root):
+                progress = True
+            else:
+                undo()
+    return root, difference
+
+
+def changes(root):
+    """What can be tried, large cuts first; each change gives what undoes it, or None where it no longer applies."""
+    pairs = [(parent, child) for parent in root.iter() for child in parent]
+    for parent, child in pairs:
+        yield lambda parent=parent, child=child: remove(parent, child)
+    for parent, child in pairs:
+        if child.tag in UNWRAPPED:
+            yield lambda parent=parent, child=child: unwrap(parent, child)
+    for element in list(root.iter()):
+        for name in list(element.attrib):
+            yield lambda element=element, name=name: drop(element, name)
+
+
+def remove(parent, child):
+    if child not in list(parent):
+        return None
+    position = list(parent).index(child)
+    parent.remove(child)
+    return lambda: parent.insert(position, child)
+
+
+def unwrap(parent, child):
+    if child not in list(parent):
+        return None
+    position, inner = list(parent).index(child), list(child)
+    parent.remove(child)
+    for offset, grandchild in enumerate(inner):
+        parent.insert(position + offset, grandchild)
+
+    def undo():
+        for grandchild in inner:
+            parent.remove(grandchild)
+        parent.insert(position, child)
+
+    return undo
+
+
+def drop(element, name):
+    if name not in element.attrib:
+        return None
+    before = dict(element.attrib)
+    del element.attrib[name]
+
+    def undo():
+        element.attrib.clear()
+        element.attrib.update(before)
+
+    return undo

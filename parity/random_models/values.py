@@ -1,0 +1,327 @@
+"""Values of attributes: for each element of MJCF, each attribute that can be given without looking at other elements.
+
+A value is a function of a `Draw`, which holds the random numbers and the notation of the file. Values are mostly ordinary and
+sometimes at the edge of what MuJoCo accepts.
+"""
+
+import math
+import random
+
+
+class Draw(random.Random):
+    """Random numbers, words of MJCF made of them, and how the file writes angles and limits."""
+
+    degrees = True
+    autolimits = True
+
+    def chance(self, probability):
+        return self.random() < probability
+
+    def number(self, low, high):
+        return self.uniform(low, high)
+
+    def scale(self, low, high):
+        """A number between two positive ones, as likely near one as near the other on a logarithmic scale."""
+        return math.exp(self.uniform(math.log(low), math.log(high)))
+
+    def angle(self, radians):
+        return math.degrees(radians) if self.degrees else radians
+
+
+def text(*numbers):
+    return " ".join(f"{x:.4g}" if isinstance(x, float) else str(x) for x in numbers)
+
+
+def vector(low, high, count=3):
+    return lambda draw: text(*(draw.number(low, high) for _ in range(count)))
+
+
+def number(low, high):
+    return vector(low, high, 1)
+
+
+def scale(low, high):
+    return lambda draw: text(draw.scale(low, high))
+
+
+def one_of(*words):
+    return lambda draw: str(draw.choice(words))
+
+
+def usually(value, *rare):
+    """The value in most cases, or one of the rare words."""
+    return lambda draw: draw.choice(rare) if draw.chance(0.1) else value(draw)
+
+
+def up_to(most, low, high):
+    """One to `most` numbers."""
+    return lambda draw: text(*(draw.number(low, high) for _ in range(draw.randint(1, most))))
+
+
+def solref(draw):
+    kind = draw.random()
+    if kind < 0.2:
+        return text(-draw.scale(100, 5000), -draw.scale(5, 200))
+    if kind < 0.3:
+        return text(draw.scale(0.005, 0.2))
+    if kind < 0.33:
+        return draw.choice(("0.02 -1", "-200 0", "-0.5 0.5", "0.0001 1"))
+    return text(draw.scale(0.004, 0.2), draw.scale(0.3, 2))
+
+
+def solimp(draw):
+    if draw.chance(0.05):
+        return draw.choice(("0 1 0.01", "0.9 0.5 0.01 0.5 2", "1 1 0.001 0.5 1", "0.9 0.95 0 0.5 2", "0.5 0.9 0.1 0 3", "0.9 0.95 0.01 0.5 0.3"))
+    low = draw.number(0.3, 0.95)
+    numbers = (low, draw.number(low, 0.995), draw.scale(0.0005, 0.1), draw.number(0.1, 0.9), draw.number(1, 6))
+    return text(*numbers[: draw.randint(1, 5)])
+
+
+def quaternion(draw):
+    return text(*(draw.gauss(0, 1) for _ in range(4)))
+
+
+def axis_angle(draw):
+    return text(*(draw.gauss(0, 1) for _ in range(3)), draw.angle(draw.number(-3, 3)))
+
+
+def euler(draw):
+    return text(*(draw.angle(draw.number(-3, 3)) for _ in range(3)))
+
+
+def gaussians(count):
+    return lambda draw: text(*(draw.gauss(0, 1) for _ in range(count)))
+
+
+def friction(draw):
+    numbers = (draw.scale(0.1, 2), draw.scale(0.001, 0.1), draw.scale(0.0001, 0.02))
+    return text(*numbers[: draw.randint(1, 3)])
+
+
+def pair_friction(draw):
+    numbers = [draw.scale(0.1, 2) for _ in range(2)] + [draw.scale(0.001, 0.1)] + [draw.scale(0.0001, 0.02) for _ in range(2)]
+    return text(*numbers[: draw.randint(1, 5)])
+
+
+def interval(low, high):
+    """Two ends in order, with zero most often between them."""
+
+    def value(draw):
+        ends = sorted((draw.number(low, 0), draw.number(0, high)))
+        if draw.chance(0.1):
+            ends = sorted((draw.number(low, high), draw.number(low, high)))
+        return text(ends[0], ends[1] + 1e-3)
+
+    return value
+
+
+SWITCH = one_of("disable", "enable")
+BOOLEAN = one_of("false", "true")
+
+POSE = {
+    "pos": vector(-0.4, 0.4),
+    "quat": quaternion,
+    "axisangle": axis_angle,
+    "euler": euler,
+    "xyaxes": gaussians(6),
+    "zaxis": gaussians(3),
+}
+ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
+TENDON = {
+    "margin": number(0, 0.1),
+    "stiffness": scale(1, 100),
+    "damping": scale(0.01, 5),
+    "frictionloss": scale(0.01, 2),
+    "springlength": usually(lambda draw: text(*sorted(draw.number(-0.3, 0.3) for _ in range(draw.randint(1, 2)))), "-1", "-1 -1"),
+    "solreflimit": solref,
+    "solimplimit": solimp,
+    "solreffriction": solref,
+    "solimpfriction": solimp,
+}
+EQUALITY = {"active": one_of("true", "true", "false"), "solref": solref, "solimp": solimp}
+POLYCOEF = lambda draw: text(*(draw.number(-0.5, 0.5) for _ in range(draw.randint(1, 5))))
+ACTUATOR = {"group": one_of(0, 0, 1, 2, 3, 30), "gear": lambda draw: text(*gear(draw))}
+SERVO_GAIN = {"kp": usually(scale(0.1, 100), "0"), "kv": usually(scale(0.01, 5), "0"), "dampratio": usually(scale(0.1, 2), "0")}
+
+
+def gear(draw):
+    """One number for what has one axis; ball and free joints read three and six."""
+    numbers = [draw.choice((-1, 1)) * draw.scale(0.1, 10) for _ in range(draw.choice((1, 1, 3, 6)))]
+    return [0.0 if k > 0 and draw.chance(0.3) else x for k, x in enumerate(numbers)]
+
+
+def euler_sequence(draw):
+    return "".join(draw.choice("xyzXYZ") for _ in range(3))
+
+
+VALUES = {
+    "compiler": {
+        "angle": None,  # decided before anything is drawn, as is autolimits
+        "autolimits": None,
+        "eulerseq": euler_sequence,
+        "coordinate": one_of("local"),
+        "boundmass": scale(0.001, 1),
+        "boundinertia": scale(1e-6, 0.01),
+        "settotalmass": usually(scale(0.5, 50), "-1", "0"),
+        "balanceinertia": BOOLEAN,
+        "inertiafromgeom": one_of("auto", "auto", "true", "false"),
+        "inertiagrouprange": one_of("0 5", "0 2", "1 3"),
+        "alignfree": BOOLEAN,
+        "strippath": one_of("false", "true"),
+        "fitaabb": BOOLEAN,
+        "discardvisual": BOOLEAN,
+    },
+    "option": {
+        "timestep": scale(0.0005, 0.01),
+        "gravity": usually(vector(-10, 10), "0 0 0"),
+        "wind": vector(-3, 3),
+        "magnetic": vector(-1, 1),
+        "density": scale(0.1, 1500),
+        "viscosity": scale(1e-4, 2),
+        "integrator": one_of("Euler", "RK4", "implicitfast"),
+        "cone": one_of("pyramidal", "elliptic"),
+        "jacobian": one_of("dense", "sparse", "auto"),
+        "solver": one_of("Newton", "CG", "PGS"),
+        "impratio": scale(0.2, 20),
+        "tolerance": scale(1e-12, 1e-4),
+        "ls_tolerance": scale(1e-4, 0.1),
+        "noslip_tolerance": scale(1e-9, 1e-4),
+        "iterations": one_of(0, 1, 20, 200),
+        "ls_iterations": one_of(0, 1, 20, 100),
+        "noslip_iterations": one_of(0, 1, 5),
+        "o_margin": number(0, 0.05),
+        "o_solref": solref,
+        "o_solimp": solimp,
+        "o_friction": pair_friction,
+        "actuatorgroupdisable": one_of("0", "1 2", "3", "30 2"),
+    },
+    "flag": {
+        name: SWITCH
+        for name in (
+            "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart filterparent actuation "
+            "refsafe island eulerdamp multiccd autoreset sensor override"
+        ).split()
+    },
+    "body": {**POSE, "simple": one_of("false", "auto"), "gravcomp": usually(number(0, 1.5), "1", "-0.5")},
+    "frame": POSE,
+    "replicate": {
+        "count": one_of(1, 2, 3),
+        "offset": vector(-0.3, 0.3),
+        "euler": lambda draw: text(*(draw.angle(draw.number(-1, 1)) for _ in range(3))),
+        "sep": one_of("-", "_r"),
+    },
+    "inertial": {},
+    "joint": {
+        "group": one_of(0, 1, 4),
+        "pos": vector(-0.1, 0.1),
+        "axis": gaussians(3),
+        "springdamper": lambda draw: text(draw.scale(0.05, 2), draw.scale(0.1, 2)),
+        "solreflimit": solref,
+        "solimplimit": solimp,
+        "solreffriction": solref,
+        "solimpfriction": solimp,
+        "stiffness": scale(0.1, 100),
+        "actuatorgravcomp": BOOLEAN,
+        "margin": number(0, 0.2),
+        "ref": lambda draw: text(draw.angle(draw.number(-0.5, 0.5))),
+        "springref": lambda draw: text(draw.angle(draw.number(-0.5, 0.5))),
+        "armature": scale(1e-4, 1),
+        "damping": scale(0.01, 10),
+        "frictionloss": scale(0.01, 3),
+    },
+    "freejoint": {"group": one_of(0, 1), "align": one_of("true", "false", "auto")},
+    "geom": {
+        **{name: value for name, value in POSE.items()},
+        "contype": one_of(0, 1, 1, 1, 2, 3),
+        "conaffinity": one_of(0, 1, 1, 1, 2, 3),
+        "condim": one_of(1, 3, 3, 4, 6),
+        "group": one_of(0, 0, 1, 2, 3, 4, 5),
+        "priority": one_of(0, 0, 0, 1, 2),
+        "friction": friction,
+        "mass": scale(0.05, 5),
+        "density": usually(scale(50, 5000), "0"),
+        "shellinertia": BOOLEAN,
+        "solmix": usually(scale(0.01, 10), "0", "-1"),
+        "solref": solref,
+        "solimp": solimp,
+        "margin": number(0, 0.05),
+        "gap": number(0, 0.03),
+        "rgba": lambda draw: text(*(draw.random() for _ in range(3)), draw.choice((0, 1))),
+    },
+    "site": {**POSE, "group": one_of(0, 3), "size": vector(0.01, 0.1)},
+    "pair": {
+        "condim": one_of(1, 3, 4, 6),
+        "friction": pair_friction,
+        "solref": solref,
+        "solreffriction": solref,
+        "solimp": solimp,
+        "margin": number(0, 0.05),
+        "gap": number(0, 0.03),
+    },
+    "exclude": {},
+    "connect": EQUALITY,
+    "weld": {**EQUALITY, "torquescale": usually(scale(0.1, 10), "0")},
+    "equality/joint": {**EQUALITY, "polycoef": POLYCOEF},
+    "equality/tendon": {**EQUALITY, "polycoef": POLYCOEF},
+    "default/equality": EQUALITY,
+    "fixed": TENDON,
+    "fixed/joint": {"coef": number(-2, 2)},
+    "default/tendon": TENDON,
+    "general": {
+        **ACTUATOR,
+        "actearly": BOOLEAN,
+        "dyntype": one_of("none", "integrator", "filter", "filterexact"),
+        "dynprm": usually(lambda draw: text(draw.scale(0.003, 0.3), *([0.5] * draw.randint(0, 2))), "0"),
+        "gaintype": one_of("fixed", "affine"),
+        "gainprm": up_to(3, -5, 5),
+        "biastype": one_of("none", "affine"),
+        "biasprm": lambda draw: text(draw.number(-1, 1), -draw.scale(0.1, 50), *([-draw.scale(0.01, 3)] * draw.randint(0, 1))),
+    },
+    "motor": ACTUATOR,
+    "position": {**ACTUATOR, **SERVO_GAIN, "timeconst": usually(scale(0.003, 0.3), "0")},
+    "velocity": {**ACTUATOR, "kv": usually(scale(0.01, 10), "0")},
+    "intvelocity": {**ACTUATOR, **SERVO_GAIN},
+    "damper": {**ACTUATOR, "kv": usually(scale(0.01, 10), "0")},
+    "cylinder": {
+        **ACTUATOR,
+        "timeconst": scale(0.003, 0.3),
+        "area": scale(0.1, 5),
+        "diameter": scale(0.3, 2),
+        "bias": vector(-2, 0),
+    },
+    "key": {},
+    "material": {"rgba": lambda draw: text(*(draw.random() for _ in range(3)), draw.choice((0, 1)))},
+    "mesh": {
+        "refpos": vector(-0.1, 0.1),
+        "refquat": quaternion,
+        "inertia": one_of("convex", "exact", "legacy", "shell"),
+        "maxhullvert": one_of(-1, 500),  # which vertices a smaller bound leaves is each engine's own choice
+    },
+    "default/mesh": {
+        "inertia": one_of("convex", "exact", "legacy", "shell"),
+        "maxhullvert": one_of(-1, 500),
+        "scale": lambda draw: text(*(draw.choice((1, 1, -1)) * draw.scale(0.05, 0.2) for _ in range(3))),
+    },
+    "hfield": {},
+}
+
+# Ranges with the attribute that says whether they count.
+RANGES = {
+    "joint": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
+    "fixed": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
+    "default/tendon": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
+    "general": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited", "actrange": "actlimited"},
+    "motor": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
+    "position": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
+    "velocity": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
+    "intvelocity": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited", "actrange": "actlimited"},
+    "damper": {"forcerange": "forcelimited"},
+    "cylinder": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
+}
+
+# Attributes of which an element may have only one.
+ONE_OF = {
+    "position": [("kv", "dampratio")],
+    "intvelocity": [("kv", "dampratio")],
+    **{element: [ORIENTATIONS] for element in ("body", "frame", "geom", "site", "inertial")},
+}

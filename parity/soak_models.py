@@ -1,0 +1,22 @@
+"""Compares random models for as long as it is let: `python parity/soak_models.py [SEED] [COUNT]`.
+
+Seeds from SEED · 1,000,000 on; each model that differs is cut down, printed, and kept in parity/differences.
+"""
+
+import sys
+
+from random_models.search import FOLDER, search
+
+APART = 1_000_000
+
+
+def main(seed=1, count=20_000):
+    shown = lambda look: print(f"seed {look.seed}: {look.difference}", flush=True)
+    findings = search(range(seed * APART, seed * APART + count), report=shown)
+    print(findings)
+    if findings.differences:
+        sys.exit(f"the models that differ are in {FOLDER}")
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))

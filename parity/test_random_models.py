@@ -1,0 +1,33 @@
+"""A thousand random models that use all of MJCF that Clench reads: what both engines compute of each on a few states agrees.
+
+`soak_models.py` does the same with as many seeds as one has time for; its models and these differ in seeds alone.
+"""
+
+import collections
+
+import pytest
+
+from random_models import rules, search
+
+SEEDS = range(1, 1201)  # of these MuJoCo compiles a thousand
+FEWEST = 1000
+
+
+@pytest.fixture(scope="module")
+def findings():
+    return search.search(SEEDS)
+
+
+def test_the_engines_agree(findings):
+    assert not findings.differences, f"{findings}\nThe models are in {search.FOLDER}."
+
+
+def test_enough_models_are_compared(findings):
+    assert findings.compared >= FEWEST
+
+
+def test_every_attribute_that_is_read_occurs(findings):
+    missing = [
+        (element, name) for element, rule in rules.rules().items() for name in rule["read"] if not findings.used[element, name]
+    ]
+    assert not missing, f"random models never have {missing}: see random_models/values.py"
