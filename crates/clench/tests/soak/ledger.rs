@@ -145,6 +145,7 @@ impl<S: Precision> Ledger<S> {
             Fault::Diverged { .. } => self.diverged += 1,
             Fault::Singular { .. } => self.singular += 1,
             Fault::ContactOverflow { .. } => self.overflows += 1,
+            Fault::OverBudget { .. } => panic!("environment {env}: {fault}"),
         }
     }
 
