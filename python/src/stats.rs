@@ -21,7 +21,7 @@ pub(crate) struct SolverStats {
     /// float : The duality gap, an upper bound of cost minus minimum, in the units of the cost.
     gap: f64,
     /// int : How often a constraint changed its piece (a contact began to slip, a limit let go), in all iterations.
-    piece_changes: usize,
+    active_set_changes: usize,
     /// int : Evaluations of line searches.
     ls_evaluations: usize,
     /// int : Hessians factored from scratch.
@@ -54,7 +54,7 @@ impl From<LaneStats> for SolverStats {
             gradient: stats.gradient,
             improvement: stats.improvement,
             gap: stats.gap,
-            piece_changes: stats.piece_changes,
+            active_set_changes: stats.active_set_changes,
             ls_evaluations: stats.ls_evaluations,
             factorizations: stats.factorizations,
             updates: stats.updates,

@@ -211,12 +211,12 @@ fn active_blocks<T: Real>(
 }
 
 /// A row to show: a row of the block, or an edge of a pyramid, y₀ ± μ_j y_j.
-struct Edge {
+struct PyramidEdge {
     base: usize,
     added: Option<(usize, f64)>,
 }
 
-impl Edge {
+impl PyramidEdge {
     fn combine<T: Real>(&self, values: &[T], lane: usize) -> f64 {
         let number = |i: usize| values[i].lane(lane).to_f64();
         match self.added {
@@ -226,7 +226,7 @@ impl Edge {
     }
 }
 
-fn edges<T: Real>(block: &Block<'_, T>, lane: usize) -> impl Iterator<Item = Edge> {
+fn edges<T: Real>(block: &Block<'_, T>, lane: usize) -> impl Iterator<Item = PyramidEdge> {
     let pyramid = block.cost == Cost::Pyramid;
     let count = if pyramid {
         2 * (block.dim - 1)
@@ -237,11 +237,11 @@ fn edges<T: Real>(block: &Block<'_, T>, lane: usize) -> impl Iterator<Item = Edg
     (0..count).map(move |row| {
         if !pyramid {
             let (base, added) = (row, None);
-            return Edge { base, added };
+            return PyramidEdge { base, added };
         }
         let j = 1 + row / 2;
         let mu = shape[j].lane(lane).to_f64();
         let added = Some((j, if row % 2 == 0 { mu } else { -mu }));
-        Edge { base: 0, added }
+        PyramidEdge { base: 0, added }
     })
 }

@@ -303,8 +303,8 @@ impl<T: Precision> Sim<T> {
     pub fn set_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
         let field = ParamField::settable(field)?;
         let mut row = values.to_vec();
-        field.admit(&self.model, &mut row)?;
-        Model::loosen(&mut self.model, field, &row);
+        field.check_row(&self.model, &mut row)?;
+        Model::clear_structural_guarantees(&mut self.model, field, &row);
         self.params.write_lane(field, 0, &row);
         self.params.derive(&self.model, field);
         self.known.forget();

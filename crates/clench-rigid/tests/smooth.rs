@@ -3,9 +3,9 @@
 mod machines;
 
 use clench_math::{Force, Motion, Vec3};
+use clench_rigid::dynamics::derivatives::add_velocity_derivatives;
 use clench_rigid::dynamics::integrate::integrate_positions;
 use clench_rigid::dynamics::project::{force_at, project_forces};
-use clench_rigid::dynamics::slopes::add_velocity_slopes;
 use clench_rigid::{Sim, readout};
 use clench_solver::TreeMatrix;
 use machines::{distance, everything, floating, shake, sim, turn_between};
@@ -210,7 +210,7 @@ fn velocity_slopes_are_derivatives_of_the_forces() {
         let sim = shaken(&everything(), seed);
         let (model, ws) = (sim.model(), sim.workspace());
         let mut slopes = TreeMatrix::zeros(&model.tree);
-        add_velocity_slopes(
+        add_velocity_derivatives(
             model,
             sim.params(),
             &sim.state,

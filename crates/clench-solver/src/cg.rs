@@ -10,7 +10,7 @@
 //! Over a quadratic they would be orthogonal. Where they are not, the cost has changed its piece on the way, and the old
 //! direction is conjugate for a Hessian that no longer holds.
 
-use crate::descent::{Course, Direction, Progress};
+use crate::descent::{Convergence, Direction, SolverState};
 use crate::iterate::{Iterate, dot};
 use crate::{Problem, Settings};
 use clench_math::{Real, kernel};
@@ -72,8 +72,8 @@ impl<T: Real> Direction<T> for Cg<T> {
     }
 
     #[kernel]
-    fn find(&mut self, problem: &Problem<T>, _: &Progress<T>, course: &mut Course<T>) {
-        let (iterate, direction) = (&course.iterate, &mut course.ray.direction);
+    fn find(&mut self, problem: &Problem<T>, _: &Convergence<T>, state: &mut SolverState<T>) {
+        let (iterate, direction) = (&state.iterate, &mut state.ray.direction);
         if !self.fresh {
             self.precondition(problem, iterate);
         }

@@ -1,6 +1,6 @@
 //! The loop that Newton and CG share: direction, exact line search, step, and the stopping conditions.
 
-use crate::costs::Tally;
+use crate::costs::Totals;
 use crate::iterate::{Iterate, dot};
 use crate::line_search::{Precision, Ray, Step};
 use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Status};
@@ -18,13 +18,18 @@ pub(crate) trait Direction<T: Real> {
     fn restart(&mut self, mask: T::Mask);
     /// The duality gap at the iterate, for a method that stops by it.
     fn gap(&mut self, problem: &Problem<T>, iterate: &Iterate<T>) -> T;
-    /// Writes the next direction into `course.ray`, which holds the last one.
-    fn find(&mut self, problem: &Problem<T>, progress: &Progress<T>, course: &mut Course<T>);
+    /// Writes the next direction into `state.ray`, which holds the last one.
+    fn find(
+        &mut self,
+        problem: &Problem<T>,
+        convergence: &Convergence<T>,
+        state: &mut SolverState<T>,
+    );
 }
 
 /// The memory of a descent: where it is, where it looks, and what it reports.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Course<T: Real> {
+pub(crate) struct SolverState<T: Real> {
     pub iterate: Iterate<T>,
     pub ray: Ray<T>,
     pub stats: SolveStats<T>,
@@ -32,7 +37,7 @@ pub(crate) struct Course<T: Real> {
 }
 
 /// Where each lane stands.
-pub(crate) struct Progress<T: Real> {
+pub(crate) struct Convergence<T: Real> {
     /// Lanes still iterating.
     pub live: T::Mask,
     /// Lanes whose Hessian is that of the last iteration: no piece changed, none is curved.
@@ -61,65 +66,65 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
     settings: &Settings,
     warmstart: Option<&[T]>,
     direction: &mut D,
-    course: &mut Course<T>,
+    state: &mut SolverState<T>,
 ) {
-    course.clock.start();
+    state.clock.start();
     let inertia = trace(problem);
     let tolerance = T::new(settings.tolerance);
     let precision = Precision {
         evaluations: settings.ls_iterations,
         slope: tolerance * T::new(settings.ls_tolerance) * inertia,
     };
-    let Course { iterate, ray, .. } = &mut *course;
-    let tally = iterate.start(problem, warmstart, ray);
-    let mut progress = Progress::new(tally, T::ONE / inertia, tolerance);
-    progress.judge_start::<D>(problem, course);
+    let SolverState { iterate, ray, .. } = &mut *state;
+    let totals = iterate.start(problem, warmstart, ray);
+    let mut convergence = Convergence::new(totals, T::ONE / inertia, tolerance);
+    convergence.judge_start::<D>(problem, state);
     if !direction.prepare(problem, settings) {
         let all = T::Mask::splat(true);
-        progress.end(all, Status::TooLarge, &mut course.stats);
+        convergence.end(all, Status::TooLarge, &mut state.stats);
     }
-    let iterate = &mut course.iterate;
-    if D::NEWTON && iterate.softening.start(problem, progress.live).any() {
-        progress.curved = iterate.evaluate(problem).curved;
+    let iterate = &mut state.iterate;
+    if D::NEWTON && iterate.continuation.start(problem, convergence.live).any() {
+        convergence.curved = iterate.evaluate(problem).curved;
         iterate.differentiate(problem);
     }
-    course.clock.lap(SolvePart::Start as usize);
+    state.clock.lap(SolvePart::Start as usize);
     for _ in 0..settings.iterations {
-        if !progress.live.any() {
+        if !convergence.live.any() {
             break;
         }
-        direction.find(problem, &progress, course);
-        let Course {
+        direction.find(problem, &convergence, state);
+        let SolverState {
             iterate,
             ray,
             clock,
             ..
-        } = &mut *course;
+        } = &mut *state;
         for p in &mut ray.direction {
-            *p = T::select(progress.live, *p, T::ZERO);
+            *p = T::select(convergence.live, *p, T::ZERO);
         }
         clock.lap(SolvePart::Direction as usize);
         ray.prepare(problem, iterate);
-        let step = ray.search(problem, iterate, D::NEWTON, precision, progress.live);
+        let step = ray.search(problem, iterate, D::NEWTON, precision, convergence.live);
         clock.lap(SolvePart::LineSearch as usize);
         iterate.advance(step.alpha, ray);
-        let tally = iterate.evaluate(problem);
+        let totals = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
-        progress.record(step, tally, norm, &mut course.stats);
-        progress.judge(problem, direction, course, step, tally, norm);
-        course.clock.lap(SolvePart::Evaluation as usize);
+        convergence.record(step, totals, norm, &mut state.stats);
+        convergence.judge(problem, direction, state, step, totals, norm);
+        state.clock.lap(SolvePart::Evaluation as usize);
     }
-    progress.finish(problem, course);
-    course.clock.lap(SolvePart::Evaluation as usize);
+    convergence.finish(problem, state);
+    state.clock.lap(SolvePart::Evaluation as usize);
 }
 
-impl<T: Real> Progress<T> {
+impl<T: Real> Convergence<T> {
     #[inline(always)]
-    fn new(tally: Tally<T>, scale: T, tolerance: T) -> Self {
-        Progress {
+    fn new(totals: Totals<T>, scale: T, tolerance: T) -> Self {
+        Convergence {
             live: T::Mask::splat(true),
             same_hessian: T::Mask::splat(false),
-            curved: tally.curved,
+            curved: totals.curved,
             best: T::splat(T::Scalar::INFINITY),
             idle: T::ZERO,
             refreshed: T::Mask::splat(false),
@@ -138,13 +143,13 @@ impl<T: Real> Progress<T> {
 
     /// Ends the lanes that need no iteration.
     #[inline(always)]
-    fn judge_start<D: Direction<T>>(&mut self, problem: &Problem<T>, course: &mut Course<T>) {
-        let Course {
+    fn judge_start<D: Direction<T>>(&mut self, problem: &Problem<T>, state: &mut SolverState<T>) {
+        let SolverState {
             iterate,
             ray,
             stats,
             ..
-        } = course;
+        } = state;
         let norm = iterate.differentiate(problem);
         stats.gradient = self.scale * norm;
         stats.status = Status::IterationLimit.code();
@@ -168,11 +173,11 @@ impl<T: Real> Progress<T> {
 
     /// Takes a step into the statistics.
     #[inline(always)]
-    fn record(&self, step: Step<T>, tally: Tally<T>, norm: T, stats: &mut SolveStats<T>) {
+    fn record(&self, step: Step<T>, totals: Totals<T>, norm: T, stats: &mut SolveStats<T>) {
         let live = self.live;
         stats.iterations += T::select(live, T::ONE, T::ZERO);
         stats.ls_evaluations += step.evaluations;
-        stats.piece_changes += T::select(live, tally.changes, T::ZERO);
+        stats.active_set_changes += T::select(live, totals.changes, T::ZERO);
         stats.gradient = T::select(live, self.scale * norm, stats.gradient);
         stats.improvement = T::select(live, self.scale * step.improvement, stats.improvement);
     }
@@ -183,25 +188,25 @@ impl<T: Real> Progress<T> {
         &mut self,
         problem: &Problem<T>,
         direction: &mut D,
-        course: &mut Course<T>,
+        state: &mut SolverState<T>,
         step: Step<T>,
-        tally: Tally<T>,
+        totals: Totals<T>,
         norm: T,
     ) {
-        let Course {
+        let SolverState {
             iterate,
             ray,
             stats,
             ..
-        } = course;
+        } = state;
         self.end(!norm.is_finite(), Status::NonFinite, stats);
-        self.same_hessian = tally.changes.eq(T::ZERO) & !tally.curved & !self.curved;
-        self.curved = tally.curved;
-        let cost = tally.cost + iterate.inertial_cost(problem);
+        self.same_hessian = totals.changes.eq(T::ZERO) & !totals.curved & !self.curved;
+        self.curved = totals.curved;
+        let cost = totals.cost + iterate.inertial_cost(problem);
 
-        let softened = iterate.softening.active();
-        if softened.any() {
-            let moved = self.live & iterate.softening.advance(step.improvement, cost);
+        let in_continuation = iterate.continuation.active();
+        if in_continuation.any() {
+            let moved = self.live & iterate.continuation.advance(step.improvement, cost);
             self.reevaluate(problem, iterate, moved);
             direction.restart(moved);
         }
@@ -211,7 +216,7 @@ impl<T: Real> Progress<T> {
         let exact = self.same_hessian & T::Mask::splat(D::NEWTON);
         let converged = if D::NEWTON {
             let settled = stats.improvement.le(self.tolerance) | exact;
-            stats.gradient.le(self.tolerance) & settled & !softened
+            stats.gradient.le(self.tolerance) & settled & !in_continuation
         } else {
             let gap = self.scale * direction.gap(problem, iterate);
             gap.le(self.tolerance)
@@ -221,7 +226,7 @@ impl<T: Real> Progress<T> {
         let rounding = T::splat(T::Scalar::EPSILON) * T::new(NEGLIGIBLE) * cost;
         let negligible = step.improvement.le(rounding) | exact;
         let idle = self.idles(norm, negligible, T::new(D::PATIENCE));
-        let stuck = self.live & !softened & (step.alpha.eq(T::ZERO) | idle);
+        let stuck = self.live & !in_continuation & (step.alpha.eq(T::ZERO) | idle);
         // The precision is not to blame where a search was not allowed to reach a lower cost.
         let cut = stuck & step.cut & step.alpha.eq(T::ZERO);
         self.end(cut & self.refreshed, Status::IterationLimit, stats);
@@ -249,9 +254,9 @@ impl<T: Real> Progress<T> {
     /// Evaluates again after the lanes of `mask` were changed by more than a step.
     #[kernel]
     fn reevaluate(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, mask: T::Mask) {
-        let tally = iterate.evaluate(problem);
+        let totals = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
-        self.curved = tally.curved;
+        self.curved = totals.curved;
         self.same_hessian &= !mask;
         self.best = T::select(mask, norm, self.best);
         self.idle = T::select(mask, T::ZERO, self.idle);
@@ -259,20 +264,20 @@ impl<T: Real> Progress<T> {
 
     /// Completes the statistics.
     #[kernel]
-    fn finish(&mut self, problem: &Problem<T>, course: &mut Course<T>) {
-        let Course {
+    fn finish(&mut self, problem: &Problem<T>, state: &mut SolverState<T>) {
+        let SolverState {
             iterate,
             ray,
             stats,
             ..
-        } = course;
-        let softened = iterate.softening.active();
-        if softened.any() {
+        } = state;
+        let in_continuation = iterate.continuation.active();
+        if in_continuation.any() {
             // Cut short on the way: what is reported is true of the problem itself.
-            iterate.softening.reset();
+            iterate.continuation.reset();
             iterate.evaluate(problem);
             let norm = iterate.differentiate(problem);
-            stats.gradient = T::select(softened, self.scale * norm, stats.gradient);
+            stats.gradient = T::select(in_continuation, self.scale * norm, stats.gradient);
         }
         stats.gap = gap(problem, iterate, &mut ray.direction);
     }

@@ -140,9 +140,9 @@ impl<T: Real> Job<'_, T> {
             (slot.warmstart).extend(dofs.map(|dof| transfer.take(warm[dof])));
             &slot.warmstart[..]
         });
-        std::mem::swap(&mut slot.work.course.clock, self.clock);
+        std::mem::swap(&mut slot.work.state.clock, self.clock);
         slot.work.run(&slot.problem, self.settings, warmstart);
-        std::mem::swap(&mut slot.work.course.clock, self.clock);
+        std::mem::swap(&mut slot.work.state.clock, self.clock);
         let acting = self.partition.acting();
         (self.results).add(self.problem, slot, lanes, acting, transfer);
     }

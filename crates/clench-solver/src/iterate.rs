@@ -1,10 +1,10 @@
 //! The iterate: what changes during a solve.
 
 use crate::Problem;
-use crate::costs::{BlockCost, Rows, Tally, with_cost};
+use crate::continuation::Continuation;
+use crate::costs::{BlockCost, Rows, Totals, with_cost};
 use crate::jacobian::{BlockIndex, Jacobian};
 use crate::line_search::Ray;
-use crate::softening::Softening;
 use clench_math::{Mask, Real, kernel};
 
 /// A point, and everything that follows from it.
@@ -23,21 +23,21 @@ pub(crate) struct Iterate<T: Real> {
     /// g = M (a − a_unc) − Jᵀ f.
     pub gradient: Vec<T>,
     /// The piece that each row or edge is on.
-    pub pieces: Vec<T>,
-    pub softening: Softening<T>,
+    pub active_set: Vec<T>,
+    pub continuation: Continuation<T>,
 }
 
 impl<T: Real> Iterate<T> {
-    /// Starts from `warmstart` where it costs less than the unconstrained acceleration; returns the tally there.
+    /// Starts from `warmstart` where it costs less than the unconstrained acceleration; returns the totals there.
     #[kernel]
     pub fn start(
         &mut self,
         problem: &Problem<T>,
         warmstart: Option<&[T]>,
         ray: &mut Ray<T>,
-    ) -> Tally<T> {
+    ) -> Totals<T> {
         let (nv, nrow) = (problem.nv(), problem.nrow());
-        self.softening.reset();
+        self.continuation.reset();
         for v in [
             &mut self.inertial,
             &mut self.gradient,
@@ -48,27 +48,27 @@ impl<T: Real> Iterate<T> {
         }
         self.residual.resize(nrow, T::ZERO);
         self.force.resize(nrow, T::ZERO);
-        self.pieces.resize(problem.npiece, T::ZERO);
+        self.active_set.resize(problem.nactive, T::ZERO);
         self.qacc.clear();
         self.qacc.extend_from_slice(&problem.qacc_smooth);
         problem.jacobian.mul(&self.qacc, &mut self.residual);
         subtract(&mut self.residual, &problem.aref);
-        let tally = self.evaluate(problem);
+        let totals = self.evaluate(problem);
         match warmstart {
-            Some(warm) => self.better_of(problem, warm, tally, ray),
-            None => tally,
+            Some(warm) => self.better_of(problem, warm, totals, ray),
+            None => totals,
         }
     }
 
-    /// Moves to `warm` in the lanes where it costs less than here, where `tally` was taken; returns the tally.
+    /// Moves to `warm` in the lanes where it costs less than here, where `totals` was taken; returns the totals.
     #[kernel]
     fn better_of(
         &mut self,
         problem: &Problem<T>,
         warm: &[T],
-        tally: Tally<T>,
+        totals: Totals<T>,
         ray: &mut Ray<T>,
-    ) -> Tally<T> {
+    ) -> Totals<T> {
         // The ray from here to there: its end is the candidate.
         ray.direction.clear();
         ray.direction.extend_from_slice(warm);
@@ -81,13 +81,13 @@ impl<T: Real> Iterate<T> {
         problem.jacobian.mul(warm, &mut ray.rows);
         subtract(&mut ray.rows, &problem.aref);
         self.residual.swap_with_slice(&mut ray.rows);
-        let warm_tally = self.evaluate(problem);
+        let warm_totals = self.evaluate(problem);
         let inertial = T::new(0.5) * dot(&ray.direction, &ray.mass_direction);
-        let better = (warm_tally.cost + inertial).lt(tally.cost);
+        let better = (warm_totals.cost + inertial).lt(totals.cost);
         blend(better, &mut self.qacc, warm);
         blend(better, &mut self.inertial, &ray.mass_direction);
         if better.all() {
-            return warm_tally;
+            return warm_totals;
         }
         blend(!better, &mut self.residual, &ray.rows);
         self.evaluate(problem)
@@ -114,29 +114,29 @@ impl<T: Real> Iterate<T> {
     #[inline(always)]
     pub fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
         Rows {
-            softer: self.softening.of(b),
+            softer: self.continuation.of(b),
             ..problem.rows(b)
         }
     }
 
     /// Evaluates every block at the residual: forces, pieces, and the constraints' part of the cost.
     #[kernel]
-    pub fn evaluate(&mut self, problem: &Problem<T>) -> Tally<T> {
-        let mut tally = Tally::new();
+    pub fn evaluate(&mut self, problem: &Problem<T>) -> Totals<T> {
+        let mut totals = Totals::new();
         for b in &problem.jacobian.blocks {
             let rows = b.rows();
             with_cost!(b.cost, C => {
-                let pieces = b.piece..b.piece + <C as BlockCost<T>>::pieces(b.dim);
+                let active_set = b.active_start..b.active_start + <C as BlockCost<T>>::active_len(b.dim);
                 C::evaluate(
                     self.rows(problem, b),
                     &self.residual[rows.clone()],
                     &mut self.force[rows],
-                    &mut self.pieces[pieces],
-                    &mut tally,
+                    &mut self.active_set[active_set],
+                    &mut totals,
                 );
             });
         }
-        tally
+        totals
     }
 
     /// Computes Jᵀf and the gradient; returns its norm.

@@ -17,7 +17,7 @@ pub(crate) struct BlockIndex {
     pub row: usize,
     pub dof: usize,
     pub value: usize,
-    pub piece: usize,
+    pub active_start: usize,
 }
 
 impl BlockIndex {
@@ -27,8 +27,8 @@ impl BlockIndex {
     }
     /// Its pieces among all pieces.
     #[inline(always)]
-    pub fn pieces(&self) -> Range<usize> {
-        self.piece..self.piece + crate::costs::pieces(self.cost, self.dim)
+    pub fn active_range(&self) -> Range<usize> {
+        self.active_start..self.active_start + crate::costs::active_len(self.cost, self.dim)
     }
 }
 
@@ -90,13 +90,13 @@ impl<T: Real> StoredRows<T> {
         &mut self,
         block: &BlockIndex,
         row: usize,
-        piece: usize,
+        active_start: usize,
         dofs: impl Iterator<Item = u32>,
         values: impl Iterator<Item = T>,
     ) {
         self.blocks.push(BlockIndex {
             row,
-            piece,
+            active_start,
             dof: self.dofs.len(),
             value: self.values.len(),
             ..*block

@@ -13,14 +13,15 @@
 
 mod cg;
 mod check;
+mod continuation;
 mod costs;
 mod descent;
-mod elimination;
 mod hessian;
 mod islands;
 mod iterate;
 mod jacobian;
 mod line_search;
+mod minimum_degree;
 mod newton;
 mod noslip;
 mod options;
@@ -28,7 +29,6 @@ mod partition;
 mod plain;
 mod problem;
 mod results;
-mod softening;
 mod solver;
 mod stats;
 mod stopwatch;

@@ -4,7 +4,7 @@
 //! by a rank-one change for each; else it is rebuilt. Each lane decides for itself, by its own changes alone.
 
 use crate::costs::{BlockCost, with_cost};
-use crate::descent::{Course, Direction, Progress};
+use crate::descent::{Convergence, Direction, SolverState};
 use crate::hessian::Hessian;
 use crate::iterate::Iterate;
 use crate::{Problem, Settings, SolvePart, SolveStats, Switch};
@@ -15,19 +15,19 @@ use clench_math::{Mask, Real, Scalar, kernel};
 pub(crate) struct Newton<T: Real> {
     hessian: Hessian<T>,
     /// The pieces of the factored Hessian, and the lanes in which it can be updated: factored, and not curved.
-    pieces: Vec<T>,
+    active_set: Vec<T>,
     updatable: T::Mask,
 }
 
 /// More rank-one changes than this are not worth updating for. Measured on a humanoid of 23 dofs: a solve with 4 to 10
 /// contacts, cold or warm, takes 17 to 24% less time with it than with a factorization in every iteration.
-const MOST_UPDATES: f64 = 4.0;
+const MAX_UPDATES: f64 = 4.0;
 
 impl<T: Real> Default for Newton<T> {
     fn default() -> Self {
         Newton {
             hessian: Hessian::default(),
-            pieces: Vec::new(),
+            active_set: Vec::new(),
             updatable: T::Mask::splat(false),
         }
     }
@@ -46,7 +46,7 @@ impl<T: Real> Direction<T> for Newton<T> {
             Switch::Off => true,
             Switch::Auto => problem.tree().nnz() == chain,
         };
-        self.pieces.resize(problem.npiece, T::ZERO);
+        self.active_set.resize(problem.nactive, T::ZERO);
         self.updatable = T::Mask::splat(false);
         self.hessian.prepare(problem, dense, settings.max_matrix)
     }
@@ -63,18 +63,23 @@ impl<T: Real> Direction<T> for Newton<T> {
     }
 
     #[kernel]
-    fn find(&mut self, problem: &Problem<T>, progress: &Progress<T>, course: &mut Course<T>) {
-        let Course {
+    fn find(
+        &mut self,
+        problem: &Problem<T>,
+        convergence: &Convergence<T>,
+        state: &mut SolverState<T>,
+    ) {
+        let SolverState {
             iterate,
             ray,
             stats,
             clock,
-        } = course;
-        let stale = progress.live & !progress.same_hessian;
+        } = state;
+        let stale = convergence.live & !convergence.same_hessian;
         let updated = self.update(
             problem,
             iterate,
-            stale & self.updatable & !progress.curved,
+            stale & self.updatable & !convergence.curved,
             stats,
         );
         let rebuild = stale & !updated;
@@ -86,15 +91,15 @@ impl<T: Real> Direction<T> for Newton<T> {
                 #[inline(always)]
                 |b, weight| {
                     let y = &iterate.residual[b.rows()];
-                    let pieces = &iterate.pieces[b.pieces()];
-                    with_cost!(b.cost, C => C::hessian(iterate.rows(problem, b), y, pieces, weight))
+                    let active_set = &iterate.active_set[b.active_range()];
+                    with_cost!(b.cost, C => C::hessian(iterate.rows(problem, b), y, active_set, weight))
                 },
             );
             stats.factorizations += T::select(rebuild, T::ONE, T::ZERO);
         }
         if stale.any() {
-            self.pieces.copy_from_slice(&iterate.pieces);
-            self.updatable = !progress.curved;
+            self.active_set.copy_from_slice(&iterate.active_set);
+            self.updatable = !convergence.curved;
         }
         clock.lap(SolvePart::Factorization as usize);
         ray.direction.clear();
@@ -121,17 +126,23 @@ impl<T: Real> Newton<T> {
         }
         let mut count = T::ZERO;
         for b in &problem.jacobian.blocks {
-            let (old, new) = (&self.pieces[b.pieces()], &iterate.pieces[b.pieces()]);
+            let (old, new) = (
+                &self.active_set[b.active_range()],
+                &iterate.active_set[b.active_range()],
+            );
             with_cost!(b.cost, C => C::changes(iterate.rows(problem, b), old, new, |change| {
                 count += T::select(change.sigma.eq(T::ZERO), T::ZERO, T::ONE);
             }));
         }
-        let mut mask = mask & count.le(T::new(MOST_UPDATES));
+        let mut mask = mask & count.le(T::new(MAX_UPDATES));
         if !mask.any() {
             return mask;
         }
         for b in &problem.jacobian.blocks {
-            let (old, new) = (&self.pieces[b.pieces()], &iterate.pieces[b.pieces()]);
+            let (old, new) = (
+                &self.active_set[b.active_range()],
+                &iterate.active_set[b.active_range()],
+            );
             with_cost!(b.cost, C => C::changes(iterate.rows(problem, b), old, new, |mut change| {
                 change.sigma = T::select(mask, change.sigma, T::ZERO);
                 let touched = !change.sigma.eq(T::ZERO);

@@ -198,7 +198,7 @@ impl<T: Real> Friction<T> {
         for j in 0..count {
             let bound = match block.cost {
                 Cost::Pyramid => {
-                    let pair = &edges[block.piece + 2 * j..];
+                    let pair = &edges[block.active_start + 2 * j..];
                     shape[j + 1] * (pair[0] + pair[1])
                 }
                 _ => shape[j],
@@ -357,7 +357,7 @@ fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) 
     let mut sum = T::ZERO;
     for b in &problem.jacobian.blocks {
         if b.cost == Cost::Pyramid {
-            let edges = &edges[b.piece..b.piece + 2 * (b.dim - 1)];
+            let edges = &edges[b.active_start..b.active_start + 2 * (b.dim - 1)];
             sum += problem.r[b.row] * dot(edges, edges);
         } else {
             for row in b.rows() {
@@ -380,7 +380,7 @@ fn write_edges<T: Real>(problem: &Problem<T>, force: &[T], edges: &mut [T]) {
         let rows = problem.rows(b);
         let exists = rows.d[0].gt(T::ZERO);
         for j in 1..b.dim {
-            let pair = &mut edges[b.piece + 2 * j - 2..b.piece + 2 * j];
+            let pair = &mut edges[b.active_start + 2 * j - 2..b.active_start + 2 * j];
             let sum = pair[0] + pair[1];
             let difference = T::select(exists, force[b.row + j] / rows.shape[j], T::ZERO);
             pair[0] = T::new(0.5) * (sum + difference);

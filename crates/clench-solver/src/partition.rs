@@ -5,7 +5,7 @@
 //! many. That list follows from the lane alone, so lanes with the same list can share a problem.
 
 use crate::Problem;
-use crate::elimination::Elimination;
+use crate::minimum_degree::MinimumDegree;
 use clench_math::{Mask, Real, kernel};
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -36,7 +36,7 @@ pub(crate) struct Partition<T: Real> {
     /// Union-find over the trees of a lane, the lowest leads; the trees of each leader.
     leader: Vec<u32>,
     by_leader: Lists,
-    elimination: Elimination,
+    elimination: MinimumDegree,
     ranks: Vec<u32>,
     /// The trees of a block, those of an island.
     members: Vec<u32>,
@@ -63,7 +63,7 @@ impl<T: Real> Default for Partition<T> {
             by_first: Lists::default(),
             leader: Vec::new(),
             by_leader: Lists::default(),
-            elimination: Elimination::default(),
+            elimination: MinimumDegree::default(),
             ranks: Vec::new(),
             members: Vec::new(),
         }

@@ -41,7 +41,7 @@ pub struct Problem<T> {
     pub(crate) d: Vec<T>,
     pub(crate) shape: Vec<T>,
     /// Total number of pieces.
-    pub(crate) npiece: usize,
+    pub(crate) nactive: usize,
     /// The first block that was pushed with an impossible size.
     pub(crate) malformed: Option<(usize, &'static str)>,
 }
@@ -118,7 +118,7 @@ impl<T: Real> Problem<T> {
             r: Vec::new(),
             d: Vec::new(),
             shape: Vec::new(),
-            npiece: 0,
+            nactive: 0,
             malformed: None,
         }
     }
@@ -152,7 +152,7 @@ impl<T: Real> Problem<T> {
         self.r.clear();
         self.d.clear();
         self.shape.clear();
-        self.npiece = 0;
+        self.nactive = 0;
         self.malformed = None;
     }
 
@@ -171,11 +171,11 @@ impl<T: Real> Problem<T> {
                 row,
                 dof: self.jacobian.dofs.len(),
                 value: self.jacobian.values.len(),
-                piece: self.npiece,
+                active_start: self.nactive,
             },
             dofs,
         );
-        self.npiece += costs::pieces(cost, dim);
+        self.nactive += costs::active_len(cost, dim);
         for pool in [&mut self.aref, &mut self.r, &mut self.d, &mut self.shape] {
             pool.resize(row + dim, T::ZERO);
         }
@@ -275,14 +275,14 @@ impl<T: Real> Problem<T> {
             self.jacobian.push_copy(
                 b,
                 self.aref.len(),
-                self.npiece,
+                self.nactive,
                 dofs.map(|&dof| part.local[dof as usize]),
                 values.map(
                     #[inline(always)]
                     |&j| transfer.take_in(lanes, j, L::ZERO),
                 ),
             );
-            self.npiece += b.pieces().len();
+            self.nactive += b.active_range().len();
             for (to, from, absent) in [
                 (&mut self.aref, &whole.aref, L::ZERO),
                 (&mut self.r, &whole.r, L::ONE),

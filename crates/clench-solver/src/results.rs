@@ -35,7 +35,7 @@ impl<T: Real> Results<T> {
         copy(&mut self.qacc, &problem.qacc_smooth);
         for (v, len) in [
             (&mut self.force, problem.nrow()),
-            (&mut self.edges, problem.npiece),
+            (&mut self.edges, problem.nactive),
             (&mut self.qfrc_constraint, problem.nv()),
         ] {
             v.clear();
@@ -45,8 +45,8 @@ impl<T: Real> Results<T> {
 
     /// Those of a problem solved as a whole.
     pub fn set(&mut self, work: &Workspace<T>) {
-        let iterate = &work.course.iterate;
-        self.stats = work.course.stats;
+        let iterate = &work.state.iterate;
+        self.stats = work.state.stats;
         copy(&mut self.qacc, &iterate.qacc);
         copy(&mut self.force, &iterate.force);
         copy(&mut self.edges, &work.edges);
@@ -63,9 +63,9 @@ impl<T: Real> Results<T> {
         acting: &[T::Mask],
         transfer: impl Transfer<T, F>,
     ) {
-        let iterate = &island.work.course.iterate;
+        let iterate = &island.work.state.iterate;
         self.stats
-            .combine(&island.work.course.stats, lanes, transfer);
+            .combine(&island.work.state.stats, lanes, transfer);
         for (local, &dof) in island.dofs.iter().enumerate() {
             let dof = dof as usize;
             blend(
@@ -83,8 +83,8 @@ impl<T: Real> Results<T> {
             for (to, &from) in self.force[to.rows()].iter_mut().zip(force) {
                 blend(lanes, to, transfer.put(from));
             }
-            let edges = &island.work.edges[b.pieces()];
-            for (to, &from) in self.edges[to.pieces()].iter_mut().zip(edges) {
+            let edges = &island.work.edges[b.active_range()];
+            for (to, &from) in self.edges[to.active_range()].iter_mut().zip(edges) {
                 blend(lanes, to, transfer.put(from));
             }
         }

@@ -77,7 +77,7 @@ impl<T: Real> Solver<T> {
             self.results.reset(problem);
         } else if parts && self.islands.find(problem) {
             self.results.reset(problem);
-            let clock = &mut self.whole.course.clock;
+            let clock = &mut self.whole.state.clock;
             (self.islands).solve(problem, settings, warmstart, clock, &mut self.results);
         } else {
             self.whole.run(problem, settings, warmstart);
@@ -103,14 +103,14 @@ impl<T: Real> Solver<T> {
     pub fn edge_forces(&self, problem: &Problem<T>, block: usize) -> &[T] {
         let b = &problem.jacobian.blocks[block];
         if b.cost == Cost::Pyramid {
-            &self.results.edges[b.pieces()]
+            &self.results.edges[b.active_range()]
         } else {
             &[]
         }
     }
     /// Where the time of solves goes once it runs, by [`SolvePart`].
     pub fn clock(&mut self) -> &mut SolveClock {
-        &mut self.whole.course.clock
+        &mut self.whole.state.clock
     }
     /// Statistics of the last solve.
     pub fn stats(&self) -> &SolveStats<T> {

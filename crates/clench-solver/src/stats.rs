@@ -66,7 +66,7 @@ pub struct SolveStats<T> {
     /// Duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
     pub gap: T,
     /// How often a constraint changed its piece, in all iterations.
-    pub piece_changes: T,
+    pub active_set_changes: T,
     /// Line-search evaluations.
     pub ls_evaluations: T,
     /// Hessians factored from scratch.
@@ -94,7 +94,7 @@ pub struct LaneStats {
     /// See [`SolveStats`].
     pub gap: f64,
     /// See [`SolveStats`].
-    pub piece_changes: usize,
+    pub active_set_changes: usize,
     /// See [`SolveStats`].
     pub ls_evaluations: usize,
     /// See [`SolveStats`].
@@ -128,7 +128,7 @@ impl<T: Real> SolveStats<T> {
         }
         for (sum, other) in [
             (&mut self.gap, other.gap),
-            (&mut self.piece_changes, other.piece_changes),
+            (&mut self.active_set_changes, other.active_set_changes),
             (&mut self.ls_evaluations, other.ls_evaluations),
             (&mut self.factorizations, other.factorizations),
             (&mut self.updates, other.updates),
@@ -159,7 +159,7 @@ impl<T: Real> SolveStats<T> {
             gradient: value(self.gradient),
             improvement: value(self.improvement),
             gap: value(self.gap),
-            piece_changes: count(self.piece_changes),
+            active_set_changes: count(self.active_set_changes),
             ls_evaluations: count(self.ls_evaluations),
             factorizations: count(self.factorizations),
             updates: count(self.updates),

@@ -1,8 +1,8 @@
-//! One problem, solved whole: the memory of a solve and its course.
+//! One problem, solved whole: the memory of a solve.
 
 use crate::cg::Cg;
 use crate::costs::Pyramid;
-use crate::descent::{Course, minimise, trace};
+use crate::descent::{SolverState, minimise, trace};
 use crate::newton::Newton;
 use crate::noslip::Noslip;
 use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats, Status};
@@ -11,7 +11,7 @@ use clench_math::{Real, kernel};
 /// Memory for problems solved as a whole.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace<T: Real> {
-    pub course: Course<T>,
+    pub state: SolverState<T>,
     /// Edge forces of pyramids, at the index of their pieces.
     pub edges: Vec<T>,
     newton: Newton<T>,
@@ -25,25 +25,25 @@ impl<T: Real> Workspace<T> {
     #[inline(never)] // it would be copied to each of its callers
     pub fn run(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
         let Workspace {
-            course, newton, cg, ..
+            state, newton, cg, ..
         } = self;
-        course.stats = SolveStats {
+        state.stats = SolveStats {
             islands: T::ONE,
             ..SolveStats::default()
         };
         match settings.constraint_solver {
-            ConstraintSolver::Newton => minimise(problem, settings, warmstart, newton, course),
-            ConstraintSolver::Cg => minimise(problem, settings, warmstart, cg, course),
+            ConstraintSolver::Newton => minimise(problem, settings, warmstart, newton, state),
+            ConstraintSolver::Cg => minimise(problem, settings, warmstart, cg, state),
         }
-        let Course { iterate, stats, .. } = course;
-        self.edges.resize(problem.npiece, T::ZERO);
+        let SolverState { iterate, stats, .. } = state;
+        self.edges.resize(problem.nactive, T::ZERO);
         for b in problem
             .jacobian
             .blocks
             .iter()
             .filter(|b| b.cost == Cost::Pyramid)
         {
-            let edges = &mut self.edges[b.piece..b.piece + 2 * (b.dim - 1)];
+            let edges = &mut self.edges[b.active_start..b.active_start + 2 * (b.dim - 1)];
             Pyramid::edge_forces(problem.rows(b), &iterate.residual[b.rows()], edges);
         }
         // It holds a response of all dofs to each row.

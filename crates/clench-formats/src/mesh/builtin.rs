@@ -19,7 +19,7 @@ const NOT_YET: &[&str] = &[
     "disc",
 ];
 /// The most that a resolution can be asked to be.
-const FINEST: usize = 1000;
+const MAX_RESOLUTION: usize = 1000;
 
 /// Makes the mesh of a name.
 ///
@@ -35,7 +35,7 @@ pub(crate) fn make(
         "supersphere" | "supertorus" => parameters.first().map_or(0, |&n| n as usize),
         _ => 0,
     };
-    let vertices = resolution.min(FINEST).pow(2);
+    let vertices = resolution.min(MAX_RESOLUTION).pow(2);
     spending.bytes(bytes(vertices, 2 * vertices))?;
     let count = |number: f64, least: usize, most: usize| {
         // As in MuJoCo, what is behind the point does not count.
@@ -51,15 +51,20 @@ pub(crate) fn make(
         ("sphere", &[subdivisions]) => Ok(sphere(count(subdivisions, 0, 4)?)),
         ("hemisphere", &[resolution]) => Ok(hemisphere(count(resolution, 0, 10)?)),
         ("cone", &[corners, radius]) if (0.0..=1.0).contains(&radius) => {
-            Ok(cone(count(corners, 3, FINEST)?, radius))
+            Ok(cone(count(corners, 3, MAX_RESOLUTION)?, radius))
         }
         ("supersphere", &[resolution, e, n]) if e >= 0.0 && n >= 0.0 => {
-            Ok(supersphere(count(resolution, 3, FINEST)?, e, n))
+            Ok(supersphere(count(resolution, 3, MAX_RESOLUTION)?, e, n))
         }
         ("supertorus", &[resolution, radius, s, t])
             if radius > 0.0 && radius <= 1.0 && s > 0.0 && t > 0.0 =>
         {
-            Ok(supertorus(count(resolution, 3, FINEST)?, radius, s, t))
+            Ok(supertorus(
+                count(resolution, 3, MAX_RESOLUTION)?,
+                radius,
+                s,
+                t,
+            ))
         }
         ("sphere" | "hemisphere" | "cone" | "supersphere" | "supertorus", _) => {
             Err(format!("a {name} cannot have the params {parameters:?}"))

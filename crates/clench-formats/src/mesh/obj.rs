@@ -8,7 +8,7 @@ use clench_math::Vec3;
 use earcut::{Earcut, utils3d::project3d_to_2d};
 
 /// Corners of a face, at most: ears of a polygon that crosses itself take a time that grows with the square of them.
-const MOST_CORNERS: usize = 1000;
+const MAX_CORNERS: usize = 1000;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     let text = String::from_utf8_lossy(bytes);
@@ -24,9 +24,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
                 let corners = words
                     .map(|word| corner(word, vertices.len(), number))
                     .collect::<Result<Vec<u32>, String>>()?;
-                if corners.len() > MOST_CORNERS {
+                if corners.len() > MAX_CORNERS {
                     return Err(format!(
-                        "line {number}: a face has more than {MOST_CORNERS} corners"
+                        "line {number}: a face has more than {MAX_CORNERS} corners"
                     ));
                 }
                 // What has no area is dropped, as in MuJoCo.

@@ -1,9 +1,9 @@
 //! `<actuator>`: `general` and its shortcuts.
 //!
-//! A shortcut is an actuator whose law (dynamics, gain, bias) follows from parameters of its own: `kp`, `kv`, `area`.
-//! Mechanical attributes (ranges, gear) come from any default of the class. A law comes only from a default that was
+//! A shortcut is an actuator whose dynamics, gain and bias follow from parameters of its own: `kp`, `kv`, `area`.
+//! Mechanical attributes (ranges, gear) come from any default of the class. Dynamics, gain and bias come only from a default that was
 //! written with the same shortcut, or with `general` and the shortcut's kind of gain, in the class or its nearest such
-//! ancestor (MuJoCo manual, modeling chapter, "Shortcuts"); `general` takes any law as it is.
+//! ancestor (MuJoCo manual, modeling chapter, "Shortcuts"); `general` takes any as they are.
 
 use super::document::Element;
 use crate::LoadError;
@@ -48,7 +48,7 @@ impl Shortcut {
 
 /// How control becomes force.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Law {
+pub(crate) struct ActuatorParams {
     dynamics: DynamicsKind,
     dynprm: [f64; 10],
     gain: GainKind,
@@ -67,9 +67,9 @@ fn params<const N: usize>(leading: [f64; N]) -> [f64; 10] {
     all
 }
 
-impl Default for Law {
+impl Default for ActuatorParams {
     fn default() -> Self {
-        Law {
+        ActuatorParams {
             dynamics: DynamicsKind::None,
             dynprm: params([1.0]),
             gain: GainKind::Fixed,
@@ -87,7 +87,7 @@ impl Default for Law {
 #[derive(Clone, Debug)]
 pub(crate) struct ActuatorDraft {
     pub shortcut: Shortcut,
-    pub law: Law,
+    pub parameters: ActuatorParams,
     gear: [f64; 6],
     ctrlrange: [f64; 2],
     ctrllimited: Option<bool>,
@@ -102,7 +102,7 @@ impl Default for ActuatorDraft {
     fn default() -> Self {
         ActuatorDraft {
             shortcut: Shortcut::General,
-            law: Law::default(),
+            parameters: ActuatorParams::default(),
             gear: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             ctrlrange: [0.0; 2],
             ctrllimited: None,
@@ -116,18 +116,18 @@ impl Default for ActuatorDraft {
 }
 
 impl ActuatorDraft {
-    /// Whether a shortcut may read its parameters from this default's law.
-    pub fn lends_law_to(&self, shortcut: Shortcut) -> bool {
+    /// Whether a shortcut may read its parameters from this default.
+    pub fn lends_parameters_to(&self, shortcut: Shortcut) -> bool {
         self.shortcut == shortcut
-            || (self.shortcut == Shortcut::General && self.law.gain == shortcut.gain())
+            || (self.shortcut == Shortcut::General && self.parameters.gain == shortcut.gain())
     }
 
-    /// Overwrites what the element gives; `inherited` is the law that its class lends to `shortcut`.
+    /// Overwrites what the element gives; `inherited` are the parameters that its class lends to `shortcut`.
     pub fn read(
         &mut self,
         element: &Element,
         shortcut: Shortcut,
-        inherited: Law,
+        inherited: ActuatorParams,
     ) -> Result<(), LoadError> {
         self.shortcut = shortcut;
         element.set_range("ctrlrange", &mut self.ctrlrange)?;
@@ -138,58 +138,67 @@ impl ActuatorDraft {
         element.set_tristate("actlimited", &mut self.actlimited)?;
         element.overlay("gear", &mut self.gear)?;
         element.set_integer("group", &mut self.group)?;
-        let law = match shortcut {
-            Shortcut::General => read_general(element, self.law)?,
-            Shortcut::Motor => Law::default(),
+        let parameters = match shortcut {
+            Shortcut::General => read_general(element, self.parameters)?,
+            Shortcut::Motor => ActuatorParams::default(),
             Shortcut::Position | Shortcut::IntVelocity => self.read_servo(element, inherited)?,
             Shortcut::Velocity => read_velocity(element, inherited)?,
             Shortcut::Damper => self.read_damper(element, inherited)?,
             Shortcut::Cylinder => read_cylinder(element, inherited)?,
         };
-        self.law = law;
+        self.parameters = parameters;
         self.settle_inheritrange(element)
     }
 
     /// `position` and `intvelocity`: force = kp (target − length) − kv velocity.
-    fn read_servo(&mut self, element: &Element, inherited: Law) -> Result<Law, LoadError> {
+    fn read_servo(
+        &mut self,
+        element: &Element,
+        inherited: ActuatorParams,
+    ) -> Result<ActuatorParams, LoadError> {
         element.at_most_one(&["kv", "dampratio"])?;
         let mut kp = inherited.gainprm[0];
         element.set_number("kp", &mut kp)?;
-        let mut law = Law {
+        let mut parameters = ActuatorParams {
             gainprm: params([kp]),
             bias: BiasKind::Affine,
             biasprm: params([0.0, -kp, inherited.biasprm[2]]),
             inheritrange: inherited.inheritrange,
-            ..Law::default()
+            ..ActuatorParams::default()
         };
         if let Some(kv) = not_negative(element, "kv")? {
-            law.biasprm[2] = -kv;
+            parameters.biasprm[2] = -kv;
         }
         if let Some(dampratio) = not_negative(element, "dampratio")? {
-            law.biasprm[2] = dampratio;
+            parameters.biasprm[2] = dampratio;
         }
-        element.set_number("inheritrange", &mut law.inheritrange)?;
+        element.set_number("inheritrange", &mut parameters.inheritrange)?;
         if self.shortcut == Shortcut::IntVelocity {
-            law.dynamics = DynamicsKind::Integrator;
-            return Ok(law);
+            parameters.dynamics = DynamicsKind::Integrator;
+            return Ok(parameters);
         }
         if inherited.dynamics == DynamicsKind::FilterExact {
-            (law.dynamics, law.dynprm) = (DynamicsKind::FilterExact, inherited.dynprm);
+            (parameters.dynamics, parameters.dynprm) =
+                (DynamicsKind::FilterExact, inherited.dynprm);
         }
         if let Some(timeconst) = not_negative(element, "timeconst")? {
             let filters = timeconst > 0.0;
-            law.dynamics = if filters {
+            parameters.dynamics = if filters {
                 DynamicsKind::FilterExact
             } else {
                 DynamicsKind::None
             };
-            law.dynprm = params([timeconst]);
+            parameters.dynprm = params([timeconst]);
         }
-        Ok(law)
+        Ok(parameters)
     }
 
     /// `damper`: force = −kv velocity · control, control limited to positive values.
-    fn read_damper(&mut self, element: &Element, inherited: Law) -> Result<Law, LoadError> {
+    fn read_damper(
+        &mut self,
+        element: &Element,
+        inherited: ActuatorParams,
+    ) -> Result<ActuatorParams, LoadError> {
         let mut kv = match inherited.gain {
             GainKind::Affine => -inherited.gainprm[2],
             GainKind::Fixed => 0.0,
@@ -202,19 +211,19 @@ impl ActuatorDraft {
             return Err(element.error("the ctrlrange of a damper cannot be negative"));
         }
         self.ctrllimited = Some(true);
-        Ok(Law {
+        Ok(ActuatorParams {
             gain: GainKind::Affine,
             gainprm: params([0.0, 0.0, -kv]),
-            ..Law::default()
+            ..ActuatorParams::default()
         })
     }
 
     /// Of an inherited and a written one of `inheritrange` and the range that it stands for, the written one counts.
     fn settle_inheritrange(&mut self, element: &Element) -> Result<(), LoadError> {
-        if self.law.inheritrange == 0.0 {
+        if self.parameters.inheritrange == 0.0 {
             return Ok(());
         }
-        let integrates = self.law.dynamics == DynamicsKind::Integrator;
+        let integrates = self.parameters.dynamics == DynamicsKind::Integrator;
         let name = if integrates { "actrange" } else { "ctrlrange" };
         match (
             element.text(name).is_some(),
@@ -223,7 +232,7 @@ impl ActuatorDraft {
             (true, true) if self.shortcut != Shortcut::General => {
                 return Err(element.error(format!("{name} and inheritrange cannot both be given")));
             }
-            (true, false) => self.law.inheritrange = 0.0,
+            (true, false) => self.parameters.inheritrange = 0.0,
             (_, true) if integrates => self.actrange = [0.0; 2],
             (_, true) => self.ctrlrange = [0.0; 2],
             (false, false) => {}
@@ -233,27 +242,27 @@ impl ActuatorDraft {
 
     /// The actuator of the model.
     pub fn finish(self, element: &Element) -> Result<ActuatorSpec, LoadError> {
-        let mut law = self.law;
-        check_actdim(element, &law)?;
-        // MuJoCo keeps a damping ratio as a positive velocity coefficient of a position-like law, however written.
-        let servo = law.gain == GainKind::Fixed
-            && law.bias == BiasKind::Affine
-            && law.gainprm[0] == -law.biasprm[1];
-        let dampratio = (servo && law.biasprm[2] > 0.0).then_some(law.biasprm[2]);
+        let mut parameters = self.parameters;
+        check_actdim(element, &parameters)?;
+        // MuJoCo keeps a damping ratio as a positive velocity coefficient of a position-like actuator, however written.
+        let servo = parameters.gain == GainKind::Fixed
+            && parameters.bias == BiasKind::Affine
+            && parameters.gainprm[0] == -parameters.biasprm[1];
+        let dampratio = (servo && parameters.biasprm[2] > 0.0).then_some(parameters.biasprm[2]);
         if dampratio.is_some() {
-            law.biasprm[2] = 0.0;
+            parameters.biasprm[2] = 0.0;
         }
         Ok(ActuatorSpec {
             name: element.string("name"),
             transmission: read_transmission(element)?,
-            dynamics: law.dynamics,
-            dynprm: law.dynprm,
-            gain: law.gain,
-            gainprm: law.gainprm,
-            bias: law.bias,
-            biasprm: law.biasprm,
+            dynamics: parameters.dynamics,
+            dynprm: parameters.dynprm,
+            gain: parameters.gain,
+            gainprm: parameters.gainprm,
+            bias: parameters.bias,
+            biasprm: parameters.biasprm,
             dampratio,
-            inheritrange: if servo { law.inheritrange } else { 0.0 },
+            inheritrange: if servo { parameters.inheritrange } else { 0.0 },
             gear: self.gear,
             ctrlrange: self.ctrlrange,
             ctrllimited: self.ctrllimited,
@@ -261,15 +270,18 @@ impl ActuatorDraft {
             forcelimited: self.forcelimited,
             actrange: self.actrange,
             actlimited: self.actlimited,
-            actearly: law.actearly,
+            actearly: parameters.actearly,
             group: self.group,
             origin: Some(element.origin.clone()),
         })
     }
 }
 
-/// `general`: every parameter of the law by its own attribute.
-fn read_general(element: &Element, mut law: Law) -> Result<Law, LoadError> {
+/// `general`: every parameter by its own attribute.
+fn read_general(
+    element: &Element,
+    mut parameters: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
     let dynamics = [
         ("none", DynamicsKind::None),
         ("integrator", DynamicsKind::Integrator),
@@ -277,54 +289,60 @@ fn read_general(element: &Element, mut law: Law) -> Result<Law, LoadError> {
         ("filterexact", DynamicsKind::FilterExact),
     ];
     supported(element, "dyntype", &["muscle", "dcmotor", "pid", "user"])?;
-    element.set_keyword("dyntype", &dynamics, &mut law.dynamics)?;
+    element.set_keyword("dyntype", &dynamics, &mut parameters.dynamics)?;
     let unsupported = ["muscle", "dcmotor", "so3", "pid", "user"];
     supported(element, "gaintype", &unsupported)?;
     let gains = [("fixed", GainKind::Fixed), ("affine", GainKind::Affine)];
-    element.set_keyword("gaintype", &gains, &mut law.gain)?;
+    element.set_keyword("gaintype", &gains, &mut parameters.gain)?;
     supported(element, "biastype", &unsupported)?;
     let biases = [("none", BiasKind::None), ("affine", BiasKind::Affine)];
-    element.set_keyword("biastype", &biases, &mut law.bias)?;
-    element.overlay("dynprm", &mut law.dynprm)?;
-    element.overlay("gainprm", &mut law.gainprm)?;
-    element.overlay("biasprm", &mut law.biasprm)?;
-    element.set_number("inheritrange", &mut law.inheritrange)?;
-    element.set_boolean("actearly", &mut law.actearly)?;
-    element.set_integer("actdim", &mut law.actdim)?;
-    Ok(law)
+    element.set_keyword("biastype", &biases, &mut parameters.bias)?;
+    element.overlay("dynprm", &mut parameters.dynprm)?;
+    element.overlay("gainprm", &mut parameters.gainprm)?;
+    element.overlay("biasprm", &mut parameters.biasprm)?;
+    element.set_number("inheritrange", &mut parameters.inheritrange)?;
+    element.set_boolean("actearly", &mut parameters.actearly)?;
+    element.set_integer("actdim", &mut parameters.actdim)?;
+    Ok(parameters)
 }
 
 /// `velocity`: force = kv (target − velocity).
-fn read_velocity(element: &Element, inherited: Law) -> Result<Law, LoadError> {
+fn read_velocity(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
     let mut kv = inherited.gainprm[0];
     element.set_number("kv", &mut kv)?;
-    Ok(Law {
+    Ok(ActuatorParams {
         gainprm: params([kv]),
         bias: BiasKind::Affine,
         biasprm: params([0.0, 0.0, -kv]),
-        ..Law::default()
+        ..ActuatorParams::default()
     })
 }
 
 /// `cylinder`: force = area · filtered pressure + bias.
-fn read_cylinder(element: &Element, inherited: Law) -> Result<Law, LoadError> {
-    let mut law = Law {
+fn read_cylinder(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let mut parameters = ActuatorParams {
         dynamics: DynamicsKind::Filter,
         dynprm: params([inherited.dynprm[0]]),
         gainprm: params([inherited.gainprm[0]]),
         bias: BiasKind::Affine,
         biasprm: inherited.biasprm,
-        ..Law::default()
+        ..ActuatorParams::default()
     };
-    element.set_number("timeconst", &mut law.dynprm[0])?;
-    element.set_number("area", &mut law.gainprm[0])?;
+    element.set_number("timeconst", &mut parameters.dynprm[0])?;
+    element.set_number("area", &mut parameters.gainprm[0])?;
     if let Some([diameter]) = element.numbers("diameter")?.filter(|[d]| *d >= 0.0) {
-        law.gainprm[0] = std::f64::consts::FRAC_PI_4 * diameter * diameter;
+        parameters.gainprm[0] = std::f64::consts::FRAC_PI_4 * diameter * diameter;
     }
     if let Some(bias) = element.numbers::<3>("bias")? {
-        law.biasprm[..3].copy_from_slice(&bias);
+        parameters.biasprm[..3].copy_from_slice(&bias);
     }
-    Ok(law)
+    Ok(parameters)
 }
 
 fn supported(element: &Element, name: &str, unsupported: &[&str]) -> Result<(), LoadError> {
@@ -344,12 +362,12 @@ fn not_negative(element: &Element, name: &str) -> Result<Option<f64>, LoadError>
 }
 
 /// The number of activations must be what the dynamics has.
-fn check_actdim(element: &Element, law: &Law) -> Result<(), LoadError> {
-    let has = i32::from(law.dynamics != DynamicsKind::None);
-    if law.actdim >= 0 && law.actdim != has {
+fn check_actdim(element: &Element, parameters: &ActuatorParams) -> Result<(), LoadError> {
+    let has = i32::from(parameters.dynamics != DynamicsKind::None);
+    if parameters.actdim >= 0 && parameters.actdim != has {
         let message = format!(
             "actdim is {}, but these dynamics have {has} activations",
-            law.actdim
+            parameters.actdim
         );
         return Err(element.error(message));
     }

@@ -37,23 +37,25 @@ fn check_material(element: &Element, known: &BTreeSet<&str>) -> Result<(), LoadE
 
 /// What is needed of materials to know what can be seen.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Looks {
+pub(crate) struct Visibility {
     /// Whether each material can be seen.
     materials: BTreeMap<String, bool>,
     /// The materials that meshes lend to geoms without one.
     meshes: BTreeMap<String, String>,
 }
 
-impl Looks {
+impl Visibility {
     /// Reads the materials, and which meshes have one.
     pub fn read(root: &Element, classes: &Classes) -> Result<Self, LoadError> {
-        let mut looks = Looks::default();
+        let mut visibility = Visibility::default();
         for asset in entries(root, "asset") {
             match (asset.tag.as_str(), asset.text("material")) {
                 ("material", _) => {
                     let mut alpha = classes.of(asset)?.material_alpha;
                     read_alpha(asset, &mut alpha)?;
-                    looks.materials.insert(asset.string("name"), alpha != 0.0);
+                    visibility
+                        .materials
+                        .insert(asset.string("name"), alpha != 0.0);
                 }
                 ("mesh", Some(material)) => {
                     let file = asset
@@ -61,14 +63,14 @@ impl Looks {
                         .and_then(|file| Path::new(file).file_stem());
                     let stem = file.map(|stem| stem.to_string_lossy().into_owned());
                     let name = asset.text("name").map(str::to_owned).or(stem);
-                    looks
+                    visibility
                         .meshes
                         .insert(name.unwrap_or_default(), material.to_owned());
                 }
                 _ => {}
             }
         }
-        Ok(looks)
+        Ok(visibility)
     }
 
     /// Whether a geom can be seen: by its material or that of its mesh, or without one by its own colour.

@@ -1,7 +1,7 @@
 //! `<worldbody>` and what is in it: bodies, frames, replicas and the elements that bodies carry.
 
-use super::assets::Looks;
-use super::compiler::Notation;
+use super::assets::Visibility;
+use super::compiler::CompilerOptions;
 use super::defaults::{Classes, MAIN};
 use super::document::Element;
 use super::joint;
@@ -14,9 +14,9 @@ use std::collections::HashSet;
 
 /// Reads the body tree into a list of bodies, parents before children.
 pub(crate) struct BodyReader<'a> {
-    notation: &'a Notation,
+    compiler: &'a CompilerOptions,
     classes: &'a Classes,
-    looks: &'a Looks,
+    visibility: &'a Visibility,
     bodies: &'a mut Vec<BodySpec>,
     spending: &'a mut Spending,
     /// Names in the file that stand for several elements of the model.
@@ -77,16 +77,16 @@ pub(crate) fn world() -> BodySpec {
 impl<'a> BodyReader<'a> {
     /// A reader that adds to a list of bodies which begins with the world.
     pub fn new(
-        notation: &'a Notation,
+        compiler: &'a CompilerOptions,
         classes: &'a Classes,
-        looks: &'a Looks,
+        visibility: &'a Visibility,
         bodies: &'a mut Vec<BodySpec>,
         spending: &'a mut Spending,
     ) -> Self {
         BodyReader {
-            notation,
+            compiler,
             classes,
-            looks,
+            visibility,
             bodies,
             spending,
             replicated: HashSet::new(),
@@ -155,7 +155,7 @@ impl<'a> BodyReader<'a> {
     }
 
     fn push_body(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        let written = Pose::read(element, self.notation)?;
+        let written = Pose::read(element, self.compiler)?;
         let pose = place.frame.then(written);
         let mut body = BodySpec {
             name: self.named(element, place)?,
@@ -179,7 +179,7 @@ impl<'a> BodyReader<'a> {
         let class = self.classes.named_by(element, "class", place.class)?;
         let inside = Place {
             class: self.classes.named_by(element, "childclass", class)?,
-            frame: place.frame.then(Pose::read(element, self.notation)?),
+            frame: place.frame.then(Pose::read(element, self.compiler)?),
             ..place.clone()
         };
         Ok(Level::new(element, inside))
@@ -209,7 +209,7 @@ impl<'a> BodyReader<'a> {
             euler,
             step: Pose {
                 pos: offset,
-                quat: self.notation.euler(euler),
+                quat: self.compiler.euler(euler),
             },
             displaced: Pose::IDENTITY,
         };
@@ -234,7 +234,7 @@ impl<'a> BodyReader<'a> {
         replicas.displaced = replicas.displaced.then(replicas.step);
         // As in MuJoCo, angles are multiplied rather than rotations accumulated, so that no error builds up.
         let angles = replicas.euler.map(|angle| angle * replicas.current as f64);
-        replicas.displaced.quat = self.notation.euler(angles);
+        replicas.displaced.quat = self.compiler.euler(angles);
         level.place = replicas.place();
         level.next = 0;
         Ok(true)
@@ -270,7 +270,7 @@ impl<'a> BodyReader<'a> {
         orientation.read(element)?;
         let pose = place.frame.then(Pose {
             pos: Vec3::from_array(element.required_numbers("pos")?),
-            quat: orientation.resolve(self.notation, element)?,
+            quat: orientation.resolve(self.compiler, element)?,
         });
         let [mass] = element.required_numbers("mass")?;
         let inertia = read_inertia(element, &place.frame)?;
@@ -307,7 +307,7 @@ impl<'a> BodyReader<'a> {
     fn read_joint(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let mut joint = self.classes[self.class(element, place)?].joint.clone();
         joint::read(element, &mut joint)?;
-        let joint = joint::finish(joint, self.notation, &place.frame);
+        let joint = joint::finish(joint, self.compiler, &place.frame);
         self.push_joint(joint, element, place)
     }
 
@@ -332,7 +332,7 @@ impl<'a> BodyReader<'a> {
         geom.read(element)?;
         let bytes = size_of::<GeomSpec>() + geom.text_length();
         self.charge(element, bytes, &[])?;
-        let mut geom = geom.finish(element, self.notation, self.looks, &place.frame)?;
+        let mut geom = geom.finish(element, self.compiler, self.visibility, &place.frame)?;
         geom.name = self.named(element, place)?;
         self.bodies[place.body].geoms.push(geom);
         Ok(())
@@ -341,7 +341,7 @@ impl<'a> BodyReader<'a> {
     fn read_site(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
         let mut site = self.classes[self.class(element, place)?].site.clone();
         site.read(element)?;
-        let mut site = site.finish(element, self.notation, &place.frame)?;
+        let mut site = site.finish(element, self.compiler, &place.frame)?;
         site.name = self.named(element, place)?;
         self.charge(element, size_of::<SiteSpec>(), &[&site.name])?;
         self.bodies[place.body].sites.push(site);

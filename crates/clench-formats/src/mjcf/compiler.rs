@@ -7,7 +7,7 @@ use clench_rigid::builder::{CompilerSpec, InertiaFromGeom};
 
 /// How the file writes angles and rotations.
 #[derive(Clone, Debug)]
-pub(crate) struct Notation {
+pub(crate) struct CompilerOptions {
     pub degrees: bool,
     /// Axes of the three Euler rotations; lower case: moving axes, upper case: fixed ones.
     pub eulerseq: [char; 3],
@@ -17,9 +17,9 @@ pub(crate) struct Notation {
     pub strippath: bool,
 }
 
-impl Default for Notation {
+impl Default for CompilerOptions {
     fn default() -> Self {
-        Notation {
+        CompilerOptions {
             degrees: true,
             eulerseq: ['x', 'y', 'z'],
             meshdir: String::new(),
@@ -28,7 +28,7 @@ impl Default for Notation {
     }
 }
 
-impl Notation {
+impl CompilerOptions {
     /// An angle of the file in radians.
     pub fn radians(&self, angle: f64) -> f64 {
         if self.degrees {
@@ -80,10 +80,10 @@ impl Notation {
 /// Reads one `<compiler>`; a later one overrides what it gives.
 pub(crate) fn read(
     element: &Element,
-    notation: &mut Notation,
+    compiler: &mut CompilerOptions,
     spec: &mut CompilerSpec,
 ) -> Result<(), LoadError> {
-    notation.read(element)?;
+    compiler.read(element)?;
     if element.keyword("coordinate", &[("local", false), ("global", true)])? == Some(true) {
         return Err(element.error(
             "global coordinates were removed from MJCF; convert the model with MuJoCo 2.3.3",

@@ -3,7 +3,7 @@
 //! A class starts as a copy of its parent and overwrites what its elements give; an element starts as a copy of its
 //! class. Copies, not a search for the nearest value, because an attribute with several numbers may give only some.
 
-use super::actuator::{ActuatorDraft, Law, Shortcut};
+use super::actuator::{ActuatorDraft, ActuatorParams, Shortcut};
 use super::assets;
 use super::contact;
 use super::document::Element;
@@ -137,8 +137,10 @@ impl Classes {
 
     fn read_element(&mut self, element: &Element, class: usize) -> Result<(), LoadError> {
         if let Some(shortcut) = Shortcut::from_tag(&element.tag) {
-            let law = self.law(class, shortcut);
-            return self.list[class].actuator.read(element, shortcut, law);
+            let parameters = self.parameters(class, shortcut);
+            return self.list[class]
+                .actuator
+                .read(element, shortcut, parameters);
         }
         let class = &mut self.list[class];
         match element.tag.as_str() {
@@ -155,13 +157,13 @@ impl Classes {
         }
     }
 
-    /// The law that a class lends to an actuator written with `shortcut`.
-    pub fn law(&self, class: usize, shortcut: Shortcut) -> Law {
+    /// The parameters that a class lends to an actuator written with `shortcut`.
+    pub fn parameters(&self, class: usize, shortcut: Shortcut) -> ActuatorParams {
         let ancestors = std::iter::successors(Some(class), |&class| self.list[class].parent);
         ancestors
             .map(|class| &self.list[class].actuator)
-            .find(|actuator| actuator.lends_law_to(shortcut))
-            .map_or_else(Law::default, |actuator| actuator.law)
+            .find(|actuator| actuator.lends_parameters_to(shortcut))
+            .map_or_else(ActuatorParams::default, |actuator| actuator.parameters)
     }
 
     fn find(&self, name: &str) -> Option<usize> {

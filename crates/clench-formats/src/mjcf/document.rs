@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// Deepest nesting of elements, as in MuJoCo.
 pub(crate) const MAX_DEPTH: usize = 500;
 /// Most attributes of an element; no element of MJCF has a quarter of them. The parser compares each with all before it.
-const MOST_ATTRIBUTES: usize = 200;
+const MAX_ATTRIBUTES: usize = 200;
 /// Most declarations of namespaces, which mean nothing here. The parser copies them from element to element.
-const MOST_NAMESPACES: usize = 20;
+const MAX_NAMESPACES: usize = 20;
 /// What an element or attribute takes while a file is parsed, and after, besides its own text, bytes.
 const MARK: u64 = 300;
 
@@ -99,10 +99,10 @@ fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(
                 let tag = rest[1..].split('<').next().unwrap_or_default();
                 let attributes = tag.bytes().filter(|&b| b == b'=').count();
                 namespaces += tag.matches("xmlns").count();
-                let excess = if attributes > MOST_ATTRIBUTES {
-                    format!("an element has more than {MOST_ATTRIBUTES} attributes")
-                } else if namespaces > MOST_NAMESPACES {
-                    format!("there are more than {MOST_NAMESPACES} declarations of namespaces")
+                let excess = if attributes > MAX_ATTRIBUTES {
+                    format!("an element has more than {MAX_ATTRIBUTES} attributes")
+                } else if namespaces > MAX_NAMESPACES {
+                    format!("there are more than {MAX_NAMESPACES} declarations of namespaces")
                 } else {
                     marks += 1 + attributes as u64;
                     at = start + 1 + tag.len();

@@ -3,7 +3,7 @@
 //! As in MuJoCo, a path is relative to `meshdir`, which is relative to the model's directory; what is not there, and named in an
 //! included file, is looked for in `meshdir` along the path from the model to that file.
 
-use super::compiler::Notation;
+use super::compiler::CompilerOptions;
 use super::document::Element;
 use crate::LoadError;
 use crate::spending::Spending;
@@ -28,11 +28,11 @@ pub(crate) struct Content {
 
 impl<'a> Files<'a> {
     /// For a model in a directory.
-    pub fn new(model_directory: &'a Path, notation: &Notation) -> Self {
+    pub fn new(model_directory: &'a Path, compiler: &CompilerOptions) -> Self {
         Files {
             model_directory,
-            meshes: model_directory.join(slashes(&notation.meshdir)),
-            strippath: notation.strippath,
+            meshes: model_directory.join(slashes(&compiler.meshdir)),
+            strippath: compiler.strippath,
         }
     }
 

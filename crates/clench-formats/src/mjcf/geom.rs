@@ -1,7 +1,7 @@
 //! `<geom>`.
 
-use super::assets::{Looks, read_alpha};
-use super::compiler::Notation;
+use super::assets::{Visibility, read_alpha};
+use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::{Orientation, Pose, segment};
 use crate::LoadError;
@@ -113,8 +113,8 @@ impl GeomDraft {
     pub fn finish(
         mut self,
         element: &Element,
-        notation: &Notation,
-        looks: &Looks,
+        compiler: &CompilerOptions,
+        visibility: &Visibility,
         frame: &Pose,
     ) -> Result<GeomSpec, LoadError> {
         let pose = match self.fromto {
@@ -126,13 +126,13 @@ impl GeomDraft {
             }
             None => Pose {
                 pos: Vec3::from_array(self.pos),
-                quat: self.orientation.resolve(notation, element)?,
+                quat: self.orientation.resolve(compiler, element)?,
             },
         };
         let pose = frame.then(pose);
         Ok(GeomSpec {
             name: element.string("name"),
-            visible: looks.shows(self.alpha, &self.material, &self.spec.mesh),
+            visible: visibility.shows(self.alpha, &self.material, &self.spec.mesh),
             size: Vec3::from_array(self.size),
             pos: pose.pos,
             quat: pose.quat,

@@ -1,6 +1,6 @@
 //! `<joint>` and `<freejoint>`.
 
-use super::compiler::Notation;
+use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::Pose;
 use crate::LoadError;
@@ -55,14 +55,14 @@ pub(crate) fn read_free(element: &Element) -> Result<JointSpec, LoadError> {
 ///
 /// As in MuJoCo, degrees concern the range of hinge and ball joints where it is a limit, and the reference angles of
 /// hinge joints.
-pub(crate) fn finish(mut joint: JointSpec, notation: &Notation, frame: &Pose) -> JointSpec {
+pub(crate) fn finish(mut joint: JointSpec, compiler: &CompilerOptions, frame: &Pose) -> JointSpec {
     let limits = joint.limited != Some(false);
     if limits && matches!(joint.kind, JointKind::Hinge | JointKind::Ball) {
-        joint.range = joint.range.map(|angle| notation.radians(angle));
+        joint.range = joint.range.map(|angle| compiler.radians(angle));
     }
     if joint.kind == JointKind::Hinge {
-        joint.reference = notation.radians(joint.reference);
-        joint.springref = notation.radians(joint.springref);
+        joint.reference = compiler.radians(joint.reference);
+        joint.springref = compiler.radians(joint.springref);
     }
     if joint.kind != JointKind::Free {
         joint.pos = frame.point(joint.pos);

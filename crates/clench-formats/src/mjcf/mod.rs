@@ -37,7 +37,7 @@ use body::BodyReader;
 use clench_rigid::Budget;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::SensorKind;
-use compiler::Notation;
+use compiler::CompilerOptions;
 use defaults::{Classes, MAIN};
 use document::Element;
 use files::Files;
@@ -126,9 +126,9 @@ fn read_model(
         bodies: vec![body::world()],
         ..ModelBuilder::default()
     };
-    let mut notation = Notation::default();
+    let mut compiler = CompilerOptions::default();
     for section in sections(root, "compiler") {
-        compiler::read(section, &mut notation, &mut builder.compiler)?;
+        compiler::read(section, &mut compiler, &mut builder.compiler)?;
     }
     let mut options = OptionReader::default();
     for section in sections(root, "option") {
@@ -140,7 +140,7 @@ fn read_model(
     for section in sections(root, "default") {
         classes.read(section, spending)?;
     }
-    let files = Files::new(directory, &notation);
+    let files = Files::new(directory, &compiler);
     for element in entries(root, "asset") {
         match element.tag.as_str() {
             "mesh" => {
@@ -156,8 +156,14 @@ fn read_model(
             _ => {}
         }
     }
-    let looks = assets::Looks::read(root, &classes)?;
-    let mut bodies = BodyReader::new(&notation, &classes, &looks, &mut builder.bodies, spending);
+    let visibility = assets::Visibility::read(root, &classes)?;
+    let mut bodies = BodyReader::new(
+        &compiler,
+        &classes,
+        &visibility,
+        &mut builder.bodies,
+        spending,
+    );
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }
@@ -212,7 +218,7 @@ fn read_references(
         let class = classes.named_by(element, "class", MAIN)?;
         let shortcut = Shortcut::from_tag(&element.tag).unwrap_or_default();
         let mut draft = classes[class].actuator.clone();
-        draft.read(element, shortcut, classes.law(class, shortcut))?;
+        draft.read(element, shortcut, classes.parameters(class, shortcut))?;
         builder.actuators.push(draft.finish(element)?);
     }
     for element in entries(root, "sensor") {

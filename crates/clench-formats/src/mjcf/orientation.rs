@@ -1,6 +1,6 @@
 //! Poses: the five ways to write an orientation, and frames that carry their contents along.
 
-use super::compiler::Notation;
+use super::compiler::CompilerOptions;
 use super::document::Element;
 use crate::LoadError;
 use clench_math::{Mat3, Quat, Vec3};
@@ -54,7 +54,11 @@ impl Orientation {
     }
 
     /// The unit quaternion; `element` is where to report an axis without direction.
-    pub fn resolve(&self, notation: &Notation, element: &Element) -> Result<Quat<f64>, LoadError> {
+    pub fn resolve(
+        &self,
+        compiler: &CompilerOptions,
+        element: &Element,
+    ) -> Result<Quat<f64>, LoadError> {
         let direction = |v: [f64; 3], what: &str| {
             let (unit, length) = Vec3::from_array(v).normalize();
             if length < SMALL {
@@ -66,9 +70,9 @@ impl Orientation {
             Orientation::Quat(quat) => Ok(Quat::from_f64(quat).normalize()),
             Orientation::AxisAngle([x, y, z, angle]) => {
                 let axis = direction([x, y, z], "the axis of axisangle")?;
-                Ok(Quat::from_axis_angle(axis, notation.radians(angle)))
+                Ok(Quat::from_axis_angle(axis, compiler.radians(angle)))
             }
-            Orientation::Euler(angles) => Ok(notation.euler(angles)),
+            Orientation::Euler(angles) => Ok(compiler.euler(angles)),
             Orientation::XyAxes([x0, x1, x2, y0, y1, y2]) => {
                 let x = direction([x0, x1, x2], "the x axis of xyaxes")?;
                 let y = Vec3::new(y0, y1, y2);
@@ -107,12 +111,12 @@ impl Pose {
     };
 
     /// The pose that an element writes in `pos` and one of the orientation attributes.
-    pub fn read(element: &Element, notation: &Notation) -> Result<Pose, LoadError> {
+    pub fn read(element: &Element, compiler: &CompilerOptions) -> Result<Pose, LoadError> {
         let mut orientation = Orientation::default();
         orientation.read(element)?;
         Ok(Pose {
             pos: Vec3::from_array(element.numbers("pos")?.unwrap_or_default()),
-            quat: orientation.resolve(notation, element)?,
+            quat: orientation.resolve(compiler, element)?,
         })
     }
 

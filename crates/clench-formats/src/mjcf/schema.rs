@@ -173,13 +173,13 @@ fn words(text: &'static str) -> impl Iterator<Item = &'static str> {
 }
 
 /// Longer names are compared with none: the work grows with the product of the lengths.
-const LONGEST_SUGGESTED: usize = 100;
+const MAX_SUGGESTED_LENGTH: usize = 100;
 
 /// `; did you mean "..."?` if some known name is near to a mistaken one.
 pub(crate) fn suggestion<'a>(mistaken: &str, known: impl Iterator<Item = &'a str>) -> String {
     let distance =
         |name: &str| strsim::damerau_levenshtein(&mistaken.to_lowercase(), &name.to_lowercase());
-    let short = |name: &&str| name.len().max(mistaken.len()) <= LONGEST_SUGGESTED;
+    let short = |name: &&str| name.len().max(mistaken.len()) <= MAX_SUGGESTED_LENGTH;
     let nearest = (known.filter(short).map(|name| (distance(name), name))).min();
     match nearest {
         Some((distance, name)) if distance <= 2.max(mistaken.len() / 3) => {

@@ -1,6 +1,6 @@
 //! `<site>`: a frame, and the volume in which sensors feel.
 
-use super::compiler::Notation;
+use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::geom::{place_segment, read_kind};
 use super::orientation::{Orientation, Pose};
@@ -58,14 +58,14 @@ impl SiteDraft {
     pub fn finish(
         mut self,
         element: &Element,
-        notation: &Notation,
+        compiler: &CompilerOptions,
         frame: &Pose,
     ) -> Result<SiteSpec, LoadError> {
         let pose = match self.fromto {
             Some(points) => place_segment(points, self.pos, self.kind, &mut self.size, element)?,
             None => Pose {
                 pos: Vec3::from_array(self.pos),
-                quat: self.orientation.resolve(notation, element)?,
+                quat: self.orientation.resolve(compiler, element)?,
             },
         };
         let pose = frame.then(pose);

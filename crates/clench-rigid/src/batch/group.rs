@@ -4,20 +4,20 @@ use clench_math::{Mask, Real};
 use std::marker::PhantomData;
 
 /// The most lanes that any instruction set has.
-pub const MOST_LANES: usize = 16;
+pub const MAX_LANES: usize = 16;
 
 /// The environments in the lanes, the first `len` of them.
 pub struct Group<T> {
-    envs: [u32; MOST_LANES],
+    envs: [u32; MAX_LANES],
     pub len: usize,
     lanes: PhantomData<T>,
 }
 
 impl<T: Real> Group<T> {
     pub fn new(envs: &[u32]) -> Self {
-        const { assert!(T::LANES <= MOST_LANES) };
+        const { assert!(T::LANES <= MAX_LANES) };
         let mut group = Group {
-            envs: [0; MOST_LANES],
+            envs: [0; MAX_LANES],
             len: envs.len().min(T::LANES),
             lanes: PhantomData,
         };

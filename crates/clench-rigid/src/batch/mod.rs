@@ -40,7 +40,7 @@ use crate::state::State;
 use parameters::ParamRows;
 use rayon::ThreadPool;
 use record::{OutputRows, row_bytes};
-use rows::{per_env, rehearse};
+use rows::{per_env, try_reserve};
 use seen::Seen;
 use std::fmt;
 use std::sync::Arc;
@@ -79,7 +79,7 @@ pub struct Batch<S: Precision = f64> {
     initial: State<S>,
     scratch: State<S>,
     /// Where each environment stands among all by its last contacts.
-    places: Vec<AtomicU64>,
+    sort_keys: Vec<AtomicU64>,
     /// The environments that run, those of like contacts together.
     order: Vec<u32>,
     steppers: Vec<Box<dyn Stepper<S>>>,
@@ -131,7 +131,7 @@ impl<S: Precision> Batch<S> {
                 range: "less than 2^32",
             });
         }
-        rehearse(count, StateRows::<S>::row_bytes(&model) + BESIDES)?;
+        try_reserve(count, StateRows::<S>::row_bytes(&model) + BESIDES)?;
         let threads = options.threads(count)?;
         let pool = (threads > 1)
             .then(|| options.pool(threads).map(Arc::new))
@@ -156,7 +156,7 @@ impl<S: Precision> Batch<S> {
             seen: None,
             scratch: initial.clone(),
             initial,
-            places: per_env(count, || AtomicU64::new(0))?,
+            sort_keys: per_env(count, || AtomicU64::new(0))?,
             order: per_env(count, || 0)?,
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
             pool,

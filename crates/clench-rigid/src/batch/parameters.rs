@@ -44,7 +44,7 @@ impl<S: Precision> Batch<S> {
         check_length(field.name(), values.len(), width * envs.len())?;
         let mut values = values.to_vec();
         let mut rows = values.chunks_mut(width.max(1));
-        rows.try_for_each(|row| field.admit(&self.model, row))?;
+        rows.try_for_each(|row| field.check_row(&self.model, row))?;
         // What may run out of memory comes before the first change.
         self.param_rows(field)?;
         let mut follower = None;
@@ -53,7 +53,7 @@ impl<S: Precision> Batch<S> {
             follower = Some((field, self.model.params.broadcast::<S>()));
         }
         for (&env, row) in envs.iter().zip(values.chunks(width.max(1))) {
-            Model::loosen(&mut self.model, field, row);
+            Model::clear_structural_guarantees(&mut self.model, field, row);
             self.param_rows(field)?.row_mut(env).copy_from_slice(row);
             if let Some(seen) = &mut self.seen {
                 seen.forget(env);

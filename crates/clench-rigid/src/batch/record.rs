@@ -2,7 +2,7 @@
 
 use super::cells::Cells;
 use super::precision::Lanewise;
-use super::rows::rehearse;
+use super::rows::try_reserve;
 use super::seen::Seen;
 use super::stepper::Pass;
 use super::{Batch, EnvStatus, Precision, Rows, Summary};
@@ -267,7 +267,7 @@ impl<S: Precision> Batch<S> {
         let bytes = outputs
             .iter()
             .map(|&o| width(o).saturating_mul(size_of::<S>()));
-        rehearse(n, bytes.fold(0, usize::saturating_add))?;
+        try_reserve(n, bytes.fold(0, usize::saturating_add))?;
         let table = |&output: &Output| {
             let rows = Rows::new(n, width(output), filler)?;
             Ok(OutputRows { output, rows })

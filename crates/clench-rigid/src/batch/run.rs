@@ -137,7 +137,7 @@ impl<S: Precision> Batch<S> {
                 inputs,
                 params: &self.params,
                 targets: targets(&mut self.outputs, trace),
-                places: &self.places,
+                sort_keys: &self.sort_keys,
                 pass,
                 seen: self.seen.as_mut().map(Seen::share),
                 controls,
@@ -162,7 +162,7 @@ impl<S: Precision> Batch<S> {
         let envs = 0..self.status.len() as u32;
         (self.order).extend(envs.filter(|env| running(env) && wanted(env)));
         if self.options.grouping {
-            let place = |env: &u32| self.places[*env as usize].load(Relaxed);
+            let place = |env: &u32| self.sort_keys[*env as usize].load(Relaxed);
             self.order.sort_unstable_by_key(place);
         }
     }
@@ -170,18 +170,18 @@ impl<S: Precision> Batch<S> {
     /// Takes over what the steppers have to report.
     fn settle(&mut self, summary: &mut Summary) {
         for stepper in &mut self.steppers {
-            let tally = stepper.tally();
-            for env in tally.resets.drain(..) {
+            let totals = stepper.totals();
+            for env in totals.resets.drain(..) {
                 self.state.write_inputs(env as usize, &self.initial);
                 self.resets[env as usize] += 1;
                 summary.resets += 1;
             }
-            for (env, fault) in tally.faults.drain(..) {
+            for (env, fault) in totals.faults.drain(..) {
                 self.status[env as usize] = EnvStatus::Failed(fault);
                 summary.failed += 1;
             }
-            self.divergence += std::mem::take(&mut tally.divergence);
-            self.quality += std::mem::take(&mut tally.quality);
+            self.divergence += std::mem::take(&mut totals.divergence);
+            self.quality += std::mem::take(&mut totals.quality);
         }
     }
 }

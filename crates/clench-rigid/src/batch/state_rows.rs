@@ -2,7 +2,7 @@
 
 use super::cells::Cells;
 use super::precision::Lanewise;
-use super::rows::rehearse;
+use super::rows::try_reserve;
 use super::{Precision, Rows};
 use crate::check::check_length;
 use crate::error::SimError;
@@ -48,7 +48,7 @@ impl<S: Precision> StateRows<S> {
     /// # Errors
     /// More memory than there is.
     pub fn new(model: &Model, count: usize) -> Result<Self, SimError> {
-        rehearse(count, Self::row_bytes(model))?;
+        try_reserve(count, Self::row_bytes(model))?;
         let rows = |width| Rows::new(count, width, S::ZERO);
         Ok(StateRows {
             time: Rows::new(count, 1, 0.0)?,
@@ -162,7 +162,7 @@ impl<S: Precision> StateRows<S> {
         let (motion, inputs) = self.share();
         motion.read(env, 0, state);
         inputs.read(env, 0, state);
-        inputs.read_pushes(env, 0, state);
+        inputs.read_applied_forces(env, 0, state);
         Ok(())
     }
 
@@ -184,8 +184,8 @@ impl<S: Precision> StateRows<S> {
     }
 
     /// The tables as a step sees them.
-    pub(super) fn share(&mut self) -> (Motion<'_, S>, Inputs<'_, S>) {
-        let motion = Motion {
+    pub(super) fn share(&mut self) -> (MovingRows<'_, S>, Inputs<'_, S>) {
+        let motion = MovingRows {
             time: Cells::new(&mut self.time),
             qpos: Cells::new(&mut self.qpos),
             qvel: Cells::new(&mut self.qvel),
@@ -205,7 +205,7 @@ impl<S: Precision> StateRows<S> {
 }
 
 /// What a step reads and writes.
-pub struct Motion<'a, S: Lanewise> {
+pub struct MovingRows<'a, S: Lanewise> {
     time: Cells<'a, f64>,
     qpos: Cells<'a, S>,
     qvel: Cells<'a, S>,
@@ -213,7 +213,7 @@ pub struct Motion<'a, S: Lanewise> {
     qacc_warmstart: Cells<'a, S>,
 }
 
-impl<S: Lanewise> Motion<'_, S> {
+impl<S: Lanewise> MovingRows<'_, S> {
     /// Copies the row of an environment into lane `lane`.
     pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
         state.time.set_lane(lane, self.time.get(env));
@@ -283,12 +283,17 @@ impl<S: Lanewise> Inputs<'_, S> {
     }
 
     /// Whether forces are applied to any body of an environment; those of −0 count, for outputs show them.
-    pub fn pushed(&self, env: usize) -> bool {
+    pub fn has_applied_forces(&self, env: usize) -> bool {
         !self.xfrc_applied.is_blank(env)
     }
 
     /// Copies the forces on bodies of an environment into lane `lane`.
-    pub fn read_pushes<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
+    pub fn read_applied_forces<T: Real<Scalar = S>>(
+        &self,
+        env: usize,
+        lane: usize,
+        state: &mut State<T>,
+    ) {
         for (force, row) in state
             .xfrc_applied
             .iter_mut()

@@ -1,13 +1,13 @@
 //! A thread's scratch: environments come in by groups, are stepped side by side, and go out again.
 
 use super::divergence::Divergence;
-use super::group::{Group, MOST_LANES};
+use super::group::{Group, MAX_LANES};
 use super::parameters::ParamRows;
 use super::precision::Lanewise;
 use super::quality::{Place, Quality};
 use super::record::{Controls, Targets};
 use super::seen::SeenCells;
-use super::state_rows::{Inputs, Motion};
+use super::state_rows::{Inputs, MovingRows};
 use crate::check;
 use crate::error::Fault;
 use crate::model::{Model, Params};
@@ -25,12 +25,12 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 pub struct Job<'a, S: Lanewise> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
-    pub motion: Motion<'a, S>,
+    pub motion: MovingRows<'a, S>,
     pub inputs: Inputs<'a, S>,
     /// Parameters that environments have for themselves.
     pub params: &'a [ParamRows<S>],
     /// Where each environment stands in an order that puts those of like contacts side by side.
-    pub places: &'a [AtomicU64],
+    pub sort_keys: &'a [AtomicU64],
     /// What is done.
     pub pass: Pass,
     /// For which states outputs hold, where any are kept.
@@ -57,7 +57,7 @@ pub enum Pass {
 
 /// What a stepper has to report.
 #[derive(Default)]
-pub struct Tally {
+pub struct StepTotals {
     /// Environments that cannot go on, and why.
     pub faults: Vec<(u32, Fault)>,
     /// Environments that started over from the initial state.
@@ -73,7 +73,7 @@ pub trait Stepper<S: Lanewise>: Send {
     /// Does a job for a group of at most so many environments.
     fn run(&mut self, group: &[u32], job: &Job<S>);
     /// What happened since it was last cleared.
-    fn tally(&mut self) -> &mut Tally;
+    fn totals(&mut self) -> &mut StepTotals;
     /// Lets its clocks run, or not.
     fn run_clocks(&mut self, running: bool);
     /// Where the time went while they ran.
@@ -99,12 +99,12 @@ pub struct LaneStepper<T: Real> {
     params: Params<T>,
     ws: Workspace<T>,
     /// Whether the state holds forces on bodies.
-    pushed: bool,
+    has_applied_forces: bool,
     /// The output that is being copied.
     output: Vec<T>,
     /// Environments that are to start over from the initial state, with the step in which they do.
     restarts: Vec<(u32, usize)>,
-    tally: Tally,
+    totals: StepTotals,
 }
 
 /// Where the environments of a group begin.
@@ -126,10 +126,10 @@ where
             initial: State::new(model),
             params: model.params.broadcast(),
             ws: Workspace::new(model),
-            pushed: false,
+            has_applied_forces: false,
             output: Vec::new(),
             restarts: Vec::new(),
-            tally: Tally::default(),
+            totals: StepTotals::default(),
         }
     }
 
@@ -144,15 +144,17 @@ where
             }
         }
         // Forces on bodies are many numbers, and mostly all zero.
-        let pushed = group.iter().any(|(_, env)| job.inputs.pushed(env));
-        if pushed {
+        let has_applied_forces = group
+            .iter()
+            .any(|(_, env)| job.inputs.has_applied_forces(env));
+        if has_applied_forces {
             for (lane, env) in group.fill() {
-                job.inputs.read_pushes(env, lane, &mut self.state);
+                job.inputs.read_applied_forces(env, lane, &mut self.state);
             }
-        } else if self.pushed {
+        } else if self.has_applied_forces {
             self.state.xfrc_applied.fill(Force::ZERO);
         }
-        self.pushed = pushed;
+        self.has_applied_forces = has_applied_forces;
     }
 
     /// Does the steps of a job from `step` on.
@@ -171,7 +173,7 @@ where
             }
             while step < job.end && group.len > 0 {
                 self.control(&group, step, job);
-                if !self.admit(&mut group, (start, step), job) {
+                if !self.check_inputs(&mut group, (start, step), job) {
                     break;
                 }
                 self.ws.clock.lap(Stage::Rows as usize);
@@ -197,7 +199,7 @@ where
     }
 
     /// Lets go of the environments whose state no step can start from. Whether all stay.
-    fn admit(
+    fn check_inputs(
         &mut self,
         group: &mut Group<T>,
         (start, step): (Start, usize),
@@ -231,7 +233,7 @@ where
         if job.settings.solver.autoreset && start == Start::Rows && !bounded {
             self.restarts.push((env as u32, step));
         } else {
-            self.tally.faults.push((env as u32, fault));
+            self.totals.faults.push((env as u32, fault));
         }
     }
 
@@ -266,7 +268,7 @@ where
         }
         if start == Start::Initial && good.all() {
             let envs = group.iter().map(|(_, env)| env as u32);
-            self.tally.resets.extend(envs);
+            self.totals.resets.extend(envs);
         }
         self.scatter(group, good, job);
         self.record(group, good, step, job);
@@ -276,7 +278,7 @@ where
 
     /// Copies the states of the lanes that are good into their rows.
     fn scatter(&mut self, group: &Group<T>, good: T::Mask, job: &Job<T::Scalar>) {
-        let mut signatures = [0; MOST_LANES];
+        let mut signatures = [0; MAX_LANES];
         for contact in &self.ws.contacts {
             let [a, b] = contact.geoms.map(|g| g as u64);
             for (lane, signature) in signatures.iter_mut().enumerate().take(T::LANES) {
@@ -289,19 +291,19 @@ where
             if job.pass == Pass::Step {
                 job.motion.write(env, lane, &self.state);
             }
-            job.places[env].store(gray_rank(signatures[lane]), Relaxed);
+            job.sort_keys[env].store(gray_rank(signatures[lane]), Relaxed);
         }
         if job.pass == Pass::Query {
             return;
         }
-        self.tally.divergence.count(&self.ws, group.len);
+        self.totals.divergence.count(&self.ws, group.len);
         let place = Place {
             model: job.model,
             params: &self.params,
             settings: job.settings,
             ws: &self.ws,
         };
-        self.tally.quality.count(place, group.len, good);
+        self.totals.quality.count(place, group.len, good);
     }
 
     /// Copies what a step gave out to where it is wanted.
@@ -372,8 +374,8 @@ where
         }
     }
 
-    fn tally(&mut self) -> &mut Tally {
-        &mut self.tally
+    fn totals(&mut self) -> &mut StepTotals {
+        &mut self.totals
     }
 
     fn run_clocks(&mut self, running: bool) {

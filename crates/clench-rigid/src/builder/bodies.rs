@@ -11,7 +11,7 @@ use clench_math::{Quat, Vec3};
 /// Offsets (m, and parts of a quaternion) below which frames count as equal (MuJoCo's `kFrameEps`).
 const SAME_FRAME: f64 = 1e-6;
 /// Most degrees of freedom between a body and its parent.
-const MOST_DOFS: usize = 6;
+const MAX_DOFS: usize = 6;
 
 /// The author's bodies depth first: children in order of appearance, each followed by its own.
 ///
@@ -186,9 +186,9 @@ fn check_joints(spec: &BodySpec, parent: usize) -> Result<(), BuildError> {
         }
     }
     let dofs: usize = spec.joints.iter().map(|j| j.kind.nv()).sum();
-    if dofs > MOST_DOFS {
+    if dofs > MAX_DOFS {
         return Err(spec.error(format!(
-            "its joints have {dofs} degrees of freedom, more than {MOST_DOFS}"
+            "its joints have {dofs} degrees of freedom, more than {MAX_DOFS}"
         )));
     }
     let mut after_ball = spec

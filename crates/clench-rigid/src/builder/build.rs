@@ -3,8 +3,8 @@
 use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
-    BuildError, ModelBuilder, actuators, bodies, budget, check, contacts, equalities, keyframes,
-    sensors, tendons, weights,
+    BuildError, ModelBuilder, actuators, bodies, budget, check, contacts, equalities, invweight0,
+    keyframes, sensors, tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -39,8 +39,8 @@ impl ModelBuilder {
 
         bodies::add_all(self, &order, &assets, &mut model)?;
         assets.keep(self, &mut model);
-        weights::require_inertia(&model, &order)?;
-        weights::masses(self, &mut model);
+        invweight0::require_inertia(&model, &order)?;
+        invweight0::masses(self, &mut model);
         budget::matrices(self, &model)?;
         model.tree = Arc::new(tree(&model)?);
         contacts::add_all(self, &names, &mut model)?;
@@ -53,7 +53,7 @@ impl ModelBuilder {
         budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
         let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
-        weights::derive(self, &order, &springdampers, &mut pose0, &mut model)?;
+        invweight0::derive(self, &order, &springdampers, &mut pose0, &mut model)?;
         budget::keyframes(self, &model)?;
         keyframes::add_all(self, &mut model)?;
         Ok(model)

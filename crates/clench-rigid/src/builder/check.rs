@@ -10,7 +10,7 @@ use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 
 /// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
-const SHORTEST_QUAT: f64 = 1e-7;
+const MIN_QUAT_LENGTH: f64 = 1e-7;
 
 /// Looks at every element.
 ///
@@ -106,7 +106,7 @@ fn check_pose(element: &impl Element, pos: Vec3<f64>, quat: Quat<f64>) -> Result
     element.require_finite("pos", &pos.to_array())?;
     let quat = quat.to_array();
     element.require_finite("quat", &quat)?;
-    match quat.iter().map(|q| q * q).sum::<f64>().sqrt() < SHORTEST_QUAT {
+    match quat.iter().map(|q| q * q).sum::<f64>().sqrt() < MIN_QUAT_LENGTH {
         true => Err(element.error("quat is zero")),
         false => Ok(()),
     }

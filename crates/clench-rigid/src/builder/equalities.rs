@@ -19,7 +19,7 @@ pub(super) fn add_all(
     model: &mut Model,
 ) -> Result<(), BuildError> {
     for spec in &builder.equalities {
-        let scene = Scene {
+        let scene = EqualityContext {
             names,
             pose0,
             model,
@@ -57,13 +57,13 @@ struct Data {
 type Resolved = Result<(EqualityTarget, Data), BuildError>;
 
 /// What names and poses are looked up in.
-struct Scene<'a> {
+struct EqualityContext<'a> {
     names: &'a AllNames<'a>,
     pose0: &'a Positions<f64>,
     model: &'a Model,
 }
 
-impl Scene<'_> {
+impl EqualityContext<'_> {
     fn resolve(&self, spec: &EqualitySpec) -> Resolved {
         match &spec.kind {
             EqualityKind::Connect(anchor) => self.connect(spec, anchor),

@@ -41,13 +41,13 @@ impl fmt::Display for BuildError {
 impl std::error::Error for BuildError {}
 
 /// Texts longer than this are cut in messages, bytes.
-const LONGEST: usize = 600;
+const MAX_LENGTH: usize = 600;
 /// What is left of both ends of a text that is cut.
 const ENDS: usize = 250;
 
 /// A text for a message: as it is, or its beginning and end where it is long.
 pub fn shorten(text: &str) -> String {
-    if text.len() <= LONGEST {
+    if text.len() <= MAX_LENGTH {
         return text.to_owned();
     }
     let boundary = |from: usize| (from..text.len()).find(|&at| text.is_char_boundary(at));

@@ -6,7 +6,7 @@ use crate::model::{Dof, Joint, JointKind, Model};
 use clench_math::{Quat, Vec3};
 
 /// Shortest axis that still says a direction (its square is MuJoCo's `mjEPS`).
-const SHORTEST_AXIS: f64 = 1e-7;
+const MIN_AXIS_LENGTH: f64 = 1e-7;
 
 /// Adds a joint of body `b`, whose pose in its parent is `pose`.
 ///
@@ -78,7 +78,7 @@ fn placement(spec: &JointSpec) -> Result<(Vec3<f64>, Vec3<f64>), BuildError> {
         JointKind::Free => Ok((Vec3::ZERO, z)),
         JointKind::Ball => Ok((spec.pos, z)),
         JointKind::Slide | JointKind::Hinge => match spec.axis.normalize() {
-            (_, length) if length < SHORTEST_AXIS => Err(spec.error("axis is zero")),
+            (_, length) if length < MIN_AXIS_LENGTH => Err(spec.error("axis is zero")),
             (axis, _) => Ok((spec.pos, axis)),
         },
     }

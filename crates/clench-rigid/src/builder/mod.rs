@@ -30,8 +30,8 @@ mod assets;
 mod bodies;
 mod budget;
 mod build;
-mod by_hand;
 mod check;
+mod constructors;
 mod contacts;
 mod element;
 mod elements;
@@ -39,6 +39,7 @@ mod equalities;
 mod error;
 mod geoms;
 mod inertia;
+mod invweight0;
 mod joints;
 mod keyframes;
 mod meshes;
@@ -50,7 +51,6 @@ mod sensors;
 mod shapes;
 mod solid;
 mod tendons;
-mod weights;
 
 pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};
 pub use elements::{

@@ -3,7 +3,7 @@
 //! The dofs that move a body are its chain: a row of the tree. Of two chains the common part comes first in both; what
 //! is left lies on different branches, and dofs are numbered depth first, so one rest comes wholly before the other.
 
-use super::Scene;
+use super::ConstraintContext;
 use clench_math::{Motion, Real, Vec3};
 
 /// Which of the two bodies a dof moves.
@@ -23,8 +23,8 @@ pub(super) struct Chains<'a> {
 impl<'a> Chains<'a> {
     /// All dofs that move either body.
     #[inline(always)]
-    pub fn new<T: Real>(scene: &Scene<'a, T>, [body1, body2]: [usize; 2]) -> Self {
-        let model = scene.model;
+    pub fn new<T: Real>(context: &ConstraintContext<'a, T>, [body1, body2]: [usize; 2]) -> Self {
+        let model = context.model;
         let chain = |body: usize| match model.bodies[body].last_dof {
             Some(dof) => model.tree.row(dof),
             None => &[],
@@ -87,25 +87,25 @@ pub(super) struct BodyPoint<T> {
 impl<T: Real> BodyPoint<T> {
     /// The point of `body` that is at `point` (world coordinates) now.
     #[inline(always)]
-    pub fn new(scene: &Scene<T>, body: usize, point: Vec3<T>) -> Self {
-        let root = scene.model.bodies[body].root;
+    pub fn new(context: &ConstraintContext<T>, body: usize, point: Vec3<T>) -> Self {
+        let root = context.model.bodies[body].root;
         BodyPoint {
             body,
-            offset: point - scene.position.subtree_com[root],
+            offset: point - context.position.subtree_com[root],
         }
     }
 
     /// Acceleration of the body and of the point while no dof accelerates (J̇ v): angular, then linear at the point.
     #[inline(always)]
-    pub fn bias_acceleration(&self, scene: &Scene<T>) -> Motion<T> {
+    pub fn bias_acceleration(&self, context: &ConstraintContext<T>) -> Motion<T> {
         let mut sum = Motion::ZERO;
-        if let Some(last) = scene.model.bodies[self.body].last_dof {
-            for &dof in scene.model.tree.row(last) {
+        if let Some(last) = context.model.bodies[self.body].last_dof {
+            for &dof in context.model.tree.row(last) {
                 let dof = dof as usize;
-                sum += scene.velocity.cdof_dot[dof] * scene.state.qvel[dof];
+                sum += context.velocity.cdof_dot[dof] * context.state.qvel[dof];
             }
         }
-        let velocity = scene.velocity.cvel[self.body];
+        let velocity = context.velocity.cvel[self.body];
         let turning = velocity.angular.cross(velocity.velocity_at(self.offset));
         Motion::new(sum.angular, sum.velocity_at(self.offset) + turning)
     }

@@ -8,7 +8,7 @@
 //! point, plus ω × ṗ. The impedance is that of the violation's length; A₀ the sum of the bodies' translational inverse
 //! weights.
 
-use super::Scene;
+use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
 use super::chains::{BodyPoint, Chains, Side};
 use clench_math::{Motion, Real, Vec3, kernel};
@@ -16,28 +16,28 @@ use clench_solver::Cost;
 
 #[kernel]
 pub(super) fn push<T: Real>(
-    scene: &Scene<T>,
+    context: &ConstraintContext<T>,
     out: &mut Assembly<T>,
     equality: usize,
     bodies: [usize; 2],
 ) {
-    let chains = Chains::new(scene, bodies);
+    let chains = Chains::new(context, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
     }
-    let anchors = Anchors::new(scene, equality, bodies);
+    let anchors = Anchors::new(context, equality, bodies);
     let violation = anchors.separation;
     let bias = anchors.bias[0].linear - anchors.bias[1].linear;
-    let (soft, block) = scene.equality(equality, violation.norm());
-    let a0 = bodies.map(|b| scene.params.body_invweight0[b][0]);
+    let (soft, block) = context.equality(equality, violation.norm());
+    let a0 = bodies.map(|b| context.params.body_invweight0[b][0]);
     let mut rows = [Row::default(); 3];
     for (i, row) in rows.iter_mut().enumerate() {
         *row = Row::new(&soft, violation[i], T::ZERO, a0[0] + a0[1]);
         row.aref -= bias[i];
     }
     out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
-        anchors.fill_translation(scene, &chains, jacobian);
+        anchors.fill_translation(context, &chains, jacobian);
     });
 }
 
@@ -53,18 +53,18 @@ pub(super) struct Anchors<T> {
 
 impl<T: Real> Anchors<T> {
     #[inline(always)]
-    pub fn new(scene: &Scene<T>, equality: usize, bodies: [usize; 2]) -> Self {
-        let (pos, params) = (scene.position, scene.params);
+    pub fn new(context: &ConstraintContext<T>, equality: usize, bodies: [usize; 2]) -> Self {
+        let (pos, params) = (context.position, context.params);
         let [body1, body2] = bodies;
         let world1 = pos.xpos[body1] + pos.xmat[body1] * params.eq_anchor1[equality];
         let world2 = pos.xpos[body2] + pos.xmat[body2] * params.eq_anchor2[equality];
-        let first = BodyPoint::new(scene, body1, world1);
-        let second = BodyPoint::new(scene, body2, world2);
+        let first = BodyPoint::new(context, body1, world1);
+        let second = BodyPoint::new(context, body2, world2);
         Anchors {
             separation: world1 - world2,
             bias: [
-                first.bias_acceleration(scene),
-                second.bias_acceleration(scene),
+                first.bias_acceleration(context),
+                second.bias_acceleration(context),
             ],
             offsets: [first.offset, second.offset],
         }
@@ -72,11 +72,16 @@ impl<T: Real> Anchors<T> {
 
     /// Rows 0 to 2 of a Jacobian: velocity of the first point less that of the second.
     #[inline(always)]
-    pub fn fill_translation(&self, scene: &Scene<T>, chains: &Chains, jacobian: &mut [T]) {
+    pub fn fill_translation(
+        &self,
+        context: &ConstraintContext<T>,
+        chains: &Chains,
+        jacobian: &mut [T],
+    ) {
         let ndof = chains.iter().count();
         let [first, second] = self.offsets;
         for (column, (dof, side)) in chains.iter().enumerate() {
-            let axis = scene.position.cdof[dof];
+            let axis = context.position.cdof[dof];
             let velocity = match side {
                 Side::Both => axis.velocity_at(first) - axis.velocity_at(second),
                 Side::First => axis.velocity_at(first),

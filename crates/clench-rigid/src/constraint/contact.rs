@@ -18,7 +18,7 @@
 
 use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
 use super::chains::{BodyPoint, Chains, Side};
-use super::{Scene, Softness};
+use super::{ConstraintContext, Softness};
 use crate::contact::Contact;
 use clench_math::{Mask, Real, kernel};
 use clench_solver::{Cost, FrictionCone};
@@ -29,7 +29,7 @@ const MAX_DIM: usize = 6;
 /// Makes a block of `contact`, the `index`-th of the workspace, where any lane touches and any dof is between the bodies.
 #[kernel]
 pub(super) fn push<T: Real>(
-    scene: &Scene<T>,
+    context: &ConstraintContext<T>,
     out: &mut Assembly<T>,
     index: usize,
     contact: &mut Contact<T>,
@@ -39,9 +39,9 @@ pub(super) fn push<T: Real>(
     if !active.any() {
         return;
     }
-    let body = |i: usize| scene.model.geoms[contact.geoms[i]].body;
+    let body = |i: usize| context.model.geoms[contact.geoms[i]].body;
     let bodies = [body(0), body(1)];
-    let chains = Chains::new(scene, bodies).without_common();
+    let chains = Chains::new(context, bodies).without_common();
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
@@ -50,11 +50,11 @@ pub(super) fn push<T: Real>(
         contact.solref,
         contact.solimp,
         contact.dist - contact.includemargin,
-        scene.least_timeconst,
+        context.least_timeconst,
     );
-    let weight = |body: usize| scene.params.body_invweight0[body][0];
+    let weight = |body: usize| context.params.body_invweight0[body][0];
     let a0 = weight(bodies[0]) + weight(bodies[1]);
-    let (cost, rows) = rows(scene, contact, &soft, a0);
+    let (cost, rows) = rows(context, contact, &soft, a0);
     let block = BlockRecord {
         source: ConstraintSource::Contact(index),
         active,
@@ -63,13 +63,13 @@ pub(super) fn push<T: Real>(
     };
     contact.block = Some(out.problem.nblock());
     out.push(cost, block, &rows[..contact.dim], |_, jacobian| {
-        fill(scene, contact, bodies, &chains, jacobian);
+        fill(context, contact, bodies, &chains, jacobian);
     });
 }
 
 #[inline(always)]
 fn rows<T: Real>(
-    scene: &Scene<T>,
+    context: &ConstraintContext<T>,
     contact: &Contact<T>,
     soft: &Softness<T>,
     a0: T,
@@ -85,9 +85,9 @@ fn rows<T: Real>(
     if contact.dim == 1 {
         return (Cost::OneSided, rows);
     }
-    let impratio = scene.impratio;
+    let impratio = context.impratio;
     let mu = contact.friction;
-    match scene.settings.solver.friction_cone {
+    match context.settings.solver.friction_cone {
         FrictionCone::Pyramidal => {
             let mu2 = mu[0] * mu[0];
             let r = soft.regularization(a0 + mu2 * a0);
@@ -103,7 +103,7 @@ fn rows<T: Real>(
             let damping = soft.friction_damping(
                 contact.solreffriction,
                 contact.solimp,
-                scene.least_timeconst,
+                context.least_timeconst,
             );
             rows[0].shape = mu[0] * (r1 / normal.r).sqrt();
             for (row, &mu_j) in rows[1..].iter_mut().zip(&mu) {
@@ -119,7 +119,7 @@ fn rows<T: Real>(
 /// Velocity of the second body less that of the first, column by column.
 #[inline(always)]
 fn fill<T: Real>(
-    scene: &Scene<T>,
+    context: &ConstraintContext<T>,
     contact: &Contact<T>,
     bodies: [usize; 2],
     chains: &Chains,
@@ -133,9 +133,9 @@ fn fill<T: Real>(
             Side::Second => (bodies[1], T::ONE),
             _ => (bodies[0], -T::ONE),
         };
-        let offset = BodyPoint::new(scene, body, contact.pos).offset;
+        let offset = BodyPoint::new(context, body, contact.pos).offset;
         for &dof in dofs {
-            let motion = scene.position.cdof[dof as usize];
+            let motion = context.position.cdof[dof as usize];
             let velocity = motion.velocity_at(offset) * sign;
             jacobian[column] = axes[0].dot(velocity);
             if dim > 1 {

@@ -1,6 +1,6 @@
 //! A scalar function of joint positions, which equalities, limits and dry friction of joints and tendons act on.
 
-use super::Scene;
+use super::ConstraintContext;
 use crate::dynamics::tendon;
 use clench_math::Real;
 
@@ -16,35 +16,37 @@ pub(super) enum Coordinate {
 impl Coordinate {
     /// Its value.
     #[inline(always)]
-    pub fn value<T: Real>(self, scene: &Scene<T>) -> T {
+    pub fn value<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
-            Coordinate::Joint(joint) => scene.state.qpos[scene.model.joints[joint].qpos],
-            Coordinate::Tendon(tendon) => scene.position.ten_length[tendon],
+            Coordinate::Joint(joint) => context.state.qpos[context.model.joints[joint].qpos],
+            Coordinate::Tendon(tendon) => context.position.ten_length[tendon],
         }
     }
 
     /// Its value in the initial configuration.
     #[inline(always)]
-    pub fn initial<T: Real>(self, scene: &Scene<T>) -> T {
+    pub fn initial<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
-            Coordinate::Joint(joint) => scene.params.qpos0[scene.model.joints[joint].qpos],
-            Coordinate::Tendon(tendon) => scene.params.tendon_length0[tendon],
+            Coordinate::Joint(joint) => context.params.qpos0[context.model.joints[joint].qpos],
+            Coordinate::Tendon(tendon) => context.params.tendon_length0[tendon],
         }
     }
 
     /// The inverse inertia that it sees in the initial configuration.
     #[inline(always)]
-    pub fn inverse_weight<T: Real>(self, scene: &Scene<T>) -> T {
+    pub fn inverse_weight<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
-            Coordinate::Joint(joint) => scene.params.dof_invweight0[scene.model.joints[joint].dof],
-            Coordinate::Tendon(tendon) => scene.params.tendon_invweight0[tendon],
+            Coordinate::Joint(joint) => {
+                context.params.dof_invweight0[context.model.joints[joint].dof]
+            }
+            Coordinate::Tendon(tendon) => context.params.tendon_invweight0[tendon],
         }
     }
 
     /// Adds its dofs to `dofs`, keeping them ascending and each once.
     #[inline(always)]
-    pub fn insert_dofs<T: Real>(self, scene: &Scene<T>, dofs: &mut Vec<u32>) {
-        self.each(scene, |dof, _| {
+    pub fn insert_dofs<T: Real>(self, context: &ConstraintContext<T>, dofs: &mut Vec<u32>) {
+        self.each(context, |dof, _| {
             if let Err(place) = dofs.binary_search(&dof) {
                 dofs.insert(place, dof);
             }
@@ -53,8 +55,14 @@ impl Coordinate {
 
     /// Adds `scale` times its gradient to a Jacobian row over the dofs that [`insert_dofs`](Self::insert_dofs) left.
     #[inline(always)]
-    pub fn add_gradient<T: Real>(self, scene: &Scene<T>, dofs: &[u32], scale: T, row: &mut [T]) {
-        self.each(scene, |dof, coefficient| {
+    pub fn add_gradient<T: Real>(
+        self,
+        context: &ConstraintContext<T>,
+        dofs: &[u32],
+        scale: T,
+        row: &mut [T],
+    ) {
+        self.each(context, |dof, coefficient| {
             if let Ok(column) = dofs.binary_search(&dof) {
                 row[column] += scale * coefficient;
             }
@@ -62,11 +70,11 @@ impl Coordinate {
     }
 
     #[inline(always)]
-    fn each<T: Real>(self, scene: &Scene<T>, mut visit: impl FnMut(u32, T)) {
+    fn each<T: Real>(self, context: &ConstraintContext<T>, mut visit: impl FnMut(u32, T)) {
         match self {
-            Coordinate::Joint(joint) => visit(scene.model.joints[joint].dof as u32, T::ONE),
+            Coordinate::Joint(joint) => visit(context.model.joints[joint].dof as u32, T::ONE),
             Coordinate::Tendon(tendon) => {
-                for (dof, coefficient) in tendon::terms(scene.model, scene.params, tendon) {
+                for (dof, coefficient) in tendon::terms(context.model, context.params, tendon) {
                     visit(dof as u32, coefficient);
                 }
             }

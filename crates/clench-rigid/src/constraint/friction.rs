@@ -9,14 +9,14 @@
 
 use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
 use super::coordinate::Coordinate;
-use super::{Scene, Softness};
+use super::{ConstraintContext, Softness};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 
 /// All dofs, then all tendons, that have a friction loss.
 #[kernel]
-pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
-    let (model, params) = (scene.model, scene.params);
+pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
+    let (model, params) = (context.model, context.params);
     for (i, dof) in model.dofs.iter().enumerate() {
         if !dof.frictionloss {
             continue;
@@ -31,7 +31,7 @@ pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
             solimp: params.dof_solimp[i],
             a0: params.dof_invweight0[i],
         };
-        friction.push(scene, out, |_, jacobian| jacobian[0] = T::ONE);
+        friction.push(context, out, |_, jacobian| jacobian[0] = T::ONE);
     }
     for (i, tendon) in model.tendons.iter().enumerate() {
         if !tendon.frictionloss {
@@ -40,7 +40,7 @@ pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
         let coordinate = Coordinate::Tendon(i);
         let dofs = out.dofs();
         dofs.clear();
-        coordinate.insert_dofs(scene, dofs);
+        coordinate.insert_dofs(context, dofs);
         let friction = Friction {
             source: ConstraintSource::TendonFriction(i),
             loss: params.tendon_frictionloss[i],
@@ -48,8 +48,8 @@ pub(super) fn push_all<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
             solimp: params.tendon_solimp_fri[i],
             a0: params.tendon_invweight0[i],
         };
-        friction.push(scene, out, |dofs, jacobian| {
-            coordinate.add_gradient(scene, dofs, T::ONE, jacobian);
+        friction.push(context, out, |dofs, jacobian| {
+            coordinate.add_gradient(context, dofs, T::ONE, jacobian);
         });
     }
 }
@@ -64,12 +64,17 @@ struct Friction<T> {
 
 impl<T: Real> Friction<T> {
     #[inline(always)]
-    fn push(self, scene: &Scene<T>, out: &mut Assembly<T>, fill: impl FnOnce(&[u32], &mut [T])) {
+    fn push(
+        self,
+        context: &ConstraintContext<T>,
+        out: &mut Assembly<T>,
+        fill: impl FnOnce(&[u32], &mut [T]),
+    ) {
         let active = self.loss.gt(T::ZERO);
         if !active.any() {
             return;
         }
-        let soft = Softness::new(self.solref, self.solimp, T::ZERO, scene.least_timeconst);
+        let soft = Softness::new(self.solref, self.solimp, T::ZERO, context.least_timeconst);
         let row = Row {
             shape: self.loss,
             ..Row::new(&soft, T::ZERO, T::ZERO, self.a0)

@@ -11,23 +11,23 @@
 
 use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
 use super::coordinate::Coordinate;
-use super::{Scene, Softness};
+use super::{ConstraintContext, Softness};
 use crate::model::JointKind;
 use clench_math::{Mask, Quat, Real, kernel};
 use clench_solver::Cost;
 
 /// All limits of joints.
 #[kernel]
-pub(super) fn push_joints<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
-    let params = scene.params;
-    for (i, joint) in scene.model.joints.iter().enumerate() {
+pub(super) fn push_joints<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
+    let params = context.params;
+    for (i, joint) in context.model.joints.iter().enumerate() {
         if !joint.limited {
             continue;
         }
         let margin = params.jnt_margin[i];
         if let JointKind::Hinge | JointKind::Slide = joint.kind {
             // Most joints are well within their range.
-            let (q, [low, high]) = (scene.state.qpos[joint.qpos], params.jnt_range[i]);
+            let (q, [low, high]) = (context.state.qpos[joint.qpos], params.jnt_range[i]);
             if !((q - low).lt(margin) | (high - q).lt(margin)).any() {
                 continue;
             }
@@ -41,9 +41,9 @@ pub(super) fn push_joints<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
         };
         match joint.kind {
             JointKind::Hinge | JointKind::Slide => {
-                limit.push_range(scene, out, Coordinate::Joint(i), params.jnt_range[i]);
+                limit.push_range(context, out, Coordinate::Joint(i), params.jnt_range[i]);
             }
-            JointKind::Ball => limit.push_cone(scene, out, i),
+            JointKind::Ball => limit.push_cone(context, out, i),
             JointKind::Free => {}
         }
     }
@@ -51,9 +51,9 @@ pub(super) fn push_joints<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
 
 /// All limits of tendons.
 #[kernel]
-pub(super) fn push_tendons<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
-    let params = scene.params;
-    for (i, tendon) in scene.model.tendons.iter().enumerate() {
+pub(super) fn push_tendons<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
+    let params = context.params;
+    for (i, tendon) in context.model.tendons.iter().enumerate() {
         if !tendon.limited {
             continue;
         }
@@ -65,7 +65,7 @@ pub(super) fn push_tendons<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
             a0: params.tendon_invweight0[i],
         };
         let coordinate = Coordinate::Tendon(i);
-        limit.push_range(scene, out, coordinate, params.tendon_range[i]);
+        limit.push_range(context, out, coordinate, params.tendon_range[i]);
     }
 }
 
@@ -82,26 +82,26 @@ impl<T: Real> Limit<'_, T> {
     #[inline(always)]
     fn push_range(
         &self,
-        scene: &Scene<T>,
+        context: &ConstraintContext<T>,
         out: &mut Assembly<T>,
         coordinate: Coordinate,
         [low, high]: [T; 2],
     ) {
-        let value = coordinate.value(scene);
+        let value = coordinate.value(context);
         for (dist, sign) in [(value - low, T::ONE), (high - value, -T::ONE)] {
             if !dist.lt(self.margin).any() {
                 continue;
             }
             let dofs = out.dofs();
             dofs.clear();
-            coordinate.insert_dofs(scene, dofs);
+            coordinate.insert_dofs(context, dofs);
             self.push(
-                scene,
+                context,
                 out,
                 dist,
                 #[inline(always)]
                 |dofs, jacobian| {
-                    coordinate.add_gradient(scene, dofs, sign, jacobian);
+                    coordinate.add_gradient(context, dofs, sign, jacobian);
                 },
             );
         }
@@ -109,14 +109,14 @@ impl<T: Real> Limit<'_, T> {
 
     /// The largest angle of a ball joint.
     #[inline(always)]
-    fn push_cone(&self, scene: &Scene<T>, out: &mut Assembly<T>, joint: usize) {
+    fn push_cone(&self, context: &ConstraintContext<T>, out: &mut Assembly<T>, joint: usize) {
         let (qpos, dof) = {
-            let joint = &scene.model.joints[joint];
+            let joint = &context.model.joints[joint];
             (joint.qpos, joint.dof as u32)
         };
-        let orientation = Quat::from_slice(&scene.state.qpos[qpos..]).normalize();
+        let orientation = Quat::from_slice(&context.state.qpos[qpos..]).normalize();
         let (axis, angle) = orientation.to_rotation_vector().normalize();
-        let [low, high] = scene.params.jnt_range[joint];
+        let [low, high] = context.params.jnt_range[joint];
         let dist = low.max(high) - angle;
         if !dist.lt(self.margin).any() {
             return;
@@ -124,19 +124,24 @@ impl<T: Real> Limit<'_, T> {
         let dofs = out.dofs();
         dofs.clear();
         dofs.extend(dof..dof + 3);
-        self.push(scene, out, dist, |_, jacobian| (-axis).write(jacobian));
+        self.push(context, out, dist, |_, jacobian| (-axis).write(jacobian));
     }
 
     #[inline(always)]
     fn push(
         &self,
-        scene: &Scene<T>,
+        context: &ConstraintContext<T>,
         out: &mut Assembly<T>,
         dist: T,
         fill: impl FnOnce(&[u32], &mut [T]),
     ) {
         let violation = dist - self.margin;
-        let soft = Softness::new(*self.solref, *self.solimp, violation, scene.least_timeconst);
+        let soft = Softness::new(
+            *self.solref,
+            *self.solimp,
+            violation,
+            context.least_timeconst,
+        );
         let row = Row::new(&soft, dist, self.margin, self.a0);
         let block = BlockRecord {
             source: self.source,

@@ -8,8 +8,8 @@ mod chains;
 mod connect;
 mod contact;
 mod coordinate;
-mod coupling;
 mod friction;
+mod joint_equality;
 mod limit;
 pub mod softness;
 mod weld;
@@ -28,7 +28,7 @@ use clench_math::{Mask, Real};
 use coordinate::Coordinate;
 
 /// All that constraints read.
-struct Scene<'a, T: Real> {
+struct ConstraintContext<'a, T: Real> {
     model: &'a Model,
     params: &'a Params<T>,
     settings: &'a StepSettings,
@@ -41,7 +41,7 @@ struct Scene<'a, T: Real> {
     impratio: T,
 }
 
-impl<T: Real> Scene<'_, T> {
+impl<T: Real> ConstraintContext<'_, T> {
     /// How soft an equality is at a violation of this size, and the record of its block.
     #[inline(always)]
     fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
@@ -97,7 +97,7 @@ pub fn assemble<T: Real>(
     if !settings.flags.constraint {
         return;
     }
-    let scene = Scene {
+    let context = ConstraintContext {
         model,
         params,
         settings,
@@ -114,19 +114,19 @@ pub fn assemble<T: Real>(
         weights: &params.dof_invweight0,
     };
     if settings.flags.equality {
-        push_equalities(&scene, &mut out);
+        push_equalities(&context, &mut out);
     }
     if settings.flags.frictionloss {
-        friction::push_all(&scene, &mut out);
+        friction::push_all(&context, &mut out);
     }
     if settings.joint_limits {
-        limit::push_joints(&scene, &mut out);
+        limit::push_joints(&context, &mut out);
     }
     if settings.flags.limit {
-        limit::push_tendons(&scene, &mut out);
+        limit::push_tendons(&context, &mut out);
     }
     if settings.flags.contact {
-        push_contacts(&scene, &mut out, &mut ws.contacts);
+        push_contacts(&context, &mut out, &mut ws.contacts);
     }
 }
 
@@ -140,30 +140,34 @@ fn least_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
     }
 }
 
-fn push_equalities<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>) {
-    for (i, equality) in scene.model.equalities.iter().enumerate() {
-        if !scene.state.eq_active[i].any() {
+fn push_equalities<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
+    for (i, equality) in context.model.equalities.iter().enumerate() {
+        if !context.state.eq_active[i].any() {
             continue;
         }
         match equality.target {
             EqualityTarget::Connect { body1, body2 } => {
-                connect::push(scene, out, i, [body1, body2])
+                connect::push(context, out, i, [body1, body2])
             }
-            EqualityTarget::Weld { body1, body2 } => weld::push(scene, out, i, [body1, body2]),
+            EqualityTarget::Weld { body1, body2 } => weld::push(context, out, i, [body1, body2]),
             EqualityTarget::Joint { joint1, joint2 } => {
                 let leader = joint2.map(Coordinate::Joint);
-                coupling::push(scene, out, i, Coordinate::Joint(joint1), leader);
+                joint_equality::push(context, out, i, Coordinate::Joint(joint1), leader);
             }
             EqualityTarget::Tendon { tendon1, tendon2 } => {
                 let leader = tendon2.map(Coordinate::Tendon);
-                coupling::push(scene, out, i, Coordinate::Tendon(tendon1), leader);
+                joint_equality::push(context, out, i, Coordinate::Tendon(tendon1), leader);
             }
         }
     }
 }
 
-fn push_contacts<T: Real>(scene: &Scene<T>, out: &mut Assembly<T>, contacts: &mut [Contact<T>]) {
+fn push_contacts<T: Real>(
+    context: &ConstraintContext<T>,
+    out: &mut Assembly<T>,
+    contacts: &mut [Contact<T>],
+) {
     for (i, contact) in contacts.iter_mut().enumerate() {
-        contact::push(scene, out, i, contact);
+        contact::push(context, out, i, contact);
     }
 }

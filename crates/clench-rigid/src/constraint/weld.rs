@@ -12,7 +12,7 @@
 //! J̇ v is r̈ with ω̇ the bias accelerations. The impedance is that of the length of all six rows; A₀ the sums of the
 //! bodies' inverse weights, translational and rotational.
 
-use super::Scene;
+use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
 use super::chains::{Chains, Side};
 use super::connect::Anchors;
@@ -21,39 +21,39 @@ use clench_solver::Cost;
 
 #[kernel]
 pub(super) fn push<T: Real>(
-    scene: &Scene<T>,
+    context: &ConstraintContext<T>,
     out: &mut Assembly<T>,
     equality: usize,
     bodies: [usize; 2],
 ) {
-    let chains = Chains::new(scene, bodies);
+    let chains = Chains::new(context, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
     }
-    let anchors = Anchors::new(scene, equality, bodies);
+    let anchors = Anchors::new(context, equality, bodies);
     let [bias1, bias2] = anchors.bias;
     let translation = anchors.separation;
     let bias_translation = bias1.linear - bias2.linear;
-    let relative = Relative::new(scene, equality, bodies);
+    let relative = Relative::new(context, equality, bodies);
     let rotation = relative.rho.imaginary() * relative.scale;
-    let bias_rotation = relative.bias(scene, bodies, [bias1.angular, bias2.angular]);
+    let bias_rotation = relative.bias(context, bodies, [bias1.angular, bias2.angular]);
     let length = (translation.norm_squared() + rotation.norm_squared()).sqrt();
-    let (soft, block) = scene.equality(equality, length);
+    let (soft, block) = context.equality(equality, length);
     let mut rows = [Row::default(); 6];
     for (i, row) in rows.iter_mut().enumerate() {
         let (pos, bias, part) = match i {
             0..3 => (translation[i], bias_translation[i], 0),
             _ => (rotation[i - 3], bias_rotation[i - 3], 1),
         };
-        let a0 = bodies.map(|b| scene.params.body_invweight0[b][part]);
+        let a0 = bodies.map(|b| context.params.body_invweight0[b][part]);
         *row = Row::new(&soft, pos, T::ZERO, a0[0] + a0[1]);
         row.aref -= bias;
     }
     out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
         let (upper, lower) = jacobian.split_at_mut(jacobian.len() / 2);
-        anchors.fill_translation(scene, &chains, upper);
-        relative.fill(scene, &chains, lower);
+        anchors.fill_translation(context, &chains, upper);
+        relative.fill(context, &chains, lower);
     });
 }
 
@@ -67,8 +67,8 @@ struct Relative<T> {
 
 impl<T: Real> Relative<T> {
     #[inline(always)]
-    fn new(scene: &Scene<T>, equality: usize, [body1, body2]: [usize; 2]) -> Self {
-        let (params, xquat) = (scene.params, &scene.position.xquat);
+    fn new(context: &ConstraintContext<T>, equality: usize, [body1, body2]: [usize; 2]) -> Self {
+        let (params, xquat) = (context.params, &context.position.xquat);
         let first = xquat[body1] * params.eq_quat1[equality];
         let to_second = (xquat[body2] * params.eq_quat2[equality]).conjugate();
         Relative {
@@ -88,11 +88,11 @@ impl<T: Real> Relative<T> {
     #[inline(always)]
     fn bias(
         &self,
-        scene: &Scene<T>,
+        context: &ConstraintContext<T>,
         bodies: [usize; 2],
         [alpha1, alpha2]: [Vec3<T>; 2],
     ) -> Vec3<T> {
-        let cvel = &scene.velocity.cvel;
+        let cvel = &context.velocity.cvel;
         let [omega1, omega2] = bodies.map(|b| cvel[b].angular);
         let omega = omega1 - omega2;
         let u = self.to_second.rotate(omega);
@@ -103,10 +103,10 @@ impl<T: Real> Relative<T> {
     }
 
     #[inline(always)]
-    fn fill(&self, scene: &Scene<T>, chains: &Chains, jacobian: &mut [T]) {
+    fn fill(&self, context: &ConstraintContext<T>, chains: &Chains, jacobian: &mut [T]) {
         let ndof = chains.iter().count();
         for (column, (dof, side)) in chains.iter().enumerate() {
-            let axis = scene.position.cdof[dof].angular;
+            let axis = context.position.cdof[dof].angular;
             let turn = match side {
                 Side::Both => continue,
                 Side::First => axis,

@@ -1,6 +1,6 @@
 //! Finds the contacts of a configuration: bounding spheres, then the narrow phase, in slots that all lanes share.
 
-use super::reach::{self, Reach, may_touch};
+use super::bounding_sphere::{self, BoundingSphere, may_touch};
 use super::select::{explicit, geoms_may_collide};
 use super::{Candidate, Contact, candidates, contact_params, contact_range};
 use crate::Budget;
@@ -48,7 +48,7 @@ impl Excess {
 }
 
 /// Above this many geoms the pairs are not listed once but looked for in each step: a list grows with the square.
-const MOST_LISTED_GEOMS: usize = 128;
+const MAX_LISTED_GEOMS: usize = 128;
 
 /// What detection keeps between steps.
 #[derive(Clone, Debug)]
@@ -65,8 +65,8 @@ pub struct Collision<T: Real> {
     /// Those of them that may touch now.
     near: Vec<u32>,
     /// Finds the candidates of a large model anew each step; those of a small one never change.
-    crowd: Option<Box<Crowd<T>>>,
-    reaches: Vec<Reach<T>>,
+    broad_phase: Option<Box<DynamicBroadPhase<T>>>,
+    spheres: Vec<BoundingSphere<T>>,
     points: Contacts<T>,
     count: T,
     /// Numbers in the Jacobian of the contacts.
@@ -74,7 +74,7 @@ pub struct Collision<T: Real> {
 }
 
 #[derive(Clone, Debug)]
-struct Crowd<T> {
+struct DynamicBroadPhase<T> {
     grid: Grid,
     bounds: Vec<Bound<T>>,
     margins: Vec<T>,
@@ -84,15 +84,15 @@ struct Crowd<T> {
 impl<T: Real> Collision<T> {
     /// Prepares detection for a model.
     pub fn new(model: &Model) -> Self {
-        let large = model.geoms.len() > MOST_LISTED_GEOMS;
+        let large = model.geoms.len() > MAX_LISTED_GEOMS;
         Collision {
             given: false,
             overflow: T::Mask::splat(false),
             excess: T::ZERO,
             candidates: if large { Vec::new() } else { candidates(model) },
-            crowd: large.then(|| Box::new(Crowd::new(model))),
+            broad_phase: large.then(|| Box::new(DynamicBroadPhase::new(model))),
             near: Vec::new(),
-            reaches: Vec::new(),
+            spheres: Vec::new(),
             points: Contacts::new(),
             count: T::ZERO,
             numbers: T::ZERO,
@@ -101,7 +101,7 @@ impl<T: Real> Collision<T> {
 
     /// Counts the lanes of a new contact, whose Jacobian has `numbers`; leaves those that have room for it.
     #[inline(always)]
-    fn admit(
+    fn count_within_limit(
         &mut self,
         active: T::Mask,
         most: MaxContacts,
@@ -153,15 +153,15 @@ pub fn detect<T: Real>(
     if !settings.flags.constraint || !settings.flags.contact {
         return;
     }
-    if let Some(crowd) = &mut collision.crowd {
-        let crowded = crowd.find(model, params, pos, &mut collision.candidates);
+    if let Some(broad_phase) = &mut collision.broad_phase {
+        let crowded = broad_phase.find(model, params, pos, &mut collision.candidates);
         collision.exceed(crowded, Excess::Pairs);
     }
-    reach::update(model, params, pos, &mut collision.reaches);
+    bounding_sphere::update(model, params, pos, &mut collision.spheres);
     collision.near.clear();
     for (index, candidate) in collision.candidates.iter().enumerate() {
         let range = || contact_range(model, params, candidate).1;
-        if may_touch(candidate, &collision.reaches, pos, range).any() {
+        if may_touch(candidate, &collision.spheres, pos, range).any() {
             collision.near.push(index as u32);
         }
     }
@@ -215,7 +215,7 @@ fn list<T: Real>(
     let numbers = mixed.dim * (dofs(candidate.geoms[0]) + dofs(candidate.geoms[1]));
     for i in 0..collision.points.as_slice().len() {
         let point = collision.points.as_slice()[i];
-        let active = collision.admit(
+        let active = collision.count_within_limit(
             point.active,
             settings.solver.max_contacts,
             numbers,
@@ -259,11 +259,11 @@ fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
     }
 }
 
-impl<T: Real> Crowd<T> {
+impl<T: Real> DynamicBroadPhase<T> {
     fn new(model: &Model) -> Self {
         let body = |geom: &Geom| &model.bodies[model.bodies[geom.body].weld];
         let fixed = |geom: &Geom| body(geom).dofs.is_empty();
-        Crowd {
+        DynamicBroadPhase {
             grid: Grid::with_fixed(model.geoms.iter().map(fixed).collect()),
             bounds: Vec::new(),
             margins: Vec::new(),
@@ -286,7 +286,8 @@ impl<T: Real> Crowd<T> {
         self.margins.clear();
         for g in 0..ngeom {
             (self.bounds).push(Bound::new(&shape(model, params, g), &pose(pos, g)));
-            self.margins.push(reach::own_margin(model, params, g));
+            self.margins
+                .push(bounding_sphere::own_margin(model, params, g));
         }
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
         let hits = &mut self.hits;

@@ -1,9 +1,9 @@
 //! From geoms to contacts: which pairs may touch, where they do, and with what parameters. The constraint that a
 //! contact becomes is `constraint::contact`.
 
+mod bounding_sphere;
 mod detect;
 mod mix;
-mod reach;
 mod select;
 
 pub(crate) use detect::shape;

@@ -6,7 +6,7 @@ use crate::workspace::Positions;
 use clench_math::{Mask, Real, Vec3, kernel};
 
 /// The shortest time constant (s) of a filter (MuJoCo's `mjMINVAL`).
-const SHORTEST: f64 = 1e-15;
+const MIN_TIMECONST: f64 = 1e-15;
 
 /// The control of actuator `u` within its range.
 #[inline(always)]
@@ -22,7 +22,7 @@ pub fn control<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, u: 
 
 #[inline(always)]
 fn time_constant<T: Real>(params: &Params<T>, u: usize) -> T {
-    params.actuator_dynprm[u][0].max(T::new(SHORTEST))
+    params.actuator_dynprm[u][0].max(T::new(MIN_TIMECONST))
 }
 
 /// The rate of change of each activation (na). A filtered servo on a circle turns towards its control by the shorter way.

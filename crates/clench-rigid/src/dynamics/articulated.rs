@@ -105,12 +105,12 @@ impl<T: Real> ArticulatedInertia<T> {
 
 /// More dofs than this on a path from a root are too many for the factor to be computed from M in single precision: rounding
 /// takes a part of the smallest pivots that grows with the cube of their number, at 20 about a hundredth.
-const MOST_DOFS: usize = 20;
+const MAX_DOFS: usize = 20;
 
 /// Memory for [`articulated_factor`] where numbers `T` and the model need it, else none: the model alone decides.
 pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> {
     let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();
-    if is_single::<T>() && longest.is_some_and(|n| n > MOST_DOFS) {
+    if is_single::<T>() && longest.is_some_and(|n| n > MAX_DOFS) {
         vec![ArticulatedInertia::ZERO; model.nbody()]
     } else {
         Vec::new()

@@ -124,13 +124,13 @@ impl<T: Real> Drag<T> {
         self.to_world(
             model,
             pos,
-            resistance_slope(
+            resistance_derivative(
                 self.viscous.angular,
                 self.quadratic.angular,
                 self.velocity.angular,
                 local.angular,
             ),
-            resistance_slope(
+            resistance_derivative(
                 self.viscous.linear,
                 self.quadratic.linear,
                 self.velocity.linear,
@@ -181,7 +181,7 @@ fn resistance<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>) -> Vec3<T> {
 
 /// The change of [`resistance`] with a change `dv` of the velocity.
 #[inline(always)]
-fn resistance_slope<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>, dv: Vec3<T>) -> Vec3<T> {
+fn resistance_derivative<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>, dv: Vec3<T>) -> Vec3<T> {
     let axis = |c1: T, c2: T, v: T| -(c1 + T::new(2.0) * c2 * v.abs());
     Vec3::new(
         axis(c1.x, c2.x, v.x) * dv.x,

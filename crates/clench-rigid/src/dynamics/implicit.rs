@@ -2,11 +2,11 @@
 //!
 //! With D = ∂τ/∂v, the acceleration that advances the velocity solves (M − h D) a = τ + Jᵀf, see
 //! [`slopes`](crate::dynamics::slopes) for D. A free body that is a tree by itself is then solved once more, with its
-//! gyroscopic forces, see [`lone_body`](crate::dynamics::lone_body).
+//! gyroscopic forces, see [`gyroscopic`](crate::dynamics::gyroscopic).
 
+use crate::dynamics::derivatives::add_velocity_derivatives;
+use crate::dynamics::gyroscopic::{is_free_tree, solve_gyroscopic};
 use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit};
-use crate::dynamics::lone_body::{is_lone_body, solve_lone_body};
-use crate::dynamics::slopes::add_velocity_slopes;
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -22,7 +22,7 @@ pub fn implicit_fast<T: Real>(
 ) {
     let matrix = &mut ws.integration.matrix;
     matrix.values.copy_from_slice(&ws.problem.mass.values);
-    add_velocity_slopes(
+    add_velocity_derivatives(
         model,
         params,
         state,
@@ -34,8 +34,8 @@ pub fn implicit_fast<T: Real>(
     ws.singular |= !factor.factor(&model.tree, matrix);
     solve_implicit(&model.tree, ws);
     for j in 0..model.joints.len() {
-        if is_lone_body(model, j) {
-            solve_lone_body(model, params, j, &state.qvel, ws);
+        if is_free_tree(model, j) {
+            solve_gyroscopic(model, params, j, &state.qvel, ws);
         }
     }
     advance_semi_implicit(model, params, state, ws);

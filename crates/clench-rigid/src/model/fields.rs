@@ -8,7 +8,7 @@ use clench_math::{Real, Scalar};
 use std::sync::Arc;
 
 /// Shorter axes and quaternions say no direction.
-const SHORTEST: f64 = 1e-7;
+const MIN_LENGTH: f64 = 1e-7;
 
 /// What the numbers of a field must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +75,7 @@ impl ParamField {
     ///
     /// # Errors
     /// A wrong number of numbers, or the first that cannot be.
-    pub(crate) fn admit<S: Scalar>(self, model: &Model, row: &mut [S]) -> Result<(), SimError> {
+    pub(crate) fn check_row<S: Scalar>(self, model: &Model, row: &mut [S]) -> Result<(), SimError> {
         let field = self.name();
         let rule = self.rule();
         let of_model = model.params.read_lane(self, 0);
@@ -166,7 +166,7 @@ fn normalize<S: Scalar>(
 ) -> Result<(), SimError> {
     let squared = (direction.iter()).fold(S::ZERO, |sum, &x| sum + x * x);
     let norm = Real::sqrt(squared);
-    if !(norm > S::new(SHORTEST) && norm.is_finite()) {
+    if !(norm > S::new(MIN_LENGTH) && norm.is_finite()) {
         return Err(SimError::Parameter {
             field,
             index,
@@ -208,7 +208,11 @@ impl<T: Real> Params<T> {
 impl Model {
     /// Takes back what the model's structure says of numbers that are no longer the model's: that a dof or tendon is without
     /// dry friction, that a body's inertial frame is its own. The model is copied at most once, when that changes anything.
-    pub(crate) fn loosen<S: Scalar>(model: &mut Arc<Model>, field: ParamField, row: &[S]) {
+    pub(crate) fn clear_structural_guarantees<S: Scalar>(
+        model: &mut Arc<Model>,
+        field: ParamField,
+        row: &[S],
+    ) {
         let nonzero = |numbers: &[S]| numbers.iter().any(|&x| x != S::ZERO);
         let bodies = || model.bodies.iter().enumerate();
         let changes: Vec<usize> = match field {

@@ -22,7 +22,7 @@
 //! In the bottom zone W = diag(D).
 //! The piece is 0, 1, 2 for top, middle, bottom.
 
-use super::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Elliptic;
@@ -86,7 +86,7 @@ impl<T: Real> Zone<T> {
     }
 }
 
-/// By how much the block would be stiffer without softening.
+/// By how much the block would be stiffer without the continuation.
 #[inline(always)]
 fn stiffening<T: Real>(rows: Rows<T>) -> T {
     T::ONE + rows.d[0] * rows.softer
@@ -94,12 +94,18 @@ fn stiffening<T: Real>(rows: Rows<T>) -> T {
 
 impl<T: Real> BlockCost<T> for Elliptic {
     #[inline(always)]
-    fn pieces(_: usize) -> usize {
+    fn active_len(_: usize) -> usize {
         1
     }
 
     #[inline(always)]
-    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>) {
+    fn evaluate(
+        rows: Rows<T>,
+        y: &[T],
+        force: &mut [T],
+        active_set: &mut [T],
+        totals: &mut Totals<T>,
+    ) {
         let zone = Zone::new(rows, |j| y[j]);
         let normal = -(zone.k * zone.mu * (zone.p + zone.mu * zone.q));
         // In the middle, friction is exactly on the cone: written through the normal force.
@@ -108,14 +114,14 @@ impl<T: Real> BlockCost<T> for Elliptic {
         for j in 1..rows.d.len() {
             force[j] = slip * zone.u[j] * rows.shape[j];
         }
-        tally.cost += zone.cost();
-        tally.curved |= zone.middle;
+        totals.cost += zone.cost();
+        totals.curved |= zone.middle;
         let now = T::select(
             zone.bottom,
             T::new(2.0),
             T::select(zone.middle, T::ONE, T::ZERO),
         );
-        tally.mark(&mut pieces[0], now);
+        totals.mark(&mut active_set[0], now);
     }
 
     #[inline(always)]

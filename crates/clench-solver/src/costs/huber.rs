@@ -8,19 +8,25 @@
 //! s(y₁) − s(y₀) = D [ c₀ (y₁ − y₀) + (c₁ − c₀)(y₁ − ½ (c₀ + c₁)) ]      as s = D (c y − ½ c²)
 //! ```
 
-use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Huber;
 
 impl<T: Real> BlockCost<T> for Huber {
     #[inline(always)]
-    fn pieces(dim: usize) -> usize {
+    fn active_len(dim: usize) -> usize {
         dim
     }
 
     #[inline(always)]
-    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>) {
+    fn evaluate(
+        rows: Rows<T>,
+        y: &[T],
+        force: &mut [T],
+        active_set: &mut [T],
+        totals: &mut Totals<T>,
+    ) {
         for i in 0..rows.d.len() {
             let (d, y, eta) = (rows.d[i], y[i], rows.shape[i]);
             let side = side(rows.r[i] * eta, y);
@@ -30,15 +36,15 @@ impl<T: Real> BlockCost<T> for Huber {
             force[i] = T::select(exists, T::select(inside, -(d * y), saturated), T::ZERO);
             let quadratic = T::new(0.5) * d * y * y;
             let linear = eta * (y.abs() - T::new(0.5) * rows.r[i] * eta);
-            tally.cost += T::select(exists, T::select(inside, quadratic, linear), T::ZERO);
-            tally.mark(&mut pieces[i], T::select(exists, side, T::ZERO));
+            totals.cost += T::select(exists, T::select(inside, quadratic, linear), T::ZERO);
+            totals.mark(&mut active_set[i], T::select(exists, side, T::ZERO));
         }
     }
 
     #[inline(always)]
-    fn hessian(rows: Rows<T>, _: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form {
+    fn hessian(rows: Rows<T>, _: &[T], active_set: &[T], weight: &mut Weight<T>) -> Form {
         let mut any = T::Mask::splat(false);
-        for (i, (&d, &piece)) in rows.d.iter().zip(pieces).enumerate() {
+        for (i, (&d, &piece)) in rows.d.iter().zip(active_set).enumerate() {
             let inside = piece.eq(T::ZERO) & d.gt(T::ZERO);
             weight[i][i] = T::select(inside, d, T::ZERO);
             any |= inside;

@@ -25,13 +25,13 @@ pub(crate) struct Rows<'a, T> {
     pub d: &'a [T],
     pub r: &'a [T],
     pub shape: &'a [T],
-    /// Added to R by a stage of [softening](crate::softening); only elliptic cones heed it.
+    /// Added to R by a stage of [continuation](crate::continuation); only elliptic cones heed it.
     pub softer: T,
 }
 
 /// What evaluating the blocks adds up to.
 #[derive(Clone, Copy)]
-pub(crate) struct Tally<T: Real> {
+pub(crate) struct Totals<T: Real> {
     /// Σ s(y).
     pub cost: T,
     /// Pieces that differ from those of the last evaluation.
@@ -40,10 +40,10 @@ pub(crate) struct Tally<T: Real> {
     pub curved: T::Mask,
 }
 
-impl<T: Real> Tally<T> {
+impl<T: Real> Totals<T> {
     #[inline(always)]
     pub fn new() -> Self {
-        Tally {
+        Totals {
             cost: T::ZERO,
             changes: T::ZERO,
             curved: T::Mask::splat(false),
@@ -103,11 +103,17 @@ pub(crate) struct RankOne<T> {
 /// `y` is J a − aref. A lane without the constraint has D = 0: it adds nothing, and its pieces never change.
 pub(crate) trait BlockCost<T: Real> {
     /// How many pieces (rows or edges that switch on their own) a block of `dim` rows has.
-    fn pieces(dim: usize) -> usize;
-    /// Writes the force −∇s(y) and the pieces, and adds to the tally.
-    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>);
+    fn active_len(dim: usize) -> usize;
+    /// Writes the force −∇s(y) and the pieces, and adds to the totals.
+    fn evaluate(
+        rows: Rows<T>,
+        y: &[T],
+        force: &mut [T],
+        active_set: &mut [T],
+        totals: &mut Totals<T>,
+    );
     /// Writes ∇²s(y), whose pieces are known.
-    fn hessian(rows: Rows<T>, y: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form;
+    fn hessian(rows: Rows<T>, y: &[T], active_set: &[T], weight: &mut Weight<T>) -> Form;
     /// Calls `emit` with each rank-one change of the Hessian block from the pieces `old` to the pieces `new`, none of which
     /// may be curved.
     fn changes(rows: Rows<T>, old: &[T], new: &[T], emit: impl FnMut(RankOne<T>));
@@ -147,6 +153,6 @@ macro_rules! with_cost {
 pub(crate) use with_cost;
 
 /// How many pieces a block of this cost has.
-pub(crate) fn pieces(cost: Cost, dim: usize) -> usize {
-    with_cost!(cost, C => <C as BlockCost<f64>>::pieces(dim))
+pub(crate) fn active_len(cost: Cost, dim: usize) -> usize {
+    with_cost!(cost, C => <C as BlockCost<f64>>::active_len(dim))
 }

@@ -7,32 +7,38 @@
 //! s(y₁) − s(y₀) = ½ Σ D (m₁ − m₀)(m₁ + m₀)
 //! ```
 
-use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct OneSided;
 
 impl<T: Real> BlockCost<T> for OneSided {
     #[inline(always)]
-    fn pieces(dim: usize) -> usize {
+    fn active_len(dim: usize) -> usize {
         dim
     }
 
     #[inline(always)]
-    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>) {
+    fn evaluate(
+        rows: Rows<T>,
+        y: &[T],
+        force: &mut [T],
+        active_set: &mut [T],
+        totals: &mut Totals<T>,
+    ) {
         for i in 0..rows.d.len() {
             let d = rows.d[i];
             let m = y[i].min(T::ZERO);
             force[i] = -(d * m);
-            tally.cost += T::new(0.5) * d * m * m;
-            tally.mark(&mut pieces[i], active(d, y[i]));
+            totals.cost += T::new(0.5) * d * m * m;
+            totals.mark(&mut active_set[i], active(d, y[i]));
         }
     }
 
     #[inline(always)]
-    fn hessian(rows: Rows<T>, _: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form {
+    fn hessian(rows: Rows<T>, _: &[T], active_set: &[T], weight: &mut Weight<T>) -> Form {
         let mut any = T::Mask::splat(false);
-        for (i, (&d, &piece)) in rows.d.iter().zip(pieces).enumerate() {
+        for (i, (&d, &piece)) in rows.d.iter().zip(active_set).enumerate() {
             weight[i][i] = d * piece;
             any |= piece.gt(T::ZERO);
         }

@@ -13,19 +13,25 @@
 //! 1+, 1−, 2+, 2−, ... All rows have the same D.
 
 use super::one_sided::{active, add_edge_slope, edge_change};
-use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Pyramid;
 
 impl<T: Real> BlockCost<T> for Pyramid {
     #[inline(always)]
-    fn pieces(dim: usize) -> usize {
+    fn active_len(dim: usize) -> usize {
         2 * dim.saturating_sub(1)
     }
 
     #[inline(always)]
-    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], pieces: &mut [T], tally: &mut Tally<T>) {
+    fn evaluate(
+        rows: Rows<T>,
+        y: &[T],
+        force: &mut [T],
+        active_set: &mut [T],
+        totals: &mut Totals<T>,
+    ) {
         let d = rows.d[0];
         let mut normal = T::ZERO;
         let mut squares = T::ZERO;
@@ -36,19 +42,19 @@ impl<T: Real> BlockCost<T> for Pyramid {
             normal += m + n;
             squares += m * m + n * n;
             force[j] = -(d * rows.shape[j] * (m - n));
-            tally.mark(&mut pieces[2 * j - 2], active(d, plus));
-            tally.mark(&mut pieces[2 * j - 1], active(d, minus));
+            totals.mark(&mut active_set[2 * j - 2], active(d, plus));
+            totals.mark(&mut active_set[2 * j - 1], active(d, minus));
         }
         force[0] = -(d * normal);
-        tally.cost += T::new(0.5) * d * squares;
+        totals.cost += T::new(0.5) * d * squares;
     }
 
     #[inline(always)]
-    fn hessian(rows: Rows<T>, _: &[T], pieces: &[T], weight: &mut Weight<T>) -> Form {
+    fn hessian(rows: Rows<T>, _: &[T], active_set: &[T], weight: &mut Weight<T>) -> Form {
         let d = rows.d[0];
         let mut count = T::ZERO;
         for j in 1..rows.d.len() {
-            let (plus, minus) = (pieces[2 * j - 2], pieces[2 * j - 1]);
+            let (plus, minus) = (active_set[2 * j - 2], active_set[2 * j - 1]);
             let mu = rows.shape[j];
             count += plus + minus;
             weight[0][j] = d * mu * (plus - minus);

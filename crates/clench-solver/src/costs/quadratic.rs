@@ -5,22 +5,22 @@
 //! s(y + α dy) − s(y) = α Σ D dy (y + ½ α dy)
 //! ```
 
-use super::{BlockCost, Form, RankOne, Rows, Slope, Tally, Weight};
+use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::Real;
 
 pub(crate) struct Quadratic;
 
 impl<T: Real> BlockCost<T> for Quadratic {
     #[inline(always)]
-    fn pieces(_: usize) -> usize {
+    fn active_len(_: usize) -> usize {
         0
     }
 
     #[inline(always)]
-    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], _: &mut [T], tally: &mut Tally<T>) {
+    fn evaluate(rows: Rows<T>, y: &[T], force: &mut [T], _: &mut [T], totals: &mut Totals<T>) {
         for ((&d, &y), force) in rows.d.iter().zip(y).zip(force) {
             *force = -(d * y);
-            tally.cost += T::new(0.5) * d * y * y;
+            totals.cost += T::new(0.5) * d * y * y;
         }
     }
 

@@ -33,10 +33,10 @@ impl Sample {
 
     fn at(&self, y: &[f64]) -> (f64, Vec<f64>, Vec<f64>) {
         let mut force = vec![0.0; y.len()];
-        let mut piece = vec![0.0; pieces(self.cost, y.len())];
-        let mut tally = Tally::new();
-        with_cost!(self.cost, C => C::evaluate(self.rows(), y, &mut force, &mut piece, &mut tally));
-        (tally.cost, force, piece)
+        let mut piece = vec![0.0; active_len(self.cost, y.len())];
+        let mut totals = Totals::new();
+        with_cost!(self.cost, C => C::evaluate(self.rows(), y, &mut force, &mut piece, &mut totals));
+        (totals.cost, force, piece)
     }
 
     fn along(&self, alpha: f64) -> Vec<f64> {
@@ -148,7 +148,7 @@ fn hessian_is_the_derivative_of_the_gradient() {
             down[j] -= STEP;
             let (up, down) = (s.at(&up), s.at(&down));
             if up.2 != piece || down.2 != piece {
-                continue; // the Hessian jumps between pieces
+                continue; // the Hessian jumps between active_set
             }
             checked += 1;
             for i in 0..s.y.len() {

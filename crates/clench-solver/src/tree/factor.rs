@@ -5,7 +5,7 @@
 //! descendant to the first, and an entry that is zero contributes an exact zero, **so that a larger pattern gives the same
 //! bits**.
 
-use super::{Strand, Tree, TreeMatrix, with_len};
+use super::{Supernode, Tree, TreeMatrix, with_len};
 use crate::transfer::Transfer;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
@@ -56,16 +56,16 @@ impl<T: Real> TreeFactor<T> {
     fn factor_above(&mut self, tree: &Tree, matrix: &TreeMatrix<T>, floor: T) -> T::Mask {
         self.resize(tree);
         let mut positive = T::Mask::splat(true);
-        for &Strand { first, len } in tree.strands.iter().rev() {
+        for &Supernode { first, len } in tree.supernodes.iter().rev() {
             positive &=
-                with_len!(len, LEN => self.factor_strand::<LEN>(tree, first, matrix, floor));
+                with_len!(len, LEN => self.factor_supernode::<LEN>(tree, first, matrix, floor));
         }
         positive
     }
 
-    /// Computes the rows of a strand, of whose descendants it is done.
+    /// Computes the rows of a supernode, of whose descendants it is done.
     #[inline(always)]
-    fn factor_strand<const LEN: usize>(
+    fn factor_supernode<const LEN: usize>(
         &mut self,
         tree: &Tree,
         first: usize,
@@ -83,9 +83,9 @@ impl<T: Real> TreeFactor<T> {
             rows: tree.descendants(first + LEN - 1),
             offset: end,
         };
-        let rows: [&[T]; LEN] = tree.strand_rows(&matrix.values, first);
+        let rows: [&[T]; LEN] = tree.supernode_rows(&matrix.values, first);
 
-        // What the rows of the strand have in the columns of the strand: pivots, and multipliers between its rows.
+        // What the rows of the supernode have in the columns of the supernode: pivots, and multipliers between its rows.
         let mut block = below.block(depth, &rows);
         let mut inverse = [T::ZERO; LEN];
         let mut positive = T::Mask::splat(true);
@@ -216,16 +216,16 @@ impl<T: Real> TreeFactor<T> {
         for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
             *x *= inverse;
         }
-        for &Strand { first, len } in &tree.strands {
-            with_len!(len, LEN => self.solve_strand::<LEN>(tree, first, x));
+        for &Supernode { first, len } in &tree.supernodes {
+            with_len!(len, LEN => self.solve_supernode::<LEN>(tree, first, x));
         }
     }
 
-    /// `x ← L⁻¹ x` in the rows of a strand, of whose ancestors it is done.
+    /// `x ← L⁻¹ x` in the rows of a supernode, of whose ancestors it is done.
     #[inline(always)]
-    fn solve_strand<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
+    fn solve_supernode<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
         let shared = &tree.row(first)[..tree.depth(first)];
-        let rows: [&[T]; LEN] = tree.strand_rows(&self.lower, first);
+        let rows: [&[T]; LEN] = tree.supernode_rows(&self.lower, first);
         let mut sums: [T; LEN] = array(|m| x[first + m]);
         for (k, &c) in shared.iter().enumerate() {
             let x = x[c as usize];
@@ -269,16 +269,16 @@ impl<T: Real> TreeFactor<T> {
     /// `x ← L^(-T) x`.
     #[inline(always)]
     fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
-        for &Strand { first, len } in tree.strands.iter().rev() {
-            with_len!(len, LEN => self.solve_transposed_strand::<LEN>(tree, first, x));
+        for &Supernode { first, len } in tree.supernodes.iter().rev() {
+            with_len!(len, LEN => self.solve_transposed_supernode::<LEN>(tree, first, x));
         }
     }
 
-    /// What the rows of a strand, of whose descendants it is done, do to their ancestors.
+    /// What the rows of a supernode, of whose descendants it is done, do to their ancestors.
     #[inline(always)]
-    fn solve_transposed_strand<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
+    fn solve_transposed_supernode<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
         let shared = &tree.row(first)[..tree.depth(first)];
-        let rows: [&[T]; LEN] = tree.strand_rows(&self.lower, first);
+        let rows: [&[T]; LEN] = tree.supernode_rows(&self.lower, first);
         let mut own: [T; LEN] = array(|m| x[first + m]);
         for m in (1..LEN).rev() {
             for j in 0..m {
@@ -296,9 +296,9 @@ impl<T: Real> TreeFactor<T> {
     }
 }
 
-/// The descendants of a strand, whose rows are done.
+/// The descendants of a supernode, whose rows are done.
 struct Below<'a, T> {
-    /// L and U from the strand's end on.
+    /// L and U from the supernode's end on.
     lower: &'a [T],
     scaled: &'a [T],
     /// Where the rows of the descendants start, from `offset` on.
@@ -307,7 +307,7 @@ struct Below<'a, T> {
 }
 
 impl<T: Real> Below<'_, T> {
-    /// `N` columns of the strand's rows of A, from `column` on, less what the descendants take off.
+    /// `N` columns of the supernode's rows of A, from `column` on, less what the descendants take off.
     #[inline(always)]
     fn window<const LEN: usize, const N: usize>(
         &self,
@@ -322,7 +322,7 @@ impl<T: Real> Below<'_, T> {
         for &start in self.rows.iter().rev() {
             let start = start as usize - self.offset;
             debug_assert!(start + depth + LEN <= self.lower.len() && column + N <= depth);
-            // SAFETY: `start` is where the row of a descendant of the strand starts, which holds more than
+            // SAFETY: `start` is where the row of a descendant of the supernode starts, which holds more than
             // `depth + LEN` entries: a tree is built so, and `lower` and `scaled` reach to its end.
             // The checks were half of the instructions of this loop, the hottest of all.
             unsafe {
@@ -337,7 +337,7 @@ impl<T: Real> Below<'_, T> {
         sums
     }
 
-    /// The same for the columns of the strand itself, of which row m has the first m + 1.
+    /// The same for the columns of the supernode itself, of which row m has the first m + 1.
     #[inline(always)]
     fn block<const LEN: usize>(&self, depth: usize, rows: &[&[T]; LEN]) -> [[T; LEN]; LEN] {
         let mut sums = [[T::ZERO; LEN]; LEN];
@@ -359,7 +359,7 @@ impl<T: Real> Below<'_, T> {
     }
 }
 
-/// Where the columns of a strand's ancestors go, and what of its rows is known already.
+/// Where the columns of a supernode's ancestors go, and what of its rows is known already.
 struct Columns<'a, T, const LEN: usize> {
     depth: usize,
     starts: [usize; LEN],
@@ -392,7 +392,7 @@ impl<T: Real, const LEN: usize> Columns<'_, T, LEN> {
         }
     }
 
-    /// Takes off what the strand's later rows take off, and writes `N` columns from `column` on.
+    /// Takes off what the supernode's later rows take off, and writes `N` columns from `column` on.
     #[inline(always)]
     fn write<const N: usize>(&mut self, column: usize, mut sums: [[T; N]; LEN]) {
         for m in (0..LEN).rev() {

@@ -1,6 +1,6 @@
 //! A symmetric matrix in the pattern of a tree.
 
-use super::{Strand, Tree, with_len};
+use super::{Supernode, Tree, with_len};
 use clench_math::{Real, array, kernel};
 
 /// A symmetric matrix in the pattern of a [`Tree`]: its lower triangle, row by row.
@@ -30,14 +30,14 @@ impl<T: Real> TreeMatrix<T> {
     /// `out = A x`.
     #[kernel]
     pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
-        for &Strand { first, len } in &tree.strands {
-            with_len!(len, LEN => self.mul_strand::<LEN>(tree, first, x, out));
+        for &Supernode { first, len } in &tree.supernodes {
+            with_len!(len, LEN => self.mul_supernode::<LEN>(tree, first, x, out));
         }
     }
     #[inline(always)]
-    fn mul_strand<const LEN: usize>(&self, tree: &Tree, first: usize, x: &[T], out: &mut [T]) {
+    fn mul_supernode<const LEN: usize>(&self, tree: &Tree, first: usize, x: &[T], out: &mut [T]) {
         let shared = &tree.row(first)[..tree.depth(first)];
-        let rows: [&[T]; LEN] = tree.strand_rows(&self.values, first);
+        let rows: [&[T]; LEN] = tree.supernode_rows(&self.values, first);
         let own: [T; LEN] = array(|m| x[first + m]);
         let mut sums: [T; LEN] = array(|m| rows[m][shared.len() + m] * own[m]);
         for (k, &c) in shared.iter().enumerate() {

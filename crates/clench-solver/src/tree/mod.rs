@@ -27,8 +27,8 @@ pub struct Tree {
     columns: Vec<u32>,
     trees: Vec<u32>,
     ntree: usize,
-    /// All dofs in strands, ascending.
-    strands: Vec<Strand>,
+    /// All dofs in supernodes, ascending.
+    supernodes: Vec<Supernode>,
     /// For each dof, where the rows of its descendants start, in ascending order.
     descendants: Vec<u32>,
     descendant_starts: Vec<usize>,
@@ -37,17 +37,17 @@ pub struct Tree {
 /// A few dofs of which each is the only child of the one before. Their rows share all columns but the last few, and what
 /// lies below the last lies below all of them, so that kernels run over several rows at once: a column is looked up once, and sums that would wait for themselves run side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Strand {
+pub(crate) struct Supernode {
     /// The first dof; the others follow.
     pub first: usize,
-    /// How many there are: 1 to [`LONGEST_STRAND`].
+    /// How many there are: 1 to [`MAX_SUPERNODE`].
     pub len: usize,
 }
 
 /// As many rows as fit into registers together with what they meet.
-pub(crate) const LONGEST_STRAND: usize = 4;
+pub(crate) const MAX_SUPERNODE: usize = 4;
 
-/// Runs an expression with the constant `$len` standing for the length of a strand.
+/// Runs an expression with the constant `$len` standing for the length of a supernode.
 macro_rules! with_len {
     ($value:expr, $len:ident => $body:expr) => {
         match $value {
@@ -64,7 +64,7 @@ macro_rules! with_len {
                 $body
             }
             _ => {
-                const $len: usize = $crate::tree::LONGEST_STRAND;
+                const $len: usize = $crate::tree::MAX_SUPERNODE;
                 $body
             }
         }
@@ -124,27 +124,27 @@ impl Tree {
             self.starts.push(self.columns.len());
         }
         self.list_descendants();
-        self.find_strands();
+        self.find_supernodes();
         Ok(())
     }
 
-    fn find_strands(&mut self) {
-        self.strands.clear();
+    fn find_supernodes(&mut self) {
+        self.supernodes.clear();
         for dof in 0..self.nv() {
             let only_child = self.parent(dof).is_some_and(|parent| {
                 let below = self.descendants(dof).len();
                 parent + 1 == dof && self.descendants(parent).len() == below + 1
             });
-            match self.strands.last_mut() {
-                Some(last) if last.len < LONGEST_STRAND && only_child => last.len += 1,
-                _ => self.strands.push(Strand { first: dof, len: 1 }),
+            match self.supernodes.last_mut() {
+                Some(last) if last.len < MAX_SUPERNODE && only_child => last.len += 1,
+                _ => self.supernodes.push(Supernode { first: dof, len: 1 }),
             }
         }
     }
 
-    /// The values of the rows of a strand: row m has depth + m + 1.
+    /// The values of the rows of a supernode: row m has depth + m + 1.
     #[inline(always)]
-    pub(crate) fn strand_rows<'a, T, const LEN: usize>(
+    pub(crate) fn supernode_rows<'a, T, const LEN: usize>(
         &self,
         values: &'a [T],
         first: usize,

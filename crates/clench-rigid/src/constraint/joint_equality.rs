@@ -7,7 +7,7 @@
 //! Zero subscripts are the initial configuration. As in MuJoCo the part of r̈ that is quadratic in velocity, −P″ ẋ², is
 //! left out of aref. A₀ is the sum of both coordinates' inverse weights.
 
-use super::Scene;
+use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
 use super::coordinate::Coordinate;
 use clench_math::{Real, kernel};
@@ -15,32 +15,32 @@ use clench_solver::Cost;
 
 #[kernel]
 pub(super) fn push<T: Real>(
-    scene: &Scene<T>,
+    context: &ConstraintContext<T>,
     out: &mut Assembly<T>,
     equality: usize,
     follower: Coordinate,
     leader: Option<Coordinate>,
 ) {
-    let polynomial = scene.params.eq_polycoef[equality];
-    let error = |c: Coordinate| c.value(scene) - c.initial(scene);
+    let polynomial = context.params.eq_polycoef[equality];
+    let error = |c: Coordinate| c.value(context) - c.initial(context);
     let dofs = out.dofs();
     dofs.clear();
-    follower.insert_dofs(scene, dofs);
+    follower.insert_dofs(context, dofs);
     let mut slope = T::ZERO;
     let mut target = polynomial[0];
-    let mut a0 = follower.inverse_weight(scene);
+    let mut a0 = follower.inverse_weight(context);
     if let Some(leader) = leader {
-        leader.insert_dofs(scene, dofs);
+        leader.insert_dofs(context, dofs);
         (target, slope) = evaluate(polynomial, error(leader));
-        a0 += leader.inverse_weight(scene);
+        a0 += leader.inverse_weight(context);
     }
     let violation = error(follower) - target;
-    let (soft, block) = scene.equality(equality, violation);
+    let (soft, block) = context.equality(equality, violation);
     let row = Row::new(&soft, violation, T::ZERO, a0);
     out.push(Cost::Quadratic, block, &[row], |dofs, jacobian| {
-        follower.add_gradient(scene, dofs, T::ONE, jacobian);
+        follower.add_gradient(context, dofs, T::ONE, jacobian);
         if let Some(leader) = leader {
-            leader.add_gradient(scene, dofs, -slope, jacobian);
+            leader.add_gradient(context, dofs, -slope, jacobian);
         }
     });
 }

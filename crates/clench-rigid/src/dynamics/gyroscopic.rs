@@ -18,7 +18,7 @@ use clench_math::{Real, Vec3, kernel};
 
 /// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
 #[inline(always)]
-pub fn is_lone_body(model: &Model, j: usize) -> bool {
+pub fn is_free_tree(model: &Model, j: usize) -> bool {
     let joint = &model.joints[j];
     let (tree, after) = (&model.tree, joint.dof + 6);
     joint.kind == JointKind::Free
@@ -27,7 +27,7 @@ pub fn is_lone_body(model: &Model, j: usize) -> bool {
 
 /// Replaces the joint's part of `integration.qacc`.
 #[kernel]
-pub fn solve_lone_body<T: Real>(
+pub fn solve_gyroscopic<T: Real>(
     model: &Model,
     params: &Params<T>,
     j: usize,
@@ -43,14 +43,14 @@ pub fn solve_lone_body<T: Real>(
         }
         row[6] = ws.force.qfrc_smooth[dof + r] + ws.qfrc_constraint[dof + r];
     }
-    add_bias_slope(model, params, j, qvel, &ws.position, &mut rows);
+    add_bias_derivative(model, params, j, qvel, &ws.position, &mut rows);
     let x = solve6(rows);
     ws.integration.qacc[dof..dof + 6].copy_from_slice(&x);
 }
 
 /// Adds h ∂bias/∂v.
 #[inline(always)]
-fn add_bias_slope<T: Real>(
+fn add_bias_derivative<T: Real>(
     model: &Model,
     params: &Params<T>,
     j: usize,

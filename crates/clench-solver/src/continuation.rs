@@ -20,7 +20,7 @@ const SETTLED: f64 = 1e-9;
 
 /// How much softer the cones are at present.
 #[derive(Clone, Debug)]
-pub(crate) struct Softening<T: Real> {
+pub(crate) struct Continuation<T: Real> {
     /// An estimate of A for each elliptic block, at the index of its piece.
     inverse_inertia: Vec<T>,
     /// The part of A that is added to R; zero in lanes that solve the problem itself.
@@ -29,9 +29,9 @@ pub(crate) struct Softening<T: Real> {
     stiffest: T,
 }
 
-impl<T: Real> Default for Softening<T> {
+impl<T: Real> Default for Continuation<T> {
     fn default() -> Self {
-        Softening {
+        Continuation {
             inverse_inertia: Vec::new(),
             level: T::ZERO,
             stiffest: T::ZERO,
@@ -39,7 +39,7 @@ impl<T: Real> Default for Softening<T> {
     }
 }
 
-impl<T: Real> Softening<T> {
+impl<T: Real> Continuation<T> {
     /// Solves the problem itself.
     #[inline(always)]
     pub fn reset(&mut self) {
@@ -50,7 +50,7 @@ impl<T: Real> Softening<T> {
     #[kernel]
     pub fn start(&mut self, problem: &Problem<T>, mask: T::Mask) -> T::Mask {
         self.stiffest = T::ZERO;
-        self.inverse_inertia.resize(problem.npiece, T::ZERO);
+        self.inverse_inertia.resize(problem.nactive, T::ZERO);
         for b in problem
             .jacobian
             .blocks
@@ -67,7 +67,7 @@ impl<T: Real> Softening<T> {
             {
                 sum += j * j / problem.mass.values[problem.tree().row_start(dof as usize + 1) - 1];
             }
-            self.inverse_inertia[b.piece] = sum;
+            self.inverse_inertia[b.active_start] = sum;
             self.stiffest = self.stiffest.max(sum * problem.d[b.row]);
         }
         let stiff = mask & self.stiffest.gt(T::new(STIFF));
@@ -95,7 +95,7 @@ impl<T: Real> Softening<T> {
     #[inline(always)]
     pub fn of(&self, b: &BlockIndex) -> T {
         if b.cost == Cost::Elliptic && self.active().any() {
-            self.level * self.inverse_inertia[b.piece]
+            self.level * self.inverse_inertia[b.active_start]
         } else {
             T::ZERO
         }

@@ -8,7 +8,7 @@ use clench_math::{Real, Vec3, kernel};
 
 /// A sphere about a geom's origin.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reach<T> {
+pub(super) struct BoundingSphere<T> {
     center: Vec3<T>,
     /// Of the shape alone; 0 for a plane.
     radius: T,
@@ -22,14 +22,14 @@ pub(super) fn update<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
-    reaches: &mut Vec<Reach<T>>,
+    spheres: &mut Vec<BoundingSphere<T>>,
 ) {
     let allowance = allowance::<T>();
-    reaches.clear();
+    spheres.clear();
     for (g, &center) in pos.geom_xpos.iter().enumerate() {
         let radius = params.geom_rbound[g] * allowance;
         let margin = own_margin(model, params, g) * allowance;
-        reaches.push(Reach {
+        spheres.push(BoundingSphere {
             center,
             radius,
             reach: radius + margin,
@@ -52,12 +52,12 @@ pub(super) fn own_margin<T: Real>(model: &Model, params: &Params<T>, geom: usize
 #[inline(always)]
 pub(super) fn may_touch<T: Real>(
     candidate: &Candidate,
-    reaches: &[Reach<T>],
+    spheres: &[BoundingSphere<T>],
     pos: &Positions<T>,
     range: impl FnOnce() -> T,
 ) -> T::Mask {
     let [a, b] = candidate.geoms.map(|g| g as usize);
-    let (first, second) = (&reaches[a], &reaches[b]);
+    let (first, second) = (&spheres[a], &spheres[b]);
     let reach = match candidate.pair {
         None => first.reach + second.reach,
         Some(_) => first.radius + second.radius + range() * allowance(),

@@ -19,7 +19,7 @@ const SUM_ROUNDING: f64 = 1e-10;
 
 /// `matrix += scale · D`.
 #[kernel]
-pub fn add_velocity_slopes<T: Real>(
+pub fn add_velocity_derivatives<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -29,7 +29,7 @@ pub fn add_velocity_slopes<T: Real>(
 ) {
     if model.flags.actuation {
         for (u, actuator) in model.actuators.iter().enumerate() {
-            let slope = actuator_slope(model, params, state, pos, force, u);
+            let slope = actuator_derivative(model, params, state, pos, force, u);
             let moment = &pos.actuator_moment[u * model.nv..(u + 1) * model.nv];
             let arms = transmission_dofs(model, actuator.transmission).map(|i| (i, moment[i]));
             add_outer(model, arms, slope * scale, matrix);
@@ -76,7 +76,7 @@ fn add_outer<T: Real>(
 
 /// ∂force/∂velocity of actuator `u`; zero where a limit of the actuator, its tendon or its joint holds the force.
 #[inline(always)]
-fn actuator_slope<T: Real>(
+fn actuator_derivative<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,

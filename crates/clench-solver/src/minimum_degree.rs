@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 
 /// A graph of trees, and its order of elimination.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Elimination {
+pub(crate) struct MinimumDegree {
     /// Of each tree, ascending; those of an eliminated one are what it coupled.
     neighbors: Vec<Vec<u32>>,
     /// Degree and number; of a tree's entries the last one holds.
@@ -22,7 +22,7 @@ pub(crate) struct Elimination {
 /// The rank of a tree that is still there.
 const LEFT: u32 = u32::MAX;
 
-impl Elimination {
+impl MinimumDegree {
     /// `count` trees, of which none is coupled.
     pub fn clear(&mut self, count: usize) {
         self.neighbors.truncate(count);
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn a_star_goes_from_its_ends() {
-        let mut star = Elimination::default();
+        let mut star = MinimumDegree::default();
         star.clear(5);
         for end in [0, 1, 3, 4] {
             star.couple(2, end);
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_path_stays_a_path_and_parts_do_not_matter_to_each_other() {
-        let mut graph = Elimination::default();
+        let mut graph = MinimumDegree::default();
         for _ in 0..2 {
             graph.clear(7);
             for (a, b) in [(0, 2), (2, 4), (4, 6), (1, 3)] {
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn what_a_tree_couples_counts_from_then_on() {
         // A square with a tail: eliminating a corner couples its neighbours.
-        let mut graph = Elimination::default();
+        let mut graph = MinimumDegree::default();
         graph.clear(5);
         for (a, b) in [(0, 1), (1, 2), (2, 3), (3, 0), (3, 4)] {
             graph.couple(a, b);

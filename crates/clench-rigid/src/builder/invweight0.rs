@@ -14,7 +14,7 @@ use clench_math::Motion;
 use clench_solver::{TreeFactor, TreeMatrix};
 
 /// Smallest mass (kg), inertia (kg m²) or inverse that is divided by (MuJoCo's `mjMINVAL`).
-const SMALLEST: f64 = 1e-15;
+const MIN_INERTIA: f64 = 1e-15;
 /// Parts of a unit axis below which it does not lean that way (MuJoCo's `mjEPS`).
 const ALIGNED: f64 = 1e-14;
 
@@ -23,7 +23,7 @@ pub(super) fn masses(builder: &ModelBuilder, model: &mut Model) {
     let p = &mut model.params;
     if let Some(wanted) = builder.compiler.settotalmass {
         let total: f64 = p.body_mass.iter().sum();
-        let scale = f64::max(SMALLEST, wanted / f64::max(SMALLEST, total));
+        let scale = f64::max(MIN_INERTIA, wanted / f64::max(MIN_INERTIA, total));
         for (mass, inertia) in p.body_mass.iter_mut().zip(&mut p.body_inertia) {
             *mass *= scale;
             *inertia = *inertia * scale;
@@ -43,7 +43,11 @@ pub(super) fn masses(builder: &ModelBuilder, model: &mut Model) {
 pub(super) fn require_inertia(model: &Model, order: &[usize]) -> Result<(), BuildError> {
     let p = &model.params;
     let heavy = |b: usize| {
-        p.body_mass[b] >= SMALLEST && p.body_inertia[b].to_array().iter().all(|&i| i >= SMALLEST)
+        p.body_mass[b] >= MIN_INERTIA
+            && p.body_inertia[b]
+                .to_array()
+                .iter()
+                .all(|&i| i >= MIN_INERTIA)
     };
     let mut carries: Vec<bool> = (0..model.nbody()).map(heavy).collect();
     for (b, body) in model.bodies.iter().enumerate().skip(1).rev() {
@@ -53,7 +57,7 @@ pub(super) fn require_inertia(model: &Model, order: &[usize]) -> Result<(), Buil
             let mut error = BuildError::new(
                 describe(&body.name, order[b]),
                 format!(
-                    "a moving body must have a mass and principal moments of at least {SMALLEST:e}, but has mass {:?} and \
+                    "a moving body must have a mass and principal moments of at least {MIN_INERTIA:e}, but has mass {:?} and \
                      moments {:?}",
                     p.body_mass[b],
                     p.body_inertia[b].to_array()
@@ -166,7 +170,7 @@ fn dof_weights(inverse: &mut InverseInertia, sliders: &[bool], model: &mut Model
             group.fill(mean(group));
         }
         if sliders[joint.body] {
-            dofs.fill(1.0 / model.params.body_mass[joint.body].max(SMALLEST));
+            dofs.fill(1.0 / model.params.body_mass[joint.body].max(MIN_INERTIA));
         }
     }
     model.params.dof_invweight0 = weights;
@@ -185,7 +189,7 @@ fn body_weights(
             continue;
         }
         if sliders[b] {
-            *weight = [1.0 / model.params.body_mass[b].max(SMALLEST), 0.0];
+            *weight = [1.0 / model.params.body_mass[b].max(MIN_INERTIA), 0.0];
             continue;
         }
         let offset = pose0.xipos[b] - pose0.subtree_com[model.bodies[b].root];
@@ -247,10 +251,10 @@ fn spring_dampers(springdampers: &[[f64; 2]], model: &mut Model) {
         }
         let dofs = model.joints[j].dof..model.joints[j].dof + model.joints[j].kind.nv();
         let p = &mut model.params;
-        let inertia = 1.0 / mean(&p.dof_invweight0[dofs.clone()]).max(SMALLEST);
+        let inertia = 1.0 / mean(&p.dof_invweight0[dofs.clone()]).max(MIN_INERTIA);
         let squared = timeconst * timeconst * dampratio * dampratio;
-        p.jnt_stiffness[j] = inertia / squared.max(SMALLEST);
-        p.dof_damping[dofs].fill(2.0 * inertia / timeconst.max(SMALLEST));
+        p.jnt_stiffness[j] = inertia / squared.max(MIN_INERTIA);
+        p.dof_damping[dofs].fill(2.0 * inertia / timeconst.max(MIN_INERTIA));
     }
 }
 
@@ -267,7 +271,7 @@ fn servo_damping(
         };
         let arms = &pose0.actuator_moment[u * model.nv..(u + 1) * model.nv];
         let weight = inverse.weight(model, |row| row.copy_from_slice(arms));
-        let reflected = 1.0 / weight.max(SMALLEST);
+        let reflected = 1.0 / weight.max(MIN_INERTIA);
         model.params.actuator_biasprm[u][2] = -2.0 * ratio * (spec.gainprm[0] * reflected).sqrt();
     }
 }
