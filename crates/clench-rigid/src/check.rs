@@ -7,16 +7,16 @@ use crate::model::Model;
 use crate::place::{joint_of, massless};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Clock, Mask, Real, Scalar, kernel};
+use clench_math::{Clock, Mask, Mat3, Real, Scalar, kernel};
 use clench_solver::Status;
 
 /// Positions, velocities and accelerations beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
-const FARTHEST: f64 = 1e10;
+const MAX_VALUE: f64 = 1e10;
 
 /// How large the numbers of a field may be.
 #[derive(Clone, Copy)]
 enum Bound {
-    /// At most [`FARTHEST`].
+    /// At most [`MAX_VALUE`].
     Near,
     /// Finite.
     Finite,
@@ -26,7 +26,7 @@ impl Bound {
     #[inline(always)]
     fn of<T: Real>(self) -> T {
         match self {
-            Bound::Near => T::new(FARTHEST),
+            Bound::Near => T::new(MAX_VALUE),
             Bound::Finite => T::splat(T::Scalar::MAX),
         }
     }
@@ -233,6 +233,9 @@ pub(crate) fn check_contact<T: Scalar>(
     if contact.geoms.iter().any(|&g| g >= model.geoms.len()) {
         return Err("it names a geom that the model does not have");
     }
+    if contact.geoms[0] == contact.geoms[1] {
+        return Err("both of its geoms are the same");
+    }
     if !matches!(contact.dim, 1 | 3 | 4 | 6) {
         return Err("its dimension is not 1, 3, 4 or 6");
     }
@@ -250,6 +253,28 @@ pub(crate) fn check_contact<T: Scalar>(
         .all(|x| x.is_finite());
     if !finite {
         return Err("it holds a number that is not finite");
+    }
+    check_frame(&contact.frame)
+}
+
+/// By how much the products of a given frame's axes may differ from those of unit vectors at right angles: enough for frames
+/// that were computed in single precision or printed with six digits.
+const FRAME_ERROR: f64 = 1e-5;
+
+/// Three unit vectors at right angles to each other, right-handed.
+fn check_frame<T: Scalar>(frame: &Mat3<T>) -> Result<(), &'static str> {
+    let [normal, first, second] = frame.rows;
+    let near =
+        |product: T, expected: f64| (product - T::new(expected)).abs() <= T::new(FRAME_ERROR);
+    let units = frame.rows.iter().all(|axis| near(axis.norm_squared(), 1.0));
+    let across = near(normal.dot(first), 0.0)
+        && near(normal.dot(second), 0.0)
+        && near(first.dot(second), 0.0);
+    if !(units && across) {
+        return Err("the axes of its frame are not orthonormal");
+    }
+    if normal.cross(first).dot(second) < T::ZERO {
+        return Err("the axes of its frame are not right-handed");
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 mod scenes;
 
 use clench_collide::frame_from_normal;
-use clench_math::Vec3;
+use clench_math::{Mat3, Quat, Vec3};
 use clench_rigid::builder::{
     DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomSpec, HeightFieldSpec, KeyframeSpec, ModelBuilder,
 };
@@ -215,22 +215,30 @@ fn a_replay_is_the_same_to_the_bit() {
     assert_eq!(trace(&mut sim), first);
 }
 
-#[test]
-fn given_contacts_replace_detection_once() {
-    let mut sim = sim(&ball());
-    let contact = Contact {
+/// A contact of the ball with the floor that pushes it up, in the given frame.
+fn contact_in(frame: Mat3<f64>) -> Contact<f64> {
+    Contact {
         geoms: [0, 1],
         active: true,
-        dim: 1,
+        dim: 6,
         dist: -0.01,
         pos: Vec3::new(0.0, 0.0, 0.4),
-        frame: frame_from_normal(Vec3::new(0.0, 0.0, 1.0)),
+        frame,
         includemargin: 0.0,
         friction: [1.0; 5],
         solref: DEFAULT_SOLREF,
         solreffriction: [0.0; 2],
         solimp: DEFAULT_SOLIMP,
         block: None,
+    }
+}
+
+#[test]
+fn given_contacts_replace_detection_once() {
+    let mut sim = sim(&ball());
+    let contact = Contact {
+        dim: 1,
+        ..contact_in(frame_from_normal(Vec3::new(0.0, 0.0, 1.0)))
     };
     sim.forward_with_contacts(&[contact]).expect("valid");
     let force = readout::contact_force(sim.workspace(), 0, 0);
@@ -268,6 +276,57 @@ fn given_contacts_replace_detection_once() {
     sim.state = before;
     sim.step().expect("valid");
     assert!(sim.state.qvel[2] < 0.0, "without it the ball falls");
+}
+
+#[test]
+fn a_given_contact_has_a_right_handed_orthonormal_frame_and_two_geoms() {
+    let mut sim = sim(&ball());
+    let upright = frame_from_normal(Vec3::new(0.6, 0.0, 0.8));
+    let [n, t, b] = upright.rows;
+    let slanted = (t + n * 0.01).normalize().0;
+    let refused = [
+        (
+            "orthonormal",
+            Mat3::from_rows(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO),
+        ),
+        ("orthonormal", Mat3::from_rows(n, Vec3::ZERO, Vec3::ZERO)),
+        ("orthonormal", Mat3::from_rows(n * 1.001, t, b)),
+        ("orthonormal", Mat3::from_rows(n, slanted, b)),
+        ("orthonormal", Mat3::from_rows(n, t, t)),
+        ("right-handed", Mat3::from_rows(n, t, -b)),
+        ("right-handed", Mat3::from_rows(n, b, t)),
+    ];
+    for (reason, frame) in refused {
+        let error = sim.forward_with_contacts(&[contact_in(upright), contact_in(frame)]);
+        let error = error.expect_err("no frame").to_string();
+        assert!(
+            error.starts_with("given contact 1: ") && error.contains(reason),
+            "{error}"
+        );
+    }
+    let same = Contact {
+        geoms: [1, 1],
+        ..contact_in(upright)
+    };
+    let error = sim.forward_with_contacts(&[same]).expect_err("one geom");
+    assert_eq!(
+        error.to_string(),
+        "given contact 0: both of its geoms are the same"
+    );
+}
+
+#[test]
+fn a_given_frame_may_be_rounded_to_single_precision() {
+    let mut sim = sim(&ball());
+    for k in 0..1000 {
+        let turn = Quat::from_rotation_vector(Vec3::new(1.0, 0.3, -0.7) * f64::from(k) * 0.1);
+        let single = |v: Vec3<f64>| Vec3::from_array(v.to_array().map(|x| f64::from(x as f32)));
+        let frame = Mat3 {
+            rows: turn.to_matrix().rows.map(single),
+        };
+        let taken = sim.forward_with_contacts(&[contact_in(frame)]);
+        assert!(taken.is_ok(), "{taken:?}");
+    }
 }
 
 #[test]
