@@ -72,6 +72,27 @@ impl<T: Real> Contacts<T> {
     pub fn as_slice(&self) -> &[ContactPoint<T>] {
         &self.points[..self.len]
     }
+    /// Leaves each environment the first of its deepest points.
+    #[inline(always)]
+    pub fn keep_deepest(&mut self) {
+        if self.len < 2 {
+            return;
+        }
+        let mut deepest = self.points[0];
+        for point in &self.points[1..self.len] {
+            let first = point.active & !deepest.active;
+            let deeper = point.active & point.distance.lt(deepest.distance);
+            let taken = first | deeper;
+            deepest = ContactPoint {
+                position: Vec3::select(taken, point.position, deepest.position),
+                frame: Mat3::select(taken, point.frame, deepest.frame),
+                distance: T::select(taken, point.distance, deepest.distance),
+                active: deepest.active | point.active,
+            };
+        }
+        self.points[0] = deepest;
+        self.len = 1;
+    }
     /// The point at a place that exists or follows the last, where a point is made that exists nowhere yet.
     #[inline(always)]
     pub(crate) fn slot(&mut self, place: usize) -> &mut ContactPoint<T> {

@@ -191,3 +191,9 @@ fn what_is_far_away_moves_as_alone() {
         }
     }
 }
+
+#[test]
+fn pairs_without_multiccd() {
+    let options = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
+    assert!(compare::<f64>(&parts_on_a_mesh(false), options, 100) > 2.0);
+}

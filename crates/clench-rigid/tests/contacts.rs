@@ -4,9 +4,12 @@ mod scenes;
 
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{DEFAULT_SOLIMP, GeomSpec, ModelBuilder};
+use clench_rigid::contact::Contact;
 use clench_rigid::{Sim, readout};
 use clench_solver::{FrictionCone, RigidOptions};
-use scenes::{G, add, cuboid, free, plane, rest_penetration, run, sim, sphere, world};
+use scenes::{
+    G, add, cuboid, free, parts_on_a_mesh, plane, rest_penetration, run, sim, sphere, world,
+};
 
 /// A box of 1 kg and 20 cm height on a floor that is tilted by `angle` about y.
 fn box_on_slope(angle: f64, friction: f64) -> ModelBuilder {
@@ -201,4 +204,37 @@ fn options_switch_constraints_off_and_soften_them() {
         (soft / predicted - 1.0).abs() < 1e-6,
         "{soft} m instead of {predicted} m"
     );
+}
+
+#[test]
+fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
+    let [several, one] = [true, false].map(|multiccd| {
+        let mut sim = sim(&parts_on_a_mesh(multiccd));
+        // Tilted, so that one point is the deepest.
+        for (k, body) in [0, 7, 14].into_iter().enumerate() {
+            let turn = Quat::from_rotation_vector(Vec3::new(6e-4, 8e-4, 0.0) * (1.0 + k as f64));
+            sim.state.qpos[body + 3..body + 7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
+        }
+        sim.forward().expect("finite");
+        sim.contacts().to_vec()
+    });
+    for (geoms, count) in [([1, 0], 4), ([2, 0], 8), ([1, 3], 4)] {
+        let same = |c: &&Contact<f64>| c.geoms.iter().all(|g| geoms.contains(g));
+        let all: Vec<_> = several.iter().filter(same).collect();
+        assert_eq!(all.len(), count, "{geoms:?}");
+        let left: Vec<_> = one.iter().filter(same).collect();
+        if geoms == [1, 3] {
+            assert_eq!(left.len(), count, "two boxes are not concerned");
+            continue;
+        }
+        let [left] = left[..] else {
+            panic!("{geoms:?}: {left:?}");
+        };
+        let deepest = all.iter().map(|c| c.dist).fold(f64::INFINITY, f64::min);
+        assert_eq!(left.dist, deepest);
+        assert!(
+            all.iter()
+                .any(|c| c.pos == left.pos && c.frame == left.frame)
+        );
+    }
 }

@@ -44,6 +44,16 @@ pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
     )
 }
 
+/// Whether MuJoCo finds the contacts of a pair, given in either order, by its general algorithm, whose flag `multiccd` decides
+/// between several points and the deepest alone ([`Contacts::keep_deepest`]). A height field's contacts do not depend on it.
+pub fn multiccd_matters(a: ShapeKind, b: ShapeKind) -> bool {
+    use ShapeKind::*;
+    !matches!(
+        (a.min(b), a.max(b)),
+        (Plane | HeightField | Sphere, _) | (Capsule, Capsule | Box) | (Box, Box)
+    )
+}
+
 /// Replaces `out` by the points where shape `a` at `pose_a` and shape `b` at `pose_b` are at most `margin` metres
 /// apart.
 ///

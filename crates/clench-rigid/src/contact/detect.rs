@@ -8,7 +8,7 @@ use crate::model::{Geom, Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::workspace::{Positions, Workspace};
-use clench_collide::{Bound, Contacts, Grid, Pose, Shape, collide};
+use clench_collide::{Bound, Contacts, Grid, Pose, Shape, collide, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::MaxContacts;
 
@@ -169,6 +169,10 @@ pub fn detect<T: Real>(
     for near in 0..collision.near.len() {
         let candidate = collision.candidates[collision.near[near] as usize];
         narrow(model, params, pos, &candidate, &mut collision.points);
+        let [a, b] = candidate.kinds;
+        if !settings.flags.multiccd && multiccd_matters(a, b) {
+            collision.points.keep_deepest();
+        }
         if !collision.points.as_slice().is_empty() {
             list(model, params, settings, &candidate, collision, contacts);
         }

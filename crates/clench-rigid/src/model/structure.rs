@@ -420,7 +420,8 @@ pub struct Flags {
     pub eulerdamp: bool,
     /// Sensors.
     pub sensor: bool,
-    /// Several contacts of a pair of polyhedra, cylinders or other shapes that general algorithms collide.
+    /// Several contacts of a pair whose contacts MuJoCo finds by its general algorithm (see `clench_collide::multiccd_matters`);
+    /// without it the deepest alone.
     pub multiccd: bool,
 }
 

@@ -9,7 +9,7 @@ use clench_math::{Quat, Vec3};
 use clench_rigid::Sim;
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName,
-    GeomMass, GeomSpec, GeomsName, JointSpec, KeyframeSpec, ModelBuilder, SensorSpec,
+    GeomMass, GeomSpec, GeomsName, JointSpec, KeyframeSpec, MeshSpec, ModelBuilder, SensorSpec,
     SensorSubject, SiteSpec, TendonSpec, TransmissionSpec,
 };
 use clench_rigid::constraint::softness::impedance;
@@ -173,6 +173,44 @@ pub fn loose_parts() -> ModelBuilder {
         qvel: Some(vec![1.0, 0.0, 3.0, 0.0, 0.0, 0.0]),
         ..KeyframeSpec::default()
     });
+    b
+}
+
+/// A box and a cylinder on a cube that is a mesh, and a box on that box, with or without several contacts a pair.
+pub fn parts_on_a_mesh(multiccd: bool) -> ModelBuilder {
+    let mut b = world();
+    b.physics.flags.multiccd = multiccd;
+    let corners = [-0.2, 0.2].map(|x| [-0.2, 0.2].map(|y| [-0.2, 0.2].map(|z| [x, y, z])));
+    b.meshes.push(MeshSpec::hull(
+        "cube",
+        corners.as_flattened().as_flattened(),
+    ));
+    b.bodies[0].geoms.push(GeomSpec::mesh("cube"));
+    let round = GeomSpec::cylinder(0.05, 0.05);
+    add(
+        &mut b,
+        0,
+        "box",
+        [0.1, 0.1, 0.2495],
+        free(),
+        vec![cuboid([0.05; 3])],
+    );
+    add(
+        &mut b,
+        0,
+        "cylinder",
+        [-0.1, -0.1, 0.2495],
+        free(),
+        vec![round],
+    );
+    add(
+        &mut b,
+        0,
+        "top",
+        [0.1, 0.1, 0.349],
+        free(),
+        vec![cuboid([0.05; 3])],
+    );
     b
 }
 
