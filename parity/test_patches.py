@@ -1,4 +1,4 @@
-"""Faces that lie on each other: how much of them the contacts span, beside MuJoCo's default."""
+"""Faces that lie on each other: how much of them the contacts span, beside MuJoCo's default and of all that there is."""
 
 import itertools
 
@@ -49,6 +49,34 @@ def poses(rng, below):
     return above if below == "plane" else [*above, 0, 0, 0, 1, 0, 0, 0]
 
 
+def face(shape):
+    """The corners of a face, counter-clockwise."""
+    if shape in ("box", "block"):
+        x, y = (0.06, 0.04) if shape == "box" else (0.05, 0.04)
+        return np.array([(x, y), (-x, y), (-x, -y), (x, -y)])
+    turn = 2 * np.pi * np.arange(6 if shape == "prism" else 256)
+    turn /= len(turn)
+    return 0.05 * np.transpose([np.cos(turn), np.sin(turn)])
+
+
+def overlap(below, above, pose):
+    """The corners of where the upper face is over the lower one (Sutherland & Hodgman 1974); tilts are too small to matter."""
+    axes = np.empty(9)
+    mujoco.mju_quat2Mat(axes, np.array(pose[3:7]))
+    corners = face(above) @ axes.reshape(3, 3)[:2, :2].T + pose[:2]
+    sides = () if below == "plane" else zip(face(below), np.roll(face(below), -1, axis=0), strict=True)
+    for p, q in sides:
+        beyond = (corners - p) @ [q[1] - p[1], p[0] - q[0]]
+        left = []
+        for a, b, at_a, at_b in zip(corners, np.roll(corners, -1, axis=0), beyond, np.roll(beyond, -1), strict=True):
+            if at_a <= 0:
+                left.append(a)
+            if at_a * at_b < 0:
+                left.append(a + (b - a) * (at_a / (at_a - at_b)))
+        corners = np.array(left)
+    return np.column_stack([corners, np.zeros(len(corners))])
+
+
 def area(points):
     """Of the convex hull of points, seen from above (Andrew 1979)."""
     points = sorted({tuple(p) for p in np.round(np.asarray(points).reshape(-1, 3)[:, :2], 9)})
@@ -71,17 +99,24 @@ def area(points):
 
 
 @pytest.mark.parametrize("below, above", [*itertools.product(["plane"], FACES), *itertools.combinations_with_replacement(FACES, 2)])
-def test_patches_are_as_large_as_mujocos(tmp_path, below, above):
+def test_patches_are_as_large_as_mujocos_and_nearly_as_the_overlap(tmp_path, below, above):
     path = tmp_path / "faces.xml"
     path.write_text(scene(below, above))
     model = mujoco.MjModel.from_xml_path(str(path))
     data, rng, shares = mujoco.MjData(model), np.random.default_rng(5), []
+    whole = []
     with program.Forward(path) as forward:
         for _ in range(STATES):
             data.qpos[:] = poses(rng, below)
             mujoco.mj_forward(model, data)
             own = forward({"qpos": data.qpos.tolist()})["contacts"]
             assert own and all(contact["dist"] < 0 for contact in own), "it lies on the other"
-            expected = area(data.contact.pos)
-            shares.append(area([contact["pos"] for contact in own]) / expected if expected > 1e-6 else 1.0)
+            spanned, expected = area([contact["pos"] for contact in own]), area(data.contact.pos)
+            # Where MuJoCo finds next to no area, what there is of it decides alone.
+            if expected > 1e-6:
+                shares.append(spanned / expected)
+            whole.append(spanned / area(overlap(below, above, data.qpos)))
     assert min(shares) >= 0.9, f"{np.sum(np.array(shares) < 0.9)} of {STATES} below 0.9, the least {min(shares):.3f}"
+    # An octagon in a circle has 0.9003 of it; MuJoCo's three points of a cylinder on a plane, which are ours too, have 0.4135.
+    least = 0.41 if (below, above) == ("plane", "cylinder") else 0.85
+    assert min(whole) >= least, f"{min(whole):.3f} of the faces' overlap"

@@ -3,7 +3,7 @@
 mod scenes;
 
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{DEFAULT_SOLIMP, GeomSpec, ModelBuilder};
+use clench_rigid::builder::{DEFAULT_SOLIMP, GeomSpec, MeshSpec, ModelBuilder};
 use clench_rigid::contact::Contact;
 use clench_rigid::{Sim, readout};
 use clench_solver::{FrictionCone, RigidOptions};
@@ -236,5 +236,61 @@ fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
             all.iter()
                 .any(|c| c.pos == left.pos && c.frame == left.frame)
         );
+    }
+}
+
+/// A stack of three like bodies, each a few millimetres beside the one below.
+fn stack(shape: &GeomSpec, base: GeomSpec) -> ModelBuilder {
+    let mut b = world();
+    b.options = RigidOptions::new();
+    let round = (0..40).map(|k| f64::from(k) * std::f64::consts::TAU / 40.0);
+    let rims: Vec<_> = round
+        .flat_map(|a| [-0.05, 0.05].map(|z| [0.1 * a.cos(), 0.1 * a.sin(), z]))
+        .collect();
+    b.meshes.push(MeshSpec::hull("prism", &rims));
+    b.bodies[0].geoms.push(base);
+    for k in 0..3 {
+        let level = f64::from(k);
+        let at = [0.004 * level, -0.003 * level, 0.05 + 0.1 * level];
+        add(&mut b, 0, &format!("{k}"), at, free(), vec![shape.clone()]);
+    }
+    b
+}
+
+#[test]
+fn stacks_of_round_bodies_come_to_rest() {
+    let slab = GeomSpec {
+        pos: Vec3::new(0.0, 0.0, -0.1),
+        ..cuboid([0.5, 0.5, 0.1])
+    };
+    for shape in [GeomSpec::cylinder(0.1, 0.05), GeomSpec::mesh("prism")] {
+        for base in [&slab, &plane()] {
+            let mut sim = sim(&stack(&shape, base.clone()));
+            run(&mut sim, 3.0);
+            let mut before = sim.contacts().to_vec();
+            for _ in 0..200 {
+                sim.step().expect("finite");
+                let fastest = sim
+                    .state
+                    .qvel
+                    .iter()
+                    .fold(0.0, |most: f64, v| most.max(v.abs()));
+                assert!(
+                    fastest < 1e-4,
+                    "{:?} on {:?}: {fastest}",
+                    shape.kind,
+                    base.kind
+                );
+                let now = sim.contacts().to_vec();
+                for c in &now {
+                    let same = before.iter().filter(|b| b.geoms == c.geoms);
+                    let jump = same
+                        .map(|b| (b.pos - c.pos).norm())
+                        .fold(f64::INFINITY, f64::min);
+                    assert!(jump < 1e-6, "{:?} on {:?}: {jump}", shape.kind, base.kind);
+                }
+                before = now;
+            }
+        }
     }
 }

@@ -10,6 +10,7 @@ mod boxes;
 mod capsule;
 mod convex;
 mod cylinder;
+mod outline;
 mod penetration;
 mod per_lane;
 mod plane;

@@ -1,35 +1,36 @@
 //! A hull on a plane.
 //!
-//! The vertex that is deepest, and with it the face that lies on the plane, of which those corners are kept that
-//! are far from each other. If there are fewer points than there is room for, others within the margin around the deepest
-//! vertex: the vertices of a hull on one side of a plane hang together, so walking over neighbours finds them.
+//! Where a face of few corners lies on the plane, these and the deepest vertex; of one with many, points of its outline (see
+//! [`Outline`]). If there are fewer points than there is room for, other vertices within the margin around the deepest one:
+//! the vertices of a hull on one side of a plane hang together, so walking over neighbours finds them.
 
 use super::{
     Placed,
     convex::MAX_CORNERS,
+    outline::Outline,
     per_lane::{Point, Points, per_lane},
+    polygon::Polygon,
 };
 use crate::{Asset, Contacts, Hull, PATCH_POINTS};
 use arrayvec::ArrayVec;
 use clench_math::{Real, Scalar, Vec3};
 
-/// The deepest vertex and the corners of a face.
-const MAX_CANDIDATES: usize = MAX_CORNERS + 1;
-/// Distances that differ by less than this share are equal.
-const TIE: f64 = 1e-6;
+/// Shares of the hull's extent: corners of a face nearer to each other are one; its outline may miss the deepest vertex by so much.
+const SAME: f64 = 1e-5;
+const MISSED: f64 = 1e-6;
 
 pub(super) fn plane_mesh<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     per_lane(a, b, margin, out, points);
 }
 
-/// A vertex in the hull's frame, and its height above the plane.
+/// A point of the hull, in its frame, and its height above the plane.
 #[derive(Clone, Copy)]
 struct Candidate<S> {
     at: Vec3<S>,
     height: S,
-    /// The square of the distance to the nearest candidate that is kept.
-    separation: S,
 }
+
+type Candidates<S> = ArrayVec<Candidate<S>, PATCH_POINTS>;
 
 fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut Points<S>) {
     let Asset::Hull(hull) = mesh.shape.asset else {
@@ -38,20 +39,33 @@ fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut 
     let normal = plane.pose.axis();
     let up = mesh.pose.rotation.transpose_mul(normal);
     let origin = normal.dot(mesh.pose.position - plane.pose.position);
-    let near = |vertex: u32| {
-        let at = Vec3::from_f64(hull.vertices()[vertex as usize].to_array());
-        let height = origin + up.dot(at);
-        let separation = S::INFINITY;
-        (height <= margin).then_some(Candidate {
-            at,
-            height,
-            separation,
-        })
+    let candidate = |at: Vec3<S>| Candidate {
+        at,
+        height: origin + up.dot(at),
     };
-    let mut candidates = ArrayVec::new();
-    around_deepest(hull, -up, near, &mut candidates);
-    sample_farthest(&mut candidates);
-    for Candidate { at, height, .. } in candidates {
+    let down = Vec3::from_array(up.to_array().map(|x| -x.to_f64()));
+    let deepest = hull.support(down);
+    let lowest = candidate(corner(hull, deepest as u32));
+    if lowest.height > margin {
+        return;
+    }
+    let mut candidates = Candidates::new();
+    let face = hull.face_across(deepest, down);
+    match face {
+        Some(face) if hull.corners(face).len() > PATCH_POINTS => {
+            let slack = mesh.shape.size.norm();
+            sample(hull, face, lowest, slack, candidate, &mut candidates);
+            candidates.retain(|candidate| candidate.height <= margin);
+        }
+        _ => {
+            let near = |vertex: u32| {
+                let candidate = candidate(corner(hull, vertex));
+                (candidate.height <= margin).then_some(candidate)
+            };
+            around(hull, deepest, face, near, &mut candidates);
+        }
+    }
+    for Candidate { at, height } in candidates {
         let position = mesh.pose.point(at) - normal * (height * S::new(0.5));
         points.push(Point {
             position,
@@ -61,19 +75,23 @@ fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut 
     }
 }
 
-/// The vertex furthest along `down`, those of the face that lies across it, and others around: all that are near.
-fn around_deepest<S: Scalar>(
+fn corner<S: Scalar>(hull: &Hull, vertex: u32) -> Vec3<S> {
+    Vec3::from_f64(hull.vertices()[vertex as usize].to_array())
+}
+
+/// The deepest vertex, those of the face that lies on the plane, and others around: all that are near, while there is room.
+fn around<S: Scalar>(
     hull: &Hull,
-    down: Vec3<S>,
+    deepest: usize,
+    face: Option<usize>,
     near: impl Fn(u32) -> Option<Candidate<S>>,
-    candidates: &mut ArrayVec<Candidate<S>, MAX_CANDIDATES>,
+    candidates: &mut Candidates<S>,
 ) {
-    let down = Vec3::from_array(down.to_array().map(S::to_f64));
-    let deepest = hull.support(down);
-    let mut visited = ArrayVec::<u32, MAX_CANDIDATES>::new();
-    let mut visit = |vertex: u32, visited: &mut ArrayVec<u32, MAX_CANDIDATES>| {
+    let mut visited = ArrayVec::<u32, PATCH_POINTS>::new();
+    let mut visit = |vertex: u32, visited: &mut ArrayVec<u32, PATCH_POINTS>| {
         // Most are not near.
         if let Some(candidate) = near(vertex)
+            && !visited.is_full()
             && !visited.contains(&vertex)
         {
             visited.push(vertex);
@@ -81,19 +99,13 @@ fn around_deepest<S: Scalar>(
         }
     };
     visit(deepest as u32, &mut visited);
-    if visited.is_empty() {
-        return;
-    }
-    if let Some(face) = hull.face_across(deepest, down) {
-        let corners = hull.corners(face);
-        for corner in corners.iter().step_by(corners.len().div_ceil(MAX_CORNERS)) {
-            visit(*corner, &mut visited);
-        }
+    for &corner in face.map_or(&[][..], |face| hull.corners(face)) {
+        visit(corner, &mut visited);
     }
     let mut next = 0;
     while next < visited.len() {
         for &neighbor in hull.neighbors(visited[next] as usize) {
-            if visited.len() >= PATCH_POINTS {
+            if visited.is_full() {
                 return;
             }
             visit(neighbor, &mut visited);
@@ -102,23 +114,39 @@ fn around_deepest<S: Scalar>(
     }
 }
 
-/// Leaves at most [`PATCH_POINTS`]: the first, the one furthest from it, the one furthest from both, and so on.
-fn sample_farthest<S: Scalar>(candidates: &mut ArrayVec<Candidate<S>, MAX_CANDIDATES>) {
-    if candidates.len() <= PATCH_POINTS {
-        return;
+/// Points of the outline of a face with many corners, seen from its first edge. If these miss the deepest vertex they are seen from its
+/// direction, and it is one of them.
+fn sample<S: Scalar>(
+    hull: &Hull,
+    face: usize,
+    lowest: Candidate<S>,
+    size: S,
+    candidate: impl Fn(Vec3<S>) -> Candidate<S>,
+    candidates: &mut Candidates<S>,
+) {
+    let corners = hull.corners(face);
+    let (origin, next): (Vec3<S>, Vec3<S>) = (corner(hull, corners[0]), corner(hull, corners[1]));
+    let normal = Vec3::from_f64(hull.normal(face).to_array());
+    let along = (next - origin).normalize().0;
+    let across = normal.cross(along);
+    let flat = |p: Vec3<S>| Vec3::new(along.dot(p - origin), across.dot(p - origin), S::ZERO);
+    let mut polygon = Polygon::empty();
+    for &vertex in corners.iter().step_by(corners.len().div_ceil(MAX_CORNERS)) {
+        polygon.push(flat(corner(hull, vertex)));
     }
-    for kept in 1..PATCH_POINTS {
-        let last = candidates[kept - 1].at;
-        let mut best = (S::ZERO, kept);
-        for (k, candidate) in candidates.iter_mut().enumerate().skip(kept) {
-            candidate.separation =
-                Real::min((candidate.at - last).norm_squared(), candidate.separation);
-            // Rounding must not choose between equals.
-            if candidate.separation > best.0 * S::new(1.0 + TIE) {
-                best = (candidate.separation, k);
-            }
-        }
-        candidates.swap(kept, best.1);
+    let outline = Outline::around(polygon.corners(), size * S::new(SAME));
+    let place = |p: &Vec3<S>| candidate(origin + along * p.x + across * p.y);
+    let first = Vec3::new(S::ONE, S::ZERO, S::ZERO);
+    candidates.extend(outline.sample(first).iter().map(place));
+    let heights = candidates.iter().map(|c| c.height);
+    let least = heights.fold(S::INFINITY, |least, height| least.min(height));
+    if least - lowest.height > size * S::new(MISSED) {
+        candidates.clear();
+        let first = flat(lowest.at) - outline.middle();
+        candidates.extend(outline.sample(first).iter().map(place));
+        candidates[0] = lowest;
+    } else if let Some(deepest) = candidates.iter_mut().find(|c| c.height <= least) {
+        // What is left of the difference is too little to move a point, not to be told.
+        deepest.height = least.min(lowest.height);
     }
-    candidates.truncate(PATCH_POINTS);
 }

@@ -21,12 +21,14 @@ pub(super) struct ProjectedFeature<S> {
     disc: Option<Disc<S>>,
 }
 
-/// A round cap: two axes in its plane, a point that has its middle's coordinates along them, and its radius.
+/// A round cap: two axes in its plane, a point that has its middle's coordinates along them, its radius, and the way from its middle
+/// to its first corner.
 struct Disc<S> {
     x: Vec3<S>,
     y: Vec3<S>,
     center: Vec3<S>,
     radius: S,
+    first: Vec3<S>,
 }
 
 impl<S: Scalar> ProjectedFeature<S> {
@@ -54,6 +56,9 @@ impl<S: Scalar> ProjectedFeature<S> {
             y: axes.column(1),
             center: origin,
             radius,
+            first: (feature.corners.first()).map_or(Vec3::ZERO, |corner| {
+                axes.column(0) * corner.x + axes.column(1) * corner.y
+            }),
         });
         ProjectedFeature {
             corners,
@@ -64,6 +69,22 @@ impl<S: Scalar> ProjectedFeature<S> {
 
     fn is_edge(&self) -> bool {
         self.corners.len() == 2
+    }
+
+    /// Whether it is a round cap.
+    pub fn is_cap(&self) -> bool {
+        self.disc.is_some()
+    }
+
+    /// From the middle of a round cap to its first corner.
+    pub fn cap_direction(&self) -> Option<Vec3<S>> {
+        self.disc.as_ref().map(|disc| disc.first)
+    }
+
+    /// A direction that turns with the body: to the first corner of a round cap, along the first edge of any other face.
+    pub fn direction(&self) -> Vec3<S> {
+        let along_edge = || self.corners[1] - self.corners[0];
+        self.cap_direction().unwrap_or_else(along_edge)
     }
 
     /// The height of the feature's plane at a point of the projection.

@@ -9,6 +9,10 @@ use clench_math::{Scalar, Vec3};
 pub(crate) const MAX_CORNERS: usize = 24;
 /// An edge counts as lying against the plane up to this tilt (5°), as a face does.
 const EDGE_SINE: f64 = 0.087;
+/// How much further than the others, as a share of its body, a corner must be to count, which would not be among those looked at.
+const NOTICEABLE: f64 = 1e-7;
+/// Faces tilted by less are level.
+const LEVEL: f64 = 2e-3;
 /// A cap tilted by less is level to rounding: all its corners are equally deep.
 const TILT: f64 = 5e-6;
 
@@ -87,7 +91,13 @@ impl<S: Scalar> Feature<S> {
         };
         if let Some(face) = hull.face_across(vertex, Vec3::from_array(d.to_array().map(S::to_f64)))
         {
-            self.face(hull, face, vertex);
+            self.face(
+                hull,
+                face,
+                vertex,
+                d,
+                body.bounding_radius * S::new(NOTICEABLE),
+            );
             return;
         }
         let neighbors = hull.neighbors(vertex).iter().map(|&k| k as usize);
@@ -98,39 +108,44 @@ impl<S: Scalar> Feature<S> {
         }
     }
 
-    /// A face of a hull; `vertex` is kept whatever else is left out.
-    fn face(&mut self, hull: &Hull, face: usize, vertex: usize) {
+    /// A face of a hull. Where corners are left out, the furthest vertex is kept, but for a level face if it is not noticeably further
+    /// than the others.
+    fn face(&mut self, hull: &Hull, face: usize, vertex: usize, d: Vec3<S>, noticeable: S) {
         let at = |v: u32| Vec3::from_f64(hull.vertices()[v as usize].to_array());
         let corners = hull.corners(face);
         let stride = corners.len().div_ceil(MAX_CORNERS - 1);
+        self.normal = Vec3::from_f64(hull.normal(face).to_array());
+        let level = (d - self.normal).norm_squared() <= S::new(LEVEL * LEVEL);
+        let sampled = corners.iter().step_by(stride).map(|&v| d.dot(at(v)));
+        let furthest = sampled.fold(-S::INFINITY, S::max);
+        let needed = !level || d.dot(at(vertex as u32)) > furthest + noticeable;
         self.corners.clear();
         for (k, &corner) in corners.iter().enumerate() {
-            if k % stride == 0 || corner as usize == vertex {
+            if k % stride == 0 || (needed && corner as usize == vertex) {
                 self.corners.push(at(corner));
             }
         }
-        self.normal = Vec3::from_f64(hull.normal(face).to_array());
     }
 
-    /// The cap of a cylinder: corners that do not turn with the tilt, so that a standing cylinder stands still, and between
-    /// them the deepest point of the cap's circle.
+    /// The cap of a cylinder: corners at equal angles, the first at the deepest point of the rim. They do not turn with a tilt that
+    /// nobody can tell, so that a standing cylinder stands still.
     fn cap(&mut self, size: Vec3<S>, d: Vec3<S>) {
         let up = S::ONE.copysign(d.z);
         self.normal = Vec3::new(S::ZERO, S::ZERO, up);
         self.radius = Some(size.x);
-        let height = size.y * up;
-        let tip = radial_direction(d);
-        let mut tilted = (d.x * d.x + d.y * d.y).sqrt() > S::new(TILT);
-        let at = |(x, y): (S, S)| Vec3::new(x * size.x, y * size.x, height);
-        for k in 0..CAP_CIRCLE.len() {
-            let (from, to) = (direction::<S>(k, up), direction::<S>(k + 1, up));
-            self.corners.push(at(from));
-            let after = from.0 * tip.1 - from.1 * tip.0;
-            let before = tip.0 * to.1 - tip.1 * to.0;
-            if tilted && after * up >= S::ZERO && before * up > S::ZERO {
-                self.corners.push(at(tip));
-                tilted = false;
-            }
+        let tilted = (d.x * d.x + d.y * d.y).sqrt() > S::new(TILT);
+        let (x, y) = if tilted {
+            radial_direction(d)
+        } else {
+            (S::ONE, S::ZERO)
+        };
+        for (cosine, sine) in CAP_CIRCLE {
+            let (cosine, sine) = (S::new(cosine) * size.x, S::new(sine) * size.x * up);
+            self.corners.push(Vec3::new(
+                x * cosine - y * sine,
+                y * cosine + x * sine,
+                size.y * up,
+            ));
         }
     }
 }
@@ -179,9 +194,3 @@ const CAP_CIRCLE: [(f64, f64); 16] = {
         (C, -S),
     ]
 };
-
-/// Direction `k` around, the other way about if `up` is −1.
-fn direction<S: Scalar>(k: usize, up: S) -> (S, S) {
-    let (x, y) = CAP_CIRCLE[k % CAP_CIRCLE.len()];
-    (S::new(x), S::new(y) * up)
-}

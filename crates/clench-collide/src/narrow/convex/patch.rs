@@ -1,7 +1,7 @@
 //! The points of a contact: where the features of two bodies overlap, seen along the normal.
 //!
-//! At each corner of the overlap the contact's distance is the difference of the features' heights. Of many corners those
-//! are kept that span the largest area, and the deepest.
+//! At each corner of the overlap the contact's distance is the difference of the features' heights. For many corners stand
+//! a few points on the outline (see [`Outline`]), and the deepest.
 
 use super::{
     clipping::ProjectedFeature,
@@ -12,6 +12,7 @@ use super::{
 use crate::PATCH_POINTS;
 use crate::narrow::{
     Placed,
+    outline::Outline,
     per_lane::{Point, Points},
     polygon::{CAPACITY, Polygon},
 };
@@ -21,8 +22,6 @@ use clench_math::{Mat3, Scalar, Vec3};
 /// Shares of the smaller body: points nearer to each other are one; a patch may miss the deepest point by so much.
 const SAME: f64 = 1e-5;
 const MISSED: f64 = 1e-6;
-/// Areas that differ by less than this share are equal.
-const TIE: f64 = 1e-6;
 
 /// A contact in the view: where it is across the normal, and the heights of both surfaces.
 #[derive(Clone, Copy)]
@@ -114,37 +113,52 @@ pub(super) fn patch<S: Scalar>(
     );
 
     let slack = (pair.smallest * S::new(MISSED)).max(pair.tolerance);
+    let spot_at = |p: &Vec3<S>| {
+        let on_a = projected_a.height(*p);
+        // Just beyond a corner the features' planes go on, but the bodies do not.
+        let on_b = projected_b.height(*p).max(on_a + best.gap);
+        Spot {
+            x: p.x,
+            y: p.y,
+            heights: (on_a, on_b),
+        }
+    };
     let (mut over, mut spots) = (Polygon::empty(), Spots::new());
     // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
     for beyond in [S::ZERO, pair.tolerance, slack] {
         spots.clear();
         projected_a.overlap(&projected_b, beyond, &mut over);
-        for p in over.corners() {
-            let on_a = projected_a.height(*p);
-            // Just beyond a corner the features' planes go on, but the bodies do not.
-            let on_b = projected_b.height(*p).max(on_a + best.gap);
-            spots.push(Spot {
-                x: p.x,
-                y: p.y,
-                heights: (on_a, on_b),
-            });
-        }
+        spots.extend(over.corners().iter().map(spot_at));
         if spots.iter().any(|s| s.distance() <= best.gap + slack) {
             break;
         }
     }
-    if !spots.iter().any(|s| s.distance() <= best.gap + slack) {
-        spots.insert(0, witness(simplex, pair, &view, best.gap));
+    let mut lowest = deepest(&spots, pair.tolerance);
+    if lowest.is_none_or(|lowest| lowest.distance() > best.gap + slack) {
+        let witness = witness(simplex, pair, &view, best.gap);
+        spots.insert(0, witness);
+        lowest = Some(witness);
     }
     let reach = margin + radii.0 + radii.1;
-    if spots.iter().all(|s| s.distance() > reach) {
+    let same = pair.smallest * S::new(SAME);
+    match lowest {
         // They touch by less than the features tell.
-        let only = spots[deepest(&spots, S::ZERO)].at_distance(best.gap);
-        spots.clear();
-        spots.push(only);
+        Some(lowest) if lowest.distance() > reach => {
+            spots.clear();
+            spots.push(lowest.at_distance(best.gap));
+        }
+        Some(lowest) if spots.len() > PATCH_POINTS => {
+            let first = projected_b.cap_direction();
+            let first = first.filter(|_| !projected_a.is_cap());
+            let first = first.unwrap_or_else(|| projected_a.direction());
+            let outline = Outline::around(over.corners(), same);
+            spots.clear();
+            sample(&outline, first, lowest, slack, spot_at, &mut spots);
+        }
+        _ => {}
     }
     spots.retain(|s| s.distance() <= reach);
-    thin_out(&mut spots, pair.smallest * S::new(SAME), pair.tolerance);
+    merge(&mut spots, same);
     for spot in &spots {
         let (from, to) = (spot.heights.0 + radii.0, spot.heights.1 - radii.1);
         let middle = Vec3::new(spot.x, spot.y, (from + to) * S::new(0.5));
@@ -173,9 +187,8 @@ fn witness<S: Scalar>(simplex: &Simplex<S>, pair: &Pair<S>, view: &Mat3<S>, gap:
     spot.at_distance(gap)
 }
 
-/// Leaves one of points that coincide, and at most [`PATCH_POINTS`]: the deepest, and those that span the largest area, by
-/// taking away again and again the corner that spans the smallest triangle with its neighbours.
-fn thin_out<S: Scalar>(spots: &mut Spots<S>, same: S, tolerance: S) {
+/// Leaves one of points that coincide: the deepest.
+fn merge<S: Scalar>(spots: &mut Spots<S>, same: S) {
     let mut kept = 0;
     for k in 0..spots.len() {
         let spot = spots[k];
@@ -190,26 +203,49 @@ fn thin_out<S: Scalar>(spots: &mut Spots<S>, same: S, tolerance: S) {
         }
     }
     spots.truncate(kept);
-    while spots.len() > PATCH_POINTS {
-        let len = spots.len();
-        let deepest = deepest(spots, tolerance);
-        let mut least = (S::INFINITY, deepest);
-        for k in (1..len).map(|k| (deepest + k) % len) {
-            let (p, q, r) = (spots[(k + len - 1) % len], spots[k], spots[(k + 1) % len]);
-            let area = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-            // Rounding must not choose between equals.
-            if area.abs() < least.0 * S::new(1.0 - TIE) {
-                least = (area.abs(), k);
-            }
-        }
-        spots.remove(least.1);
+}
+
+/// Fills `spots` with at most [`PATCH_POINTS`]: all corners if they are no more, else points of the outline, seen from the direction
+/// `first`. If these miss the lowest spot by more than `slack` they are seen from its direction, and it is one of them.
+fn sample<S: Scalar>(
+    outline: &Outline<S>,
+    first: Vec3<S>,
+    lowest: Spot<S>,
+    slack: S,
+    spot_at: impl Fn(&Vec3<S>) -> Spot<S>,
+    spots: &mut Spots<S>,
+) {
+    let few = outline.corners().len() <= PATCH_POINTS;
+    if few {
+        spots.extend(outline.corners().iter().map(&spot_at));
+    } else {
+        spots.extend(outline.sample(first).iter().map(&spot_at));
+    }
+    let missed = least_distance(spots) - lowest.distance();
+    if missed > slack && few && spots.len() < PATCH_POINTS {
+        spots.push(lowest);
+    } else if missed > slack {
+        let middle = outline.middle();
+        let first = Vec3::new(lowest.x - middle.x, lowest.y - middle.y, S::ZERO);
+        spots.clear();
+        spots.extend(outline.sample(first).iter().map(&spot_at));
+        spots[0] = lowest;
+    }
+    // What is left of the difference is too little to move a point, not to be told.
+    let least = least_distance(spots);
+    if let Some(spot) = spots.iter_mut().find(|s| s.distance() <= least) {
+        *spot = spot.at_distance(least.min(lowest.distance()));
     }
 }
 
-/// The first of the deepest spots; what the tolerance cannot tell apart is as deep.
-fn deepest<S: Scalar>(spots: &Spots<S>, tolerance: S) -> usize {
+fn least_distance<S: Scalar>(spots: &Spots<S>) -> S {
     let distances = spots.iter().map(Spot::distance);
-    let least = distances.fold(S::INFINITY, |least, d| least.min(d)) + tolerance;
-    let first = spots.iter().position(|spot| spot.distance() <= least);
-    first.unwrap_or(0)
+    distances.fold(S::INFINITY, |least, d| least.min(d))
+}
+
+/// The first of the deepest spots; what the tolerance cannot tell apart is as deep.
+fn deepest<S: Scalar>(spots: &Spots<S>, tolerance: S) -> Option<Spot<S>> {
+    let least = least_distance(spots) + tolerance;
+    let mut spots = spots.iter().copied();
+    spots.find(|spot| spot.distance() <= least)
 }
