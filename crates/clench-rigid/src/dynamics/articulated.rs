@@ -64,10 +64,9 @@ impl<T: Real> ArticulatedInertia<T> {
     #[inline(always)]
     fn release(&mut self, (moment, force): (Vec3<T>, Vec3<T>), inverse_pivot: T) {
         for i in 0..3 {
-            self.rotational.rows[i] =
-                self.rotational.rows[i] - moment * (moment[i] * inverse_pivot);
-            self.coupling.rows[i] = self.coupling.rows[i] - force * (moment[i] * inverse_pivot);
-            self.mass.rows[i] = self.mass.rows[i] - force * (force[i] * inverse_pivot);
+            self.rotational.rows[i] -= moment * (moment[i] * inverse_pivot);
+            self.coupling.rows[i] -= force * (moment[i] * inverse_pivot);
+            self.mass.rows[i] -= force * (force[i] * inverse_pivot);
         }
     }
 
