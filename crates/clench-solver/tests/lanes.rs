@@ -270,7 +270,9 @@ fn a_failing_lane_disturbs_no_other() {
 
 /// An arm of six dofs, and a free body.
 fn arm_and_body(rng: &mut Rng, _: usize) -> Shape {
-    let parents = (0..12).map(|i: usize| (i % 6 > 0).then(|| i - 1)).collect();
+    let parents = (0..12)
+        .map(|i: usize| (!i.is_multiple_of(6)).then(|| i - 1))
+        .collect();
     let mut shape = Shape::new(parents, 1 + rng.below(8));
     shape.cross = 0.3;
     shape
@@ -278,7 +280,9 @@ fn arm_and_body(rng: &mut Rng, _: usize) -> Shape {
 
 /// Many small trees: few couplings at first, then islands of several trees, in the end large ones.
 fn many_trees(_: &mut Rng, round: usize) -> Shape {
-    let parents = (0..36).map(|i: usize| (i % 3 > 0).then(|| i - 1)).collect();
+    let parents = (0..36)
+        .map(|i: usize| (!i.is_multiple_of(3)).then(|| i - 1))
+        .collect();
     let mut shape = Shape::new(parents, 1 + 2 * (round % 20));
     shape.cross = 0.4;
     shape
