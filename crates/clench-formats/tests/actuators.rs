@@ -208,3 +208,14 @@ fn a_damping_ratio_from_a_class_is_a_coefficient_where_the_gain_depends_on_lengt
     let affine = actuator(defaults, "<general joint='j' gaintype='affine'/>");
     assert_eq!((affine.dampratio, servo(&affine)), (None, [3.0, -3.0, 0.6]));
 }
+
+/// MuJoCo hears nothing of `actlimited` here: a range limits, and without one there is no limit.
+#[test]
+fn an_integrated_velocity_is_limited_where_it_has_a_range() {
+    for limited in ["false", "true", "auto"] {
+        let element = format!("<intvelocity joint='j' actrange='-1 1' actlimited='{limited}'/>");
+        assert_eq!(actuator("", &element).actlimited, None);
+        let default = format!("<intvelocity actlimited='{limited}'/>");
+        assert_eq!(actuator(&default, "<general joint='j'/>").actlimited, None);
+    }
+}

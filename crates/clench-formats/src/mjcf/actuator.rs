@@ -175,6 +175,8 @@ impl ActuatorDraft {
         element.set_number("inheritrange", &mut parameters.inheritrange)?;
         if self.shortcut == Shortcut::IntVelocity {
             parameters.dynamics = DynamicsKind::Integrator;
+            // As in MuJoCo, whatever the file says of it: an activation range limits if there is one.
+            self.actlimited = None;
             return Ok(parameters);
         }
         if inherited.dynamics == DynamicsKind::FilterExact {
