@@ -1,7 +1,7 @@
 //! Euler, implicit in the velocity derivatives of damping, fluid and actuation (MuJoCo's `implicitfast`).
 //!
 //! With D = ∂τ/∂v, the acceleration that advances the velocity solves (M − h D) a = τ + Jᵀf, see
-//! [`slopes`](crate::dynamics::slopes) for D. A free body that is a tree by itself is then solved once more, with its
+//! [`derivatives`](crate::dynamics::derivatives) for D. A free body that is a tree by itself is then solved once more, with its
 //! gyroscopic forces, see [`gyroscopic`](crate::dynamics::gyroscopic).
 
 use crate::dynamics::derivatives::add_velocity_derivatives;
