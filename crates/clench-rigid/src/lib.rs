@@ -13,6 +13,7 @@ pub mod constraint;
 pub mod contact;
 pub mod dynamics;
 mod error;
+mod geometry;
 mod known;
 pub mod model;
 mod output;

@@ -1,9 +1,8 @@
 //! The smallest distance of two sets of geoms. Distances are searched for in each lane alone.
 
 use super::Reading;
-use crate::contact::shape;
 use crate::model::{Sensor, SensorKind};
-use clench_collide::{Asset, Pose, Separation, Shape, distance};
+use clench_collide::{Pose, Separation, Shape, distance};
 use clench_math::{Mat3, Real, Vec3};
 use std::ops::Range;
 
@@ -56,22 +55,16 @@ impl<T: Real> Reading<'_, T> {
     /// A geom in one lane, with a hull even if it does not collide.
     fn solid(&self, geom: usize, lane: usize) -> (Shape<'_, T::Scalar>, Pose<T::Scalar>) {
         let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
-        let whole = shape(self.model, self.params, geom);
-        let asset = match self.model.geoms[geom].mesh {
-            Some(mesh) => self.model.meshes[mesh]
-                .any_hull()
-                .map_or(Asset::None, Asset::Hull),
-            None => whole.asset,
-        };
+        let (whole, pose) = (self.geoms().solid(geom), self.geoms().pose(geom));
         let shape = Shape {
             kind: whole.kind,
             size: vector(whole.size),
-            asset,
+            asset: whole.asset,
         };
         let pose = Pose {
-            position: vector(self.ws.position.geom_xpos[geom]),
+            position: vector(pose.position),
             rotation: Mat3 {
-                rows: self.ws.position.geom_xmat[geom].rows.map(vector),
+                rows: pose.rotation.rows.map(vector),
             },
         };
         (shape, pose)

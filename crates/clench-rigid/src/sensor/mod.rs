@@ -12,6 +12,7 @@ mod volume;
 
 use crate::constraint::ConstraintSource;
 use crate::dynamics::energy::energy;
+use crate::geometry::Geoms;
 use crate::model::{
     FrameObject, Model, Params, Sensor, SensorData, SensorKind, SensorTarget, Transmission,
 };
@@ -93,7 +94,15 @@ struct Reading<'a, T: Real> {
     ws: &'a Workspace<T>,
 }
 
-impl<T: Real> Reading<'_, T> {
+impl<'a, T: Real> Reading<'a, T> {
+    fn geoms(&self) -> Geoms<'a, T> {
+        Geoms {
+            model: self.model,
+            params: self.params,
+            position: &self.ws.position,
+        }
+    }
+
     /// Writes the numbers of a sensor.
     fn read(&self, sensor: &Sensor, out: &mut [T]) {
         match &sensor.target {

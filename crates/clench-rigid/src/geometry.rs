@@ -1,0 +1,95 @@
+//! Geoms where they are, for whoever asks about them: rays and shapes, in lanes. Contacts have their own way, `contact`.
+
+use crate::contact::shape;
+use crate::model::{Model, Params};
+use crate::query::RayFilter;
+use crate::workspace::Positions;
+use clench_collide::{Asset, Hit, Pose, Ray, Shape, ShapeKind, allowance, ray};
+use clench_math::{Mask, Real, Scalar, Vec3};
+
+/// The geoms of a configuration.
+#[derive(Clone, Copy)]
+pub(crate) struct Geoms<'a, T: Real> {
+    pub model: &'a Model,
+    pub params: &'a Params<T>,
+    pub position: &'a Positions<T>,
+}
+
+impl<'a, T: Real> Geoms<'a, T> {
+    /// Where a geom is.
+    pub fn pose(&self, geom: usize) -> Pose<T> {
+        Pose {
+            position: self.position.geom_xpos[geom],
+            rotation: self.position.geom_xmat[geom],
+        }
+    }
+
+    /// The shape of a geom, with a hull even if it does not collide.
+    pub fn solid(&self, geom: usize) -> Shape<'a, T> {
+        let shape = shape(self.model, self.params, geom);
+        match self.model.geoms[geom].mesh {
+            Some(mesh) => Shape {
+                asset: self.model.meshes[mesh]
+                    .any_hull()
+                    .map_or(Asset::None, Asset::Hull),
+                ..shape
+            },
+            None => shape,
+        }
+    }
+
+    /// The geom that a ray hits first, by its number, and where; the distance is infinite where it hits none.
+    pub fn first_hit(&self, line: &Ray<T>, filter: &RayFilter) -> (T, Hit<T>) {
+        let mut best = (
+            T::ZERO,
+            Hit {
+                distance: T::new(f64::INFINITY),
+                normal: Vec3::ZERO,
+            },
+        );
+        for geom in 0..self.model.geoms.len() {
+            if !self.is_hit_by(geom, filter) || !self.may_hit(geom, line).any() {
+                continue;
+            }
+            let hit = self.hit(geom, line);
+            let nearer = hit.distance.lt(best.1.distance);
+            best.0 = T::select(nearer, T::new(geom as f64), best.0);
+            best.1.distance = T::select(nearer, hit.distance, best.1.distance);
+            best.1.normal = Vec3::select(nearer, hit.normal, best.1.normal);
+        }
+        best
+    }
+
+    fn is_hit_by(&self, geom: usize, filter: &RayFilter) -> bool {
+        let geom = &self.model.geoms[geom];
+        let fixed = self.model.bodies[geom.body].weld == 0;
+        let group = geom.group.clamp(0, filter.groups.len() as i32 - 1) as usize;
+        geom.visible
+            && filter.groups[group]
+            && (filter.fixed || !fixed)
+            && filter.excluded_body != Some(geom.body)
+    }
+
+    /// Where a ray meets a geom's bounding sphere.
+    fn may_hit(&self, geom: usize, line: &Ray<T>) -> T::Mask {
+        if self.model.geoms[geom].kind == ShapeKind::Plane {
+            return T::Mask::splat(true);
+        }
+        let pose = self.pose(geom);
+        // The distance from far away is known to this rounding only.
+        let epsilon = T::splat(T::Scalar::EPSILON) * T::new(8.0);
+        let rounding = (pose.position - line.origin).norm() * epsilon;
+        let radius = self.params.geom_rbound[geom] * allowance::<T>() + rounding;
+        let sphere = Shape::new(ShapeKind::Sphere, Vec3::new(radius, T::ZERO, T::ZERO));
+        let infinite = T::new(f64::INFINITY);
+        ray(&sphere, &pose, line).distance.lt(infinite)
+    }
+
+    fn hit(&self, geom: usize, line: &Ray<T>) -> Hit<T> {
+        let pose = self.pose(geom);
+        match self.model.geoms[geom].mesh {
+            Some(mesh) => self.model.meshes[mesh].triangles().ray(&pose, line),
+            None => ray(&shape(self.model, self.params, geom), &pose, line),
+        }
+    }
+}
