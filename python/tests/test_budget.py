@@ -1,5 +1,7 @@
 """A model file may ask for so much and no more; who means it says so."""
 
+from pathlib import Path
+
 import clench
 import pytest
 
@@ -12,7 +14,7 @@ SCENE = """
 """
 
 
-def test_a_larger_budget_allows_a_larger_model(tmp_path):
+def test_a_larger_budget_allows_a_larger_model(tmp_path: Path) -> None:
     path = tmp_path / "sites.xml"
     path.write_text(SCENE)
     with pytest.raises(clench.LoadError, match="500000 elements.*budget="):
@@ -25,7 +27,7 @@ def test_a_larger_budget_allows_a_larger_model(tmp_path):
         clench.Model.from_xml(SCENE, budget=1e-4)
 
 
-def test_a_budget_of_nothing_allows_nothing():
+def test_a_budget_of_nothing_allows_nothing() -> None:
     for budget in (0, -1, float("nan")):
         with pytest.raises(clench.LoadError, match="more than 0 bytes"):
             clench.Model.from_xml("<mujoco/>", budget=budget)
