@@ -238,6 +238,7 @@ def test_stubs_list_what_there_is(humanoid: clench.Model) -> None:
              </worldbody>
              <tendon><fixed name="a"><joint joint="a" coef="1"/></fixed></tendon>
              <actuator><motor name="a" joint="a"/></actuator>
+             <sensor><gyro name="a" site="a"/></sensor>
              <equality><connect name="a" body1="a" anchor="0 0 0"/></equality>
              <contact><pair name="a" geom1="a" geom2="b"/></contact>
              <keyframe><key name="a"/></keyframe>
@@ -342,7 +343,7 @@ def test_everything_says_what_it_is_for() -> None:
     for function in [clench.solve, clench.Model.from_file, clench.Model.from_xml, clench.Model.body]:
         text = inspect.getdoc(function) or ""
         assert all(section in text for section in ("Parameters\n---", "Returns\n---", "Raises\n---"))
-    assert list(inspect.signature(clench.Model.from_file).parameters) == ["path"]
+    assert list(inspect.signature(clench.Model.from_file).parameters) == ["path", "budget"]
     assert list(inspect.signature(clench.solve).parameters) == ["M", "a_unc", "blocks", "options"]
 
 
