@@ -8,7 +8,7 @@ use std::process::Stdio;
 
 /// The words of MJCF, from the reader's own rules.
 #[allow(dead_code)]
-#[path = "../../crates/clench-formats/src/mjcf/rules.rs"]
+#[path = "../../crates/clench-formats/src/mjcf/rules/mod.rs"]
 mod rules;
 
 /// The targets, by the names of their folders in `fuzz/seeds`.
@@ -171,7 +171,7 @@ fn search(name: &str, program: &Path, dictionary: &Path, seconds: u64) -> Result
 /// The elements and attributes of MJCF as libFuzzer reads words: each in the text that it has in a file.
 fn dictionary_of_rules() -> String {
     let mut words: Vec<String> = Vec::new();
-    for rule in rules::RULES {
+    for rule in rules::rules() {
         let tags = [rule.children, rule.once, rule.later_children];
         let tags = tags.into_iter().flat_map(str::split_ascii_whitespace);
         words.extend(tags.flat_map(|tag| [format!("<{tag}"), format!("</{tag}>")]));

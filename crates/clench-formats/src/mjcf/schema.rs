@@ -4,7 +4,7 @@
 //! tables are [`rules`](super::rules).
 
 use super::document::Element;
-use super::rules::{RULES, Rule};
+use super::rules::{Rule, rules};
 use super::sensor;
 use crate::LoadError;
 use clench_rigid::model::SensorKind;
@@ -33,7 +33,7 @@ fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
     if parent == "sensor" {
         return sensor::rule(tag);
     }
-    let of = |name: &str| RULES.iter().find(|rule| rule.element == name);
+    let of = |name: &str| rules().find(|rule| rule.element == name);
     of(&format!("{parent}/{tag}")).or_else(|| of(tag))
 }
 
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn every_child_that_a_rule_allows_has_a_rule() {
-        for rule in RULES {
+        for rule in rules() {
             let parent = rule.element.rsplit('/').next().unwrap_or_default();
             for tag in words(rule.children).chain(words(rule.once)) {
                 assert!(find(parent, tag).is_some(), "<{tag}> in <{parent}>");
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn no_attribute_is_answered_twice() {
-        for rule in RULES {
+        for rule in rules() {
             let later = words(rule.later).map(|later| later.split('=').next().unwrap_or_default());
             let mut all: Vec<&str> = words(rule.read)
                 .chain(words(rule.ignored))

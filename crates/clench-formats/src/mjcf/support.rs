@@ -1,6 +1,6 @@
 //! What of MJCF is read, for users and for tests that must reach all of it.
 
-use super::rules::{RULES, Rule};
+use super::rules::{Rule, rules};
 
 /// What the reader does with an MJCF element.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub struct Support {
 /// assert!(geom.is_some_and(|geom| geom.read.contains(&"size")));
 /// ```
 pub fn supported() -> impl Iterator<Item = Support> {
-    RULES.iter().map(|rule: &Rule| {
+    rules().map(|rule: &Rule| {
         let words = |text: &'static str| text.split_ascii_whitespace();
         Support {
             element: rule.element,

@@ -1,0 +1,67 @@
+//! Sections that name elements of the tree, but for actuators.
+
+use super::{NONE, Rule, section};
+
+pub(super) const RULES: &[Rule] = &[
+    section("contact", "pair exclude", ""),
+    Rule {
+        element: "pair",
+        read: "name class geom1 geom2 condim friction solref solreffriction solimp margin gap",
+        later: "adhesion=0",
+        ..NONE
+    },
+    Rule {
+        element: "exclude",
+        read: "name body1 body2",
+        ..NONE
+    },
+    section("equality", "connect weld joint tendon", "flex flexstrain"),
+    Rule {
+        element: "connect",
+        read: "name class active solref solimp body1 body2 anchor site1 site2",
+        ..NONE
+    },
+    Rule {
+        element: "weld",
+        read: "name class active solref solimp body1 body2 anchor relpose site1 site2 torquescale",
+        ..NONE
+    },
+    Rule {
+        element: "equality/joint",
+        read: "name class active solref solimp joint1 joint2 polycoef",
+        ..NONE
+    },
+    Rule {
+        element: "equality/tendon",
+        read: "name class active solref solimp tendon1 tendon2 polycoef",
+        ..NONE
+    },
+    Rule {
+        element: "default/equality",
+        read: "active solref solimp",
+        ..NONE
+    },
+    section("tendon", "fixed", "spatial"),
+    Rule {
+        element: "fixed",
+        read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping frictionloss \
+            springlength solreflimit solimplimit solreffriction solimpfriction",
+        ignored: "group user",
+        later: "armature=0 springyield=0",
+        children: "joint",
+        ..NONE
+    },
+    Rule {
+        element: "fixed/joint",
+        read: "joint coef",
+        ..NONE
+    },
+    Rule {
+        element: "default/tendon",
+        read: "limited range actuatorfrclimited actuatorfrcrange margin stiffness damping frictionloss springlength \
+            solreflimit solimplimit solreffriction solimpfriction",
+        ignored: "group user width material rgba",
+        later: "armature=0 springyield=0",
+        ..NONE
+    },
+];

@@ -1,0 +1,83 @@
+//! The top level: compiler, options, defaults, keyframes, and what belongs to a user's program.
+
+use super::{NONE, Rule, ignored, section};
+
+pub(super) const RULES: &[Rule] = &[
+    Rule {
+        element: "mujoco",
+        ignored: "model",
+        children: "compiler option size statistic visual default extension asset worldbody deformable contact tendon \
+            equality actuator sensor custom keyframe",
+        ..NONE
+    },
+    Rule {
+        element: "compiler",
+        read: "angle eulerseq coordinate autolimits boundmass boundinertia settotalmass balanceinertia \
+            inertiafromgeom inertiagrouprange alignfree assetdir meshdir strippath fitaabb discardvisual",
+        ignored: "texturedir usethread conflict passthrough savecanonical savecompiled saveinertial",
+        later: "fusestatic=false",
+        once: "lengthrange",
+        ..NONE
+    },
+    ignored(
+        "lengthrange",
+        "accel interval inttotal maxforce mode timeconst timestep tolrange useexisting uselimit",
+        "",
+    ),
+    Rule {
+        element: "option",
+        read: "timestep gravity wind magnetic density viscosity integrator cone jacobian solver impratio tolerance \
+            ls_tolerance noslip_tolerance iterations ls_iterations noslip_iterations o_margin o_solref o_solimp \
+            o_friction actuatorgroupdisable",
+        // MuJoCo's general collision stops at a tolerance or after so many iterations; ours goes on to the last digit.
+        // The rest is for sensors, signed distance fields and sleep, which are refused where a file asks for them.
+        ignored: "ccd_tolerance ccd_iterations sdf_iterations sdf_initpoints sleep_tolerance",
+        once: "flag",
+        ..NONE
+    },
+    Rule {
+        element: "flag",
+        read: "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart \
+            filterparent actuation refsafe island eulerdamp multiccd autoreset sensor override",
+        // `nativeccd` and `midphase` choose between algorithms that look for the same contacts.
+        ignored: "energy fwdinv midphase nativeccd",
+        later: "diagexact=disable invdiscrete=disable ipc=disable sleep=disable speculative=disable",
+        ..NONE
+    },
+    ignored(
+        "size",
+        "memory njmax nconmax nstack nuserdata nkey nuser_body nuser_jnt nuser_geom nuser_site nuser_cam \
+        nuser_tendon nuser_actuator nuser_sensor",
+        "",
+    ),
+    ignored(
+        "statistic",
+        "meaninertia meanmass meansize extent center",
+        "",
+    ),
+    Rule {
+        element: "default",
+        read: "class",
+        children: "default",
+        once: "mesh texture material joint geom site camera light pair equality tendon general motor position \
+            velocity intvelocity damper cylinder",
+        later_children: "orientation pid muscle adhesion dcmotor",
+        ..NONE
+    },
+    section("extension", "", "plugin"),
+    section("deformable", "skin", "flex"),
+    // Which kinds of sensor there are, and with which attributes, says the table of sensors.
+    section("sensor", "", "camprojection contact tactile plugin"),
+    section("keyframe", "key", ""),
+    Rule {
+        element: "key",
+        read: "name time qpos qvel act ctrl mpos mquat",
+        later: "plastic",
+        ..NONE
+    },
+    section("custom", "numeric text tuple", ""),
+    ignored("numeric", "name size data", ""),
+    ignored("text", "name data", ""),
+    ignored("tuple", "name", "element"),
+    ignored("element", "objtype objname prm", ""),
+];

@@ -1,0 +1,84 @@
+//! The tree of bodies.
+
+use super::{NONE, Rule, ignored, section};
+
+/// What stands in the world, a body, a frame or a replica.
+const IN_A_BODY: &str = "body frame replicate geom site camera light inertial joint freejoint";
+const IN_A_BODY_LATER: &str = "attach plugin flexcomp";
+
+pub(super) const RULES: &[Rule] = &[
+    section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
+    Rule {
+        element: "body",
+        read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp simple",
+        ignored: "user sleep fuse",
+        children: IN_A_BODY,
+        later_children: IN_A_BODY_LATER,
+        ..NONE
+    },
+    Rule {
+        element: "frame",
+        read: "class childclass pos quat axisangle euler xyaxes zaxis",
+        ignored: "name",
+        later: "scale=1 scaling massscale=1",
+        children: IN_A_BODY,
+        later_children: IN_A_BODY_LATER,
+        ..NONE
+    },
+    Rule {
+        element: "replicate",
+        read: "class childclass count offset euler sep",
+        ignored: "name",
+        children: IN_A_BODY,
+        later_children: IN_A_BODY_LATER,
+        ..NONE
+    },
+    Rule {
+        element: "inertial",
+        read: "pos mass diaginertia fullinertia quat axisangle euler xyaxes zaxis",
+        ..NONE
+    },
+    Rule {
+        element: "joint",
+        read: "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit \
+            solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref \
+            armature damping frictionloss",
+        ignored: "user",
+        later: "springyield=0",
+        ..NONE
+    },
+    Rule {
+        element: "freejoint",
+        read: "name group align",
+        ..NONE
+    },
+    Rule {
+        element: "geom",
+        read: "name class type contype conaffinity condim group priority size friction mass density shellinertia \
+            solmix solref solimp margin gap fromto pos quat axisangle euler xyaxes zaxis mesh hfield fitscale material \
+            rgba",
+        ignored: "castshadow user fluidcoef",
+        later: "fluidshape=none surfacevel=0 adhesion=0",
+        later_children: "plugin",
+        ..NONE
+    },
+    Rule {
+        element: "site",
+        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis",
+        ignored: "material rgba user",
+        later: "mesh",
+        ..NONE
+    },
+    ignored(
+        "camera",
+        "name class mode target pos quat axisangle euler xyaxes zaxis projection fovy ipd resolution output \
+        focal focalpixel principal principalpixel sensorsize user",
+        "",
+    ),
+    ignored(
+        "light",
+        "name class mode target pos dir type directional castshadow active bulbradius intensity range \
+        attenuation cutoff softness exponent ambient diffuse specular texture",
+        "",
+    ),
+];

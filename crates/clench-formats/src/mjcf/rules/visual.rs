@@ -1,0 +1,42 @@
+//! What is only seen.
+
+use super::{NONE, Rule, ignored};
+
+pub(super) const RULES: &[Rule] = &[
+    Rule {
+        element: "visual",
+        once: "global quality headlight map scale rgba",
+        ..NONE
+    },
+    ignored(
+        "global",
+        "cameraid orthographic fovy ipd azimuth elevation linewidth glow offwidth offheight realtime \
+        ellipsoidinertia bvactive",
+        "",
+    ),
+    ignored(
+        "quality",
+        "shadowsize offsamples numslices numstacks numquads",
+        "",
+    ),
+    ignored("headlight", "ambient diffuse specular active", ""),
+    ignored(
+        "map",
+        "stiffness stiffnessrot force torque alpha fogstart fogend znear zfar haze shadowclip shadowscale \
+        actuatortendon",
+        "",
+    ),
+    ignored(
+        "scale",
+        "forcewidth contactwidth contactheight connect com camera light selectpoint jointlength jointwidth \
+        actuatorlength actuatorwidth framelength framewidth constraint slidercrank frustum",
+        "",
+    ),
+    ignored(
+        "rgba",
+        "fog haze force inertia joint actuator actuatornegative actuatorpositive com camera light selectpoint \
+        connect contactpoint contactforce contactfriction contacttorque contactgap rangefinder constraint \
+        slidercrank crankbroken frustum bv bvactive",
+        "",
+    ),
+];

@@ -1,0 +1,17 @@
+//! Records of structure: what each element is and what it belongs to. No number that a user might randomize.
+
+mod actuator;
+mod body;
+mod equality;
+mod geom;
+mod keyframe;
+mod option;
+mod tendon;
+
+pub use actuator::{Actuator, BiasKind, DynamicsKind, GainKind, Transmission};
+pub use body::{Body, Dof, Joint, JointKind, Site};
+pub use equality::{Equality, EqualityTarget};
+pub use geom::{Geom, HeightField, Mesh, Pair};
+pub use keyframe::Keyframe;
+pub use option::{Flags, Integrator};
+pub use tendon::Tendon;
