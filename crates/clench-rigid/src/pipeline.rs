@@ -13,8 +13,8 @@ use crate::dynamics::kinematics::kinematics;
 use crate::dynamics::passive::passive_forces;
 use crate::dynamics::rk4::rk4;
 use crate::dynamics::smooth::{smooth_acceleration, smooth_forces};
-use crate::dynamics::tendon::tendon_lengths;
-use crate::dynamics::transmission::transmission;
+use crate::dynamics::tendon::tendons;
+use crate::dynamics::transmission::transmissions;
 use crate::dynamics::velocity::velocities;
 use crate::model::{Integrator, Model, Params};
 use crate::profile::Stage;
@@ -35,8 +35,8 @@ pub fn position_stage<T: Real>(
     let pos = &mut ws.position;
     kinematics(model, params, state, pos);
     com_positions(model, params, pos);
-    tendon_lengths(model, params, &state.qpos, pos);
-    transmission(model, params, &state.qpos, pos);
+    tendons(model, params, &state.qpos, pos);
+    transmissions(model, params, &state.qpos, pos);
     ws.clock.lap(Stage::Kinematics as usize);
     composite_inertia(model, params, pos, &mut ws.problem.mass);
     ws.clock.lap(Stage::Inertia as usize);
@@ -57,7 +57,7 @@ pub fn velocity_stage<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);
-    velocities(model, params, pos, &state.qvel, vel);
+    velocities(model, pos, &state.qvel, vel);
     passive_forces(model, params, pos, vel, &state.qpos, &state.qvel, force);
     bias_forces(model, params, pos, vel, &state.qvel, force);
     ws.clock.lap(Stage::Velocity as usize);

@@ -48,9 +48,11 @@ pub struct Positions<T> {
     pub crb: Vec<Inertia<T>>,
     /// Tendon lengths (ntendon).
     pub ten_length: Vec<T>,
+    /// ∂length/∂q of all tendons, row after row, in the pattern `Model::tendon_dofs`.
+    pub ten_jacobian: Vec<T>,
     /// Actuator lengths (nu).
     pub actuator_length: Vec<T>,
-    /// Moment arms of actuators, a row of nv each (nu × nv), zero outside the transmission's dofs.
+    /// Moment arms ∂length/∂q of all actuators, row after row, in the pattern `Model::actuator_dofs`.
     pub actuator_moment: Vec<T>,
 }
 
@@ -80,8 +82,9 @@ impl<T: Real> Positions<T> {
             cinert: vec![Inertia::ZERO; nbody],
             crb: vec![Inertia::ZERO; nbody],
             ten_length: zeros(model.tendons.len()),
+            ten_jacobian: zeros(model.tendon_dofs.len()),
             actuator_length: zeros(nu),
-            actuator_moment: zeros(nu * nv),
+            actuator_moment: zeros(model.actuator_dofs.len()),
         }
     }
 }

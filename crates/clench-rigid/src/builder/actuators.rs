@@ -71,6 +71,7 @@ fn add(
         group: spec.group,
     });
     model.na += usize::from(has_activation);
+    push_dofs(transmission, model);
     let p = &mut model.params;
     p.actuator_gear.push(spec.gear);
     p.actuator_dynprm.push(spec.dynprm);
@@ -80,6 +81,21 @@ fn add(
     p.actuator_forcerange.push(spec.forcerange);
     p.actuator_actrange.push(spec.actrange);
     Ok(())
+}
+
+/// Notes which dofs a transmission acts on.
+fn push_dofs(transmission: Transmission, model: &mut Model) {
+    match transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => {
+            let joint = &model.joints[j];
+            let dofs = joint.dof..joint.dof + joint.kind.nv();
+            model.actuator_dofs.push(dofs.map(|dof| dof as u32));
+        }
+        Transmission::Tendon(t) => {
+            let dofs = model.tendon_dofs.dofs(t).iter().copied();
+            model.actuator_dofs.push(dofs);
+        }
+    }
 }
 
 /// Whether the actuator is a servo: its force vanishes where the control equals the length.

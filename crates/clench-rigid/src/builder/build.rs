@@ -8,7 +8,7 @@ use super::{
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
-use crate::model::{Model, Params};
+use crate::model::{Model, Params, RowPattern};
 use crate::workspace::Positions;
 use clench_math::Vec3;
 use clench_solver::Tree;
@@ -71,7 +71,9 @@ impl ModelBuilder {
             geoms: Vec::new(),
             sites: Vec::new(),
             tendons: Vec::new(),
+            tendon_dofs: RowPattern::default(),
             actuators: Vec::new(),
+            actuator_dofs: RowPattern::default(),
             sensors: Vec::new(),
             equalities: Vec::new(),
             pairs: Vec::new(),
@@ -118,7 +120,7 @@ fn initial_pose(model: &Model) -> Positions<f64> {
     let mut pos = Positions::new(model);
     kinematics::kinematics(model, params, &state, &mut pos);
     com::com_positions(model, params, &mut pos);
-    tendon::tendon_lengths(model, params, &state.qpos, &mut pos);
-    transmission::transmission(model, params, &state.qpos, &mut pos);
+    tendon::tendons(model, params, &state.qpos, &mut pos);
+    transmission::transmissions(model, params, &state.qpos, &mut pos);
     pos
 }

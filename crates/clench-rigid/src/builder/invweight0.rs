@@ -7,6 +7,7 @@ use super::bodies::{is_null, is_null_position};
 use super::check::describe;
 use super::{BuildError, ModelBuilder};
 use crate::dynamics::inertia::composite_inertia;
+use crate::dynamics::{tendon, transmission};
 use crate::model::{JointKind, Model};
 use crate::singular::first_bad_pivot;
 use crate::workspace::Positions;
@@ -88,7 +89,7 @@ pub(super) fn derive(
         .collect();
     dof_weights(&mut inverse, &sliders, model);
     body_weights(&mut inverse, &sliders, pose0, model);
-    tendon_weights(&mut inverse, model);
+    tendon_weights(&mut inverse, pose0, model);
     spring_dampers(springdampers, model);
     servo_damping(builder, &mut inverse, pose0, model);
     Ok(())
@@ -114,15 +115,17 @@ impl InverseInertia {
         }
     }
 
-    /// J M⁻¹ Jᵀ for the row that `fill` writes into zeros.
-    fn weight(&mut self, model: &Model, fill: impl FnOnce(&mut [f64])) -> f64 {
+    /// J M⁻¹ Jᵀ for a sparse row.
+    fn weight_of(&mut self, model: &Model, row: impl Iterator<Item = (usize, f64)>) -> f64 {
         self.row.fill(0.0);
-        fill(&mut self.row);
+        for (dof, entry) in row {
+            self.row[dof] = entry;
+        }
         self.factor.solve_half(&model.tree, &mut self.row);
         self.row.iter().map(|x| x * x).sum()
     }
 
-    /// As `weight`, for a row that is zero but on the path to dof `last`, where `entry` gives it.
+    /// As `weight_of`, for a row that is zero but on the path to dof `last`, where `entry` gives it.
     fn weight_along(&mut self, model: &Model, last: usize, entry: impl Fn(usize) -> f64) -> f64 {
         let path = model.tree.row(last);
         let row = &mut self.row[..path.len()];
@@ -206,16 +209,9 @@ fn body_weights(
     model.params.body_invweight0 = weights;
 }
 
-fn tendon_weights(inverse: &mut InverseInertia, model: &mut Model) {
-    let mut weights = Vec::with_capacity(model.tendons.len());
-    for tendon in &model.tendons {
-        let coefs = &model.params.wrap_coef[tendon.coefs.clone()];
-        weights.push(inverse.weight(model, |row| {
-            for (&j, &coef) in tendon.joints.iter().zip(coefs) {
-                row[model.joints[j].dof] = coef;
-            }
-        }));
-    }
+fn tendon_weights(inverse: &mut InverseInertia, pose0: &Positions<f64>, model: &mut Model) {
+    let weight = |t| inverse.weight_of(model, tendon::gradient(model, pose0, t));
+    let weights = (0..model.tendons.len()).map(weight).collect();
     model.params.tendon_invweight0 = weights;
 }
 
@@ -269,8 +265,7 @@ fn servo_damping(
         let Some(ratio) = spec.dampratio else {
             continue;
         };
-        let arms = &pose0.actuator_moment[u * model.nv..(u + 1) * model.nv];
-        let weight = inverse.weight(model, |row| row.copy_from_slice(arms));
+        let weight = inverse.weight_of(model, transmission::moment(model, pose0, u));
         let reflected = 1.0 / weight.max(MIN_INERTIA);
         model.params.actuator_biasprm[u][2] = -2.0 * ratio * (spec.gainprm[0] * reflected).sqrt();
     }

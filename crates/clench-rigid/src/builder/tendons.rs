@@ -27,6 +27,8 @@ pub(super) fn add_all(
             return Err(spec.error("springlength must not fall"));
         }
         let start = model.params.wrap_coef.len();
+        let dofs = joints.iter().map(|&j| model.joints[j].dof as u32);
+        model.tendon_dofs.push(dofs);
         model.tendons.push(Tendon {
             name: spec.name.clone(),
             coefs: start..start + joints.len(),

@@ -1,15 +1,15 @@
-//! A scalar function of joint positions, which equalities, limits and dry friction of joints and tendons act on.
+//! A scalar function of positions, which equalities, limits and dry friction of joints and tendons act on.
 
 use super::ConstraintContext;
 use crate::dynamics::tendon;
 use clench_math::Real;
 
-/// A joint coordinate or a tendon length, and its constant derivatives.
+/// A joint coordinate or a tendon length, and its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Coordinate {
     /// A hinge or slide.
     Joint(usize),
-    /// A fixed tendon.
+    /// A tendon.
     Tendon(usize),
 }
 
@@ -62,9 +62,9 @@ impl Coordinate {
         scale: T,
         row: &mut [T],
     ) {
-        self.each(context, |dof, coefficient| {
+        self.each(context, |dof, derivative| {
             if let Ok(column) = dofs.binary_search(&dof) {
-                row[column] += scale * coefficient;
+                row[column] += scale * derivative;
             }
         });
     }
@@ -74,8 +74,8 @@ impl Coordinate {
         match self {
             Coordinate::Joint(joint) => visit(context.model.joints[joint].dof as u32, T::ONE),
             Coordinate::Tendon(tendon) => {
-                for (dof, coefficient) in tendon::terms(context.model, context.params, tendon) {
-                    visit(dof as u32, coefficient);
+                for (dof, arm) in tendon::gradient(context.model, context.position, tendon) {
+                    visit(dof as u32, arm);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Actuator forces, force = gain · input + bias, and the dof forces they make.
 
 use crate::dynamics::activation::{activation_rates, input};
-use crate::dynamics::transmission::transmission_dofs;
+use crate::dynamics::transmission::moment;
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
@@ -42,9 +42,8 @@ pub fn actuation<T: Real>(
         if let Some(t) = limited_tendon(model, actuator.transmission) {
             force.ten_actuator_force[t] += force.actuator_force[u];
         }
-        let moment = &pos.actuator_moment[u * model.nv..(u + 1) * model.nv];
-        for dof in transmission_dofs(model, actuator.transmission) {
-            force.qfrc_actuator[dof] += moment[dof] * force.actuator_force[u];
+        for (dof, arm) in moment(model, pos, u) {
+            force.qfrc_actuator[dof] += arm * force.actuator_force[u];
         }
     }
     finish_joints(model, params, force);

@@ -7,7 +7,7 @@
 use crate::dynamics::activation::input;
 use crate::dynamics::fluid::{Drag, has_fluid};
 use crate::dynamics::tendon;
-use crate::dynamics::transmission::transmission_dofs;
+use crate::dynamics::transmission::moment;
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
@@ -28,11 +28,9 @@ pub fn add_velocity_derivatives<T: Real>(
     matrix: &mut TreeMatrix<T>,
 ) {
     if model.flags.actuation {
-        for (u, actuator) in model.actuators.iter().enumerate() {
+        for u in 0..model.nu() {
             let slope = actuator_derivative(model, params, state, pos, force, u);
-            let moment = &pos.actuator_moment[u * model.nv..(u + 1) * model.nv];
-            let arms = transmission_dofs(model, actuator.transmission).map(|i| (i, moment[i]));
-            add_outer(model, arms, slope * scale, matrix);
+            add_outer(model, moment(model, pos, u), slope * scale, matrix);
         }
     }
     if (model.flags.spring || model.flags.damper) && has_fluid(params) {
@@ -47,8 +45,8 @@ pub fn add_velocity_derivatives<T: Real>(
             }
         }
         for (t, &damping) in params.tendon_damping.iter().enumerate() {
-            let terms = tendon::terms(model, params, t);
-            add_outer(model, terms, -damping * scale, matrix);
+            let row = tendon::gradient(model, pos, t);
+            add_outer(model, row, -damping * scale, matrix);
         }
     }
 }

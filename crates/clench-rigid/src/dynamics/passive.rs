@@ -32,7 +32,7 @@ pub fn passive_forces<T: Real>(
         springs(model, params, pos, qpos, &mut force.qfrc_spring);
     }
     if model.flags.damper {
-        dampers(model, params, vel, qvel, &mut force.qfrc_damper);
+        dampers(model, params, pos, vel, qvel, &mut force.qfrc_damper);
     }
     gravity_compensation(model, params, pos, force);
     fluid_forces(model, params, pos, vel, force);
@@ -73,13 +73,8 @@ fn springs<T: Real>(
     }
     for t in 0..model.tendons.len() {
         let stretch = tendon_stretch(params, t, pos.ten_length[t]);
-        add_tendon_force(
-            model,
-            params,
-            t,
-            -stretch * params.tendon_stiffness[t],
-            qfrc,
-        );
+        let force = -stretch * params.tendon_stiffness[t];
+        add_tendon_force(model, pos, t, force, qfrc);
     }
 }
 
@@ -87,6 +82,7 @@ fn springs<T: Real>(
 fn dampers<T: Real>(
     model: &Model,
     params: &Params<T>,
+    pos: &Positions<T>,
     vel: &Velocities<T>,
     qvel: &[T],
     qfrc: &mut [T],
@@ -96,7 +92,7 @@ fn dampers<T: Real>(
     }
     for t in 0..model.tendons.len() {
         let force = -vel.ten_velocity[t] * params.tendon_damping[t];
-        add_tendon_force(model, params, t, force, qfrc);
+        add_tendon_force(model, pos, t, force, qfrc);
     }
 }
 

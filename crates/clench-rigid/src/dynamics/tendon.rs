@@ -1,36 +1,37 @@
-//! Fixed tendons: a weighted sum of joint positions. The weights are the tendon's Jacobian.
+//! Tendons: the length of each and its gradient J = ∂length/∂q, a sparse row over dofs.
+//!
+//! Springs, dampers, limits, dry friction, equalities and actuators of tendons read lengths and rows, and nothing else.
 
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
 use clench_math::{Real, kernel};
 
-/// The dofs of a fixed tendon with their weights.
+/// The dofs that change a tendon's length, with ∂length/∂q along each.
 #[inline(always)]
-pub fn terms<'a, T: Real>(
+pub fn gradient<'a, T: Real>(
     model: &'a Model,
-    params: &'a Params<T>,
+    pos: &'a Positions<T>,
     tendon: usize,
 ) -> impl Iterator<Item = (usize, T)> + Clone + 'a {
-    let tendon = &model.tendons[tendon];
-    let coefs = &params.wrap_coef[tendon.coefs.clone()];
-    let dofs = tendon.joints.iter().map(|&j| model.joints[j].dof);
-    dofs.zip(coefs.iter().copied())
+    model.tendon_dofs.row(&pos.ten_jacobian, tendon)
 }
 
-/// `ten_length` at `qpos`.
+/// `ten_length` and `ten_jacobian` at `qpos`, after the kinematics.
 #[kernel]
-pub fn tendon_lengths<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    qpos: &[T],
-    pos: &mut Positions<T>,
-) {
-    for (tendon, length) in model.tendons.iter().zip(&mut pos.ten_length) {
+pub fn tendons<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], pos: &mut Positions<T>) {
+    for (t, tendon) in model.tendons.iter().enumerate() {
         let coefs = &params.wrap_coef[tendon.coefs.clone()];
-        *length = T::ZERO;
+        let dofs = model.tendon_dofs.dofs(t);
+        let row = &mut pos.ten_jacobian[model.tendon_dofs.range(t)];
+        let mut length = T::ZERO;
         for (&j, &coef) in tendon.joints.iter().zip(coefs) {
-            *length += coef * qpos[model.joints[j].qpos];
+            let joint = &model.joints[j];
+            length += coef * qpos[joint.qpos];
+            if let Ok(column) = dofs.binary_search(&(joint.dof as u32)) {
+                row[column] = coef;
+            }
         }
+        pos.ten_length[t] = length;
     }
 }
 
@@ -38,14 +39,14 @@ pub fn tendon_lengths<T: Real>(
 #[kernel]
 pub fn tendon_velocities<T: Real>(
     model: &Model,
-    params: &Params<T>,
+    pos: &Positions<T>,
     qvel: &[T],
     ten_velocity: &mut [T],
 ) {
     for (t, velocity) in ten_velocity.iter_mut().enumerate() {
         *velocity = T::ZERO;
-        for (dof, coef) in terms(model, params, t) {
-            *velocity += coef * qvel[dof];
+        for (dof, arm) in gradient(model, pos, t) {
+            *velocity += arm * qvel[dof];
         }
     }
 }
@@ -54,12 +55,12 @@ pub fn tendon_velocities<T: Real>(
 #[inline(always)]
 pub fn add_tendon_force<T: Real>(
     model: &Model,
-    params: &Params<T>,
+    pos: &Positions<T>,
     tendon: usize,
     force: T,
     qfrc: &mut [T],
 ) {
-    for (dof, coef) in terms(model, params, tendon) {
-        qfrc[dof] += coef * force;
+    for (dof, arm) in gradient(model, pos, tendon) {
+        qfrc[dof] += arm * force;
     }
 }

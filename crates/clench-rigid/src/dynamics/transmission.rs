@@ -1,58 +1,44 @@
 //! Transmissions: the length of each actuator and its moment arms, ∂length/∂q along each dof.
 
-use crate::dynamics::tendon;
 use crate::model::{Joint, JointKind, Model, Params, Transmission};
 use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 
-/// The dofs that a transmission acts on: where its row of `actuator_moment` may be nonzero.
+/// The dofs that an actuator acts on, with its moment arm along each.
 #[inline(always)]
-pub fn transmission_dofs(
-    model: &Model,
-    transmission: Transmission,
-) -> impl Iterator<Item = usize> + Clone + '_ {
-    let (range, joints): (_, &[usize]) = match transmission {
-        Transmission::Joint(j) | Transmission::JointInParent(j) => {
-            let joint = &model.joints[j];
-            (joint.dof..joint.dof + joint.kind.nv(), &[])
-        }
-        Transmission::Tendon(t) => (0..0, &model.tendons[t].joints),
-    };
-    range.chain(joints.iter().map(|&j| model.joints[j].dof))
+pub fn moment<'a, T: Real>(
+    model: &'a Model,
+    pos: &'a Positions<T>,
+    actuator: usize,
+) -> impl Iterator<Item = (usize, T)> + Clone + 'a {
+    model.actuator_dofs.row(&pos.actuator_moment, actuator)
 }
 
-/// `actuator_length` and the nonzero entries of `actuator_moment`, after the kinematics.
+/// `actuator_length` and `actuator_moment`, after the kinematics and the tendons.
 ///
 /// A ball joint's length is its rotation vector along the gear, a free joint has none (zero); their gears are wrenches in
 /// the child's frame, or for [`Transmission::JointInParent`] in the parent's.
 #[kernel]
-pub fn transmission<T: Real>(
+pub fn transmissions<T: Real>(
     model: &Model,
     params: &Params<T>,
     qpos: &[T],
     pos: &mut Positions<T>,
 ) {
-    let nv = model.nv;
     for (u, actuator) in model.actuators.iter().enumerate() {
         let gear = &params.actuator_gear[u];
-        let moment = &mut pos.actuator_moment[u * nv..(u + 1) * nv];
+        let row = &mut pos.actuator_moment[model.actuator_dofs.range(u)];
         pos.actuator_length[u] = match actuator.transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 let joint = &model.joints[j];
                 let in_parent = matches!(actuator.transmission, Transmission::JointInParent(_));
-                let arms = &mut moment[joint.dof..];
-                joint_arms(
-                    joint,
-                    qpos[joint.qpos],
-                    pos.jnt_turn[j],
-                    gear,
-                    in_parent,
-                    arms,
-                )
+                let (q, turn) = (qpos[joint.qpos], pos.jnt_turn[j]);
+                joint_arms(joint, q, turn, gear, in_parent, row)
             }
             Transmission::Tendon(t) => {
-                for (dof, coef) in tendon::terms(model, params, t) {
-                    moment[dof] = coef * gear[0];
+                let gradient = &pos.ten_jacobian[model.tendon_dofs.range(t)];
+                for (arm, &derivative) in row.iter_mut().zip(gradient) {
+                    *arm = derivative * gear[0];
                 }
                 pos.ten_length[t] * gear[0]
             }

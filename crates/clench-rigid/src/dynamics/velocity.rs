@@ -1,30 +1,21 @@
 //! Velocities of bodies, and how the dof axes turn with them.
 
 use crate::dynamics::tendon;
-use crate::dynamics::transmission::transmission_dofs;
-use crate::model::{JointKind, Model, Params};
+use crate::dynamics::transmission::moment;
+use crate::model::{JointKind, Model};
 use crate::workspace::{Positions, Velocities};
 use clench_math::{Motion, Real, kernel};
 
 /// `cvel`, `cdof_dot`, tendon and actuator velocities.
 #[kernel]
-pub fn velocities<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    pos: &Positions<T>,
-    qvel: &[T],
-    vel: &mut Velocities<T>,
-) {
+pub fn velocities<T: Real>(model: &Model, pos: &Positions<T>, qvel: &[T], vel: &mut Velocities<T>) {
     body_velocities(model, pos, qvel, vel);
-    tendon::tendon_velocities(model, params, qvel, &mut vel.ten_velocity);
-    for (u, (actuator, velocity)) in
-        (model.actuators.iter().zip(&mut vel.actuator_velocity)).enumerate()
-    {
-        let moment = &pos.actuator_moment[u * model.nv..(u + 1) * model.nv];
+    tendon::tendon_velocities(model, pos, qvel, &mut vel.ten_velocity);
+    for (u, velocity) in vel.actuator_velocity.iter_mut().enumerate() {
         *velocity = T::ZERO;
         if model.flags.actuation {
-            for dof in transmission_dofs(model, actuator.transmission) {
-                *velocity += moment[dof] * qvel[dof];
+            for (dof, arm) in moment(model, pos, u) {
+                *velocity += arm * qvel[dof];
             }
         }
     }

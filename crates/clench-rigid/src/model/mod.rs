@@ -15,7 +15,8 @@ pub use params::{ParamField, Params};
 pub use sensor::{Attachment, FrameObject, Sensor, SensorData, SensorKind, SensorTarget};
 pub use structure::{
     Actuator, BiasKind, Body, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom,
-    HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair, Site, Tendon, Transmission,
+    HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair, RowPattern, Site, Tendon,
+    Transmission,
 };
 
 use crate::Budget;
@@ -43,8 +44,12 @@ pub struct Model {
     pub sites: Vec<Site>,
     /// Fixed tendons.
     pub tendons: Vec<Tendon>,
+    /// The dofs that change the length of each tendon.
+    pub tendon_dofs: RowPattern,
     /// Actuators.
     pub actuators: Vec<Actuator>,
+    /// The dofs that each actuator acts on.
+    pub actuator_dofs: RowPattern,
     /// Sensors.
     pub sensors: Vec<Sensor>,
     /// Equality constraints.

@@ -6,6 +6,7 @@ mod equality;
 mod geom;
 mod keyframe;
 mod option;
+mod pattern;
 mod tendon;
 
 pub use actuator::{Actuator, BiasKind, DynamicsKind, GainKind, Transmission};
@@ -14,4 +15,5 @@ pub use equality::{Equality, EqualityTarget};
 pub use geom::{Geom, HeightField, Mesh, Pair};
 pub use keyframe::Keyframe;
 pub use option::{Flags, Integrator};
+pub use pattern::RowPattern;
 pub use tendon::Tendon;

@@ -1,0 +1,81 @@
+//! Where the rows of a matrix over dofs may be nonzero.
+
+use std::ops::Range;
+
+/// The dofs of each row of a sparse matrix over dofs, ascending, each once. The entries of all rows stand one after the other
+/// in an array of their own.
+#[derive(Clone, Debug, Default)]
+pub struct RowPattern {
+    dofs: Vec<u32>,
+    ends: Vec<usize>,
+}
+
+impl RowPattern {
+    /// Appends a row that may be nonzero at `dofs`, given in any order and as often as one likes.
+    pub fn push(&mut self, dofs: impl IntoIterator<Item = u32>) {
+        let start = self.dofs.len();
+        self.dofs.extend(dofs);
+        self.dofs[start..].sort_unstable();
+        let mut kept = start;
+        for i in start..self.dofs.len() {
+            if i == start || self.dofs[i] != self.dofs[kept - 1] {
+                self.dofs[kept] = self.dofs[i];
+                kept += 1;
+            }
+        }
+        self.dofs.truncate(kept);
+        self.ends.push(kept);
+    }
+
+    /// Entries of all rows.
+    pub fn len(&self) -> usize {
+        self.dofs.len()
+    }
+
+    /// Whether no row has an entry.
+    pub fn is_empty(&self) -> bool {
+        self.dofs.is_empty()
+    }
+
+    /// Where the entries of a row stand.
+    #[inline(always)]
+    pub fn range(&self, row: usize) -> Range<usize> {
+        let start = row.checked_sub(1).map_or(0, |before| self.ends[before]);
+        start..self.ends[row]
+    }
+
+    /// The dofs of a row.
+    #[inline(always)]
+    pub fn dofs(&self, row: usize) -> &[u32] {
+        &self.dofs[self.range(row)]
+    }
+
+    /// The dofs of a row with their entries, `entries` being those of all rows.
+    #[inline(always)]
+    pub fn row<'a, T: Copy>(
+        &'a self,
+        entries: &'a [T],
+        row: usize,
+    ) -> impl Iterator<Item = (usize, T)> + Clone + 'a {
+        let dofs = self.dofs(row).iter().map(|&dof| dof as usize);
+        dofs.zip(entries[self.range(row)].iter().copied())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RowPattern;
+
+    #[test]
+    fn rows_are_ascending_and_name_each_dof_once() {
+        let mut pattern = RowPattern::default();
+        pattern.push([5, 2, 5, 0]);
+        pattern.push([]);
+        pattern.push([5]);
+        assert_eq!(pattern.dofs(0), [0, 2, 5]);
+        assert_eq!(pattern.dofs(1), [0; 0]);
+        assert_eq!(pattern.range(2), 3..4);
+        let row: Vec<_> = pattern.row(&[1.0, 2.0, 3.0, 4.0], 0).collect();
+        assert_eq!(row, [(0, 1.0), (2, 2.0), (5, 3.0)]);
+    }
+}
