@@ -112,7 +112,7 @@ impl Batch {
         let batch = {
             let mut guard = lock(&inner, "batch")?;
             each!(&mut *guard, batch => {
-                let views = StateViews::new(&keeper, &mut batch.state, model.get().inner(), false)?;
+                let views = StateViews::new(&keeper, &mut batch.state, false)?;
                 (views, batch.threads(), batch.lanes())
             })
         };

@@ -65,8 +65,7 @@ impl Sim {
         let keeper = Keeper::new(py, inner.clone())?;
         let views = {
             let mut guard = lock(&inner, "simulation")?;
-            let of = model.get().inner();
-            each_sim!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, of, true))?
+            each_sim!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, true))?
         };
         Ok(PyClassInitializer::from(views).add_subclass(Sim {
             inner,

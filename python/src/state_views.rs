@@ -1,8 +1,9 @@
 //! The arrays of a state, live.
 
 use crate::view::{Keeper, view};
-use clench::rigid::batch::StateRows;
-use clench::{Model, Precision};
+use clench::Precision;
+use clench::rigid::batch::{Rows, StateRows};
+use clench::rigid::state::kind::{self, Kind};
 use numpy::Element;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
@@ -11,7 +12,9 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
 macro_rules! views {
-    ($($(#[$doc:meta])* $field:ident $setter:ident;)*) => {
+    ($($group:ident { $(
+        $(#[$doc:meta])* $field:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* })*) => {
         /// The state of a `Sim` or of all environments of a `Batch`, as NumPy arrays that are the memory a step works on: no
         /// copies.
         ///
@@ -21,19 +24,21 @@ macro_rules! views {
         #[pyclass(frozen, subclass, module = "clench")]
         pub(crate) struct StateViews {
             time: Py<PyAny>,
-            $($field: Py<PyAny>,)*
+            $($($field: Py<PyAny>,)*)*
         }
 
         impl StateViews {
             /// The arrays with their names.
             fn named(&self) -> Vec<(&'static str, &Py<PyAny>)> {
-                vec![("time", &self.time), $((stringify!($field), &self.$field)),*]
+                vec![("time", &self.time), $($((stringify!($field), &self.$field)),*),*]
             }
         }
 
         #[pymethods]
         impl StateViews {
-            $($(#[$doc])*
+            $($(
+            /// numpy.ndarray :
+            $(#[$doc])*
             #[getter]
             fn $field(&self, py: Python<'_>) -> Py<PyAny> {
                 self.$field.clone_ref(py)
@@ -42,7 +47,7 @@ macro_rules! views {
             #[setter]
             fn $setter(&self, values: &Bound<'_, PyAny>) -> PyResult<()> {
                 copy_to(self.$field.bind(values.py()), values)
-            })*
+            })*)*
 
             /// float or numpy.ndarray : Time, s: a number for a `Sim`, an array (n) for a `Batch`, float64 in every precision.
             #[getter]
@@ -59,69 +64,63 @@ macro_rules! views {
                 copy_to(self.time.bind(values.py()), values)
             }
         }
+
+        impl StateViews {
+            /// Views of `rows`, whose memory `keeper` keeps; with `alone`, of its only row.
+            pub(crate) fn new<S: Precision + Viewed>(
+                keeper: &Bound<'_, Keeper>,
+                rows: &mut StateRows<S>,
+                alone: bool,
+            ) -> PyResult<Self> {
+                let envs = if alone { None } else { Some(rows.count()) };
+                let shape = |of_row: &[usize]| {
+                    Vec::from_iter(envs.into_iter().chain(of_row.iter().copied()))
+                };
+                Ok(StateViews {
+                    time: array(keeper, &mut rows.time, &shape(&[]))?,
+                    $($($field: {
+                        let elements = rows.$field.width() / kind::$kind::WIDTH;
+                        let shape = match kind::$kind::WIDTH {
+                            1 => shape(&[elements]),
+                            width => shape(&[elements, width]),
+                        };
+                        array(keeper, &mut rows.$field, &shape)?
+                    },)*)*
+                })
+            }
+        }
     };
 }
-views! {
-    /// numpy.ndarray : Position coordinates (nq).
-    qpos set_qpos;
-    /// numpy.ndarray : Velocities (nv).
-    qvel set_qvel;
-    /// numpy.ndarray : Activations of actuators (na).
-    act set_act;
-    /// numpy.ndarray : Controls of actuators (nu).
-    ctrl set_ctrl;
-    /// numpy.ndarray : Forces that you apply along degrees of freedom (nv), N or N m.
-    qfrc_applied set_qfrc_applied;
-    /// numpy.ndarray : Forces and torques that you apply to bodies at their centres of mass, world axes (nbody, 6): the force
-    /// first.
-    xfrc_applied set_xfrc_applied;
-    /// numpy.ndarray : Positions of mocap bodies (nmocap, 3), m.
-    mocap_pos set_mocap_pos;
-    /// numpy.ndarray : Orientations of mocap bodies (nmocap, 4), unit quaternions, w first.
-    mocap_quat set_mocap_quat;
-    /// numpy.ndarray : Which equality constraints are on (neq), bool.
-    eq_active set_eq_active;
-    /// numpy.ndarray : Acceleration of the previous step, where the solver starts (nv).
-    qacc_warmstart set_qacc_warmstart;
+clench::rigid::state_fields!(views);
+
+/// What rows hold, as NumPy calls it.
+pub(crate) trait Viewed: Sized {
+    /// The number of the same bytes.
+    type As: Element;
+}
+impl Viewed for f64 {
+    type As = f64;
+}
+impl Viewed for f32 {
+    type As = f32;
+}
+/// A truth value is a byte for NumPy too.
+impl Viewed for u8 {
+    type As = bool;
+}
+
+/// A table as an array of a shape that has as many numbers.
+fn array<E: Viewed>(
+    keeper: &Bound<'_, Keeper>,
+    rows: &mut Rows<E>,
+    shape: &[usize],
+) -> PyResult<Py<PyAny>> {
+    // SAFETY: the shape is that of the table, which `keeper` keeps and nothing replaces.
+    let array = unsafe { view(keeper, rows.as_mut_ptr().cast::<E::As>(), shape) }?;
+    Ok(array.into_any().unbind())
 }
 
 impl StateViews {
-    /// Views of `rows`, whose memory `keeper` keeps; with `alone`, of its only row.
-    pub(crate) fn new<S: Precision + Element>(
-        keeper: &Bound<'_, Keeper>,
-        rows: &mut StateRows<S>,
-        model: &Model,
-        alone: bool,
-    ) -> PyResult<Self> {
-        let count = rows.count();
-        let shape = |of_row: &[usize]| {
-            let envs = if alone { None } else { Some(count) };
-            Vec::from_iter(envs.into_iter().chain(of_row.iter().copied()))
-        };
-        let (nbody, nmocap) = (model.nbody(), model.nmocap);
-        // SAFETY: the shapes are those of the tables, which `keeper` keeps and nothing replaces. NumPy's booleans are bytes too.
-        macro_rules! array {
-            ($field:ident $(as $number:ty)? $(, $size:expr)*) => {
-                unsafe { view(keeper, rows.$field.as_mut_ptr()$(.cast::<$number>())?, &shape(&[$($size),*])) }?
-                    .into_any()
-                    .unbind()
-            };
-        }
-        Ok(StateViews {
-            time: array!(time),
-            qpos: array!(qpos, model.nq),
-            qvel: array!(qvel, model.nv),
-            act: array!(act, model.na),
-            ctrl: array!(ctrl, model.nu()),
-            qfrc_applied: array!(qfrc_applied, model.nv),
-            xfrc_applied: array!(xfrc_applied, nbody, 6),
-            mocap_pos: array!(mocap_pos, nmocap, 3),
-            mocap_quat: array!(mocap_quat, nmocap, 4),
-            eq_active: array!(eq_active as bool, model.equalities.len()),
-            qacc_warmstart: array!(qacc_warmstart, model.nv),
-        })
-    }
-
     /// A copy of all arrays, as a `clench.State`.
     pub(crate) fn copy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let copies = PyDict::new(py);

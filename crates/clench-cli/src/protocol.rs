@@ -5,28 +5,81 @@ use clench::Sim;
 use clench::math::{Force, Mat3, Quat, Vec3};
 use clench::rigid::contact::Contact;
 use clench::rigid::readout::{self, ConstraintRow};
-use serde::de::IgnoredAny;
+use clench::rigid::state::State;
+use clench::rigid::state::kind::{self, Kind};
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 
-/// A state; what is missing keeps the model's default.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a state: an object in braces")]
-pub struct StateLine {
-    time: Option<f64>,
-    qpos: Option<Vec<f64>>,
-    qvel: Option<Vec<f64>>,
-    act: Option<Vec<f64>>,
-    ctrl: Option<Vec<f64>>,
-    qfrc_applied: Option<Vec<f64>>,
-    /// A row (force, torque) a body, as in MuJoCo.
-    xfrc_applied: Option<Vec<[f64; 6]>>,
-    mocap_pos: Option<Vec<[f64; 3]>>,
-    mocap_quat: Option<Vec<[f64; 4]>>,
-    eq_active: Option<Vec<Truth>>,
-    qacc_warmstart: Option<Vec<f64>>,
-    /// Replaces collision detection.
-    contacts: Option<Vec<ContactLine>>,
+/// How an element of a state stands in JSON.
+trait Written: Kind {
+    /// A number, a list of numbers, or a truth value.
+    type Json: DeserializeOwned;
+    /// The element.
+    fn read(json: Self::Json) -> Self::Of<f64>;
 }
+
+impl Written for kind::Number {
+    type Json = f64;
+    fn read(json: f64) -> f64 {
+        json
+    }
+}
+impl Written for kind::Vector {
+    type Json = [f64; 3];
+    fn read(json: [f64; 3]) -> Vec3<f64> {
+        Vec3::from_array(json)
+    }
+}
+impl Written for kind::Quaternion {
+    type Json = [f64; 4];
+    fn read(json: [f64; 4]) -> Quat<f64> {
+        Quat::from_f64(json)
+    }
+}
+/// Force and torque, as in MuJoCo.
+impl Written for kind::Wrench {
+    type Json = [f64; 6];
+    fn read([fx, fy, fz, tx, ty, tz]: [f64; 6]) -> Force<f64> {
+        Force::new(Vec3::new(tx, ty, tz), Vec3::new(fx, fy, fz))
+    }
+}
+impl Written for kind::Truth {
+    type Json = Truth;
+    fn read(json: Truth) -> bool {
+        match json {
+            Truth::Bool(b) => b,
+            Truth::Number(x) => x != 0.0,
+        }
+    }
+}
+
+macro_rules! declare_line {
+    ($($group:ident { $(
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* })*) => {
+        /// A state; what is missing keeps the model's default.
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields, expecting = "a state: an object in braces")]
+        pub struct StateLine {
+            time: Option<f64>,
+            $($($name: Option<Vec<<kind::$kind as Written>::Json>>,)*)*
+            /// Replaces collision detection.
+            contacts: Option<Vec<ContactLine>>,
+        }
+
+        impl StateLine {
+            /// Sets the fields that there are.
+            fn assign(&mut self, state: &mut State<f64>) -> Result<()> {
+                $($(
+                    let given = self.$name.take();
+                    assign::<kind::$kind>(stringify!($name), &mut state.$name, given)?;
+                )*)*
+                Ok(())
+            }
+        }
+    };
+}
+clench::rigid::state_fields!(declare_line);
 
 /// `true`, `false`, or a number that is not zero, as MuJoCo stores flags.
 #[derive(Clone, Copy, Deserialize)]
@@ -93,48 +146,11 @@ impl StateLine {
     }
 
     /// Sets the state of a simulation that stands at its defaults; gives the contacts that replace collision detection.
-    pub fn apply(self, sim: &mut Sim) -> Result<Option<Vec<Contact<f64>>>> {
-        let state = &mut sim.state;
+    pub fn apply(mut self, sim: &mut Sim) -> Result<Option<Vec<Contact<f64>>>> {
         if let Some(time) = self.time {
-            state.time = time;
+            sim.state.time = time;
         }
-        assign("qpos", &mut state.qpos, self.qpos)?;
-        assign("qvel", &mut state.qvel, self.qvel)?;
-        assign("act", &mut state.act, self.act)?;
-        assign("ctrl", &mut state.ctrl, self.ctrl)?;
-        assign("qfrc_applied", &mut state.qfrc_applied, self.qfrc_applied)?;
-        assign(
-            "qacc_warmstart",
-            &mut state.qacc_warmstart,
-            self.qacc_warmstart,
-        )?;
-        let wrench = |[fx, fy, fz, tx, ty, tz]: [f64; 6]| {
-            Force::new(Vec3::new(tx, ty, tz), Vec3::new(fx, fy, fz))
-        };
-        assign(
-            "xfrc_applied",
-            &mut state.xfrc_applied,
-            map(self.xfrc_applied, wrench),
-        )?;
-        assign(
-            "mocap_pos",
-            &mut state.mocap_pos,
-            map(self.mocap_pos, Vec3::from_array),
-        )?;
-        assign(
-            "mocap_quat",
-            &mut state.mocap_quat,
-            map(self.mocap_quat, Quat::from_f64),
-        )?;
-        let truth = |t| match t {
-            Truth::Bool(b) => b,
-            Truth::Number(x) => x != 0.0,
-        };
-        assign(
-            "eq_active",
-            &mut state.eq_active,
-            map(self.eq_active, truth),
-        )?;
+        self.assign(&mut sim.state)?;
         let given = self.contacts.map(|lines| {
             (lines.into_iter().enumerate())
                 .map(|(i, c)| {
@@ -183,11 +199,11 @@ impl NextState {
     }
 }
 
-fn map<A, B>(values: Option<Vec<A>>, f: impl Fn(A) -> B) -> Option<Vec<B>> {
-    values.map(|v| v.into_iter().map(f).collect())
-}
-
-fn assign<A>(name: &str, target: &mut Vec<A>, values: Option<Vec<A>>) -> Result<()> {
+fn assign<K: Written>(
+    name: &str,
+    target: &mut Vec<K::Of<f64>>,
+    values: Option<Vec<K::Json>>,
+) -> Result<()> {
     let Some(values) = values else { return Ok(()) };
     ensure!(
         values.len() == target.len(),
@@ -195,7 +211,7 @@ fn assign<A>(name: &str, target: &mut Vec<A>, values: Option<Vec<A>>) -> Result<
         values.len(),
         target.len()
     );
-    *target = values;
+    *target = values.into_iter().map(K::read).collect();
     Ok(())
 }
 

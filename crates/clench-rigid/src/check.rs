@@ -5,7 +5,8 @@ use crate::contact::{Contact, Excess};
 use crate::error::{Fault, SimError};
 use crate::model::Model;
 use crate::place::{joint_of, massless};
-use crate::state::State;
+use crate::state::kind::{self, Kind};
+use crate::state::{FIELDS, State};
 use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Mat3, Real, Scalar, kernel};
 use clench_solver::Status;
@@ -74,38 +75,31 @@ fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usi
 
 /// A state of the model's lengths.
 pub(crate) fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimError> {
-    let expected = model.state_lengths();
-    for ((field, found), (_, expected)) in s.lengths().into_iter().zip(expected) {
-        check_length(field, found, expected)?;
+    for (field, found) in FIELDS.iter().zip(s.lengths()) {
+        check_length(field.name, found, field.numbers(model))?;
     }
     Ok(())
 }
 
-/// Shows every number of a state but its time to `look`: field, its bound, index of the first number in the field, numbers.
-#[inline(always)]
-fn each_input<T: Real>(s: &State<T>, mut look: impl FnMut(&'static str, Bound, usize, &[T])) {
-    look("qpos", Bound::Near, 0, &s.qpos);
-    look("qvel", Bound::Near, 0, &s.qvel);
-    look("act", Bound::Finite, 0, &s.act);
-    look("ctrl", Bound::Finite, 0, &s.ctrl);
-    look("qfrc_applied", Bound::Finite, 0, &s.qfrc_applied);
-    look("qacc_warmstart", Bound::Finite, 0, &s.qacc_warmstart);
-    for (b, f) in s.xfrc_applied.iter().enumerate() {
-        look("xfrc_applied", Bound::Finite, 6 * b, &f.linear.to_array());
-        look(
-            "xfrc_applied",
-            Bound::Finite,
-            6 * b + 3,
-            &f.angular.to_array(),
-        );
-    }
-    for (m, p) in s.mocap_pos.iter().enumerate() {
-        look("mocap_pos", Bound::Finite, 3 * m, &p.to_array());
-    }
-    for (m, q) in s.mocap_quat.iter().enumerate() {
-        look("mocap_quat", Bound::Finite, 4 * m, &q.to_array());
-    }
+macro_rules! declare_inputs {
+    ($($group:ident { $(
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* })*) => {
+        /// Shows every number of a state but its time to `look`: field, its bound, index of the first number in the field, numbers.
+        #[inline(always)]
+        fn each_input<T: Real>(
+            s: &State<T>,
+            mut look: impl FnMut(&'static str, Bound, usize, &[T]),
+        ) {
+            $($(kind::$kind::numbers::<T>(
+                &s.$name,
+                #[inline(always)]
+                |start, numbers| look(stringify!($name), Bound::$bound, start, numbers),
+            );)*)*
+        }
+    };
 }
+crate::state_fields!(declare_inputs);
 
 /// Shows to `look` what a step must leave within bounds.
 #[inline(always)]

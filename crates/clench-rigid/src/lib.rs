@@ -26,7 +26,7 @@ pub mod sensor;
 pub mod settings;
 mod sim;
 mod singular;
-mod state;
+pub mod state;
 pub mod workspace;
 
 pub use batch::{Batch, BatchOptions, EnvStatus, Precision};

@@ -2,24 +2,22 @@
 
 use crate::model::{Integrator, Joint, Model};
 use crate::singular::first_bad_pivot;
+use crate::state::{FIELDS, Size};
 use crate::workspace::Workspace;
 use clench_math::{Real, Scalar};
 use clench_solver::{Tree, TreeMatrix};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The joint of a number of the motion: `index` of `field`, in the order of the model's coordinates or dofs. `None` for fields
 /// that are not of joints.
 pub(crate) fn joint_of(model: &Model, field: &str, index: usize) -> Option<Arc<str>> {
-    let range = |joint: &Joint| -> Option<Range<usize>> {
-        match field {
-            "qpos" => Some(joint.qpos..joint.qpos + joint.kind.nq()),
-            "qvel" | "qacc" | "qfrc_constraint" | "qfrc_applied" | "qacc_warmstart" => {
-                Some(joint.dof..joint.dof + joint.kind.nv())
-            }
-            _ => None,
-        }
+    let of_state = FIELDS.iter().find(|known| known.name == field);
+    let size = match (of_state, field) {
+        (Some(known), _) => known.size,
+        (None, "qacc" | "qfrc_constraint") => Size::Dofs,
+        _ => return None,
     };
+    let range = |joint: &Joint| size.of_joint(joint);
     let mut joints = model.joints.iter();
     let found = joints.find(|joint| range(joint).is_some_and(|range| range.contains(&index)));
     found.map(|joint| describe(model, joint))

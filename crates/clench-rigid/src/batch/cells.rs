@@ -6,8 +6,8 @@
 
 use super::Rows;
 use super::precision::{Lanewise, Shared};
+use crate::state::kind::Kind;
 use clench_math::Real;
-use std::array::from_fn;
 
 /// The rows of a table, shared by threads for the time of a call.
 pub struct Cells<'a, S: Shared> {
@@ -39,13 +39,6 @@ impl<'a, S: Shared> Cells<'a, S> {
         S::store(&self.row(env)[0], value);
     }
 
-    /// The numbers of an environment, some at a time.
-    #[inline(always)]
-    pub fn parts<const N: usize>(&self, env: usize) -> impl Iterator<Item = [S; N]> {
-        let parts = self.row(env).chunks_exact(N);
-        parts.map(|cells| from_fn(|i| S::load(&cells[i])))
-    }
-
     /// Replaces the row of an environment by as many values.
     #[inline(always)]
     pub fn put(&self, env: usize, values: impl IntoIterator<Item = S>) {
@@ -64,23 +57,40 @@ impl<'a, S: Shared> Cells<'a, S> {
     }
 }
 
-impl<S: Lanewise> Cells<'_, S> {
-    /// Copies the row of an environment into lane `lane` of `out`, as long as a row.
+impl<C: Shared> Cells<'_, C> {
+    /// Copies the row of an environment into lane `lane` of as many elements.
     #[inline(always)]
-    pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, out: &mut [T]) {
-        let lanes = T::as_scalars_mut(out).chunks_exact_mut(T::LANES);
-        for (lanes, cell) in lanes.zip(self.row(env)) {
-            lanes[lane] = S::load(cell);
+    pub fn read<K: Kind<Cell<T::Scalar> = C>, T: Real>(
+        &self,
+        env: usize,
+        lane: usize,
+        out: &mut [K::Of<T>],
+    ) {
+        for (element, cells) in out.iter_mut().zip(self.row(env).chunks_exact(K::WIDTH)) {
+            for (part, cell) in cells.iter().enumerate() {
+                K::set_cell(element, part, lane, C::load(cell));
+            }
         }
     }
 
-    /// Copies lane `lane` of `values`, as long as a row, into the row of an environment.
+    /// Copies lane `lane` of elements, as many as a row has, into the row of an environment.
     #[inline(always)]
-    pub fn write<T: Real<Scalar = S>>(&self, env: usize, lane: usize, values: &[T]) {
-        self.write_part(env, 0, lane, values);
+    pub fn write<K: Kind<Cell<T::Scalar> = C>, T: Real>(
+        &self,
+        env: usize,
+        lane: usize,
+        elements: &[K::Of<T>],
+    ) {
+        for (element, cells) in elements.iter().zip(self.row(env).chunks_exact(K::WIDTH)) {
+            for (part, cell) in cells.iter().enumerate() {
+                C::store(cell, K::cell(element, part, lane));
+            }
+        }
     }
+}
 
-    /// As [`write`](Self::write), into the numbers of the row from `start`.
+impl<S: Lanewise> Cells<'_, S> {
+    /// Copies lane `lane` of numbers into the row of an environment, from number `start` on.
     #[inline(always)]
     pub fn write_part<T: Real<Scalar = S>>(
         &self,

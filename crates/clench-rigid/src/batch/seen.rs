@@ -6,6 +6,7 @@ use super::{Precision, Rows, StateRows};
 use crate::error::SimError;
 use crate::model::Model;
 use crate::state::State;
+use crate::state::kind::{Number, Quaternion, Vector};
 use clench_math::Real;
 
 /// What each environment's state was when its outputs were last recorded, as far as they depend on it. Kept only while
@@ -71,15 +72,9 @@ pub struct SeenCells<'a, S: Lanewise> {
 impl<S: Lanewise> SeenCells<'_, S> {
     /// Notes the state of an environment, of which outputs were recorded.
     pub fn note<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
-        self.qpos.write(env, lane, &state.qpos);
-        self.qvel.write(env, lane, &state.qvel);
-        let positions = state.mocap_pos.iter().map(|position| position.to_array());
-        for (m, position) in positions.enumerate() {
-            self.mocap_pos.write_part(env, 3 * m, lane, &position);
-        }
-        for (m, turn) in state.mocap_quat.iter().enumerate() {
-            self.mocap_quat
-                .write_part(env, 4 * m, lane, &turn.to_array());
-        }
+        self.qpos.write::<Number, T>(env, lane, &state.qpos);
+        self.qvel.write::<Number, T>(env, lane, &state.qvel);
+        (self.mocap_pos).write::<Vector, T>(env, lane, &state.mocap_pos);
+        (self.mocap_quat).write::<Quaternion, T>(env, lane, &state.mocap_quat);
     }
 }

@@ -7,7 +7,7 @@ use super::precision::Lanewise;
 use super::quality::{Place, Quality};
 use super::record::{Controls, Targets};
 use super::seen::SeenCells;
-use super::state_rows::{Inputs, MovingRows};
+use super::state_rows::{Inputs, MovingRows, clear_occasional};
 use crate::check;
 use crate::error::Fault;
 use crate::model::{Model, Params};
@@ -16,8 +16,9 @@ use crate::pipeline;
 use crate::profile::{Profile, Stage};
 use crate::settings::StepSettings;
 use crate::state::State;
+use crate::state::kind::Number;
 use crate::workspace::Workspace;
-use clench_math::{Clock, Force, LaneTask, Mask, Real, write_lane};
+use clench_math::{Clock, LaneTask, Mask, Real, write_lane};
 use clench_solver::MaxContacts;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -98,8 +99,8 @@ pub struct LaneStepper<T: Real> {
     initial: State<T>,
     params: Params<T>,
     ws: Workspace<T>,
-    /// Whether the state holds forces on bodies.
-    has_applied_forces: bool,
+    /// Whether the state holds occasional inputs.
+    has_occasional: bool,
     /// The output that is being copied.
     output: Vec<T>,
     /// Environments that are to start over from the initial state, with the step in which they do.
@@ -126,7 +127,7 @@ where
             initial: State::new(model),
             params: model.params.broadcast(),
             ws: Workspace::new(model),
-            has_applied_forces: false,
+            has_occasional: false,
             output: Vec::new(),
             restarts: Vec::new(),
             totals: StepTotals::default(),
@@ -143,18 +144,15 @@ where
                 own.read(env, lane, &mut self.params);
             }
         }
-        // Forces on bodies are many numbers, and mostly all zero.
-        let has_applied_forces = group
-            .iter()
-            .any(|(_, env)| job.inputs.has_applied_forces(env));
-        if has_applied_forces {
+        let has_occasional = (group.iter()).any(|(_, env)| job.inputs.has_occasional(env));
+        if has_occasional {
             for (lane, env) in group.fill() {
-                job.inputs.read_applied_forces(env, lane, &mut self.state);
+                job.inputs.read_occasional(env, lane, &mut self.state);
             }
-        } else if self.has_applied_forces {
-            self.state.xfrc_applied.fill(Force::ZERO);
+        } else if self.has_occasional {
+            clear_occasional(&mut self.state);
         }
-        self.has_applied_forces = has_applied_forces;
+        self.has_occasional = has_occasional;
     }
 
     /// Does the steps of a job from `step` on.
@@ -330,7 +328,7 @@ where
             let start = step * self.output.len();
             for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
                 if let Some(cells) = kept {
-                    cells.write(env, lane, &self.output);
+                    cells.write::<Number, T>(env, lane, &self.output);
                 }
                 if let Some(cells) = &target.trace {
                     cells.write_part(env, start, lane, &self.output);

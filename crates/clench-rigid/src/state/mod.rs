@@ -1,0 +1,182 @@
+//! What a user saves and restores.
+
+pub mod kind;
+mod table;
+
+use crate::model::{Joint, Keyframe, Model};
+use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast};
+use kind::Kind;
+use std::ops::Range;
+
+/// How many elements a field has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Size {
+    /// nq: those of a joint lie together.
+    Positions,
+    /// nv: those of a joint lie together.
+    Dofs,
+    /// na.
+    Activations,
+    /// nu.
+    Actuators,
+    /// nbody.
+    Bodies,
+    /// nmocap.
+    MocapBodies,
+    /// neq.
+    Equalities,
+}
+
+impl Size {
+    fn of(self, model: &Model) -> usize {
+        match self {
+            Size::Positions => model.nq,
+            Size::Dofs => model.nv,
+            Size::Activations => model.na,
+            Size::Actuators => model.nu(),
+            Size::Bodies => model.nbody(),
+            Size::MocapBodies => model.nmocap,
+            Size::Equalities => model.equalities.len(),
+        }
+    }
+
+    /// Where the elements of a joint lie, in fields that have any for joints.
+    pub(crate) fn of_joint(self, joint: &Joint) -> Option<Range<usize>> {
+        match self {
+            Size::Positions => Some(joint.qpos..joint.qpos + joint.kind.nq()),
+            Size::Dofs => Some(joint.dof..joint.dof + joint.kind.nv()),
+            _ => None,
+        }
+    }
+}
+
+/// A field of the state besides the time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// How many elements it has.
+    pub size: Size,
+    /// How many numbers each of them has.
+    width: usize,
+}
+
+impl Field {
+    /// How many numbers it has.
+    pub(crate) fn numbers(self, model: &Model) -> usize {
+        self.width * self.size.of(model)
+    }
+}
+
+macro_rules! declare_state {
+    ($($group:ident { $(
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* })*) => {
+        /// The state of one environment (or of the lanes of a group): everything that the next step depends on.
+        #[derive(Clone, Debug)]
+        pub struct State<T: Real> {
+            /// s, in double precision.
+            pub time: T::Clock,
+            $($($(#[$doc])* pub $name: Vec<<kind::$kind as Kind>::Of<T>>,)*)*
+        }
+
+        /// The fields of a state, but for the time.
+        pub(crate) const FIELDS: &[Field] = &[$($(Field {
+            name: stringify!($name),
+            size: Size::$size,
+            width: <kind::$kind as Kind>::WIDTH,
+        }),*),*];
+
+        /// Bit by bit: a NaN equals itself, and 0 does not equal −0.
+        impl<T: Real> PartialEq for State<T> {
+            fn eq(&self, other: &Self) -> bool {
+                let same_time = |lane| {
+                    self.time.lane(lane).to_bits() == other.time.lane(lane).to_bits()
+                };
+                (0..T::LANES).all(same_time) $($(&& {
+                    let mut pairs = self.$name.iter().zip(&other.$name);
+                    self.$name.len() == other.$name.len()
+                        && pairs.all(|(a, b)| <kind::$kind as Kind>::same::<T>(a, b))
+                })*)*
+            }
+        }
+
+        impl<T: Real> State<T> {
+            /// Zero and false everywhere.
+            fn zero(model: &Model) -> Self {
+                State {
+                    time: T::Clock::splat(0.0),
+                    $($($name: vec![<kind::$kind as Kind>::zero::<T>(); Size::$size.of(model)],)*)*
+                }
+            }
+
+            /// How many numbers each field has, in the order of [`FIELDS`].
+            pub(crate) fn lengths(&self) -> impl Iterator<Item = usize> {
+                [$($(self.$name.len() * <kind::$kind as Kind>::WIDTH),*),*].into_iter()
+            }
+
+            /// Takes over another state of the same model, without allocating.
+            pub fn copy_from(&mut self, other: &Self) {
+                self.time = other.time;
+                $($(self.$name.clone_from(&other.$name);)*)*
+            }
+        }
+    };
+}
+crate::state_fields!(declare_state);
+
+impl<T: Real> Eq for State<T> {}
+
+impl<T: Real> State<T> {
+    /// The initial state of a model.
+    pub fn new(model: &Model) -> Self {
+        let mut state = State::zero(model);
+        broadcast(&model.params.qpos0, &mut state.qpos);
+        let mocap_bodies = (0..model.nbody()).filter(|&b| model.bodies[b].mocap.is_some());
+        for (m, b) in mocap_bodies.enumerate() {
+            state.mocap_pos[m] = Vec3::from_f64(model.params.body_pos[b].to_array());
+            state.mocap_quat[m] = Quat::from_f64(model.params.body_quat[b].to_array());
+        }
+        for (active, equality) in state.eq_active.iter_mut().zip(&model.equalities) {
+            *active = T::Mask::splat(equality.active0);
+        }
+        state
+    }
+
+    /// Lets time pass.
+    #[inline(always)]
+    pub(crate) fn pass(&mut self, time: T) {
+        for lane in 0..T::LANES {
+            let now = self.time.lane(lane);
+            self.time.set_lane(lane, now + time.lane(lane).to_f64());
+        }
+    }
+
+    /// The time in the precision of all other numbers.
+    pub(crate) fn rounded_time(&self) -> T {
+        let mut time = T::ZERO;
+        for lane in 0..T::LANES {
+            time.set_lane(lane, T::Scalar::new(self.time.lane(lane)));
+        }
+        time
+    }
+
+    /// Takes over what a keyframe of the model holds, the same in every lane.
+    pub fn set_keyframe(&mut self, key: &Keyframe) {
+        self.time = T::Clock::splat(key.time);
+        for (to, from) in [
+            (&mut self.qpos, &key.qpos),
+            (&mut self.qvel, &key.qvel),
+            (&mut self.act, &key.act),
+            (&mut self.ctrl, &key.ctrl),
+        ] {
+            broadcast(from, to);
+        }
+        for (to, p) in (self.mocap_pos.iter_mut()).zip(key.mocap_pos.chunks_exact(3)) {
+            *to = Vec3::from_f64([p[0], p[1], p[2]]);
+        }
+        for (to, q) in (self.mocap_quat.iter_mut()).zip(key.mocap_quat.chunks_exact(4)) {
+            *to = Quat::from_f64([q[0], q[1], q[2], q[3]]);
+        }
+    }
+}

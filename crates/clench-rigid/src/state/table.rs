@@ -1,0 +1,46 @@
+//! The fields of a state, a line each. Memory, rows of batches, checks, copies, and the names in files and in Python follow
+//! from this table.
+
+/// Hands the table to the macro `$then`: groups of lines
+///
+///     /// What it is (how many).
+///     name set_name: Kind, Size, Bound;
+///
+/// with one of the [kinds](crate::state::kind), the [size](crate::state::Size) that says how many elements there are, how large
+/// its numbers may be, and the name of its setter in Python. The groups say what a step does with a field: `moving` ones it reads
+/// and writes; `inputs` it only reads; `occasional` inputs are mostly zero, and cost nothing then. The time, in double precision
+/// whatever the precision of the rest, stands outside.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! state_fields {
+    ($then:ident) => {
+        $then! {
+            moving {
+                /// Position coordinates (nq).
+                qpos set_qpos: Number, Positions, Near;
+                /// Velocities (nv).
+                qvel set_qvel: Number, Dofs, Near;
+                /// Activations of actuators (na).
+                act set_act: Number, Activations, Finite;
+                /// Acceleration of the previous step, where the solver starts (nv).
+                qacc_warmstart set_qacc_warmstart: Number, Dofs, Finite;
+            }
+            inputs {
+                /// Controls of actuators (nu).
+                ctrl set_ctrl: Number, Actuators, Finite;
+                /// Forces that the user applies along degrees of freedom (nv), N or N m.
+                qfrc_applied set_qfrc_applied: Number, Dofs, Finite;
+                /// Positions of mocap bodies (nmocap), m.
+                mocap_pos set_mocap_pos: Vector, MocapBodies, Finite;
+                /// Orientations of mocap bodies (nmocap), unit quaternions, w first.
+                mocap_quat set_mocap_quat: Quaternion, MocapBodies, Finite;
+                /// Which equality constraints are on (neq).
+                eq_active set_eq_active: Truth, Equalities, Finite;
+            }
+            occasional {
+                /// Forces and torques that the user applies to bodies at their centres of mass, world axes (nbody): the force first.
+                xfrc_applied set_xfrc_applied: Wrench, Bodies, Finite;
+            }
+        }
+    };
+}
