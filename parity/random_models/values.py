@@ -77,6 +77,16 @@ def solimp(draw):
     return text(*numbers[: draw.randint(1, 5)])
 
 
+def polynomial(low, high):
+    """The coefficients of a spring or damper: the linear one, and now and then some of the others."""
+
+    def value(draw):
+        linear = draw.choice((1, 1, 1, 0)) * draw.scale(low, high)
+        return text(linear, *(draw.number(-0.3, 1) * draw.scale(low, high) for _ in range(draw.choice((0, 0, 1, 2)))))
+
+    return value
+
+
 def quaternion(draw):
     return text(*(draw.gauss(0, 1) for _ in range(4)))
 
@@ -220,13 +230,13 @@ VALUES = {
         "solimplimit": solimp,
         "solreffriction": solref,
         "solimpfriction": solimp,
-        "stiffness": scale(0.1, 100),
+        "stiffness": polynomial(0.1, 100),
         "actuatorgravcomp": BOOLEAN,
         "margin": number(0, 0.2),
         "ref": lambda draw: text(draw.angle(draw.number(-0.5, 0.5))),
         "springref": lambda draw: text(draw.angle(draw.number(-0.5, 0.5))),
         "armature": scale(1e-4, 1),
-        "damping": scale(0.01, 10),
+        "damping": polynomial(0.01, 10),
         "frictionloss": scale(0.01, 3),
     },
     "freejoint": {"group": one_of(0, 1), "align": one_of("true", "false", "auto")},

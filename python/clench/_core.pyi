@@ -148,6 +148,7 @@ class Model:
     jnt_pos: Final[_Floats]  # (njnt, 3) Anchor in the body frame.
     jnt_axis: Final[_Floats]  # (njnt, 3) Unit axis in the body frame.
     jnt_stiffness: Final[_Floats]  # (njnt,) Spring stiffness.
+    jnt_stiffnesspoly: Final[_Floats]  # (njnt, 2) Coefficients of the spring's quadratic and cubic force.
     jnt_range: Final[_Floats]  # (njnt, 2) Allowed positions.
     jnt_margin: Final[_Floats]  # (njnt,) Distance at which the limit appears.
     jnt_actfrcrange: Final[_Floats]  # (njnt, 2) Limits of the total actuator force.
@@ -164,6 +165,7 @@ class Model:
 
     dof_armature: Final[_Floats]  # (nv,) Added inertia.
     dof_damping: Final[_Floats]  # (nv,) Damping.
+    dof_dampingpoly: Final[_Floats]  # (nv, 2) Coefficients of quadratic and cubic damping.
     dof_frictionloss: Final[_Floats]  # (nv,) Dry friction.
     dof_solref: Final[_Floats]  # (nv, 2) Dry-friction reference dynamics.
     dof_solimp: Final[_Floats]  # (nv, 5) Dry-friction impedance.
@@ -388,6 +390,7 @@ class Element:
     solref_lim: Final[_Floats]  # (2,) tendon
     solreffriction: Final[_Floats]  # (2,) pair
     stiffness: Final[float]  # joint, tendon
+    stiffnesspoly: Final[_Floats]  # (2,) joint
     subtreemass: Final[float]  # body
     time: Final[float]  # keyframe
     torquescale: Final[float]  # equality
@@ -401,6 +404,7 @@ class Element:
     # Of a joint: rows of its degrees of freedom, and its position coordinates.
     dof_armature: Final[_Floats]  # (nv,)
     dof_damping: Final[_Floats]  # (nv,)
+    dof_dampingpoly: Final[_Floats]  # (nv, 2)
     dof_frictionloss: Final[_Floats]  # (nv,)
     dof_solref: Final[_Floats]  # (nv, 2)
     dof_solimp: Final[_Floats]  # (nv, 5)

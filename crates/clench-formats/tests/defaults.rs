@@ -14,7 +14,7 @@ fn read(sections: &str) -> ModelBuilder {
 fn classes_inherit_and_the_nearest_word_counts() {
     let model = read(
         "<default>
-           <joint damping='1' armature='1' stiffness='1'/>
+           <joint damping='1 7 8' armature='1' stiffness='1'/>
            <default class='arm'>
              <joint armature='2'/>
              <default class='hand'><joint stiffness='3'/></default>
@@ -33,7 +33,8 @@ fn classes_inherit_and_the_nearest_word_counts() {
     );
     let of = |body: usize, joint: usize| {
         let joint = &model.bodies[body].joints[joint];
-        [joint.damping, joint.armature, joint.stiffness]
+        assert_eq!(joint.damping[1..], [7.0, 8.0]);
+        [joint.damping[0], joint.armature, joint.stiffness[0]]
     };
     assert_eq!(of(1, 0), [1.0, 1.0, 1.0]);
     assert_eq!(of(1, 1), [1.0, 2.0, 1.0]);

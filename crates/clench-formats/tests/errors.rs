@@ -316,8 +316,6 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ("<attach prefix='a'/>", "attach"),
         ("<flexcomp/>", "flexcomp"),
         ("<body><joint springyield='1'/></body>", "joint"),
-        ("<body><joint damping='1 2'/></body>", "joint"),
-        ("<body><joint stiffness='1 0 2'/></body>", "joint"),
     ] {
         expect(line, element, later);
     }
@@ -345,7 +343,7 @@ fn what_is_not_supported_is_accepted_where_it_does_nothing() {
            <option><flag sleep='disable' diagexact='disable'/></option>
            <worldbody>
              <geom size='1' adhesion='0' surfacevel='0 0 0' fluidshape='none'/>
-             <body><joint springyield='0' damping='1 0 0'/></body>
+             <body><joint springyield='0'/></body>
              <frame scale='1'/>
            </worldbody>
          </mujoco>",

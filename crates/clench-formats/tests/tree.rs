@@ -194,7 +194,7 @@ fn a_free_joint_takes_nothing_from_defaults() {
     let joint = &model.bodies[1].joints[0];
     assert_eq!(
         (joint.kind, joint.damping, joint.armature),
-        (JointKind::Free, 0.0, 0.0)
+        (JointKind::Free, [0.0; 3], 0.0)
     );
     assert_eq!((joint.name.as_str(), joint.align), ("root", Some(false)));
 }

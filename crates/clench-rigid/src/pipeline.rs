@@ -44,7 +44,7 @@ pub fn position_stage<T: Real>(
         ws.problem.factor_mass()
     } else {
         let (bodies, factor) = (&mut ws.articulated, &mut ws.problem.mass_factor);
-        articulated_factor(model, params, &ws.position, T::ZERO, bodies, factor)
+        articulated_factor(model, params, &ws.position, |_| T::ZERO, bodies, factor)
     };
     ws.clock.lap(Stage::MassFactorization as usize);
 }

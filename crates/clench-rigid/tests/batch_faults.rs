@@ -177,7 +177,7 @@ fn a_failure_on_the_way_keeps_the_last_good_state() {
     // A spring too stiff for the time step: it diverges some steps into the call, each environment in its own.
     let mut b = world();
     let mut spring = joint(JointKind::Slide, "spring", [1.0, 0.0, 0.0]);
-    spring.stiffness = 1.7e6;
+    spring.stiffness[0] = 1.7e6;
     add(&mut b, 0, "mass", [0.0; 3], vec![spring], vec![sphere(0.1)]);
     let model = model(&b);
     let options = with(Instructions::widest(), 1, RigidOptions::new());

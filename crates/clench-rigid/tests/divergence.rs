@@ -16,7 +16,7 @@ fn stiff(integrator: Integrator) -> ModelBuilder {
     b.physics.integrator = integrator;
     for (name, stiffness, y) in [("calm", 10.0, 0.0), ("stiff", 7e6, 5.0)] {
         let mut spring = joint(JointKind::Slide, name, [1.0, 0.0, 0.0]);
-        spring.stiffness = stiffness;
+        spring.stiffness[0] = stiffness;
         let at = [0.0, y, 0.0];
         add(&mut b, 0, name, at, vec![spring], vec![sphere(0.1)]);
     }

@@ -134,7 +134,7 @@ fn velocity_after_step(builder: &ModelBuilder) -> f64 {
 #[test]
 fn damping_is_taken_at_the_end_of_the_step() {
     let mut builder = slider(2.0);
-    builder.bodies[1].joints[0].damping = 30.0;
+    builder.bodies[1].joints[0].damping[0] = 30.0;
     // m (v' − v) = −h b v', however large h b / m.
     let implicit = 1.0 / (1.0 + 0.1 * 30.0 / 2.0);
     for integrator in [Integrator::Euler, Integrator::ImplicitFast] {

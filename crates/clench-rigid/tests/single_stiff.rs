@@ -115,7 +115,7 @@ fn faces(cone: FrictionCone) -> ModelBuilder {
             let mut direction = [0.0; 3];
             direction[axis] = sign;
             let mut hinge = joint(JointKind::Hinge, "", direction);
-            (hinge.armature, hinge.damping) = (1e-4, 5e-4);
+            (hinge.armature, hinge.damping[0]) = (1e-4, 5e-4);
             let cube = GeomSpec {
                 mass: GeomMass::Mass(0.0025),
                 condim: if axis == 0 { 1 } else { 3 },

@@ -121,6 +121,7 @@ pub fn is_conservative(model: &Model) -> bool {
     let p = &model.params;
     let none = |values: &[f64]| values.iter().all(|&v| v == 0.0);
     none(&p.dof_damping)
+        && none(p.dof_dampingpoly.as_flattened())
         && none(&p.tendon_damping)
         && none(&p.body_gravcomp)
         && model.actuators.is_empty()

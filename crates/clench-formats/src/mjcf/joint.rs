@@ -26,8 +26,8 @@ pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadE
     element.set_number("margin", &mut joint.margin)?;
     element.set_number("ref", &mut joint.reference)?;
     element.set_number("springref", &mut joint.springref)?;
-    element.set_linear("stiffness", &mut joint.stiffness)?;
-    element.set_linear("damping", &mut joint.damping)?;
+    element.overlay("stiffness", &mut joint.stiffness)?;
+    element.overlay("damping", &mut joint.damping)?;
     element.set_numbers("springdamper", &mut joint.springdamper)?;
     element.set_number("armature", &mut joint.armature)?;
     element.set_number("frictionloss", &mut joint.frictionloss)?;

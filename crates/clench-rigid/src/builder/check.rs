@@ -141,8 +141,8 @@ fn check_joint(j: &JointSpec) -> Result<(), BuildError> {
     j.require_finite("ref", &[j.reference])?;
     j.require_finite("springref", &[j.springref])?;
     j.require_finite("margin", &[j.margin])?;
-    j.require_finite("stiffness", &[j.stiffness])?;
-    j.require_finite("damping", &[j.damping])?;
+    j.require_finite("stiffness", &j.stiffness)?;
+    j.require_finite("damping", &j.damping)?;
     j.require_finite("springdamper", &j.springdamper)?;
     j.require_not_negative("armature", &[j.armature])?;
     j.require_not_negative("frictionloss", &[j.frictionloss])?;

@@ -135,13 +135,13 @@ impl JointSpec {
     /// Viscous damping, N s/m or N m s/rad.
     #[must_use]
     pub fn damping(mut self, damping: f64) -> Self {
-        self.damping = damping;
+        self.damping = [damping, 0.0, 0.0];
         self
     }
     /// Stiffness of the spring (N/m or N m/rad) and the position at which it rests.
     #[must_use]
     pub fn spring(mut self, stiffness: f64, rest: f64) -> Self {
-        (self.stiffness, self.springref) = (stiffness, rest);
+        (self.stiffness, self.springref) = ([stiffness, 0.0, 0.0], rest);
         self
     }
     /// Dry friction, N or N m.

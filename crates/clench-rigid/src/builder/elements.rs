@@ -93,11 +93,11 @@ pub struct JointSpec {
     pub reference: f64,
     /// Position at which the spring rests.
     pub springref: f64,
-    /// N/m or N m/rad.
-    pub stiffness: f64,
-    /// N s/m or N m s/rad.
-    pub damping: f64,
-    /// Time constant and damping ratio from which stiffness and damping are derived, where positive.
+    /// Of the spring, which pulls with a x + b x² + c x³ at a displacement x, N/m or N m/rad.
+    pub stiffness: [f64; 3],
+    /// Of the damper, which brakes with a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
+    pub damping: [f64; 3],
+    /// Time constant and damping ratio from which the linear stiffness and damping are derived, where positive.
     pub springdamper: [f64; 2],
     /// Added inertia of the joint, kg or kg m².
     pub armature: f64,
@@ -134,8 +134,8 @@ impl Default for JointSpec {
             margin: 0.0,
             reference: 0.0,
             springref: 0.0,
-            stiffness: 0.0,
-            damping: 0.0,
+            stiffness: [0.0; 3],
+            damping: [0.0; 3],
             springdamper: [0.0; 2],
             armature: 0.0,
             frictionloss: 0.0,

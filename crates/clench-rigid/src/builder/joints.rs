@@ -93,7 +93,9 @@ fn push_params(
     let p = &mut model.params;
     p.jnt_pos.push(pos);
     p.jnt_axis.push(axis);
-    p.jnt_stiffness.push(spec.stiffness);
+    let [linear, higher @ ..] = spec.stiffness;
+    p.jnt_stiffness.push(linear);
+    p.jnt_stiffnesspoly.push(higher);
     p.jnt_range.push(spec.range);
     p.jnt_margin.push(spec.margin);
     p.jnt_actfrcrange.push(spec.actuatorfrcrange);
@@ -126,7 +128,9 @@ fn add_dof(spec: &JointSpec, b: usize, joint: usize, model: &mut Model) {
     model.nv += 1;
     let p = &mut model.params;
     p.dof_armature.push(spec.armature);
-    p.dof_damping.push(spec.damping);
+    let [linear, higher @ ..] = spec.damping;
+    p.dof_damping.push(linear);
+    p.dof_dampingpoly.push(higher);
     p.dof_frictionloss.push(spec.frictionloss);
     p.dof_solref.push(spec.solref_friction);
     p.dof_solimp.push(spec.solimp_friction);

@@ -116,7 +116,7 @@ pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> 
     }
 }
 
-/// Factors M + `time` · B, B the damping of dofs, into `factor`. False in lanes that met a pivot that is not positive.
+/// Factors M + diag(`added`) into `factor`. False in lanes that met a pivot that is not positive.
 ///
 /// `bodies` is memory for all bodies.
 #[kernel]
@@ -124,7 +124,7 @@ pub fn articulated_factor<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
-    time: T,
+    added: impl Fn(usize) -> T,
     bodies: &mut [ArticulatedInertia<T>],
     factor: &mut TreeFactor<T>,
 ) -> T::Mask {
@@ -138,8 +138,8 @@ pub fn articulated_factor<T: Real>(
         for i in model.bodies[b].dofs.clone().rev() {
             let (angular, linear) = axis(model, pos, i, centre);
             let (moment, force) = bodies[b].mul(angular, linear);
-            let added = params.dof_armature[i] + time * params.dof_damping[i];
-            let pivot = angular.dot(moment) + linear.dot(force) + added;
+            let own = params.dof_armature[i] + added(i);
+            let pivot = angular.dot(moment) + linear.dot(force) + own;
             positive &= factor.set_row(&model.tree, i, pivot, |j| {
                 let (angular, linear) = axis(model, pos, j, centre);
                 angular.dot(moment) + linear.dot(force)

@@ -6,6 +6,7 @@
 
 use crate::dynamics::activation::input;
 use crate::dynamics::fluid::{Drag, has_fluid};
+use crate::dynamics::polynomial::dof_damper;
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
@@ -39,9 +40,9 @@ pub fn add_velocity_derivatives<T: Real>(
         }
     }
     if model.flags.damper {
-        for (i, &damping) in params.dof_damping.iter().enumerate() {
+        for (i, &v) in state.qvel.iter().enumerate() {
             if let Some(diagonal) = matrix.row_mut(&model.tree, i).last_mut() {
-                *diagonal -= damping * scale;
+                *diagonal -= dof_damper(params, i).damping_slope(v) * scale;
             }
         }
         for (t, &damping) in params.tendon_damping.iter().enumerate() {

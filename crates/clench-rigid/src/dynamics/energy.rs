@@ -1,6 +1,6 @@
 //! Mechanical energy, J.
 
-use crate::dynamics::spring::{JointStretch, joint_stretch, tendon_stretch};
+use crate::dynamics::spring::{JointStretch, joint_spring, joint_stretch, tendon_stretch};
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
 use clench_math::{Real, kernel};
@@ -40,19 +40,21 @@ pub fn energy<T: Real>(
     }
 }
 
-/// ½ k x² of every spring.
+/// The energy of every spring.
 #[inline(always)]
 fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>, qpos: &[T]) -> T {
     let half = T::new(0.5);
     let mut energy = T::ZERO;
-    for (j, &stiffness) in params.jnt_stiffness.iter().enumerate() {
-        let squared = match joint_stretch(model, params, qpos, j) {
+    for j in 0..model.joints.len() {
+        let spring = joint_spring(params, j);
+        energy += match joint_stretch(model, params, qpos, j) {
             None => T::ZERO,
-            Some(JointStretch::Scalar(x)) => x.squared(),
-            Some(JointStretch::Rotation(turn)) => turn.norm_squared(),
-            Some(JointStretch::Pose(shift, turn)) => shift.norm_squared() + turn.norm_squared(),
+            Some(JointStretch::Scalar(x)) => spring.energy(x),
+            Some(JointStretch::Rotation(turn)) => spring.energy(turn.norm()),
+            Some(JointStretch::Pose(shift, turn)) => {
+                spring.energy(shift.norm()) + spring.energy(turn.norm())
+            }
         };
-        energy += half * stiffness * squared;
     }
     for (t, &stiffness) in params.tendon_stiffness.iter().enumerate() {
         energy += half * stiffness * tendon_stretch(params, t, pos.ten_length[t]).squared();

@@ -1,10 +1,11 @@
 //! Semi-implicit Euler, implicit in joint damping.
 //!
-//! The damping force −B v is taken at the end of the step, −B (v + h a): the acceleration that advances the velocity solves
-//! (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second factorization.
+//! The damping force is taken at the end of the step to first order, with B its slope: the acceleration that advances the
+//! velocity solves (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second factorization.
 
 use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit};
+use crate::dynamics::polynomial::dof_damper;
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -21,12 +22,13 @@ pub fn euler<T: Real>(
     ws.integration.qacc.copy_from_slice(&ws.qacc);
     let mut damped = T::Mask::splat(false);
     if model.flags.eulerdamp && model.flags.damper {
-        for damping in &params.dof_damping {
-            damped |= damping.gt(T::ZERO);
+        for i in 0..model.nv {
+            let damper = dof_damper(params, i);
+            damped |= damper.linear.gt(T::ZERO) | damper.is_curved();
         }
     }
     if damped.any() {
-        damped_acceleration(model, params, damped, ws);
+        damped_acceleration(model, params, &state.qvel, damped, ws);
     }
     advance_semi_implicit(model, params, state, ws);
 }
@@ -36,6 +38,7 @@ pub fn euler<T: Real>(
 fn damped_acceleration<T: Real>(
     model: &Model,
     params: &Params<T>,
+    qvel: &[T],
     damped: T::Mask,
     ws: &mut Workspace<T>,
 ) {
@@ -43,15 +46,23 @@ fn damped_acceleration<T: Real>(
     let Integration { matrix, factor, .. } = &mut ws.integration;
     let positive = if ws.articulated.is_empty() {
         matrix.values.copy_from_slice(&ws.problem.mass.values);
-        for (i, &damping) in params.dof_damping.iter().enumerate() {
+        for (i, &v) in qvel.iter().enumerate() {
             if let Some(diagonal) = matrix.row_mut(tree, i).last_mut() {
-                *diagonal += params.timestep * damping;
+                *diagonal += params.timestep * dof_damper(params, i).damping_slope(v);
             }
         }
         factor.factor(tree, matrix)
     } else {
         let (pos, bodies) = (&ws.position, &mut ws.articulated);
-        articulated_factor(model, params, pos, params.timestep, bodies, factor)
+        articulated_factor(
+            model,
+            params,
+            pos,
+            #[inline(always)]
+            |i| params.timestep * dof_damper(params, i).damping_slope(qvel[i]),
+            bodies,
+            factor,
+        )
     };
     ws.singular |= damped & !positive;
     solve_implicit(tree, ws);

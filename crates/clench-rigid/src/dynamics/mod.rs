@@ -22,6 +22,7 @@ pub mod inertia;
 pub mod integrate;
 pub mod kinematics;
 pub mod passive;
+pub mod polynomial;
 pub mod project;
 pub mod rk4;
 pub mod smooth;

@@ -1,8 +1,9 @@
 //! Passive forces: springs, dampers, gravity compensation and the medium.
 
 use crate::dynamics::fluid::fluid_forces;
+use crate::dynamics::polynomial::{Polynomial, dof_damper};
 use crate::dynamics::project::{force_at, project_forces};
-use crate::dynamics::spring::{JointStretch, joint_stretch, tendon_stretch};
+use crate::dynamics::spring::{JointStretch, joint_spring, joint_stretch, tendon_stretch};
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
@@ -53,21 +54,16 @@ fn springs<T: Real>(
     qpos: &[T],
     qfrc: &mut [T],
 ) {
-    let add = |qfrc: &mut [T], force: Vec3<T>| {
-        for (qfrc, f) in qfrc.iter_mut().zip(force.to_array()) {
-            *qfrc += f;
-        }
-    };
     for (j, joint) in model.joints.iter().enumerate() {
-        let stiffness = params.jnt_stiffness[j];
+        let spring = joint_spring(params, j);
         let qfrc = &mut qfrc[joint.dof..];
         match joint_stretch(model, params, qpos, j) {
             None => {}
-            Some(JointStretch::Scalar(x)) => qfrc[0] += -x * stiffness,
-            Some(JointStretch::Rotation(turn)) => add(qfrc, turn * -stiffness),
+            Some(JointStretch::Scalar(x)) => qfrc[0] += -x * spring.stiffness(x),
+            Some(JointStretch::Rotation(turn)) => pull_back(&spring, turn, qfrc),
             Some(JointStretch::Pose(shift, turn)) => {
-                add(qfrc, shift * -stiffness);
-                add(&mut qfrc[3..], turn * -stiffness);
+                pull_back(&spring, shift, qfrc);
+                pull_back(&spring, turn, &mut qfrc[3..]);
             }
         }
     }
@@ -75,6 +71,19 @@ fn springs<T: Real>(
         let stretch = tendon_stretch(params, t, pos.ten_length[t]);
         let force = -stretch * params.tendon_stiffness[t];
         add_tendon_force(model, pos, t, force, qfrc);
+    }
+}
+
+/// Adds the force of a spring that is stretched along `stretch`.
+#[inline(always)]
+fn pull_back<T: Real>(spring: &Polynomial<T>, stretch: Vec3<T>, qfrc: &mut [T]) {
+    let stiffness = if spring.is_curved().any() {
+        spring.stiffness(stretch.norm())
+    } else {
+        spring.linear
+    };
+    for (qfrc, x) in qfrc.iter_mut().zip(stretch.to_array()) {
+        *qfrc += -x * stiffness;
     }
 }
 
@@ -87,8 +96,8 @@ fn dampers<T: Real>(
     qvel: &[T],
     qfrc: &mut [T],
 ) {
-    for ((qfrc, &damping), &v) in qfrc.iter_mut().zip(&params.dof_damping).zip(qvel) {
-        *qfrc = -v * damping;
+    for (i, (qfrc, &v)) in qfrc.iter_mut().zip(qvel).enumerate() {
+        *qfrc = -v * dof_damper(params, i).damping(v);
     }
     for t in 0..model.tendons.len() {
         let force = -vel.ten_velocity[t] * params.tendon_damping[t];

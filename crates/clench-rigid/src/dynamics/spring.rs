@@ -1,7 +1,8 @@
 //! Springs: how far each is from rest. Force and energy both follow from that.
 
+use crate::dynamics::polynomial::Polynomial;
 use crate::model::{JointKind, Model, Params};
-use clench_math::{Mask, Quat, Real, Vec3};
+use clench_math::{Quat, Real, Vec3};
 
 /// How far a joint is from its spring's rest position.
 pub enum JointStretch<T> {
@@ -13,6 +14,12 @@ pub enum JointStretch<T> {
     Pose(Vec3<T>, Vec3<T>),
 }
 
+/// The force law of joint `j`'s spring.
+#[inline(always)]
+pub fn joint_spring<T: Real>(params: &Params<T>, j: usize) -> Polynomial<T> {
+    Polynomial::new(params.jnt_stiffness[j], params.jnt_stiffnesspoly[j])
+}
+
 /// The stretch of joint `j`; `None` where no lane has a spring there.
 #[inline(always)]
 pub fn joint_stretch<T: Real>(
@@ -21,7 +28,7 @@ pub fn joint_stretch<T: Real>(
     qpos: &[T],
     j: usize,
 ) -> Option<JointStretch<T>> {
-    if params.jnt_stiffness[j].eq(T::ZERO).all() {
+    if joint_spring(params, j).is_zero() {
         return None;
     }
     let joint = &model.joints[j];

@@ -128,6 +128,8 @@ params! {
     jnt_axis: Vec<Vec3<T>>, Axis;
     /// Spring stiffness.
     jnt_stiffness: Vec<T>, Finite;
+    /// Coefficients of the spring's quadratic and cubic force.
+    jnt_stiffnesspoly: Vec<[T; 2]>, Finite;
     /// Allowed positions.
     jnt_range: Vec<[T; 2]>, Range;
     /// Distance at which the limit appears.
@@ -143,6 +145,8 @@ params! {
     dof_armature: Vec<T>, NotNegative;
     /// Damping.
     dof_damping: Vec<T>, Finite;
+    /// Coefficients of quadratic and cubic damping.
+    dof_dampingpoly: Vec<[T; 2]>, Finite;
     /// Dry friction.
     dof_frictionloss: Vec<T>, NotNegative;
     /// Dry-friction reference dynamics.

@@ -120,9 +120,9 @@ pub fn everything() -> ModelBuilder {
     for body in &mut b.bodies {
         body.gravcomp = 0.3;
         for joint in &mut body.joints {
-            joint.stiffness = 2.0;
+            joint.stiffness = [2.0, 0.5, 3.0];
             joint.springref = 0.2;
-            joint.damping = 0.3;
+            joint.damping = [0.3, 0.1, 0.02];
         }
     }
     let knee = &mut b.bodies[6].joints[0];

@@ -449,7 +449,7 @@ pub fn humanoid() -> ModelBuilder {
     };
     let hinge = |name: &str, axis| JointSpec {
         range: [-1.0, 1.0],
-        damping: 0.5,
+        damping: [0.5, 0.1, 0.02],
         armature: 0.02,
         ..joint(JointKind::Hinge, name, axis)
     };
