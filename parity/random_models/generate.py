@@ -1,7 +1,8 @@
 """A random model from a seed: a tree of bodies, what they carry, and what acts between them.
 
 Most of what is generated can be compiled; what MuJoCo refuses (a default class that gives a ball joint a negative limit, say) is left
-to be thrown away. Names are given only to what can be referred to: in replicas names mean several elements.
+to be thrown away. Names are given only to what can be referred to. In replicas a name means several elements, and so does what refers
+to it.
 """
 
 import math
@@ -35,7 +36,8 @@ class Generator:
         draw.degrees = draw.chance(0.6)
         draw.autolimits = draw.chance(0.9)
         self.root = ET.Element("mujoco", model="random")
-        self.classes, self.meshes, self.hfields, self.materials = [], [], [], []
+        self.classes, self.meshes, self.hfields, self.materials, self.parts = [], [], [], [], []
+        self.frames = []
         self.bodies, self.geoms, self.sites, self.joints, self.tendons = ["world"], [], [], [], []
         self.limited = set()  # joints and tendons whose range an actuator can take over
         self.replicated = 0
@@ -68,7 +70,7 @@ class Generator:
         return element
 
     def name(self, kind):
-        """A new name; none in replicas, and now and then none elsewhere."""
+        """A new name, and now and then none."""
         return self.always(kind) if self.draw.chance(0.95) else None
 
     def fill(self, element, key=None, without=()):
@@ -167,6 +169,18 @@ class Generator:
             self.mesh(asset)
         if draw.chance(0.3):
             self.hfield(asset)
+        if draw.chance(0.3):
+            self.part(asset)
+
+    def part(self, asset):
+        """A model that can be attached."""
+        part = self.add(asset, "model", file=ASSETS / "part.xml")
+        name = self.draw.choice((None, self.always("model")))
+        if name:
+            part.set("name", name)
+        if self.draw.chance(0.3):
+            part.set("content_type", "text/xml")
+        self.parts.append(name or "part")
 
     def always(self, kind):
         """A new name. It ends in a letter, since MuJoCo takes one that ends in the number of a replica for that replica's."""
@@ -250,8 +264,6 @@ class Generator:
 
     def named(self, kind, name, body):
         """Registers an element of a body under a name, where it can be referred to."""
-        if self.replicated:
-            return None
         {"geom": self.geoms, "site": self.sites}[kind].append((name, body))
         return name
 
@@ -261,6 +273,9 @@ class Generator:
         if draw.chance(0.15):
             frame = self.fill(self.classed(self.add(parent, "frame")))
             self.classed(frame, "childclass", 0.1)
+            if draw.chance(0.3):
+                frame.set("name", self.always("frame"))
+                self.frames.append(frame.get("name"))
             return self.wrapped(frame)
         if draw.chance(0.07):
             self.replicated += 1
@@ -276,10 +291,9 @@ class Generator:
         draw = self.draw
         inside = self.replicated
         body = self.add(parent, "body")
-        index = len(self.bodies) if not inside else -1
+        index = len(self.bodies)
         name = self.always("body")
-        if not inside:
-            self.bodies.append(name)
+        self.bodies.append(name)
         body.set("name", name)
         self.fill(self.classed(body, "childclass", 0.1))
         spread = 0.5 if depth == 0 else 0.2
@@ -291,11 +305,29 @@ class Generator:
         self.solids(body, index)
         for _ in range(draw.choice((0, 0, 1, 2))):
             self.site(body, index)
+        if draw.chance(0.1):
+            self.attach(self.wrapped_frame(body))
         if depth < 3:
             for _ in range(draw.choice((0, 0, 1, 1, 2)) if depth else draw.choice((0, 1, 1, 2))):
                 was = self.replicated
                 self.body(self.wrapped(body), depth + 1, index)
                 self.replicated = was
+
+    def attach(self, parent):
+        """A part of another model, or of this one."""
+        draw, prefix = self.draw, self.always("at")
+        attach = self.add(parent, "attach", prefix=prefix)
+        if self.parts:
+            attach.set("model", draw.choice(self.parts))
+            whole = draw.choice((("body", "arm"), ("body", "hand"), ("frame", "wrist"), None))
+            if whole:
+                attach.set(*whole)
+            if whole == ("body", "arm"):
+                self.joints.append((f"{prefix}turn", "hinge"))
+        elif self.frames and draw.chance(0.5):
+            attach.set("frame", draw.choice(self.frames))
+        else:
+            attach.set("body", draw.choice(self.bodies[1:]))
 
     def body_joints(self, body, depth):
         draw = self.draw
@@ -348,8 +380,6 @@ class Generator:
 
     def joint_name(self, kind):
         name = self.name("joint")
-        if self.replicated:
-            return None
         if name:
             self.joints.append((name, kind))
         return name

@@ -180,6 +180,7 @@ VALUES = {
         "strippath": one_of("false", "true"),
         "fitaabb": BOOLEAN,
         "discardvisual": BOOLEAN,
+        "conflict": one_of("warning"),
     },
     "option": {
         "timestep": scale(0.0005, 0.01),
@@ -220,6 +221,8 @@ VALUES = {
         "euler": lambda draw: text(*(draw.angle(draw.number(-1, 1)) for _ in range(3))),
         "sep": one_of("-", "_r"),
     },
+    "attach": {},
+    "model": {},
     "inertial": {},
     "joint": {
         "group": one_of(0, 1, 4),

@@ -226,7 +226,23 @@ fn contradictions() {
         "inertial",
         "\"mass\" is required",
     );
-    expect("<replicate count='0'/>", "replicate", "positive");
+    expect("<attach body='a'/>", "attach", "\"prefix\" is required");
+    expect("<attach prefix='a'/>", "attach", "either model, or a body");
+    expect(
+        "<attach body='a' frame='b' prefix='p'/>",
+        "attach",
+        "cannot both",
+    );
+    expect(
+        "<attach body='a' prefix='p'/>",
+        "attach",
+        "no body \"a\" before",
+    );
+    expect(
+        "<attach model='arm' prefix='p'/>",
+        "attach",
+        "no model \"arm\"",
+    );
     let nested = "<replicate count='2000'><replicate count='2000'/></replicate>";
     expect(nested, "replicate", "more than 500000 elements");
     expect(
@@ -313,7 +329,6 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ("<geom size='1' surfacevel='0 0 1'/>", "geom"),
         ("<geom size='1' fluidshape='ellipsoid'/>", "geom"),
         ("<frame scale='2'/>", "frame"),
-        ("<attach prefix='a'/>", "attach"),
         ("<flexcomp/>", "flexcomp"),
         ("<body><joint springyield='1'/></body>", "joint"),
     ] {
@@ -349,16 +364,4 @@ fn what_is_not_supported_is_accepted_where_it_does_nothing() {
          </mujoco>",
     )
     .unwrap();
-}
-
-#[test]
-fn replicated_elements_cannot_be_named_yet() {
-    let error = rejected(
-        "<mujoco><worldbody><replicate count='2'><body><joint name='j'/><geom size='1'/></body></replicate></worldbody>
-         <actuator><motor joint='j'/></actuator></mujoco>",
-    );
-    assert!(
-        error.message.contains("replicated: not supported yet"),
-        "{error}"
-    );
 }

@@ -230,7 +230,7 @@ fn replicas_are_counted() {
         load_str(&world(&format!(
             "<replicate count='100000'>{geoms}</replicate>"
         ))),
-        &["2: geom", "500000 elements", "--budget"],
+        &["2: replicate", "500000 elements", "--budget"],
     );
     // In each other they multiply, also where nothing is in them.
     let inside = |what: &str| {
@@ -248,13 +248,13 @@ fn replicas_are_counted() {
         load_str(&world(&format!(
             "<replicate count='100000' sep='{long}'><site name='a'/></replicate>"
         ))),
-        &["2: site", "bytes"],
+        &["2: replicate", "bytes"],
     );
     refused(
         load_str(&world(&format!(
             "<replicate count='100000'><geom size='1' name='{long}'/></replicate>"
         ))),
-        &["2: geom", "bytes"],
+        &["2: replicate", "bytes"],
     );
     // What is meant can be had.
     let ten = world("<replicate count='10'><geom size='1'/></replicate>");

@@ -1,12 +1,39 @@
-//! Textures and materials of `<asset>` are only seen, but who names one must name one that exists, and rays pass through what
-//! cannot be seen.
+//! `<asset>`: meshes and height fields. Textures and materials are only seen, but who names one must name one that exists, and rays
+//! pass through what cannot be seen.
 
-use super::defaults::Classes;
 use super::document::Element;
-use super::{entries, schema, sections};
+use super::source::Sources;
+use super::{entries, hfield, schema, sections};
 use crate::LoadError;
+use crate::spending::Spending;
+use clench_rigid::builder::ModelBuilder;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+
+/// Reads the meshes and height fields.
+pub(crate) fn read(
+    root: &Element,
+    sources: &Sources,
+    builder: &mut ModelBuilder,
+    spending: &mut Spending,
+) -> Result<(), LoadError> {
+    for element in entries(root, "asset") {
+        let source = sources.of(element);
+        match element.tag.as_str() {
+            "mesh" => {
+                let draft = source.classes.of(element)?.mesh.clone();
+                let mesh = draft.finish(element, &source.files, spending)?;
+                builder.meshes.push(mesh);
+            }
+            "hfield" => {
+                let field = hfield::read(element, &source.files, spending)?;
+                builder.height_fields.push(field);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
 
 /// Checks that every material that an element of the body tree names exists.
 pub(crate) fn check_materials(root: &Element) -> Result<(), LoadError> {
@@ -46,12 +73,12 @@ pub(crate) struct Visibility {
 
 impl Visibility {
     /// Reads the materials, and which meshes have one.
-    pub fn read(root: &Element, classes: &Classes) -> Result<Self, LoadError> {
+    pub fn read(root: &Element, sources: &Sources) -> Result<Self, LoadError> {
         let mut visibility = Visibility::default();
         for asset in entries(root, "asset") {
             match (asset.tag.as_str(), asset.text("material")) {
                 ("material", _) => {
-                    let mut alpha = classes.of(asset)?.material_alpha;
+                    let mut alpha = sources.of(asset).classes.of(asset)?.material_alpha;
                     read_alpha(asset, &mut alpha)?;
                     visibility
                         .materials

@@ -15,6 +15,8 @@ pub(crate) struct CompilerOptions {
     pub meshdir: String,
     /// Only the last part of a file's path counts.
     pub strippath: bool,
+    /// Options of attached models are not just left out.
+    pub merges_options: bool,
 }
 
 impl Default for CompilerOptions {
@@ -24,6 +26,7 @@ impl Default for CompilerOptions {
             eulerseq: ['x', 'y', 'z'],
             meshdir: String::new(),
             strippath: false,
+            merges_options: false,
         }
     }
 }
@@ -67,6 +70,8 @@ impl CompilerOptions {
             directory.clone_into(&mut self.meshdir);
         }
         element.set_boolean("strippath", &mut self.strippath)?;
+        let conflicts = [("warning", false), ("merge", true), ("error", true)];
+        element.set_keyword("conflict", &conflicts, &mut self.merges_options)?;
         if let Some(text) = element.text("eulerseq") {
             let axes: Vec<char> = text.chars().filter(|c| "xyzXYZ".contains(*c)).collect();
             let axes = <[char; 3]>::try_from(axes).ok().filter(|_| text.len() == 3);

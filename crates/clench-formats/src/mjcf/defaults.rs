@@ -166,6 +166,35 @@ impl Classes {
             .map_or_else(ActuatorParams::default, |actuator| actuator.parameters)
     }
 
+    /// Copies of all classes, with a prefix to their names, for elements of a model that these are attached to.
+    ///
+    /// # Errors
+    /// Where they take more memory than is left.
+    pub fn prefixed(&self, prefix: &str, spending: &mut Spending) -> Result<Vec<Class>, String> {
+        for class in &self.list {
+            let texts = prefix.len() + class.name.len() + class.geom.text_length();
+            spending.bytes((size_of::<Class>() + 2 * texts) as u64)?;
+        }
+        let renamed = |class: &Class| Class {
+            name: format!("{prefix}{}", class.name),
+            ..class.clone()
+        };
+        Ok(self.list.iter().map(renamed).collect())
+    }
+
+    /// Adds classes of another model; of two with the same name the first counts.
+    pub fn borrow(&mut self, lent: Vec<Class>) {
+        let first = self.list.len();
+        for class in lent {
+            let index = self.list.len();
+            self.by_name.entry(class.name.clone()).or_insert(index);
+            self.list.push(Class {
+                parent: class.parent.map(|parent| first + parent),
+                ..class
+            });
+        }
+    }
+
     fn find(&self, name: &str) -> Option<usize> {
         self.by_name.get(name).copied()
     }

@@ -19,12 +19,37 @@ const MAX_NAMESPACES: usize = 20;
 const MARK: u64 = 300;
 
 /// An element with its attributes and children; text and comments are dropped.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Element {
     pub tag: String,
     pub attributes: Vec<(String, String)>,
     pub children: Vec<Element>,
     pub origin: Origin,
+    /// Which of the model's [`Sources`](super::source::Sources) it is read with.
+    pub source: usize,
+}
+
+impl Element {
+    /// An element without children that stands for another, where that one is written.
+    pub fn in_place_of(other: &Element, tag: &str) -> Element {
+        Element {
+            tag: tag.to_owned(),
+            attributes: Vec::new(),
+            children: Vec::new(),
+            origin: other.origin.clone(),
+            source: other.source,
+        }
+    }
+
+    /// Marks it and all in it as read with a source.
+    pub fn set_source(&mut self, source: usize) {
+        self.source = source;
+        let mut pending: Vec<&mut Element> = self.children.iter_mut().collect();
+        while let Some(element) = pending.pop() {
+            element.source = source;
+            pending.extend(element.children.iter_mut());
+        }
+    }
 }
 
 /// Children are taken apart one by one: a compiler's own code would recurse.
@@ -182,6 +207,7 @@ impl Converter<'_> {
                 file: self.file.clone(),
                 line: 1 + self.newlines.partition_point(|&at| at < start) as u32,
             },
+            source: 0,
         };
         let end = |c: char| c.is_whitespace() || "/>".contains(c);
         let name = self.text[start + 1..].split(end).next().unwrap_or_default();

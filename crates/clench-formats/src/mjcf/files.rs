@@ -10,8 +10,9 @@ use crate::spending::Spending;
 use std::path::{Path, PathBuf};
 
 /// Where a model's files are.
-pub(crate) struct Files<'a> {
-    model_directory: &'a Path,
+#[derive(Debug)]
+pub(crate) struct Files {
+    pub model_directory: PathBuf,
     meshes: PathBuf,
     strippath: bool,
 }
@@ -26,11 +27,11 @@ pub(crate) struct Content {
     path: PathBuf,
 }
 
-impl<'a> Files<'a> {
+impl Files {
     /// For a model in a directory.
-    pub fn new(model_directory: &'a Path, compiler: &CompilerOptions) -> Self {
+    pub fn new(model_directory: &Path, compiler: &CompilerOptions) -> Self {
         Files {
-            model_directory,
+            model_directory: model_directory.to_owned(),
             meshes: model_directory.join(slashes(&compiler.meshdir)),
             strippath: compiler.strippath,
         }
@@ -52,7 +53,7 @@ impl<'a> Files<'a> {
         };
         let mut places = vec![self.meshes.join(&name)];
         let written = Path::new(&*element.origin.file).parent();
-        let below = written.and_then(|file| file.strip_prefix(self.model_directory).ok());
+        let below = written.and_then(|file| file.strip_prefix(&self.model_directory).ok());
         places.extend(below.map(|below| self.meshes.join(below).join(&name)));
         let found = places.iter().find(|path| path.is_file());
         let path = found.ok_or_else(|| {

@@ -107,7 +107,7 @@ fn add(
     check_joints(spec, parent).map_err(|e| e.about(&place.name))?;
     let mut inertia = match is_world {
         true => MassProperties::NONE,
-        false => mass_properties(spec, &place.name, &builder.compiler, assets)?,
+        false => mass_properties(spec, &place.name, spec.settings(builder), assets)?,
     };
     let frame = align(builder, spec, place.has_children, &mut inertia);
     let within = |e: BuildError| e.of_body(&place.name);
@@ -213,7 +213,7 @@ fn align(
     let (pos, quat) = (spec.pos, spec.quat.normalize());
     let wanted = match &spec.joints[..] {
         [joint] if joint.kind == JointKind::Free => {
-            joint.align.unwrap_or(builder.compiler.alignfree)
+            joint.align.unwrap_or(spec.settings(builder).alignfree)
         }
         _ => false,
     };

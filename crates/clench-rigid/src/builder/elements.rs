@@ -1,9 +1,10 @@
 //! Bodies and what stands on them, with MuJoCo's defaults.
 
-use super::Origin;
+use super::{CompilerSpec, ModelBuilder, Origin};
 use crate::model::JointKind;
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
+use std::sync::Arc;
 
 /// MuJoCo's default reference dynamics: time constant 0.02 s, damping ratio 1.
 pub const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
@@ -38,8 +39,18 @@ pub struct BodySpec {
     pub geoms: Vec<GeomSpec>,
     /// Sites.
     pub sites: Vec<SiteSpec>,
+    /// The settings of the model that it was attached from, which decide about its inertia and its frame; `None` for those of
+    /// the builder.
+    pub compiler: Option<Arc<CompilerSpec>>,
     /// Where it was written.
     pub origin: Option<Origin>,
+}
+
+impl BodySpec {
+    /// The settings that decide about its inertia and its frame.
+    pub(super) fn settings<'a>(&'a self, builder: &'a ModelBuilder) -> &'a CompilerSpec {
+        self.compiler.as_deref().unwrap_or(&builder.compiler)
+    }
 }
 
 /// Mass properties given by the author.

@@ -3,7 +3,12 @@
 use super::{NONE, Rule, ignored, section};
 
 pub(super) const RULES: &[Rule] = &[
-    section("asset", "texture material mesh hfield skin", "model"),
+    section("asset", "texture material mesh hfield skin model", ""),
+    Rule {
+        element: "model",
+        read: "name file content_type",
+        ..NONE
+    },
     ignored(
         "texture",
         "name class type colorspace content_type embed file gridsize gridlayout fileright fileleft fileup \

@@ -13,8 +13,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "compiler",
         read: "angle eulerseq coordinate autolimits boundmass boundinertia settotalmass balanceinertia \
-            inertiafromgeom inertiagrouprange alignfree assetdir meshdir strippath fitaabb discardvisual",
-        ignored: "texturedir usethread conflict passthrough savecanonical savecompiled saveinertial",
+            inertiafromgeom inertiagrouprange alignfree assetdir meshdir strippath fitaabb discardvisual conflict",
+        ignored: "texturedir usethread passthrough savecanonical savecompiled saveinertial",
         later: "fusestatic=false",
         once: "lengthrange",
         ..NONE

@@ -3,8 +3,9 @@
 use super::{NONE, Rule, ignored, section};
 
 /// What stands in the world, a body, a frame or a replica.
-const IN_A_BODY: &str = "body frame replicate geom site camera light inertial joint freejoint";
-const IN_A_BODY_LATER: &str = "attach plugin flexcomp";
+const IN_A_BODY: &str =
+    "body frame replicate attach geom site camera light inertial joint freejoint";
+const IN_A_BODY_LATER: &str = "plugin flexcomp";
 
 pub(super) const RULES: &[Rule] = &[
     section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
@@ -18,8 +19,7 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "frame",
-        read: "class childclass pos quat axisangle euler xyaxes zaxis",
-        ignored: "name",
+        read: "name class childclass pos quat axisangle euler xyaxes zaxis",
         later: "scale=1 scaling massscale=1",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
@@ -31,6 +31,11 @@ pub(super) const RULES: &[Rule] = &[
         ignored: "name",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
+        ..NONE
+    },
+    Rule {
+        element: "attach",
+        read: "model body frame prefix",
         ..NONE
     },
     Rule {

@@ -1,0 +1,336 @@
+//! `<attach>`: a body, a frame or the whole world of another model, or a body or frame of this one.
+
+use super::names::Namespace;
+use super::relations::{FOLLOWING, follows};
+use super::replicate::drop_inertia;
+use super::{Composer, Level, Shared, check_depth, compose_model};
+use crate::LoadError;
+use crate::mjcf::document::{self, Element};
+use crate::mjcf::include::Includes;
+use crate::mjcf::{schema, sections};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Deepest nesting of models in models.
+const MAX_NESTING: usize = 50;
+
+/// The models that a model can attach, by name, in the order in which they are written.
+#[derive(Default)]
+pub(super) struct Models(Vec<(String, Element)>);
+
+impl Models {
+    /// Reads the `<model>`s among the assets of a model.
+    ///
+    /// # Errors
+    /// Where one cannot be read, is no MJCF, or is one of the models that this one is attached to.
+    pub fn read(root: &Element, shared: &mut Shared) -> Result<Self, LoadError> {
+        let mut models = Models::default();
+        let assets = sections(root, "asset").flat_map(|section| &section.children);
+        for element in assets.filter(|asset| asset.tag == "model") {
+            let model = read_model(element, shared)?;
+            let name = element.text("name").or_else(|| model.text("model"));
+            models
+                .0
+                .push((name.unwrap_or("MuJoCo Model").to_owned(), model));
+        }
+        Ok(models)
+    }
+
+    fn find(&self, name: &str) -> Option<&Element> {
+        let found = self.0.iter().find(|(known, _)| known == name);
+        found.map(|(_, model)| model)
+    }
+}
+
+/// Reads the model that an element names, with all that it attaches itself.
+fn read_model(element: &Element, shared: &mut Shared) -> Result<Element, LoadError> {
+    let name = element.required_text("file")?;
+    check_type(element, name)?;
+    let directory = &shared.sources.of(element).files.model_directory;
+    let path = directory.join(name.replace('\\', "/"));
+    let unreadable =
+        |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
+    let canonical = path
+        .canonicalize()
+        .map_err(|error| unreadable(error.to_string()))?;
+    if let Some(start) = shared.open.iter().position(|open| *open == canonical) {
+        let chain = shared.open[start..].iter().chain([&canonical]);
+        let chain: Vec<String> = chain.map(|file| file.display().to_string()).collect();
+        return Err(element.error(format!("the model attaches itself: {}", chain.join(" -> "))));
+    }
+    if shared.open.len() >= MAX_NESTING {
+        return Err(element.error(format!("models are nested more than {MAX_NESTING} deep")));
+    }
+    let bytes = shared.spending.read(&path).map_err(unreadable)?;
+    let mut root = document::parse(&bytes, &Arc::from(path.to_string_lossy()), shared.spending)?;
+    match root.tag.as_str() {
+        "mujoco" => {}
+        "robot" => return Err(element.error("attaching URDF is not supported yet")),
+        _ => return Err(root.error("the root element of a model is <mujoco>")),
+    }
+    let directory = path.parent().unwrap_or(Path::new(""));
+    Includes::new(Some(&path)).expand(&mut root, directory, shared.spending)?;
+    schema::check(&root)?;
+    shared.open.push(canonical);
+    compose_model(&mut root, directory, shared)?;
+    shared.open.pop();
+    Ok(root)
+}
+
+/// Refuses what is no MJCF by what the element says of it, or by its name.
+fn check_type(element: &Element, name: &str) -> Result<(), LoadError> {
+    let known = match element.text("content_type") {
+        Some(media_type) => ["text/xml", "application/xml"].contains(&media_type),
+        None => Path::new(name).extension().is_some_and(|extension| {
+            ["xml", "mjcf", "urdf"]
+                .iter()
+                .any(|known| extension.eq_ignore_ascii_case(known))
+        }),
+    };
+    match known {
+        true => Ok(()),
+        false => Err(element.error("a model's file is MJCF: \".xml\", or content_type text/xml")),
+    }
+}
+
+impl Composer<'_, '_> {
+    /// What stands in place of an `<attach>`, inside of these elements.
+    pub(super) fn attach(
+        &mut self,
+        element: &Element,
+        open: &[Level],
+    ) -> Result<Element, LoadError> {
+        element.at_most_one(&["body", "frame"])?;
+        let prefix = element.required_text("prefix")?;
+        let wanted = ["body", "frame"]
+            .iter()
+            .find_map(|tag| Some((*tag, element.text(tag)?)));
+        let namespace = Namespace {
+            prefix,
+            suffix: "",
+            foreign: element.text("model").is_some(),
+        };
+        let models = std::mem::take(&mut self.models);
+        let result = match element.text("model") {
+            Some(name) => match models.find(name) {
+                Some(model) => self.attach_model(element, model, wanted, &namespace, open.len()),
+                None => {
+                    let known = models.0.iter().map(|(name, _)| name.as_str());
+                    let hint = schema::suggestion(name, known);
+                    Err(element.error(format!(
+                        "there is no model \"{name}\" among the assets{hint}"
+                    )))
+                }
+            },
+            None => self.attach_own(element, wanted, &namespace, open),
+        };
+        self.models = models;
+        result
+    }
+
+    fn attach_model(
+        &mut self,
+        element: &Element,
+        model: &Element,
+        wanted: Option<(&str, &str)>,
+        namespace: &Namespace,
+        depth: usize,
+    ) -> Result<Element, LoadError> {
+        self.check_options(element, model)?;
+        let mut frame = Element::in_place_of(model, "frame");
+        let class = match wanted {
+            None => {
+                let worlds = sections(model, "worldbody").flat_map(|world| &world.children);
+                for part in worlds {
+                    self.shared.charge(element, part)?;
+                    frame.children.push(part.clone());
+                }
+                None
+            }
+            Some((tag, name)) => {
+                let mut found = None;
+                for world in sections(model, "worldbody") {
+                    found = found.or_else(|| find(world, tag, name, None));
+                }
+                let (part, class) = found.ok_or_else(|| {
+                    let message = format!("there is no {tag} \"{name}\" in the attached model");
+                    element.error(message)
+                })?;
+                self.shared.charge(element, part)?;
+                frame.children.push(part.clone());
+                class
+            }
+        };
+        self.finish(element, &mut frame, class, namespace, depth)?;
+        self.shared
+            .sources
+            .lend_classes(
+                model.source,
+                self.source,
+                namespace.prefix,
+                self.shared.spending,
+            )
+            .map_err(|excess| element.error(excess))?;
+        for section in &model.children {
+            self.copy_section(element, section, namespace)?;
+        }
+        Ok(frame)
+    }
+
+    /// Copies what an attached model has outside its tree.
+    fn copy_section(
+        &mut self,
+        at: &Element,
+        section: &Element,
+        namespace: &Namespace,
+    ) -> Result<(), LoadError> {
+        let tag = section.tag.as_str();
+        let excess = |excess| at.error(excess);
+        self.shared
+            .spending
+            .elements(section.children.len() as u64)
+            .map_err(excess)?;
+        if FOLLOWING.contains(&tag) {
+            let from: Vec<&Element> = section.children.iter().collect();
+            self.copy_following(at, tag, &from, namespace)?;
+        } else if tag == "asset" {
+            for asset in section
+                .children
+                .iter()
+                .filter(|asset| asset.tag != "model" && asset.tag != "skin")
+            {
+                self.shared.charge(at, asset)?;
+                let mut copy = asset.clone();
+                namespace.rename_asset(&mut copy);
+                self.list(tag).push(copy);
+            }
+        }
+        Ok(())
+    }
+
+    /// A model's own options count, and no other's.
+    fn check_options(&mut self, element: &Element, model: &Element) -> Result<(), LoadError> {
+        if sections(model, "option").next().is_none() {
+            return Ok(());
+        }
+        if self.shared.sources.of(element).compiler.merges_options {
+            let message = "options of attached models can only be left out: another conflict than \
+                           \"warning\" is not supported yet";
+            return Err(element.error(message));
+        }
+        let name = element.text("model").unwrap_or_default();
+        let note = format!(
+            "the options of the attached model \"{name}\" are left out; those of the model itself count"
+        );
+        if !self.shared.notes.contains(&note) {
+            self.shared.notes.push(note);
+        }
+        Ok(())
+    }
+
+    /// Attaches a part of the model itself, as far as it is read.
+    fn attach_own(
+        &mut self,
+        element: &Element,
+        wanted: Option<(&str, &str)>,
+        namespace: &Namespace,
+        open: &[Level],
+    ) -> Result<Element, LoadError> {
+        let (tag, name) = wanted.ok_or_else(|| {
+            element.error("either model, or a body or frame of this model must be given")
+        })?;
+        let mut found = None;
+        let mut class = None;
+        for (depth, level) in open.iter().enumerate() {
+            found =
+                find(&level.element, tag, name, class).map(|(part, class)| (depth, part, class));
+            if found.is_some() {
+                break;
+            }
+            class = class_within(&level.element).or(class);
+        }
+        let (depth, part, class) = found.ok_or_else(|| {
+            element.error(format!(
+                "there is no {tag} \"{name}\" before this in the model"
+            ))
+        })?;
+        let is_open = std::ptr::eq(part, &open[depth].element);
+        if is_open
+            && open[depth..]
+                .iter()
+                .any(|level| level.element.tag == "replicate")
+        {
+            let message =
+                "what is being replicated cannot be attached to itself: not supported yet";
+            return Err(element.error(message));
+        }
+        self.shared.charge(element, part)?;
+        let mut frame = Element::in_place_of(element, "frame");
+        frame.children.extend(match is_open {
+            true => read_so_far(&open[depth..]),
+            false => Some(part.clone()),
+        });
+        self.finish(element, &mut frame, class, namespace, open.len())?;
+        for section in FOLLOWING {
+            let from = self.list(section).clone();
+            let from: Vec<&Element> = from.iter().filter(|part| follows(section, part)).collect();
+            self.copy_following(element, section, &from, namespace)?;
+        }
+        Ok(frame)
+    }
+
+    /// Renames a copied part; elements in it without a class start from the one that they had where they came from.
+    fn finish(
+        &mut self,
+        element: &Element,
+        frame: &mut Element,
+        class: Option<&str>,
+        namespace: &Namespace,
+        depth: usize,
+    ) -> Result<(), LoadError> {
+        check_depth(element, depth, frame)?;
+        let class = class.unwrap_or("main").to_owned();
+        frame.attributes.push(("childclass".to_owned(), class));
+        drop_inertia(frame);
+        for child in &mut frame.children {
+            namespace.rename_tree(child);
+            self.names.add_tree(child);
+        }
+        Ok(())
+    }
+}
+
+/// A body or frame by name, and the class that elements without one of their own start from around it.
+fn find<'a>(
+    around: &'a Element,
+    tag: &str,
+    name: &str,
+    class: Option<&'a str>,
+) -> Option<(&'a Element, Option<&'a str>)> {
+    let mut pending = vec![(around, class)];
+    while let Some((element, class)) = pending.pop() {
+        if element.tag == tag && element.text("name") == Some(name) {
+            return Some((element, class));
+        }
+        let class = class_within(element).or(class);
+        pending.extend(element.children.iter().rev().map(|child| (child, class)));
+    }
+    None
+}
+
+/// The class that a body or frame gives to the elements in it.
+fn class_within(element: &Element) -> Option<&str> {
+    let own = element.text("childclass");
+    own.or_else(|| element.text("class").filter(|_| element.tag == "frame"))
+}
+
+/// An element of the tree up to where it is being expanded.
+fn read_so_far(open: &[Level]) -> Option<Element> {
+    let mut inner: Option<Element> = None;
+    for level in open.iter().rev() {
+        let mut element = level.element.clone();
+        element.children.extend(inner);
+        inner = Some(element);
+    }
+    inner
+}

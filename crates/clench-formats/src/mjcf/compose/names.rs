@@ -1,0 +1,223 @@
+//! Names: what an element is called, what it refers to, and how a namespace changes both.
+
+use crate::mjcf::document::Element;
+use std::collections::HashMap;
+
+/// Kinds of elements that others refer to by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Kind {
+    Body,
+    Joint,
+    Geom,
+    Site,
+    Camera,
+    Tendon,
+    Actuator,
+    Sensor,
+}
+
+/// Attributes that refer to an element of one kind.
+const REFERENCES: &[(&str, Kind)] = &[
+    ("joint", Kind::Joint),
+    ("jointinparent", Kind::Joint),
+    ("joint1", Kind::Joint),
+    ("joint2", Kind::Joint),
+    ("body", Kind::Body),
+    ("body1", Kind::Body),
+    ("body2", Kind::Body),
+    ("subtree1", Kind::Body),
+    ("subtree2", Kind::Body),
+    ("geom", Kind::Geom),
+    ("geom1", Kind::Geom),
+    ("geom2", Kind::Geom),
+    ("site", Kind::Site),
+    ("site1", Kind::Site),
+    ("site2", Kind::Site),
+    ("sidesite", Kind::Site),
+    ("refsite", Kind::Site),
+    ("cranksite", Kind::Site),
+    ("slidersite", Kind::Site),
+    ("camera", Kind::Camera),
+    ("tendon", Kind::Tendon),
+    ("tendon1", Kind::Tendon),
+    ("tendon2", Kind::Tendon),
+    ("actuator", Kind::Actuator),
+];
+
+/// Attributes that refer to an element of the kind that another attribute says.
+const TYPED_REFERENCES: &[(&str, &str)] = &[("objname", "objtype"), ("refname", "reftype")];
+
+/// What those other attributes say.
+const TYPES: &[(&str, Kind)] = &[
+    ("body", Kind::Body),
+    ("xbody", Kind::Body),
+    ("joint", Kind::Joint),
+    ("geom", Kind::Geom),
+    ("site", Kind::Site),
+    ("camera", Kind::Camera),
+    ("tendon", Kind::Tendon),
+    ("actuator", Kind::Actuator),
+    ("sensor", Kind::Sensor),
+];
+
+/// The body that has the same name in every model.
+pub(super) const WORLD: &str = "world";
+
+fn lookup<V: Copy>(table: &[(&str, V)], key: &str) -> Option<V> {
+    let found = table.iter().find(|(name, _)| *name == key);
+    found.map(|(_, value)| *value)
+}
+
+/// A reference of an element: which of its attributes, and to what kind of element.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reference {
+    pub attribute: usize,
+    pub kind: Kind,
+}
+
+/// The references in an element's own attributes.
+pub(super) fn references(element: &Element) -> Vec<Reference> {
+    let kind = |name: &str| {
+        let typed = || element.text(lookup(TYPED_REFERENCES, name)?);
+        lookup(REFERENCES, name).or_else(|| lookup(TYPES, typed()?))
+    };
+    let attributes = element.attributes.iter().enumerate();
+    attributes
+        .filter_map(|(attribute, (name, _))| kind(name).map(|kind| Reference { attribute, kind }))
+        .collect()
+}
+
+/// What kind of element others may call this one, by its tag in the tree or by the section that it stands in.
+pub(super) fn kind_of(section: &str, tag: &str) -> Option<Kind> {
+    match (section, tag) {
+        ("worldbody", "body") => Some(Kind::Body),
+        ("worldbody", "joint" | "freejoint") => Some(Kind::Joint),
+        ("worldbody", "geom") => Some(Kind::Geom),
+        ("worldbody", "site") => Some(Kind::Site),
+        ("worldbody", "camera") => Some(Kind::Camera),
+        ("tendon", _) => Some(Kind::Tendon),
+        ("actuator", _) => Some(Kind::Actuator),
+        ("sensor", _) => Some(Kind::Sensor),
+        _ => None,
+    }
+}
+
+/// What is put before and after the names of what is attached or replicated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Namespace<'a> {
+    pub prefix: &'a str,
+    pub suffix: &'a str,
+    /// Whether the elements come from another model, so that their assets are renamed as well.
+    pub foreign: bool,
+}
+
+impl Namespace<'_> {
+    pub fn apply(&self, name: &str) -> String {
+        format!("{}{name}{}", self.prefix, self.suffix)
+    }
+
+    /// As [`apply`](Self::apply), for a name that refers to an element.
+    pub fn refer(&self, kind: Kind, name: &str) -> String {
+        match (kind, name) {
+            (Kind::Body, WORLD) => name.to_owned(),
+            _ => self.apply(name),
+        }
+    }
+
+    /// Renames an element, but not what it refers to; one without a name stays so.
+    pub fn rename(&self, element: &mut Element) {
+        self.rename_attribute(element, "name");
+    }
+
+    fn rename_attribute(&self, element: &mut Element, attribute: &str) {
+        let found = (element.attributes.iter_mut()).find(|(name, _)| name == attribute);
+        if let Some((_, value)) = found.filter(|(_, value)| !value.is_empty()) {
+            *value = self.apply(value);
+        }
+    }
+
+    /// Renames an element of the body tree and all in it, with what it refers to.
+    pub fn rename_tree(&self, element: &mut Element) {
+        self.rename(element);
+        self.rename_attribute(element, "target");
+        if self.foreign {
+            for asset in ["mesh", "hfield", "material", "texture"] {
+                self.rename_attribute(element, asset);
+            }
+        }
+        for child in &mut element.children {
+            self.rename_tree(child);
+        }
+    }
+
+    /// Renames an asset of another model, with the assets that it refers to. What is called after its file gets that name.
+    pub fn rename_asset(&self, element: &mut Element) {
+        if element.text("name").is_none_or(str::is_empty) {
+            let file = element.text("file").unwrap_or_default().replace('\\', "/");
+            let last = file.rsplit('/').next().unwrap_or_default();
+            let stem = last.rsplit_once('.').map_or(last, |(stem, _)| stem);
+            let stem = stem.to_owned();
+            element.attributes.retain(|(name, _)| name != "name");
+            element.attributes.push(("name".to_owned(), stem));
+        }
+        self.rename(element);
+        for asset in ["material", "texture"] {
+            self.rename_attribute(element, asset);
+        }
+        for layer in &mut element.children {
+            self.rename_attribute(layer, "texture");
+        }
+    }
+}
+
+/// Which names there are, and how many elements of each.
+#[derive(Debug, Default)]
+pub(super) struct Names(HashMap<(Kind, String), usize>);
+
+impl Names {
+    /// Adds the name of an element that stands in a section.
+    pub fn add(&mut self, section: &str, element: &Element) {
+        if let Some(key) = key(section, element) {
+            *self.0.entry(key).or_default() += 1;
+        }
+    }
+
+    /// Takes the name of such an element away.
+    pub fn remove(&mut self, section: &str, element: &Element) {
+        let Some(key) = key(section, element) else {
+            return;
+        };
+        if let Some(count) = self.0.get_mut(&key) {
+            *count -= 1;
+            if *count == 0 {
+                self.0.remove(&key);
+            }
+        }
+    }
+
+    /// Adds the names of an element of the body tree and of all in it.
+    pub fn add_tree(&mut self, element: &Element) {
+        self.add("worldbody", element);
+        for child in &element.children {
+            self.add_tree(child);
+        }
+    }
+
+    /// Takes them away.
+    pub fn remove_tree(&mut self, element: &Element) {
+        self.remove("worldbody", element);
+        for child in &element.children {
+            self.remove_tree(child);
+        }
+    }
+
+    /// Whether there is such an element.
+    pub fn has(&self, kind: Kind, name: &str) -> bool {
+        (kind, name) == (Kind::Body, WORLD) || self.0.contains_key(&(kind, name.to_owned()))
+    }
+}
+
+fn key(section: &str, element: &Element) -> Option<(Kind, String)> {
+    let name = element.text("name").filter(|name| !name.is_empty())?;
+    Some((kind_of(section, &element.tag)?, name.to_owned()))
+}

@@ -1,0 +1,138 @@
+//! Elements outside the body tree that refer to it: which of them follow a part of the tree that is attached or replicated.
+//!
+//! As in MuJoCo 4.0, an element is copied where all that it refers to is there under its new name. Of a contact pair, an exclusion
+//! and a sensor with two objects one of them is enough, and of a tendon one element of its path: the rest is then looked for under
+//! its old name. What refers to nothing, such as a clock, is copied always.
+
+use super::names::{Kind, Names, Namespace, Reference, WORLD, references};
+use crate::mjcf::document::Element;
+use std::collections::HashSet;
+
+/// Sections whose elements follow what they refer to, in the order in which they are copied.
+pub(super) const FOLLOWING: [&str; 6] = [
+    "contact", "tendon", "equality", "actuator", "sensor", "custom",
+];
+
+/// Whether an element of a section can follow a part of its own model; the user's numbers and texts cannot.
+pub(super) fn follows(section: &str, element: &Element) -> bool {
+    section != "custom" || element.tag == "tuple"
+}
+
+/// What became of references that hold only together.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    Renamed,
+    Kept,
+    Lost,
+}
+
+/// The copy of an element in a namespace, if what it refers to is there.
+pub(super) fn copy(
+    section: &str,
+    element: &Element,
+    namespace: &Namespace,
+    names: &Names,
+) -> Option<Element> {
+    let mut copy = element.clone();
+    let mut fates = Vec::new();
+    match section {
+        "contact" | "sensor" => {
+            for reference in references(element) {
+                fates.push(follow(&mut copy, &[reference], namespace, names));
+            }
+        }
+        "tendon" => {
+            for wrap in &mut copy.children {
+                let group = references(wrap);
+                if !group.is_empty() {
+                    fates.push(follow(wrap, &group, namespace, names));
+                }
+            }
+        }
+        _ => {
+            let parts = std::iter::once(element).chain(&element.children);
+            let renamed = |part: &Element| {
+                let exists = |r: &Reference| names.has(r.kind, &target(part, *r, namespace));
+                references(part).iter().all(exists)
+            };
+            if !parts.clone().all(renamed) {
+                return None;
+            }
+            rename_references(&mut copy, namespace);
+            copy.children
+                .iter_mut()
+                .for_each(|part| rename_references(part, namespace));
+        }
+    }
+    let stays = !fates.is_empty() && !fates.contains(&Fate::Renamed);
+    if stays || fates.contains(&Fate::Lost) {
+        return None;
+    }
+    namespace.rename(&mut copy);
+    Some(copy)
+}
+
+/// The new name of what a reference means.
+fn target(element: &Element, reference: Reference, namespace: &Namespace) -> String {
+    namespace.refer(reference.kind, &element.attributes[reference.attribute].1)
+}
+
+fn rename_references(element: &mut Element, namespace: &Namespace) {
+    for reference in references(element) {
+        let new = target(element, reference, namespace);
+        element.attributes[reference.attribute].1 = new;
+    }
+}
+
+/// Turns references to their new names where those are there, and else leaves them if the old ones are.
+fn follow(
+    element: &mut Element,
+    group: &[Reference],
+    namespace: &Namespace,
+    names: &Names,
+) -> Fate {
+    let old = |r: &Reference| (r.kind, element.attributes[r.attribute].1.clone());
+    let is_new = |r: &Reference| {
+        let (kind, name) = old(r);
+        name != WORLD && names.has(kind, &namespace.refer(kind, &name))
+    };
+    if group.iter().all(is_new) {
+        for &reference in group {
+            let new = target(element, reference, namespace);
+            element.attributes[reference.attribute].1 = new;
+        }
+        return Fate::Renamed;
+    }
+    let is_there = |r: &Reference| {
+        let (kind, name) = old(r);
+        names.has(kind, &name)
+    };
+    match group.iter().all(is_there) {
+        true => Fate::Kept,
+        false => Fate::Lost,
+    }
+}
+
+/// Whether all that an element refers to is there.
+pub(super) fn resolves(element: &Element, names: &Names) -> bool {
+    let parts = std::iter::once(element).chain(&element.children);
+    parts.into_iter().all(|part| {
+        let exists = |r: &Reference| names.has(r.kind, &part.attributes[r.attribute].1);
+        references(part).iter().all(exists)
+    })
+}
+
+/// Whether an element refers to one of these, or to nothing at all.
+pub(super) fn concerns(element: &Element, these: &HashSet<(Kind, String)>) -> bool {
+    let mut count = 0;
+    for part in std::iter::once(element).chain(&element.children) {
+        for reference in references(part) {
+            let name = part.attributes[reference.attribute].1.clone();
+            if these.contains(&(reference.kind, name)) {
+                return true;
+            }
+            count += 1;
+        }
+    }
+    count == 0
+}

@@ -1,0 +1,76 @@
+//! The sections whose elements name elements of the body tree.
+
+use super::actuator::Shortcut;
+use super::defaults::MAIN;
+use super::document::Element;
+use super::source::Sources;
+use super::{contact, entries, equality, keyframe, sections, sensor, tendon};
+use crate::LoadError;
+use clench_rigid::builder::{ActuatorSpec, ModelBuilder, TendonSpec};
+use clench_rigid::model::SensorKind;
+
+/// Reads contacts, equalities, tendons, actuators, sensors and keyframes.
+pub(crate) fn read(
+    root: &Element,
+    sources: &Sources,
+    builder: &mut ModelBuilder,
+) -> Result<(), LoadError> {
+    let classes = |element| &sources.of(element).classes;
+    for element in entries(root, "contact") {
+        if element.tag == "pair" {
+            let pair = classes(element).of(element)?.pair.clone();
+            builder.pairs.push(contact::finish_pair(element, pair)?);
+        } else {
+            builder.excludes.push(contact::read_exclude(element)?);
+        }
+    }
+    for element in entries(root, "equality") {
+        let draft = classes(element).of(element)?.equality.clone();
+        builder.equalities.push(equality::read(element, draft)?);
+    }
+    for element in entries(root, "tendon") {
+        builder.tendons.push(read_tendon(element, sources)?);
+    }
+    for element in entries(root, "actuator") {
+        builder.actuators.push(read_actuator(element, sources)?);
+    }
+    for element in entries(root, "sensor") {
+        if let Some(kind) = SensorKind::find(&element.tag) {
+            builder.sensors.push(sensor::read(element, kind)?);
+        }
+    }
+    for element in entries(root, "keyframe") {
+        builder.keyframes.push(keyframe::read(element)?);
+    }
+    for size in sections(root, "size") {
+        keyframe::pad(size, &mut builder.keyframes)?;
+    }
+    Ok(())
+}
+
+fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadError> {
+    let draft = sources.of(element).classes.of(element)?.tendon.clone();
+    let mut tendon = tendon::read_fixed(element, draft)?;
+    let settle = |what, range, said| sources.settle_limit(element, what, range, said);
+    settle("", tendon.range, &mut tendon.limited)?;
+    settle(
+        "actuatorfrc",
+        tendon.actuatorfrcrange,
+        &mut tendon.actuatorfrclimited,
+    )?;
+    Ok(tendon)
+}
+
+fn read_actuator(element: &Element, sources: &Sources) -> Result<ActuatorSpec, LoadError> {
+    let classes = &sources.of(element).classes;
+    let class = classes.named_by(element, "class", MAIN)?;
+    let shortcut = Shortcut::from_tag(&element.tag).unwrap_or_default();
+    let mut draft = classes[class].actuator.clone();
+    draft.read(element, shortcut, classes.parameters(class, shortcut))?;
+    let mut actuator = draft.finish(element)?;
+    let settle = |what, range, said| sources.settle_limit(element, what, range, said);
+    settle("ctrl", actuator.ctrlrange, &mut actuator.ctrllimited)?;
+    settle("force", actuator.forcerange, &mut actuator.forcelimited)?;
+    settle("act", actuator.actrange, &mut actuator.actlimited)?;
+    Ok(actuator)
+}

@@ -1,0 +1,108 @@
+//! What the files of a model each say about how to read them: a model that is attached keeps its own units, directories, default
+//! classes and rules for inertia.
+
+use super::compiler::{self, CompilerOptions};
+use super::defaults::Classes;
+use super::document::Element;
+use super::files::Files;
+use super::sections;
+use crate::LoadError;
+use crate::spending::Spending;
+use clench_rigid::builder::CompilerSpec;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A model's own settings, with which its elements are read wherever they are attached.
+#[derive(Debug)]
+pub(crate) struct Source {
+    pub compiler: CompilerOptions,
+    /// The settings that act when the model is built.
+    pub spec: Arc<CompilerSpec>,
+    pub classes: Classes,
+    pub files: Files,
+}
+
+/// The settings of the main model, which come first, and of those that are attached.
+#[derive(Debug, Default)]
+pub(crate) struct Sources(Vec<Source>);
+
+impl Sources {
+    /// Reads a model's settings, and marks its elements as read with them. Says which they are.
+    pub fn add(
+        &mut self,
+        root: &mut Element,
+        directory: &Path,
+        spending: &mut Spending,
+    ) -> Result<usize, LoadError> {
+        let (mut compiler, mut spec) = (CompilerOptions::default(), CompilerSpec::default());
+        for section in sections(root, "compiler") {
+            compiler::read(section, &mut compiler, &mut spec)?;
+        }
+        let mut classes = Classes::default();
+        for section in sections(root, "default") {
+            classes.read(section, spending)?;
+        }
+        let index = self.0.len();
+        root.set_source(index);
+        self.0.push(Source {
+            files: Files::new(directory, &compiler),
+            compiler,
+            spec: Arc::new(spec),
+            classes,
+        });
+        Ok(index)
+    }
+
+    /// The settings of the main model.
+    pub fn main(&self) -> &Source {
+        &self.0[0]
+    }
+
+    /// The settings that an element is read with.
+    pub fn of(&self, element: &Element) -> &Source {
+        &self.0[element.source]
+    }
+
+    /// Lets elements of one model name the classes of another by their prefixed names.
+    ///
+    /// # Errors
+    /// Where the names take more memory than is left.
+    pub fn lend_classes(
+        &mut self,
+        from: usize,
+        to: usize,
+        prefix: &str,
+        spending: &mut Spending,
+    ) -> Result<(), String> {
+        if from == to {
+            return Ok(());
+        }
+        let lent = self.0[from].classes.prefixed(prefix, spending)?;
+        self.0[to].classes.borrow(lent);
+        Ok(())
+    }
+
+    /// Decides whether a range limits, for an element of a model whose `autolimits` is not that of the main model.
+    ///
+    /// # Errors
+    /// A range without a word on its use where `autolimits` is off.
+    pub fn settle_limit(
+        &self,
+        element: &Element,
+        what: &str,
+        range: [f64; 2],
+        limited: &mut Option<bool>,
+    ) -> Result<(), LoadError> {
+        let own = self.of(element).spec.autolimits;
+        if own == self.main().spec.autolimits || limited.is_some() || range == [0.0; 2] {
+            return Ok(());
+        }
+        if !own {
+            return Err(element.error(format!(
+                "has a {what}range, but does not say whether it is {what}limited, and autolimits is off"
+            )));
+        }
+        *limited = Some(range[0] < range[1]);
+        Ok(())
+    }
+}

@@ -1,0 +1,231 @@
+//! Models that are attached to models. The names and numbers are those of MuJoCo 4.0.0.
+
+use clench_formats::{LoadError, read, read_str};
+use clench_rigid::builder::ModelBuilder;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A directory of files, removed when dropped.
+struct Files(PathBuf);
+
+impl Files {
+    fn new(files: &[(&str, &str)]) -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let root =
+            std::env::temp_dir().join(format!("clench-attach-{}-{number}", std::process::id()));
+        for (name, content) in files {
+            let path = root.join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, content).unwrap();
+        }
+        Files(root)
+    }
+
+    fn read(&self) -> Result<ModelBuilder, LoadError> {
+        read(self.0.join("main.xml"))
+    }
+}
+
+impl Drop for Files {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+const ARM: &str = "<mujoco model='arm'>
+  <compiler angle='radian' autolimits='false' eulerseq='zyx' inertiafromgeom='true' meshdir='stl'/>
+  <option timestep='0.5'/>
+  <default><geom size='.3'/><default class='x'><geom size='.4'/></default></default>
+  <asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/><material name='mat'/></asset>
+  <worldbody>
+    <geom name='wg'/>
+    <body name='A' childclass='x'>
+      <joint name='ja' range='0 1' limited='true' ref='.5'/><geom name='ga'/>
+      <body name='B'>
+        <joint name='jb'/><geom name='gb' class='main' type='mesh' mesh='m' material='mat'/>
+        <frame name='fr' pos='1 0 0'><body name='C'><joint name='jc'/><geom name='gc'/></body></frame>
+      </body>
+    </body>
+    <body name='D'><joint name='jd'/><geom/></body>
+  </worldbody>
+  <actuator><motor name='ma' joint='ja'/><motor name='md' joint='jd'/></actuator>
+  <sensor><clock name='c'/><jointpos name='sa' joint='ja'/></sensor>
+  <contact><exclude name='ex' body1='A' body2='B'/><exclude name='lost' body1='A' body2='D'/></contact>
+  <equality><weld name='w' body1='A'/><weld name='lost' body1='A' body2='D'/></equality>
+</mujoco>";
+
+fn main_file(compiler: &str, attach: &str, sections: &str) -> String {
+    format!(
+        "<mujoco><compiler {compiler}/><asset><model name='arm' file='parts/arm.xml'/></asset>
+         <worldbody><body name='P'><joint name='pj'/><geom size='1'/>{attach}</body></worldbody>{sections}</mujoco>"
+    )
+}
+
+fn attached(attach: &str, sections: &str) -> ModelBuilder {
+    let main = main_file("", attach, sections);
+    let files = Files::new(&[("main.xml", main.as_str()), ("parts/arm.xml", ARM)]);
+    files.read().unwrap()
+}
+
+fn names<T>(elements: &[T], name: impl Fn(&T) -> &str) -> Vec<&str> {
+    elements.iter().map(name).collect()
+}
+
+#[test]
+fn a_body_brings_what_refers_to_it_and_keeps_the_settings_of_its_file() {
+    let model = attached(
+        "<attach model='arm' body='A' prefix='p_'/>",
+        "<actuator><motor name='own' joint='p_ja'/></actuator>",
+    );
+    let bodies = names(&model.bodies, |b| &b.name);
+    assert_eq!(bodies, ["world", "P", "p_A", "p_B", "p_C"]);
+    assert_eq!(names(&model.actuators, |a| &a.name), ["own", "p_ma"]);
+    assert_eq!(names(&model.sensors, |s| &s.name), ["p_c", "p_sa"]);
+    assert_eq!(names(&model.excludes, |e| &e.name), ["p_ex"]);
+    assert_eq!(names(&model.equalities, |e| &e.name), ["p_w"]);
+    assert_eq!(names(&model.meshes, |m| &m.name), ["p_m"]);
+    let arm = &model.bodies[2];
+    assert_eq!(arm.joints[0].range, [0.0, 1.0], "in radians");
+    assert_eq!(arm.geoms[0].size.x, 0.4, "of its childclass");
+    assert_eq!(
+        model.bodies[3].geoms[0].size.x, 0.3,
+        "of the main class of its file"
+    );
+    assert_eq!(model.bodies[3].geoms[0].mesh, "p_m");
+    assert_eq!(model.physics.timestep, 0.002, "its options are left out");
+    assert!(model.notes.iter().any(|note| note.contains("\"arm\"")));
+    assert!(model.build().is_ok());
+}
+
+#[test]
+fn a_whole_world_stands_where_it_is_attached() {
+    let model = attached("<attach model='arm' prefix='q'/>", "");
+    let bodies = names(&model.bodies, |b| &b.name);
+    assert_eq!(bodies, ["world", "P", "qA", "qB", "qC", "qD"]);
+    assert_eq!(names(&model.bodies[1].geoms, |g| &g.name), ["", "qwg"]);
+    assert_eq!(names(&model.actuators, |a| &a.name), ["qma", "qmd"]);
+    assert_eq!(names(&model.excludes, |e| &e.name), ["qex", "qlost"]);
+}
+
+#[test]
+fn a_frame_comes_without_the_frames_around_it_and_with_the_class_around_it() {
+    let model = attached("<attach model='arm' frame='fr' prefix='p_'/>", "");
+    assert_eq!(names(&model.bodies, |b| &b.name), ["world", "P", "p_C"]);
+    assert_eq!(model.bodies[2].pos.to_array(), [1.0, 0.0, 0.0]);
+    assert_eq!(model.bodies[2].geoms[0].size.x, 0.4);
+    assert!(model.actuators.is_empty());
+}
+
+#[test]
+fn a_model_can_be_attached_twice_and_lends_its_classes() {
+    let model = attached(
+        "<attach model='arm' body='B' prefix='l'/><attach model='arm' body='B' prefix='r'/><geom class='lx'/>",
+        "",
+    );
+    let bodies = names(&model.bodies, |b| &b.name);
+    assert_eq!(bodies, ["world", "P", "lB", "lC", "rB", "rC"]);
+    assert_eq!(names(&model.meshes, |m| &m.name), ["lm", "rm"]);
+    assert_eq!(model.bodies[1].geoms[1].size.x, 0.4);
+}
+
+#[test]
+fn what_is_attached_can_be_replicated() {
+    let model = attached(
+        "<replicate count='2'><attach model='arm' body='B' prefix='p_'/></replicate>",
+        "<actuator><motor name='own' joint='p_jb'/></actuator>",
+    );
+    let bodies = names(&model.bodies, |b| &b.name);
+    assert_eq!(bodies, ["world", "P", "p_B0", "p_C0", "p_B1", "p_C1"]);
+    assert_eq!(names(&model.meshes, |m| &m.name), ["p_m"]);
+    assert_eq!(names(&model.actuators, |a| &a.name), ["own0", "own1"]);
+}
+
+#[test]
+fn a_model_attaches_parts_of_itself_that_stand_before() {
+    let model = read_str(
+        "<mujoco><worldbody>
+           <body name='P'><joint name='pj'/><geom size='1'/>
+             <body name='Q'><joint name='qj'/><geom size='1'/></body>
+             <attach body='Q' prefix='x'/>
+             <attach body='P' prefix='y'/>
+           </body>
+         </worldbody>
+         <actuator><motor name='m' joint='qj'/></actuator></mujoco>",
+    )
+    .unwrap();
+    let bodies = names(&model.bodies, |b| &b.name);
+    assert_eq!(bodies, ["world", "P", "Q", "xQ", "yP", "yQ", "yxQ"]);
+    let actuators = names(&model.actuators, |a| &a.name);
+    assert_eq!(actuators, ["m", "xm", "ym", "yxm"]);
+}
+
+#[test]
+fn files_of_attached_models_are_found_from_where_those_are() {
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    let files = Files::new(&[
+        (
+            "main.xml",
+            "<mujoco><compiler meshdir='nowhere'/><asset><model name='a' file='a/a.xml'/></asset>
+             <worldbody><attach model='a' prefix='p'/></worldbody></mujoco>",
+        ),
+        (
+            "a/a.xml",
+            "<mujoco><compiler meshdir='stl'/><asset><model file='b/b.xml'/><mesh file='t.obj'/></asset>
+             <worldbody><geom type='mesh' mesh='t'/><attach model='inner' prefix='q'/></worldbody></mujoco>",
+        ),
+        ("a/stl/t.obj", triangle),
+        (
+            "a/b/b.xml",
+            "<mujoco model='inner'><asset><mesh file='u.obj'/></asset>
+             <worldbody><geom type='mesh' mesh='u'/></worldbody></mujoco>",
+        ),
+        ("a/b/u.obj", triangle),
+    ]);
+    let model = files.read().unwrap();
+    assert_eq!(names(&model.meshes, |m| &m.name), ["pt", "pqu"]);
+    assert_eq!(names(&model.bodies[0].geoms, |g| &g.mesh), ["pt", "pqu"]);
+}
+
+#[test]
+fn a_model_that_attaches_itself_is_refused_with_the_chain() {
+    let files = Files::new(&[
+        (
+            "main.xml",
+            "<mujoco><asset><model file='a.xml'/></asset></mujoco>",
+        ),
+        (
+            "a.xml",
+            "<mujoco><asset><model file='main.xml'/></asset></mujoco>",
+        ),
+    ]);
+    let error = files.read().unwrap_err();
+    assert!(error.message.contains("attaches itself"), "{error}");
+    assert_eq!(error.message.matches("main.xml").count(), 2, "{error}");
+    assert_eq!(error.message.matches("a.xml").count(), 1, "{error}");
+}
+
+#[test]
+fn what_cannot_be_attached_says_why() {
+    let refused = |compiler: &str, attach: &str, words: &str| {
+        let main = main_file(compiler, attach, "");
+        let files = Files::new(&[("main.xml", main.as_str()), ("parts/arm.xml", ARM)]);
+        let error = files.read().unwrap_err();
+        assert!(error.message.contains(words), "{error}");
+    };
+    refused(
+        "",
+        "<attach model='amr' prefix='p'/>",
+        "did you mean \"arm\"",
+    );
+    refused(
+        "",
+        "<attach model='arm' body='Z' prefix='p'/>",
+        "no body \"Z\"",
+    );
+    let whole = "<attach model='arm' prefix='p'/>";
+    refused("conflict='merge'", whole, "conflict");
+    let files = Files::new(&[("main.xml", main_file("", "", "").as_str())]);
+    let error = files.read().unwrap_err();
+    assert!(error.message.contains("cannot read"), "{error}");
+}
