@@ -135,7 +135,7 @@ def ask(model, draw):
     for step in range(STEPS):
         what = f"step {step}: "
         theirs, after = stepped(model, state)
-        if after is None:
+        if after is None or not all(map(orthonormal, theirs.contacts)):
             return
         if not stages:
             yield Question(what, oracle.fed(state, theirs), theirs, after)
@@ -164,6 +164,12 @@ def stepped(model, state):
         return None, None
     after = {"time": data.time, **{name: getattr(data, name).tolist() for name in ("qpos", "qvel", "act")}}
     return oracle.results(model, data, state), after
+
+
+def orthonormal(contact):
+    """Whether a contact has a frame: MuJoCo's can be none where two centres coincide, and Clench refuses it."""
+    frame = np.reshape(contact["frame"], (3, 3))
+    return np.abs(frame @ frame.T - np.eye(3)).max() < 1e-6
 
 
 def controls(model, draw, rng):

@@ -16,12 +16,12 @@ ASSETS = pathlib.Path(__file__).resolve().parent.parent / "shapes/assets"
 MESH_FILES = (("rock.obj", "model/obj"), ("wedge.stl", "model/stl"), ("bracket.obj", "model/obj"))
 PRIMITIVES = ("sphere", "capsule", "ellipsoid", "cylinder", "box")
 STRETCHED = ("capsule", "ellipsoid", "cylinder", "box")
-SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder")
+SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle")
 SCALAR = ("hinge", "slide")
 # What would keep many of the elements of a class from being compiled: a joint's range fits one type of joint, a place contradicts `fromto`,
 # dampers take no negative controls, and only what has activations can limit them.
 INITIAL = {"geom": ("pos", "mass"), "site": ("pos",)}
-NOT_IN_CLASSES = ("fromto", "ctrlrange", "actrange")
+NOT_IN_CLASSES = ("fromto", "ctrlrange", "actrange", "tausmooth")
 
 
 def generate(seed):
@@ -114,6 +114,8 @@ class Generator:
         if draw.chance(0.3):
             self.fill(compiler)
         compiler.set(draw.choice(("assetdir", "meshdir")), str(ASSETS))
+        if draw.chance(0.2):
+            self.fill(self.add(compiler, "lengthrange"))
 
     def options(self):
         for _ in range(self.draw.choice((0, 1, 1, 1, 2))):
@@ -557,7 +559,11 @@ class Generator:
             actuator.set("ctrlrange", text(ends[0], ends[1] + 0.01))
         dynamics = actuator.get("dyntype")
         if kind == "general" and draw.chance(0.2):
-            actuator.set("actdim", {None: "-1", "none": draw.choice(("-1", "0"))}.get(dynamics, "1"))
+            actuator.set("actdim", {None: "-1", "none": draw.choice(("-1", "0")), "user": draw.choice("123")}.get(dynamics, "1"))
+        if kind == "general" and dynamics == "muscle":
+            actuator.set("dynprm", VALUES["muscle"]["timeconst"](draw))
+        if kind == "muscle" or draw.chance(0.1):
+            actuator.set("lengthrange", interval(-0.5, 0.5)(draw))
         if kind == "general" and dynamics not in (None, "none") and draw.chance(0.3):
             self.limit(actuator, "actrange", "actlimited", interval(-1, 1)(draw))
         target = actuator.get("joint") or actuator.get("tendon")

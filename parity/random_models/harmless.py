@@ -25,18 +25,6 @@ VALUES = {
         "savecompiled": "false",
         "saveinertial": "true",
     },
-    "lengthrange": {
-        "accel": "10",
-        "interval": "1",
-        "inttotal": "5",
-        "maxforce": "3",
-        "mode": "none",
-        "timeconst": "0.5",
-        "timestep": "0.005",
-        "tolrange": "0.1",
-        "useexisting": "false",
-        "uselimit": "true",
-    },
     "option": {
         "ccd_tolerance": "1e-4",
         "ccd_iterations": "1",
@@ -109,8 +97,8 @@ VALUES = {
     },
     "fixed": TENDON,
     "default/tendon": {**TENDON, "width": "0.1", "material": "paint", "rgba": COLOUR},
-    "general": {**USER, "lengthrange": "0.1 2", "input": "pos"},
-    **{kind: {**USER, "lengthrange": "0.1 2"} for kind in "motor position velocity intvelocity damper cylinder".split()},
+    "general": {**USER, "input": "pos"},
+    **{kind: USER for kind in "motor position velocity intvelocity damper cylinder muscle".split()},
     "global": {
         "cameraid": "0",
         "orthographic": "true",
@@ -216,7 +204,7 @@ UNTRIED = {("skin", "file")}
 
 # Attributes that name something, or exclude others: only the test, which knows its scene, gives them.
 NAMED = {"class", "target", "texture", "material", "file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback", "normal", "texcoord"}
-NAMED |= {"sleep", "sensorsize", "focal", "focalpixel", "principal", "principalpixel", "fovy", "directional", "smoothnormal", "mode", "memory", "njmax", "nstack", "objname", "objtype", "lengthrange", "nkey", "name", "content_type", "gridlayout", *POSE}
+NAMED |= {"sleep", "sensorsize", "focal", "focalpixel", "principal", "principalpixel", "fovy", "directional", "smoothnormal", "mode", "memory", "njmax", "nstack", "objname", "objtype", "nkey", "name", "content_type", "gridlayout", *POSE}
 WHOLE = ("visual", "statistic", "custom", "size", "compiler", "option")
 VISUAL = ("global", "quality", "headlight", "map", "scale", "rgba")
 

@@ -226,12 +226,15 @@ class Model:
     actuator_ctrlrange: Final[_Floats]  # (nu, 2) Allowed controls.
     actuator_forcerange: Final[_Floats]  # (nu, 2) Allowed forces.
     actuator_actrange: Final[_Floats]  # (nu, 2) Allowed activations.
+    actuator_acc0: Final[_Floats]  # (nu,) Norm of the acceleration that a unit force causes at qpos0.
+    actuator_lengthrange: Final[_Floats]  # (nu, 2) Lengths between which the transmission can be; of use to muscles.
     actuator_trntype: Final[_Codes]  # (nu,) 0 joint, 1 joint in the parent's frame, 3 tendon.
     actuator_trnid: Final[_Codes]  # (nu, 2) What it pulls on, and -1.
-    actuator_dyntype: Final[_Codes]  # (nu,) 0 none, 1 integrator, 2 filter, 3 filterexact.
-    actuator_gaintype: Final[_Codes]  # (nu,) 0 fixed, 1 affine.
-    actuator_biastype: Final[_Codes]  # (nu,) 0 none, 1 affine.
-    actuator_actadr: Final[_Codes]  # (nu,) Its activation, or -1.
+    actuator_dyntype: Final[_Codes]  # (nu,) 0 none, 1 integrator, 2 filter, 3 filterexact, 4 muscle, 7 user.
+    actuator_gaintype: Final[_Codes]  # (nu,) 0 fixed, 1 affine, 2 muscle, 6 user.
+    actuator_biastype: Final[_Codes]  # (nu,) 0 none, 1 affine, 2 muscle, 5 user.
+    actuator_actadr: Final[_Codes]  # (nu,) The first of its activations, or -1.
+    actuator_actnum: Final[_Codes]  # (nu,) How many activations; the last acts.
     actuator_group: Final[_Codes]  # (nu,) Group.
     actuator_ctrllimited: Final[_Flags]  # (nu,) Whether its control is clamped.
     actuator_forcelimited: Final[_Flags]  # (nu,) Whether its force is clamped.

@@ -140,7 +140,10 @@ const STRUCTURE: &[Reader] = &[
         codes(&m.actuators, |a| bias_type(a.bias))
     }),
     ("actuator_actadr", |m| {
-        codes(&m.actuators, |a| id_or_none(a.act))
+        codes(&m.actuators, |a| first(&a.acts))
+    }),
+    ("actuator_actnum", |m| {
+        codes(&m.actuators, |a| id(a.acts.len()))
     }),
     ("actuator_group", |m| codes(&m.actuators, |a| a.group)),
     ("actuator_ctrllimited", |m| {
@@ -274,6 +277,8 @@ fn dynamics_type(kind: DynamicsKind) -> i32 {
         DynamicsKind::Integrator => 1,
         DynamicsKind::Filter => 2,
         DynamicsKind::FilterExact => 3,
+        DynamicsKind::Muscle => 4,
+        DynamicsKind::User => 7,
     }
 }
 
@@ -281,6 +286,8 @@ fn gain_type(kind: GainKind) -> i32 {
     match kind {
         GainKind::Fixed => 0,
         GainKind::Affine => 1,
+        GainKind::Muscle => 2,
+        GainKind::User => 6,
     }
 }
 
@@ -288,6 +295,8 @@ fn bias_type(kind: BiasKind) -> i32 {
     match kind {
         BiasKind::None => 0,
         BiasKind::Affine => 1,
+        BiasKind::Muscle => 2,
+        BiasKind::User => 5,
     }
 }
 

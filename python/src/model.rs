@@ -67,7 +67,7 @@ impl Model {
     ///     The file. What it includes is found from its folder.
     /// budget : float
     ///     How many times the usual memory and work the model may ask for, in loading and in each step. Usual are 2 GiB, 500 000
-    ///     elements, 250 000 contacts, 2**25 numbers in a matrix.
+    ///     elements, 250 000 contacts, 2**25 numbers in a matrix, 2 000 000 steps to find length ranges.
     ///
     /// Returns
     /// -------

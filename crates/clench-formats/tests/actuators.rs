@@ -100,6 +100,36 @@ fn the_other_shortcuts() {
     assert_eq!(cylinder.biasprm[..3], [1.0, 2.0, 3.0]);
 }
 
+/// Of a muscle's own attributes a negative number counts as none, which leaves the force to `scale`.
+#[test]
+fn a_muscle_has_one_law_for_gain_and_bias() {
+    let defaults = [0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2, 0.0];
+    let plain = actuator("", "<muscle joint='j' lengthrange='0.1 0.9'/>");
+    assert_eq!((plain.gainprm, plain.biasprm), (defaults, defaults));
+    assert_eq!(plain.dynprm[..3], [0.01, 0.04, 0.0]);
+    let kinds = (plain.dynamics, plain.gain, plain.bias);
+    let muscle = (DynamicsKind::Muscle, GainKind::Muscle, BiasKind::Muscle);
+    assert_eq!((kinds, plain.lengthrange), (muscle, [0.1, 0.9]));
+    let own = actuator(
+        "<muscle force='7' timeconst='1 2' scale='3'/>",
+        "<muscle joint='j' timeconst='-1 0.3' tausmooth='0.2' range='0.8 1.1' force='-5' lmin='0.4' vmax='2'/>",
+    );
+    assert_eq!(own.dynprm[..3], [1.0, 0.3, 0.2]);
+    let expected = [0.8, 1.1, 7.0, 3.0, 0.4, 1.6, 2.0, 1.3, 1.2, 0.0];
+    assert_eq!((own.gainprm, own.biasprm), (expected, expected));
+    assert!(rejected("<muscle joint='j' tausmooth='-1'/>").contains("negative"));
+}
+
+#[test]
+fn a_muscle_takes_its_law_from_a_general_of_its_gain() {
+    let general = "<general gaintype='muscle' gainprm='0.7 1 5 6 0.3 2 3 4 5' dynprm='2 3 4'/>";
+    let muscle = actuator(general, "<muscle joint='j'/>");
+    assert_eq!(muscle.dynprm[..3], [2.0, 3.0, 4.0]);
+    assert_eq!(muscle.gainprm[..4], [0.7, 1.0, 5.0, 6.0]);
+    let other = actuator("<general gainprm='3'/>", "<muscle joint='j'/>");
+    assert_eq!(other.gainprm[0], 0.75);
+}
+
 #[test]
 fn a_shortcut_takes_its_law_from_its_own_kind_and_the_rest_from_any() {
     let position = "<position kp='5' kv='2' ctrlrange='-1 1'/>";
@@ -181,11 +211,11 @@ fn a_positive_velocity_bias_of_a_servo_is_a_damping_ratio() {
 #[test]
 fn what_is_not_supported_yet_says_so() {
     for element in [
-        "<general joint='j' dyntype='muscle'/>",
-        "<general joint='j' gaintype='user'/>",
+        "<general joint='j' dyntype='pid'/>",
+        "<general joint='j' gaintype='so3'/>",
         "<motor joint='j' damping='1'/>",
         "<motor joint='j' delay='0.1'/>",
-        "<muscle joint='j'/>",
+        "<dcmotor joint='j'/>",
         "<adhesion body='b'/>",
     ] {
         assert!(rejected(element).contains("not supported yet"), "{element}");
@@ -196,17 +226,32 @@ fn what_is_not_supported_yet_says_so() {
     );
 }
 
-/// A damping ratio belongs to servos. Of what is no servo the same parameter is a coefficient like any other.
+/// A damping ratio belongs to what pulls back, whatever the kind of its gain. Elsewhere the same parameter is a coefficient.
 #[test]
-fn a_damping_ratio_from_a_class_is_a_coefficient_where_the_gain_depends_on_length() {
+fn a_damping_ratio_from_a_class_counts_where_the_bias_pulls_back_with_the_gain() {
     let defaults = "<intvelocity kp='3' dampratio='0.6'/>";
-    let plain = actuator(defaults, "<general joint='j'/>");
-    assert_eq!(
-        (plain.dampratio, servo(&plain)),
-        (Some(0.6), [3.0, -3.0, 0.0])
-    );
-    let affine = actuator(defaults, "<general joint='j' gaintype='affine'/>");
-    assert_eq!((affine.dampratio, servo(&affine)), (None, [3.0, -3.0, 0.6]));
+    for gain in ["fixed", "affine"] {
+        let element = format!("<general joint='j' gaintype='{gain}' inheritrange='1'/>");
+        let pulls_back = actuator(defaults, &element);
+        assert_eq!(
+            (pulls_back.dampratio, servo(&pulls_back)),
+            (Some(0.6), [3.0, -3.0, 0.0])
+        );
+        // A range is only inherited by servos.
+        assert_eq!(pulls_back.inheritrange == 1.0, gain == "fixed");
+    }
+    let softer = actuator(defaults, "<general joint='j' gainprm='2'/>");
+    assert_eq!((softer.dampratio, servo(&softer)), (None, [2.0, -3.0, 0.6]));
+}
+
+#[test]
+fn a_filter_without_a_time_constant_in_a_class_filters_no_position() {
+    let kind = |dynprm: &str| {
+        let general = format!("<general dyntype='filterexact' dynprm='{dynprm}'/>");
+        actuator(&general, "<position joint='j'/>").dynamics
+    };
+    assert_eq!(kind("0"), DynamicsKind::None);
+    assert_eq!(kind("0.1"), DynamicsKind::FilterExact);
 }
 
 /// MuJoCo hears nothing of `actlimited` here: a range limits, and without one there is no limit.

@@ -74,6 +74,21 @@ fn what_is_only_seen_is_left_out_of_the_world_whatever_inertia_comes_from() {
 }
 
 #[test]
+fn what_is_only_seen_is_left_out_where_its_group_counts_towards_no_inertia() {
+    let load = |group: &str| {
+        load_str(&format!(
+            "<mujoco><compiler inertiafromgeom='true' inertiagrouprange='0 2' discardvisual='true'/>
+             <worldbody><body><joint/><geom size='1' mass='3'/>
+               <geom size='1' mass='5' contype='0' conaffinity='0' group='{group}'/></body>
+             </worldbody></mujoco>"
+        ))
+    };
+    let model = load("3").expect("valid");
+    assert_eq!((model.geoms.len(), model.params.body_mass[1]), (1, 3.0));
+    assert!(load("2").unwrap_err().message.contains("discarded"));
+}
+
+#[test]
 fn orientations_may_be_written_in_five_ways() {
     let half = FRAC_1_SQRT_2;
     let about_z = [half, 0.0, 0.0, half];

@@ -23,6 +23,8 @@ pub struct Budget {
     /// Numbers in one matrix of a step: the mass matrix, the moment arms of actuators, the Jacobian of all contacts, the factor of
     /// an island's Hessian; 2²⁵, which take 256 MiB.
     pub matrix: u64,
+    /// Steps of simulation that building a model may take, to find the length ranges of muscles that do not give them; 2 000 000.
+    pub steps: u64,
 }
 
 impl Default for Budget {
@@ -32,6 +34,7 @@ impl Default for Budget {
             elements: 500_000,
             contacts: 250_000,
             matrix: 1 << 25,
+            steps: 2_000_000,
         }
     }
 }
@@ -43,6 +46,7 @@ impl Budget {
         elements: u64::MAX,
         contacts: u64::MAX,
         matrix: u64::MAX,
+        steps: u64::MAX,
     };
 
     /// Pairs of geoms whose bounds meet in a step.
@@ -60,6 +64,7 @@ impl Budget {
             elements: scaled(self.elements),
             contacts: scaled(self.contacts),
             matrix: scaled(self.matrix),
+            steps: scaled(self.steps),
         }
     }
 }

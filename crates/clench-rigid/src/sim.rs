@@ -172,6 +172,12 @@ impl<T: Precision> Sim<T> {
         self.know(Extent::Everything)
     }
 
+    /// Computes what follows from the present positions, also where what followed from those before the last step would do.
+    pub(crate) fn refresh_positions(&mut self) -> Result<(), SimError> {
+        self.known.forget();
+        self.know(Extent::Positions)
+    }
+
     /// Sees to it that so much is known.
     pub(crate) fn know(&mut self, wanted: Extent) -> Result<(), SimError> {
         if wanted <= self.known.extent(&self.state) {

@@ -3,7 +3,7 @@
 use super::document::Element;
 use crate::LoadError;
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{CompilerSpec, InertiaFromGeom};
+use clench_rigid::builder::{CompilerSpec, InertiaFromGeom, LengthRangeMode, LengthRangeSpec};
 
 /// How the file writes angles and rotations.
 #[derive(Clone, Debug)]
@@ -115,5 +115,31 @@ pub(crate) fn read(
     }
     element.set_boolean("alignfree", &mut spec.alignfree)?;
     element.set_boolean("fitaabb", &mut spec.fitaabb)?;
-    element.set_boolean("discardvisual", &mut spec.discardvisual)
+    element.set_boolean("discardvisual", &mut spec.discardvisual)?;
+    let lengthrange = element
+        .children
+        .iter()
+        .find(|child| child.tag == "lengthrange");
+    lengthrange.map_or(Ok(()), |child| {
+        read_length_range(child, &mut spec.lengthrange)
+    })
+}
+
+fn read_length_range(element: &Element, spec: &mut LengthRangeSpec) -> Result<(), LoadError> {
+    let modes = [
+        ("none", LengthRangeMode::None),
+        ("muscle", LengthRangeMode::Muscle),
+        ("muscleuser", LengthRangeMode::MuscleUser),
+        ("all", LengthRangeMode::All),
+    ];
+    element.set_keyword("mode", &modes, &mut spec.mode)?;
+    element.set_boolean("useexisting", &mut spec.useexisting)?;
+    element.set_boolean("uselimit", &mut spec.uselimit)?;
+    element.set_number("accel", &mut spec.accel)?;
+    element.set_number("maxforce", &mut spec.maxforce)?;
+    element.set_number("timeconst", &mut spec.timeconst)?;
+    element.set_number("timestep", &mut spec.timestep)?;
+    element.set_number("inttotal", &mut spec.inttotal)?;
+    element.set_number("interval", &mut spec.interval)?;
+    element.set_number("tolrange", &mut spec.tolrange)
 }

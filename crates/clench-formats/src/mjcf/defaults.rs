@@ -3,7 +3,7 @@
 //! A class starts as a copy of its parent and overwrites what its elements give; an element starts as a copy of its
 //! class. Copies, not a search for the nearest value, because an attribute with several numbers may give only some.
 
-use super::actuator::{ActuatorDraft, ActuatorParams, Shortcut};
+use super::actuator::ActuatorDraft;
 use super::assets;
 use super::contact;
 use super::document::Element;
@@ -11,6 +11,7 @@ use super::equality::EqualityDraft;
 use super::geom::GeomDraft;
 use super::joint;
 use super::mesh::MeshDraft;
+use super::shortcut::{ActuatorParams, Shortcut};
 use super::site::SiteDraft;
 use super::tendon;
 use crate::LoadError;

@@ -26,6 +26,7 @@ mod relations;
 mod rules;
 mod schema;
 mod sensor;
+mod shortcut;
 mod site;
 mod source;
 mod support;

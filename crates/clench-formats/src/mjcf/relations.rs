@@ -1,8 +1,8 @@
 //! The sections whose elements name elements of the body tree.
 
-use super::actuator::Shortcut;
 use super::defaults::MAIN;
 use super::document::Element;
+use super::shortcut::Shortcut;
 use super::source::Sources;
 use super::{contact, entries, equality, keyframe, sections, sensor, tendon};
 use crate::LoadError;

@@ -4,6 +4,7 @@ use super::element::{Element, resolve_range};
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
 use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec};
+use crate::budget::RAISE;
 use crate::model::{Actuator, BiasKind, DynamicsKind, GainKind, Model, Transmission};
 
 /// Adds all actuators, and numbers their activations.
@@ -45,21 +46,27 @@ fn add(
     let forcelimited = resolve_range(spec, "force", spec.forcelimited, spec.forcerange, auto)?;
     let ctrllimited = resolve_range(spec, "ctrl", spec.ctrllimited, spec.ctrlrange, auto)?;
     let actlimited = resolve_range(spec, "act", spec.actlimited, spec.actrange, auto)?;
-    if spec.dampratio.is_some() && !is_servo(spec) {
-        return Err(spec.error("dampratio needs a position servo (gainprm[0] = -biasprm[1])"));
+    if spec.dampratio.is_some() && !pulls_back(spec) {
+        return Err(spec.error("dampratio needs an affine bias with gainprm[0] = -biasprm[1]"));
     }
     if spec.dampratio.is_some() && spec.gainprm[0] < 0.0 {
         return Err(spec.error("dampratio needs a gain that is not negative"));
     }
-    let has_activation = spec.dynamics != DynamicsKind::None;
-    if actlimited && !has_activation {
+    let activations = activations(builder, spec, model)?;
+    if actlimited && activations == 0 {
         return Err(spec.error("has an actrange, but no activation"));
+    }
+    if spec.gain == GainKind::Muscle {
+        check_muscle(spec, "gainprm", &spec.gainprm)?;
+    }
+    if spec.bias == BiasKind::Muscle {
+        check_muscle(spec, "biasprm", &spec.biasprm)?;
     }
     model.actuators.push(Actuator {
         name: spec.name.clone(),
         transmission,
         dynamics: spec.dynamics,
-        act: has_activation.then_some(model.na),
+        acts: model.na..model.na + activations,
         gain: spec.gain,
         bias: spec.bias,
         ctrllimited,
@@ -70,7 +77,7 @@ fn add(
             .any(|&group| i64::from(group) == i64::from(spec.group)),
         group: spec.group,
     });
-    model.na += usize::from(has_activation);
+    model.na += activations;
     push_dofs(transmission, model);
     let p = &mut model.params;
     p.actuator_gear.push(spec.gear);
@@ -80,6 +87,7 @@ fn add(
     p.actuator_ctrlrange.push(spec.ctrlrange);
     p.actuator_forcerange.push(spec.forcerange);
     p.actuator_actrange.push(spec.actrange);
+    p.actuator_lengthrange.push(spec.lengthrange);
     Ok(())
 }
 
@@ -98,11 +106,52 @@ fn push_dofs(transmission: Transmission, model: &mut Model) {
     }
 }
 
+/// How many activations the actuator has.
+fn activations(
+    builder: &ModelBuilder,
+    spec: &ActuatorSpec,
+    model: &Model,
+) -> Result<usize, BuildError> {
+    let own = usize::from(spec.dynamics != DynamicsKind::None);
+    let actdim = spec.actdim.unwrap_or(own);
+    let any = spec.dynamics == DynamicsKind::User && actdim > 0;
+    if actdim != own && !any {
+        return Err(spec.error(format!(
+            "actdim is {actdim}, but these dynamics have {own} activations"
+        )));
+    }
+    let most = builder.budget.elements;
+    if (model.na + actdim) as u64 > most {
+        return Err(spec.error(format!(
+            "with it there are {} activations, more than {most}; {RAISE}",
+            model.na + actdim
+        )));
+    }
+    Ok(actdim)
+}
+
+/// What the parameters of a muscle must be.
+fn check_muscle(spec: &ActuatorSpec, field: &str, prm: &[f64; 10]) -> Result<(), BuildError> {
+    let [low, high, _, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
+    let wrong = match () {
+        () if low >= high => "its range must rise (range[0] < range[1])",
+        () if lmin >= 1.0 || lmax <= 1.0 => "lmin must be below 1 and lmax above",
+        () if scale.min(vmax).min(fpmax).min(fvmax) <= 0.0 => {
+            "scale, vmax, fpmax and fvmax must be positive"
+        }
+        () => return Ok(()),
+    };
+    Err(spec.error(format!("as a muscle, {wrong} (in {field})")))
+}
+
+/// Whether the actuator pulls back as a spring of its gain does, which may be damped by a ratio.
+fn pulls_back(spec: &ActuatorSpec) -> bool {
+    spec.bias == BiasKind::Affine && spec.gainprm[0] == -spec.biasprm[1]
+}
+
 /// Whether the actuator is a servo: its force vanishes where the control equals the length.
 fn is_servo(spec: &ActuatorSpec) -> bool {
-    spec.gain == GainKind::Fixed
-        && spec.bias == BiasKind::Affine
-        && spec.gainprm[0] == -spec.biasprm[1]
+    spec.gain == GainKind::Fixed && pulls_back(spec)
 }
 
 /// MuJoCo's `inheritrange`: a servo's set point ranges over a share of its target's range, about the same middle.
@@ -133,7 +182,7 @@ fn inherit_range(
     match spec.dynamics {
         DynamicsKind::None | DynamicsKind::FilterExact => spec.ctrlrange = range,
         DynamicsKind::Integrator => spec.actrange = range,
-        DynamicsKind::Filter => {
+        DynamicsKind::Filter | DynamicsKind::Muscle | DynamicsKind::User => {
             return Err(spec.error("inheritrange does not know this kind of dynamics"));
         }
     }

@@ -4,7 +4,10 @@ use super::check::describe;
 use super::element::Element;
 use super::inertia::{MassProperties, mass_properties};
 use super::placed::{Assets, is_discarded};
-use super::{BodySpec, BuildError, InertiaFromGeom, JointSpec, ModelBuilder, geoms, joints};
+use super::{
+    BodySpec, BuildError, CompilerSpec, GeomSpec, InertiaFromGeom, JointSpec, ModelBuilder, geoms,
+    joints,
+};
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
 
@@ -122,8 +125,9 @@ fn add(
     model.bodies[b].dofs.end = model.nv;
     for geom in &spec.geoms {
         match is_discarded(builder, geom) {
-            true if builder.compiler.inertiafromgeom == InertiaFromGeom::Always && !is_world => {
-                let message = "cannot be discarded as visual where all inertia comes from geoms";
+            true if !is_world && is_needed(&builder.compiler, geom) => {
+                let message =
+                    "cannot be discarded as visual where all inertia comes from geoms of its group";
                 return Err(within(geom.error(message)));
             }
             true => assets.place(geom).map(drop).map_err(within)?,
@@ -136,6 +140,12 @@ fn add(
     }
     model.bodies[b].sites.end = model.sites.len();
     Ok(())
+}
+
+/// Whether the inertia of a geom's body would be lost without the geom, so that MuJoCo does not discard it.
+fn is_needed(compiler: &CompilerSpec, geom: &GeomSpec) -> bool {
+    let [first, last] = compiler.inertiagrouprange;
+    compiler.inertiafromgeom == InertiaFromGeom::Always && (first..=last).contains(&geom.group)
 }
 
 /// Adds the record of a body that has no joints, geoms and sites yet.

@@ -4,7 +4,7 @@ use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
     BuildError, ModelBuilder, actuators, bodies, budget, check, contacts, equalities, invweight0,
-    keyframes, sensors, tendons,
+    keyframes, length_range, sensors, tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -54,6 +54,7 @@ impl ModelBuilder {
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
         let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
         invweight0::derive(self, &order, &springdampers, &mut pose0, &mut model)?;
+        length_range::find_all(self, &mut model)?;
         budget::keyframes(self, &model)?;
         keyframes::add_all(self, &mut model)?;
         Ok(model)

@@ -92,6 +92,7 @@ pub(super) fn derive(
     tendon_weights(&mut inverse, pose0, model);
     spring_dampers(springdampers, model);
     servo_damping(builder, &mut inverse, pose0, model);
+    unit_accelerations(&mut inverse, pose0, model);
     Ok(())
 }
 
@@ -123,6 +124,16 @@ impl InverseInertia {
         }
         self.factor.solve_half(&model.tree, &mut self.row);
         self.row.iter().map(|x| x * x).sum()
+    }
+
+    /// ‖M⁻¹ Jᵀ‖, likewise.
+    fn acceleration_of(&mut self, model: &Model, row: impl Iterator<Item = (usize, f64)>) -> f64 {
+        self.row.fill(0.0);
+        for (dof, entry) in row {
+            self.row[dof] = entry;
+        }
+        self.factor.solve(&model.tree, &mut self.row);
+        self.row.iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
     /// As `weight_of`, for a row that is zero but on the path to dof `last`, where `entry` gives it.
@@ -269,4 +280,11 @@ fn servo_damping(
         let reflected = 1.0 / weight.max(MIN_INERTIA);
         model.params.actuator_biasprm[u][2] = -2.0 * ratio * (spec.gainprm[0] * reflected).sqrt();
     }
+}
+
+/// `actuator_acc0`, by which muscles scale their force.
+fn unit_accelerations(inverse: &mut InverseInertia, pose0: &Positions<f64>, model: &mut Model) {
+    let norm = |u| inverse.acceleration_of(model, transmission::moment(model, pose0, u));
+    let norms = (0..model.nu()).map(norm).collect();
+    model.params.actuator_acc0 = norms;
 }

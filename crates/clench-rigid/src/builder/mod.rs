@@ -42,6 +42,7 @@ mod inertia;
 mod invweight0;
 mod joints;
 mod keyframes;
+mod length_range;
 mod meshes;
 mod physics;
 mod placed;
@@ -58,6 +59,7 @@ pub use elements::{
     JointSpec, SiteSpec,
 };
 pub use error::{BuildError, Origin, shorten};
+pub use length_range::{LengthRangeMode, LengthRangeSpec};
 pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
 pub use relations::{
     ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec,

@@ -1,5 +1,6 @@
 //! Model-wide settings: how to derive what was not said, and the physics of the world.
 
+use super::LengthRangeSpec;
 use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::{Flags, Integrator};
 
@@ -38,6 +39,8 @@ pub struct CompilerSpec {
     pub fitaabb: bool,
     /// Leave out geoms that collide with nothing, and meshes that no other geom has; masses stay.
     pub discardvisual: bool,
+    /// How length ranges of actuators are found.
+    pub lengthrange: LengthRangeSpec,
 }
 
 impl Default for CompilerSpec {
@@ -53,6 +56,7 @@ impl Default for CompilerSpec {
             alignfree: false,
             fitaabb: false,
             discardvisual: false,
+            lengthrange: LengthRangeSpec::default(),
         }
     }
 }

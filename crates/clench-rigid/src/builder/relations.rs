@@ -101,6 +101,8 @@ pub struct ActuatorSpec {
     pub inheritrange: f64,
     /// Scaling of the force onto the transmission's axes.
     pub gear: [f64; 6],
+    /// Lengths between which the transmission can be, of use to muscles; where they do not rise they are not given.
+    pub lengthrange: [f64; 2],
     /// Allowed controls.
     pub ctrlrange: [f64; 2],
     /// Whether it applies; `None`: if `autolimits` and a range is given.
@@ -113,6 +115,8 @@ pub struct ActuatorSpec {
     pub actrange: [f64; 2],
     /// Whether it applies; `None` as for `ctrllimited`.
     pub actlimited: Option<bool>,
+    /// Number of activations; `None`: as many as the dynamics has. Dynamics of the user may have any number.
+    pub actdim: Option<usize>,
     /// Use the activation as of the end of the step.
     pub actearly: bool,
     /// Group.

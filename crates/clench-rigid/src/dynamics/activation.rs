@@ -1,5 +1,6 @@
 //! From controls to what acts: clamped controls, activation dynamics, and setpoints on a circle.
 
+use crate::dynamics::muscle;
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::Positions;
@@ -34,10 +35,14 @@ pub fn activation_rates<T: Real>(
     act_dot: &mut [T],
 ) {
     for (u, actuator) in model.actuators.iter().enumerate() {
-        let Some(a) = actuator.act else { continue };
+        let Some(a) = actuator.act() else { continue };
         let ctrl = control(model, params, state, u);
         act_dot[a] = match actuator.dynamics {
-            DynamicsKind::None => T::ZERO,
+            // What a callback of MuJoCo's user would say.
+            DynamicsKind::None | DynamicsKind::User => T::ZERO,
+            DynamicsKind::Muscle => {
+                muscle::activation_rate(ctrl, state.act[a], &params.actuator_dynprm[u])
+            }
             DynamicsKind::Integrator => ctrl,
             DynamicsKind::Filter | DynamicsKind::FilterExact => {
                 let act = state.act[a];
@@ -85,7 +90,7 @@ pub fn input<T: Real>(
     u: usize,
 ) -> T {
     let actuator = &model.actuators[u];
-    let input = match actuator.act {
+    let input = match actuator.act() {
         None => control(model, params, state, u),
         Some(a) if actuator.actearly => next_activation(model, params, u, state.act[a], act_dot[a]),
         Some(a) => state.act[a],

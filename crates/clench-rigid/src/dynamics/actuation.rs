@@ -1,8 +1,9 @@
 //! Actuator forces, force = gain · input + bias, and the dof forces they make.
 
 use crate::dynamics::activation::{activation_rates, input};
+use crate::dynamics::gain::{ActuatorMotion, unlimited_force};
 use crate::dynamics::transmission::moment;
-use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::model::{Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Real, kernel};
@@ -29,8 +30,8 @@ pub fn actuation<T: Real>(
     for (u, actuator) in model.actuators.iter().enumerate() {
         if !actuator.disabled {
             let input = input(model, params, state, pos, &force.act_dot, u);
-            let (length, velocity) = (pos.actuator_length[u], vel.actuator_velocity[u]);
-            force.actuator_force[u] = scalar_force(model, params, u, input, length, velocity);
+            let at = ActuatorMotion::of(pos, vel, u);
+            force.actuator_force[u] = unlimited_force(model, params, u, input, at);
         }
     }
     limit_tendon_forces(model, params, force);
@@ -47,27 +48,6 @@ pub fn actuation<T: Real>(
         }
     }
     finish_joints(model, params, force);
-}
-
-#[inline(always)]
-fn scalar_force<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    u: usize,
-    input: T,
-    length: T,
-    velocity: T,
-) -> T {
-    let actuator = &model.actuators[u];
-    let affine = |prm: &[T; 10]| prm[0] + prm[1] * length + prm[2] * velocity;
-    let gain = match actuator.gain {
-        GainKind::Fixed => params.actuator_gainprm[u][0],
-        GainKind::Affine => affine(&params.actuator_gainprm[u]),
-    };
-    match actuator.bias {
-        BiasKind::None => gain * input,
-        BiasKind::Affine => gain * input + affine(&params.actuator_biasprm[u]),
-    }
 }
 
 /// The tendon that an actuator pulls on, if their total force is limited.

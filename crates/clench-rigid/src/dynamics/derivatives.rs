@@ -6,10 +6,11 @@
 
 use crate::dynamics::activation::input;
 use crate::dynamics::fluid::{Drag, has_fluid};
+use crate::dynamics::gain::{ActuatorMotion, force_slope};
 use crate::dynamics::polynomial::dof_damper;
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
-use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::model::{Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Mask, Real, Scalar, kernel};
@@ -30,7 +31,7 @@ pub fn add_velocity_derivatives<T: Real>(
 ) {
     if model.flags.actuation {
         for u in 0..model.nu() {
-            let slope = actuator_derivative(model, params, state, pos, force, u);
+            let slope = actuator_derivative(model, params, state, (pos, vel, force), u);
             add_outer(model, moment(model, pos, u), slope * scale, matrix);
         }
     }
@@ -79,22 +80,15 @@ fn actuator_derivative<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
-    pos: &Positions<T>,
-    force: &Forces<T>,
+    (pos, vel, force): (&Positions<T>, &Velocities<T>, &Forces<T>),
     u: usize,
 ) -> T {
     let actuator = &model.actuators[u];
-    let mut slope = T::ZERO;
     if actuator.disabled {
-        return slope;
+        return T::ZERO;
     }
-    if actuator.bias == BiasKind::Affine {
-        slope += params.actuator_biasprm[u][2];
-    }
-    if actuator.gain == GainKind::Affine {
-        let input = input(model, params, state, pos, &force.act_dot, u);
-        slope += params.actuator_gainprm[u][2] * input;
-    }
+    let input = || input(model, params, state, pos, &force.act_dot, u);
+    let slope = force_slope(model, params, u, input, ActuatorMotion::of(pos, vel, u));
     let saturated = |value: T, [low, high]: [T; 2]| value.le(low) | value.ge(high);
     let mut held = T::Mask::splat(false);
     if actuator.forcelimited {

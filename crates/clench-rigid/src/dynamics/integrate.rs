@@ -99,14 +99,15 @@ pub fn advance_activations<T: Real>(
         return;
     }
     for (u, actuator) in model.actuators.iter().enumerate() {
-        let Some(a) = actuator.act else { continue };
-        let rate = if actuator.disabled {
-            T::ZERO
-        } else {
-            act_dot[a]
-        };
-        let next = next_activation(model, params, u, act[a], rate);
-        act[a] = nearest_setpoint(model, params, u, next, pos.actuator_length[u]);
+        for a in actuator.acts.clone() {
+            let rate = if actuator.disabled {
+                T::ZERO
+            } else {
+                act_dot[a]
+            };
+            let next = next_activation(model, params, u, act[a], rate);
+            act[a] = nearest_setpoint(model, params, u, next, pos.actuator_length[u]);
+        }
     }
 }
 

@@ -227,6 +227,10 @@ params! {
     actuator_forcerange: Vec<[T; 2]>, Range;
     /// Allowed activations.
     actuator_actrange: Vec<[T; 2]>, Range;
+    /// Norm of the acceleration that a unit force causes at qpos0.
+    actuator_acc0: Vec<T>, NotNegative;
+    /// Lengths between which the transmission can be; of use to muscles.
+    actuator_lengthrange: Vec<[T; 2]>, Finite;
 
     /// Anchor (connect) or weld point in the first body's frame.
     eq_anchor1: Vec<Vec3<T>>, Finite;

@@ -19,11 +19,11 @@ pub(super) const RULES: &[Rule] = &[
         once: "lengthrange",
         ..NONE
     },
-    ignored(
-        "lengthrange",
-        "accel interval inttotal maxforce mode timeconst timestep tolrange useexisting uselimit",
-        "",
-    ),
+    Rule {
+        element: "lengthrange",
+        read: "accel interval inttotal maxforce mode timeconst timestep tolrange useexisting uselimit",
+        ..NONE
+    },
     Rule {
         element: "option",
         read: "timestep gravity wind magnetic density viscosity integrator cone jacobian solver impratio tolerance \
@@ -60,8 +60,8 @@ pub(super) const RULES: &[Rule] = &[
         read: "class",
         children: "default",
         once: "mesh texture material joint geom site camera light pair equality tendon general motor position \
-            velocity intvelocity damper cylinder",
-        later_children: "orientation pid muscle adhesion dcmotor",
+            velocity intvelocity damper cylinder muscle",
+        later_children: "orientation pid adhesion dcmotor",
         ..NONE
     },
     section("extension", "", "plugin"),

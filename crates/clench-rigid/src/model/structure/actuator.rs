@@ -1,5 +1,7 @@
 //! Actuators: what they pull on, and the kinds of their dynamics, gain and bias.
 
+use std::ops::Range;
+
 /// What an actuator pulls on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transmission {
@@ -23,6 +25,10 @@ pub enum DynamicsKind {
     Filter,
     /// As `Filter`, integrated exactly.
     FilterExact,
+    /// A filter that rises and falls with different time constants; see [`muscle`](crate::dynamics::muscle).
+    Muscle,
+    /// MuJoCo leaves it to a callback; without one activations stay as they are.
+    User,
 }
 
 /// Gain of an actuator.
@@ -33,6 +39,10 @@ pub enum GainKind {
     Fixed,
     /// `gainprm[0] + gainprm[1] · length + gainprm[2] · velocity`.
     Affine,
+    /// Active force of a muscle by length and velocity.
+    Muscle,
+    /// MuJoCo leaves it to a callback; without one it is 1.
+    User,
 }
 
 /// Bias of an actuator.
@@ -43,6 +53,10 @@ pub enum BiasKind {
     None,
     /// `biasprm[0] + biasprm[1] · length + biasprm[2] · velocity`.
     Affine,
+    /// Passive force of a muscle by length.
+    Muscle,
+    /// MuJoCo leaves it to a callback; without one it is zero.
+    User,
 }
 
 /// An actuator.
@@ -54,8 +68,8 @@ pub struct Actuator {
     pub transmission: Transmission,
     /// Its dynamics.
     pub dynamics: DynamicsKind,
-    /// Index of its activation.
-    pub act: Option<usize>,
+    /// Its activations; the last one acts.
+    pub acts: Range<usize>,
     /// Its gain.
     pub gain: GainKind,
     /// Its bias.
@@ -72,4 +86,12 @@ pub struct Actuator {
     pub disabled: bool,
     /// Group.
     pub group: i32,
+}
+
+impl Actuator {
+    /// The activation that acts, if it has any.
+    #[inline(always)]
+    pub fn act(&self) -> Option<usize> {
+        self.acts.clone().last()
+    }
 }

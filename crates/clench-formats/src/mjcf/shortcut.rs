@@ -1,0 +1,244 @@
+//! The shortcuts of `<actuator>`: actuators whose dynamics, gain and bias follow from parameters of their own, such as `kp`, `kv`,
+//! `area`.
+
+use super::document::Element;
+use crate::LoadError;
+use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
+
+/// Which element an actuator is written with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Shortcut {
+    #[default]
+    General,
+    Motor,
+    Position,
+    Velocity,
+    IntVelocity,
+    Damper,
+    Cylinder,
+    Muscle,
+}
+
+impl Shortcut {
+    /// The shortcut of an element name.
+    pub fn from_tag(tag: &str) -> Option<Shortcut> {
+        Some(match tag {
+            "general" => Shortcut::General,
+            "motor" => Shortcut::Motor,
+            "position" => Shortcut::Position,
+            "velocity" => Shortcut::Velocity,
+            "intvelocity" => Shortcut::IntVelocity,
+            "damper" => Shortcut::Damper,
+            "cylinder" => Shortcut::Cylinder,
+            "muscle" => Shortcut::Muscle,
+            _ => return None,
+        })
+    }
+
+    /// The kind of its gain.
+    pub fn gain(self) -> GainKind {
+        match self {
+            Shortcut::Damper => GainKind::Affine,
+            Shortcut::Muscle => GainKind::Muscle,
+            _ => GainKind::Fixed,
+        }
+    }
+}
+
+/// How control becomes force.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ActuatorParams {
+    pub dynamics: DynamicsKind,
+    pub dynprm: [f64; 10],
+    pub gain: GainKind,
+    pub gainprm: [f64; 10],
+    pub bias: BiasKind,
+    pub biasprm: [f64; 10],
+    pub inheritrange: f64,
+    pub actearly: bool,
+    pub actdim: i32,
+}
+
+/// Leading entries, then zeros.
+fn params<const N: usize>(leading: [f64; N]) -> [f64; 10] {
+    let mut all = [0.0; 10];
+    all[..N].copy_from_slice(&leading);
+    all
+}
+
+impl Default for ActuatorParams {
+    fn default() -> Self {
+        ActuatorParams {
+            dynamics: DynamicsKind::None,
+            dynprm: params([1.0]),
+            gain: GainKind::Fixed,
+            gainprm: params([1.0]),
+            bias: BiasKind::None,
+            biasprm: [0.0; 10],
+            inheritrange: 0.0,
+            actearly: false,
+            actdim: -1,
+        }
+    }
+}
+
+/// `position` and `intvelocity`: force = kp (target − length) − kv velocity.
+fn read_servo(element: &Element, inherited: ActuatorParams) -> Result<ActuatorParams, LoadError> {
+    element.at_most_one(&["kv", "dampratio"])?;
+    let mut kp = inherited.gainprm[0];
+    element.set_number("kp", &mut kp)?;
+    let mut parameters = ActuatorParams {
+        gainprm: params([kp]),
+        bias: BiasKind::Affine,
+        biasprm: params([0.0, -kp, inherited.biasprm[2]]),
+        inheritrange: inherited.inheritrange,
+        ..ActuatorParams::default()
+    };
+    if let Some(kv) = not_negative(element, "kv")? {
+        parameters.biasprm[2] = -kv;
+    }
+    if let Some(dampratio) = not_negative(element, "dampratio")? {
+        parameters.biasprm[2] = dampratio;
+    }
+    element.set_number("inheritrange", &mut parameters.inheritrange)?;
+    Ok(parameters)
+}
+
+/// `position`: a servo, filtered if it has a time constant.
+pub(crate) fn read_position(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let mut parameters = read_servo(element, inherited)?;
+    let filtered = inherited.dynamics == DynamicsKind::FilterExact;
+    let mut timeconst = if filtered { inherited.dynprm[0] } else { 0.0 };
+    element.set_number("timeconst", &mut timeconst)?;
+    if timeconst < 0.0 {
+        return Err(element.error("timeconst cannot be negative"));
+    }
+    if timeconst > 0.0 {
+        parameters.dynamics = DynamicsKind::FilterExact;
+        parameters.dynprm = params([timeconst]);
+    }
+    Ok(parameters)
+}
+
+/// `intvelocity`: a servo whose target is the integral of the control.
+pub(crate) fn read_intvelocity(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    Ok(ActuatorParams {
+        dynamics: DynamicsKind::Integrator,
+        ..read_servo(element, inherited)?
+    })
+}
+
+/// `damper`: force = −kv velocity · control.
+pub(crate) fn read_damper(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let mut kv = match inherited.gain {
+        GainKind::Affine => -inherited.gainprm[2],
+        _ => 0.0,
+    };
+    element.set_number("kv", &mut kv)?;
+    if kv < 0.0 {
+        return Err(element.error("kv cannot be negative"));
+    }
+    Ok(ActuatorParams {
+        gain: GainKind::Affine,
+        gainprm: params([0.0, 0.0, -kv]),
+        ..ActuatorParams::default()
+    })
+}
+
+/// `velocity`: force = kv (target − velocity).
+pub(crate) fn read_velocity(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let mut kv = inherited.gainprm[0];
+    element.set_number("kv", &mut kv)?;
+    Ok(ActuatorParams {
+        gainprm: params([kv]),
+        bias: BiasKind::Affine,
+        biasprm: params([0.0, 0.0, -kv]),
+        ..ActuatorParams::default()
+    })
+}
+
+/// `cylinder`: force = area · filtered pressure + bias.
+pub(crate) fn read_cylinder(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let mut parameters = ActuatorParams {
+        dynamics: DynamicsKind::Filter,
+        dynprm: params([inherited.dynprm[0]]),
+        gainprm: params([inherited.gainprm[0]]),
+        bias: BiasKind::Affine,
+        biasprm: inherited.biasprm,
+        ..ActuatorParams::default()
+    };
+    element.set_number("timeconst", &mut parameters.dynprm[0])?;
+    element.set_number("area", &mut parameters.gainprm[0])?;
+    if let Some([diameter]) = element.numbers("diameter")?.filter(|[d]| *d >= 0.0) {
+        parameters.gainprm[0] = std::f64::consts::FRAC_PI_4 * diameter * diameter;
+    }
+    if let Some(bias) = element.numbers::<3>("bias")? {
+        parameters.biasprm[..3].copy_from_slice(&bias);
+    }
+    Ok(parameters)
+}
+
+/// `muscle`: dynamics, gain and bias of a muscle. Of its own attributes those that are negative count as not given.
+pub(crate) fn read_muscle(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let (mut dynprm, mut prm) = match inherited.gain {
+        GainKind::Muscle => (inherited.dynprm, inherited.gainprm),
+        _ => (
+            params([0.01, 0.04]),
+            params([0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2]),
+        ),
+    };
+    for (name, first) in [("timeconst", &mut dynprm), ("range", &mut prm)] {
+        let given = element.numbers::<2>(name)?.unwrap_or([-1.0; 2]);
+        overwrite(&mut first[..2], &given);
+    }
+    let names = ["force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"];
+    for (name, target) in names.into_iter().zip(&mut prm[2..]) {
+        let given = element.numbers::<1>(name)?.unwrap_or([-1.0]);
+        overwrite(std::slice::from_mut(target), &given);
+    }
+    if let Some(tausmooth) = not_negative(element, "tausmooth")? {
+        dynprm[2] = tausmooth;
+    }
+    Ok(ActuatorParams {
+        dynamics: DynamicsKind::Muscle,
+        dynprm,
+        gain: GainKind::Muscle,
+        gainprm: prm,
+        bias: BiasKind::Muscle,
+        biasprm: prm,
+        ..ActuatorParams::default()
+    })
+}
+
+fn overwrite(targets: &mut [f64], given: &[f64]) {
+    for (target, &value) in targets.iter_mut().zip(given) {
+        if value >= 0.0 {
+            *target = value;
+        }
+    }
+}
+
+fn not_negative(element: &Element, name: &str) -> Result<Option<f64>, LoadError> {
+    match element.numbers(name)? {
+        Some([value]) if value < 0.0 => Err(element.error(format!("{name} cannot be negative"))),
+        value => Ok(value.map(|[value]| value)),
+    }
+}

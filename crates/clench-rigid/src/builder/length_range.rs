@@ -1,0 +1,261 @@
+//! Length ranges of actuators that their author did not give: a force pulls each to its shortest and its longest, in a
+//! simulation without contacts, gravity, springs, dampers and dry friction whose velocities fade, as MuJoCo's `mj_setLengthRange`
+//! does (modeling chapter, "Length range").
+
+use super::element::Element;
+use super::{ActuatorSpec, BuildError, ModelBuilder};
+use crate::budget::RAISE;
+use crate::dynamics::transmission;
+use crate::model::{Actuator, BiasKind, Flags, GainKind, Integrator, Model, Transmission};
+use crate::{Sim, SimError};
+use clench_solver::RigidOptions;
+use std::sync::Arc;
+
+/// Velocities fade with a time constant of at least so much, s.
+const SHORTEST_TIMECONST: f64 = 0.01;
+/// Accelerations and forces that are divided by are at least so large (MuJoCo's `mjMINVAL`).
+const MIN_NORM: f64 = 1e-15;
+
+/// Which actuators need a length range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LengthRangeMode {
+    /// None.
+    None,
+    /// Those whose gain or bias is a muscle's.
+    #[default]
+    Muscle,
+    /// Those whose gain or bias is a muscle's or the user's.
+    MuscleUser,
+    /// All.
+    All,
+}
+
+/// How length ranges are found where they are needed: MuJoCo's `<compiler><lengthrange/>`, with its defaults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LengthRangeSpec {
+    /// Which actuators need one.
+    pub mode: LengthRangeMode,
+    /// A range that rises counts as given.
+    pub useexisting: bool,
+    /// The range of a limited joint or tendon is the range of its actuator.
+    pub uselimit: bool,
+    /// Norm of the acceleration that the force causes.
+    pub accel: f64,
+    /// Largest norm of the force along dofs; 0 for no bound.
+    pub maxforce: f64,
+    /// Time constant of the fading of velocities, s.
+    pub timeconst: f64,
+    /// Time step, s; 0 for that of the model.
+    pub timestep: f64,
+    /// Time simulated in each direction, s.
+    pub inttotal: f64,
+    /// Time at the end over which the length must have settled, s.
+    pub interval: f64,
+    /// By how much of its range it may still move then.
+    pub tolrange: f64,
+}
+
+impl Default for LengthRangeSpec {
+    fn default() -> Self {
+        LengthRangeSpec {
+            mode: LengthRangeMode::Muscle,
+            useexisting: true,
+            uselimit: false,
+            accel: 20.0,
+            maxforce: 0.0,
+            timeconst: 1.0,
+            timestep: 0.01,
+            inttotal: 10.0,
+            interval: 2.0,
+            tolrange: 0.05,
+        }
+    }
+}
+
+/// Fills in the length ranges that are needed and not given.
+///
+/// # Errors
+/// A simulation that breaks down, a length that does not settle or has no range, more steps than the budget has.
+pub(super) fn find_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
+    let settings = &builder.compiler.lengthrange;
+    let mut wanted = Vec::new();
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        let [low, high] = model.params.actuator_lengthrange[u];
+        let given = settings.useexisting && low < high;
+        if given || !is_of_mode(settings.mode, actuator) {
+            continue;
+        }
+        match limit(model, actuator.transmission).filter(|_| settings.uselimit) {
+            Some(range) => model.params.actuator_lengthrange[u] = range,
+            None => wanted.push(u),
+        }
+    }
+    if let Some(&last) = wanted.last() {
+        let mut search = Search::new(settings, model, &builder.actuators[last])?;
+        search.require_budget(builder, wanted.len(), &builder.actuators[last])?;
+        for u in wanted {
+            model.params.actuator_lengthrange[u] = search.range(u, &builder.actuators[u])?;
+        }
+    }
+    Ok(())
+}
+
+fn is_of_mode(mode: LengthRangeMode, actuator: &Actuator) -> bool {
+    let muscle = actuator.gain == GainKind::Muscle || actuator.bias == BiasKind::Muscle;
+    let user = actuator.gain == GainKind::User || actuator.bias == BiasKind::User;
+    match mode {
+        LengthRangeMode::None => false,
+        LengthRangeMode::Muscle => muscle,
+        LengthRangeMode::MuscleUser => muscle || user,
+        LengthRangeMode::All => true,
+    }
+}
+
+/// The range of a limited joint or tendon.
+fn limit(model: &Model, transmission: Transmission) -> Option<[f64; 2]> {
+    match transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => {
+            (model.joints[j].limited).then(|| model.params.jnt_range[j])
+        }
+        Transmission::Tendon(t) => (model.tendons[t].limited).then(|| model.params.tendon_range[t]),
+    }
+}
+
+/// A simulation that pulls on one actuator after the other.
+struct Search<'a> {
+    settings: &'a LengthRangeSpec,
+    sim: Sim,
+    timestep: f64,
+    /// The force along dofs.
+    force: Vec<f64>,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        settings: &'a LengthRangeSpec,
+        model: &Model,
+        spec: &ActuatorSpec,
+    ) -> Result<Self, BuildError> {
+        let mut model = model.clone();
+        model.flags = Flags {
+            frictionloss: false,
+            contact: false,
+            spring: false,
+            damper: false,
+            gravity: false,
+            actuation: false,
+            ..Flags::default()
+        };
+        if model.integrator == Integrator::Rk4 {
+            model.integrator = Integrator::Euler;
+        }
+        if settings.timestep > 0.0 {
+            model.params.timestep = settings.timestep;
+        }
+        let (timestep, nv) = (model.params.timestep, model.nv);
+        let sim = Sim::with_options(Arc::new(model), RigidOptions::new());
+        Ok(Search {
+            settings,
+            sim: sim.map_err(|error| failure(spec, &error))?,
+            timestep,
+            force: vec![0.0; nv],
+        })
+    }
+
+    fn require_budget(
+        &self,
+        builder: &ModelBuilder,
+        count: usize,
+        spec: &ActuatorSpec,
+    ) -> Result<(), BuildError> {
+        let most = builder.budget.steps;
+        let steps = 2.0 * count as f64 * (self.settings.inttotal / self.timestep);
+        match steps > most as f64 {
+            true => Err(spec.error(format!(
+                "finding the length ranges of {count} actuators would take {steps:.0} steps, more than {most}; give lengthrange, or {RAISE}"
+            ))),
+            false => Ok(()),
+        }
+    }
+
+    /// The shortest and the longest length of an actuator.
+    fn range(&mut self, u: usize, spec: &ActuatorSpec) -> Result<[f64; 2], BuildError> {
+        let shortest = self.settle(u, -1.0).map_err(|e| failure(spec, &e))?;
+        let longest = self.settle(u, 1.0).map_err(|e| failure(spec, &e))?;
+        let range = [shortest[0], longest[1]];
+        let size = range[1] - range[0];
+        let advice = "limit its joints, give lengthrange, or change <lengthrange> of the compiler";
+        if size.is_nan() || size <= 0.0 {
+            return Err(spec.error(format!(
+                "its length was found to range over {range:?}, which does not rise: {advice}"
+            )));
+        }
+        for [low, high] in [shortest, longest] {
+            if high - low > self.settings.tolrange * size {
+                return Err(spec.error(format!(
+                    "its length did not settle while its range was looked for: it still went from {low} to {high} at the end, \
+                     and the range is {range:?}: {advice}"
+                )));
+            }
+        }
+        Ok(range)
+    }
+
+    /// The least and the greatest length at the end of a simulation from qpos0 that pulls in one direction.
+    fn settle(&mut self, u: usize, direction: f64) -> Result<[f64; 2], SimError> {
+        self.sim.reset();
+        let mut seen: Option<[f64; 2]> = None;
+        while self.sim.state.time < self.settings.inttotal {
+            let length = self.pull(u, direction)?;
+            if self.sim.state.time > self.settings.inttotal - self.settings.interval {
+                let [low, high] = seen.unwrap_or([length; 2]);
+                seen = Some([low.min(length), high.max(length)]);
+            }
+        }
+        Ok(seen.unwrap_or_default())
+    }
+
+    /// A step; the length at its start.
+    fn pull(&mut self, u: usize, direction: f64) -> Result<f64, SimError> {
+        let settings = self.settings;
+        let fading = (-self.timestep / settings.timeconst.max(SHORTEST_TIMECONST)).exp();
+        for velocity in &mut self.sim.state.qvel {
+            *velocity *= fading;
+        }
+        self.sim.refresh_positions()?;
+        let (model, ws) = (self.sim.model(), self.sim.workspace());
+        let length = ws.position.actuator_length[u];
+        let arms = || transmission::moment(model, &ws.position, u);
+        self.force.fill(0.0);
+        for (dof, arm) in arms() {
+            self.force[dof] = arm;
+        }
+        ws.problem.mass_factor.solve(&model.tree, &mut self.force);
+        let accel = direction * settings.accel / norm(&self.force).max(MIN_NORM);
+        self.force.fill(0.0);
+        for (dof, arm) in arms() {
+            self.force[dof] = accel * arm;
+        }
+        let total = norm(&self.force);
+        let excess = settings.maxforce > 0.0 && total > settings.maxforce;
+        let share = if excess {
+            settings.maxforce / total.max(MIN_NORM)
+        } else {
+            1.0
+        };
+        let applied = self.sim.state.qfrc_applied.iter_mut();
+        for (applied, force) in applied.zip(&self.force) {
+            *applied = share * force;
+        }
+        self.sim.step()?;
+        Ok(length)
+    }
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn failure(spec: &ActuatorSpec, error: &SimError) -> BuildError {
+    spec.error(format!("while its length range was looked for: {error}; give lengthrange, or change <lengthrange> of the compiler"))
+}
