@@ -17,7 +17,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let mut out = io::stdout().lock();
     let wanted = |element: &str| arguments.element.as_deref().is_none_or(|e| e == element);
-    for support in supported().filter(|support| wanted(support.element)) {
+    for support in supported().filter(|support| wanted(&support.element)) {
         writeln!(out, "{}", support.element)?;
         let lists = [
             ("read", support.read),

@@ -104,7 +104,7 @@ struct ContactLine {
     solreffriction: [f64; 2],
     solimp: [f64; 5],
     dim: usize,
-    /// Not zero: the contact is listed but makes no constraint.
+    /// Not zero: the contact is listed but makes no constraint; 1: since it is in the gap, where sensors still tell of it.
     #[serde(default)]
     exclude: i32,
     /// Not supported: has to be zero.
@@ -241,7 +241,10 @@ impl ContactLine {
         let f = self.frame;
         Ok(Contact {
             geoms,
-            active: self.exclude == 0,
+            active: match self.exclude {
+                1 => self.dist >= self.includemargin,
+                excluded => excluded == 0,
+            },
             dim: self.dim,
             dist: self.dist,
             pos: Vec3::from_array(self.pos),

@@ -1,10 +1,15 @@
 //! What files say of sensors, and what is refused.
 
 use clench_formats::load_str;
-use clench_rigid::model::{FrameObject, SensorData, SensorKind, SensorTarget};
+use clench_math::Vec3;
+use clench_rigid::model::{
+    CameraMode, ContactSide, FrameObject, SensorData, SensorKind, SensorTarget,
+};
 
 const BODIES: &str = "<worldbody><geom name='floor' type='plane' size='1 1 1'/>
     <body name='arm'><joint name='hinge'/><geom name='rod' size='.1'/><site name='tip' type='box' size='.1 .2 .3'/>
+    <camera name='eye' resolution='3 2'/>
+    <camera name='blind' resolution='0 2'/><camera name='huge' resolution='99999 99999'/>
     <body name='hand'><joint name='ball' type='ball'/><geom name='fist' size='.1'/></body></body></worldbody>
     <actuator><motor name='motor' joint='hinge'/></actuator>";
 
@@ -58,7 +63,10 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
         ("<framepos objname='arm'/>", "objtype"),
         ("<framepos objtype='body'/>", "objname"),
         ("<framepos objtype='arm' objname='arm'/>", "objtype"),
-        ("<framepos objtype='camera' objname='eye'/>", "camera"),
+        (
+            "<framepos objtype='camera' objname='no'/>",
+            "there is no camera \"no\"",
+        ),
         (
             "<framepos objtype='body' objname='arm' reftype='site'/>",
             "refname",
@@ -77,12 +85,117 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
         ("<user/>", "dim"),
         ("<user dim='99999999'/>", "numbers"),
         ("<clock name='a'/><clock name='a'/>", "taken already"),
-        ("<contact/>", "not supported yet"),
+        ("<camprojection site='tip'/>", "camera"),
+        (
+            "<camprojection site='tip' camera='blind'/>",
+            "has no pixels",
+        ),
+        ("<rangefinder/>", "either site or camera"),
+        (
+            "<rangefinder site='tip' camera='eye'/>",
+            "site and camera cannot both",
+        ),
+        ("<rangefinder camera='blind'/>", "has no pixels"),
+        ("<rangefinder camera='huge'/>", "numbers"),
+        (
+            "<rangefinder site='tip' data='point dist'/>",
+            "in this order",
+        ),
+        ("<rangefinder site='tip' data='dist dist'/>", "once each"),
+        (
+            "<rangefinder site='tip' data='far'/>",
+            "not one of dist, dir",
+        ),
+        ("<contact geom1='no'/>", "there is no geom \"no\""),
+        (
+            "<contact geom1='rod' body1='arm'/>",
+            "geom1 and body1 cannot both",
+        ),
+        (
+            "<contact site='tip' subtree1='arm'/>",
+            "subtree1 and site cannot both",
+        ),
+        ("<contact num='0'/>", "num must be positive"),
+        ("<contact num='-2'/>", "num cannot be negative"),
+        ("<contact num='999999' data='pos'/>", "numbers"),
+        ("<contact reduce='sum'/>", "not one of none, mindist"),
+        ("<contact data='force found'/>", "in this order"),
+        (
+            "<contact reduce='netforce' data='linvel'/>",
+            "a net force has no linvel",
+        ),
     ] {
         let error = model(sensor).expect_err(sensor);
         assert!(error.contains(reason), "{sensor}: {error}");
-        assert!(error.contains('5'), "{sensor} names no line: {error}");
+        assert!(error.contains('7'), "{sensor} names no line: {error}");
     }
+}
+
+#[test]
+fn the_numbers_of_a_sensor_follow_from_its_data() {
+    let model = model(
+        "<rangefinder site='tip'/><rangefinder camera='eye' data='dist point'/><camprojection site='tip' camera='eye'/>
+         <contact/><contact subtree1='arm' num='3' data='found force torque dist'/>",
+    )
+    .expect("valid");
+    let numbers: Vec<_> = model.sensors.iter().map(|s| s.numbers.clone()).collect();
+    assert_eq!(numbers, [0..1, 1..25, 25..27, 27..28, 28..52]);
+    let SensorTarget::Contacts(query) = &model.sensors[4].target else {
+        panic!("not of contacts")
+    };
+    assert_eq!(
+        query.sides,
+        [ContactSide::Subtree(1..3), ContactSide::Any],
+        "the arm and the hand"
+    );
+}
+
+#[test]
+fn what_no_camera_can_be_is_refused_with_its_line() {
+    for (camera, reason) in [
+        (
+            "<camera mode='targetbody' target='no'/>",
+            "there is no body \"no\"",
+        ),
+        ("<camera fovy='180'/>", "less than 180"),
+        ("<camera fovy='30' sensorsize='1 1'/>", "cannot both"),
+        ("<camera focal='1 1'/>", "needs a sensorsize"),
+        (
+            "<camera sensorsize='1 1' resolution='0 5'/>",
+            "positive resolution",
+        ),
+        ("<camera resolution='5'/>", "2 numbers"),
+        ("<camera mode='tracking'/>", "not one of fixed, track"),
+        ("<camera quat='0 0 0 0'/>", "quat"),
+        ("<camera name='a'/><camera name='a'/>", "taken already"),
+    ] {
+        let text = format!("<mujoco><worldbody>\n{camera}</worldbody></mujoco>");
+        let error = load_str(&text).expect_err(camera).to_string();
+        assert!(
+            error.contains(reason) && error.contains('2'),
+            "{camera}: {error}"
+        );
+    }
+}
+
+#[test]
+fn a_camera_keeps_the_frame_that_it_has_at_first_where_it_tracks() {
+    let text = "<mujoco><default><camera resolution='4 2' fovy='30'/></default><worldbody>
+        <body name='arm' pos='1 0 0' euler='0 0 90'><joint/><geom size='.1' pos='0 1 0'/>
+        <camera name='eye' pos='1 0 0' mode='track'/><camera pos='1 0 0' mode='trackcom' target='arm'/></body>
+        </worldbody></mujoco>";
+    let model = load_str(text).expect("valid");
+    let (eye, p) = (model.camera("eye").expect("named"), &model.params);
+    let near = |v: Vec3<f64>, w: [f64; 3]| (v - Vec3::from_array(w)).norm() < 1e-12;
+    assert!(near(p.cam_pos0[eye], [0.0, 1.0, 0.0]), "{:?}", p.cam_pos0);
+    assert!(
+        near(p.cam_poscom0[1], [1.0, 1.0, 0.0]),
+        "{:?}",
+        p.cam_poscom0
+    );
+    assert_eq!(model.cameras[eye].mode, CameraMode::Track);
+    assert_eq!(model.cameras[1].resolution, [4, 2]);
+    assert_eq!(p.cam_fovy, [30.0, 30.0]);
 }
 
 #[test]

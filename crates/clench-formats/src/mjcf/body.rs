@@ -11,7 +11,7 @@ use crate::LoadError;
 use crate::spending::Spending;
 use clench_math::{Mat3, Quat, Vec3};
 use clench_rigid::builder::{
-    BodySpec, CompilerSpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, SiteSpec,
+    BodySpec, CameraSpec, CompilerSpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, SiteSpec,
 };
 use std::sync::Arc;
 
@@ -186,7 +186,8 @@ impl<'a> BodyReader<'a> {
             }
             "geom" => self.read_geom(element, place)?,
             "site" => self.read_site(element, place)?,
-            // Cameras and lights; the schema lets nothing else through.
+            "camera" => self.read_camera(element, place)?,
+            // Lights; the schema lets nothing else through.
             _ => {}
         }
         Ok(())
@@ -293,6 +294,17 @@ impl<'a> BodyReader<'a> {
         let site = site.finish(element, self.compiler(element), &place.frame)?;
         self.charge(element, size_of::<SiteSpec>(), &[&site.name])?;
         self.bodies[place.body].sites.push(site);
+        Ok(())
+    }
+
+    fn read_camera(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+        let mut camera = self.classes(element)[self.class(element, place)?]
+            .camera
+            .clone();
+        camera.read(element)?;
+        let camera = camera.finish(element, self.compiler(element), &place.frame)?;
+        self.charge(element, size_of::<CameraSpec>(), &[&camera.name])?;
+        self.bodies[place.body].cameras.push(camera);
         Ok(())
     }
 }

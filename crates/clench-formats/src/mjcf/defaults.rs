@@ -5,6 +5,7 @@
 
 use super::actuator::ActuatorDraft;
 use super::assets;
+use super::camera::CameraDraft;
 use super::contact;
 use super::document::Element;
 use super::equality::EqualityDraft;
@@ -30,6 +31,7 @@ pub(crate) struct Class {
     pub joint: JointSpec,
     pub geom: GeomDraft,
     pub site: SiteDraft,
+    pub camera: CameraDraft,
     pub pair: PairSpec,
     pub equality: EqualityDraft,
     pub tendon: TendonSpec,
@@ -56,6 +58,7 @@ impl Default for Classes {
             joint: JointSpec::default(),
             geom: GeomDraft::default(),
             site: SiteDraft::default(),
+            camera: CameraDraft::default(),
             pair: contact::default_pair(),
             equality: EqualityDraft::default(),
             tendon: TendonSpec::default(),
@@ -150,6 +153,7 @@ impl Classes {
             "joint" => joint::read(element, &mut class.joint),
             "geom" => class.geom.read(element),
             "site" => class.site.read(element),
+            "camera" => class.camera.read(element),
             "pair" => contact::read_pair(element, &mut class.pair),
             "equality" => class.equality.read(element),
             "tendon" => tendon::read_common(element, &mut class.tendon),

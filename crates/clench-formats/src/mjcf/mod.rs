@@ -7,6 +7,7 @@ mod actuator;
 mod assets;
 mod attributes;
 mod body;
+mod camera;
 mod compiler;
 mod compose;
 mod contact;

@@ -3,8 +3,12 @@
 use super::document::Element;
 use super::rules::{NONE, Rule};
 use crate::LoadError;
-use clench_rigid::builder::{FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject};
-use clench_rigid::model::{Attachment, SensorData, SensorKind};
+use clench_rigid::builder::{
+    ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
+};
+use clench_rigid::model::{
+    Attachment, ContactField, ContactReduction, RayField, SensorData, SensorKind,
+};
 
 /// What all sensors have, before what they are attached to.
 macro_rules! rule {
@@ -34,17 +38,14 @@ const INSIDE: Rule = rule!("site objtype objname");
 const GEOMS: Rule = rule!("geom1 geom2 body1 body2");
 /// What the user's numbers belong to and when they are computed matters to the user's program alone.
 const USER: Rule = rule!("dim datatype", "objtype objname needstage");
-/// A rangefinder may give more than a distance.
-const RANGEFINDER: Rule = Rule {
-    later: "camera data=dist nsample=0 interp delay=0 interval=0",
-    ..SITE
-};
+const PROJECTION: Rule = rule!("site camera");
+const CONTACTS: Rule = rule!("geom1 geom2 body1 body2 subtree1 subtree2 site num data reduce");
+const RAYS: Rule = rule!("site camera data");
 
 /// The rule of a sensor's element.
 pub(crate) fn rule(tag: &str) -> Option<&'static Rule> {
     let kind = SensorKind::find(tag)?;
     Some(match kind.attachment() {
-        _ if kind == SensorKind::Rangefinder => &RANGEFINDER,
         Attachment::Nothing => &NOTHING,
         Attachment::Site => &SITE,
         Attachment::ScalarJoint | Attachment::Ball | Attachment::Joint => &JOINT,
@@ -54,6 +55,9 @@ pub(crate) fn rule(tag: &str) -> Option<&'static Rule> {
         Attachment::Frame => &FRAME,
         Attachment::WorldFrame => &WORLD_FRAME,
         Attachment::Inside => &INSIDE,
+        Attachment::Projection => &PROJECTION,
+        Attachment::Rays => &RAYS,
+        Attachment::Contacts => &CONTACTS,
         Attachment::Geoms => &GEOMS,
         Attachment::User => &USER,
     })
@@ -80,6 +84,12 @@ pub(crate) fn read(element: &Element, kind: SensorKind) -> Result<SensorSpec, Lo
             site: element.required_text("site")?.to_owned(),
             object: read_object(element)?,
         },
+        Attachment::Projection => SensorSubject::Projection {
+            site: element.required_text("site")?.to_owned(),
+            camera: element.required_text("camera")?.to_owned(),
+        },
+        Attachment::Rays => read_rays(element)?,
+        Attachment::Contacts => read_contacts(element)?,
         Attachment::Geoms => SensorSubject::Geoms([
             read_geoms(element, "geom1", "body1")?,
             read_geoms(element, "geom2", "body2")?,
@@ -108,22 +118,105 @@ fn read_object(element: &Element) -> Result<FrameName, LoadError> {
 /// A frame by its object's type and name, which come together or not at all.
 fn read_frame(element: &Element, kind: &str, name: &str) -> Result<Option<FrameName>, LoadError> {
     let kinds = [
-        ("body", Some(FrameKind::Inertial)),
-        ("xbody", Some(FrameKind::Body)),
-        ("geom", Some(FrameKind::Geom)),
-        ("site", Some(FrameKind::Site)),
-        ("camera", None),
+        ("body", FrameKind::Inertial),
+        ("xbody", FrameKind::Body),
+        ("geom", FrameKind::Geom),
+        ("site", FrameKind::Site),
+        ("camera", FrameKind::Camera),
     ];
     match (element.keyword(kind, &kinds)?, element.text(name)) {
         (None, None) => Ok(None),
-        (Some(None), _) => Err(element.error(format!("a camera as {kind} is not supported yet"))),
-        (Some(Some(kind)), Some(name)) => Ok(Some(FrameName {
+        (Some(kind), Some(name)) => Ok(Some(FrameName {
             kind,
             name: name.to_owned(),
         })),
         (None, Some(_)) => Err(element.missing(kind)),
         (Some(_), None) => Err(element.missing(name)),
     }
+}
+
+/// Where rays go out, and what is told of each.
+fn read_rays(element: &Element) -> Result<SensorSubject, LoadError> {
+    element.at_most_one(&["site", "camera"])?;
+    let (kind, name) = match (element.text("site"), element.text("camera")) {
+        (Some(site), _) => (FrameKind::Site, site),
+        (None, Some(camera)) => (FrameKind::Camera, camera),
+        (None, None) => return Err(element.error("either site or camera must be given")),
+    };
+    let known = RayField::ALL.iter().map(|&field| (field.name(), field));
+    Ok(SensorSubject::Rays {
+        source: FrameName {
+            kind,
+            name: name.to_owned(),
+        },
+        fields: read_fields(element, &known.collect::<Vec<_>>())?,
+    })
+}
+
+/// Which contacts a sensor looks for, and what it tells of them.
+fn read_contacts(element: &Element) -> Result<SensorSubject, LoadError> {
+    element.at_most_one(&["geom1", "body1", "subtree1", "site"])?;
+    element.at_most_one(&["geom2", "body2", "subtree2"])?;
+    let side = |geom: &str, body: &str, subtree: &str| {
+        let text = |name: &str| element.text(name).map(str::to_owned);
+        text(geom)
+            .map(ContactSideName::Geom)
+            .or_else(|| text(body).map(ContactSideName::Body))
+            .or_else(|| text(subtree).map(ContactSideName::Subtree))
+            .unwrap_or_default()
+    };
+    let reductions = [
+        ("none", ContactReduction::None),
+        ("mindist", ContactReduction::MinDist),
+        ("maxforce", ContactReduction::MaxForce),
+        ("netforce", ContactReduction::NetForce),
+    ];
+    let count = element.count("num")?.unwrap_or(1);
+    if count == 0 {
+        return Err(element.error("num must be positive"));
+    }
+    let known = ContactField::ALL.iter().map(|&field| (field.name(), field));
+    Ok(SensorSubject::Contacts(ContactQuerySpec {
+        sides: [
+            side("geom1", "body1", "subtree1"),
+            side("geom2", "body2", "subtree2"),
+        ],
+        site: element.string("site"),
+        fields: read_fields(element, &known.collect::<Vec<_>>())?,
+        reduction: element
+            .keyword("reduce", &reductions)?
+            .unwrap_or(ContactReduction::None),
+        count,
+    }))
+}
+
+/// The words of `data`, which must come in the order in which they are known.
+fn read_fields<F: Copy + PartialOrd>(
+    element: &Element,
+    known: &[(&str, F)],
+) -> Result<Vec<F>, LoadError> {
+    let mut fields: Vec<F> = Vec::new();
+    for word in element
+        .text("data")
+        .unwrap_or_default()
+        .split_ascii_whitespace()
+    {
+        let names = || known.iter().map(|(name, _)| *name);
+        let list = || names().collect::<Vec<_>>().join(", ");
+        let Some(&(_, field)) = known.iter().find(|(name, _)| *name == word) else {
+            let message = format!("data has \"{word}\", not one of {}", list());
+            return Err(element.error(message));
+        };
+        if fields.last().is_some_and(|&last| last >= field) {
+            let message = format!(
+                "the words of data must come once each and in this order: {}",
+                list()
+            );
+            return Err(element.error(message));
+        }
+        fields.push(field);
+    }
+    Ok(fields)
 }
 
 /// A geom, or all geoms of a body.

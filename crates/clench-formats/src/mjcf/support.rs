@@ -1,12 +1,15 @@
 //! What of MJCF is read, for users and for tests that must reach all of it.
 
 use super::rules::{Rule, rules};
+use super::sensor;
+use clench_rigid::model::SensorKind;
+use std::borrow::Cow;
 
 /// What the reader does with an MJCF element.
 #[derive(Clone, Debug)]
 pub struct Support {
     /// Its name, or `parent/name` where the parent gives the name a meaning of its own.
-    pub element: &'static str,
+    pub element: Cow<'static, str>,
     /// Attributes that are read.
     pub read: Vec<&'static str>,
     /// Attributes that are accepted and do not act on motion.
@@ -24,14 +27,29 @@ pub struct Support {
 /// assert!(geom.is_some_and(|geom| geom.read.contains(&"size")));
 /// ```
 pub fn supported() -> impl Iterator<Item = Support> {
-    rules().map(|rule: &Rule| {
-        let words = |text: &'static str| text.split_ascii_whitespace();
-        Support {
-            element: rule.element,
-            read: words(rule.read).collect(),
-            ignored: words(rule.ignored).collect(),
-            refused: words(rule.later).collect(),
-            children: words(rule.children).chain(words(rule.once)).collect(),
-        }
-    })
+    let listed = rules().map(|rule| support(rule.element.into(), rule));
+    let sensors = SensorKind::ALL.iter().filter_map(|kind| {
+        let rule = sensor::rule(kind.name())?;
+        Some(support(format!("sensor/{}", kind.name()).into(), rule))
+    });
+    listed.chain(sensors)
+}
+
+fn support(element: Cow<'static, str>, rule: &Rule) -> Support {
+    let words = |text: &'static str| text.split_ascii_whitespace();
+    let kinds: &[SensorKind] = match &*element {
+        "sensor" => SensorKind::ALL,
+        _ => &[],
+    };
+    let sensors = kinds.iter().map(|kind| kind.name());
+    Support {
+        element,
+        read: words(rule.read).collect(),
+        ignored: words(rule.ignored).collect(),
+        refused: words(rule.later).collect(),
+        children: words(rule.children)
+            .chain(words(rule.once))
+            .chain(sensors)
+            .collect(),
+    }
 }

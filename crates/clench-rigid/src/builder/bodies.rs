@@ -5,8 +5,8 @@ use super::element::Element;
 use super::inertia::{MassProperties, mass_properties};
 use super::placed::{Assets, is_discarded};
 use super::{
-    BodySpec, BuildError, CompilerSpec, GeomSpec, InertiaFromGeom, JointSpec, ModelBuilder, geoms,
-    joints,
+    BodySpec, BuildError, CompilerSpec, GeomSpec, InertiaFromGeom, JointSpec, ModelBuilder,
+    cameras, geoms, joints,
 };
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
@@ -139,6 +139,10 @@ fn add(
         geoms::add_site(site, b, frame.moved, model);
     }
     model.bodies[b].sites.end = model.sites.len();
+    for camera in &spec.cameras {
+        cameras::add(camera, b, frame.moved, model);
+    }
+    model.bodies[b].cameras.end = model.cameras.len();
     Ok(())
 }
 
@@ -172,6 +176,7 @@ fn push_body(model: &mut Model, spec: &BodySpec, parent: usize, simple_inertia: 
         dofs: empty(model.nv),
         geoms: empty(model.geoms.len()),
         sites: empty(model.sites.len()),
+        cameras: empty(model.cameras.len()),
         mocap: spec.mocap.then_some(model.nmocap),
         last_dof: parent_body.and_then(|above| above.last_dof),
         simple_inertia,

@@ -3,8 +3,8 @@
 use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
-    BuildError, ModelBuilder, actuators, bodies, budget, check, contacts, equalities, invweight0,
-    keyframes, length_range, sensors, tendons,
+    BuildError, ModelBuilder, actuators, bodies, budget, cameras, check, contacts, equalities,
+    invweight0, keyframes, length_range, sensors, tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -46,9 +46,11 @@ impl ModelBuilder {
         contacts::add_all(self, &names, &mut model)?;
         tendons::add_all(self, &names, &mut model)?;
         actuators::add_all(self, &names, &mut model)?;
+        cameras::aim_all(self, &order, &names, &mut model)?;
         sensors::add_all(self, &names, &mut model)?;
 
         let mut pose0 = initial_pose(&model);
+        cameras::set_initial_frames(&pose0, &mut model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
         budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
@@ -71,6 +73,7 @@ impl ModelBuilder {
             dofs: Vec::new(),
             geoms: Vec::new(),
             sites: Vec::new(),
+            cameras: Vec::new(),
             tendons: Vec::new(),
             tendon_dofs: RowPattern::default(),
             actuators: Vec::new(),

@@ -3,8 +3,9 @@
 
 use super::element::Element;
 use super::{
-    ActuatorSpec, BodySpec, BuildError, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
-    InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec, TendonSpec,
+    ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, EqualityKind, EqualitySpec,
+    GeomMass, GeomSpec, InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec,
+    TendonSpec,
 };
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -28,6 +29,9 @@ pub(super) fn check(builder: &ModelBuilder) -> Result<(), BuildError> {
             .map_err(within)?;
         body.geoms.iter().try_for_each(check_geom).map_err(within)?;
         body.sites.iter().try_for_each(check_site).map_err(within)?;
+        (body.cameras.iter())
+            .try_for_each(check_camera)
+            .map_err(within)?;
     }
     builder.tendons.iter().try_for_each(check_tendon)?;
     builder.actuators.iter().try_for_each(check_actuator)?;
@@ -192,6 +196,28 @@ fn check_site(s: &SiteSpec) -> Result<(), BuildError> {
     match s.size[..used].iter().find(|&&size| size <= 0.0) {
         Some(bad) => Err(s.error(format!("size must be positive, but has {bad}"))),
         None => Ok(()),
+    }
+}
+
+fn check_camera(c: &CameraSpec) -> Result<(), BuildError> {
+    check_pose(c, c.pos, c.quat)?;
+    match c.lens {
+        CameraLens::FieldOfView(fovy) => {
+            c.require_finite("fovy", &[fovy])?;
+            match fovy < 180.0 {
+                true => Ok(()),
+                false => Err(c.error(format!("fovy must be less than 180, but is {fovy}"))),
+            }
+        }
+        CameraLens::Intrinsic {
+            sensorsize,
+            focal,
+            principal,
+        } => {
+            c.require_finite("sensorsize", &sensorsize)?;
+            c.require_finite("focal length", &focal)?;
+            c.require_finite("principal point", &principal)
+        }
     }
 }
 

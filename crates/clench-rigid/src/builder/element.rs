@@ -1,8 +1,9 @@
 //! What all elements have in common: a kind, a name, a place where they were written, and numbers that must be numbers.
 
 use super::{
-    ActuatorSpec, BodySpec, BuildError, EqualitySpec, ExcludeSpec, GeomSpec, HeightFieldSpec,
-    JointSpec, KeyframeSpec, MeshSpec, Origin, PairSpec, SensorSpec, SiteSpec, TendonSpec,
+    ActuatorSpec, BodySpec, BuildError, CameraSpec, EqualitySpec, ExcludeSpec, GeomSpec,
+    HeightFieldSpec, JointSpec, KeyframeSpec, MeshSpec, Origin, PairSpec, SensorSpec, SiteSpec,
+    TendonSpec,
 };
 
 /// An element of the author's description, as error messages see it.
@@ -71,6 +72,7 @@ elements! {
     JointSpec => "joint",
     GeomSpec => "geom",
     SiteSpec => "site",
+    CameraSpec => "camera",
     MeshSpec => "mesh",
     HeightFieldSpec => "height field",
     TendonSpec => "tendon",

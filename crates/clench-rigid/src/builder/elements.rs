@@ -1,6 +1,6 @@
 //! Bodies and what stands on them, with MuJoCo's defaults.
 
-use super::{CompilerSpec, ModelBuilder, Origin};
+use super::{CameraSpec, CompilerSpec, ModelBuilder, Origin};
 use crate::model::JointKind;
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -39,6 +39,8 @@ pub struct BodySpec {
     pub geoms: Vec<GeomSpec>,
     /// Sites.
     pub sites: Vec<SiteSpec>,
+    /// Cameras.
+    pub cameras: Vec<CameraSpec>,
     /// The settings of the model that it was attached from, which decide about its inertia and its frame; `None` for those of
     /// the builder.
     pub compiler: Option<Arc<CompilerSpec>>,

@@ -8,9 +8,9 @@ use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 
 /// Where a body's frame was moved, its geoms and sites follow: their pose in the model's frame, of unit quaternion.
-type Moved = Option<(Vec3<f64>, Quat<f64>)>;
+pub(super) type Moved = Option<(Vec3<f64>, Quat<f64>)>;
 
-fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>) {
+pub(super) fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>) {
     let quat = quat.normalize();
     match moved {
         None => (pos, quat),

@@ -30,6 +30,7 @@ mod assets;
 mod bodies;
 mod budget;
 mod build;
+mod cameras;
 mod check;
 mod constructors;
 mod contacts;
@@ -48,12 +49,14 @@ mod physics;
 mod placed;
 mod relations;
 mod resolve;
+mod sensor_specs;
 mod sensors;
 mod shapes;
 mod solid;
 mod tendons;
 
 pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};
+pub use cameras::{CameraLens, CameraSpec, CameraTracking};
 pub use elements::{
     BodySpec, DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomMass, GeomSpec, InertiaSpec, InertialSpec,
     JointSpec, SiteSpec,
@@ -67,7 +70,9 @@ pub use relations::{
 };
 
 use crate::Budget;
-pub use sensors::{FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject};
+pub use sensor_specs::{
+    ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
+};
 
 use clench_solver::RigidOptions;
 

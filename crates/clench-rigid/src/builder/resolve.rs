@@ -52,6 +52,7 @@ pub(super) struct AllNames<'a> {
     pub joints: Names<'a>,
     pub geoms: Names<'a>,
     pub sites: Names<'a>,
+    pub cameras: Names<'a>,
     pub tendons: Names<'a>,
     pub actuators: Names<'a>,
 }
@@ -74,6 +75,7 @@ impl<'a> AllNames<'a> {
             joints: Names::new(in_order().flat_map(|b| &b.joints))?,
             geoms: Names::new(in_order().flat_map(|b| &b.geoms).filter(kept))?,
             sites: Names::new(in_order().flat_map(|b| &b.sites))?,
+            cameras: Names::new(in_order().flat_map(|b| &b.cameras))?,
             tendons: Names::new(&builder.tendons)?,
             actuators: Names::new(&builder.actuators)?,
         })

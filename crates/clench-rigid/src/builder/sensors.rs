@@ -1,112 +1,19 @@
-//! Sensors: what an author says of them, and which elements they are attached to.
+//! Sensors: which elements they are attached to, and where their numbers are.
 
 use super::element::Element;
 use super::resolve::AllNames;
-use super::{BuildError, ModelBuilder, Origin};
+use super::sensor_specs::{
+    ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
+};
+use super::{BuildError, ModelBuilder};
 use crate::model::{
-    Attachment, FrameObject, JointKind, Model, Sensor, SensorData, SensorKind, SensorTarget,
+    Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, JointKind,
+    Model, RayField, RaySource, Sensor, SensorData, SensorTarget,
 };
 use std::ops::Range;
 
-/// A kind of object with a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameKind {
-    /// The inertial frame of a body.
-    Inertial,
-    /// The frame of a body.
-    Body,
-    /// The frame of a geom.
-    Geom,
-    /// A site.
-    Site,
-}
-
-/// A frame by the name of its object.
-#[derive(Clone, Debug)]
-pub struct FrameName {
-    /// What kind of object.
-    pub kind: FrameKind,
-    /// Its name.
-    pub name: String,
-}
-
-/// A geom, or all geoms of a body, by name.
-#[derive(Clone, Debug)]
-pub enum GeomsName {
-    /// One geom.
-    Geom(String),
-    /// All geoms of a body.
-    Body(String),
-}
-
-/// What a sensor is attached to, by name; it must be what its kind's [`Attachment`] says.
-#[derive(Clone, Debug, Default)]
-pub enum SensorSubject {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// A site, joint, tendon, actuator or body.
-    Element(String),
-    /// A frame, and perhaps one relative to which it is measured.
-    Frame {
-        /// What is measured.
-        object: FrameName,
-        /// Where from; the world where nothing is said.
-        reference: Option<FrameName>,
-    },
-    /// Whether an object is inside a site.
-    Inside {
-        /// The site.
-        site: String,
-        /// The object.
-        object: FrameName,
-    },
-    /// Two geoms, or all geoms of a body.
-    Geoms([GeomsName; 2]),
-    /// So many numbers of a user's own, of this kind.
-    User(usize, SensorData),
-}
-
-/// A sensor.
-#[derive(Clone, Debug)]
-pub struct SensorSpec {
-    /// Name, possibly empty.
-    pub name: String,
-    /// What it measures.
-    pub kind: SensorKind,
-    /// Of what.
-    pub subject: SensorSubject,
-    /// Bound of its numbers, where positive.
-    pub cutoff: f64,
-    /// Standard deviation of the noise that the author expects; none is added.
-    pub noise: f64,
-    /// Where it was written.
-    pub origin: Option<Origin>,
-}
-
-impl SensorSpec {
-    /// A sensor without a name that measures an element.
-    pub fn new(kind: SensorKind, element: impl Into<String>) -> Self {
-        SensorSpec {
-            name: String::new(),
-            kind,
-            subject: SensorSubject::Element(element.into()),
-            cutoff: 0.0,
-            noise: 0.0,
-            origin: None,
-        }
-    }
-    /// With a name.
-    pub fn named(self, name: impl Into<String>) -> Self {
-        SensorSpec {
-            name: name.into(),
-            ..self
-        }
-    }
-}
-
-/// A user's sensor has at most this many numbers.
-const MAX_USER_DIM: usize = 1 << 20;
+/// A sensor has at most this many numbers.
+const MAX_DIM: usize = 1 << 20;
 
 /// Adds all sensors.
 ///
@@ -121,13 +28,13 @@ pub(super) fn add_all(
         spec.require_not_negative("cutoff", &[spec.cutoff])?;
         spec.require_not_negative("noise", &[spec.noise])?;
         let target = target(spec, names, model)?;
-        let (dim, data) = match spec.subject {
-            SensorSubject::User(dim, _) if dim > MAX_USER_DIM => {
-                return Err(spec.error(format!("has more than {MAX_USER_DIM} numbers")));
-            }
-            SensorSubject::User(dim, data) => (dim, data),
-            _ => (spec.kind.dim(), spec.kind.data()),
+        let data = match spec.subject {
+            SensorSubject::User(_, data) => data,
+            _ => spec.kind.data(),
         };
+        let dim = dim(spec, &target, model)
+            .filter(|&dim| dim <= MAX_DIM)
+            .ok_or_else(|| spec.error(format!("has more than {MAX_DIM} numbers")))?;
         // Of a distance the cutoff is how far it is searched for.
         let searched = spec.kind.attachment() == Attachment::Geoms;
         let turns = matches!(data, SensorData::Axis | SensorData::Quaternion);
@@ -147,6 +54,25 @@ pub(super) fn add_all(
         });
     }
     Ok(())
+}
+
+/// How many numbers a sensor gives; `None` where they cannot be counted.
+fn dim(spec: &SensorSpec, target: &SensorTarget, model: &Model) -> Option<usize> {
+    match (&spec.subject, target) {
+        (SensorSubject::User(dim, _), _) => Some(*dim),
+        (_, SensorTarget::Rays { source, fields }) => {
+            let rays = match source {
+                RaySource::Site(_) => 1,
+                RaySource::Camera(camera) => {
+                    let [width, height] = model.cameras[*camera].resolution;
+                    width.checked_mul(height)?
+                }
+            };
+            rays.checked_mul(fields.iter().map(|field| field.size()).sum())
+        }
+        (_, SensorTarget::Contacts(query)) => query.count.checked_mul(query.size()),
+        _ => Some(spec.kind.dim()),
+    }
 }
 
 fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTarget, BuildError> {
@@ -191,6 +117,28 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
             site: names.sites.find(site, spec)?,
             object: frame(spec, names, object)?,
         }),
+        (Attachment::Projection, Of::Projection { site, camera }) => {
+            let camera = names.cameras.find(camera, spec)?;
+            require_pixels(spec, model, camera)?;
+            Ok(SensorTarget::Projection {
+                site: names.sites.find(site, spec)?,
+                camera,
+            })
+        }
+        (Attachment::Rays, Of::Element(site)) => Ok(SensorTarget::Rays {
+            source: RaySource::Site(names.sites.find(site, spec)?),
+            fields: vec![RayField::Dist],
+        }),
+        (Attachment::Rays, Of::Rays { source, fields }) => Ok(SensorTarget::Rays {
+            source: ray_source(spec, names, model, source)?,
+            fields: match fields.is_empty() {
+                true => vec![RayField::Dist],
+                false => fields.clone(),
+            },
+        }),
+        (Attachment::Contacts, Of::Contacts(query)) => {
+            contact_query(spec, names, model, query).map(SensorTarget::Contacts)
+        }
         (Attachment::Geoms, Of::Geoms([first, second])) => {
             let sets = [
                 geoms(spec, names, model, first)?,
@@ -203,6 +151,73 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
         }
         _ => Err(spec.error(format!("must be attached to {attachment}"))),
     }
+}
+
+fn ray_source(
+    spec: &SensorSpec,
+    names: &AllNames,
+    model: &Model,
+    source: &FrameName,
+) -> Result<RaySource, BuildError> {
+    match frame(spec, names, source)? {
+        FrameObject::Site(site) => Ok(RaySource::Site(site)),
+        FrameObject::Camera(camera) => {
+            require_pixels(spec, model, camera)?;
+            Ok(RaySource::Camera(camera))
+        }
+        _ => Err(spec.error("its rays must go out from a site or a camera")),
+    }
+}
+
+fn require_pixels(spec: &SensorSpec, model: &Model, camera: usize) -> Result<(), BuildError> {
+    let camera = &model.cameras[camera];
+    match camera.resolution.contains(&0) {
+        true => Err(spec.error(format!("the camera \"{}\" has no pixels", camera.name))),
+        false => Ok(()),
+    }
+}
+
+fn contact_query(
+    spec: &SensorSpec,
+    names: &AllNames,
+    model: &Model,
+    query: &ContactQuerySpec,
+) -> Result<ContactQuery, BuildError> {
+    let side = |name: &ContactSideName| {
+        Ok::<_, BuildError>(match name {
+            ContactSideName::Any => ContactSide::Any,
+            ContactSideName::Geom(name) => ContactSide::Geom(names.geoms.find(name, spec)?),
+            ContactSideName::Body(name) => ContactSide::Body(names.bodies.find(name, spec)?),
+            ContactSideName::Subtree(name) => {
+                let root = names.bodies.find(name, spec)?;
+                ContactSide::Subtree(model.subtree(root))
+            }
+        })
+    };
+    let site = match &query.site[..] {
+        "" => None,
+        name => Some(names.sites.find(name, spec)?),
+    };
+    let [first, second] = &query.sides;
+    let mut fields = query.fields.clone();
+    if fields.is_empty() {
+        fields.push(ContactField::Found);
+    }
+    let of_velocity =
+        |field: &ContactField| matches!(field, ContactField::LinVel | ContactField::AngVel);
+    if query.reduction == ContactReduction::NetForce && fields.iter().any(of_velocity) {
+        return Err(spec.error("a net force has no linvel and no angvel"));
+    }
+    if query.count == 0 {
+        return Err(spec.error("num must be positive"));
+    }
+    Ok(ContactQuery {
+        sides: [side(first)?, side(second)?],
+        site,
+        fields,
+        reduction: query.reduction,
+        count: query.count,
+    })
 }
 
 fn check_joint(spec: &SensorSpec, name: &str, kind: JointKind) -> Result<(), BuildError> {
@@ -231,6 +246,7 @@ fn frame(
         FrameKind::Body => FrameObject::Body(names.bodies.find(name, spec)?),
         FrameKind::Geom => FrameObject::Geom(names.geoms.find(name, spec)?),
         FrameKind::Site => FrameObject::Site(names.sites.find(name, spec)?),
+        FrameKind::Camera => FrameObject::Camera(names.cameras.find(name, spec)?),
     })
 }
 

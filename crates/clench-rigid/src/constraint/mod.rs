@@ -16,6 +16,7 @@ mod weld;
 
 pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
 pub use softness::Softness;
+pub(crate) use weld::weld_torque;
 
 use crate::contact::Contact;
 use crate::model::{EqualityTarget, Model, Params};

@@ -16,6 +16,8 @@ use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
 use super::chains::{Chains, Side};
 use super::connect::Anchors;
+use crate::model::Params;
+use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Cost;
 
@@ -35,7 +37,7 @@ pub(super) fn push<T: Real>(
     let [bias1, bias2] = anchors.bias;
     let translation = anchors.separation;
     let bias_translation = bias1.linear - bias2.linear;
-    let relative = Relative::new(context, equality, bodies);
+    let relative = Relative::new(context.params, context.position, equality, bodies);
     let rotation = relative.rho.imaginary() * relative.scale;
     let bias_rotation = relative.bias(context, bodies, [bias1.angular, bias2.angular]);
     let length = (translation.norm_squared() + rotation.norm_squared()).sqrt();
@@ -57,6 +59,21 @@ pub(super) fn push<T: Real>(
     });
 }
 
+/// The torque on the first body that forces f of the last three rows mean, in world axes: Jᵀ f = R₂ s Bᵀ f, with
+/// Bᵀ f = ½ (w f + Im ρ × f). The second body takes its negative.
+pub(crate) fn weld_torque<T: Real>(
+    params: &Params<T>,
+    position: &Positions<T>,
+    equality: usize,
+    bodies: [usize; 2],
+    f: Vec3<T>,
+) -> Vec3<T> {
+    let relative = Relative::new(params, position, equality, bodies);
+    let half = T::new(0.5) * relative.scale;
+    let turned = f * relative.rho.w + relative.rho.imaginary().cross(f);
+    relative.to_second.conjugate().rotate(turned * half)
+}
+
 /// The relative orientation and what turns with it.
 struct Relative<T> {
     rho: Quat<T>,
@@ -67,8 +84,13 @@ struct Relative<T> {
 
 impl<T: Real> Relative<T> {
     #[inline(always)]
-    fn new(context: &ConstraintContext<T>, equality: usize, [body1, body2]: [usize; 2]) -> Self {
-        let (params, xquat) = (context.params, &context.position.xquat);
+    fn new(
+        params: &Params<T>,
+        position: &Positions<T>,
+        equality: usize,
+        [body1, body2]: [usize; 2],
+    ) -> Self {
+        let xquat = &position.xquat;
         let first = xquat[body1] * params.eq_quat1[equality];
         let to_second = (xquat[body2] * params.eq_quat2[equality]).conjugate();
         Relative {

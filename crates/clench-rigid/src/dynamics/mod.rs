@@ -11,6 +11,7 @@ pub mod activation;
 pub mod actuation;
 pub mod articulated;
 pub mod bias;
+pub mod camera;
 pub mod com;
 pub mod derivatives;
 pub mod energy;

@@ -23,6 +23,8 @@ lookups! {
     geom in geoms;
     /// Index of the site of that name.
     site in sites;
+    /// Index of the camera of that name.
+    camera in cameras;
     /// Index of the tendon of that name.
     tendon in tendons;
     /// Index of the actuator of that name.

@@ -9,20 +9,26 @@ pub(crate) mod flat;
 mod lookup;
 mod params;
 mod sensor;
+mod sensor_target;
 mod structure;
 
 pub use params::{ParamField, Params};
-pub use sensor::{Attachment, FrameObject, Sensor, SensorData, SensorKind, SensorTarget};
+pub use sensor::{Attachment, Sensor, SensorData, SensorKind};
+pub use sensor_target::{
+    ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, RayField, RaySource,
+    SensorTarget,
+};
 pub use structure::{
-    Actuator, BiasKind, Body, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom,
-    HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair, RowPattern, Site, Tendon,
-    Transmission,
+    Actuator, BiasKind, Body, Camera, CameraMode, Dof, DynamicsKind, Equality, EqualityTarget,
+    Flags, GainKind, Geom, HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair,
+    RowPattern, Site, Tendon, Transmission,
 };
 
 use crate::Budget;
 use clench_collide::Asset;
 use clench_solver::{RigidOptions, Tree};
 use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A model: never changes while stepping, shared by `Arc` between simulations.
@@ -42,6 +48,8 @@ pub struct Model {
     pub geoms: Vec<Geom>,
     /// Sites.
     pub sites: Vec<Site>,
+    /// Cameras.
+    pub cameras: Vec<Camera>,
     /// Fixed tendons.
     pub tendons: Vec<Tendon>,
     /// The dofs that change the length of each tendon.
@@ -102,6 +110,12 @@ impl Model {
     /// Numbers that all sensors give.
     pub fn nsensordata(&self) -> usize {
         self.sensors.last().map_or(0, |sensor| sensor.numbers.end)
+    }
+    /// A body and all below it, which are numbered depth first.
+    pub fn subtree(&self, body: usize) -> Range<usize> {
+        let below = &self.bodies[body + 1..];
+        let end = below.iter().position(|other| other.parent < body);
+        body..end.map_or(self.bodies.len(), |end| body + 1 + end)
     }
     /// The hull or the heights of a geom that is a mesh or a height field.
     #[inline(always)]

@@ -184,6 +184,23 @@ params! {
     /// Orientation in the body frame.
     site_quat: Vec<Quat<T>>, Quaternion;
 
+    /// Position in the body frame.
+    cam_pos: Vec<Vec3<T>>, Finite;
+    /// Orientation in the body frame.
+    cam_quat: Vec<Quat<T>>, Quaternion;
+    /// From the body to the camera in the initial configuration, world axes.
+    cam_pos0: Vec<Vec3<T>>, Finite;
+    /// From the centre of mass of the body and all below it to the camera, likewise.
+    cam_poscom0: Vec<Vec3<T>>, Finite;
+    /// Orientation in the initial configuration, row by row.
+    cam_mat0: Vec<[T; 9]>, Finite;
+    /// Vertical field of view, degrees; where lines of sight are parallel, the height of the picture.
+    cam_fovy: Vec<T>, Finite;
+    /// Size of the sensor, width and height; both zero: the field of view is `cam_fovy`.
+    cam_sensorsize: Vec<[T; 2]>, Finite;
+    /// Focal length and principal point, two numbers each.
+    cam_intrinsic: Vec<[T; 4]>, Finite;
+
     /// Coefficients of fixed tendons, tendon after tendon.
     wrap_coef: Vec<T>, Finite;
     /// Spring stiffness.

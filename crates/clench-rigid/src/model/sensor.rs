@@ -1,5 +1,6 @@
 //! What a model measures: the table of kinds of sensor, and the sensors of a model.
 
+use super::sensor_target::SensorTarget;
 use crate::builder::Origin;
 use std::fmt;
 use std::ops::Range;
@@ -29,8 +30,14 @@ pub enum Attachment {
     WorldFrame,
     /// A site, and an object that may be inside it.
     Inside,
+    /// A site, and a camera that sees it.
+    Projection,
+    /// A site or a camera, from which rays go out.
+    Rays,
     /// Two geoms, or all geoms of a body.
     Geoms,
+    /// The contacts between two sides.
+    Contacts,
     /// Numbers of a user's program: it is zero here.
     User,
 }
@@ -48,7 +55,10 @@ impl fmt::Display for Attachment {
             Attachment::Body => "a body",
             Attachment::Frame | Attachment::WorldFrame => "a frame",
             Attachment::Inside => "a site and an object",
+            Attachment::Projection => "a site and a camera",
+            Attachment::Rays => "a site or a camera",
             Attachment::Geoms => "two geoms or bodies",
+            Attachment::Contacts => "two sides of contacts",
             Attachment::User => "numbers of a user's own",
         })
     }
@@ -87,7 +97,7 @@ macro_rules! sensor_kinds {
             pub fn attachment(self) -> Attachment {
                 match self { $(SensorKind::$kind => Attachment::$attachment,)* }
             }
-            /// How many numbers it gives; a user's sensor says so itself.
+            /// How many numbers it gives; 0 where a sensor says so itself.
             pub fn dim(self) -> usize {
                 match self { $(SensorKind::$kind => $dim,)* }
             }
@@ -114,8 +124,10 @@ sensor_kinds! {
     Torque "torque" Site 3 Real;
     /// The magnetic field in the site's frame.
     Magnetometer "magnetometer" Site 3 Real;
-    /// Distance to the nearest geom along the site's z axis, −1 where there is none, m.
-    Rangefinder "rangefinder" Site 1 Real;
+    /// Where rays first meet a geom: one ray along a site's z axis, or one through each pixel of a camera.
+    Rangefinder "rangefinder" Rays 0 Real;
+    /// Where a camera sees a site, in pixels from the upper left corner of its picture.
+    CamProjection "camprojection" Projection 2 Real;
     /// Position of a slide or hinge joint, m or rad.
     JointPos "jointpos" ScalarJoint 1 Real;
     /// Its velocity.
@@ -182,6 +194,8 @@ sensor_kinds! {
     Normal "normal" Geoms 3 Axis;
     /// The nearest points of both; zero where they are further apart, m.
     FromTo "fromto" Geoms 6 Real;
+    /// What contacts between two sides are and do: a fixed number of them, zeros where there are fewer.
+    Contact "contact" Contacts 0 Real;
     /// Potential energy, J.
     PotentialEnergy "e_potential" Nothing 1 Real;
     /// Kinetic energy, J.
@@ -198,44 +212,6 @@ impl SensorKind {
         let mut kinds = SensorKind::ALL.iter().copied();
         kinds.find(|kind| kind.name() == name)
     }
-}
-
-/// A frame that a sensor measures, or relative to which it does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameObject {
-    /// The inertial frame of a body.
-    Inertial(usize),
-    /// The frame of a body.
-    Body(usize),
-    /// The frame of a geom.
-    Geom(usize),
-    /// A site.
-    Site(usize),
-}
-
-/// What a sensor measures.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SensorTarget {
-    /// The whole simulation, or what only a user's program knows.
-    Nothing,
-    /// An element, of the kind that the sensor's [`Attachment`] names.
-    Element(usize),
-    /// A frame, and one relative to which it is measured (else the world).
-    Frame {
-        /// What is measured.
-        object: FrameObject,
-        /// Where from.
-        reference: Option<FrameObject>,
-    },
-    /// Whether an object is inside a site.
-    Inside {
-        /// The site.
-        site: usize,
-        /// The object.
-        object: FrameObject,
-    },
-    /// Two sets of geoms.
-    Geoms([Range<usize>; 2]),
 }
 
 /// A sensor.

@@ -4,7 +4,7 @@
 //! force, the first its negative; a connect or weld pulls its first body along its rows, and the second against them.
 
 use super::Source;
-use crate::constraint::ConstraintSource;
+use crate::constraint::{ConstraintSource, weld_torque};
 use crate::model::EqualityTarget;
 use crate::workspace::Workspace;
 use clench_math::{Force, Real, Vec3};
@@ -79,7 +79,7 @@ fn accumulate<T: Real, const N: usize>(row: &mut [T], values: [T; N]) {
 }
 
 /// The forces of a block's rows, zero in the lanes that do not have it.
-fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
+pub(crate) fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
     let active = ws.record.blocks[block].active;
     let mut forces = [T::ZERO; 6];
     let found = &ws.solver.force()[ws.problem.block(block).rows()];
@@ -104,7 +104,7 @@ fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<
     }
 }
 
-/// Shows every connect and weld: its bodies, and its rows as a force at the anchor of each.
+/// Shows every connect and weld: its bodies, and the force on the first at the anchor of each.
 fn each_joint_of_bodies<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], [Wrench<T>; 2])) {
     let (pos, params) = (&s.ws.position, s.params);
     for (block, record) in s.ws.record.blocks.iter().enumerate() {
@@ -117,9 +117,14 @@ fn each_joint_of_bodies<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2],
             continue;
         };
         let [x, y, z, turn_x, turn_y, turn_z] = rows(s.ws, block);
+        let turn = Vec3::new(turn_x, turn_y, turn_z);
+        let couple = match s.model.equalities[e].target {
+            EqualityTarget::Weld { .. } => weld_torque(params, pos, e, [body1, body2], turn),
+            _ => Vec3::ZERO,
+        };
         let at = |body: usize, anchor: Vec3<T>| Wrench {
             force: Vec3::new(x, y, z),
-            couple: Vec3::new(turn_x, turn_y, turn_z),
+            couple,
             at: pos.xpos[body] + pos.xmat[body] * anchor,
         };
         let wrenches = [

@@ -4,16 +4,18 @@
 
 mod forces;
 
-pub(crate) use forces::external as external_forces;
+pub(crate) use forces::{external as external_forces, rows as block_force};
 
+use crate::dynamics::camera::camera_pose;
 use crate::dynamics::energy::energy;
 use crate::error::SimError;
 use crate::known::Extent;
 use crate::model::{Model, Params};
 use crate::pipeline::position_stage;
+use crate::sensor::bodies::{BodyForces, update as update_body_forces};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Inertia, Mat3, Motion, Quat, Real, Vec3};
+use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
 
 /// All that outputs are read from.
 pub(crate) struct Source<'a, T: Real> {
@@ -96,6 +98,10 @@ outputs! {
     site_xpos [m.sites.len(), 3] of Positions => vectors(&s.ws.position.site_xpos, out);
     /// Orientations of sites, row by row (nsite, 9).
     site_xmat [m.sites.len(), 9] of Positions => matrices(&s.ws.position.site_xmat, out);
+    /// Positions of cameras, m (ncam, 3).
+    cam_xpos [m.cameras.len(), 3] of Positions => cameras(s, |(place, _)| out.extend(place.to_array()));
+    /// Orientations of cameras, row by row (ncam, 9).
+    cam_xmat [m.cameras.len(), 9] of Positions => cameras(s, |(_, axes)| matrices(&[axes], out));
     /// Centre of mass of each body and all below it, m (nbody, 3).
     subtree_com [m.nbody(), 3] of Positions => vectors(&s.ws.position.subtree_com, out);
     /// Inertia of each body about the centre of mass of its tree: xx, yy, zz, xy, xz, yz, mass times offset, mass
@@ -128,8 +134,13 @@ outputs! {
     /// Constraint forces along dofs (nv).
     qfrc_constraint [m.nv] of Everything => out.extend_from_slice(&s.ws.qfrc_constraint);
     /// What acts on each body from outside: applied forces, contacts, connects and welds. Torque, then force, about the
-    /// centre of mass of its tree (nbody, 6). As in MuJoCo, a weld's rotational rows count as its torque.
+    /// centre of mass of its tree (nbody, 6).
     cfrc_ext [m.nbody(), 6] of Everything => forces::external(s, out);
+    /// What each body's joints carry: the torque, then the force of its parent on it, about the centre of mass of its tree (nbody, 6).
+    cfrc_int [m.nbody(), 6] of Everything => wrenches(&body_forces(s).cfrc_int, out);
+    /// Acceleration of each body with gravity's upward reaction, angular, then linear at the centre of mass of its tree
+    /// (nbody, 6).
+    cacc [m.nbody(), 6] of Everything => motions(&body_forces(s).cacc, out);
     /// Force and torque of contacts on each body at its centre of mass, world axes (nbody, 6), in the form of `xfrc_applied`.
     contact_force [m.nbody(), 6] of Everything => forces::of_contacts(s, out);
     /// How many contacts there are.
@@ -165,6 +176,11 @@ fn vectors<T: Real>(values: &[Vec3<T>], out: &mut Vec<T>) {
     out.extend(values.iter().flat_map(|v| v.to_array()));
 }
 
+fn cameras<T: Real>(s: &Source<T>, show: impl FnMut((Vec3<T>, Mat3<T>))) {
+    let pose = |c: usize| camera_pose(s.model, s.params, &s.ws.position, c);
+    (0..s.model.cameras.len()).map(pose).for_each(show);
+}
+
 fn quats<T: Real>(values: &[Quat<T>], out: &mut Vec<T>) {
     out.extend(values.iter().flat_map(|q| q.to_array()));
 }
@@ -175,6 +191,15 @@ fn matrices<T: Real>(values: &[Mat3<T>], out: &mut Vec<T>) {
 
 fn motions<T: Real>(values: &[Motion<T>], out: &mut Vec<T>) {
     out.extend(values.iter().flat_map(|v| v.to_array()));
+}
+
+fn wrenches<T: Real>(values: &[Force<T>], out: &mut Vec<T>) {
+    out.extend(values.iter().flat_map(|f| f.to_array()));
+}
+
+fn body_forces<'a, T: Real>(s: &'a mut Source<T>) -> &'a BodyForces<T> {
+    update_body_forces(s.model, s.params, s.state, s.ws);
+    &s.ws.sensors.bodies
 }
 
 fn inertias<T: Real>(values: &[Inertia<T>], out: &mut Vec<T>) {

@@ -12,7 +12,7 @@ use clench_math::{Force, Motion, Real, Vec3, kernel};
 
 /// Accelerations of bodies, and what their joints carry.
 #[derive(Clone, Debug)]
-pub(super) struct BodyForces<T> {
+pub(crate) struct BodyForces<T> {
     /// Spatial accelerations about the centre of mass of each body's tree, gravity's upward reaction included (nbody).
     pub cacc: Vec<Motion<T>>,
     /// Force of each body's parent on it through their joints, about the same point (nbody).
@@ -23,15 +23,18 @@ pub(super) struct BodyForces<T> {
 
 impl<T: Real> BodyForces<T> {
     pub fn new(model: &Model) -> Self {
-        let count = match model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {
-            true => model.nbody(),
-            false => 0,
-        };
-        BodyForces {
-            cacc: vec![Motion::ZERO; count],
-            cfrc_int: vec![Force::ZERO; count],
-            external: Vec::with_capacity(6 * count),
+        let mut bodies = BodyForces::default();
+        if model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {
+            bodies.make_room(model.nbody());
         }
+        bodies
+    }
+
+    fn make_room(&mut self, count: usize) {
+        self.cacc.resize(count, Motion::ZERO);
+        self.cfrc_int.resize(count, Force::ZERO);
+        self.external.clear();
+        self.external.reserve(6 * count);
     }
 }
 
@@ -49,14 +52,14 @@ pub(super) fn is_needed(kind: SensorKind) -> bool {
 
 /// Computes accelerations and forces from the last forward pass.
 #[kernel]
-pub(super) fn update<T: Real>(
+pub(crate) fn update<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
     let mut bodies = std::mem::take(&mut ws.sensors.bodies);
-    bodies.external.clear();
+    bodies.make_room(model.nbody());
     let source = Source {
         model,
         params,
@@ -64,21 +67,24 @@ pub(super) fn update<T: Real>(
         ws,
     };
     external_forces(&source, &mut bodies.external);
-    let gravity = match model.flags.gravity {
-        true => params.gravity,
-        false => Vec3::ZERO,
-    };
-    bodies.cacc[0] = Motion::new(Vec3::ZERO, -gravity);
+    // The bias accelerations have gravity and all that velocities cause; the joints' own accelerations come to them.
+    bodies.cacc[0] = Motion::ZERO;
     bodies.cfrc_int[0] = Force::ZERO;
     for (b, body) in model.bodies.iter().enumerate().skip(1) {
         let mut cacc = bodies.cacc[body.parent];
         for i in body.dofs.clone() {
-            cacc += ws.velocity.cdof_dot[i] * state.qvel[i] + ws.position.cdof[i] * ws.qacc[i];
+            cacc += ws.position.cdof[i] * ws.qacc[i];
         }
+        bodies.cacc[b] = cacc;
+    }
+    for b in 0..model.nbody() {
+        bodies.cacc[b] += ws.force.cacc[b];
+    }
+    for b in 1..model.nbody() {
+        let cacc = bodies.cacc[b];
         let (inertia, cvel) = (ws.position.cinert[b], ws.velocity.cvel[b]);
         let external = &bodies.external[6 * b..6 * b + 6];
         let external = Force::new(Vec3::from_slice(external), Vec3::from_slice(&external[3..]));
-        bodies.cacc[b] = cacc;
         bodies.cfrc_int[b] = inertia * cacc + cvel.cross_force(inertia * cvel) - external;
     }
     for b in (1..model.nbody()).rev() {
@@ -121,11 +127,7 @@ impl<T: Real> Reading<'_, T> {
     pub(super) fn subtree(&self, body: usize) -> Subtree<T> {
         let (model, pos) = (self.model, &self.ws.position);
         let mut momentum = Force::ZERO;
-        for b in body..model.nbody() {
-            // Bodies are numbered depth first: a subtree ends where a body hangs on one before it.
-            if b > body && model.bodies[b].parent < body {
-                break;
-            }
+        for b in model.subtree(body) {
             let root = pos.subtree_com[model.bodies[b].root];
             let own = pos.cinert[b] * self.ws.velocity.cvel[b];
             // From the centre of mass of the body's tree to the world's origin, which all trees share.

@@ -4,6 +4,7 @@
 //! velocity Rᵀ(ω' − ω) and the linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
 use super::Reading;
+use crate::dynamics::camera::camera_pose;
 use crate::model::{FrameObject, SensorKind};
 use clench_math::{Mat3, Motion, Quat, Real, Vec3};
 
@@ -51,6 +52,7 @@ impl<T: Real> Reading<'_, T> {
             FrameObject::Inertial(body) | FrameObject::Body(body) => body,
             FrameObject::Geom(geom) => self.model.geoms[geom].body,
             FrameObject::Site(site) => self.model.sites[site].body,
+            FrameObject::Camera(camera) => self.model.cameras[camera].body,
         }
     }
 
@@ -62,17 +64,19 @@ impl<T: Real> Reading<'_, T> {
             FrameObject::Body(body) => pos.xpos[body],
             FrameObject::Geom(geom) => pos.geom_xpos[geom],
             FrameObject::Site(site) => pos.site_xpos[site],
+            FrameObject::Camera(camera) => self.camera(camera).0,
         }
     }
 
     /// Its axes as columns.
-    fn rotation(&self, object: FrameObject) -> &Mat3<T> {
+    pub(super) fn rotation(&self, object: FrameObject) -> Mat3<T> {
         let pos = &self.ws.position;
         match object {
-            FrameObject::Inertial(body) => &pos.ximat[body],
-            FrameObject::Body(body) => &pos.xmat[body],
-            FrameObject::Geom(geom) => &pos.geom_xmat[geom],
-            FrameObject::Site(site) => &pos.site_xmat[site],
+            FrameObject::Inertial(body) => pos.ximat[body],
+            FrameObject::Body(body) => pos.xmat[body],
+            FrameObject::Geom(geom) => pos.geom_xmat[geom],
+            FrameObject::Site(site) => pos.site_xmat[site],
+            FrameObject::Camera(camera) => self.camera(camera).1,
         }
     }
 
@@ -84,7 +88,13 @@ impl<T: Real> Reading<'_, T> {
             FrameObject::Body(_) => body,
             FrameObject::Geom(geom) => body * params.geom_quat[geom],
             FrameObject::Site(site) => body * params.site_quat[site],
+            // As if it were fixed to its body, whatever it follows: so it is in MuJoCo.
+            FrameObject::Camera(camera) => body * params.cam_quat[camera],
         }
+    }
+
+    fn camera(&self, camera: usize) -> (Vec3<T>, Mat3<T>) {
+        camera_pose(self.model, self.params, &self.ws.position, camera)
     }
 
     fn relative_position(&self, object: FrameObject, reference: Option<FrameObject>) -> Vec3<T> {

@@ -3,7 +3,9 @@
 //! The kinds are a table in `model/sensor.rs`; here stands how each is read. A file a subject: frames in motion, forces between
 //! bodies, limits, volumes of sites, distances, rays.
 
-mod bodies;
+pub(crate) mod bodies;
+mod camera;
+mod contact;
 mod distance;
 mod frame;
 mod limit;
@@ -28,7 +30,8 @@ pub struct SensorReadings<T> {
     pub wanted: bool,
     /// All numbers, sensor after sensor (nsensordata).
     pub data: Vec<T>,
-    bodies: BodyForces<T>,
+    /// Accelerations of bodies and forces between them, where anybody asked for them.
+    pub(crate) bodies: BodyForces<T>,
 }
 
 impl<T: Real> SensorReadings<T> {
@@ -66,11 +69,16 @@ pub(crate) fn evaluate<T: Real>(
     for sensor in &model.sensors {
         let out = &mut data[sensor.numbers.clone()];
         source.read(sensor, out);
-        if sensor.cutoff > 0.0 && sensor.kind != SensorKind::FromTo {
+        if sensor.cutoff > 0.0 && is_clipped(sensor.kind) {
             clip(sensor, out);
         }
     }
     ws.sensors.data = data;
+}
+
+/// Whether a cutoff holds the numbers of a kind of sensor within it.
+fn is_clipped(kind: SensorKind) -> bool {
+    !matches!(kind, SensorKind::FromTo | SensorKind::Contact)
 }
 
 /// Holds numbers within the cutoff.
@@ -114,6 +122,9 @@ impl<'a, T: Real> Reading<'a, T> {
             SensorTarget::Inside { site, object } => {
                 out[0] = self.is_inside(*site, self.position(*object));
             }
+            SensorTarget::Projection { site, camera } => self.project(*site, *camera, out),
+            SensorTarget::Rays { source, fields } => self.read_rays(*source, fields, out),
+            SensorTarget::Contacts(query) => self.read_contacts(query, out),
             SensorTarget::Geoms(sets) => self.read_distance(sensor, sets, out),
         }
     }
@@ -147,7 +158,6 @@ impl<'a, T: Real> Reading<'a, T> {
             Kind::Force => local(self.force_at(element).linear).write(out),
             Kind::Torque => local(self.force_at(element).angular).write(out),
             Kind::Magnetometer => local(self.params.magnetic).write(out),
-            Kind::Rangefinder => out[0] = self.range(element),
             Kind::JointPos => out[0] = state.qpos[joint().qpos],
             Kind::JointVel => out[0] = state.qvel[joint().dof],
             Kind::JointActuatorFrc => out[0] = ws.force.qfrc_actuator[joint().dof],

@@ -1,24 +1,72 @@
-//! Rangefinders: the nearest geom along a site's z axis, geoms of the site's own body and invisible ones left out.
+//! Rangefinders: the nearest geom along rays from a site or a camera, geoms of its own body and invisible ones left out.
 
 use super::Reading;
+use crate::dynamics::camera::camera_pose;
+use crate::model::{RayField, RaySource};
 use crate::query::RayFilter;
 use clench_collide::Ray;
-use clench_math::Real;
+use clench_math::{Real, Vec3};
 
 impl<T: Real> Reading<'_, T> {
-    /// The distance from a site to what its z axis hits, −1 where that is nothing.
-    pub(super) fn range(&self, site: usize) -> T {
+    /// What rays meet, ray after ray.
+    pub(super) fn read_rays(&self, source: RaySource, fields: &[RayField], out: &mut [T]) {
         let pos = &self.ws.position;
-        let line = Ray {
-            origin: pos.site_xpos[site],
-            direction: pos.site_xmat[site].column(2),
-        };
+        match source {
+            RaySource::Site(site) => {
+                let axis = pos.site_xmat[site].column(2);
+                let line = Ray {
+                    origin: pos.site_xpos[site],
+                    direction: axis,
+                };
+                self.read_ray(&line, self.model.sites[site].body, axis, fields, out);
+            }
+            RaySource::Camera(camera) => {
+                let body = self.model.cameras[camera].body;
+                let axis = -camera_pose(self.model, self.params, pos, camera)
+                    .1
+                    .column(2);
+                let size: usize = fields.iter().map(|field| field.size()).sum();
+                self.lines_of_sight(camera, |i, line| {
+                    self.read_ray(line, body, axis, fields, &mut out[size * i..][..size]);
+                });
+            }
+        }
+    }
+
+    /// What one ray meets, from a sensor on `body` that looks along `axis`.
+    fn read_ray(
+        &self,
+        line: &Ray<T>,
+        body: usize,
+        axis: Vec3<T>,
+        fields: &[RayField],
+        mut out: &mut [T],
+    ) {
         let filter = RayFilter {
-            excluded_body: Some(self.model.sites[site].body),
+            excluded_body: Some(body),
             ..RayFilter::default()
         };
-        let (_, hit) = self.geoms().first_hit(&line, &filter);
+        let (_, hit) = self.geoms().first_hit(line, &filter);
         let found = hit.distance.lt(T::new(f64::INFINITY));
-        T::select(found, hit.distance, -T::ONE)
+        let distance = T::select(found, hit.distance, T::ZERO);
+        let where_found = |v: Vec3<T>| Vec3::select(found, v, Vec3::ZERO);
+        for field in fields {
+            let (numbers, rest) = out.split_at_mut(field.size());
+            match field {
+                RayField::Dist => numbers[0] = T::select(found, distance, -T::ONE),
+                RayField::Dir => where_found(line.direction).write(numbers),
+                RayField::Origin => line.origin.write(numbers),
+                RayField::Point => {
+                    let point = line.origin + line.direction * distance;
+                    where_found(point).write(numbers);
+                }
+                RayField::Normal => where_found(hit.normal).write(numbers),
+                RayField::Depth => {
+                    let depth = distance * line.direction.dot(axis);
+                    numbers[0] = T::select(found, depth, -T::ONE);
+                }
+            }
+            out = rest;
+        }
     }
 }

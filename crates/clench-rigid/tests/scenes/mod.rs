@@ -3,17 +3,17 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod sensors;
 
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 use clench_rigid::Sim;
 use clench_rigid::builder::{
-    ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName,
-    GeomMass, GeomSpec, GeomsName, JointSpec, KeyframeSpec, MeshSpec, ModelBuilder, SensorSpec,
-    SensorSubject, SiteSpec, TendonSpec, TransmissionSpec,
+    ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
+    JointSpec, KeyframeSpec, MeshSpec, ModelBuilder, TendonSpec, TransmissionSpec,
 };
 use clench_rigid::constraint::softness::impedance;
-use clench_rigid::model::{Attachment, JointKind, SensorData, SensorKind};
+use clench_rigid::model::JointKind;
 use clench_solver::RigidOptions;
 pub use common::*;
 
@@ -356,80 +356,8 @@ pub fn everything() -> ModelBuilder {
         TransmissionSpec::Joint("hinge".into()),
         0.5,
     ));
-    add_sensors(&mut b);
+    sensors::add(&mut b);
     b
-}
-
-/// Adds a sensor of every kind to [`everything`], those of frames with and without a reference.
-fn add_sensors(b: &mut ModelBuilder) {
-    let sites = [
-        ("trunk", "imu", ShapeKind::Box, [0.12, 0.22, 0.15]),
-        ("hand", "palm", ShapeKind::Ellipsoid, [0.15, 0.2, 0.12]),
-    ];
-    for (body, name, kind, size) in sites {
-        let body = b.bodies.iter_mut().find(|found| found.name == body);
-        body.expect("it is there").sites.push(SiteSpec {
-            name: name.into(),
-            pos: Vec3::from_f64([0.03, -0.02, -0.04]),
-            quat: Quat::new(0.8, 0.36, 0.0, 0.48),
-            kind,
-            size,
-            ..SiteSpec::default()
-        });
-    }
-    let frame = |kind, name: &str| FrameName {
-        kind,
-        name: name.into(),
-    };
-    for &kind in SensorKind::ALL {
-        let element = match kind.attachment() {
-            Attachment::Site => "palm",
-            Attachment::ScalarJoint => "slide",
-            Attachment::Ball => "ball",
-            Attachment::Joint => "elbow",
-            Attachment::Tendon => "span",
-            Attachment::Actuator => &b.actuators[0].name,
-            _ => "arm",
-        };
-        let mut sensor = SensorSpec::new(kind, element);
-        let object = frame(FrameKind::Inertial, "hand");
-        match kind.attachment() {
-            Attachment::Nothing => sensor.subject = SensorSubject::Nothing,
-            Attachment::Frame => {
-                sensor.subject = SensorSubject::Frame {
-                    object: object.clone(),
-                    reference: Some(frame(FrameKind::Site, "imu")),
-                };
-                b.sensors.push(sensor.clone());
-                sensor.subject = SensorSubject::Frame {
-                    object,
-                    reference: None,
-                };
-            }
-            Attachment::WorldFrame => {
-                sensor.subject = SensorSubject::Frame {
-                    object: frame(FrameKind::Body, "arm"),
-                    reference: None,
-                };
-            }
-            Attachment::Inside => {
-                sensor.subject = SensorSubject::Inside {
-                    site: "palm".into(),
-                    object,
-                };
-            }
-            Attachment::Geoms => {
-                sensor.subject = SensorSubject::Geoms([
-                    GeomsName::Body("trunk".into()),
-                    GeomsName::Body("hand".into()),
-                ]);
-                sensor.cutoff = f64::from(u8::from(kind == SensorKind::Distance));
-            }
-            Attachment::User => sensor.subject = SensorSubject::User(2, SensorData::Real),
-            _ => {}
-        }
-        b.sensors.push(sensor);
-    }
 }
 
 /// Moves a simulation of [`everything`] to a random state.

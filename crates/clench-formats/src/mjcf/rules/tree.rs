@@ -74,12 +74,13 @@ pub(super) const RULES: &[Rule] = &[
         later: "mesh",
         ..NONE
     },
-    ignored(
-        "camera",
-        "name class mode target pos quat axisangle euler xyaxes zaxis projection fovy ipd resolution output \
-        focal focalpixel principal principalpixel sensorsize user",
-        "",
-    ),
+    Rule {
+        element: "camera",
+        read: "name class mode target pos quat axisangle euler xyaxes zaxis projection fovy resolution focal \
+            focalpixel principal principalpixel sensorsize",
+        ignored: "ipd output user",
+        ..NONE
+    },
     ignored(
         "light",
         "name class mode target pos dir type directional castshadow active bulbradius intensity range \

@@ -55,6 +55,8 @@ pub struct Body {
     pub geoms: Range<usize>,
     /// Its sites.
     pub sites: Range<usize>,
+    /// Its cameras.
+    pub cameras: Range<usize>,
     /// Index among mocap bodies.
     pub mocap: Option<usize>,
     /// Last dof of the nearest ancestor-or-self that has any: the end of the chain that moves this body.

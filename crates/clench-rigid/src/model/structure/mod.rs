@@ -2,6 +2,7 @@
 
 mod actuator;
 mod body;
+mod camera;
 mod equality;
 mod geom;
 mod keyframe;
@@ -11,6 +12,7 @@ mod tendon;
 
 pub use actuator::{Actuator, BiasKind, DynamicsKind, GainKind, Transmission};
 pub use body::{Body, Dof, Joint, JointKind, Site};
+pub use camera::{Camera, CameraMode};
 pub use equality::{Equality, EqualityTarget};
 pub use geom::{Geom, HeightField, Mesh, Pair};
 pub use keyframe::Keyframe;

@@ -1,0 +1,153 @@
+//! `<camera>`: a frame that follows bodies, and what is seen from it. Only sensors ask.
+
+use super::compiler::CompilerOptions;
+use super::document::Element;
+use super::orientation::{Orientation, Pose};
+use crate::LoadError;
+use clench_math::Vec3;
+use clench_rigid::builder::{CameraLens, CameraSpec, CameraTracking};
+
+/// A camera as it is written, or as a default class has it.
+#[derive(Clone, Debug)]
+pub(crate) struct CameraDraft {
+    mode: Mode,
+    pos: [f64; 3],
+    orientation: Orientation,
+    orthographic: bool,
+    fovy: f64,
+    resolution: [i32; 2],
+    sensorsize: [f64; 2],
+    focal: Lengths,
+    principal: Lengths,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Mode {
+    Fixed,
+    Track,
+    TrackCom,
+    TargetBody,
+    TargetBodyCom,
+}
+
+/// Two lengths on the sensor, in metres or in pixels, which go before where they are not zero.
+#[derive(Clone, Copy, Debug, Default)]
+struct Lengths {
+    metres: [f64; 2],
+    pixels: [f64; 2],
+}
+
+impl Default for CameraDraft {
+    fn default() -> Self {
+        CameraDraft {
+            mode: Mode::Fixed,
+            pos: [0.0; 3],
+            orientation: Orientation::default(),
+            orthographic: false,
+            fovy: 45.0,
+            resolution: [1; 2],
+            sensorsize: [0.0; 2],
+            focal: Lengths::default(),
+            principal: Lengths::default(),
+        }
+    }
+}
+
+impl CameraDraft {
+    /// Overwrites what the element gives.
+    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+        let modes = [
+            ("fixed", Mode::Fixed),
+            ("track", Mode::Track),
+            ("trackcom", Mode::TrackCom),
+            ("targetbody", Mode::TargetBody),
+            ("targetbodycom", Mode::TargetBodyCom),
+        ];
+        element.set_keyword("mode", &modes, &mut self.mode)?;
+        element.set_numbers("pos", &mut self.pos)?;
+        self.orientation.read(element)?;
+        let projections = [("perspective", false), ("orthographic", true)];
+        element.set_keyword("projection", &projections, &mut self.orthographic)?;
+        element.at_most_one(&["fovy", "sensorsize"])?;
+        element.set_number("fovy", &mut self.fovy)?;
+        match element.integers("resolution")?[..] {
+            [] => {}
+            [width, height] => self.resolution = [width, height],
+            _ => return Err(element.error("resolution needs 2 numbers: width and height")),
+        }
+        element.set_numbers("sensorsize", &mut self.sensorsize)?;
+        element.set_numbers("focal", &mut self.focal.metres)?;
+        element.set_numbers("focalpixel", &mut self.focal.pixels)?;
+        element.set_numbers("principal", &mut self.principal.metres)?;
+        element.set_numbers("principalpixel", &mut self.principal.pixels)
+    }
+
+    /// The camera in its body, carried along with the frame that it is written in.
+    pub fn finish(
+        self,
+        element: &Element,
+        compiler: &CompilerOptions,
+        frame: &Pose,
+    ) -> Result<CameraSpec, LoadError> {
+        let pose = frame.then(Pose {
+            pos: Vec3::from_array(self.pos),
+            quat: self.orientation.resolve(compiler, element)?,
+        });
+        let target = || element.string("target");
+        Ok(CameraSpec {
+            name: element.string("name"),
+            pos: pose.pos,
+            quat: pose.quat,
+            tracking: match self.mode {
+                Mode::Fixed => CameraTracking::Fixed,
+                Mode::Track => CameraTracking::Track,
+                Mode::TrackCom => CameraTracking::TrackCom,
+                Mode::TargetBody => CameraTracking::TargetBody(target()),
+                Mode::TargetBodyCom => CameraTracking::TargetBodyCom(target()),
+            },
+            orthographic: self.orthographic,
+            lens: self.lens(element)?,
+            resolution: self.resolution.map(|n| usize::try_from(n).unwrap_or(0)),
+            origin: Some(element.origin.clone()),
+        })
+    }
+
+    fn lens(&self, element: &Element) -> Result<CameraLens, LoadError> {
+        if self.sensorsize.iter().all(|&size| size > 0.0) {
+            if self.resolution.iter().any(|&n| n <= 0) {
+                return Err(element.error("a sensorsize needs a positive resolution"));
+            }
+            return Ok(CameraLens::Intrinsic {
+                sensorsize: self.sensorsize.map(stored),
+                focal: self.on_sensor(self.focal),
+                principal: self.on_sensor(self.principal),
+            });
+        }
+        if self.focal.is_given() || self.principal.is_given() {
+            let message = "a focal length or a principal point needs a sensorsize";
+            return Err(element.error(message));
+        }
+        Ok(CameraLens::FieldOfView(self.fovy))
+    }
+
+    fn on_sensor(&self, lengths: Lengths) -> [f64; 2] {
+        if lengths.pixels == [0.0; 2] {
+            return lengths.metres.map(stored);
+        }
+        [0, 1].map(|i| {
+            let pixel = self.sensorsize[i] / f64::from(self.resolution[i]);
+            stored(lengths.pixels[i] * pixel)
+        })
+    }
+}
+
+impl Lengths {
+    fn is_given(&self) -> bool {
+        (self.metres, self.pixels) != ([0.0; 2], [0.0; 2])
+    }
+}
+
+/// A number as MuJoCo stores lengths of lenses: in single precision.
+fn stored(number: f64) -> f64 {
+    f64::from(number as f32)
+}

@@ -1,0 +1,154 @@
+//! Cameras: what an author says of them, what they are aimed at, and their frames at qpos0.
+
+use super::geoms::{Moved, place};
+use super::resolve::AllNames;
+use super::{BuildError, ModelBuilder, Origin};
+use crate::dynamics::camera::fixed_pose;
+use crate::model::{Camera, CameraMode, Model};
+use crate::workspace::Positions;
+use clench_math::{Quat, Vec3};
+
+/// How a camera's frame follows bodies.
+#[derive(Clone, Debug, Default)]
+pub enum CameraTracking {
+    /// Fixed to its body.
+    #[default]
+    Fixed,
+    /// At a constant offset from its body in world axes, with a constant orientation.
+    Track,
+    /// The same from the centre of mass of its body and all below it.
+    TrackCom,
+    /// Fixed in place to its body, turned towards the body of that name; fixed altogether where it is empty.
+    TargetBody(String),
+    /// Turned towards the centre of mass of that body and all below it.
+    TargetBodyCom(String),
+}
+
+/// What a camera sees at once.
+#[derive(Clone, Copy, Debug)]
+pub enum CameraLens {
+    /// The vertical field of view, degrees; with parallel lines of sight, the height of the picture, m.
+    FieldOfView(f64),
+    /// A pinhole before a sensor.
+    Intrinsic {
+        /// Width and height of the sensor, m.
+        sensorsize: [f64; 2],
+        /// Horizontal and vertical focal length, m.
+        focal: [f64; 2],
+        /// Offset of the principal point, m.
+        principal: [f64; 2],
+    },
+}
+
+/// A camera: it looks along the negative z axis of its frame, x to the right and y up.
+#[derive(Clone, Debug)]
+pub struct CameraSpec {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Position in the body frame, m.
+    pub pos: Vec3<f64>,
+    /// Orientation in the body frame.
+    pub quat: Quat<f64>,
+    /// How its frame follows bodies.
+    pub tracking: CameraTracking,
+    /// Whether its lines of sight are parallel.
+    pub orthographic: bool,
+    /// What it sees at once.
+    pub lens: CameraLens,
+    /// Pixels: width, height.
+    pub resolution: [usize; 2],
+    /// Where it was written.
+    pub origin: Option<Origin>,
+}
+
+/// One pixel that sees 45 degrees, as in MuJoCo.
+impl Default for CameraSpec {
+    fn default() -> Self {
+        CameraSpec {
+            name: String::new(),
+            pos: Vec3::ZERO,
+            quat: Quat::IDENTITY,
+            tracking: CameraTracking::Fixed,
+            orthographic: false,
+            lens: CameraLens::FieldOfView(45.0),
+            resolution: [1; 2],
+            origin: None,
+        }
+    }
+}
+
+/// MuJoCo's focal lengths of a camera that has a field of view instead, m.
+const UNUSED_INTRINSIC: [f64; 4] = [0.01, 0.01, 0.0, 0.0];
+
+/// Adds a camera of body `b`, not yet aimed at anything.
+pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) {
+    let (fovy, sensorsize, intrinsic) = match spec.lens {
+        CameraLens::FieldOfView(fovy) => (fovy, [0.0; 2], UNUSED_INTRINSIC),
+        CameraLens::Intrinsic {
+            sensorsize,
+            focal,
+            principal,
+        } => {
+            let half_angle = (0.5 * sensorsize[1]).atan2(focal[1]);
+            let numbers = [focal[0], focal[1], principal[0], principal[1]];
+            (2.0 * half_angle.to_degrees(), sensorsize, numbers)
+        }
+    };
+    model.cameras.push(Camera {
+        name: spec.name.clone(),
+        body: b,
+        mode: CameraMode::Fixed,
+        orthographic: spec.orthographic,
+        resolution: spec.resolution,
+        intrinsic: matches!(spec.lens, CameraLens::Intrinsic { .. }),
+    });
+    let (pos, quat) = place(moved, spec.pos, spec.quat);
+    let p = &mut model.params;
+    p.cam_pos.push(pos);
+    p.cam_quat.push(quat);
+    p.cam_fovy.push(fovy);
+    p.cam_sensorsize.push(sensorsize);
+    p.cam_intrinsic.push(intrinsic);
+}
+
+/// Resolves what cameras follow and are turned towards.
+///
+/// # Errors
+/// A body that is not there.
+pub(super) fn aim_all(
+    builder: &ModelBuilder,
+    order: &[usize],
+    names: &AllNames,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let specs = order.iter().flat_map(|&b| &builder.bodies[b].cameras);
+    for (camera, spec) in model.cameras.iter_mut().zip(specs) {
+        let target = |name: &String, mode: fn(usize) -> CameraMode| match name.is_empty() {
+            true => Ok(CameraMode::Fixed),
+            false => names.bodies.find(name, spec).map(mode),
+        };
+        camera.mode = match &spec.tracking {
+            CameraTracking::Fixed => CameraMode::Fixed,
+            CameraTracking::Track => CameraMode::Track,
+            CameraTracking::TrackCom => CameraMode::TrackCom,
+            CameraTracking::TargetBody(name) => target(name, CameraMode::TargetBody)?,
+            CameraTracking::TargetBodyCom(name) => target(name, CameraMode::TargetBodyCom)?,
+        };
+    }
+    Ok(())
+}
+
+/// Notes the frames in the initial configuration, which cameras that track keep.
+pub(super) fn set_initial_frames(pose0: &Positions<f64>, model: &mut Model) {
+    for (c, camera) in model.cameras.iter().enumerate() {
+        let (pos, mat) = fixed_pose(model, &model.params, pose0, c);
+        let p = &mut model.params;
+        p.cam_pos0.push(pos - pose0.xpos[camera.body]);
+        (p.cam_poscom0).push(pos - pose0.subtree_com[camera.body]);
+        let mut rows = [0.0; 9];
+        for (to, row) in rows.chunks_exact_mut(3).zip(mat.rows) {
+            row.write(to);
+        }
+        p.cam_mat0.push(rows);
+    }
+}

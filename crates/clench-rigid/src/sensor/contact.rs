@@ -1,0 +1,212 @@
+//! Contacts between two sides: which there are, a fixed number of them or their sum.
+//!
+//! A contact matches where one of its geoms belongs to the first side and the other to the second. Its normal then points from the
+//! first side to the second: where the geoms come the other way round, normal and first tangent change their sign. The force of the
+//! contact is then the opposite one, so in that frame only its component along the second tangent changes its sign, and likewise of
+//! the torque and the velocities.
+
+use super::Reading;
+use crate::contact::Contact;
+use crate::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
+use crate::output::block_force;
+use clench_math::{Force, Mask, Motion, Real, Vec3};
+
+/// The most numbers that are told of a contact.
+const MAX_SIZE: usize = 23;
+
+/// A contact that matches.
+struct Match<'a, T: Real> {
+    contact: &'a Contact<T>,
+    /// Which of all contacts it is.
+    index: T,
+    /// Lanes in which it matches.
+    lanes: T::Mask,
+    /// −1 where the normal is to be turned.
+    sign: T,
+}
+
+impl<T: Real> Reading<'_, T> {
+    /// What a sensor of contacts tells; zeros where there are fewer contacts than it has room for.
+    pub(super) fn read_contacts(&self, query: &ContactQuery, out: &mut [T]) {
+        out.fill(T::ZERO);
+        let mut count = T::ZERO;
+        self.each_match(query, |found| {
+            count += T::select(found.lanes, T::ONE, T::ZERO);
+        });
+        let size = query.size();
+        if query.reduction == ContactReduction::NetForce {
+            return self.read_net_force(query, count, &mut out[..size]);
+        }
+        // Slot after slot takes the contact that follows the last one by its key, then by its number.
+        let mut last = [T::new(f64::NEG_INFINITY), -T::ONE];
+        for slot in out.chunks_exact_mut(size) {
+            let mut best = [T::new(f64::INFINITY), -T::ONE];
+            self.each_match(query, |found| {
+                let key = self.key(query.reduction, found.contact);
+                let tied = key.le(last[0]) & key.ge(last[0]) & found.index.gt(last[1]);
+                let taken = found.lanes & (key.gt(last[0]) | tied) & key.lt(best[0]);
+                if !taken.any() {
+                    return;
+                }
+                best[0] = T::select(taken, key, best[0]);
+                best[1] = T::select(taken, found.index, best[1]);
+                let mut row = [T::ZERO; MAX_SIZE];
+                self.write_contact(query, &found, count, &mut row[..size]);
+                for (to, from) in slot.iter_mut().zip(row) {
+                    *to = T::select(taken, from, *to);
+                }
+            });
+            if !best[1].ge(T::ZERO).any() {
+                return;
+            }
+            last = best;
+        }
+    }
+
+    /// By what contacts are put in order, the smallest first.
+    fn key(&self, reduction: ContactReduction, contact: &Contact<T>) -> T {
+        match reduction {
+            ContactReduction::MinDist => contact.dist,
+            ContactReduction::MaxForce => -self.wrench(contact).linear.norm_squared(),
+            ContactReduction::None | ContactReduction::NetForce => T::ZERO,
+        }
+    }
+
+    /// Shows the contacts that match, in order.
+    fn each_match(&self, query: &ContactQuery, mut show: impl FnMut(Match<'_, T>)) {
+        for (index, contact) in self.ws.contacts.iter().enumerate() {
+            let Some(sign) = self.direction(query, contact.geoms) else {
+                continue;
+            };
+            let mut lanes = contact.active;
+            if let Some(site) = query.site {
+                lanes &= self.is_inside(site, contact.pos).gt(T::ZERO);
+            }
+            if lanes.any() {
+                let index = T::new(index as f64);
+                show(Match {
+                    contact,
+                    index,
+                    lanes,
+                    sign: T::new(sign),
+                });
+            }
+        }
+    }
+
+    /// Whether geoms in contact match, and with which sign.
+    fn direction(&self, query: &ContactQuery, geoms: [usize; 2]) -> Option<f64> {
+        let belongs = |geom: usize, side: &ContactSide| match side {
+            ContactSide::Any => true,
+            ContactSide::Geom(wanted) => geom == *wanted,
+            ContactSide::Body(body) => self.model.geoms[geom].body == *body,
+            ContactSide::Subtree(bodies) => bodies.contains(&self.model.geoms[geom].body),
+        };
+        let [first, second] = &query.sides;
+        match geoms {
+            [a, b] if belongs(a, first) && belongs(b, second) => Some(1.0),
+            [a, b] if belongs(b, first) && belongs(a, second) => Some(-1.0),
+            _ => None,
+        }
+    }
+
+    /// Force and torque of a contact on its second geom in its frame; zero where it is no constraint.
+    fn wrench(&self, contact: &Contact<T>) -> Force<T> {
+        let Some(block) = contact.block else {
+            return Force::ZERO;
+        };
+        let rows = block_force(self.ws, block);
+        Force::new(Vec3::from_slice(&rows[3..]), Vec3::from_slice(&rows))
+    }
+
+    /// What is told of one contact.
+    fn write_contact(
+        &self,
+        query: &ContactQuery,
+        found: &Match<'_, T>,
+        count: T,
+        mut out: &mut [T],
+    ) {
+        let contact = found.contact;
+        let turned = |v: Vec3<T>| Vec3::new(v.x, v.y, v.z * found.sign);
+        for field in &query.fields {
+            let (numbers, rest) = out.split_at_mut(field.size());
+            match field {
+                ContactField::Found => numbers[0] = count,
+                ContactField::Force => turned(self.wrench(contact).linear).write(numbers),
+                ContactField::Torque => turned(self.wrench(contact).angular).write(numbers),
+                ContactField::Dist => numbers[0] = contact.dist,
+                ContactField::Pos => contact.pos.write(numbers),
+                ContactField::Normal => (contact.frame.rows[0] * found.sign).write(numbers),
+                ContactField::Tangent => (contact.frame.rows[1] * found.sign).write(numbers),
+                ContactField::LinVel => {
+                    turned(self.relative_motion(contact).linear).write(numbers);
+                }
+                ContactField::AngVel => {
+                    turned(self.relative_motion(contact).angular).write(numbers);
+                }
+            }
+            out = rest;
+        }
+    }
+
+    /// How the second body moves relative to the first where they touch, in the contact's frame.
+    fn relative_motion(&self, contact: &Contact<T>) -> Motion<T> {
+        let [first, second] = contact.geoms.map(|geom| {
+            let body = self.model.geoms[geom].body;
+            let cvel = self.ws.velocity.cvel[body];
+            let root = self.model.bodies[body].root;
+            let arm = contact.pos - self.ws.position.subtree_com[root];
+            Motion::new(cvel.angular, cvel.velocity_at(arm))
+        });
+        Motion::new(
+            contact.frame * (second.angular - first.angular),
+            contact.frame * (second.linear - first.linear),
+        )
+    }
+
+    /// All that match as one contact in world axes: it acts at the mean of their positions, each weighted by its force.
+    fn read_net_force(&self, query: &ContactQuery, count: T, mut out: &mut [T]) {
+        let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
+        let (mut weight, mut pos) = (T::ZERO, Vec3::ZERO);
+        let world = |found: &Match<'_, T>| {
+            let wrench = self.wrench(found.contact);
+            let turn = |v: Vec3<T>| found.contact.frame.transpose_mul(v) * found.sign;
+            let none = |v: Vec3<T>| Vec3::select(found.lanes, v, Vec3::ZERO);
+            [none(turn(wrench.linear)), none(turn(wrench.angular))]
+        };
+        self.each_match(query, |found| {
+            let [linear, _] = world(&found);
+            let size = linear.norm();
+            force += linear;
+            weight += size;
+            pos += Vec3::select(found.lanes, found.contact.pos, Vec3::ZERO) * size;
+        });
+        let pressed = weight.gt(T::ZERO);
+        pos = pos * (T::ONE / T::select(pressed, weight, T::ONE));
+        self.each_match(query, |found| {
+            let [linear, angular] = world(&found);
+            let arm = Vec3::select(found.lanes, found.contact.pos - pos, Vec3::ZERO);
+            torque += angular + arm.cross(linear);
+        });
+        let touched = count.gt(T::ZERO);
+        let axis = |i: usize| {
+            let mut unit = Vec3::<T>::ZERO;
+            unit[i] = T::select(touched, T::ONE, T::ZERO);
+            unit
+        };
+        for field in &query.fields {
+            let (numbers, rest) = out.split_at_mut(field.size());
+            match field {
+                ContactField::Found => numbers[0] = count,
+                ContactField::Force => force.write(numbers),
+                ContactField::Torque => torque.write(numbers),
+                ContactField::Pos => pos.write(numbers),
+                ContactField::Normal => axis(0).write(numbers),
+                ContactField::Tangent => axis(1).write(numbers),
+                ContactField::Dist | ContactField::LinVel | ContactField::AngVel => {}
+            }
+            out = rest;
+        }
+    }
+}
