@@ -30,6 +30,8 @@ IDLE = 1e-14  # metres: a lever that is nothing but rounding
 NEXT = 1e-8  # of what a step changes
 FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
 CLEARLY = 1e-6  # metres: whether a contact exists is certain
+# Of parallel faces or axes many points are nearest, and both engines may be right.
+UNDECIDED = (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO)
 FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
 
 
@@ -221,6 +223,7 @@ def judge(model, question, ours):
     agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
     if not question.own:
         forces(what, ours, theirs)
+        agreement.sensors(model, what, ours, theirs, skipped=UNDECIDED)
     if question.after is not None:
         next_state(model, what, question, ours["next"])
 

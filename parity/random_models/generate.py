@@ -39,6 +39,7 @@ class Generator:
         self.classes, self.meshes, self.hfields, self.materials, self.parts = [], [], [], [], []
         self.frames = []
         self.bodies, self.geoms, self.sites, self.joints, self.tendons = ["world"], [], [], [], []
+        self.cameras, self.actuator_names = [], []
         self.limited = set()  # joints and tendons whose range an actuator can take over
         self.replicated = 0
         self.count = 0
@@ -54,6 +55,7 @@ class Generator:
         self.tendon_section()
         self.equalities()
         self.actuators()
+        self.sensors()
         if draw.chance(0.1):
             self.add(self.root, "size", nkey=draw.randint(0, 3))
         if draw.chance(0.2):
@@ -141,7 +143,7 @@ class Generator:
             self.class_elements(nested)
 
     def class_elements(self, default):
-        kinds = ("joint", "geom", "site", "pair", "equality", "tendon", "mesh", "material", *SHORTCUTS)
+        kinds = ("joint", "geom", "site", "camera", "pair", "equality", "tendon", "mesh", "material", *SHORTCUTS)
         for tag in kinds:
             if not self.draw.chance(0.15):
                 continue
@@ -258,6 +260,8 @@ class Generator:
             self.geom(world, 0)
         for _ in range(draw.randint(0, 1)):
             self.site(world, 0)
+        if draw.chance(0.2):
+            self.camera(world)
         for _ in range(draw.randint(1, 4)):
             self.body(self.wrapped(world), 0, 0)
             self.replicated = 0
@@ -309,6 +313,8 @@ class Generator:
             self.site(body, index)
         if draw.chance(0.1):
             self.attach(self.wrapped_frame(body))
+        if draw.chance(0.15):
+            self.camera(body)
         if depth < 3:
             for _ in range(draw.choice((0, 0, 1, 1, 2)) if depth else draw.choice((0, 1, 1, 2))):
                 was = self.replicated
@@ -452,6 +458,22 @@ class Generator:
                     site.attrib.pop(name, None)
                 site.set("fromto", vector(-0.25, 0.25, 6)(draw))
 
+    def camera(self, parent):
+        draw = self.draw
+        camera = self.fill(self.classed(self.add(parent, "camera")))
+        if not self.replicated:
+            camera.set("name", self.always("camera"))
+            self.cameras.append(camera.get("name"))
+        if "mode" in camera.attrib and not self.replicated and draw.chance(0.9):
+            camera.set("target", draw.choice(self.bodies))
+        if draw.chance(0.3):  # numbers of few binary digits: MuJoCo keeps 24
+            camera.attrib.pop("fovy", None)
+            camera.set("sensorsize", draw.choice(("0.03125 0.0625", "0.5 0.25")))
+            camera.set("resolution", draw.choice(("2 2", "4 2")))
+            camera.set(*draw.choice((("focal", "0.25 0.125"), ("focalpixel", "1.5 2.5"))))
+            if draw.chance(0.4):
+                camera.set(*draw.choice((("principal", "0.0625 0.125"), ("principalpixel", "0.5 0.25"))))
+
     # What refers to the tree.
 
     def contacts(self):
@@ -544,12 +566,86 @@ class Generator:
             actuator = self.classed(self.add(section, kind))
             if draw.chance(0.5):
                 actuator.set("name", self.always("actuator"))
+                self.actuator_names.append(actuator.get("name"))
             if self.tendons and draw.chance(0.3):
                 actuator.set("tendon", draw.choice(self.tendons))
             else:
                 actuator.set(draw.choice(("joint", "joint", "jointinparent")), draw.choice(self.joints)[0])
             self.fill(actuator, without=() if kind == "intvelocity" else ("actrange",))
             self.law(actuator)
+
+    def sensors(self):
+        draw = self.draw
+        if draw.chance(0.5):
+            return
+        section = self.add(self.root, "sensor")
+        for _ in range(draw.randint(1, 15)):
+            kind = draw.choice((*harmless.SENSORS, "contact", "contact", "rangefinder", "user"))
+            attached = self.attached(kind)
+            if attached is None:
+                continue
+            sensor = self.add(section, kind, **attached)
+            if draw.chance(0.3):
+                sensor.set("name", self.always("sensor"))
+            self.fill(sensor, f"sensor/{kind}")
+            if sensor.get("reduce") == "netforce" and "data" in sensor.attrib:
+                kept = [word for word in sensor.get("data").split() if word not in ("linvel", "angvel")]
+                sensor.set("data", " ".join(kept) or "found")
+
+    def attached(self, kind):
+        """What a sensor of this kind measures, None where there is nothing of the sort."""
+        draw = self.draw
+        sites, geoms = ([name for name, _ in found] for found in (self.sites, self.geoms))
+        joints = [name for name, of in self.joints if of == "ball" or not kind.startswith("ball")]
+        one = lambda attribute, names: {attribute: draw.choice(names)} if names else None
+        limited = [name for name in (*joints, *self.tendons) if name in self.limited and draw.chance(0.98)]
+        if "limit" in kind:
+            return one("joint" if kind.startswith("joint") else "tendon", [n for n in limited if n.startswith("tendon") != kind.startswith("joint")])
+        if not kind.startswith("ball"):
+            joints = self.scalar_joints()
+        if kind in ("e_potential", "e_kinetic", "clock"):
+            return {}
+        if kind == "user":
+            return {"dim": draw.choice((1, 3))}
+        if kind.startswith("frame"):
+            objects = self.frame("obj", sites, geoms)
+            referred = self.frame("ref", sites, geoms) if draw.chance(0.4) and not kind.endswith("acc") else {}
+            return {**objects, **referred}
+        if kind.startswith(("joint", "ball")):
+            return one("joint", joints)
+        if kind.startswith("tendon"):
+            return one("tendon", self.tendons)
+        if kind.startswith("actuator"):
+            return one("actuator", self.actuator_names)
+        if kind.startswith("subtree"):
+            return {"body": draw.choice(self.bodies)}
+        if kind == "insidesite":
+            return {**one("site", sites), **self.frame("obj", sites, geoms)} if sites else None
+        if kind == "camprojection":
+            return {**one("site", sites), **one("camera", self.cameras)} if sites and self.cameras else None
+        if kind == "rangefinder" and self.cameras and draw.chance(0.5):
+            return one("camera", self.cameras)
+        if kind in ("distance", "normal", "fromto"):
+            two = self.two([name for name in geoms if name != "ground"]) if draw.chance(0.6) else self.two(self.bodies)
+            word = "body" if two and two[0] in self.bodies else "geom"
+            return two and {f"{word}{k + 1}": name for k, name in enumerate(two)}
+        if kind == "contact":
+            named = {"geom": geoms, "body": self.bodies, "subtree": self.bodies}
+            chosen = {}
+            for side in (1, 2):
+                if draw.chance(0.6):
+                    word = draw.choice(sorted(named))
+                    chosen |= one(f"{word}{side}", named[word]) or {}
+                elif side == 1 and draw.chance(0.4):
+                    chosen |= one("site", sites) or {}
+            return chosen
+        return one("site", sites)
+
+    def frame(self, word, sites, geoms):
+        """The object of a frame."""
+        kinds = {"body": self.bodies, "xbody": self.bodies, "site": sites, "geom": geoms, "camera": self.cameras}
+        kind = self.draw.choice([kind for kind in sorted(kinds) if kinds[kind]])
+        return {f"{word}type": kind, f"{word}name": self.draw.choice(kinds[kind])}
 
     def law(self, actuator):
         """What depends on other attributes of an actuator, or on its target."""

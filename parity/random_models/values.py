@@ -7,6 +7,8 @@ sometimes at the edge of what MuJoCo accepts.
 import math
 import random
 
+from random_models.harmless import SENSORS
+
 
 class Draw(random.Random):
     """Random numbers, words of MJCF made of them, and how the file writes angles and limits."""
@@ -164,6 +166,16 @@ def euler_sequence(draw):
     return "".join(draw.choice("xyzXYZ") for _ in range(3))
 
 
+def words(known):
+    """Some of the words, in their order."""
+    return lambda draw: " ".join(word for word in known if draw.chance(0.4)) or known[0]
+
+
+SENSOR = {"noise": scale(0.01, 1), "cutoff": scale(0.02, 5)}
+TURNS = ("framequat", "framexaxis", "frameyaxis", "framezaxis", "ballquat")  # which no cutoff holds
+RAY_DATA = ("dist", "dir", "origin", "point", "normal", "depth")
+CONTACT_DATA = ("found", "force", "torque", "dist", "pos", "normal", "tangent", "linvel", "angvel")
+
 VALUES = {
     "compiler": {
         "angle": None,  # decided before anything is drawn, as is autolimits
@@ -261,6 +273,13 @@ VALUES = {
         "gap": number(0, 0.03),
         "rgba": lambda draw: text(*(draw.random() for _ in range(3)), draw.choice((0, 1))),
     },
+    "camera": {
+        **POSE,
+        "mode": one_of("fixed", "track", "trackcom", "targetbody", "targetbodycom"),
+        "projection": one_of("perspective", "orthographic"),
+        "fovy": number(0.5, 120),
+        "resolution": one_of("1 1", "3 2", "2 4"),
+    },
     "site": {**POSE, "group": one_of(0, 3), "size": vector(0.01, 0.1)},
     "pair": {
         "condim": one_of(1, 3, 4, 6),
@@ -341,6 +360,11 @@ VALUES = {
         "scale": lambda draw: text(*(draw.choice((1, 1, -1)) * draw.scale(0.05, 0.2) for _ in range(3))),
     },
     "hfield": {},
+    **{f"sensor/{kind}": SENSOR for kind in SENSORS},
+    **{f"sensor/{kind}": {**SENSOR, "data": words(RAY_DATA)} for kind in ("rangefinder",)},
+    "sensor/contact": {**SENSOR, "num": one_of(1, 2, 5), "data": words(CONTACT_DATA), "reduce": one_of("none", "mindist", "maxforce", "netforce")},
+    "sensor/user": {**SENSOR, "datatype": one_of("real", "positive")},
+    **{f"sensor/{kind}": {"noise": scale(0.01, 1)} for kind in TURNS},
 }
 
 # Ranges with the attribute that says whether they count.
@@ -362,5 +386,5 @@ RANGES = {
 ONE_OF = {
     "position": [("kv", "dampratio")],
     "intvelocity": [("kv", "dampratio")],
-    **{element: [ORIENTATIONS] for element in ("body", "frame", "geom", "site", "inertial")},
+    **{element: [ORIENTATIONS] for element in ("body", "frame", "geom", "site", "camera", "inertial")},
 }

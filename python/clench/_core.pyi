@@ -32,7 +32,19 @@ __all__ = [
 
 _Precision: TypeAlias = Literal["64", "32"]
 _Kind: TypeAlias = Literal[
-    "body", "joint", "geom", "site", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"
+    "body",
+    "joint",
+    "geom",
+    "site",
+    "camera",
+    "tendon",
+    "actuator",
+    "sensor",
+    "equality",
+    "keyframe",
+    "pair",
+    "mesh",
+    "hfield",
 ]
 _Cost: TypeAlias = Literal["quadratic", "one_sided", "huber", "pyramid", "elliptic"]
 _Status: TypeAlias = Literal["unconstrained", "proven", "converged", "no_progress", "iteration_limit", "non_finite", "too_large"]
@@ -80,6 +92,8 @@ class Model:
     @property
     def nsite(self) -> int: ...
     @property
+    def ncam(self) -> int: ...
+    @property
     def ntendon(self) -> int: ...
     @property
     def neq(self) -> int: ...
@@ -102,6 +116,7 @@ class Model:
     def joint(self, which: str | SupportsIndex) -> Element: ...
     def geom(self, which: str | SupportsIndex) -> Element: ...
     def site(self, which: str | SupportsIndex) -> Element: ...
+    def camera(self, which: str | SupportsIndex) -> Element: ...
     def tendon(self, which: str | SupportsIndex) -> Element: ...
     def actuator(self, which: str | SupportsIndex) -> Element: ...
     def sensor(self, which: str | SupportsIndex) -> Element: ...
@@ -197,6 +212,16 @@ class Model:
     site_pos: Final[_Floats]  # (nsite, 3) Position in the body frame.
     site_quat: Final[_Floats]  # (nsite, 4) Orientation in the body frame.
     site_bodyid: Final[_Codes]  # (nsite,) The body that carries it.
+    cam_pos: Final[_Floats]  # (ncam, 3) Position in the body frame.
+    cam_quat: Final[_Floats]  # (ncam, 4) Orientation in the body frame.
+    cam_pos0: Final[_Floats]  # (ncam, 3) From the body to the camera in the initial configuration, world axes.
+    cam_poscom0: Final[_Floats]  # (ncam, 3) From the centre of mass of the body and all below it to the camera, likewise.
+    cam_mat0: Final[_Floats]  # (ncam, 9) Orientation in the initial configuration, row by row.
+    cam_fovy: Final[_Floats]  # (ncam,) Vertical field of view, degrees; where lines of sight are parallel, the picture's height.
+    cam_sensorsize: Final[_Floats]  # (ncam, 2) Size of the sensor, width and height; both zero: cam_fovy counts.
+    cam_intrinsic: Final[_Floats]  # (ncam, 4) Focal length and principal point, two numbers each.
+    cam_bodyid: Final[_Codes]  # (ncam,) The body that carries it.
+    cam_resolution: Final[_Codes]  # (ncam, 2) Pixels: width, height.
 
     wrap_coef: Final[_Floats]  # (nwrap,) Coefficients of tendons, one after the other.
     wrap_objid: Final[_Codes]  # (nwrap,) The joint of each coefficient.
@@ -317,7 +342,7 @@ class Element:
     axis: Final[_Floats]  # (3,) joint
     biasprm: Final[_Floats]  # (10,) actuator
     biastype: Final[int]  # actuator
-    bodyid: Final[int]  # joint, geom, site
+    bodyid: Final[int]  # joint, geom, site, camera
     conaffinity: Final[int]  # geom
     condim: Final[int]  # geom
     contype: Final[int]  # geom
@@ -339,6 +364,7 @@ class Element:
     forcelimited: Final[bool]  # actuator
     forcerange: Final[_Floats]  # (2,) actuator
     friction: Final[_Floats]  # geom, pair
+    fovy: Final[float]  # camera
     frictionloss: Final[float]  # tendon
     gainprm: Final[_Floats]  # (10,) actuator
     gaintype: Final[int]  # actuator
@@ -351,6 +377,7 @@ class Element:
     gravcomp: Final[float]  # body
     group: Final[int]  # joint, geom, actuator
     inertia: Final[_Floats]  # (3,) body
+    intrinsic: Final[_Floats]  # (4,) camera
     invweight0: Final[Any]  # body, tendon
     ipos: Final[_Floats]  # (3,) body
     iquat: Final[_Floats]  # (4,) body
@@ -361,6 +388,7 @@ class Element:
     limited: Final[bool]  # joint, tendon
     margin: Final[float]  # joint, geom, tendon, pair
     mass: Final[float]  # body
+    mat0: Final[_Floats]  # (9,) camera
     mocapid: Final[int]  # body
     mpos: Final[_Floats]  # (nmocap, 3) keyframe
     mquat: Final[_Floats]  # (nmocap, 4) keyframe
@@ -372,17 +400,21 @@ class Element:
     obj2id: Final[int]  # equality
     parentid: Final[int]  # body
     polycoef: Final[_Floats]  # (5,) equality
-    pos: Final[_Floats]  # (3,) body, joint, geom, site, mesh
+    pos: Final[_Floats]  # (3,) body, joint, geom, site, camera, mesh
+    pos0: Final[_Floats]  # (3,) camera
+    poscom0: Final[_Floats]  # (3,) camera
     priority: Final[int]  # geom
     qpos: Final[_Floats]  # (nq,) keyframe
     qposadr: Final[int]  # joint
-    quat: Final[_Floats]  # (4,) body, geom, site, mesh
+    quat: Final[_Floats]  # (4,) body, geom, site, camera, mesh
     quat1: Final[_Floats]  # (4,) equality
     quat2: Final[_Floats]  # (4,) equality
     qvel: Final[_Floats]  # (nv,) keyframe
     range: Final[_Floats]  # (2,) joint, tendon
     rbound: Final[float]  # geom
+    resolution: Final[_Codes]  # (2,) camera
     rootid: Final[int]  # body
+    sensorsize: Final[_Floats]  # (2,) camera
     size: Final[_Floats]  # (3,) geom, site, (4,) hfield
     solimp: Final[_Floats]  # (5,) joint, geom, equality, pair
     solimp_fri: Final[_Floats]  # (5,) tendon
@@ -540,6 +572,8 @@ class _Outputs(StateViews):
     geom_xmat: Final[NDArray[Any]]  # (ngeom, 9) Orientations of geoms.
     site_xpos: Final[NDArray[Any]]  # (nsite, 3) Positions of sites.
     site_xmat: Final[NDArray[Any]]  # (nsite, 9) Orientations of sites.
+    cam_xpos: Final[NDArray[Any]]  # (ncam, 3) Positions of cameras.
+    cam_xmat: Final[NDArray[Any]]  # (ncam, 9) Orientations of cameras, x to the right, y up, z backwards.
     subtree_com: Final[NDArray[Any]]  # (nbody, 3) Centre of mass of each body and all below it.
     cinert: Final[NDArray[Any]]  # (nbody, 10) Inertias about the centre of mass of the tree.
     cvel: Final[NDArray[Any]]  # (nbody, 6) Velocities there, angular first.
@@ -555,6 +589,8 @@ class _Outputs(StateViews):
     qfrc_smooth: Final[NDArray[Any]]  # (nv,) All forces but those of constraints.
     qfrc_constraint: Final[NDArray[Any]]  # (nv,) Constraint forces.
     cfrc_ext: Final[NDArray[Any]]  # (nbody, 6) What acts from outside, about the centre of mass of the tree, torque first.
+    cfrc_int: Final[NDArray[Any]]  # (nbody, 6) What each body's joints carry, about the centre of mass of the tree, torque first.
+    cacc: Final[NDArray[Any]]  # (nbody, 6) Accelerations there with gravity's upward reaction, angular first.
     contact_force: Final[NDArray[Any]]  # (nbody, 6) Contacts, at the body's centre of mass, force first.
     sensordata: Final[NDArray[Any]]  # (nsensordata,) What the sensors measured.
     energy: Final[NDArray[Any]]  # (2,) Potential and kinetic energy of the state.
@@ -583,6 +619,7 @@ class Sim(_Outputs):
     def set_param(self, field: str, values: ArrayLike) -> None: ...
     def param(self, field: str) -> NDArray[Any]: ...
     def output(self, name: str) -> Any: ...  # an array, or a float where an output is a single number
+    def sensor(self, which: str | SupportsIndex) -> NDArray[Any]: ...  # (sensor_dim,)
     @property
     def contacts(self) -> Contacts: ...
     @property
@@ -665,6 +702,7 @@ class Batch(_Outputs):
     @property
     def outputs(self) -> tuple[str, ...]: ...
     def output(self, name: str) -> NDArray[Any]: ...  # (n, ...)
+    def sensor(self, which: str | SupportsIndex) -> NDArray[Any]: ...  # (n, sensor_dim)
     def rollout(
         self,
         initial: ArrayLike | None = None,  # (n, 1 + nq + nv + na): time, qpos, qvel, act

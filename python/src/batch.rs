@@ -12,14 +12,14 @@ use crate::precision::Bits;
 use crate::recorded::{Recorded, not_recorded};
 use crate::rollout::rollout;
 use crate::row_sim::AnySim;
-use crate::sim::Sim;
+use crate::sim::{Sim, sensor_numbers};
 use crate::state_views::StateViews;
 use crate::view::Keeper;
 use clench::{BatchOptions, EnvStatus, Fault, Output};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PySlice, PyTuple};
 use std::sync::{Arc, Mutex};
 
 /// A batch in either precision.
@@ -382,6 +382,34 @@ impl Batch {
         let output = Output::find(name).map_err(sim_error)?;
         let view = self.fresh(py, output)?;
         view.ok_or_else(|| PyValueError::new_err(not_recorded(name)))
+    }
+
+    /// What one sensor measured in every environment: its part of `sensordata`, which must be recorded.
+    ///
+    /// Parameters
+    /// ----------
+    /// which : str or int
+    ///     Its name or index.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     A live view that cannot be written, with environments as first axis.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A name that no sensor has, or `sensordata` is not recorded.
+    /// IndexError
+    ///     A number that is negative or too large.
+    fn sensor<'py>(
+        &self,
+        py: Python<'py>,
+        which: &Bound<'_, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let numbers = sensor_numbers(py, self.model.get().inner(), which)?;
+        let all = self.output(py, "sensordata")?.into_bound(py);
+        all.get_item((PySlice::full(py), numbers))
     }
 
     fn __getattr__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {

@@ -10,7 +10,7 @@ use pyo3::types::PySlice;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// One element of a model: a body, joint, geom, site, tendon, actuator, equality constraint, keyframe, geom pair, mesh or
+/// One element of a model: a body, joint, geom, site, camera, tendon, actuator, equality constraint, keyframe, geom pair, mesh or
 /// height field.
 ///
 /// Its numbers are attributes, named as the fields of the model without the kind: the `mass` of a body is

@@ -119,6 +119,8 @@ const STRUCTURE: &[Reader] = &[
     ("geom_priority", |m| codes(&m.geoms, |g| g.priority)),
     ("geom_group", |m| codes(&m.geoms, |g| g.group)),
     ("site_bodyid", |m| codes(&m.sites, |s| id(s.body))),
+    ("cam_bodyid", |m| codes(&m.cameras, |c| id(c.body))),
+    ("cam_resolution", resolutions),
     ("tendon_num", |m| codes(&m.tendons, |t| id(t.coefs.len()))),
     ("tendon_adr", |m| codes(&m.tendons, |t| first(&t.coefs))),
     ("tendon_limited", |m| flags(&m.tendons, |t| t.limited)),
@@ -213,6 +215,15 @@ fn stored(model: &Model, shape: &[usize], numbers: impl Fn(&Keyframe) -> &[f64])
     Field {
         shape: [&[keyframes.len()], shape].concat(),
         numbers: Numbers::Real(keyframes.iter().flat_map(numbers).copied().collect()),
+    }
+}
+
+/// Pixels of cameras.
+fn resolutions(model: &Model) -> Field {
+    let pixels = (model.cameras.iter()).flat_map(|camera| camera.resolution.map(id));
+    Field {
+        shape: vec![model.cameras.len(), 2],
+        numbers: Numbers::Code(pixels.collect()),
     }
 }
 

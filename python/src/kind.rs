@@ -13,6 +13,7 @@ pub(crate) enum Kind {
     Joint,
     Geom,
     Site,
+    Camera,
     Tendon,
     Actuator,
     Sensor,
@@ -24,11 +25,12 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    const ALL: [Kind; 12] = [
+    const ALL: [Kind; 13] = [
         Kind::Body,
         Kind::Joint,
         Kind::Geom,
         Kind::Site,
+        Kind::Camera,
         Kind::Tendon,
         Kind::Actuator,
         Kind::Sensor,
@@ -52,6 +54,7 @@ impl Kind {
             Kind::Joint => "joint",
             Kind::Geom => "geom",
             Kind::Site => "site",
+            Kind::Camera => "camera",
             Kind::Tendon => "tendon",
             Kind::Actuator => "actuator",
             Kind::Sensor => "sensor",
@@ -70,6 +73,7 @@ impl Kind {
             Kind::Joint => "jnt_",
             Kind::Geom => "geom_",
             Kind::Site => "site_",
+            Kind::Camera => "cam_",
             Kind::Tendon => "tendon_",
             Kind::Actuator => "actuator_",
             Kind::Sensor => "sensor_",
@@ -88,6 +92,7 @@ impl Kind {
             Kind::Joint => model.joints.iter().map(|e| &*e.name).collect(),
             Kind::Geom => model.geoms.iter().map(|e| &*e.name).collect(),
             Kind::Site => model.sites.iter().map(|e| &*e.name).collect(),
+            Kind::Camera => model.cameras.iter().map(|e| &*e.name).collect(),
             Kind::Tendon => model.tendons.iter().map(|e| &*e.name).collect(),
             Kind::Actuator => model.actuators.iter().map(|e| &*e.name).collect(),
             Kind::Sensor => model.sensors.iter().map(|e| &*e.name).collect(),

@@ -188,6 +188,11 @@ impl Model {
     fn nsite(&self) -> usize {
         self.0.sites.len()
     }
+    /// int : Number of cameras.
+    #[getter]
+    fn ncam(&self) -> usize {
+        self.0.cameras.len()
+    }
     /// int : Number of tendons.
     #[getter]
     fn ntendon(&self) -> usize {
@@ -238,7 +243,7 @@ impl Model {
     ///
     /// Parameters
     /// ----------
-    /// kind : {"body", "joint", "geom", "site", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"}
+    /// kind : {"body", "joint", "geom", "site", "camera", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"}
     ///     What to name.
     ///
     /// Returns
@@ -269,6 +274,10 @@ impl Model {
     #[doc = named!("site")]
     fn site(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
         Element::find(&self.0, Kind::Site, which)
+    }
+    #[doc = named!("camera")]
+    fn camera(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
+        Element::find(&self.0, Kind::Camera, which)
     }
     #[doc = named!("tendon")]
     fn tendon(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {

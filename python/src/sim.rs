@@ -21,7 +21,23 @@ use clench::{Output, RayFilter};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PySlice;
 use std::sync::{Arc, Mutex};
+
+/// Where the numbers of a sensor are in `sensordata`.
+pub(crate) fn sensor_numbers<'py>(
+    py: Python<'py>,
+    model: &clench::Model,
+    which: &Bound<'_, PyAny>,
+) -> PyResult<Bound<'py, PySlice>> {
+    let numbers = &model.sensors[Kind::Sensor.find(model, which)?].numbers;
+    Ok(PySlice::new(
+        py,
+        numbers.start as isize,
+        numbers.end as isize,
+        1,
+    ))
+}
 
 /// A model in motion: one environment.
 ///
@@ -222,6 +238,33 @@ impl Sim {
             let array = PyArray1::from_vec(py, values).reshape(shape)?;
             Ok(read_only(array)?.into_any())
         })
+    }
+
+    /// What one sensor measured: its part of `sensordata`.
+    ///
+    /// Parameters
+    /// ----------
+    /// which : str or int
+    ///     Its name or index.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     A copy that cannot be written.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A name that no sensor has.
+    /// IndexError
+    ///     A number that is negative or too large.
+    fn sensor<'py>(
+        &self,
+        py: Python<'py>,
+        which: &Bound<'_, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let numbers = sensor_numbers(py, self.model.get().inner(), which)?;
+        self.output(py, "sensordata")?.get_item(numbers)
     }
 
     fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

@@ -53,7 +53,7 @@ OPTIONS = {
     "autoreset": (True, False),
 }
 COSTS = ("quadratic", "one_sided", "huber", "pyramid", "elliptic")
-KINDS = ("body", "joint", "geom", "site", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield")
+KINDS = ("body", "joint", "geom", "site", "camera", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield")
 KEYS = ("bent", "dropped", "struck", "raised", 0, 1, -1, None)
 PATHS = (ROOT / "models/pendulum.xml", str(ROOT / "models/pinch.xml"), ROOT, ROOT / "README.md", "", "none.xml", "\0")
 

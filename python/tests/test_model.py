@@ -25,6 +25,7 @@ KINDS = {
     "joint": "jnt_",
     "geom": "geom_",
     "site": "site_",
+    "camera": "cam_",
     "tendon": "tendon_",
     "actuator": "actuator_",
     "sensor": "sensor_",
@@ -34,7 +35,7 @@ KINDS = {
     "mesh": "mesh_",
     "hfield": "hfield_",
 }
-SIZES = ["nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ntendon", "neq", "nkey", "nmocap", "npair"]
+SIZES = ["nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ncam", "ntendon", "neq", "nkey", "nmocap", "npair"]
 SIZES += ["nmesh", "nhfield", "nsensor", "nsensordata"]
 
 # What MuJoCo keeps in its options, by its name there.
@@ -53,7 +54,7 @@ OPTIONS = {
 # What it keeps in another form: these have a test of their own.
 OURS = {"wrap_coef", "eq_anchor1", "eq_anchor2", "eq_quat1", "eq_quat2", "eq_torquescale", "eq_polycoef"}
 # What it keeps with fewer digits, or may cut into other triangles.
-OURS |= {"mesh_vert", "mesh_face", "hfield_data"}
+OURS |= {"mesh_vert", "mesh_face", "hfield_data", "cam_sensorsize", "cam_intrinsic"}
 # Many rows for an element.
 LISTS = {"mesh_vert", "mesh_face", "hfield_data"}
 
@@ -233,7 +234,7 @@ def test_stubs_list_what_there_is(humanoid: clench.Model) -> None:
                <hfield name="a" nrow="2" ncol="3" size="1 1 1 1"/>
              </asset>
              <worldbody>
-               <body name="a"><joint name="a"/><geom name="a" size="1"/><site name="a"/></body>
+               <body name="a"><joint name="a"/><geom name="a" size="1"/><site name="a"/><camera name="a"/></body>
                <body name="b"><joint name="b"/><geom name="b" size="1"/></body>
              </worldbody>
              <tendon><fixed name="a"><joint joint="a" coef="1"/></fixed></tendon>

@@ -3,7 +3,7 @@
 //! MJCF, MuJoCo's own format, is read as MuJoCo 4.0 reads it: the same defaults, the same rules, the same rejections.
 //! Meshes come from STL, OBJ and MSH files, height fields from PNG images and MuJoCo's binary grids.
 //! What an MJCF file can say and this library cannot simulate yet is an error that names file, line and element, never
-//! a silent skip; what has no effect on motion (textures, cameras, colours, ...) is accepted by an explicit list.
+//! a silent skip; what has no effect on motion (textures, lights, colours, ...) is accepted by an explicit list.
 
 mod elevation;
 mod error;

@@ -144,7 +144,7 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
                 geoms(spec, names, model, first)?,
                 geoms(spec, names, model, second)?,
             ];
-            if sets[0] == sets[1] {
+            if sets[0] == sets[1] && !sets[0].is_empty() {
                 return Err(spec.error("the two geoms or bodies must be different"));
             }
             Ok(SensorTarget::Geoms(sets))
@@ -261,12 +261,6 @@ fn geoms(
             let geom = names.geoms.find(name, spec)?;
             Ok(geom..geom + 1)
         }
-        GeomsName::Body(name) => {
-            let geoms = model.bodies[names.bodies.find(name, spec)?].geoms.clone();
-            if geoms.is_empty() {
-                return Err(spec.error(format!("the body \"{name}\" has no geom")));
-            }
-            Ok(geoms)
-        }
+        GeomsName::Body(name) => Ok(model.bodies[names.bodies.find(name, spec)?].geoms.clone()),
     }
 }

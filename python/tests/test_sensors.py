@@ -1,0 +1,62 @@
+"""Sensors by name, alone and in batches."""
+
+from __future__ import annotations
+
+import clench
+import numpy as np
+import pytest
+
+SCENE = """<mujoco>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 1"/>
+    <camera name="eye" pos="0 -1 0.2" euler="90 0 0" resolution="2 3"/>
+    <body name="ball" pos="0 0 0.099">
+      <freejoint/>
+      <geom name="ball" size="0.1"/>
+      <site name="top" pos="0 0 0.1"/>
+    </body>
+  </worldbody>
+  <sensor>
+    <contact name="touch" geom1="ball" data="found dist normal"/>
+    <clock/>
+    <rangefinder name="picture" camera="eye"/>
+    <framepos name="top" objtype="site" objname="top"/>
+  </sensor>
+</mujoco>"""
+
+
+def test_a_sensor_is_its_part_of_all_numbers() -> None:
+    sim = clench.Sim(clench.Model.from_xml(SCENE))
+    sim.forward()
+    assert sim.sensordata.shape == (5 + 1 + 6 + 3,)
+    np.testing.assert_allclose(sim.sensor("touch"), [1, -0.001, 0, 0, -1], rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(sim.sensor(3), sim.sensordata[-3:])
+    assert sim.sensor("picture").shape == (6,)
+    with pytest.raises(ValueError, match='there is no sensor "any"'):
+        sim.sensor("any")
+    with pytest.raises(IndexError):
+        sim.sensor(4)
+
+
+def test_a_batch_has_a_row_for_each_environment() -> None:
+    batch = clench.Batch(clench.Model.from_xml(SCENE), 5, record=["sensordata"])
+    batch.qpos[:, 2] += 0.01 * np.arange(5)
+    batch.forward()
+    assert batch.sensor("top").shape == (5, 3)
+    np.testing.assert_allclose(batch.sensor("top")[:, 2], batch.qpos[:, 2] + 0.1, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(batch.sensor("touch")[:, 0], [1, 0, 0, 0, 0])
+    with pytest.raises(ValueError, match="sensordata"):
+        clench.Batch(batch.model, 2).sensor("top")
+
+
+def test_forces_and_accelerations_of_bodies() -> None:
+    sim = clench.Sim(clench.Model.from_xml(SCENE))
+    sim.forward()
+    ball, weight = 1, 9.81 * sim.model.body_mass[1]
+    pressed = sim.contact_force[ball, 2]
+    np.testing.assert_allclose(sim.cacc[ball, 5], pressed / sim.model.body_mass[ball], rtol=1e-9)
+    np.testing.assert_allclose(sim.cacc[0], [0, 0, 0, 0, 0, 9.81], rtol=1e-12)
+    np.testing.assert_allclose(sim.cfrc_ext[ball, 5], pressed, rtol=1e-9)
+    np.testing.assert_allclose(sim.cfrc_int[ball], np.zeros(6), atol=1e-8 * weight)
+    np.testing.assert_allclose(sim.cam_xpos[0], [0, -1, 0.2])
+    assert sim.cam_xmat.shape == (1, 9)
