@@ -464,7 +464,7 @@ class Generator:
         if not self.replicated:
             camera.set("name", self.always("camera"))
             self.cameras.append(camera.get("name"))
-        if "mode" in camera.attrib and not self.replicated and draw.chance(0.9):
+        if "mode" in camera.attrib and not self.replicated and draw.chance(0.5):
             camera.set("target", draw.choice(self.bodies))
         if draw.chance(0.3):  # numbers of few binary digits: MuJoCo keeps 24
             camera.attrib.pop("fovy", None)
@@ -598,7 +598,8 @@ class Generator:
         sites, geoms = ([name for name, _ in found] for found in (self.sites, self.geoms))
         joints = [name for name, of in self.joints if of == "ball" or not kind.startswith("ball")]
         one = lambda attribute, names: {attribute: draw.choice(names)} if names else None
-        limited = [name for name in (*joints, *self.tendons) if name in self.limited and draw.chance(0.98)]
+        switches = {element.get("name"): element.get("limited") for element in self.root.iter()}
+        limited = [name for name in (*joints, *self.tendons) if name in self.limited and switches.get(name) == "true"]
         if "limit" in kind:
             return one("joint" if kind.startswith("joint") else "tendon", [n for n in limited if n.startswith("tendon") != kind.startswith("joint")])
         if not kind.startswith("ball"):
