@@ -16,7 +16,7 @@ ASSETS = pathlib.Path(__file__).resolve().parent.parent / "shapes/assets"
 MESH_FILES = (("rock.obj", "model/obj"), ("wedge.stl", "model/stl"), ("bracket.obj", "model/obj"))
 PRIMITIVES = ("sphere", "capsule", "ellipsoid", "cylinder", "box")
 STRETCHED = ("capsule", "ellipsoid", "cylinder", "box")
-SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle")
+SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "pid", "dcmotor")
 SCALAR = ("hinge", "slide")
 # What would keep many of the elements of a class from being compiled: a joint's range fits one type of joint, a place contradicts `fromto`,
 # dampers take no negative controls, and only what has activations can limit them.
@@ -651,6 +651,10 @@ class Generator:
     def law(self, actuator):
         """What depends on other attributes of an actuator, or on its target."""
         draw, kind = self.draw, actuator.tag
+        if "tendon" in actuator.attrib:  # tendons are not damped by actuators yet
+            actuator.attrib.update(damping="0 0 0", armature="0")
+        if "nsample" in actuator.attrib and draw.chance(0.7):
+            actuator.set("delay", text(draw.scale(0.001, 0.03)))
         if kind == "damper":
             ends = sorted((draw.number(0, 1), draw.number(0, 2)))
             actuator.set("ctrlrange", text(ends[0], ends[1] + 0.01))
@@ -663,15 +667,36 @@ class Generator:
             actuator.set("lengthrange", interval(-0.5, 0.5)(draw))
         if kind == "general" and dynamics not in (None, "none") and draw.chance(0.3):
             self.limit(actuator, "actrange", "actlimited", interval(-1, 1)(draw))
+        if kind == "dcmotor" and actuator.get("resistance") is None and actuator.get("nominal") is None:
+            actuator.set("resistance", VALUES[kind]["resistance"](draw))
+            actuator.set("motorconst", VALUES[kind]["motorconst"](draw))
+        if kind == "general" and draw.chance(0.1):
+            self.controlled(actuator)
         target = actuator.get("joint") or actuator.get("tendon")
-        if target in self.limited and kind in ("position", "intvelocity", "general") and draw.chance(0.3):
+        if target in self.limited and kind in ("position", "intvelocity", "pid", "general") and draw.chance(0.3):
             of_activations = kind == "intvelocity" or dynamics == "integrator"
             actuator.set("inheritrange", text(draw.number(0.5, 1.2)))
             actuator.attrib.pop("actrange" if of_activations else "ctrlrange", None)
             actuator.attrib.pop("actlimited" if of_activations else "ctrllimited", None)
+            actuator.attrib.pop("posrange", None)
             if kind == "general":
+                actuator.attrib.pop("input", None)
                 gain = text(draw.scale(0.5, 20))
                 actuator.attrib.update(gaintype="fixed", gainprm=gain, biastype="affine", biasprm=f"0 -{gain}")
+
+
+    def controlled(self, actuator):
+        """Turns a general actuator into a PID controller."""
+        draw = self.draw
+        stateful = draw.chance(0.5)
+        actuator.attrib.update(gaintype="pid", biastype="affine", dyntype="pid" if stateful else "none")
+        actuator.attrib.update(gainprm=text(draw.scale(0.3, 5) if stateful else 0), dynprm=text(draw.number(0, 1), draw.number(0.1, 3)))
+        actuator.set("biasprm", text(draw.number(-1, 1), -draw.scale(0.3, 30), -draw.scale(0.03, 3)))
+        actuator.attrib.update({name: VALUES["pid"][name](draw) for name in ("velrange", "ffrange")}, input=draw.choice(("pos", "pos vel ff")))
+        actuator.attrib.pop("actdim", None)
+        if not stateful:
+            for name in ("actrange", "actlimited"):
+                actuator.attrib.pop(name, None)
 
 
 def with_keyframe(root, model, draw):

@@ -87,8 +87,8 @@ VALUES = {
     },
     "fixed": TENDON,
     "default/tendon": {**TENDON, "width": "0.1", "material": "paint", "rgba": COLOUR},
-    "general": {**USER, "input": "pos"},
-    **{kind: USER for kind in "motor position velocity intvelocity damper cylinder muscle".split()},
+    "general": USER,
+    **{kind: USER for kind in "motor position velocity intvelocity damper cylinder muscle pid dcmotor".split()},
     "global": {
         "cameraid": "0",
         "orthographic": "true",

@@ -152,7 +152,14 @@ TENDON = {
 }
 EQUALITY = {"active": one_of("true", "true", "false"), "solref": solref, "solimp": solimp}
 POLYCOEF = lambda draw: text(*(draw.number(-0.5, 0.5) for _ in range(draw.randint(1, 5))))
-ACTUATOR = {"group": one_of(0, 0, 1, 2, 3, 30), "gear": lambda draw: text(*gear(draw))}
+ACTUATOR = {
+    "group": one_of(0, 0, 1, 2, 3, 30),
+    "gear": lambda draw: text(*gear(draw)),
+    "damping": lambda draw: text(*(draw.choice((0, draw.scale(0.003, 1))) for _ in range(draw.randint(1, 3)))),
+    "armature": usually(scale(0.001, 0.3), "0"),
+    "nsample": one_of(20, 50),  # before `delay`, which needs it
+    "interp": one_of("zoh", "linear", "cubic"),
+}
 SERVO_GAIN = {"kp": usually(scale(0.1, 100), "0"), "kv": usually(scale(0.01, 5), "0"), "dampratio": usually(scale(0.1, 2), "0")}
 
 
@@ -334,6 +341,29 @@ VALUES = {
         "fpmax": number(0.1, 3),
         "fvmax": number(0.6, 2),
     },
+    "pid": {
+        **ACTUATOR,
+        **SERVO_GAIN,
+        "ki": usually(scale(0.1, 20), "0"),
+        "imax": usually(scale(0.03, 1), "0"),
+        "slewmax": usually(scale(0.1, 10), "0"),
+        "input": one_of("pos vel", "pos", "pos ff", "pos vel ff", "", "vel", "ff"),
+        "velrange": interval(-2, 2),
+        "ffrange": interval(-2, 2),
+    },
+    "dcmotor": {
+        **ACTUATOR,
+        "resistance": scale(0.3, 5),
+        "motorconst": lambda draw: text(*(draw.scale(0.03, 1) for _ in range(draw.randint(1, 2)))),
+        "nominal": lambda draw: text(draw.scale(3, 30), draw.scale(0.3, 5), draw.scale(5, 100)),
+        "saturation": lambda draw: text(draw.choice((0, draw.scale(0.3, 5))), draw.choice((0, draw.scale(0.3, 5))), draw.choice((0, draw.scale(3, 100)))),
+        "inductance": lambda draw: text(draw.choice((0, draw.scale(0.003, 0.1))), draw.choice((0, draw.scale(0.003, 0.1)))),
+        "cogging": lambda draw: text(draw.scale(0.01, 0.3), draw.randint(1, 12), draw.number(-3, 3)),
+        "controller": lambda draw: text(*(draw.choice((0, draw.scale(0.1, 5))) for _ in range(draw.randint(1, 6)))),
+        "thermal": lambda draw: text(draw.scale(0.3, 5), draw.choice((0, draw.scale(1, 50))), draw.scale(1, 50), draw.number(0, 0.01), draw.number(0, 30), draw.number(10, 40)),
+        "lugre": lambda draw: text(draw.scale(5, 50), draw.scale(0.01, 1), draw.scale(0.01, 0.3), draw.scale(0.01, 0.5), draw.scale(0.03, 1)),
+        "input": one_of("", "pos", "pos vel", "vel", "ff", "pos vel ff voltage", "vel voltage", "none", "voltage"),
+    },
     "lengthrange": {
         "mode": one_of("none", "muscle"),
         "useexisting": one_of("true"),  # what both engines would find by simulation differs too much where lengths have no limits
@@ -380,11 +410,14 @@ RANGES = {
     "damper": {"forcerange": "forcelimited"},
     "cylinder": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
     "muscle": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
+    "pid": {"ctrlrange": "ctrllimited", "posrange": "ctrllimited", "forcerange": "forcelimited"},
+    "dcmotor": {"ctrlrange": "ctrllimited"},
 }
 
 # Attributes of which an element may have only one.
 ONE_OF = {
     "position": [("kv", "dampratio")],
     "intvelocity": [("kv", "dampratio")],
+    "pid": [("kv", "dampratio")],
     **{element: [ORIENTATIONS] for element in ("body", "frame", "geom", "site", "camera", "inertial")},
 }

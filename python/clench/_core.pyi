@@ -84,6 +84,8 @@ class Model:
     @property
     def na(self) -> int: ...
     @property
+    def nhistory(self) -> int: ...
+    @property
     def nbody(self) -> int: ...
     @property
     def njnt(self) -> int: ...
@@ -244,27 +246,33 @@ class Model:
     tendon_limited: Final[_Flags]  # (ntendon,) Whether its range is a limit.
     tendon_actfrclimited: Final[_Flags]  # (ntendon,) Whether the force of its actuators is limited.
 
-    actuator_gear: Final[_Floats]  # (nu, 6) Scaling of the force onto the transmission's axes.
-    actuator_dynprm: Final[_Floats]  # (nu, 10) Parameters of the dynamics.
-    actuator_gainprm: Final[_Floats]  # (nu, 10) Parameters of the gain.
-    actuator_biasprm: Final[_Floats]  # (nu, 10) Parameters of the bias.
+    actuator_gear: Final[_Floats]  # (nactuator, 6) Scaling of the force onto the transmission's axes.
+    actuator_dynprm: Final[_Floats]  # (nactuator, 10) Parameters of the dynamics.
+    actuator_gainprm: Final[_Floats]  # (nactuator, 10) Parameters of the gain.
+    actuator_biasprm: Final[_Floats]  # (nactuator, 10) Parameters of the bias.
     actuator_ctrlrange: Final[_Floats]  # (nu, 2) Allowed controls.
-    actuator_forcerange: Final[_Floats]  # (nu, 2) Allowed forces.
-    actuator_actrange: Final[_Floats]  # (nu, 2) Allowed activations.
-    actuator_acc0: Final[_Floats]  # (nu,) Norm of the acceleration that a unit force causes at qpos0.
-    actuator_lengthrange: Final[_Floats]  # (nu, 2) Lengths between which the transmission can be; of use to muscles.
-    actuator_trntype: Final[_Codes]  # (nu,) 0 joint, 1 joint in the parent's frame, 3 tendon.
-    actuator_trnid: Final[_Codes]  # (nu, 2) What it pulls on, and -1.
-    actuator_dyntype: Final[_Codes]  # (nu,) 0 none, 1 integrator, 2 filter, 3 filterexact, 4 muscle, 7 user.
-    actuator_gaintype: Final[_Codes]  # (nu,) 0 fixed, 1 affine, 2 muscle, 6 user.
-    actuator_biastype: Final[_Codes]  # (nu,) 0 none, 1 affine, 2 muscle, 5 user.
-    actuator_actadr: Final[_Codes]  # (nu,) The first of its activations, or -1.
-    actuator_actnum: Final[_Codes]  # (nu,) How many activations; the last acts.
-    actuator_group: Final[_Codes]  # (nu,) Group.
+    actuator_forcerange: Final[_Floats]  # (nactuator, 2) Allowed forces.
+    actuator_actrange: Final[_Floats]  # (nactuator, 2) Allowed activations.
+    actuator_delay: Final[_Floats]  # (nactuator,) How late controls arrive, s; only of actuators that keep past ones.
+    actuator_damping: Final[_Floats]  # (nactuator,) Damping that the target gets, times the square of the gear.
+    actuator_dampingpoly: Final[_Floats]  # (nactuator, 2) Coefficients of its quadratic and cubic damping, likewise.
+    actuator_armature: Final[_Floats]  # (nactuator,) Inertia that the target gets, likewise.
+    actuator_acc0: Final[_Floats]  # (nactuator,) Norm of the acceleration that a unit force causes at qpos0.
+    actuator_lengthrange: Final[_Floats]  # (nactuator, 2) Lengths between which the transmission can be; of use to muscles.
+    actuator_trntype: Final[_Codes]  # (nactuator,) 0 joint, 1 joint in the parent's frame, 3 tendon.
+    actuator_trnid: Final[_Codes]  # (nactuator, 2) What it pulls on, and -1.
+    actuator_dyntype: Final[_Codes]  # (nactuator,) 0 none, 1 integrator, 2 filter, 3 filterexact, 4 muscle, 5 dcmotor, 6 pid, 7 user.
+    actuator_gaintype: Final[_Codes]  # (nactuator,) 0 fixed, 1 affine, 2 muscle, 3 dcmotor, 5 pid, 6 user.
+    actuator_biastype: Final[_Codes]  # (nactuator,) 0 none, 1 affine, 2 muscle, 3 dcmotor, 5 user.
+    actuator_actadr: Final[_Codes]  # (nactuator,) The first of its activations, or -1.
+    actuator_actnum: Final[_Codes]  # (nactuator,) How many activations; the last acts.
+    actuator_ctrladr: Final[_Codes]  # (nactuator,) The first of its controls, or -1.
+    actuator_ctrlnum: Final[_Codes]  # (nactuator,) How many controls: one, but for controllers and motors.
+    actuator_group: Final[_Codes]  # (nactuator,) Group.
     actuator_ctrllimited: Final[_Flags]  # (nu,) Whether its control is clamped.
-    actuator_forcelimited: Final[_Flags]  # (nu,) Whether its force is clamped.
-    actuator_actlimited: Final[_Flags]  # (nu,) Whether its activation is clamped.
-    actuator_actearly: Final[_Flags]  # (nu,) Whether the activation as of the end of the step acts.
+    actuator_forcelimited: Final[_Flags]  # (nactuator,) Whether its force is clamped.
+    actuator_actlimited: Final[_Flags]  # (nactuator,) Whether its activation is clamped.
+    actuator_actearly: Final[_Flags]  # (nactuator,) Whether the activation as of the end of the step acts.
 
     sensor_adr: Final[_Codes]  # (nsensor,) The first of its numbers in sensordata.
     sensor_dim: Final[_Codes]  # (nsensor,) How many numbers.
@@ -533,6 +541,10 @@ class StateViews:
     @ctrl.setter
     def ctrl(self, values: ArrayLike) -> None: ...
     @property
+    def history(self) -> NDArray[Any]: ...  # (nhistory,)
+    @history.setter
+    def history(self, values: ArrayLike) -> None: ...
+    @property
     def qfrc_applied(self) -> NDArray[Any]: ...  # (nv,)
     @qfrc_applied.setter
     def qfrc_applied(self, values: ArrayLike) -> None: ...
@@ -580,9 +592,9 @@ class _Outputs(StateViews):
     cdof: Final[NDArray[Any]]  # (nv, 6) Motion of each dof at unit velocity, likewise.
     ten_length: Final[NDArray[Any]]  # (ntendon,) Lengths of tendons.
     ten_velocity: Final[NDArray[Any]]  # (ntendon,) Velocities of tendons.
-    actuator_length: Final[NDArray[Any]]  # (nu,) Lengths of actuators.
-    actuator_velocity: Final[NDArray[Any]]  # (nu,) Velocities of actuators.
-    actuator_force: Final[NDArray[Any]]  # (nu,) Forces of actuators.
+    actuator_length: Final[NDArray[Any]]  # (nactuator,) Lengths of actuators.
+    actuator_velocity: Final[NDArray[Any]]  # (nactuator,) Velocities of actuators.
+    actuator_force: Final[NDArray[Any]]  # (nactuator,) Forces of actuators.
     qfrc_actuator: Final[NDArray[Any]]  # (nv,) The same along dofs.
     qfrc_passive: Final[NDArray[Any]]  # (nv,) Springs, dampers, gravity compensation, fluid.
     qfrc_bias: Final[NDArray[Any]]  # (nv,) Coriolis, centrifugal and gravitational forces.

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 __all__ = ["State"]
 
 # What the bytes hold is said by this number: readers refuse what is newer than they know. Before version 2, times were of
-# the precision of all other numbers.
-_VERSION = 2
+# the precision of all other numbers; before version 3, nothing was delayed.
+_VERSION = 3
 # The most entries of an archive that are looked at: more than any version has.
 _MAX_ENTRIES = 100
 
@@ -35,7 +35,7 @@ class State:
     ----------
     time : numpy.ndarray
         s, float64 in every precision.
-    qpos, qvel, act, ctrl, qfrc_applied, xfrc_applied, mocap_pos, mocap_quat, qacc_warmstart : numpy.ndarray
+    qpos, qvel, act, history, ctrl, qfrc_applied, xfrc_applied, mocap_pos, mocap_quat, qacc_warmstart : numpy.ndarray
         Numbers, all float64 or all float32.
     eq_active : numpy.ndarray
         Switches of equality constraints, bool.
@@ -50,6 +50,7 @@ class State:
     qpos: NDArray[Any]
     qvel: NDArray[Any]
     act: NDArray[Any]
+    history: NDArray[Any]
     ctrl: NDArray[Any]
     qfrc_applied: NDArray[Any]
     xfrc_applied: NDArray[Any]
@@ -134,6 +135,8 @@ class State:
         del arrays["version"]
         if version == 1 and "time" in arrays:
             arrays["time"] = arrays["time"].astype(np.float64)
+        if version < 3 and "qpos" in arrays:
+            arrays["history"] = np.zeros((*arrays["qpos"].shape[:-1], 0), arrays["qpos"].dtype)
         try:
             return State(**arrays)
         except TypeError as error:

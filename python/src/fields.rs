@@ -147,9 +147,18 @@ const STRUCTURE: &[Reader] = &[
     ("actuator_actnum", |m| {
         codes(&m.actuators, |a| id(a.acts.len()))
     }),
+    ("actuator_ctrladr", |m| {
+        codes(&m.actuators, |a| first(&a.controls))
+    }),
+    ("actuator_ctrlnum", |m| {
+        codes(&m.actuators, |a| id(a.controls.len()))
+    }),
     ("actuator_group", |m| codes(&m.actuators, |a| a.group)),
     ("actuator_ctrllimited", |m| {
-        flags(&m.actuators, |a| a.ctrllimited)
+        let limited: Vec<bool> = (m.actuators.iter())
+            .flat_map(|a| a.ctrllimited.iter().copied())
+            .collect();
+        flags(&limited, |&limited| limited)
     }),
     ("actuator_forcelimited", |m| {
         flags(&m.actuators, |a| a.forcelimited)
@@ -239,7 +248,7 @@ fn wrapped_joints(model: &Model) -> Field {
 fn transmission_targets(model: &Model) -> Field {
     let targets = (model.actuators.iter()).flat_map(|a| [transmission(a.transmission).1, NONE]);
     Field {
-        shape: vec![model.nu(), 2],
+        shape: vec![model.actuators.len(), 2],
         numbers: Numbers::Code(targets.collect()),
     }
 }
@@ -289,6 +298,8 @@ fn dynamics_type(kind: DynamicsKind) -> i32 {
         DynamicsKind::Filter => 2,
         DynamicsKind::FilterExact => 3,
         DynamicsKind::Muscle => 4,
+        DynamicsKind::DcMotor => 5,
+        DynamicsKind::Pid => 6,
         DynamicsKind::User => 7,
     }
 }
@@ -298,6 +309,8 @@ fn gain_type(kind: GainKind) -> i32 {
         GainKind::Fixed => 0,
         GainKind::Affine => 1,
         GainKind::Muscle => 2,
+        GainKind::DcMotor => 3,
+        GainKind::Pid => 5,
         GainKind::User => 6,
     }
 }
@@ -307,6 +320,7 @@ fn bias_type(kind: BiasKind) -> i32 {
         BiasKind::None => 0,
         BiasKind::Affine => 1,
         BiasKind::Muscle => 2,
+        BiasKind::DcMotor => 3,
         BiasKind::User => 5,
     }
 }

@@ -158,10 +158,15 @@ impl Model {
     fn nv(&self) -> usize {
         self.0.nv
     }
-    /// int : Number of controls, one an actuator.
+    /// int : Number of controls. Most actuators have one.
     #[getter]
     fn nu(&self) -> usize {
         self.0.nu()
+    }
+    /// int : Numbers in the buffers of delayed actuators.
+    #[getter]
+    fn nhistory(&self) -> usize {
+        self.0.nhistory
     }
     /// int : Number of activations.
     #[getter]

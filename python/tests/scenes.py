@@ -52,7 +52,7 @@ PUPPET = """
   </equality>
   <actuator>
     <general name="slow" joint="elbow" dyntype="filter" dynprm="0.05" gainprm="2"/>
-    <motor name="pull" tendon="string" gear="0.5"/>
+    <motor name="pull" tendon="string" gear="0.5" nsample="2" delay="0.003" interp="linear"/>
   </actuator>
   <keyframe>
     <key name="bent" time="1" qpos="0 0 0.9 1 0 0 0 0.3 -0.4" qvel="0 0 0 0 0 0 0.1 0.2" act="0.5" ctrl="0.2 -0.3"
@@ -82,6 +82,7 @@ NUMBERS = (
     "qpos",
     "qvel",
     "act",
+    "history",
     "ctrl",
     "qfrc_applied",
     "xfrc_applied",

@@ -28,6 +28,7 @@ def test_state_arrays_are_the_state(precision: Any) -> None:
         "qpos": (model.nq,),
         "qvel": (model.nv,),
         "act": (model.na,),
+        "history": (model.nhistory,),
         "ctrl": (model.nu,),
         "qfrc_applied": (model.nv,),
         "xfrc_applied": (model.nbody, 6),

@@ -54,6 +54,7 @@ def test_state_arrays_are_the_state() -> None:
         "qpos": (model.nq,),
         "qvel": (model.nv,),
         "act": (model.na,),
+        "history": (model.nhistory,),
         "ctrl": (model.nu,),
         "qfrc_applied": (model.nv,),
         "xfrc_applied": (model.nbody, 6),

@@ -203,7 +203,7 @@ def foreign() -> dict[str, bytes]:
         "a pickle": pickle.dumps([1, 2, 3]),
         "an archive": archive.getvalue(),
         "an array larger than memory": huge.getvalue(),
-        "later": repacked(data, version=np.int64(3)),
+        "later": repacked(data, version=np.int64(4)),
         "much later": repacked(data, version=np.float64(1e300)),
         "never": repacked(data, version=np.float64(np.nan)),
         "without version": repacked(data, version=None),
@@ -232,14 +232,20 @@ def test_bytes_of_something_else(name: str) -> None:
 
 
 def test_later_versions_say_so() -> None:
-    with pytest.raises(ValueError, match="version 3"):
+    with pytest.raises(ValueError, match="version 4"):
         clench.State.from_bytes(foreign()["later"])
 
 
 def test_times_of_the_first_version_had_the_precision_of_the_rest() -> None:
     state = moving("sim", "32").state
-    old = repacked(state.to_bytes(), version=np.int64(1), time=state.time.astype(np.float32))
+    old = repacked(state.to_bytes(), version=np.int64(1), time=state.time.astype(np.float32), history=None)
     assert clench.State.from_bytes(old).time == np.float32(state.time)
+
+
+def test_nothing_was_delayed_before_the_third_version() -> None:
+    state = moving("batch").state
+    old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(2), history=None))
+    assert old.history.shape == (len(state.qpos), 0) and old.history.dtype == state.qpos.dtype
 
 
 @pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])
@@ -282,7 +288,7 @@ def test_states_have_no_hash() -> None:
 def test_bytes_take_no_more_memory_than_they_are() -> None:
     """Few bytes that unpack to many, of whatever version."""
     zeros = np.zeros(10**8)
-    for version in (1, 2):
+    for version in (1, 2, 3):
         bomb = io.BytesIO()
         np.savez_compressed(bomb, version=np.int64(version), qpos=zeros)
         tracemalloc.start()

@@ -14,6 +14,7 @@ pub mod contact;
 pub mod dynamics;
 mod error;
 mod geometry;
+pub mod history;
 mod known;
 pub mod model;
 mod output;

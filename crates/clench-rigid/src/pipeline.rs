@@ -71,7 +71,7 @@ pub fn force_stage<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
-    actuation(model, params, state, pos, vel, force);
+    actuation(model, params, state, pos, vel, ws.integration.offset, force);
     smooth_forces(model, state, pos, force);
     smooth_acceleration(model, force, &mut ws.problem);
     ws.clock.lap(Stage::Force as usize);

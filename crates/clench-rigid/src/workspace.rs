@@ -50,7 +50,7 @@ pub struct Positions<T> {
     pub ten_length: Vec<T>,
     /// ∂length/∂q of all tendons, row after row, in the pattern `Model::tendon_dofs`.
     pub ten_jacobian: Vec<T>,
-    /// Actuator lengths (nu).
+    /// Actuator lengths (nactuator).
     pub actuator_length: Vec<T>,
     /// Moment arms ∂length/∂q of all actuators, row after row, in the pattern `Model::actuator_dofs`.
     pub actuator_moment: Vec<T>,
@@ -59,7 +59,7 @@ pub struct Positions<T> {
 impl<T: Real> Positions<T> {
     /// Room for a model; what its poses are is not known yet.
     pub fn new(model: &Model) -> Self {
-        let (nbody, nv, nu) = (model.nbody(), model.nv, model.nu());
+        let (nbody, nv, nactuator) = (model.nbody(), model.nv, model.actuators.len());
         let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
         let zeros = |n: usize| vec![T::ZERO; n];
         let points = |n: usize| vec![Vec3::ZERO; n];
@@ -83,7 +83,7 @@ impl<T: Real> Positions<T> {
             crb: vec![Inertia::ZERO; nbody],
             ten_length: zeros(model.tendons.len()),
             ten_jacobian: zeros(model.tendon_dofs.len()),
-            actuator_length: zeros(nu),
+            actuator_length: zeros(nactuator),
             actuator_moment: zeros(model.actuator_dofs.len()),
         }
     }
@@ -98,11 +98,11 @@ pub struct Velocities<T> {
     pub cdof_dot: Vec<Motion<T>>,
     /// Tendon velocities (ntendon).
     pub ten_velocity: Vec<T>,
-    /// Actuator velocities (nu).
+    /// Actuator velocities (nactuator).
     pub actuator_velocity: Vec<T>,
 }
 
-/// Forces along dofs (nv each) and of actuators (nu).
+/// Forces along dofs (nv each) and of actuators (nactuator).
 #[derive(Clone, Debug, Default)]
 pub struct Forces<T> {
     /// Coriolis, centrifugal and gravity: on the left side of the equation of motion.
@@ -121,10 +121,12 @@ pub struct Forces<T> {
     pub qfrc_actuator: Vec<T>,
     /// Everything but constraints: passive + actuator + applied − bias.
     pub qfrc_smooth: Vec<T>,
-    /// Scalar force of each actuator (nu).
+    /// Scalar force of each actuator (nactuator).
     pub actuator_force: Vec<T>,
     /// Total force of the actuators of each tendon with a limit on it, after all limits (ntendon).
     pub ten_actuator_force: Vec<T>,
+    /// Controls as they act: delayed, and within their ranges (nu).
+    pub ctrl: Vec<T>,
     /// Rate of change of each activation (na).
     pub act_dot: Vec<T>,
     /// Body accelerations, scratch of the bias forces (nbody).
@@ -172,7 +174,7 @@ pub struct Workspace<T: Real> {
 impl<T: Real> Workspace<T> {
     /// Room for everything that the model needs.
     pub fn new(model: &Model) -> Self {
-        let (nbody, nv, nu) = (model.nbody(), model.nv, model.nu());
+        let (nbody, nv, nactuator) = (model.nbody(), model.nv, model.actuators.len());
         let zeros = |n: usize| vec![T::ZERO; n];
         Workspace {
             position: Positions::new(model),
@@ -180,7 +182,7 @@ impl<T: Real> Workspace<T> {
                 cvel: vec![Motion::ZERO; nbody],
                 cdof_dot: vec![Motion::ZERO; nv],
                 ten_velocity: zeros(model.tendons.len()),
-                actuator_velocity: zeros(nu),
+                actuator_velocity: zeros(nactuator),
             },
             force: Forces {
                 qfrc_bias: zeros(nv),
@@ -191,8 +193,9 @@ impl<T: Real> Workspace<T> {
                 qfrc_passive: zeros(nv),
                 qfrc_actuator: zeros(nv),
                 qfrc_smooth: zeros(nv),
-                actuator_force: zeros(nu),
+                actuator_force: zeros(nactuator),
                 ten_actuator_force: zeros(model.tendons.len()),
+                ctrl: zeros(model.nu()),
                 act_dot: zeros(model.na),
                 cacc: vec![Motion::ZERO; nbody],
                 cfrc_body: vec![Force::ZERO; nbody],

@@ -296,11 +296,12 @@ fn states_are_equal_bit_by_bit() {
     let model = model(&everything());
     let state = State::<f64>::new(&model);
     assert_eq!(state, state.clone());
-    let changes: [fn(&mut State<f64>); 11] = [
+    let changes: [fn(&mut State<f64>); 12] = [
         |s| s.time = -0.0,
         |s| s.qpos[0] = f64::NAN,
         |s| s.qvel[0] = -0.0,
         |s| s.act.push(0.0),
+        |s| s.history.push(0.0),
         |s| s.ctrl.push(0.0),
         |s| s.qfrc_applied[0] = 1.0,
         |s| s.xfrc_applied[1].angular.z = 1.0,

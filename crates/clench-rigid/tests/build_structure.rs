@@ -119,7 +119,7 @@ fn a_servo_inherits_a_share_of_its_joints_range() {
     });
     let model = builder.build().unwrap();
     assert_eq!(model.params.actuator_ctrlrange[0], [0.0, 2.0]);
-    assert!(model.actuators[0].ctrllimited);
+    assert!(model.actuators[0].ctrllimited[0]);
 }
 
 #[test]

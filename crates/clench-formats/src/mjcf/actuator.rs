@@ -4,11 +4,20 @@
 //! written with the same shortcut, or with `general` and the shortcut's kind of gain, in the class or its nearest such
 //! ancestor (MuJoCo manual, modeling chapter, "Shortcuts"); `general` takes any as they are.
 
+use super::controller::{self, Saturation};
 use super::document::Element;
 use super::shortcut::{self, ActuatorParams, Shortcut};
 use crate::LoadError;
 use clench_rigid::builder::{ActuatorSpec, TransmissionSpec};
+use clench_rigid::history::Interpolation;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
+
+/// How values are read between samples.
+pub(crate) const INTERPOLATIONS: [(&str, Interpolation); 3] = [
+    ("zoh", Interpolation::Hold),
+    ("linear", Interpolation::Linear),
+    ("cubic", Interpolation::Cubic),
+];
 
 /// An actuator as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
@@ -22,6 +31,13 @@ pub(crate) struct ActuatorDraft {
     forcelimited: Option<bool>,
     actrange: [f64; 2],
     actlimited: Option<bool>,
+    velrange: [f64; 2],
+    ffrange: [f64; 2],
+    nsample: i32,
+    interp: Interpolation,
+    delay: f64,
+    damping: [f64; 3],
+    armature: f64,
     group: i32,
 }
 
@@ -37,6 +53,13 @@ impl Default for ActuatorDraft {
             forcelimited: None,
             actrange: [0.0; 2],
             actlimited: None,
+            velrange: [0.0; 2],
+            ffrange: [0.0; 2],
+            nsample: 0,
+            interp: Interpolation::Hold,
+            delay: 0.0,
+            damping: [0.0; 3],
+            armature: 0.0,
             group: 0,
         }
     }
@@ -64,7 +87,17 @@ impl ActuatorDraft {
         element.set_range("actrange", &mut self.actrange)?;
         element.set_tristate("actlimited", &mut self.actlimited)?;
         element.overlay("gear", &mut self.gear)?;
+        element.set_integer("nsample", &mut self.nsample)?;
+        element.set_keyword("interp", &INTERPOLATIONS, &mut self.interp)?;
+        element.set_number("delay", &mut self.delay)?;
+        element.overlay("damping", &mut self.damping)?;
+        element.set_number("armature", &mut self.armature)?;
         element.set_integer("group", &mut self.group)?;
+        if matches!(shortcut, Shortcut::General | Shortcut::Pid) {
+            element.set_range("posrange", &mut self.ctrlrange)?;
+            element.set_range("velrange", &mut self.velrange)?;
+            element.set_range("ffrange", &mut self.ffrange)?;
+        }
         let parameters = match shortcut {
             Shortcut::General => read_general(element, self.parameters)?,
             Shortcut::Motor => ActuatorParams::default(),
@@ -74,6 +107,8 @@ impl ActuatorDraft {
             Shortcut::Damper => shortcut::read_damper(element, inherited)?,
             Shortcut::Cylinder => shortcut::read_cylinder(element, inherited)?,
             Shortcut::Muscle => shortcut::read_muscle(element, inherited)?,
+            Shortcut::Pid => controller::read_pid(element, inherited)?,
+            Shortcut::DcMotor => self.read_dc_motor(element, inherited)?,
         };
         self.parameters = parameters;
         match shortcut {
@@ -83,6 +118,24 @@ impl ActuatorDraft {
             _ => {}
         }
         self.settle_inheritrange(element)
+    }
+
+    /// `dcmotor`: its saturation is a limit of the force.
+    fn read_dc_motor(
+        &mut self,
+        element: &Element,
+        inherited: ActuatorParams,
+    ) -> Result<ActuatorParams, LoadError> {
+        let damping = self.damping[0];
+        let (parameters, saturation) = controller::read_dc_motor(element, inherited, damping)?;
+        match saturation {
+            Saturation::Inherited => {}
+            Saturation::None => (self.forcerange, self.forcelimited) = ([0.0; 2], None),
+            Saturation::Torque(torque) => {
+                (self.forcerange, self.forcelimited) = ([-torque, torque], Some(true));
+            }
+        }
+        Ok(parameters)
     }
 
     /// A damper is limited to positive controls.
@@ -101,8 +154,9 @@ impl ActuatorDraft {
         }
         let integrates = self.parameters.dynamics == DynamicsKind::Integrator;
         let name = if integrates { "actrange" } else { "ctrlrange" };
+        let of_position = self.shortcut == Shortcut::Pid && element.text("posrange").is_some();
         match (
-            element.text(name).is_some(),
+            element.text(name).is_some() || of_position,
             element.text("inheritrange").is_some(),
         ) {
             (true, true) if self.shortcut != Shortcut::General => {
@@ -122,11 +176,12 @@ impl ActuatorDraft {
         let mut lengthrange = [0.0; 2];
         element.set_range("lengthrange", &mut lengthrange)?;
         // MuJoCo keeps a damping ratio as a positive velocity coefficient of what pulls back, however written.
+        let matches = parameters.gainprm[0] == -parameters.biasprm[1];
         let pulls_back =
-            parameters.bias == BiasKind::Affine && parameters.gainprm[0] == -parameters.biasprm[1];
+            parameters.bias == BiasKind::Affine && (matches || parameters.gain == GainKind::Pid);
         let dampratio =
             (pulls_back && parameters.biasprm[2] > 0.0).then_some(parameters.biasprm[2]);
-        let servo = pulls_back && parameters.gain == GainKind::Fixed;
+        let servo = pulls_back && matches!(parameters.gain, GainKind::Fixed | GainKind::Pid);
         if dampratio.is_some() {
             parameters.biasprm[2] = 0.0;
         }
@@ -142,9 +197,17 @@ impl ActuatorDraft {
             dampratio,
             inheritrange: if servo { parameters.inheritrange } else { 0.0 },
             gear: self.gear,
+            nsample: usize::try_from(self.nsample).unwrap_or(0),
+            interp: self.interp,
+            delay: self.delay,
+            damping: self.damping,
+            armature: self.armature,
             lengthrange,
             ctrlrange: self.ctrlrange,
             ctrllimited: self.ctrllimited,
+            velrange: self.velrange,
+            ffrange: self.ffrange,
+            inputs: parameters.inputs.map(|inputs| inputs.controls()),
             forcerange: self.forcerange,
             forcelimited: self.forcelimited,
             actrange: self.actrange,
@@ -168,23 +231,32 @@ fn read_general(
         ("filter", DynamicsKind::Filter),
         ("filterexact", DynamicsKind::FilterExact),
         ("muscle", DynamicsKind::Muscle),
+        ("dcmotor", DynamicsKind::DcMotor),
+        ("pid", DynamicsKind::Pid),
         ("user", DynamicsKind::User),
     ];
-    supported(element, "dyntype", &["dcmotor", "pid"])?;
     element.set_keyword("dyntype", &dynamics, &mut parameters.dynamics)?;
-    supported(element, "gaintype", &["dcmotor", "so3", "pid"])?;
+    supported(element, "gaintype", &["so3"])?;
     let gains = [
         ("fixed", GainKind::Fixed),
         ("affine", GainKind::Affine),
         ("muscle", GainKind::Muscle),
+        ("dcmotor", GainKind::DcMotor),
+        ("pid", GainKind::Pid),
         ("user", GainKind::User),
     ];
+    let inherited = parameters.gain;
     element.set_keyword("gaintype", &gains, &mut parameters.gain)?;
-    supported(element, "biastype", &["dcmotor", "so3"])?;
+    if parameters.gain != inherited {
+        parameters.inputs = None;
+    }
+    controller::read_inputs(element, parameters.gain, &mut parameters.inputs)?;
+    supported(element, "biastype", &["so3"])?;
     let biases = [
         ("none", BiasKind::None),
         ("affine", BiasKind::Affine),
         ("muscle", BiasKind::Muscle),
+        ("dcmotor", BiasKind::DcMotor),
         ("user", BiasKind::User),
     ];
     element.set_keyword("biastype", &biases, &mut parameters.bias)?;

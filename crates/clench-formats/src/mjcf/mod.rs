@@ -11,6 +11,7 @@ mod camera;
 mod compiler;
 mod compose;
 mod contact;
+mod controller;
 mod defaults;
 mod document;
 mod equality;

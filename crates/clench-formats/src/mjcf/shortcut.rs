@@ -1,6 +1,7 @@
 //! The shortcuts of `<actuator>`: actuators whose dynamics, gain and bias follow from parameters of their own, such as `kp`, `kv`,
 //! `area`.
 
+use super::controller::Inputs;
 use super::document::Element;
 use crate::LoadError;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
@@ -17,6 +18,8 @@ pub(crate) enum Shortcut {
     Damper,
     Cylinder,
     Muscle,
+    Pid,
+    DcMotor,
 }
 
 impl Shortcut {
@@ -31,6 +34,8 @@ impl Shortcut {
             "damper" => Shortcut::Damper,
             "cylinder" => Shortcut::Cylinder,
             "muscle" => Shortcut::Muscle,
+            "pid" => Shortcut::Pid,
+            "dcmotor" => Shortcut::DcMotor,
             _ => return None,
         })
     }
@@ -40,6 +45,8 @@ impl Shortcut {
         match self {
             Shortcut::Damper => GainKind::Affine,
             Shortcut::Muscle => GainKind::Muscle,
+            Shortcut::Pid => GainKind::Pid,
+            Shortcut::DcMotor => GainKind::DcMotor,
             _ => GainKind::Fixed,
         }
     }
@@ -57,6 +64,8 @@ pub(crate) struct ActuatorParams {
     pub inheritrange: f64,
     pub actearly: bool,
     pub actdim: i32,
+    /// What the controls are; `None`: what is usual.
+    pub inputs: Option<Inputs>,
 }
 
 /// Leading entries, then zeros.
@@ -78,6 +87,7 @@ impl Default for ActuatorParams {
             inheritrange: 0.0,
             actearly: false,
             actdim: -1,
+            inputs: None,
         }
     }
 }
@@ -236,7 +246,7 @@ fn overwrite(targets: &mut [f64], given: &[f64]) {
     }
 }
 
-fn not_negative(element: &Element, name: &str) -> Result<Option<f64>, LoadError> {
+pub(crate) fn not_negative(element: &Element, name: &str) -> Result<Option<f64>, LoadError> {
     match element.numbers(name)? {
         Some([value]) if value < 0.0 => Err(element.error(format!("{name} cannot be negative"))),
         value => Ok(value.map(|[value]| value)),

@@ -1,11 +1,14 @@
 //! Actuators.
 
+use super::controllers::{Controller, controller};
 use super::element::{Element, resolve_range};
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
 use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec};
 use crate::budget::RAISE;
-use crate::model::{Actuator, BiasKind, DynamicsKind, GainKind, Model, Transmission};
+use crate::model::{
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Model, Transmission,
+};
 
 /// Adds all actuators, and numbers their activations.
 ///
@@ -49,10 +52,15 @@ fn add(
     if spec.dampratio.is_some() && !pulls_back(spec) {
         return Err(spec.error("dampratio needs an affine bias with gainprm[0] = -biasprm[1]"));
     }
-    if spec.dampratio.is_some() && spec.gainprm[0] < 0.0 {
+    if spec.dampratio.is_some() && spec.biasprm[1] > 0.0 {
         return Err(spec.error("dampratio needs a gain that is not negative"));
     }
-    let activations = activations(builder, spec, model)?;
+    let controller = controller(spec, model.na)?;
+    let activations = activations(builder, spec, &controller, model)?;
+    let controls = model.nu()..model.nu() + controller.inputs.len();
+    let ranges: Vec<_> = (controller.inputs.iter())
+        .map(|&input| control_range(spec, input, ctrllimited))
+        .collect();
     if actlimited && activations == 0 {
         return Err(spec.error("has an actrange, but no activation"));
     }
@@ -62,6 +70,7 @@ fn add(
     if spec.bias == BiasKind::Muscle {
         check_muscle(spec, "biasprm", &spec.biasprm)?;
     }
+    let history = history(builder, spec, controls.len(), model)?;
     model.actuators.push(Actuator {
         name: spec.name.clone(),
         transmission,
@@ -69,7 +78,11 @@ fn add(
         acts: model.na..model.na + activations,
         gain: spec.gain,
         bias: spec.bias,
-        ctrllimited,
+        states: controller.states,
+        controls,
+        inputs: controller.inputs,
+        ctrllimited: ranges.iter().map(|(limited, _)| *limited).collect(),
+        history,
         forcelimited,
         actlimited,
         actearly: spec.actearly,
@@ -78,16 +91,29 @@ fn add(
         group: spec.group,
     });
     model.na += activations;
+    model.nhistory += history.map_or(0, |history| history.size());
     push_dofs(transmission, model);
     let p = &mut model.params;
     p.actuator_gear.push(spec.gear);
     p.actuator_dynprm.push(spec.dynprm);
     p.actuator_gainprm.push(spec.gainprm);
     p.actuator_biasprm.push(spec.biasprm);
-    p.actuator_ctrlrange.push(spec.ctrlrange);
+    p.actuator_ctrlrange
+        .extend(ranges.iter().map(|(_, range)| *range));
     p.actuator_forcerange.push(spec.forcerange);
     p.actuator_actrange.push(spec.actrange);
     p.actuator_lengthrange.push(spec.lengthrange);
+    p.actuator_delay.push(spec.delay);
+    let [linear, quadratic, cubic] = spec.damping;
+    p.actuator_damping.push(linear);
+    p.actuator_dampingpoly.push([quadratic, cubic]);
+    p.actuator_armature.push(spec.armature);
+    if spec.damping != [0.0; 3] || spec.armature != 0.0 {
+        let u = model.actuators.len() - 1;
+        if !model.let_reflect(u) {
+            return Err(spec.error("damping and armature of an actuator are not supported yet where it pulls on no joint"));
+        }
+    }
     Ok(())
 }
 
@@ -106,13 +132,59 @@ fn push_dofs(transmission: Transmission, model: &mut Model) {
     }
 }
 
+/// Whether a control is clamped, and to what. Of a PID controller `ctrlrange` is that of the position.
+fn control_range(spec: &ActuatorSpec, input: ControlInput, ctrllimited: bool) -> (bool, [f64; 2]) {
+    let own = match (spec.gain, input) {
+        (GainKind::Pid, ControlInput::Velocity) => spec.velrange,
+        (GainKind::Pid, ControlInput::Feedforward) => spec.ffrange,
+        _ => return (ctrllimited, spec.ctrlrange),
+    };
+    (own[0] < own[1], own)
+}
+
+/// The buffer of past controls, if any are kept.
+fn history(
+    builder: &ModelBuilder,
+    spec: &ActuatorSpec,
+    width: usize,
+    model: &Model,
+) -> Result<Option<History>, BuildError> {
+    if spec.delay > 0.0 && spec.nsample == 0 {
+        return Err(spec.error("a delay needs past controls (nsample)"));
+    }
+    if spec.nsample == 0 {
+        return Ok(None);
+    }
+    if width == 0 {
+        return Err(spec.error("nsample needs an input, and it has none"));
+    }
+    let most = builder.budget.matrix;
+    let numbers = (spec.nsample as u64).saturating_mul(width as u64 + 1);
+    if numbers.saturating_add(model.nhistory as u64) > most {
+        return Err(spec.error(format!(
+            "with its past controls there are more than {most} past numbers; {RAISE}"
+        )));
+    }
+    Ok(Some(History {
+        start: model.nhistory,
+        samples: spec.nsample,
+        width,
+        interpolation: spec.interp,
+    }))
+}
+
 /// How many activations the actuator has.
 fn activations(
     builder: &ModelBuilder,
     spec: &ActuatorSpec,
+    controller: &Controller,
     model: &Model,
 ) -> Result<usize, BuildError> {
-    let own = usize::from(spec.dynamics != DynamicsKind::None);
+    let own = match spec.dynamics {
+        DynamicsKind::None => 0,
+        DynamicsKind::Pid | DynamicsKind::DcMotor => controller.count,
+        _ => 1,
+    };
     let actdim = spec.actdim.unwrap_or(own);
     let any = spec.dynamics == DynamicsKind::User && actdim > 0;
     if actdim != own && !any {
@@ -146,12 +218,13 @@ fn check_muscle(spec: &ActuatorSpec, field: &str, prm: &[f64; 10]) -> Result<(),
 
 /// Whether the actuator pulls back as a spring of its gain does, which may be damped by a ratio.
 fn pulls_back(spec: &ActuatorSpec) -> bool {
-    spec.bias == BiasKind::Affine && spec.gainprm[0] == -spec.biasprm[1]
+    let matches = spec.gain == GainKind::Pid || spec.gainprm[0] == -spec.biasprm[1];
+    spec.bias == BiasKind::Affine && matches
 }
 
 /// Whether the actuator is a servo: its force vanishes where the control equals the length.
 fn is_servo(spec: &ActuatorSpec) -> bool {
-    spec.gain == GainKind::Fixed && pulls_back(spec)
+    matches!(spec.gain, GainKind::Fixed | GainKind::Pid) && pulls_back(spec)
 }
 
 /// MuJoCo's `inheritrange`: a servo's set point ranges over a share of its target's range, about the same middle.
@@ -180,9 +253,14 @@ fn inherit_range(
     let (mean, radius) = (0.5 * (high + low), 0.5 * (high - low) * spec.inheritrange);
     let range = [mean - radius, mean + radius];
     match spec.dynamics {
-        DynamicsKind::None | DynamicsKind::FilterExact => spec.ctrlrange = range,
+        DynamicsKind::None | DynamicsKind::FilterExact | DynamicsKind::Pid => {
+            spec.ctrlrange = range;
+        }
         DynamicsKind::Integrator => spec.actrange = range,
-        DynamicsKind::Filter | DynamicsKind::Muscle | DynamicsKind::User => {
+        DynamicsKind::Filter
+        | DynamicsKind::Muscle
+        | DynamicsKind::DcMotor
+        | DynamicsKind::User => {
             return Err(spec.error("inheritrange does not know this kind of dynamics"));
         }
     }

@@ -6,6 +6,7 @@ use super::{
     InertialSpec, JointSpec, KeyframeSpec, ModelBuilder, SiteSpec, TendonSpec, TransmissionSpec,
 };
 use super::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use crate::history::Interpolation;
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -288,9 +289,17 @@ impl ActuatorSpec {
             dampratio: None,
             inheritrange: 0.0,
             gear: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            damping: [0.0; 3],
+            armature: 0.0,
+            nsample: 0,
+            interp: Interpolation::Hold,
+            delay: 0.0,
             lengthrange: [0.0; 2],
             ctrlrange: [0.0; 2],
             ctrllimited: None,
+            velrange: [0.0; 2],
+            ffrange: [0.0; 2],
+            inputs: None,
             forcerange: [0.0; 2],
             forcelimited: None,
             actrange: [0.0; 2],

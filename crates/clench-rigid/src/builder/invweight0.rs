@@ -277,14 +277,16 @@ fn servo_damping(
             continue;
         };
         let weight = inverse.weight_of(model, transmission::moment(model, pose0, u));
+        // The gain of what pulls back is this too.
+        let stiffness = -spec.biasprm[1];
         let reflected = 1.0 / weight.max(MIN_INERTIA);
-        model.params.actuator_biasprm[u][2] = -2.0 * ratio * (spec.gainprm[0] * reflected).sqrt();
+        model.params.actuator_biasprm[u][2] = -2.0 * ratio * (stiffness * reflected).sqrt();
     }
 }
 
 /// `actuator_acc0`, by which muscles scale their force.
 fn unit_accelerations(inverse: &mut InverseInertia, pose0: &Positions<f64>, model: &mut Model) {
     let norm = |u| inverse.acceleration_of(model, transmission::moment(model, pose0, u));
-    let norms = (0..model.nu()).map(norm).collect();
+    let norms = (0..model.actuators.len()).map(norm).collect();
     model.params.actuator_acc0 = norms;
 }

@@ -34,6 +34,7 @@ pub(super) fn add(
         limited,
         actfrclimited,
         actgravcomp: spec.actuatorgravcomp,
+        reflecting: Vec::new(),
         group: spec.group,
         origin: spec.origin.clone(),
     });

@@ -34,6 +34,7 @@ mod cameras;
 mod check;
 mod constructors;
 mod contacts;
+mod controllers;
 mod element;
 mod elements;
 mod equalities;

@@ -2,7 +2,8 @@
 
 use super::Origin;
 use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use crate::model::{BiasKind, DynamicsKind, GainKind};
+use crate::history::Interpolation;
+use crate::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 use clench_math::{Quat, Vec3};
 
 /// A fixed tendon: a weighted sum of joint positions.
@@ -101,12 +102,29 @@ pub struct ActuatorSpec {
     pub inheritrange: f64,
     /// Scaling of the force onto the transmission's axes.
     pub gear: [f64; 6],
+    /// Coefficients of linear, quadratic and cubic damping that the joint or tendon gets, times the square of the gear.
+    pub damping: [f64; 3],
+    /// Inertia that the joint or tendon gets, likewise.
+    pub armature: f64,
+    /// How many past controls are kept.
+    pub nsample: usize,
+    /// How they are read between samples.
+    pub interp: Interpolation,
+    /// How late controls arrive, s; needs past controls.
+    pub delay: f64,
     /// Lengths between which the transmission can be, of use to muscles; where they do not rise they are not given.
     pub lengthrange: [f64; 2],
     /// Allowed controls.
     pub ctrlrange: [f64; 2],
     /// Whether it applies; `None`: if `autolimits` and a range is given.
     pub ctrllimited: Option<bool>,
+    /// Allowed velocity setpoints of a PID controller; they apply where the range rises.
+    pub velrange: [f64; 2],
+    /// Allowed feedforward of a PID controller, likewise.
+    pub ffrange: [f64; 2],
+    /// The controls of a PID controller or DC motor, in the order of [`ControlInput`]; `None`: the usual ones, position and
+    /// velocity, or a motor's voltage. Others have one control.
+    pub inputs: Option<Vec<ControlInput>>,
     /// Allowed forces.
     pub forcerange: [f64; 2],
     /// Whether it applies; `None` as for `ctrllimited`.

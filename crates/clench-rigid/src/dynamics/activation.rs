@@ -1,23 +1,57 @@
 //! From controls to what acts: clamped controls, activation dynamics, and setpoints on a circle.
 
-use crate::dynamics::muscle;
+use crate::dynamics::gain::ActuatorMotion;
+use crate::dynamics::{dc_motor, muscle, pid};
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind, Model, Params, Transmission};
 use crate::state::State;
-use crate::workspace::Positions;
+use crate::workspace::{Positions, Velocities};
 use clench_math::{Mask, Real, Vec3, kernel};
 
+/// The most controls that an actuator has: position, velocity, feedforward and voltage.
+const MAX_CONTROLS: usize = 4;
 /// The shortest time constant (s) of a filter (MuJoCo's `mjMINVAL`).
 const MIN_TIMECONST: f64 = 1e-15;
 
-/// The control of actuator `u` within its range.
-#[inline(always)]
-pub fn control<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, u: usize) -> T {
-    let ctrl = state.ctrl[u];
-    if model.actuators[u].ctrllimited && model.flags.clampctrl {
-        let [low, high] = params.actuator_ctrlrange[u];
-        ctrl.clamp(low, high)
-    } else {
-        ctrl
+/// What actuators are given: controls as they act, and activations.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'a, T> {
+    /// Delayed, and within their ranges (nu).
+    pub ctrl: &'a [T],
+    /// Activations (na).
+    pub act: &'a [T],
+}
+
+/// The controls as they act, `offset` seconds after the time of the state: those of delayed actuators are read from the past; then ranges clamp.
+#[kernel]
+pub fn acting_controls<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    offset: T,
+    ctrl: &mut [T],
+) {
+    ctrl.copy_from_slice(&state.ctrl);
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        let own = &mut ctrl[actuator.controls.clone()];
+        if let Some(history) = &actuator.history {
+            let delay = params.actuator_delay[u];
+            let delayed = delay.gt(T::ZERO);
+            if delayed.any() {
+                let mut past = [T::ZERO; MAX_CONTROLS];
+                history.read(&state.history, offset - delay, &mut past[..own.len()]);
+                for (ctrl, &past) in own.iter_mut().zip(&past) {
+                    *ctrl = T::select(delayed, past, *ctrl);
+                }
+            }
+        }
+        if model.flags.clampctrl {
+            let ranges = &params.actuator_ctrlrange[actuator.controls.clone()];
+            for ((ctrl, range), &limited) in own.iter_mut().zip(ranges).zip(&actuator.ctrllimited) {
+                if limited {
+                    *ctrl = ctrl.clamp(range[0], range[1]);
+                }
+            }
+        }
     }
 }
 
@@ -31,36 +65,48 @@ fn time_constant<T: Real>(params: &Params<T>, u: usize) -> T {
 pub fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    state: &State<T>,
+    given: Given<'_, T>,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
     act_dot: &mut [T],
 ) {
     for (u, actuator) in model.actuators.iter().enumerate() {
         let Some(a) = actuator.act() else { continue };
-        let ctrl = control(model, params, state, u);
+        let act = given.act[a];
+        let ctrl = || given.ctrl[actuator.controls.start];
+        let at = ActuatorMotion::of(pos, vel, u);
         act_dot[a] = match actuator.dynamics {
             // What a callback of MuJoCo's user would say.
             DynamicsKind::None | DynamicsKind::User => T::ZERO,
             DynamicsKind::Muscle => {
-                muscle::activation_rate(ctrl, state.act[a], &params.actuator_dynprm[u])
+                muscle::activation_rate(ctrl(), act, &params.actuator_dynprm[u])
             }
-            DynamicsKind::Integrator => ctrl,
+            DynamicsKind::Integrator => ctrl(),
             DynamicsKind::Filter | DynamicsKind::FilterExact => {
-                let act = state.act[a];
-                (nearest_setpoint(model, params, u, ctrl, act) - act) / time_constant(params, u)
+                (nearest_setpoint(model, params, u, ctrl(), act) - act) / time_constant(params, u)
+            }
+            DynamicsKind::Pid => {
+                pid::activation_rates(model, params, given, u, at.length, act_dot);
+                continue;
+            }
+            DynamicsKind::DcMotor => {
+                dc_motor::activation_rates(model, params, given, u, at, act_dot);
+                continue;
             }
         };
     }
 }
 
-/// The activation of actuator `u` a time step later, if its rate is `act_dot`, within its range. An exact filter
-/// approaches its control by 1 − exp(−h/τ) of the distance.
+/// Activation `a` of actuator `u` a time step later, from what it is and its rate, within its range. An exact filter approaches
+/// its control by 1 − exp(−h/τ) of the distance.
 #[inline(always)]
 pub fn next_activation<T: Real>(
     model: &Model,
     params: &Params<T>,
     u: usize,
-    act: T,
-    act_dot: T,
+    a: usize,
+    (act, act_dot): (T, T),
+    velocity: T,
 ) -> T {
     let h = params.timestep;
     let actuator = &model.actuators[u];
@@ -68,6 +114,9 @@ pub fn next_activation<T: Real>(
         DynamicsKind::FilterExact => {
             let tau = time_constant(params, u);
             act + act_dot * tau * (T::ONE - (-h / tau).exp())
+        }
+        DynamicsKind::DcMotor => {
+            return dc_motor::next_activation(model, params, u, a, (act, act_dot), velocity);
         }
         _ => act + act_dot * h,
     };
@@ -84,24 +133,26 @@ pub fn next_activation<T: Real>(
 pub fn input<T: Real>(
     model: &Model,
     params: &Params<T>,
-    state: &State<T>,
-    pos: &Positions<T>,
+    given: Given<'_, T>,
     act_dot: &[T],
     u: usize,
+    at: ActuatorMotion<T>,
 ) -> T {
     let actuator = &model.actuators[u];
     let input = match actuator.act() {
-        None => control(model, params, state, u),
-        Some(a) if actuator.actearly => next_activation(model, params, u, state.act[a], act_dot[a]),
-        Some(a) => state.act[a],
+        None => given.ctrl[actuator.controls.start],
+        Some(a) if actuator.actearly => {
+            next_activation(model, params, u, a, (given.act[a], act_dot[a]), at.velocity)
+        }
+        Some(a) => given.act[a],
     };
-    nearest_setpoint(model, params, u, input, pos.actuator_length[u])
+    nearest_setpoint(model, params, u, input, at.length)
 }
 
-/// The setpoint of a position servo on a ball joint, moved by whole turns to the one nearest to `near`; other inputs pass
+/// The setpoint of a servo on a ball joint, moved by whole turns to the one nearest to `near`; other inputs pass
 /// unchanged.
 ///
-/// A servo has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
+/// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
 #[inline(always)]
 pub fn nearest_setpoint<T: Real>(
     model: &Model,
@@ -117,12 +168,14 @@ pub fn nearest_setpoint<T: Real>(
         }
         Transmission::Tendon(_) => false,
     };
-    let servo = on_ball && actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
-    if !servo {
+    let pid = actuator.gain == GainKind::Pid;
+    let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
+    if !on_ball || !(pid || fixed) {
         return input;
     }
     let turn = Vec3::from_slice(&params.actuator_gear[u]).norm() * T::new(std::f64::consts::TAU);
-    let wraps = params.actuator_gainprm[u][0].eq(-params.actuator_biasprm[u][1]) & turn.gt(T::ZERO);
+    let pulls_back = params.actuator_gainprm[u][0].eq(-params.actuator_biasprm[u][1]);
+    let wraps = (pulls_back | T::Mask::splat(pid)) & turn.gt(T::ZERO);
     if !wraps.any() {
         return input;
     }

@@ -1,9 +1,10 @@
 //! Actuator forces, force = gain · input + bias, and the dof forces they make.
 
-use crate::dynamics::activation::{activation_rates, input};
+use crate::dynamics::activation::{Given, acting_controls, activation_rates};
+use crate::dynamics::dc_motor;
 use crate::dynamics::gain::{ActuatorMotion, unlimited_force};
 use crate::dynamics::transmission::moment;
-use crate::model::{Model, Params, Transmission};
+use crate::model::{BiasKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Real, kernel};
@@ -17,6 +18,7 @@ pub fn actuation<T: Real>(
     state: &State<T>,
     pos: &Positions<T>,
     vel: &Velocities<T>,
+    offset: T,
     force: &mut Forces<T>,
 ) {
     force.actuator_force.fill(T::ZERO);
@@ -26,12 +28,17 @@ pub fn actuation<T: Real>(
     if !model.flags.actuation || model.actuators.is_empty() {
         return;
     }
-    activation_rates(model, params, state, &mut force.act_dot);
+    acting_controls(model, params, state, offset, &mut force.ctrl);
+    let given = Given {
+        ctrl: &force.ctrl,
+        act: &state.act,
+    };
+    activation_rates(model, params, given, pos, vel, &mut force.act_dot);
     for (u, actuator) in model.actuators.iter().enumerate() {
         if !actuator.disabled {
-            let input = input(model, params, state, pos, &force.act_dot, u);
             let at = ActuatorMotion::of(pos, vel, u);
-            force.actuator_force[u] = unlimited_force(model, params, u, input, at);
+            let act_dot = &force.act_dot;
+            force.actuator_force[u] = unlimited_force(model, params, given, act_dot, u, at);
         }
     }
     limit_tendon_forces(model, params, force);
@@ -39,6 +46,15 @@ pub fn actuation<T: Real>(
         if actuator.forcelimited {
             let [low, high] = params.actuator_forcerange[u];
             force.actuator_force[u] = force.actuator_force[u].clamp(low, high);
+        }
+        if actuator.bias == BiasKind::DcMotor && !actuator.disabled {
+            let (act_dot, length) = (&force.act_dot, pos.actuator_length[u]);
+            let given = Given {
+                ctrl: &force.ctrl,
+                act: &state.act,
+            };
+            force.actuator_force[u] +=
+                dc_motor::mechanical_force(model, params, given, act_dot, u, length);
         }
         if let Some(t) = limited_tendon(model, actuator.transmission) {
             force.ten_actuator_force[t] += force.actuator_force[u];

@@ -14,6 +14,7 @@
 //! roundings however long the chain. In double precision M's own digits suffice.
 
 use crate::constraint::softness::is_single;
+use crate::dynamics::reflected::dof_armature;
 use crate::model::{JointKind, Model, Params};
 use crate::workspace::Positions;
 use clench_math::{Inertia, Mask, Mat3, Real, Vec3, kernel};
@@ -138,7 +139,7 @@ pub fn articulated_factor<T: Real>(
         for i in model.bodies[b].dofs.clone().rev() {
             let (angular, linear) = axis(model, pos, i, centre);
             let (moment, force) = bodies[b].mul(angular, linear);
-            let own = params.dof_armature[i] + added(i);
+            let own = dof_armature(model, params, i) + added(i);
             let pivot = angular.dot(moment) + linear.dot(force) + own;
             positive &= factor.set_row(&model.tree, i, pivot, |j| {
                 let (angular, linear) = axis(model, pos, j, centre);

@@ -4,13 +4,14 @@
 //! factors without fill (both as in MuJoCo's `implicitfast`). A force s along a generalized velocity J v contributes
 //! its slope: s′ JᵀJ.
 
-use crate::dynamics::activation::input;
+use crate::dynamics::activation::Given;
+use crate::dynamics::dc_motor;
 use crate::dynamics::fluid::{Drag, has_fluid};
-use crate::dynamics::gain::{ActuatorMotion, force_slope};
-use crate::dynamics::polynomial::dof_damper;
+use crate::dynamics::gain::{ActuatorMotion, unlimited_force, unlimited_slope};
+use crate::dynamics::reflected::dof_damper;
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
-use crate::model::{Model, Params, Transmission};
+use crate::model::{GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Mask, Real, Scalar, kernel};
@@ -30,7 +31,7 @@ pub fn add_velocity_derivatives<T: Real>(
     matrix: &mut TreeMatrix<T>,
 ) {
     if model.flags.actuation {
-        for u in 0..model.nu() {
+        for u in 0..model.actuators.len() {
             let slope = actuator_derivative(model, params, state, (pos, vel, force), u);
             add_outer(model, moment(model, pos, u), slope * scale, matrix);
         }
@@ -43,7 +44,7 @@ pub fn add_velocity_derivatives<T: Real>(
     if model.flags.damper {
         for (i, &v) in state.qvel.iter().enumerate() {
             if let Some(diagonal) = matrix.row_mut(&model.tree, i).last_mut() {
-                *diagonal -= dof_damper(params, i).damping_slope(v) * scale;
+                *diagonal -= dof_damper(model, params, i).damping_slope(v) * scale;
             }
         }
         for (t, &damping) in params.tendon_damping.iter().enumerate() {
@@ -87,13 +88,28 @@ fn actuator_derivative<T: Real>(
     if actuator.disabled {
         return T::ZERO;
     }
-    let input = || input(model, params, state, pos, &force.act_dot, u);
-    let slope = force_slope(model, params, u, input, ActuatorMotion::of(pos, vel, u));
+    let (act_dot, at) = (&force.act_dot, ActuatorMotion::of(pos, vel, u));
+    let given = Given {
+        ctrl: &force.ctrl,
+        act: &state.act,
+    };
+    let slope = unlimited_slope(model, params, given, act_dot, u, at);
+    let is_motor = actuator.gain == GainKind::DcMotor;
     let saturated = |value: T, [low, high]: [T; 2]| value.le(low) | value.ge(high);
     let mut held = T::Mask::splat(false);
     if actuator.forcelimited {
-        held |= saturated(force.actuator_force[u], params.actuator_forcerange[u]);
+        // Cogging and friction of a motor come after its limit, which holds its current alone.
+        let limited = match is_motor {
+            true => unlimited_force(model, params, given, act_dot, u, at),
+            false => force.actuator_force[u],
+        };
+        held |= saturated(limited, params.actuator_forcerange[u]);
     }
+    let slope = match is_motor {
+        true => T::select(held, T::ZERO, slope) + dc_motor::mechanical_slope(model, params, u),
+        false => T::select(held, T::ZERO, slope),
+    };
+    let mut held = T::Mask::splat(false);
     match actuator.transmission {
         Transmission::Tendon(t) if model.tendons[t].actfrclimited => {
             held |= reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);

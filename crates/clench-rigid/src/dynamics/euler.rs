@@ -5,7 +5,7 @@
 
 use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit};
-use crate::dynamics::polynomial::dof_damper;
+use crate::dynamics::reflected::dof_damper;
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -23,7 +23,7 @@ pub fn euler<T: Real>(
     let mut damped = T::Mask::splat(false);
     if model.flags.eulerdamp && model.flags.damper {
         for i in 0..model.nv {
-            let damper = dof_damper(params, i);
+            let damper = dof_damper(model, params, i);
             damped |= damper.linear.gt(T::ZERO) | damper.is_curved();
         }
     }
@@ -48,7 +48,7 @@ fn damped_acceleration<T: Real>(
         matrix.values.copy_from_slice(&ws.problem.mass.values);
         for (i, &v) in qvel.iter().enumerate() {
             if let Some(diagonal) = matrix.row_mut(tree, i).last_mut() {
-                *diagonal += params.timestep * dof_damper(params, i).damping_slope(v);
+                *diagonal += params.timestep * dof_damper(model, params, i).damping_slope(v);
             }
         }
         factor.factor(tree, matrix)
@@ -59,7 +59,7 @@ fn damped_acceleration<T: Real>(
             params,
             pos,
             #[inline(always)]
-            |i| params.timestep * dof_damper(params, i).damping_slope(qvel[i]),
+            |i| params.timestep * dof_damper(model, params, i).damping_slope(qvel[i]),
             bodies,
             factor,
         )

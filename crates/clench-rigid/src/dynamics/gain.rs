@@ -1,6 +1,8 @@
 //! Gains and biases of actuators, force = gain · input + bias, and how the force changes with velocity.
 
+use crate::dynamics::activation::{Given, input};
 use crate::dynamics::muscle::Muscle;
+use crate::dynamics::{dc_motor, pid};
 use crate::model::{BiasKind, GainKind, Model, Params};
 use crate::workspace::{Positions, Velocities};
 use clench_math::Real;
@@ -25,49 +27,56 @@ impl<T: Real> ActuatorMotion<T> {
     }
 }
 
-/// The force of actuator `u` before any limit.
+/// The force of actuator `u` before any limit, but for what no limit holds.
 #[inline(always)]
 pub fn unlimited_force<T: Real>(
     model: &Model,
     params: &Params<T>,
+    given: Given<'_, T>,
+    act_dot: &[T],
     u: usize,
-    input: T,
     at: ActuatorMotion<T>,
 ) -> T {
     let affine = |prm: &[T; 10]| prm[0] + prm[1] * at.length + prm[2] * at.velocity;
+    let input = || input(model, params, given, act_dot, u, at);
     let (gainprm, biasprm) = (&params.actuator_gainprm[u], &params.actuator_biasprm[u]);
-    let gain = match model.actuators[u].gain {
-        GainKind::Fixed => gainprm[0],
-        GainKind::Affine => affine(gainprm),
-        GainKind::Muscle => Muscle::new(params, u, gainprm, at.length).gain(at.velocity),
-        GainKind::User => T::ONE,
+    let active = match model.actuators[u].gain {
+        GainKind::Fixed => gainprm[0] * input(),
+        GainKind::Affine => affine(gainprm) * input(),
+        GainKind::Muscle => Muscle::new(params, u, gainprm, at.length).gain(at.velocity) * input(),
+        GainKind::DcMotor => dc_motor::electrical_force(model, params, given, act_dot, u, at),
+        GainKind::Pid => pid::force(model, params, given, act_dot, u, at),
+        GainKind::User => input(),
     };
     match model.actuators[u].bias {
-        BiasKind::None | BiasKind::User => gain * input,
-        BiasKind::Affine => gain * input + affine(biasprm),
-        BiasKind::Muscle => gain * input + Muscle::new(params, u, biasprm, at.length).bias(),
+        BiasKind::None | BiasKind::DcMotor | BiasKind::User => active,
+        BiasKind::Affine => active + affine(biasprm),
+        BiasKind::Muscle => active + Muscle::new(params, u, biasprm, at.length).bias(),
     }
 }
 
-/// ∂force/∂velocity of actuator `u` before any limit; `input` is only asked for where the gain depends on velocity.
+/// ∂force/∂velocity of [`unlimited_force`].
 #[inline(always)]
-pub fn force_slope<T: Real>(
+pub fn unlimited_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
+    given: Given<'_, T>,
+    act_dot: &[T],
     u: usize,
-    input: impl Fn() -> T,
     at: ActuatorMotion<T>,
 ) -> T {
     let gainprm = &params.actuator_gainprm[u];
+    let input = || input(model, params, given, act_dot, u, at);
     let by_gain = match model.actuators[u].gain {
-        GainKind::Fixed | GainKind::User => T::ZERO,
+        GainKind::Fixed | GainKind::Pid | GainKind::User => T::ZERO,
         GainKind::Affine => gainprm[2] * input(),
         GainKind::Muscle => {
             Muscle::new(params, u, gainprm, at.length).gain_slope(at.velocity) * input()
         }
+        GainKind::DcMotor => dc_motor::electrical_slope(model, params, given, u, at),
     };
     match model.actuators[u].bias {
         BiasKind::Affine => params.actuator_biasprm[u][2] + by_gain,
-        BiasKind::None | BiasKind::Muscle | BiasKind::User => by_gain,
+        BiasKind::None | BiasKind::Muscle | BiasKind::DcMotor | BiasKind::User => by_gain,
     }
 }

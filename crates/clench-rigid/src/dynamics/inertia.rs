@@ -3,6 +3,7 @@
 //! If only dof i moves, everything below it moves as one rigid body of inertia `crb`. The momentum crb · cdof_i, measured
 //! along an ancestor dof j, is M_ij; dofs on different branches do not feel each other.
 
+use crate::dynamics::reflected::dof_armature;
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
 use clench_math::{Real, kernel};
@@ -31,7 +32,7 @@ pub fn composite_inertia<T: Real>(
             *entry = pos.cdof[j as usize].dot(momentum);
         }
         if let Some(diagonal) = row.last_mut() {
-            *diagonal += params.dof_armature[i];
+            *diagonal += dof_armature(model, params, i);
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Advancing the state by a time step, once its rates of change are known.
 
 use crate::dynamics::activation::{nearest_setpoint, next_activation};
-use crate::model::{JointKind, Model, Params};
+use crate::dynamics::gain::ActuatorMotion;
+use crate::model::{GainKind, JointKind, Model, Params};
 use crate::state::State;
-use crate::workspace::{Positions, Workspace};
+use crate::workspace::{Positions, Velocities, Workspace};
 use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::{Tree, TreeFactor, TreeMatrix};
 
@@ -16,6 +17,8 @@ pub struct Integration<T> {
     pub factor: TreeFactor<T>,
     /// The acceleration that advances the velocity (nv).
     pub qacc: Vec<T>,
+    /// Runge–Kutta: by how much the present stage is later than the state's time, s; else zero.
+    pub offset: T,
     /// Runge–Kutta: the state at the start of the step.
     pub start: Rates<T>,
     /// Runge–Kutta: the rates of the present stage.
@@ -52,6 +55,7 @@ impl<T: Real> Integration<T> {
             matrix: TreeMatrix::zeros(&model.tree),
             factor: TreeFactor::zeros(&model.tree),
             qacc: vec![T::ZERO; model.nv],
+            offset: T::ZERO,
             start: Rates::new(model, model.nq),
             stage: Rates::new(model, model.nv),
             mean: Rates::new(model, model.nv),
@@ -91,7 +95,7 @@ pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T
 pub fn advance_activations<T: Real>(
     model: &Model,
     params: &Params<T>,
-    pos: &Positions<T>,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
     act_dot: &[T],
     act: &mut [T],
 ) {
@@ -105,10 +109,25 @@ pub fn advance_activations<T: Real>(
             } else {
                 act_dot[a]
             };
-            let next = next_activation(model, params, u, act[a], rate);
-            act[a] = nearest_setpoint(model, params, u, next, pos.actuator_length[u]);
+            let at = ActuatorMotion::of(pos, vel, u);
+            act[a] = next_activation(model, params, u, a, (act[a], rate), at.velocity);
+            if actuator.gain == GainKind::Fixed {
+                act[a] = nearest_setpoint(model, params, u, act[a], at.length);
+            }
         }
     }
+}
+
+/// Keeps the controls of the step for those that they reach late, and lets the step pass.
+#[inline(always)]
+pub fn advance_time<T: Real>(model: &Model, params: &Params<T>, state: &mut State<T>) {
+    for actuator in &model.actuators {
+        if let Some(history) = &actuator.history {
+            let ctrl = &state.ctrl[actuator.controls.clone()];
+            history.push(&mut state.history, ctrl, params.timestep);
+        }
+    }
+    state.pass(params.timestep);
 }
 
 /// Solves with `integration.factor` for `integration.qacc`, from the sum of all forces.
@@ -131,9 +150,9 @@ pub fn advance_semi_implicit<T: Real>(
     ws: &Workspace<T>,
 ) {
     let h = params.timestep;
-    let (pos, act_dot) = (&ws.position, &ws.force.act_dot);
-    advance_activations(model, params, pos, act_dot, &mut state.act);
+    let (at, act_dot) = ((&ws.position, &ws.velocity), &ws.force.act_dot);
+    advance_activations(model, params, at, act_dot, &mut state.act);
     add_scaled(&mut state.qvel, &ws.integration.qacc, h);
     integrate_positions(model, &mut state.qpos, &state.qvel, h);
-    state.pass(h);
+    advance_time(model, params, state);
 }

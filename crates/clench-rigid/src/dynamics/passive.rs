@@ -1,8 +1,9 @@
 //! Passive forces: springs, dampers, gravity compensation and the medium.
 
 use crate::dynamics::fluid::fluid_forces;
-use crate::dynamics::polynomial::{Polynomial, dof_damper};
+use crate::dynamics::polynomial::Polynomial;
 use crate::dynamics::project::{force_at, project_forces};
+use crate::dynamics::reflected::dof_damper;
 use crate::dynamics::spring::{JointStretch, joint_spring, joint_stretch, tendon_stretch};
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
@@ -97,7 +98,7 @@ fn dampers<T: Real>(
     qfrc: &mut [T],
 ) {
     for (i, (qfrc, &v)) in qfrc.iter_mut().zip(qvel).enumerate() {
-        *qfrc = -v * dof_damper(params, i).damping(v);
+        *qfrc = -v * dof_damper(model, params, i).damping(v);
     }
     for t in 0..model.tendons.len() {
         let force = -vel.ten_velocity[t] * params.tendon_damping[t];

@@ -8,7 +8,6 @@
 //! A damper's force is odd in v, a spring's need not be. A displacement in space, of a ball or free joint, has a length x ≥ 0,
 //! and the force is along it.
 
-use crate::model::Params;
 use clench_math::{Mask, Real};
 
 /// The coefficients a, and [b, c].
@@ -68,10 +67,4 @@ impl<T: Real> Polynomial<T> {
         let v = v.abs();
         self.linear + v * (T::new(2.0) * b + v * (T::new(3.0) * c))
     }
-}
-
-/// The force law of the damper of dof `i`.
-#[inline(always)]
-pub fn dof_damper<T: Real>(params: &Params<T>, i: usize) -> Polynomial<T> {
-    Polynomial::new(params.dof_damping[i], params.dof_dampingpoly[i])
 }

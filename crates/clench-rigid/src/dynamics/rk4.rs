@@ -10,7 +10,7 @@
 //! ```
 
 use crate::dynamics::integrate::{
-    Integration, Rates, add_scaled, advance_activations, integrate_positions,
+    Integration, Rates, add_scaled, advance_activations, advance_time, integrate_positions,
 };
 use crate::model::{JointKind, Model, Params};
 use crate::profile::Stage;
@@ -52,7 +52,9 @@ pub fn rk4<T: Real>(
         // What went wrong in one stage went wrong in the step.
         let (singular, overflow) = (ws.singular, ws.collision.overflow);
         let excess = ws.collision.excess;
+        ws.integration.offset = step;
         forward(state, ws);
+        ws.integration.offset = T::ZERO;
         ws.singular |= singular;
         ws.collision.overflow |= overflow;
         ws.collision.excess = ws.collision.excess.max(excess);
@@ -61,11 +63,11 @@ pub fn rk4<T: Real>(
     }
     restore(&ws.integration.start, state);
     let mean = &ws.integration.mean;
-    let (pos, act) = (&ws.position, &mut state.act);
-    advance_activations(model, params, pos, &mean.activation, act);
+    let (at, act) = ((&ws.position, &ws.velocity), &mut state.act);
+    advance_activations(model, params, at, &mean.activation, act);
     add_scaled(&mut state.qvel, &mean.velocity, h);
     integrate_positions(model, &mut state.qpos, &mean.position, h);
-    state.pass(h);
+    advance_time(model, params, state);
 }
 
 /// Keeps the state, and the rates of stage 0.

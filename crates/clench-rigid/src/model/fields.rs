@@ -224,6 +224,14 @@ impl Model {
                 .filter(|&(i, tendon)| !tendon.frictionloss && nonzero(&row[i..=i]))
                 .map(|(i, _)| i)
                 .collect(),
+            ParamField::actuator_damping
+            | ParamField::actuator_dampingpoly
+            | ParamField::actuator_armature => {
+                let width = row.len() / model.actuators.len().max(1);
+                (0..model.actuators.len())
+                    .filter(|&u| !model.reflects(u) && nonzero(&row[width * u..][..width]))
+                    .collect()
+            }
             ParamField::body_ipos => bodies()
                 .filter(|&(b, body)| body.simple_inertia && nonzero(&row[3 * b..][..3]))
                 .map(|(b, _)| b)
@@ -239,6 +247,11 @@ impl Model {
             match field {
                 ParamField::dof_frictionloss => model.dofs[i].frictionloss = true,
                 ParamField::tendon_frictionloss => model.tendons[i].frictionloss = true,
+                ParamField::actuator_damping
+                | ParamField::actuator_dampingpoly
+                | ParamField::actuator_armature => {
+                    model.let_reflect(i);
+                }
                 _ => model.bodies[i].simple_inertia = false,
             }
         }

@@ -19,9 +19,9 @@ pub use sensor_target::{
     SensorTarget,
 };
 pub use structure::{
-    Actuator, BiasKind, Body, Camera, CameraMode, Dof, DynamicsKind, Equality, EqualityTarget,
-    Flags, GainKind, Geom, HeightField, Integrator, Joint, JointKind, Keyframe, Mesh, Pair,
-    RowPattern, Site, Tendon, Transmission,
+    Actuator, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates, Dof,
+    DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField, History,
+    Integrator, Joint, JointKind, Keyframe, Mesh, Pair, RowPattern, Site, Tendon, Transmission,
 };
 
 use crate::Budget;
@@ -78,6 +78,8 @@ pub struct Model {
     pub nv: usize,
     /// Activations.
     pub na: usize,
+    /// Numbers in buffers of past values.
+    pub nhistory: usize,
     /// Mocap bodies.
     pub nmocap: usize,
     /// Sparsity of the mass matrix.
@@ -103,9 +105,37 @@ impl Model {
     pub fn nbody(&self) -> usize {
         self.bodies.len()
     }
-    /// Number of actuators, each with one control.
+    /// Number of controls. Most actuators have one.
     pub fn nu(&self) -> usize {
-        self.actuators.len()
+        self.actuators.last().map_or(0, |last| last.controls.end)
+    }
+    /// The buffers of past values.
+    pub fn histories(&self) -> impl Iterator<Item = &History> {
+        self.actuators
+            .iter()
+            .filter_map(|actuator| actuator.history.as_ref())
+    }
+    /// Lets actuator `u` damp its target and add inertia to it; false where the target cannot be damped.
+    pub(crate) fn let_reflect(&mut self, u: usize) -> bool {
+        let reflecting = match self.actuators[u].transmission {
+            Transmission::Joint(j) | Transmission::JointInParent(j) => {
+                &mut self.joints[j].reflecting
+            }
+            Transmission::Tendon(_) => return false,
+        };
+        if let Err(place) = reflecting.binary_search(&u) {
+            reflecting.insert(place, u);
+        }
+        true
+    }
+    /// Whether actuator `u` may damp its target, or add inertia to it.
+    fn reflects(&self, u: usize) -> bool {
+        match self.actuators[u].transmission {
+            Transmission::Joint(j) | Transmission::JointInParent(j) => {
+                self.joints[j].reflecting.contains(&u)
+            }
+            Transmission::Tendon(_) => false,
+        }
     }
     /// Numbers that all sensors give.
     pub fn nsensordata(&self) -> usize {

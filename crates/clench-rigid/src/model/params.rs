@@ -244,6 +244,14 @@ params! {
     actuator_forcerange: Vec<[T; 2]>, Range;
     /// Allowed activations.
     actuator_actrange: Vec<[T; 2]>, Range;
+    /// How late controls arrive, s; only of actuators that keep past ones.
+    actuator_delay: Vec<T>, NotNegative;
+    /// Damping that the target gets, times the square of the gear.
+    actuator_damping: Vec<T>, Finite;
+    /// Coefficients of its quadratic and cubic damping, likewise.
+    actuator_dampingpoly: Vec<[T; 2]>, Finite;
+    /// Inertia that the target gets, likewise.
+    actuator_armature: Vec<T>, NotNegative;
     /// Norm of the acceleration that a unit force causes at qpos0.
     actuator_acc0: Vec<T>, NotNegative;
     /// Lengths between which the transmission can be; of use to muscles.

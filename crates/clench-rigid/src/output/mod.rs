@@ -115,12 +115,12 @@ outputs! {
     ten_length [m.tendons.len()] of Positions => out.extend_from_slice(&s.ws.position.ten_length);
     /// Velocities of tendons (ntendon).
     ten_velocity [m.tendons.len()] of Everything => out.extend_from_slice(&s.ws.velocity.ten_velocity);
-    /// Lengths of actuators (nu).
-    actuator_length [m.nu()] of Positions => out.extend_from_slice(&s.ws.position.actuator_length);
-    /// Velocities of actuators (nu).
-    actuator_velocity [m.nu()] of Everything => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
-    /// Forces of actuators (nu).
-    actuator_force [m.nu()] of Everything => out.extend_from_slice(&s.ws.force.actuator_force);
+    /// Lengths of actuators (nactuator).
+    actuator_length [m.actuators.len()] of Positions => out.extend_from_slice(&s.ws.position.actuator_length);
+    /// Velocities of actuators (nactuator).
+    actuator_velocity [m.actuators.len()] of Everything => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
+    /// Forces of actuators (nactuator).
+    actuator_force [m.actuators.len()] of Everything => out.extend_from_slice(&s.ws.force.actuator_force);
     /// Power that actuators put in, W: the sum over those that drive. Those that brake do not count.
     actuator_power [] of Everything => out.push(driving_power(s.ws));
     /// Forces of actuators along dofs (nv).

@@ -19,6 +19,8 @@ pub(crate) enum Size {
     Activations,
     /// nu.
     Actuators,
+    /// nhistory.
+    History,
     /// nbody.
     Bodies,
     /// nmocap.
@@ -34,6 +36,7 @@ impl Size {
             Size::Dofs => model.nv,
             Size::Activations => model.na,
             Size::Actuators => model.nu(),
+            Size::History => model.nhistory,
             Size::Bodies => model.nbody(),
             Size::MocapBodies => model.nmocap,
             Size::Equalities => model.equalities.len(),
@@ -132,6 +135,9 @@ impl<T: Real> State<T> {
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
         broadcast(&model.params.qpos0, &mut state.qpos);
+        for history in model.histories() {
+            history.begin(model.params.timestep, &mut state.history);
+        }
         let mocap_bodies = (0..model.nbody()).filter(|&b| model.bodies[b].mocap.is_some());
         for (m, b) in mocap_bodies.enumerate() {
             state.mocap_pos[m] = Vec3::from_f64(model.params.body_pos[b].to_array());

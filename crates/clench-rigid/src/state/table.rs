@@ -22,6 +22,8 @@ macro_rules! state_fields {
                 qvel set_qvel: Number, Dofs, Near;
                 /// Activations of actuators (na).
                 act set_act: Number, Activations, Finite;
+                /// Buffers of past values of delayed actuators (nhistory): see the module `history`.
+                history set_history: Number, History, Finite;
                 /// Acceleration of the previous step, where the solver starts (nv).
                 qacc_warmstart set_qacc_warmstart: Number, Dofs, Finite;
             }

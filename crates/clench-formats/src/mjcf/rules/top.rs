@@ -60,8 +60,8 @@ pub(super) const RULES: &[Rule] = &[
         read: "class",
         children: "default",
         once: "mesh texture material joint geom site camera light pair equality tendon general motor position \
-            velocity intvelocity damper cylinder muscle",
-        later_children: "orientation pid adhesion dcmotor",
+            velocity intvelocity damper cylinder muscle pid dcmotor",
+        later_children: "orientation adhesion",
         ..NONE
     },
     section("extension", "", "plugin"),

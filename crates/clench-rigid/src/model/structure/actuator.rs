@@ -1,5 +1,6 @@
 //! Actuators: what they pull on, and the kinds of their dynamics, gain and bias.
 
+use super::History;
 use std::ops::Range;
 
 /// What an actuator pulls on.
@@ -27,6 +28,10 @@ pub enum DynamicsKind {
     FilterExact,
     /// A filter that rises and falls with different time constants; see [`muscle`](crate::dynamics::muscle).
     Muscle,
+    /// A direct-current motor; see [`dc_motor`](crate::dynamics::dc_motor).
+    DcMotor,
+    /// The states of a PID controller; see [`pid`](crate::dynamics::pid).
+    Pid,
     /// MuJoCo leaves it to a callback; without one activations stay as they are.
     User,
 }
@@ -41,6 +46,10 @@ pub enum GainKind {
     Affine,
     /// Active force of a muscle by length and velocity.
     Muscle,
+    /// Torque of a direct-current motor's current.
+    DcMotor,
+    /// Setpoints of a PID controller.
+    Pid,
     /// MuJoCo leaves it to a callback; without one it is 1.
     User,
 }
@@ -55,8 +64,40 @@ pub enum BiasKind {
     Affine,
     /// Passive force of a muscle by length.
     Muscle,
+    /// Back-EMF, cogging and friction of a direct-current motor.
+    DcMotor,
     /// MuJoCo leaves it to a callback; without one it is zero.
     User,
+}
+
+/// What a control of an actuator is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ControlInput {
+    /// What the gain multiplies.
+    Command,
+    /// A position that a controller goes for.
+    Position,
+    /// A velocity that it goes for.
+    Velocity,
+    /// A force or torque that it adds.
+    Feedforward,
+    /// The voltage at the terminals of a motor, beside its controller's.
+    Voltage,
+}
+
+/// Which activations hold a state of a controller or motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ControllerStates {
+    /// The first control as it acts, where its rate is limited.
+    pub slew: Option<usize>,
+    /// The integral of the position error.
+    pub integral: Option<usize>,
+    /// The temperature of a motor's winding above the ambient one, K.
+    pub temperature: Option<usize>,
+    /// The deflection of the bristles of LuGre friction.
+    pub bristle: Option<usize>,
+    /// The current of a motor, A.
+    pub current: Option<usize>,
 }
 
 /// An actuator.
@@ -74,8 +115,16 @@ pub struct Actuator {
     pub gain: GainKind,
     /// Its bias.
     pub bias: BiasKind,
-    /// Its control is clamped.
-    pub ctrllimited: bool,
+    /// Which activations are states of its controller or motor.
+    pub states: ControllerStates,
+    /// Its controls.
+    pub controls: Range<usize>,
+    /// What each of them is.
+    pub inputs: Vec<ControlInput>,
+    /// Which of them are clamped.
+    pub ctrllimited: Vec<bool>,
+    /// The buffer of its past controls.
+    pub history: Option<History>,
     /// Its force is clamped.
     pub forcelimited: bool,
     /// Its activation is clamped.

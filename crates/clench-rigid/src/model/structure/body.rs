@@ -86,6 +86,8 @@ pub struct Joint {
     pub actfrclimited: bool,
     /// Gravity compensation counts as actuation.
     pub actgravcomp: bool,
+    /// The actuators that may damp it or add inertia to it, in order.
+    pub reflecting: Vec<usize>,
     /// Group.
     pub group: i32,
     /// Where it was written.

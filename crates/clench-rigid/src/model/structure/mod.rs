@@ -5,16 +5,20 @@ mod body;
 mod camera;
 mod equality;
 mod geom;
+mod history;
 mod keyframe;
 mod option;
 mod pattern;
 mod tendon;
 
-pub use actuator::{Actuator, BiasKind, DynamicsKind, GainKind, Transmission};
+pub use actuator::{
+    Actuator, BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind, Transmission,
+};
 pub use body::{Body, Dof, Joint, JointKind, Site};
 pub use camera::{Camera, CameraMode};
 pub use equality::{Equality, EqualityTarget};
 pub use geom::{Geom, HeightField, Mesh, Pair};
+pub use history::History;
 pub use keyframe::Keyframe;
 pub use option::{Flags, Integrator};
 pub use pattern::RowPattern;

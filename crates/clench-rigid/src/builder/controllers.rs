@@ -1,0 +1,154 @@
+//! What actuators are controlled by, and the activations that controllers and motors need: MuJoCo's rules for gains of the kinds
+//! `pid` and `dcmotor`.
+
+use super::element::Element;
+use super::{ActuatorSpec, BuildError};
+use crate::model::{BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind};
+
+/// The controls of an actuator, and the activations that have a meaning of their own.
+pub(super) struct Controller {
+    /// What each control is.
+    pub inputs: Vec<ControlInput>,
+    /// Which activations there are.
+    pub states: ControllerStates,
+    /// How many.
+    pub count: usize,
+}
+
+/// What an actuator is controlled by; its activations start at `first`.
+///
+/// # Errors
+/// Kinds that do not go together, inputs that the gain does not know, parameters without the inputs that they need.
+pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    if spec.dynamics == DynamicsKind::Pid && spec.gain != GainKind::Pid {
+        return Err(spec.error("dynamics of the kind pid need a gain of that kind"));
+    }
+    let motor = [
+        spec.dynamics == DynamicsKind::DcMotor,
+        spec.gain == GainKind::DcMotor,
+        spec.bias == BiasKind::DcMotor,
+    ];
+    match spec.gain {
+        GainKind::Pid => pid(spec, first),
+        GainKind::DcMotor if motor == [true; 3] => dc_motor(spec, first),
+        _ if motor != [false; 3] => {
+            Err(spec
+                .error("dcmotor must be the kind of dynamics, gain and bias, or of none of them"))
+        }
+        _ => Ok(Controller {
+            inputs: vec![ControlInput::Command],
+            states: ControllerStates::default(),
+            count: 0,
+        }),
+    }
+}
+
+/// Numbers activations in the order in which they are asked for.
+struct Numbering {
+    first: usize,
+    count: usize,
+}
+
+impl Numbering {
+    fn next_if(&mut self, wanted: bool) -> Option<usize> {
+        let number = self.first + self.count;
+        self.count += usize::from(wanted);
+        wanted.then_some(number)
+    }
+}
+
+fn pid(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    use ControlInput::{Feedforward, Position, Velocity};
+    let ki = spec.gainprm[0];
+    let [imax, slewmax, ..] = spec.dynprm;
+    let stateful = spec.dynamics == DynamicsKind::Pid;
+    if spec.bias != BiasKind::Affine {
+        return Err(spec.error("a gain of the kind pid needs an affine bias"));
+    }
+    if !stateful && spec.dynamics != DynamicsKind::None {
+        return Err(spec.error("a gain of the kind pid needs dynamics of that kind, or none"));
+    }
+    if !stateful && ki != 0.0 {
+        return Err(spec.error("ki (gainprm[0]) needs dynamics of the kind pid"));
+    }
+    let inputs = inputs(
+        spec,
+        &[Position, Velocity],
+        &[Position, Velocity, Feedforward],
+    )?;
+    let mut numbers = Numbering { first, count: 0 };
+    let mut states = ControllerStates::default();
+    if stateful {
+        spec.require_not_negative("imax (dynprm[0])", &[imax])?;
+        spec.require_not_negative("slewmax (dynprm[1])", &[slewmax])?;
+        if !inputs.contains(&Position) {
+            return Err(spec.error("ki and slewmax of a pid need the input pos"));
+        }
+        states.slew = numbers.next_if(slewmax > 0.0);
+        states.integral = numbers.next_if(ki > 0.0);
+        if numbers.count == 0 {
+            return Err(spec.error("dynamics of the kind pid need a positive ki or slewmax"));
+        }
+    }
+    Ok(Controller {
+        inputs,
+        states,
+        count: numbers.count,
+    })
+}
+
+fn dc_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    use ControlInput::{Feedforward, Position, Velocity, Voltage};
+    let [_, constant, _, _, kp, ki, kd, ..] = spec.gainprm;
+    let [te, _, thermal, _, _, bristle, _, slewmax, ..] = spec.dynprm;
+    if !spec.actearly {
+        return Err(spec.error("actearly cannot be false for a dcmotor"));
+    }
+    let inputs = inputs(
+        spec,
+        &[Voltage],
+        &[Position, Velocity, Feedforward, Voltage],
+    )?;
+    let controlled = inputs.iter().any(|&input| input != Voltage);
+    if controlled && constant <= 0.0 {
+        return Err(spec.error("a controller of a dcmotor needs a positive motor constant"));
+    }
+    let gains = [kp, ki, kd].iter().any(|&gain| gain != 0.0);
+    if !controlled && (gains || slewmax > 0.0) {
+        return Err(spec.error("a controller of a dcmotor needs an input pos, vel or ff"));
+    }
+    if ki > 0.0 && !inputs.contains(&Position) {
+        return Err(spec.error("ki of a dcmotor needs the input pos"));
+    }
+    let mut numbers = Numbering { first, count: 0 };
+    let states = ControllerStates {
+        slew: numbers.next_if(slewmax > 0.0),
+        integral: numbers.next_if(ki > 0.0),
+        temperature: numbers.next_if(thermal > 0.0),
+        bristle: numbers.next_if(bristle > 0.0),
+        current: numbers.next_if(te > 0.0),
+    };
+    Ok(Controller {
+        inputs,
+        states,
+        count: numbers.count,
+    })
+}
+
+/// The inputs that the author names, or the usual ones.
+fn inputs(
+    spec: &ActuatorSpec,
+    usual: &[ControlInput],
+    known: &[ControlInput],
+) -> Result<Vec<ControlInput>, BuildError> {
+    let Some(given) = &spec.inputs else {
+        return Ok(usual.to_vec());
+    };
+    let rises = given.windows(2).all(|pair| pair[0] < pair[1]);
+    if !rises || given.iter().any(|input| !known.contains(input)) {
+        return Err(spec.error(format!(
+            "its inputs must be of {known:?}, in this order, but are {given:?}"
+        )));
+    }
+    Ok(given.clone())
+}

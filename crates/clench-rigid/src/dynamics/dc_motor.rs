@@ -1,0 +1,257 @@
+//! Direct-current motors: torque K i from a current i that the voltage drives against resistance and back-EMF, with the
+//! options of MuJoCo's `dcmotor`: a controller, inductance, heat, cogging, and LuGre friction.
+//!
+//! ```text
+//! i = (V − K ω) / R,                         without inductance
+//! i̇ = ((V − K ω) / R − i) / te,              with it: te = L / R, and |i̇| bounded
+//! V = R₀/K (kp (position − l) + kd (velocity − ω) + ki ∫error + feedforward) + K ω, bounded, + voltage
+//! R = R₀ (1 + α (T + ambient − T₀)),         C Ṫ = R i² − T / RT
+//! friction σ₀ z + σ₁ ż,                      ż = ω − σ₀ |ω| z / g(ω),  g = F_C + (F_S − F_C) exp(−(ω/v_S)²)
+//! cogging  A sin(N l + φ)
+//! ```
+//!
+//! Canudas de Wit et al. (1995), *A new model for control of systems with friction*. The parameters stand where MuJoCo has them:
+//! `gainprm` R₀ K α T₀ kp ki kd Vmax; `dynprm` te, largest |i̇|, RT, C, ambient, σ₀, σ₁, slew rate, bound of the integral; `biasprm` A
+//! N φ F_C F_S v_S.
+
+use crate::dynamics::activation::Given;
+use crate::dynamics::gain::ActuatorMotion;
+use crate::dynamics::setpoint::{Setpoints, integral_rate};
+use crate::model::{ControlInput, Model, Params};
+use clench_math::Real;
+
+/// Divisors are at least so large (MuJoCo's `mjMINVAL`).
+const MIN_DIVISOR: f64 = 1e-15;
+
+#[inline(always)]
+fn divisor<T: Real>(x: T) -> T {
+    x.max(T::new(MIN_DIVISOR))
+}
+
+/// A motor's circuit at an instant.
+struct Circuit<T> {
+    setpoints: Setpoints<T>,
+    /// R.
+    resistance: T,
+    /// K.
+    constant: T,
+    /// V.
+    voltage: T,
+    /// ∂V/∂ω.
+    voltage_slope: T,
+}
+
+impl<T: Real> Circuit<T> {
+    #[inline(always)]
+    fn new(
+        model: &Model,
+        params: &Params<T>,
+        given: Given<'_, T>,
+        u: usize,
+        at: ActuatorMotion<T>,
+    ) -> Self {
+        let actuator = &model.actuators[u];
+        let (dyn_, gain) = (&params.actuator_dynprm[u], &params.actuator_gainprm[u]);
+        let [cold, constant, tempcoef, reftemp, kp, ki, kd, vmax, ..] = *gain;
+        let setpoints = Setpoints::new(model, params, given, u);
+        let (mut voltage, mut voltage_slope) = (T::ZERO, T::ZERO);
+        let controlled =
+            |input: &ControlInput| !matches!(input, ControlInput::Voltage | ControlInput::Command);
+        if actuator.inputs.iter().any(controlled) {
+            let integral = actuator.states.integral.map_or(T::ZERO, |a| given.act[a]);
+            let torque = kp * (setpoints.position - at.length)
+                + kd * (setpoints.velocity - at.velocity)
+                + ki * integral
+                + setpoints.feedforward;
+            let per_torque = cold / constant;
+            voltage = per_torque * torque + constant * at.velocity;
+            let bounded = vmax.gt(T::ZERO);
+            let beyond = bounded & voltage.abs().ge(vmax);
+            voltage_slope = T::select(beyond, T::ZERO, constant - per_torque * kd);
+            voltage = T::select(bounded, voltage.max(-vmax).min(vmax), voltage);
+        }
+        let resistance = match actuator.states.temperature {
+            Some(a) => cold * (T::ONE + tempcoef * (given.act[a] + dyn_[4] - reftemp)),
+            None => cold,
+        };
+        Circuit {
+            voltage: voltage + setpoints.voltage,
+            setpoints,
+            resistance,
+            constant,
+            voltage_slope,
+        }
+    }
+
+    /// The current that voltage and back-EMF hold.
+    #[inline(always)]
+    fn steady_current(&self, velocity: T) -> T {
+        (self.voltage - self.constant * velocity) / self.resistance
+    }
+
+    /// i̇, and where its bound does not hold it.
+    #[inline(always)]
+    fn current_rate(&self, prm: &[T; 10], current: T, velocity: T) -> (T, T::Mask) {
+        let rate = (self.steady_current(velocity) - current) / prm[0];
+        let bound = prm[1];
+        let bounded = bound.gt(T::ZERO);
+        let held = bounded & rate.abs().ge(bound);
+        let limited = rate.max(-bound).min(bound);
+        (T::select(bounded, limited, rate), !held)
+    }
+}
+
+/// The rates of the activations of actuator `u`.
+#[inline(always)]
+pub fn activation_rates<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: Given<'_, T>,
+    u: usize,
+    at: ActuatorMotion<T>,
+    act_dot: &mut [T],
+) {
+    let states = model.actuators[u].states;
+    let prm = &params.actuator_dynprm[u];
+    let circuit = Circuit::new(model, params, given, u, at);
+    if let Some(a) = states.slew {
+        act_dot[a] = circuit.setpoints.slew_rate(params, given.act[a]);
+    }
+    if let Some(a) = states.integral {
+        let error = circuit.setpoints.position - at.length;
+        act_dot[a] = integral_rate(error, given.act[a], prm[8]);
+    }
+    if let Some(a) = states.temperature {
+        let current = match states.current {
+            Some(current) => given.act[current],
+            None => circuit.steady_current(at.velocity),
+        };
+        let heat = circuit.resistance * current * current;
+        act_dot[a] = (heat - given.act[a] / prm[2]) / prm[3];
+    }
+    if let Some(a) = states.bristle {
+        act_dot[a] = bristle_decay(params, u, at.velocity) * given.act[a] + at.velocity;
+    }
+    if let Some(a) = states.current {
+        act_dot[a] = circuit.current_rate(prm, given.act[a], at.velocity).0;
+    }
+}
+
+/// −σ₀ |ω| / g(ω): the rate at which the bristle's deflection decays.
+#[inline(always)]
+fn bristle_decay<T: Real>(params: &Params<T>, u: usize, velocity: T) -> T {
+    let [_, _, _, coulomb, static_, stribeck, ..] = params.actuator_biasprm[u];
+    let ratio = velocity / divisor(stribeck);
+    let level = coulomb + (static_ - coulomb) * (-ratio * ratio).exp();
+    -params.actuator_dynprm[u][5] * velocity.abs() / divisor(level)
+}
+
+/// An activation of a motor a time step later. A current approaches what holds it as an exact filter does, a deflection obeys its
+/// equation exactly at a constant velocity, an integral stays within its bound.
+#[inline(always)]
+pub fn next_activation<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    u: usize,
+    a: usize,
+    (act, act_dot): (T, T),
+    velocity: T,
+) -> T {
+    let states = model.actuators[u].states;
+    let (h, prm) = (params.timestep, &params.actuator_dynprm[u]);
+    if states.current == Some(a) {
+        let te = divisor(prm[0]);
+        return act + act_dot * te * (T::ONE - (-h / te).exp());
+    }
+    if states.bristle == Some(a) {
+        let decay = bristle_decay(params, u, velocity);
+        let left = (decay * h).exp();
+        let moves = decay.abs().gt(T::new(MIN_DIVISOR));
+        let time = T::select(moves, (left - T::ONE) / T::select(moves, decay, T::ONE), h);
+        return left * act + time * velocity;
+    }
+    let next = act + act_dot * h;
+    if states.integral == Some(a) {
+        let bound = prm[8];
+        let within = next.max(-bound).min(bound);
+        return T::select(bound.gt(T::ZERO), within, next);
+    }
+    next
+}
+
+/// The torque of the current, with the current as of the end of the step where it is a state.
+#[inline(always)]
+pub fn electrical_force<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: Given<'_, T>,
+    act_dot: &[T],
+    u: usize,
+    at: ActuatorMotion<T>,
+) -> T {
+    let circuit = Circuit::new(model, params, given, u, at);
+    match model.actuators[u].states.current {
+        Some(a) => {
+            let rates = (given.act[a], act_dot[a]);
+            circuit.constant * next_activation(model, params, u, a, rates, at.velocity)
+        }
+        None => {
+            let gain = circuit.constant / divisor(circuit.resistance);
+            gain * circuit.voltage - gain * circuit.constant * at.velocity
+        }
+    }
+}
+
+/// ∂force/∂velocity of the current's torque.
+#[inline(always)]
+pub fn electrical_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: Given<'_, T>,
+    u: usize,
+    at: ActuatorMotion<T>,
+) -> T {
+    let circuit = Circuit::new(model, params, given, u, at);
+    let net = circuit.voltage_slope - circuit.constant;
+    let steady = circuit.constant * net / divisor(circuit.resistance);
+    match model.actuators[u].states.current {
+        None => steady,
+        Some(a) => {
+            let prm = &params.actuator_dynprm[u];
+            let te = divisor(prm[0]);
+            let share = T::ONE - (-params.timestep / te).exp();
+            let free = circuit.current_rate(prm, given.act[a], at.velocity).1;
+            T::select(free, steady * share, T::ZERO)
+        }
+    }
+}
+
+/// Cogging and friction, which no limit of the motor's torque holds.
+#[inline(always)]
+pub fn mechanical_force<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: Given<'_, T>,
+    act_dot: &[T],
+    u: usize,
+    length: T,
+) -> T {
+    let [amplitude, poles, phase, ..] = params.actuator_biasprm[u];
+    let cogging = amplitude * (poles * length + phase).sin_cos().0;
+    match model.actuators[u].states.bristle {
+        Some(a) => {
+            let prm = &params.actuator_dynprm[u];
+            cogging - (prm[5] * given.act[a] + prm[6] * act_dot[a])
+        }
+        None => cogging,
+    }
+}
+
+/// ∂force/∂velocity of friction, with the deflection's decay held.
+#[inline(always)]
+pub fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
+    match model.actuators[u].states.bristle {
+        Some(_) => -params.actuator_dynprm[u][6],
+        None => T::ZERO,
+    }
+}

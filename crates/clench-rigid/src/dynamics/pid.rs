@@ -1,0 +1,58 @@
+//! PID controllers: force = kp (position setpoint − length) + kv (velocity setpoint − velocity) + ki ∫error + feedforward.
+//!
+//! As in MuJoCo, kp and kv are those of the affine bias, which makes the part of the force that no setpoint makes; ki is `gainprm[0]`, the bound
+//! of the integral `dynprm[0]`, the fastest change of the position setpoint `dynprm[1]`.
+
+use crate::dynamics::activation::{Given, nearest_setpoint, next_activation};
+use crate::dynamics::gain::ActuatorMotion;
+use crate::dynamics::setpoint::{Setpoints, integral_rate};
+use crate::model::{Model, Params};
+use clench_math::Real;
+
+/// The rates of the activations of actuator `u`.
+#[inline(always)]
+pub fn activation_rates<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: Given<'_, T>,
+    u: usize,
+    length: T,
+    act_dot: &mut [T],
+) {
+    let states = model.actuators[u].states;
+    let setpoints = Setpoints::new(model, params, given, u);
+    if let Some(a) = states.slew {
+        act_dot[a] = setpoints.slew_rate(params, given.act[a]);
+    }
+    if let Some(a) = states.integral {
+        let target = nearest_setpoint(model, params, u, setpoints.position, length);
+        let bound = params.actuator_dynprm[u][0];
+        act_dot[a] = integral_rate(target - length, given.act[a], bound);
+    }
+}
+
+/// The part of the force that setpoints and the integral make.
+#[inline(always)]
+pub fn force<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: Given<'_, T>,
+    act_dot: &[T],
+    u: usize,
+    at: ActuatorMotion<T>,
+) -> T {
+    let actuator = &model.actuators[u];
+    let setpoints = Setpoints::new(model, params, given, u);
+    let target = nearest_setpoint(model, params, u, setpoints.position, at.length);
+    let bias = &params.actuator_biasprm[u];
+    let force = setpoints.feedforward - bias[1] * target - bias[2] * setpoints.velocity;
+    let Some(a) = actuator.states.integral else {
+        return force;
+    };
+    let integral = if actuator.actearly {
+        next_activation(model, params, u, a, (given.act[a], act_dot[a]), at.velocity)
+    } else {
+        given.act[a]
+    };
+    force + params.actuator_gainprm[u][0] * integral
+}

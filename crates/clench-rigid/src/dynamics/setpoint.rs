@@ -1,0 +1,73 @@
+//! What controllers are asked for: the controls of an actuator by what they mean, moved no faster than the first may move.
+
+use crate::dynamics::activation::{Given, nearest_setpoint};
+use crate::model::{ControlInput, DynamicsKind, Model, Params};
+use clench_math::Real;
+
+/// The controls of an actuator with a controller; what it has no control for is zero.
+#[derive(Clone, Copy, Debug)]
+pub struct Setpoints<T> {
+    /// Position.
+    pub position: T,
+    /// Velocity.
+    pub velocity: T,
+    /// Force, or torque, that is added.
+    pub feedforward: T,
+    /// Voltage at the terminals of a motor, beside what its controller puts there.
+    pub voltage: T,
+    /// The first control as it acts: what the activation that limits its rate goes to.
+    pub first: T,
+}
+
+impl<T: Real> Setpoints<T> {
+    /// Of actuator `u`. A first control whose rate is limited acts from where it was, and on a circle goes the shorter way.
+    #[inline(always)]
+    pub fn new(model: &Model, params: &Params<T>, given: Given<'_, T>, u: usize) -> Self {
+        let actuator = &model.actuators[u];
+        let mut setpoints = Setpoints {
+            position: T::ZERO,
+            velocity: T::ZERO,
+            feedforward: T::ZERO,
+            voltage: T::ZERO,
+            first: T::ZERO,
+        };
+        for (k, input) in actuator.inputs.iter().enumerate() {
+            let mut value = given.ctrl[actuator.controls.start + k];
+            if k == 0 {
+                if let Some(a) = actuator.states.slew {
+                    let rate = match actuator.dynamics {
+                        DynamicsKind::Pid => params.actuator_dynprm[u][1],
+                        _ => params.actuator_dynprm[u][7],
+                    };
+                    let (before, step) = (given.act[a], rate * params.timestep);
+                    value = nearest_setpoint(model, params, u, value, before);
+                    value = value.clamp(before - step, before + step);
+                }
+                setpoints.first = value;
+            }
+            match input {
+                ControlInput::Position => setpoints.position = value,
+                ControlInput::Velocity => setpoints.velocity = value,
+                ControlInput::Feedforward => setpoints.feedforward = value,
+                ControlInput::Voltage | ControlInput::Command => setpoints.voltage = value,
+            }
+        }
+        setpoints
+    }
+
+    /// The rate of the activation that holds the first control.
+    #[inline(always)]
+    pub fn slew_rate(&self, params: &Params<T>, before: T) -> T {
+        (self.first - before) / params.timestep
+    }
+}
+
+/// The rate of an integral of an error; where the integral has reached its bound, a positive one, it only goes back.
+#[inline(always)]
+pub fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
+    let bounded = bound.gt(T::ZERO);
+    let high = bounded & integral.ge(bound);
+    let low = bounded & !high & integral.le(-bound);
+    let from_low = T::select(low, error.max(T::ZERO), error);
+    T::select(high, error.min(T::ZERO), from_low)
+}

@@ -1,0 +1,106 @@
+//! Controls that arrive late.
+
+use clench_rigid::builder::{
+    ActuatorSpec, BodySpec, GeomSpec, JointSpec, ModelBuilder, TransmissionSpec,
+};
+use clench_rigid::history::Interpolation;
+use clench_rigid::{Batch, Model, Sim, State};
+use std::sync::Arc;
+
+const STEP: f64 = 0.002;
+
+/// A slider, weightless but for its mass, and a motor with so many past controls.
+fn slider(nsample: usize, delay: f64, interp: Interpolation) -> Result<Arc<Model>, String> {
+    let mut builder = ModelBuilder::new("slider");
+    builder.physics.gravity = [0.0; 3];
+    builder.physics.timestep = STEP;
+    builder.add_body(
+        ModelBuilder::WORLD,
+        BodySpec::new("block")
+            .joint(JointSpec::slide("slide", [1.0, 0.0, 0.0]))
+            .geom(GeomSpec::sphere(0.1).mass(2.0)),
+    );
+    let mut motor = ActuatorSpec::motor("motor", TransmissionSpec::Joint("slide".into()), 1.0);
+    (motor.nsample, motor.delay, motor.interp) = (nsample, delay, interp);
+    builder.actuators.push(motor);
+    builder
+        .build()
+        .map(Arc::new)
+        .map_err(|error| error.to_string())
+}
+
+/// The forces of steps whose controls are 1, 2, 3, ...
+fn forces(model: Arc<Model>, count: usize) -> Vec<f64> {
+    let mut sim = Sim::new(model).expect("valid");
+    (1..=count)
+        .map(|k| {
+            sim.state.ctrl[0] = k as f64;
+            sim.step().expect("finite");
+            sim.workspace().force.actuator_force[0]
+        })
+        .collect()
+}
+
+#[test]
+fn a_delay_of_whole_steps_brings_controls_as_they_were() {
+    for interp in [
+        Interpolation::Hold,
+        Interpolation::Linear,
+        Interpolation::Cubic,
+    ] {
+        let model = slider(5, 3.0 * STEP, interp).expect("valid");
+        assert_eq!(forces(model, 6), [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
+    }
+}
+
+#[test]
+fn between_steps_a_control_holds_or_changes_on_a_line() {
+    let held = slider(5, 2.5 * STEP, Interpolation::Hold).expect("valid");
+    assert_eq!(forces(held, 6), [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
+    let line = slider(5, 2.5 * STEP, Interpolation::Linear).expect("valid");
+    let expected = [0.0, 0.0, 0.5, 1.5, 2.5, 3.5];
+    for (found, expected) in forces(line, 6).iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn nothing_older_than_the_oldest_sample_is_known() {
+    let model = slider(2, 10.0 * STEP, Interpolation::Hold).expect("valid");
+    assert_eq!(forces(model, 5), [0.0, 0.0, 1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn past_controls_are_part_of_the_state() {
+    let model = slider(4, 3.0 * STEP, Interpolation::Linear).expect("valid");
+    let mut sim = Sim::new(model.clone()).expect("valid");
+    sim.state.ctrl[0] = 1.0;
+    sim.step().expect("finite");
+    let kept: State<f64> = sim.state.clone();
+    let on = |sim: &mut Sim| {
+        for _ in 0..5 {
+            sim.step().expect("finite");
+        }
+        sim.state.qpos[0]
+    };
+    let expected = on(&mut sim);
+    let mut other = Sim::new(model.clone()).expect("valid");
+    other.state.copy_from(&kept);
+    assert_eq!(on(&mut other).to_bits(), expected.to_bits());
+    let mut batch = Batch::<f64>::new(model, 3).expect("valid");
+    for env in 0..3 {
+        batch.state.write(env, &kept).expect("fits");
+    }
+    batch.step_n(5).expect("finite");
+    assert_eq!(batch.state.qpos.as_slice(), [expected; 3]);
+}
+
+#[test]
+fn what_a_delay_needs() {
+    let without = slider(0, STEP, Interpolation::Hold);
+    assert!(without.unwrap_err().contains("nsample"));
+    let before = slider(3, -STEP, Interpolation::Hold);
+    assert!(before.unwrap_err().contains("delay"));
+    let endless = slider(usize::MAX / 4, STEP, Interpolation::Hold);
+    assert!(endless.unwrap_err().contains("more than"));
+}
