@@ -1,7 +1,7 @@
 //! Collision detection: shapes and poses in, contact points out. No joints, no masses.
 //!
 //! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`ray`] where a ray hits
-//! one, [`near`] and [`Grid`] find the pairs worth asking about. Contacts and rays are generic over [`Real`](clench_math::Real):
+//! one, [`near`] and [`BroadPhase`] find the pairs worth asking about. Contacts and rays are generic over [`Real`](clench_math::Real):
 //! one call serves one environment (`f64`) or several side by side, where each contact point says in which of them it exists.
 //! Which points a pair yields follows MuJoCo 4.0.
 //!
@@ -31,7 +31,7 @@ mod narrow;
 mod ray;
 mod shape;
 
-pub use broad::{Bound, Grid, allowance, near};
+pub use broad::{Bound, BroadPhase, Mobility, allowance, near};
 pub use contact::{ContactPoint, Contacts, MAX_POINTS, PATCH_POINTS};
 pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};

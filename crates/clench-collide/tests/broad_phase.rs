@@ -2,7 +2,9 @@
 
 mod common;
 
-use clench_collide::{Bound, Contacts, Grid, Pose, Shape, ShapeKind, collide, near, supported};
+use clench_collide::{
+    Bound, BroadPhase, Contacts, Mobility, Pose, Shape, ShapeKind, collide, near, supported,
+};
 use clench_math::{Lanes, Mask, Mat3, Real, Vec3};
 use common::Random;
 
@@ -77,13 +79,18 @@ fn allowed(i: u32, j: u32) -> bool {
     !(i + j).is_multiple_of(7)
 }
 
-fn the_grid_misses_nothing<T: Real>(seed: u64) {
+/// A broad phase of shapes that all move.
+fn all_moving(count: usize) -> BroadPhase {
+    BroadPhase::new(&vec![Mobility::Moving; count])
+}
+
+fn nothing_is_missed<T: Real>(seed: u64) {
     let mut random = Random(seed);
-    let (mut grid, mut pairs) = (Grid::new(), Vec::new());
-    let (mut found, mut most) = (0, 0);
+    let (mut pairs, mut found, mut most) = (Vec::new(), 0, 0);
     for count in [0, 1, 2, 60, 150] {
         let world = World::<T>::random(&mut random, count);
-        grid.pairs(&world.bounds, &world.margins, allowed, u64::MAX, &mut pairs);
+        let mut broad_phase = all_moving(count);
+        broad_phase.pairs(&world.bounds, &world.margins, allowed, u64::MAX, &mut pairs);
         assert!(pairs.is_sorted() && pairs.iter().all(|&(i, j)| i < j && allowed(i, j)));
 
         let list: Vec<(u32, u32)> = (0..count as u32)
@@ -113,19 +120,19 @@ fn the_grid_misses_nothing<T: Real>(seed: u64) {
 }
 
 #[test]
-fn the_grid_finds_every_touching_pair_and_agrees_with_the_list() {
-    the_grid_misses_nothing::<f64>(31);
-    the_grid_misses_nothing::<Lanes<f64, 4>>(32);
-    the_grid_misses_nothing::<f32>(33);
+fn every_touching_pair_is_found_as_by_the_list() {
+    nothing_is_missed::<f64>(31);
+    nothing_is_missed::<Lanes<f64, 4>>(32);
+    nothing_is_missed::<f32>(33);
 }
 
 #[test]
-fn a_warm_grid_does_not_grow() {
+fn a_warm_broad_phase_does_not_grow() {
     let mut random = Random(34);
     let world = World::<f64>::random(&mut random, 100);
-    let (mut grid, mut pairs) = (Grid::new(), Vec::new());
+    let (mut broad_phase, mut pairs) = (all_moving(100), Vec::new());
     let mut run = || {
-        grid.pairs(
+        broad_phase.pairs(
             &world.bounds,
             &world.margins,
             |_, _| true,
@@ -203,7 +210,7 @@ fn asked(bounds: &[Bound<f64>]) -> (usize, usize) {
         asked += 1;
         true
     };
-    Grid::new().pairs(
+    all_moving(bounds.len()).pairs(
         bounds,
         &vec![0.0; bounds.len()],
         &mut count,
@@ -242,4 +249,51 @@ fn what_is_large_or_far_or_no_number_does_not_disturb_the_rest() {
     // The lowest layer lies on the floor; of those far away, each is near its twin where there is a distance.
     assert_eq!(with_floor, near + 100 + 3);
     assert!(asked <= 15 * bounds.len(), "{asked}");
+}
+
+/// Shapes stand, are placed or move by turns of three.
+fn mixed(count: usize) -> Vec<Mobility> {
+    let kinds = [Mobility::Static, Mobility::Placed, Mobility::Moving];
+    (0..count).map(|i| kinds[i % 3]).collect()
+}
+
+#[test]
+fn pairs_of_mixed_scenes_are_those_of_which_one_moves() {
+    let mut random = Random(36);
+    for count in [1, 2, 5, 60, 200] {
+        let world = World::<Lanes<f64, 4>>::random(&mut random, count);
+        let mobility = mixed(count);
+        let moves = |i: u32| mobility[i as usize] == Mobility::Moving;
+        let (mut by_turns, mut all, mut again) = (Vec::new(), Vec::new(), Vec::new());
+        let mut broad_phase = BroadPhase::new(&mobility);
+        let (bounds, margins) = (&world.bounds, &world.margins);
+        broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut by_turns);
+        broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut again);
+        all_moving(count).pairs(bounds, margins, allowed, u64::MAX, &mut all);
+        all.retain(|&(i, j)| moves(i) || moves(j));
+        assert_eq!(by_turns, all);
+        assert_eq!(again, all);
+    }
+}
+
+#[test]
+fn statics_that_moved_are_looked_at_again_when_that_is_said() {
+    let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.05, 0.0, 0.0));
+    let at = |x| {
+        let pose = Pose {
+            position: Vec3::new(x, 0.0, 0.0),
+            rotation: Mat3::IDENTITY,
+        };
+        Bound::<f64>::new(&ball, &pose)
+    };
+    let mut broad_phase = BroadPhase::new(&[Mobility::Static, Mobility::Moving]);
+    let mut pairs = Vec::new();
+    let mut find = |broad_phase: &mut BroadPhase, static_at: f64| {
+        let bounds = [at(static_at), at(0.0)];
+        broad_phase.pairs(&bounds, &[0.0; 2], |_, _| true, u64::MAX, &mut pairs);
+        pairs.len()
+    };
+    assert_eq!(find(&mut broad_phase, 5.0), 0);
+    broad_phase.forget_statics();
+    assert_eq!(find(&mut broad_phase, 0.05), 1);
 }

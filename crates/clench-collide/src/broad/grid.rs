@@ -1,13 +1,11 @@
-//! The near pairs of many shapes.
+//! Which of many boxes overlap.
 //!
-//! Space is cut into cubes about as large as the larger of the shapes. Each shape is listed in every cube that its box reaches into, in a
-//! hash table (Teschner et al. 2003), so that empty space costs nothing and a shape far away does no harm. Shapes in one cube are
-//! compared; two that share several cubes are a pair in the one that holds the lower corner of what their boxes have in common. The few that
-//! are much larger than the rest, planes among them, would be in too many cubes and are compared with all. So the work grows with the number
-//! of shapes and of near pairs, not with the square.
+//! Space is cut into cubes about as large as the larger of the boxes. Each box is listed in every cube that it reaches into, in a hash
+//! table (Teschner et al. 2003), so that empty space costs nothing and a box far away does no harm. Boxes in one cube are compared; two that
+//! share several cubes are a pair in the one that holds the lower corner of what they have in common. The few that are much larger than the
+//! rest would be in too many cubes and are compared with all. So the work grows with the number of boxes and of pairs, not with the square.
 
-use super::{Bound, allowance, near};
-use clench_math::{Mask, Real, Scalar, kernel};
+use super::aabb::Aabb;
 
 /// This part of the shapes is not larger than a cube.
 const SMALL_SHARE: f64 = 0.9;
@@ -18,23 +16,24 @@ const MAX_CELL: f64 = 1e9;
 /// Buckets of the hash table, for each shape.
 const BUCKETS_PER_SHAPE: usize = 4;
 
-/// Finds the near pairs of a scene. Its buffers grow to the largest scene seen.
+/// Finds pairs of boxes that overlap. Its buffers grow to the largest scene seen.
 #[derive(Clone, Debug, Default)]
-pub struct Grid {
-    /// What each shape covers in any environment, with its margin.
-    boxes: Vec<Box3>,
+pub(super) struct Grid {
     sides: Vec<f64>,
-    /// Shapes that are compared with all others, ascending.
+    /// Boxes that are compared with all others, ascending.
     wide: Vec<u32>,
-    /// Whether a shape is one of them.
+    /// Whether a box is one of them.
     is_wide: Vec<bool>,
-    /// Whether a shape is fixed; none is where it is shorter.
-    fixed: Vec<bool>,
-    /// The shapes that are not, ascending.
-    moving: Vec<u32>,
     /// Where the entries of a bucket begin, and those of the next.
     starts: Vec<u32>,
     entries: Vec<Entry>,
+}
+
+/// Boxes in a scene, of which those that are `fixed` make no pairs with each other, however many may be in one place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Boxes<'a> {
+    pub all: &'a [Aabb],
+    pub fixed: &'a [bool],
 }
 
 type Cube = [i32; 3];
@@ -46,41 +45,9 @@ struct Entry {
     shape: u32,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Box3 {
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-impl Box3 {
-    /// What a bound covers in any environment.
-    fn new<T: Real>(bound: &Bound<T>, margin: T) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for lane in 0..T::LANES {
-            let number = |x: T| x.lane(lane).to_f64();
-            for axis in 0..3 {
-                let (center, half) = (bound.center[axis], bound.half[axis]);
-                let reach = number(half) + number(margin * allowance());
-                low[axis] = low[axis].min(number(center) - reach);
-                high[axis] = high[axis].max(number(center) + reach);
-            }
-        }
-        Box3 { low, high }
-    }
-
-    fn side(&self) -> f64 {
-        let side = |axis: usize| self.high[axis] - self.low[axis];
-        side(0).max(side(1)).max(side(2))
-    }
-
-    fn overlaps(&self, other: &Box3) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
-    }
-
-    /// The cubes that hold the corners.
-    fn cubes(&self, per_metre: f64) -> (Cube, Cube) {
-        (cube(self.low, per_metre), cube(self.high, per_metre))
-    }
+/// The cubes that hold the corners of a box.
+fn cubes(one: &Aabb, per_metre: f64) -> (Cube, Cube) {
+    (cube(one.low, per_metre), cube(one.high, per_metre))
 }
 
 /// The cube that a point is in.
@@ -89,69 +56,18 @@ fn cube(point: [f64; 3], per_metre: f64) -> Cube {
 }
 
 impl Grid {
-    /// An empty grid.
-    pub fn new() -> Self {
-        Grid::default()
-    }
-
-    /// An empty grid for scenes of which these shapes are fixed: two of them are never a pair, so that however many may be in one
-    /// place.
-    pub fn with_fixed(fixed: Vec<bool>) -> Self {
-        Grid {
-            fixed,
-            ..Grid::default()
-        }
-    }
-
-    fn is_fixed(&self, shape: u32) -> bool {
-        self.fixed.get(shape as usize).is_some_and(|&fixed| fixed)
-    }
-
-    /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
-    /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `most`: of theirs some are
-    /// left out.
-    #[kernel]
-    pub fn pairs<T: Real>(
-        &mut self,
-        bounds: &[Bound<T>],
-        margins: &[T],
-        mut allowed: impl FnMut(u32, u32) -> bool,
-        most: u64,
-        pairs: &mut Vec<(u32, u32)>,
-    ) -> T::Mask {
-        pairs.clear();
-        self.boxes.clear();
-        for (bound, &margin) in bounds.iter().zip(margins) {
-            self.boxes.push(Box3::new(bound, margin));
-        }
-        let per_metre = self.part_by_size();
-        self.list(per_metre);
-        let most = T::new(most as f64);
-        let (mut count, mut over) = (T::ZERO, T::Mask::splat(false));
-        let mut check = |i: u32, j: u32| {
-            let (i, j) = (i.min(j), i.max(j));
-            let (a, b) = (i as usize, j as usize);
-            let margin = margins[a] + margins[b];
-            if !allowed(i, j) {
-                return;
-            }
-            let found = near(&bounds[a], &bounds[b], margin) & !over;
-            if found.any() {
-                count += T::select(found, T::ONE, T::ZERO);
-                over |= count.gt(most);
-                pairs.push((i, j));
-            }
-        };
-        self.in_cubes(per_metre, &mut check);
-        self.with_wide(&mut check);
-        pairs.sort_unstable();
-        over
+    /// Hands every pair of boxes that overlap to `check`, once.
+    pub fn pairs(&mut self, boxes: Boxes, check: &mut impl FnMut(u32, u32)) {
+        let per_metre = self.part_by_size(boxes.all);
+        self.list(boxes, per_metre);
+        self.in_cubes(boxes, per_metre, check);
+        self.with_wide(boxes, check);
     }
 
     /// Decides the size of the cubes and which shapes are compared with all others. Gives the cubes per metre.
-    fn part_by_size(&mut self) -> f64 {
+    fn part_by_size(&mut self, boxes: &[Aabb]) -> f64 {
         self.sides.clear();
-        let sides = self.boxes.iter().map(Box3::side);
+        let sides = boxes.iter().map(Aabb::side);
         self.sides.extend(sides.filter(|side| side.is_finite()));
         let count = self.sides.len();
         let rank = ((count as f64 * SMALL_SHARE) as usize).min(count.saturating_sub(1));
@@ -167,16 +83,11 @@ impl Grid {
         };
         self.wide.clear();
         self.is_wide.clear();
-        self.moving.clear();
-        for (index, one) in self.boxes.iter().enumerate() {
+        for (index, one) in boxes.iter().enumerate() {
             let corners = one.low.iter().chain(&one.high);
             let fits = one.side() * per_metre <= MAX_CELLS
                 && corners.map(|x| x.abs() * per_metre).all(|x| x <= MAX_CELL);
             self.is_wide.push(!fits);
-            let fixed = self.fixed.get(index).is_some_and(|&fixed| fixed);
-            if !fixed {
-                self.moving.push(index as u32);
-            }
             if !fits {
                 self.wide.push(index as u32);
             }
@@ -185,27 +96,24 @@ impl Grid {
     }
 
     /// Lists the other shapes in their cubes, bucket after bucket, in each the fixed ones last.
-    fn list(&mut self, per_metre: f64) {
+    fn list(&mut self, Boxes { all, fixed }: Boxes, per_metre: f64) {
         let Grid {
-            boxes,
             is_wide,
-            fixed,
             starts,
             entries,
             ..
         } = self;
-        let buckets = (BUCKETS_PER_SHAPE * boxes.len()).next_power_of_two();
+        let buckets = (BUCKETS_PER_SHAPE * all.len()).next_power_of_two();
         let each = |put: &mut dyn FnMut(usize, Entry)| {
-            let is_fixed = |index: usize| fixed.get(index).is_some_and(|&fixed| fixed);
             // Buckets are filled from their ends.
-            let fixed_first = (0..boxes.len()).filter(|&index| is_fixed(index));
-            let moving = (0..boxes.len()).filter(|&index| !is_fixed(index));
+            let fixed_first = (0..all.len()).filter(|&index| fixed[index]);
+            let moving = (0..all.len()).filter(|&index| !fixed[index]);
             for index in fixed_first.chain(moving) {
-                let one = &boxes[index];
+                let one = &all[index];
                 if is_wide[index] {
                     continue;
                 }
-                let (low, high) = one.cubes(per_metre);
+                let (low, high) = cubes(one, per_metre);
                 for x in low[0]..=high[0] {
                     for y in low[1]..=high[1] {
                         for z in low[2]..=high[2] {
@@ -234,16 +142,21 @@ impl Grid {
     }
 
     /// Pairs that share a cube.
-    fn in_cubes(&self, per_metre: f64, check: &mut impl FnMut(u32, u32)) {
+    fn in_cubes(
+        &self,
+        Boxes { all, fixed }: Boxes,
+        per_metre: f64,
+        check: &mut impl FnMut(u32, u32),
+    ) {
         for range in self.starts.windows(2) {
             let entries = &self.entries[range[0] as usize..range[1] as usize];
             for (k, one) in entries.iter().enumerate() {
-                if self.is_fixed(one.shape) {
+                if fixed[one.shape as usize] {
                     break;
                 }
-                let a = &self.boxes[one.shape as usize];
+                let a = &all[one.shape as usize];
                 for other in &entries[k + 1..] {
-                    let b = &self.boxes[other.shape as usize];
+                    let b = &all[other.shape as usize];
                     if one.cube != other.cube || !a.overlaps(b) {
                         continue;
                     }
@@ -256,22 +169,19 @@ impl Grid {
         }
     }
 
-    /// Pairs with a shape that is compared with all others.
-    fn with_wide(&self, check: &mut impl FnMut(u32, u32)) {
+    /// Pairs with a box that is compared with all others.
+    fn with_wide(&self, Boxes { all, fixed }: Boxes, check: &mut impl FnMut(u32, u32)) {
         for &one in &self.wide {
-            let mut look = |other: u32| {
-                // Of two wide shapes the second meets the first, but for a fixed one, which looks at moving ones alone.
+            let is_fixed = |index: u32| fixed[index as usize];
+            for other in 0..all.len() as u32 {
+                // Of two wide boxes the second meets the first, but for a fixed one, which meets those that are not.
                 let twice = self.is_wide[other as usize]
-                    && (other <= one || self.is_fixed(one))
-                    && !self.is_fixed(other);
-                let near = || self.boxes[one as usize].overlaps(&self.boxes[other as usize]);
-                if !twice && near() {
+                    && (other <= one || is_fixed(one))
+                    && !is_fixed(other);
+                let both_fixed = is_fixed(one) && is_fixed(other);
+                if !twice && !both_fixed && all[one as usize].overlaps(&all[other as usize]) {
                     check(one, other);
                 }
-            };
-            match self.is_fixed(one) {
-                true => self.moving.iter().copied().for_each(look),
-                false => (0..self.boxes.len() as u32).for_each(&mut look),
             }
         }
     }

@@ -16,24 +16,30 @@ pub(super) struct BoundingSphere<T> {
     reach: T,
 }
 
-/// The spheres of all geoms of a configuration.
+/// Replaces the spheres of some geoms of a configuration; the first time it must be all.
 #[kernel]
 pub(super) fn update<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
+    geoms: impl Iterator<Item = usize>,
     spheres: &mut Vec<BoundingSphere<T>>,
 ) {
     let allowance = allowance::<T>();
-    spheres.clear();
-    for (g, &center) in pos.geom_xpos.iter().enumerate() {
+    let none = BoundingSphere {
+        center: Vec3::ZERO,
+        radius: T::ZERO,
+        reach: T::ZERO,
+    };
+    spheres.resize(pos.geom_xpos.len(), none);
+    for g in geoms {
         let radius = params.geom_rbound[g] * allowance;
         let margin = own_margin(model, params, g) * allowance;
-        spheres.push(BoundingSphere {
-            center,
+        spheres[g] = BoundingSphere {
+            center: pos.geom_xpos[g],
             radius,
             reach: radius + margin,
-        });
+        };
     }
 }
 

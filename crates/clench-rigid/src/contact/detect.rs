@@ -1,14 +1,14 @@
 //! Finds the contacts of a configuration: bounding spheres, then the narrow phase, in slots that all lanes share.
 
 use super::bounding_sphere::{self, BoundingSphere, may_touch};
-use super::select::{explicit, geoms_may_collide};
+use super::dynamic_broad_phase::DynamicBroadPhase;
 use super::{Candidate, Contact, candidates, contact_params, contact_range};
 use crate::Budget;
-use crate::model::{Geom, Model, Params};
+use crate::model::{Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::workspace::{Positions, Workspace};
-use clench_collide::{Bound, Contacts, Grid, Pose, Shape, collide, multiccd_matters};
+use clench_collide::{Contacts, Pose, Shape, collide, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::MaxContacts;
 
@@ -71,14 +71,6 @@ pub struct Collision<T: Real> {
     count: T,
     /// Numbers in the Jacobian of the contacts.
     numbers: T,
-}
-
-#[derive(Clone, Debug)]
-struct DynamicBroadPhase<T> {
-    grid: Grid,
-    bounds: Vec<Bound<T>>,
-    margins: Vec<T>,
-    hits: Vec<(u32, u32)>,
 }
 
 impl<T: Real> Collision<T> {
@@ -153,11 +145,14 @@ pub fn detect<T: Real>(
     if !settings.flags.constraint || !settings.flags.contact {
         return;
     }
+    let spheres = &mut collision.spheres;
     if let Some(broad_phase) = &mut collision.broad_phase {
-        let crowded = broad_phase.find(model, params, pos, &mut collision.candidates);
+        broad_phase.update(model, params, pos, spheres);
+        let crowded = broad_phase.find(model, &mut collision.candidates);
         collision.exceed(crowded, Excess::Pairs);
+    } else {
+        bounding_sphere::update(model, params, pos, 0..model.geoms.len(), spheres);
     }
-    bounding_sphere::update(model, params, pos, &mut collision.spheres);
     collision.near.clear();
     for (index, candidate) in collision.candidates.iter().enumerate() {
         let range = || contact_range(model, params, candidate).1;
@@ -255,54 +250,11 @@ pub fn shape<'a, T: Real>(model: &'a Model, params: &Params<T>, geom: usize) -> 
     }
 }
 
+/// The pose of a geom.
 #[inline(always)]
-fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
+pub(super) fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
     Pose {
         position: pos.geom_xpos[geom],
         rotation: pos.geom_xmat[geom],
-    }
-}
-
-impl<T: Real> DynamicBroadPhase<T> {
-    fn new(model: &Model) -> Self {
-        let body = |geom: &Geom| &model.bodies[model.bodies[geom.body].weld];
-        let fixed = |geom: &Geom| body(geom).dofs.is_empty();
-        DynamicBroadPhase {
-            grid: Grid::with_fixed(model.geoms.iter().map(fixed).collect()),
-            bounds: Vec::new(),
-            margins: Vec::new(),
-            hits: Vec::new(),
-        }
-    }
-
-    /// Replaces `candidates` by the explicit pairs and those that are near in any lane. Returns the lanes in which that are more than
-    /// the budget allows.
-    #[kernel]
-    fn find(
-        &mut self,
-        model: &Model,
-        params: &Params<T>,
-        pos: &Positions<T>,
-        candidates: &mut Vec<Candidate>,
-    ) -> T::Mask {
-        let ngeom = model.geoms.len();
-        self.bounds.clear();
-        self.margins.clear();
-        for g in 0..ngeom {
-            (self.bounds).push(Bound::new(&shape(model, params, g), &pose(pos, g)));
-            self.margins
-                .push(bounding_sphere::own_margin(model, params, g));
-        }
-        let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
-        let hits = &mut self.hits;
-        let (bounds, margins, most) = (&self.bounds, &self.margins, model.budget.pairs());
-        let crowded = self.grid.pairs(bounds, margins, allowed, most, hits);
-        candidates.clear();
-        candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
-        let found =
-            |&(g1, g2): &(u32, u32)| Candidate::new(model, [g1 as usize, g2 as usize], None);
-        candidates.extend(hits.iter().map(found));
-        candidates.sort_unstable_by_key(|c| c.order(model));
-        crowded
     }
 }

@@ -3,6 +3,7 @@
 
 mod bounding_sphere;
 mod detect;
+mod dynamic_broad_phase;
 mod mix;
 mod select;
 

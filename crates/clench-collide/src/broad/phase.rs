@@ -1,0 +1,115 @@
+//! The near pairs of a scene: a [`StaticTree`] of what stands still, a [`Grid`] of the rest.
+
+use super::aabb::Aabb;
+use super::grid::{Boxes, Grid};
+use super::static_tree::StaticTree;
+use super::{Bound, near};
+use clench_math::{Mask, Real, kernel};
+
+/// Whether a shape can move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mobility {
+    /// It stands where it stands: what it costs is paid once. It makes no pair with its like, nor with what is placed.
+    Static,
+    /// It is put where it is from outside. It makes no pair with its like, nor with what is static.
+    Placed,
+    /// It moves.
+    Moving,
+}
+
+/// Finds the near pairs of a scene. Its buffers grow to what the largest step needed.
+#[derive(Clone, Debug, Default)]
+pub struct BroadPhase {
+    statics: Vec<u32>,
+    tree: StaticTree,
+    /// Whether the tree is of this scene.
+    built: bool,
+    /// The shapes that are not static, ascending, with their boxes, and whether they are placed.
+    mobile: Vec<u32>,
+    boxes: Vec<Aabb>,
+    placed: Vec<bool>,
+    grid: Grid,
+}
+
+impl BroadPhase {
+    /// For scenes of shapes that can move so.
+    pub fn new(mobility: &[Mobility]) -> Self {
+        let of = |wanted: fn(Mobility) -> bool| {
+            let shapes = mobility.iter().enumerate();
+            let wanted = shapes.filter(|&(_, &mobility)| wanted(mobility));
+            Vec::from_iter(wanted.map(|(shape, _)| shape as u32))
+        };
+        let mobile = of(|mobility| mobility != Mobility::Static);
+        let is_placed = |&shape: &u32| mobility[shape as usize] == Mobility::Placed;
+        BroadPhase {
+            statics: of(|mobility| mobility == Mobility::Static),
+            placed: mobile.iter().map(is_placed).collect(),
+            mobile,
+            ..BroadPhase::default()
+        }
+    }
+
+    /// The shapes that are not static, ascending.
+    pub fn mobile(&self) -> &[u32] {
+        &self.mobile
+    }
+
+    /// Static shapes have moved after all, or have other margins: the next search looks at them again.
+    pub fn forget_statics(&mut self) {
+        self.built = false;
+    }
+
+    /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
+    /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `most`: of theirs some are
+    /// left out.
+    #[kernel]
+    pub fn pairs<T: Real>(
+        &mut self,
+        bounds: &[Bound<T>],
+        margins: &[T],
+        mut allowed: impl FnMut(u32, u32) -> bool,
+        most: u64,
+        pairs: &mut Vec<(u32, u32)>,
+    ) -> T::Mask {
+        let aabb = |shape: u32| Aabb::new(&bounds[shape as usize], margins[shape as usize]);
+        if !self.built {
+            let statics = self.statics.iter();
+            (self.tree).build(statics.map(|&shape| (shape, aabb(shape))));
+            self.built = true;
+        }
+        self.boxes.clear();
+        for &shape in &self.mobile {
+            self.boxes.push(aabb(shape));
+        }
+        pairs.clear();
+        let most = T::new(most as f64);
+        let (mut count, mut over) = (T::ZERO, T::Mask::splat(false));
+        let mut check = |i: u32, j: u32| {
+            let (i, j) = (i.min(j), i.max(j));
+            let (a, b) = (i as usize, j as usize);
+            if !allowed(i, j) {
+                return;
+            }
+            let found = near(&bounds[a], &bounds[b], margins[a] + margins[b]) & !over;
+            if found.any() {
+                count += T::select(found, T::ONE, T::ZERO);
+                over |= count.gt(most);
+                pairs.push((i, j));
+            }
+        };
+        let (mobile, placed) = (&self.mobile, &self.placed);
+        let boxes = Boxes {
+            all: &self.boxes,
+            fixed: placed,
+        };
+        (self.grid).pairs(boxes, &mut |i, j| {
+            check(mobile[i as usize], mobile[j as usize])
+        });
+        let moving = (0..mobile.len()).filter(|&index| !placed[index]);
+        for index in moving {
+            (self.tree).overlapping(&self.boxes[index], |shape| check(mobile[index], shape));
+        }
+        pairs.sort_unstable();
+        over
+    }
+}

@@ -1,0 +1,136 @@
+//! The candidates of a large model, looked for anew in each step.
+
+use super::Candidate;
+use super::bounding_sphere::{self, BoundingSphere, own_margin};
+use super::detect::{pose, shape};
+use super::select::{explicit, geoms_may_collide};
+use crate::model::{Geom, Model, Params};
+use crate::workspace::Positions;
+use clench_collide::{Bound, BroadPhase, Mobility, Pose};
+use clench_math::{Mask, Real, Vec3, kernel};
+
+/// Finds candidates. What stands still is looked at again only where its pose, size or margin in any environment is another than
+/// before, as that of a group of other environments may be.
+#[derive(Clone, Debug)]
+pub(super) struct DynamicBroadPhase<T> {
+    broad_phase: BroadPhase,
+    bounds: Vec<Bound<T>>,
+    margins: Vec<T>,
+    hits: Vec<(u32, u32)>,
+    /// The geoms that stand still, and what their bounds were made of.
+    statics: Vec<usize>,
+    seen: Vec<Placement<T>>,
+}
+
+/// What the bound of a geom follows from.
+#[derive(Clone, Copy, Debug)]
+struct Placement<T> {
+    pose: Pose<T>,
+    size: Vec3<T>,
+    margin: T,
+}
+
+impl<T: Real> Placement<T> {
+    #[inline(always)]
+    fn of(model: &Model, params: &Params<T>, pos: &Positions<T>, geom: usize) -> Self {
+        Placement {
+            pose: pose(pos, geom),
+            size: params.geom_size[geom],
+            margin: own_margin(model, params, geom),
+        }
+    }
+
+    /// Whether two are the same in every lane; with a NaN they are not.
+    #[inline(always)]
+    fn same(&self, other: &Self) -> bool {
+        let same = |a: Vec3<T>, b: Vec3<T>| a.x.eq(b.x) & a.y.eq(b.y) & a.z.eq(b.z);
+        let [x, y, z] = self.pose.rotation.rows;
+        let [u, v, w] = other.pose.rotation.rows;
+        let same = same(self.pose.position, other.pose.position)
+            & same(self.size, other.size)
+            & (same(x, u) & same(y, v) & same(z, w))
+            & self.margin.eq(other.margin);
+        same.all()
+    }
+}
+
+fn mobility(model: &Model, geom: &Geom) -> Mobility {
+    let weld = &model.bodies[model.bodies[geom.body].weld];
+    if !weld.dofs.is_empty() {
+        Mobility::Moving
+    } else if weld.mocap.is_some() {
+        Mobility::Placed
+    } else {
+        Mobility::Static
+    }
+}
+
+impl<T: Real> DynamicBroadPhase<T> {
+    pub fn new(model: &Model) -> Self {
+        let mobility = Vec::from_iter(model.geoms.iter().map(|geom| mobility(model, geom)));
+        let is_static = |&geom: &usize| mobility[geom] == Mobility::Static;
+        DynamicBroadPhase {
+            broad_phase: BroadPhase::new(&mobility),
+            statics: (0..mobility.len()).filter(is_static).collect(),
+            bounds: Vec::new(),
+            margins: Vec::new(),
+            hits: Vec::new(),
+            seen: Vec::new(),
+        }
+    }
+
+    /// Takes over where geoms are, and keeps their bounding spheres up to date.
+    #[kernel]
+    pub fn update(
+        &mut self,
+        model: &Model,
+        params: &Params<T>,
+        pos: &Positions<T>,
+        spheres: &mut Vec<BoundingSphere<T>>,
+    ) {
+        let placement = |geom: usize| Placement::of(model, params, pos, geom);
+        let seen = self.statics.iter().zip(&self.seen);
+        let unchanged = self.seen.len() == self.statics.len()
+            && self.bounds.len() == model.geoms.len()
+            && seen
+                .into_iter()
+                .all(|(&geom, seen)| placement(geom).same(seen));
+        let bound = |g: usize| Bound::new(&shape(model, params, g), &pose(pos, g));
+        if unchanged {
+            for &g in self.broad_phase.mobile() {
+                let g = g as usize;
+                self.bounds[g] = bound(g);
+                self.margins[g] = own_margin(model, params, g);
+            }
+            let mobile = self.broad_phase.mobile().iter().map(|&g| g as usize);
+            bounding_sphere::update(model, params, pos, mobile, spheres);
+        } else {
+            let all = 0..model.geoms.len();
+            self.bounds.clear();
+            self.bounds.extend(all.clone().map(bound));
+            self.margins.clear();
+            (self.margins).extend(all.clone().map(|g| own_margin(model, params, g)));
+            self.seen.clear();
+            (self.seen).extend(self.statics.iter().map(|&geom| placement(geom)));
+            self.broad_phase.forget_statics();
+            bounding_sphere::update(model, params, pos, all, spheres);
+        }
+    }
+
+    /// Replaces `candidates` by the explicit pairs and those that are near in any lane. Returns the lanes in which that are more than
+    /// the budget allows.
+    #[kernel]
+    pub fn find(&mut self, model: &Model, candidates: &mut Vec<Candidate>) -> T::Mask {
+        let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
+        let (bounds, margins, hits) = (&self.bounds, &self.margins, &mut self.hits);
+        let most = model.budget.pairs();
+        let crowded = (self.broad_phase).pairs(bounds, margins, allowed, most, hits);
+        candidates.clear();
+        candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
+        let found =
+            |&(g1, g2): &(u32, u32)| Candidate::new(model, [g1 as usize, g2 as usize], None);
+        candidates.extend(hits.iter().map(found));
+        candidates.sort_unstable_by_key(|c| c.order(model));
+        crowded
+    }
+}
