@@ -32,6 +32,16 @@ def pytest_sessionstart(session):
         pytest.exit(f"expected 14 models in {GYMNASIUM}: is that gymnasium 1.4.0?", returncode=2)
 
 
+def pytest_terminal_summary(terminalreporter):
+    """The table of URDF files, where they were compared: how each fared."""
+    passed = terminalreporter.stats.get("passed", [])
+    rows = sorted(value for report in passed for name, value in report.user_properties if name == "urdf")
+    if rows:
+        terminalreporter.section("URDF files: largest differences, relative to the numbers involved")
+        for row in rows:
+            terminalreporter.line(row)
+
+
 def pytest_generate_tests(metafunc):
     for name, values in (("model", models()), ("cone", ["pyramidal", "elliptic"]), ("solver", ["newton", "cg"])):
         if name in metafunc.fixturenames:

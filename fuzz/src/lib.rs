@@ -13,7 +13,7 @@ mod states;
 mod trial;
 
 pub use contacts::contacts;
-pub use mjcf::mjcf;
+pub use mjcf::{mjcf, urdf};
 pub use npy::npy;
 pub use shapes::{grid, msh, obj, png, stl};
 pub use states::states;
@@ -22,8 +22,9 @@ pub use states::states;
 pub type Target = (&'static str, fn(&[u8]) -> bool);
 
 /// All targets.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     ("mjcf", mjcf),
+    ("urdf", urdf),
     ("stl", stl),
     ("obj", obj),
     ("msh", msh),

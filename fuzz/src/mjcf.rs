@@ -17,6 +17,15 @@ const LONGEST_ERROR: usize = 4000;
 
 /// Reads a model, and tries it where it is one.
 pub fn mjcf(data: &[u8]) -> bool {
+    model("model.xml", data)
+}
+
+/// Reads a robot in URDF likewise.
+pub fn urdf(data: &[u8]) -> bool {
+    model("model.urdf", data)
+}
+
+fn model(file: &str, data: &[u8]) -> bool {
     thread_local! {
         static PREPARED: Cell<bool> = const { Cell::new(false) };
     }
@@ -25,7 +34,7 @@ pub fn mjcf(data: &[u8]) -> bool {
             files::write(name, bytes);
         }
     }
-    let path = files::write("model.xml", data);
+    let path = files::write(file, data);
     match clench::load_within(&path, trial::budget()) {
         Ok(model) => {
             trial::run(model);
@@ -34,7 +43,7 @@ pub fn mjcf(data: &[u8]) -> bool {
         Err(error) => {
             let message = error.to_string();
             assert!(message.len() < LONGEST_ERROR, "a long error: {message}");
-            let named = message.contains("model.xml") || message.contains("part.xml");
+            let named = message.contains(file) || message.contains("part.xml");
             assert!(named, "an error that names no file: {message}");
             false
         }

@@ -200,6 +200,7 @@ VALUES = {
         "fitaabb": BOOLEAN,
         "discardvisual": BOOLEAN,
         "conflict": one_of("warning"),
+        "fusestatic": BOOLEAN,
     },
     "option": {
         "timestep": scale(0.0005, 0.01),
@@ -232,7 +233,12 @@ VALUES = {
             "refsafe island eulerdamp multiccd autoreset sensor override"
         ).split()
     },
-    "body": {**POSE, "simple": one_of("false", "auto"), "gravcomp": usually(number(0, 1.5), "1", "-0.5")},
+    "body": {
+        **POSE,
+        "simple": one_of("false", "auto"),
+        "fuse": one_of("false", "auto"),
+        "gravcomp": usually(number(0, 1.5), "1", "-0.5"),
+    },
     "frame": POSE,
     "replicate": {
         "count": one_of(1, 2, 3),

@@ -59,15 +59,18 @@ macro_rules! named {
 
 #[pymethods]
 impl Model {
-    /// Load a model from an MJCF file.
+    /// Load a model from a file, MJCF or URDF.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     The file. What it includes is found from its folder.
+    ///     The file; its root element says which format it has. What it includes is found from its folder.
     /// budget : float
     ///     How many times the usual memory and work the model may ask for, in loading and in each step. Usual are 2 GiB, 500 000
     ///     elements, 250 000 contacts, 2**25 numbers in a matrix, 2 000 000 steps to find length ranges.
+    /// package_path : sequence of str or os.PathLike
+    ///     Folders that hold packages, by which URDF files name meshes (``package://NAME/...``). After them, the folder of the file and
+    ///     those around it are searched.
     ///
     /// Returns
     /// -------
@@ -78,16 +81,22 @@ impl Model {
     /// LoadError
     ///     A file that cannot be read, is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    #[pyo3(signature = (path, *, budget = 1.0))]
-    fn from_file(py: Python<'_>, path: PathBuf, budget: f64) -> PyResult<Self> {
-        let budget = clench::Budget::default().times(budget);
-        let model = py
-            .detach(|| clench::load_within(&path, budget))
-            .map_err(load_error)?;
+    #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new()),
+           text_signature = "(path, *, budget=1.0, package_path=())")]
+    fn from_file(
+        py: Python<'_>,
+        path: PathBuf,
+        budget: f64,
+        package_path: Vec<PathBuf>,
+    ) -> PyResult<Self> {
+        let loader = clench::Loader::new()
+            .budget(clench::Budget::default().times(budget))
+            .package_path(package_path);
+        let model = py.detach(|| loader.load(&path)).map_err(load_error)?;
         Ok(Model(Arc::new(model)))
     }
 
-    /// Load a model from the text of an MJCF file.
+    /// Load a model from the text of an MJCF or URDF file.
     ///
     /// Parameters
     /// ----------

@@ -325,6 +325,17 @@ def test_load_errors_know_their_place(tmp_path: Path) -> None:
     assert str(raised.value).startswith(f"{missing}: cannot read the file")
 
 
+def test_robots_in_urdf_find_their_packages(tmp_path: Path) -> None:
+    gripper = ROOT / "models/gripper/gripper.urdf"
+    assert clench.Model.from_file(gripper).nmesh == 1
+    moved = tmp_path / "robot.urdf"
+    moved.write_text(gripper.read_text())
+    with pytest.raises(clench.LoadError, match='package "gripper"'):
+        clench.Model.from_file(moved)
+    model = clench.Model.from_file(moved, package_path=[ROOT / "models"])
+    assert (model.nv, model.neq) == (3, 1)
+
+
 def test_models_load_in_many_threads() -> None:
     masses: list[float] = []
     threads = [Thread(target=lambda: masses.append(clench.Model.from_file(HUMANOID).body_mass.sum())) for _ in range(8)]
@@ -344,7 +355,7 @@ def test_everything_says_what_it_is_for() -> None:
     for function in [clench.solve, clench.Model.from_file, clench.Model.from_xml, clench.Model.body]:
         text = inspect.getdoc(function) or ""
         assert all(section in text for section in ("Parameters\n---", "Returns\n---", "Raises\n---"))
-    assert list(inspect.signature(clench.Model.from_file).parameters) == ["path", "budget"]
+    assert list(inspect.signature(clench.Model.from_file).parameters) == ["path", "budget", "package_path"]
     assert list(inspect.signature(clench.solve).parameters) == ["M", "a_unc", "blocks", "options"]
 
 

@@ -4,19 +4,22 @@ use crate::message::tell;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use clench::prelude::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
-use clench::{Budget, Model, RigidOptions, Sim};
+use clench::{Budget, Loader, Model, RigidOptions, Sim};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The model file and the options that override it.
 #[derive(Args)]
 pub struct ModelArguments {
-    /// Model file (MJCF)
+    /// Model file (MJCF or URDF)
     #[arg(help_heading = "Arguments")]
     pub model: PathBuf,
     /// Allow the model this many times the usual memory and work
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     budget: f64,
+    /// A folder that holds packages, of which URDF files name meshes by `package://`; may be repeated
+    #[arg(long, value_name = "FOLDER")]
+    package_path: Vec<PathBuf>,
 
     #[command(flatten)]
     overrides: Overrides,
@@ -108,8 +111,10 @@ impl From<SwitchName> for Switch {
 impl ModelArguments {
     /// Loads the model, and says on standard error what the loader wants known.
     pub fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
-        let budget = Budget::default().times(self.budget);
-        let mut model: Model = clench::load_within(&self.model, budget)?;
+        let loader = Loader::new()
+            .budget(Budget::default().times(self.budget))
+            .package_path(&self.package_path);
+        let mut model: Model = loader.load(&self.model)?;
         for note in &model.notes {
             tell(format_args!("note: {note}"));
         }

@@ -1,17 +1,24 @@
 //! Model files: readers that turn text into [`ModelBuilder`]s. All parsing and all file errors live here.
 //!
 //! MJCF, MuJoCo's own format, is read as MuJoCo 4.0 reads it: the same defaults, the same rules, the same rejections.
+//! URDF is read as MuJoCo reads it, too: bodies that no joint moves become part of their parents, what is only seen is left out,
+//! and a joint that mimics another is an equality constraint.
 //! Meshes come from STL, OBJ and MSH files, height fields from PNG images and MuJoCo's binary grids.
 //! What an MJCF file can say and this library cannot simulate yet is an error that names file, line and element, never
 //! a silent skip; what has no effect on motion (textures, lights, colours, ...) is accepted by an explicit list.
 
+mod attributes;
+mod document;
 mod elevation;
 mod error;
+mod loader;
 mod mesh;
 mod mjcf;
 mod spending;
+mod urdf;
 
 pub use error::LoadError;
+pub use loader::Loader;
 pub use mjcf::{Support, supported};
 
 use clench_rigid::builder::ModelBuilder;
@@ -31,14 +38,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Model, LoadError> {
 /// # Errors
 /// As [`load`].
 pub fn load_within(path: impl AsRef<Path>, budget: Budget) -> Result<Model, LoadError> {
-    let path = path.as_ref();
-    mjcf::read_file(path, budget)?.build().map_err(|error| {
-        let mut error = LoadError::from(error);
-        if error.line.is_none() {
-            error.file = path.to_string_lossy().into();
-        }
-        error
-    })
+    Loader::new().budget(budget).load(path)
 }
 
 /// Loads a model from text; includes are found from the working directory.
@@ -69,7 +69,7 @@ pub fn load_str(text: &str) -> Result<Model, LoadError> {
 /// # Errors
 /// As [`load_str`].
 pub fn load_str_within(text: &str, budget: Budget) -> Result<Model, LoadError> {
-    Ok(mjcf::read_text(text, budget)?.build()?)
+    Loader::new().budget(budget).load_str(text)
 }
 
 /// Reads a model file into a builder, before anything is computed.
@@ -78,7 +78,7 @@ pub fn load_str_within(text: &str, budget: Budget) -> Result<Model, LoadError> {
 /// [`LoadError`] where the file cannot be read, is not well-formed, breaks a rule of the format, or asks for something
 /// that is not supported yet.
 pub fn read(path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
-    mjcf::read_file(path.as_ref(), Budget::default())
+    Loader::new().read(path)
 }
 
 /// Reads a model from text, as [`read`]; includes are found from the working directory.
@@ -86,5 +86,5 @@ pub fn read(path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
 /// # Errors
 /// As [`read`]; the file name of an error is empty.
 pub fn read_str(text: &str) -> Result<ModelBuilder, LoadError> {
-    mjcf::read_text(text, Budget::default())
+    Loader::new().read_str(text)
 }

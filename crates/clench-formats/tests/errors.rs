@@ -56,12 +56,8 @@ fn files_that_are_no_models() {
     assert!(rejected("").message.contains("empty"));
     assert!(rejected(" \n ").message.contains("empty"));
     assert!(rejected("not xml").message.contains("not well-formed"));
-    assert!(
-        rejected("<robot name='r'/>")
-            .message
-            .contains("URDF is not supported yet")
-    );
     assert!(rejected("<Mujoco/>").message.contains("<mujoco>"));
+    assert!(rejected("<sdf/>").message.contains("<robot>"));
 }
 
 #[test]

@@ -377,3 +377,63 @@ fn a_chain_as_deep_as_a_file_may_be_is_read() {
     let chain = "<body><joint/><geom size='1'/>".repeat(depth) + &"</body>".repeat(depth);
     assert_eq!(world(&chain).bodies.len(), depth + 1);
 }
+
+#[test]
+fn fused_bodies_are_those_that_nothing_needs() {
+    let bodies = |attributes: &str, more: &str| {
+        let text = format!(
+            "<mujoco>
+               <compiler fusestatic='true'/>
+               <worldbody>
+                 <body name='b'>
+                   <freejoint/>
+                   <geom name='on_b' size='0.1'/>
+                   <body name='f' pos='1 0 0' {attributes}>
+                     <geom name='on_f' size='0.1'/>
+                     <site name='site'/>
+                   </body>
+                   <body name='hinged' pos='2 0 0'>
+                     <joint/>
+                     <geom size='0.1'/>
+                   </body>
+                 </body>
+               </worldbody>
+               {more}
+             </mujoco>"
+        );
+        let model = load_str(&text).unwrap_or_else(|error| panic!("{error}"));
+        model.nbody() - 1
+    };
+    let fused = |more| bodies("", more) == 2;
+    assert!(fused(""));
+    assert_eq!(bodies("fuse='false'", ""), 3);
+    assert_eq!(bodies("gravcomp='1'", ""), 3);
+    assert!(!fused("<option density='1.2'/>"));
+    assert!(!fused(
+        "<contact><exclude body1='f' body2='hinged'/></contact>"
+    ));
+    assert!(!fused(
+        "<equality><weld body1='f' body2='world'/></equality>"
+    ));
+    assert!(!fused(
+        "<sensor><framepos objtype='xbody' objname='f'/></sensor>"
+    ));
+    assert!(!fused("<sensor><subtreecom body='f'/></sensor>"));
+    assert!(!fused("<sensor><force site='site'/></sensor>"));
+    assert!(!fused(
+        "<worldbody><camera mode='targetbody' target='f'/></worldbody>"
+    ));
+    assert!(!fused(
+        "<custom><tuple name='t'><element objtype='body' objname='f'/></tuple></custom>"
+    ));
+    // What stands on it goes along.
+    assert!(fused(
+        "<sensor><framepos objtype='site' objname='site'/></sensor>"
+    ));
+    assert!(fused(
+        "<sensor><distance geom1='on_f' body2='hinged'/></sensor>"
+    ));
+    assert!(fused(
+        "<contact><pair geom1='on_f' geom2='on_b'/></contact>"
+    ));
+}

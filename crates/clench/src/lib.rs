@@ -179,7 +179,7 @@ pub use clench_math as math;
 pub use clench_rigid as rigid;
 pub use clench_solver as solver;
 
-pub use clench_formats::{LoadError, load, load_str, load_str_within, load_within};
+pub use clench_formats::{LoadError, Loader, load, load_str, load_str_within, load_within};
 pub use clench_rigid::batch::Controls;
 pub use clench_rigid::{
     Batch, BatchOptions, Budget, EnvStatus, Fault, Model, Output, Precision, RayFilter, RayHit,

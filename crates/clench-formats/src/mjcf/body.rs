@@ -147,6 +147,8 @@ impl<'a> BodyReader<'a> {
         element.set_boolean("mocap", &mut body.mocap)?;
         let simple = element.keyword("simple", &[("false", false), ("auto", true)])?;
         body.never_simple = simple == Some(false);
+        let fused = element.keyword("fuse", &[("false", false), ("auto", true)])?;
+        body.never_fused = fused == Some(false);
         element.set_number("gravcomp", &mut body.gravcomp)?;
         self.charge(element, size_of::<BodySpec>(), &[&body.name])?;
         self.bodies.push(body);

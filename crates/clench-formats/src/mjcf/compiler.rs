@@ -116,6 +116,7 @@ pub(crate) fn read(
     element.set_boolean("alignfree", &mut spec.alignfree)?;
     element.set_boolean("fitaabb", &mut spec.fitaabb)?;
     element.set_boolean("discardvisual", &mut spec.discardvisual)?;
+    element.set_boolean("fusestatic", &mut spec.fusestatic)?;
     let lengthrange = element
         .children
         .iter()

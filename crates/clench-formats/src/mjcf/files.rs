@@ -59,22 +59,32 @@ impl Files {
         let path = found.ok_or_else(|| {
             element.error(format!("cannot find the file \"{}\"", places[0].display()))
         })?;
-        let unreadable =
-            |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
-        let part = |part: Option<&std::ffi::OsStr>| {
-            part.map(|text| text.to_string_lossy().into_owned())
-                .unwrap_or_default()
-        };
-        Ok(Some(Content {
-            stem: part(path.file_stem()),
-            extension: part(path.extension()),
-            bytes: spending.read(path).map_err(unreadable)?,
-            path: path.clone(),
-        }))
+        Content::open(path.clone(), element, spending).map(Some)
     }
 }
 
 impl Content {
+    /// Reads the file at a path, for an element that names it.
+    pub fn open(
+        path: PathBuf,
+        element: &Element,
+        spending: &mut Spending,
+    ) -> Result<Self, LoadError> {
+        let unreadable =
+            |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
+        let bytes = spending.read(&path).map_err(unreadable)?;
+        let part = |part: Option<&std::ffi::OsStr>| {
+            part.map(|text| text.to_string_lossy().into_owned())
+                .unwrap_or_default()
+        };
+        Ok(Content {
+            stem: part(path.file_stem()),
+            extension: part(path.extension()),
+            bytes,
+            path,
+        })
+    }
+
     /// Takes the bytes out, for a reader whose errors shall name the file and who asked for it.
     pub fn parse<T>(
         &mut self,
@@ -87,6 +97,6 @@ impl Content {
 }
 
 /// Paths of model files may be written as on Windows.
-fn slashes(path: &str) -> String {
+pub(crate) fn slashes(path: &str) -> String {
     path.replace('\\', "/")
 }

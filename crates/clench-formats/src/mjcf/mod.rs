@@ -1,32 +1,31 @@
 //! MJCF, as MuJoCo 4.0 reads it.
 //!
-//! [`document`] turns text into elements, [`include`] splices files together, [`schema`] accepts or rejects every element
+//! [`document`](crate::document) turns text into elements, [`include`] splices files together, [`schema`] accepts or rejects every element
 //! and attribute, and only then do the sections read their values; so a section never meets what it does not know.
 
 mod actuator;
 mod assets;
-mod attributes;
 mod body;
 mod camera;
-mod compiler;
+pub(crate) mod compiler;
 mod compose;
 mod contact;
 mod controller;
 mod defaults;
-mod document;
 mod equality;
-mod files;
+pub(crate) mod files;
 mod geom;
 mod hfield;
 mod include;
 mod joint;
-mod keyframe;
+mod kept;
+pub(crate) mod keyframe;
 mod mesh;
-mod option;
-mod orientation;
+pub(crate) mod option;
+pub(crate) mod orientation;
 mod relations;
 mod rules;
-mod schema;
+pub(crate) mod schema;
 mod sensor;
 mod shortcut;
 mod site;
@@ -37,47 +36,25 @@ mod tendon;
 pub use support::{Support, supported};
 
 use crate::LoadError;
+use crate::document::{self, Element};
 use crate::spending::Spending;
 use body::BodyReader;
-use clench_rigid::Budget;
 use clench_rigid::builder::ModelBuilder;
 use compose::Composed;
-use document::Element;
 use include::Includes;
 use option::OptionReader;
 use std::path::Path;
-use std::sync::Arc;
 
-/// Reads the model in a file.
-pub(crate) fn read_file(path: &Path, budget: Budget) -> Result<ModelBuilder, LoadError> {
-    let file = Arc::from(path.to_string_lossy());
-    let mut spending = Spending::new(budget);
-    let unreadable = |error| LoadError::file(&file, format!("cannot read the file: {error}"));
-    let bytes = spending.read(path).map_err(unreadable)?;
-    let directory = path.parent().unwrap_or(Path::new(""));
-    read(&bytes, &file, Some(path), directory, &mut spending)
-}
-
-/// Reads a model from text.
-pub(crate) fn read_text(text: &str, budget: Budget) -> Result<ModelBuilder, LoadError> {
-    let (file, directory) = (Arc::from(""), Path::new(""));
-    let mut spending = Spending::new(budget);
-    read(text.as_bytes(), &file, None, directory, &mut spending)
-}
-
-fn read(
-    bytes: &[u8],
-    file: &Arc<str>,
+/// Reads the model below a root element, which came from a file or (`None`) from text.
+///
+/// # Errors
+/// What breaks a rule of the format, or asks for something that is not supported yet.
+pub(crate) fn read(
+    mut root: Element,
     path: Option<&Path>,
-    directory: &Path,
     spending: &mut Spending,
 ) -> Result<ModelBuilder, LoadError> {
-    let mut root = document::parse(bytes, file, spending)?;
-    match root.tag.as_str() {
-        "mujoco" => {}
-        "robot" => return Err(root.error("URDF is not supported yet")),
-        _ => return Err(root.error("the root element of a model is <mujoco>")),
-    }
+    let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
     Includes::new(path).expand(&mut root, directory, spending)?;
     let composed = compose::compose(root, path, directory, spending)?;
     assets::check_materials(&composed.root)?;
@@ -119,5 +96,8 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         bodies.read_world(section)?;
     }
     relations::read(root, sources, &mut builder)?;
+    if builder.compiler.fusestatic {
+        kept::keep_named(root, &mut builder.bodies);
+    }
     Ok(builder)
 }

@@ -28,6 +28,12 @@ pub(crate) fn check(root: &Element) -> Result<(), LoadError> {
     check_element(root, rule)
 }
 
+/// Checks a section of MJCF that stands in a file of another format.
+pub(crate) fn check_section(section: &Element) -> Result<(), LoadError> {
+    let rule = find("mujoco", &section.tag).ok_or_else(|| section.error("unknown element"))?;
+    check_element(section, rule)
+}
+
 /// The rule of an element below a parent: one for that parent alone, or one for anywhere.
 fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
     if parent == "sensor" {

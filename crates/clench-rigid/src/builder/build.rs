@@ -4,7 +4,7 @@ use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
     BuildError, ModelBuilder, actuators, bodies, budget, cameras, check, contacts, equalities,
-    invweight0, keyframes, length_range, sensors, tendons,
+    fuse, invweight0, keyframes, length_range, sensors, tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -32,9 +32,22 @@ impl ModelBuilder {
             ));
         }
         check::check(self)?;
+        let assets = Assets::new(self)?;
+        if !self.compiler.fusestatic {
+            return self.assemble(assets);
+        }
+        AllNames::new(self, &bodies::depth_first(&self.bodies)?)?;
+        let fused = ModelBuilder {
+            bodies: fuse::fuse(self, &assets)?,
+            ..self.clone()
+        };
+        fused.assemble(assets)
+    }
+
+    /// The model of a description that was checked, with its own bodies.
+    fn assemble(&self, assets: Assets) -> Result<Model, BuildError> {
         let order = bodies::depth_first(&self.bodies)?;
         let names = AllNames::new(self, &order)?;
-        let assets = Assets::new(self)?;
         let mut model = self.empty_model();
 
         bodies::add_all(self, &order, &assets, &mut model)?;

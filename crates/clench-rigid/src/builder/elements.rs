@@ -31,6 +31,8 @@ pub struct BodySpec {
     /// Where the body only slides along coordinate axes, MuJoCo scales its constraints by its mass in every direction. This one's
     /// are scaled as those of any other body, by the mean over all directions (`simple="false"`).
     pub never_simple: bool,
+    /// Stays a body of its own where `CompilerSpec::fusestatic` would make it part of its parent.
+    pub never_fused: bool,
     /// Share of the body's weight that is lifted. As in MuJoCo, shares below zero count only if some body's is positive.
     pub gravcomp: f64,
     /// Joints, in the order in which they act.

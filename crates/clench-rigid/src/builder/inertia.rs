@@ -44,6 +44,20 @@ pub(super) fn mass_properties(
     compiler: &CompilerSpec,
     assets: &Assets,
 ) -> Result<MassProperties, BuildError> {
+    let found = unbounded_mass_properties(body, name, compiler, assets)?;
+    plausible(body, found, compiler).map_err(|e| e.about(name))
+}
+
+/// As [`mass_properties`], before bounds are applied and inertias balanced.
+///
+/// # Errors
+/// As there, but for what no body can have.
+pub(super) fn unbounded_mass_properties(
+    body: &BodySpec,
+    name: &str,
+    compiler: &CompilerSpec,
+    assets: &Assets,
+) -> Result<MassProperties, BuildError> {
     let from_geoms = match compiler.inertiafromgeom {
         InertiaFromGeom::Always => true,
         InertiaFromGeom::Auto => body.inertial.is_none(),
@@ -67,9 +81,7 @@ pub(super) fn mass_properties(
         ([one], _) => Ok(*one),
         (many, _) => combine(body, many, compiler),
     };
-    found
-        .and_then(|found| plausible(body, found, compiler))
-        .map_err(|e| e.about(name))
+    found.map_err(|e| e.about(name))
 }
 
 /// The geoms that count towards inertia.
@@ -127,7 +139,10 @@ fn given(
 }
 
 /// Several geoms as one: masses add, and so do inertias about the common centre of mass.
-fn combine(
+///
+/// # Errors
+/// Inertias that are not positive.
+pub(super) fn combine(
     body: &BodySpec,
     geoms: &[MassProperties],
     compiler: &CompilerSpec,

@@ -39,6 +39,7 @@ mod element;
 mod elements;
 mod equalities;
 mod error;
+mod fuse;
 mod geoms;
 mod inertia;
 mod invweight0;

@@ -41,6 +41,8 @@ pub struct CompilerSpec {
     pub discardvisual: bool,
     /// How length ranges of actuators are found.
     pub lengthrange: LengthRangeSpec,
+    /// Make bodies that no joint moves part of their parents, where that changes no motion and no other element names them.
+    pub fusestatic: bool,
 }
 
 impl Default for CompilerSpec {
@@ -57,6 +59,7 @@ impl Default for CompilerSpec {
             fitaabb: false,
             discardvisual: false,
             lengthrange: LengthRangeSpec::default(),
+            fusestatic: false,
         }
     }
 }

@@ -13,9 +13,9 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "compiler",
         read: "angle eulerseq coordinate autolimits boundmass boundinertia settotalmass balanceinertia \
-            inertiafromgeom inertiagrouprange alignfree assetdir meshdir strippath fitaabb discardvisual conflict",
+            inertiafromgeom inertiagrouprange alignfree assetdir meshdir strippath fitaabb discardvisual conflict \
+            fusestatic",
         ignored: "texturedir usethread passthrough savecanonical savecompiled saveinertial",
-        later: "fusestatic=false",
         once: "lengthrange",
         ..NONE
     },

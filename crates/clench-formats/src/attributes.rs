@@ -1,7 +1,7 @@
 //! Typed reading of attributes, with the errors that MuJoCo gives: too few numbers, too many, not a number.
 
-use super::document::Element;
 use crate::LoadError;
+use crate::document::Element;
 use clench_math::Vec3;
 
 /// Keywords of an attribute and what they stand for.
@@ -143,6 +143,12 @@ impl Element {
             *target = self.exactly(name, numbers)?;
         }
         Ok(())
+    }
+
+    /// One end of a range, which may be infinite.
+    pub fn range_end(&self, name: &str) -> Result<Option<f64>, LoadError> {
+        let numbers = self.parse_numbers(name, 1, true)?;
+        Ok(numbers.map(|numbers| numbers[0]))
     }
 
     /// Overwrites as many leading entries as the attribute gives, 1 to `N`, and says how many.

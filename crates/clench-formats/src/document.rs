@@ -90,8 +90,14 @@ pub(crate) fn parse(
         text,
         file,
         newlines: text.match_indices('\n').map(|(at, _)| at).collect(),
+        namespaces: is_urdf(document.root_element().tag_name().name()),
     }
     .convert(document.root_element(), spending)
+}
+
+/// Whether a root element is that of a URDF file, in small letters or capitals, as MuJoCo has it.
+pub(crate) fn is_urdf(tag: &str) -> bool {
+    tag.eq_ignore_ascii_case("robot")
 }
 
 /// What to say about elements below `MAX_DEPTH`.
@@ -152,6 +158,8 @@ struct Converter<'a> {
     file: &'a Arc<str>,
     /// Where lines end, bytes.
     newlines: Vec<usize>,
+    /// Elements may have the prefix of a namespace, which they keep, and attributes in one, which no reader of ours wants.
+    namespaces: bool,
 }
 
 impl Converter<'_> {
@@ -192,14 +200,20 @@ impl Converter<'_> {
     /// An element without its children.
     ///
     /// # Errors
-    /// Where its name or that of an attribute has the prefix of a namespace: MJCF has none, and MuJoCo knows no such name either. A
-    /// namespace for all names without a prefix makes no difference.
+    /// Where its name or that of an attribute in an MJCF file has the prefix of a namespace: MJCF has none, and MuJoCo knows no such
+    /// name either. A namespace for all names without a prefix makes no difference.
     fn element(&self, node: Node) -> Result<Element, LoadError> {
         let start = node.range().start;
+        let end = |c: char| c.is_whitespace() || "/>".contains(c);
+        let name = self.text[start + 1..].split(end).next().unwrap_or_default();
         let element = Element {
-            tag: node.tag_name().name().to_owned(),
+            tag: match self.namespaces {
+                true => name.to_owned(),
+                false => node.tag_name().name().to_owned(),
+            },
             attributes: node
                 .attributes()
+                .filter(|a| !self.namespaces || a.namespace().is_none())
                 .map(|a| (a.name().to_owned(), a.value().to_owned()))
                 .collect(),
             children: Vec::new(),
@@ -209,8 +223,9 @@ impl Converter<'_> {
             },
             source: 0,
         };
-        let end = |c: char| c.is_whitespace() || "/>".contains(c);
-        let name = self.text[start + 1..].split(end).next().unwrap_or_default();
+        if self.namespaces {
+            return Ok(element);
+        }
         if name.contains(':') {
             return Err(element.error(format!(
                 "unknown element <{name}>: its name is in a namespace, and MJCF has none"

@@ -1,0 +1,108 @@
+//! Reading a model: its bytes, which format they are in, and what that format's reader is told.
+
+use crate::document;
+use crate::spending::Spending;
+use crate::{LoadError, mjcf, urdf};
+use clench_rigid::builder::ModelBuilder;
+use clench_rigid::{Budget, Model};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How model files are loaded: within which [`Budget`], and where the packages are that URDF files name.
+///
+/// ```no_run
+/// let model = clench_formats::Loader::new()
+///     .package_path(["/opt/ros/jazzy/share", "robots"])
+///     .load("robots/arm_description/urdf/arm.urdf")?;
+/// # Ok::<(), clench_formats::LoadError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Loader {
+    budget: Budget,
+    packages: Vec<PathBuf>,
+}
+
+impl Loader {
+    /// The usual budget, and no folders of packages.
+    pub fn new() -> Self {
+        Loader::default()
+    }
+
+    /// What a model may ask for.
+    #[must_use]
+    pub fn budget(mut self, budget: Budget) -> Self {
+        self.budget = budget;
+        self
+    }
+
+    /// Folders that hold packages: `package://NAME/REST` is the file `NAME/REST` in the first of them that has it, or `REST` in
+    /// one that is itself called `NAME`. After them, the folder of the model and those around it are searched in the same way.
+    #[must_use]
+    pub fn package_path<P: Into<PathBuf>>(mut self, folders: impl IntoIterator<Item = P>) -> Self {
+        self.packages.extend(folders.into_iter().map(Into::into));
+        self
+    }
+
+    /// Loads a model file, MJCF or URDF: its root element says which.
+    ///
+    /// # Errors
+    /// As [`load`](crate::load).
+    pub fn load(&self, path: impl AsRef<Path>) -> Result<Model, LoadError> {
+        let path = path.as_ref();
+        self.read(path)?.build().map_err(|error| {
+            let mut error = LoadError::from(error);
+            if error.line.is_none() {
+                error.file = path.to_string_lossy().into();
+            }
+            error
+        })
+    }
+
+    /// Loads a model from text; other files are found from the working directory.
+    ///
+    /// # Errors
+    /// As [`load`](crate::load); the file name of an error is empty.
+    pub fn load_str(&self, text: &str) -> Result<Model, LoadError> {
+        Ok(self.read_str(text)?.build()?)
+    }
+
+    /// Reads a model file into a builder, before anything is computed.
+    ///
+    /// # Errors
+    /// As [`read`](crate::read).
+    pub fn read(&self, path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
+        let path = path.as_ref();
+        let file = Arc::from(path.to_string_lossy());
+        let mut spending = Spending::new(self.budget);
+        let unreadable = |error| LoadError::file(&file, format!("cannot read the file: {error}"));
+        let bytes = spending.read(path).map_err(unreadable)?;
+        self.read_bytes(&bytes, &file, Some(path), &mut spending)
+    }
+
+    /// Reads a model from text, as [`read`](Self::read); other files are found from the working directory.
+    ///
+    /// # Errors
+    /// As [`read`](crate::read); the file name of an error is empty.
+    pub fn read_str(&self, text: &str) -> Result<ModelBuilder, LoadError> {
+        let mut spending = Spending::new(self.budget);
+        self.read_bytes(text.as_bytes(), &Arc::from(""), None, &mut spending)
+    }
+
+    fn read_bytes(
+        &self,
+        bytes: &[u8],
+        file: &Arc<str>,
+        path: Option<&Path>,
+        spending: &mut Spending,
+    ) -> Result<ModelBuilder, LoadError> {
+        let root = document::parse(bytes, file, spending)?;
+        let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
+        if root.tag == "mujoco" {
+            return mjcf::read(root, path, spending);
+        }
+        if document::is_urdf(&root.tag) {
+            return urdf::read(&root, directory, &self.packages, spending);
+        }
+        Err(root.error("the root element of a model is <mujoco> (MJCF) or <robot> (URDF)"))
+    }
+}

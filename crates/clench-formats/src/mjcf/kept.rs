@@ -1,0 +1,26 @@
+//! Bodies that elements which move nothing name: MuJoCo does not fuse them into others.
+
+use super::document::Element;
+use super::entries;
+use clench_rigid::builder::BodySpec;
+use std::collections::HashSet;
+
+/// Keeps the bodies that cameras and lights look at, that skins hang on, and that belong to a user's tuples.
+pub(crate) fn keep_named(root: &Element, bodies: &mut [BodySpec]) {
+    let mut names = HashSet::new();
+    for section in ["worldbody", "asset", "custom"] {
+        let mut pending: Vec<&Element> = entries(root, section).collect();
+        while let Some(element) = pending.pop() {
+            names.extend(match element.tag.as_str() {
+                "camera" | "light" => element.text("target"),
+                "bone" => element.text("body"),
+                "element" if element.text("objtype") == Some("body") => element.text("objname"),
+                _ => None,
+            });
+            pending.extend(&element.children);
+        }
+    }
+    for body in bodies {
+        body.never_fused |= names.contains(body.name.as_str());
+    }
+}

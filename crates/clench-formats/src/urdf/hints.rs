@@ -1,0 +1,77 @@
+//! Elements and attributes that nobody reads, but whose names are nearly those of what is read.
+
+use crate::document::Element;
+use crate::mjcf::schema::suggestion;
+
+/// What is read of each element: its attributes and its children.
+const KNOWN: [(&str, &[&str], &[&str]); 21] = [
+    ("robot", &["name"], &["link", "joint", "material", "mujoco"]),
+    ("link", &["name"], &["inertial", "collision", "visual"]),
+    ("inertial", &[], &["origin", "mass", "inertia"]),
+    ("origin", &["xyz", "rpy"], &[]),
+    ("mass", &["value"], &[]),
+    ("inertia", &["ixx", "iyy", "izz", "ixy", "ixz", "iyz"], &[]),
+    ("collision", &["name"], &["origin", "geometry"]),
+    ("visual", &["name"], &["origin", "geometry", "material"]),
+    (
+        "geometry",
+        &[],
+        &["box", "cylinder", "sphere", "capsule", "mesh"],
+    ),
+    ("box", &["size"], &[]),
+    ("cylinder", &["radius", "length"], &[]),
+    ("sphere", &["radius"], &[]),
+    ("capsule", &["radius", "length"], &[]),
+    ("mesh", &["filename", "scale"], &[]),
+    (
+        "joint",
+        &["name", "type"],
+        &[
+            "origin", "parent", "child", "axis", "limit", "dynamics", "mimic",
+        ],
+    ),
+    ("parent", &["link"], &[]),
+    ("child", &["link"], &[]),
+    ("axis", &["xyz"], &[]),
+    ("limit", &["lower", "upper", "effort", "velocity"], &[]),
+    ("dynamics", &["damping", "friction"], &[]),
+    ("mimic", &["joint", "multiplier", "offset"], &[]),
+];
+
+/// Most notes; more mistakes are likely to be of one kind.
+const MOST: usize = 20;
+/// Most names that are compared with those that are known.
+const MOST_COMPARED: usize = 10_000;
+
+/// Notes each name below a robot that is probably mistaken for one that is read.
+pub(super) fn collect(root: &Element, notes: &mut Vec<String>) {
+    let mut compared = 0;
+    let mut pending = vec![("robot", root)];
+    while let Some((tag, element)) = pending.pop() {
+        let Some((_, attributes, children)) = KNOWN.iter().find(|(known, ..)| *known == tag) else {
+            continue;
+        };
+        let mut check = |what: String, name: &str, known: &[&str], line: u32| {
+            if known.contains(&name) || compared >= MOST_COMPARED {
+                return;
+            }
+            compared += 1;
+            let hint = suggestion(name, known.iter().copied());
+            if !hint.is_empty() && notes.len() < MOST {
+                let of = element.label();
+                notes.push(format!("line {line}: {what} of {of} is ignored{hint}"));
+            }
+        };
+        for (name, _) in &element.attributes {
+            let what = format!("the attribute \"{name}\"");
+            check(what, name, attributes, element.origin.line);
+        }
+        for child in &element.children {
+            let what = format!("<{}>", child.tag);
+            check(what, &child.tag, children, child.origin.line);
+        }
+        let read = |child: &&Element| children.contains(&child.tag.as_str());
+        let below = element.children.iter().filter(read);
+        pending.extend(below.rev().map(|child| (child.tag.as_str(), child)));
+    }
+}

@@ -1,0 +1,220 @@
+//! `<joint>`: where a link stands on its parent, and how it moves there.
+
+use super::geometry::read_origin;
+use super::tree::Tree;
+use super::{charge, inside};
+use crate::LoadError;
+use crate::document::Element;
+use crate::spending::Spending;
+use clench_math::{Quat, Vec3};
+use clench_rigid::builder::{EqualityKind, EqualitySpec, JointSpec, ModelBuilder};
+use clench_rigid::model::JointKind;
+use std::collections::HashMap;
+
+/// Kinds of URDF joints. `spherical` is no word of URDF, but of MuJoCo's and Bullet's readers.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Revolute,
+    Continuous,
+    Prismatic,
+    Fixed,
+    Floating,
+    Planar,
+    Spherical,
+}
+
+const KINDS: [(&str, Kind); 7] = [
+    ("revolute", Kind::Revolute),
+    ("continuous", Kind::Continuous),
+    ("prismatic", Kind::Prismatic),
+    ("fixed", Kind::Fixed),
+    ("floating", Kind::Floating),
+    ("planar", Kind::Planar),
+    ("spherical", Kind::Spherical),
+];
+
+impl Kind {
+    /// Whether its position is one number, which another joint may mimic.
+    fn is_scalar(self) -> bool {
+        matches!(self, Kind::Revolute | Kind::Continuous | Kind::Prismatic)
+    }
+}
+
+/// Reads all joints into the bodies that they move, then who mimics whom.
+///
+/// # Errors
+/// What a joint cannot be.
+pub(super) fn read_all(
+    tree: &Tree,
+    builder: &mut ModelBuilder,
+    spending: &mut Spending,
+) -> Result<(), LoadError> {
+    let mut kinds = HashMap::new();
+    for joint in &tree.joints {
+        let element = joint.element;
+        let kind = element.keyword("type", &KINDS)?;
+        let kind = kind.ok_or_else(|| element.missing("type"))?;
+        let mut notes = Vec::new();
+        let mut joints = read(element, kind, &mut notes).map_err(inside(element))?;
+        let name = element.required_text("name")?;
+        if kind != Kind::Fixed && kinds.insert(name, kind).is_some() {
+            notes.push(format!(
+                "another joint is called \"{name}\"; this one stays without a name"
+            ));
+            joints.iter_mut().for_each(|joint| joint.name.clear());
+        }
+        let line = element.origin.line;
+        let located = notes
+            .into_iter()
+            .map(|note| format!("line {line}: {}: {note}", element.label()));
+        builder.notes.extend(located);
+        charge(
+            element,
+            joints.len() * size_of::<JointSpec>(),
+            &[name],
+            spending,
+        )?;
+        let body = &mut builder.bodies[tree.child(joint)];
+        let pose = read_origin(element).map_err(inside(element))?;
+        (body.pos, body.quat) = (pose.pos, pose.quat);
+        body.joints = joints;
+    }
+    for joint in &tree.joints {
+        let mimic = read_mimic(joint.element, &kinds, &mut builder.notes);
+        builder
+            .equalities
+            .extend(mimic.map_err(inside(joint.element))?);
+    }
+    Ok(())
+}
+
+/// The joints of ours that a URDF joint is.
+fn read(
+    element: &Element,
+    kind: Kind,
+    notes: &mut Vec<String>,
+) -> Result<Vec<JointSpec>, LoadError> {
+    let mut axis = Vec3::new(1.0, 0.0, 0.0);
+    if let Some(written) = element.child("axis")? {
+        axis = Vec3::from_array(written.required_numbers("xyz")?);
+    }
+    let name = element.string("name");
+    let of = |kind: JointKind, name: String, axis: Vec3<f64>| JointSpec {
+        name,
+        kind,
+        axis,
+        origin: Some(element.origin.clone()),
+        ..JointSpec::default()
+    };
+    let mut joints = match kind {
+        Kind::Fixed => return Ok(Vec::new()),
+        Kind::Revolute | Kind::Continuous => vec![of(JointKind::Hinge, name, axis)],
+        Kind::Prismatic => vec![of(JointKind::Slide, name, axis)],
+        Kind::Floating => vec![of(JointKind::Free, name, axis)],
+        Kind::Spherical => vec![of(JointKind::Ball, name, axis)],
+        Kind::Planar => {
+            let [x, y] = across(axis);
+            vec![
+                of(JointKind::Slide, format!("{name}_TX"), x),
+                of(JointKind::Slide, format!("{name}_TY"), y),
+                of(JointKind::Hinge, format!("{name}_RZ"), axis),
+            ]
+        }
+    };
+    if let Some(dynamics) = element.child("dynamics")? {
+        for joint in &mut joints {
+            dynamics.set_number("damping", &mut joint.damping[0])?;
+            dynamics.set_number("friction", &mut joint.frictionloss)?;
+        }
+    }
+    // Of a planar joint, as in MuJoCo, limits hold the first direction alone.
+    read_limit(element, kind, &mut joints[0], notes)?;
+    Ok(joints)
+}
+
+/// Two axes in the plane across an axis, as the least rotation that gives it carries x and y along.
+fn across(axis: Vec3<f64>) -> [Vec3<f64>; 2] {
+    let (unit, _) = axis.normalize();
+    let turn = Quat::from_two_vectors(Vec3::new(0.0, 0.0, 1.0), unit);
+    [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)].map(|v| turn.rotate(v))
+}
+
+/// Limits of position, and of effort as the bounds of all actuator force. Velocities have no limit.
+fn read_limit(
+    element: &Element,
+    kind: Kind,
+    joint: &mut JointSpec,
+    notes: &mut Vec<String>,
+) -> Result<(), LoadError> {
+    if kind == Kind::Continuous {
+        joint.limited = Some(false);
+    }
+    let Some(limit) = element.child("limit")? else {
+        return Ok(());
+    };
+    if kind != Kind::Continuous {
+        let lower = limit.range_end("lower")?;
+        let upper = limit.range_end("upper")?;
+        joint.range = [lower.unwrap_or(0.0), upper.unwrap_or(0.0)];
+        let [low, high] = joint.range;
+        let ignored = match (lower, upper) {
+            (None, None) => None,
+            (Some(_), None) => Some("has a lower limit but no upper one".to_owned()),
+            (None, Some(_)) => Some("has an upper limit but no lower one".to_owned()),
+            _ if low >= high => Some(format!("its limits {low} and {high} do not rise")),
+            _ => None,
+        };
+        if let Some(why) = &ignored {
+            notes.push(format!("{why}: it is not limited"));
+        }
+        if low >= high || ignored.is_some() {
+            joint.limited = Some(false);
+        }
+    }
+    if let Some(effort) = limit.range_end("effort")?
+        && effort != 0.0
+        && effort.is_finite()
+    {
+        joint.actuatorfrcrange = [-effort.abs(), effort.abs()];
+    }
+    Ok(())
+}
+
+/// A joint that mimics another is held to `multiplier · other + offset` by an equality constraint, as in MuJoCo 4.0.
+fn read_mimic(
+    element: &Element,
+    kinds: &HashMap<&str, Kind>,
+    notes: &mut Vec<String>,
+) -> Result<Option<EqualitySpec>, LoadError> {
+    let Some(mimic) = element.child("mimic")? else {
+        return Ok(None);
+    };
+    let (own, other) = (
+        element.required_text("name")?,
+        mimic.required_text("joint")?,
+    );
+    let scalar = |name: &str| kinds.get(name).is_some_and(|kind| kind.is_scalar());
+    if !scalar(own) || !scalar(other) {
+        if kinds.contains_key(own) {
+            notes.push(format!(
+                "line {}: {} does not mimic \"{other}\": both must be revolute, continuous or prismatic",
+                mimic.origin.line,
+                element.label()
+            ));
+        }
+        return Ok(None);
+    }
+    let mut multiplier = 1.0;
+    let mut offset = 0.0;
+    mimic.set_number("multiplier", &mut multiplier)?;
+    mimic.set_number("offset", &mut offset)?;
+    let kind = EqualityKind::Joint {
+        joint1: own.to_owned(),
+        joint2: Some(other.to_owned()),
+        polycoef: [offset, multiplier, 0.0, 0.0, 0.0],
+    };
+    Ok(Some(EqualitySpec {
+        origin: Some(mimic.origin.clone()),
+        ..EqualitySpec::new("", kind)
+    }))
+}

@@ -1,0 +1,74 @@
+//! `<link>`: a body with its mass and shapes.
+
+use super::geometry::{GeomReader, read_origin};
+use super::tree::Link;
+use super::{charge, inside};
+use crate::LoadError;
+use crate::document::Element;
+use crate::spending::Spending;
+use clench_math::{Mat3, Quat, Vec3};
+use clench_rigid::builder::{BodySpec, InertiaSpec, InertialSpec, ModelBuilder};
+
+/// Reads a link into the world or the next body.
+///
+/// # Errors
+/// What a link cannot be.
+pub(super) fn read(
+    link: &Link,
+    geoms: &mut GeomReader,
+    builder: &mut ModelBuilder,
+    spending: &mut Spending,
+) -> Result<(), LoadError> {
+    let element = link.element;
+    if link.body > 0 {
+        let name = element.string("name");
+        charge(element, size_of::<BodySpec>(), &[&name], spending)?;
+        builder.bodies.push(BodySpec {
+            name,
+            parent: link.parent,
+            quat: Quat::IDENTITY,
+            inertial: read_inertial(element).map_err(inside(element))?,
+            origin: Some(element.origin.clone()),
+            ..BodySpec::default()
+        });
+    }
+    let shapes = geoms.read(element, &mut builder.notes, spending);
+    builder.bodies[link.body].geoms = shapes.map_err(inside(element))?;
+    Ok(())
+}
+
+/// Mass, and inertia in the axes of `<origin>`, which is turned into those of the link. No inertia at all is for the compiler's
+/// bounds to raise.
+fn read_inertial(link: &Element) -> Result<Option<InertialSpec>, LoadError> {
+    let Some(element) = link.child("inertial")? else {
+        return Ok(None);
+    };
+    let pose = read_origin(element)?;
+    let [mass] = element.required_child("mass")?.required_numbers("value")?;
+    let inertia = element.required_child("inertia")?;
+    let entry = |name| inertia.required_numbers(name).map(|[entry]| entry);
+    let (xx, yy, zz) = (entry("ixx")?, entry("iyy")?, entry("izz")?);
+    let (xy, xz, yz) = (entry("ixy")?, entry("ixz")?, entry("iyz")?);
+    let inertia = match [xx, yy, zz, xy, xz, yz] == [0.0; 6] {
+        true => InertiaSpec::Diagonal([0.0; 3]),
+        false => {
+            let written = Mat3 {
+                rows: [
+                    Vec3::new(xx, xy, xz),
+                    Vec3::new(xy, yy, yz),
+                    Vec3::new(xz, yz, zz),
+                ],
+            };
+            let turn = pose.quat.to_matrix();
+            let [x, y, z] = (turn * written * turn.transpose()).rows;
+            InertiaSpec::Full([x.x, y.y, z.z, x.y, x.z, y.z])
+        }
+    };
+    Ok(Some(InertialSpec {
+        pos: pose.pos,
+        quat: pose.quat,
+        mass,
+        inertia,
+        origin: Some(element.origin.clone()),
+    }))
+}

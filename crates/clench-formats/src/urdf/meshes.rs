@@ -1,0 +1,139 @@
+//! `<mesh>`: where its file is, and which meshes are the same.
+
+use crate::LoadError;
+use crate::document::Element;
+use crate::mesh::{self, Format};
+use crate::mjcf::compiler::CompilerOptions;
+use crate::mjcf::files::{Content, slashes};
+use crate::spending::Spending;
+use clench_math::Vec3;
+use clench_rigid::builder::MeshSpec;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// What comes before the name of a package.
+const PACKAGE: [&str; 2] = ["package://", "model://"];
+
+/// The meshes of a robot.
+pub(super) struct Meshes<'a> {
+    directory: &'a Path,
+    packages: &'a [PathBuf],
+    meshdir: PathBuf,
+    strippath: bool,
+    pub found: Vec<MeshSpec>,
+    /// The names of those in `found`, by file and scale.
+    known: HashMap<(PathBuf, [u64; 3]), String>,
+    names: HashSet<String>,
+}
+
+impl<'a> Meshes<'a> {
+    /// For a robot in a directory.
+    pub fn new(directory: &'a Path, packages: &'a [PathBuf], compiler: &CompilerOptions) -> Self {
+        Meshes {
+            directory,
+            packages,
+            meshdir: directory.join(slashes(&compiler.meshdir)),
+            strippath: compiler.strippath,
+            found: Vec::new(),
+            known: HashMap::new(),
+            names: HashSet::new(),
+        }
+    }
+
+    /// Reads the mesh that an element names, if no other has read it, and says what it is called.
+    ///
+    /// # Errors
+    /// A file that is not there or no mesh.
+    pub fn read(
+        &mut self,
+        element: &Element,
+        spending: &mut Spending,
+    ) -> Result<String, LoadError> {
+        let written = slashes(element.required_text("filename")?);
+        let scale: [f64; 3] = element.numbers("scale")?.unwrap_or([1.0; 3]);
+        let path = self.find(&written).map_err(|why| element.error(why))?;
+        let key = (path.clone(), scale.map(f64::to_bits));
+        if let Some(name) = self.known.get(&key) {
+            return Ok(name.clone());
+        }
+        let mut file = Content::open(path, element, spending)?;
+        let format = Format::from_extension(&file.extension).ok_or_else(|| {
+            element.error(format!(
+                "\"{written}\" is no mesh that can be read: its name must end in .stl, .obj or .msh"
+            ))
+        })?;
+        let triangles = file.parse(element, |bytes| mesh::read(bytes, format))?;
+        let bytes = mesh::bytes(triangles.vertices.len(), triangles.faces.len());
+        spending
+            .bytes(bytes)
+            .map_err(|excess| element.error(excess))?;
+        let name = self.name(&file.stem);
+        self.known.insert(key, name.clone());
+        self.found.push(MeshSpec {
+            name: name.clone(),
+            vertices: triangles.vertices,
+            faces: triangles.faces,
+            scale: Vec3::from_array(scale),
+            origin: Some(element.origin.clone()),
+            ..MeshSpec::default()
+        });
+        Ok(name)
+    }
+
+    /// The name of the file, with a number where it is taken.
+    fn name(&mut self, stem: &str) -> String {
+        let numbered = (1..).map(|number| format!("{stem}{number}"));
+        let mut names = std::iter::once(stem.to_owned()).chain(numbered);
+        let free = names.find(|name| !self.names.contains(name));
+        let name = free.unwrap_or_default();
+        self.names.insert(name.clone());
+        name
+    }
+
+    /// The file that is meant by what is written.
+    fn find(&self, written: &str) -> Result<PathBuf, String> {
+        if self.strippath {
+            let last = Path::new(written).file_name().unwrap_or_default();
+            return first_file([self.meshdir.join(last)], written);
+        }
+        if let Some(absolute) = written.strip_prefix("file://") {
+            return first_file([PathBuf::from(absolute)], written);
+        }
+        let package = PACKAGE
+            .iter()
+            .find_map(|prefix| written.strip_prefix(prefix));
+        let Some(inside) = package else {
+            let places = self.packages.iter().map(|folder| folder.join(written));
+            return first_file(
+                [self.meshdir.join(written)].into_iter().chain(places),
+                written,
+            );
+        };
+        // Some write three slashes.
+        let inside = inside.trim_start_matches('/');
+        let (name, rest) = inside.split_once('/').unwrap_or(("", inside));
+        let around = self.directory.canonicalize().unwrap_or_default();
+        let around = match self.directory.as_os_str().is_empty() {
+            true => std::env::current_dir().unwrap_or_default(),
+            false => around,
+        };
+        let folders = self.packages.iter().map(PathBuf::as_path);
+        let places = folders.chain(around.ancestors()).flat_map(|folder| {
+            let itself = folder.file_name().is_some_and(|last| last == name);
+            let itself = itself.then(|| folder.join(rest));
+            [Some(folder.join(inside)), itself].into_iter().flatten()
+        });
+        first_file(places, written).map_err(|error| {
+            format!(
+                "{error}: say where the package \"{name}\" is (the package path), or put its folder beside or above the model"
+            )
+        })
+    }
+}
+
+/// The first of some places where there is a file.
+fn first_file(places: impl IntoIterator<Item = PathBuf>, written: &str) -> Result<PathBuf, String> {
+    let mut places = places.into_iter();
+    let found = places.find(|path| path.is_file());
+    found.ok_or_else(|| format!("cannot find the file \"{written}\""))
+}
