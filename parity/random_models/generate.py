@@ -35,13 +35,14 @@ class Generator:
         self.density = draw.choice((0.05, 0.15, 0.3, 0.5))
         draw.degrees = draw.chance(0.6)
         draw.autolimits = draw.chance(0.9)
+        self.naming = draw.chance(0.5)
         self.root = ET.Element("mujoco", model="random")
         self.classes, self.meshes, self.hfields, self.materials, self.parts = [], [], [], [], []
-        self.frames = []
+        self.frames, self.inner = [], []  # what the model can attach to itself
         self.bodies, self.geoms, self.sites, self.joints, self.tendons = ["world"], [], [], [], []
         self.cameras, self.actuator_names = [], []
         self.limited = set()  # joints and tendons whose range an actuator can take over
-        self.replicated = 0
+        self.replicated, self.groups = 0, 0  # how deep in replicas, and how many outermost groups of them so far
         self.count = 0
 
     def model(self):
@@ -265,11 +266,16 @@ class Generator:
         for _ in range(draw.randint(1, 4)):
             self.body(self.wrapped(world), 0, 0)
             self.replicated = 0
+        if self.parts and draw.chance(0.5):
+            self.attach(self.wrapped(world), top=True)
+            self.replicated = 0
         if draw.chance(0.1):
             self.body(self.add(self.root, "worldbody"), 0, 0)
 
     def named(self, kind, name, body):
         """Registers an element of a body under a name, where it can be referred to."""
+        if self.unnamed():
+            return None
         {"geom": self.geoms, "site": self.sites}[kind].append((name, body))
         return name
 
@@ -279,11 +285,9 @@ class Generator:
         if draw.chance(0.15):
             frame = self.fill(self.classed(self.add(parent, "frame")))
             self.classed(frame, "childclass", 0.1)
-            if draw.chance(0.3):
-                frame.set("name", self.always("frame"))
-                self.frames.append(frame.get("name"))
             return self.wrapped(frame)
         if draw.chance(0.07):
+            self.groups += not self.replicated
             self.replicated += 1
             replicate = self.classed(self.add(parent, "replicate"))
             for name in ("offset", "euler", "sep"):
@@ -297,9 +301,10 @@ class Generator:
         draw = self.draw
         inside = self.replicated
         body = self.add(parent, "body")
-        index = len(self.bodies)
+        index = -1 if self.unnamed() else len(self.bodies)
         name = self.always("body")
-        self.bodies.append(name)
+        if not self.unnamed():
+            self.bodies.append(name)
         body.set("name", name)
         self.fill(self.classed(body, "childclass", 0.1))
         spread = 0.5 if depth == 0 else 0.2
@@ -315,27 +320,38 @@ class Generator:
             self.attach(self.wrapped_frame(body))
         if draw.chance(0.15):
             self.camera(body)
+        if depth and not inside:
+            self.inner.append(name)
         if depth < 3:
             for _ in range(draw.choice((0, 0, 1, 1, 2)) if depth else draw.choice((0, 1, 1, 2))):
                 was = self.replicated
                 self.body(self.wrapped(body), depth + 1, index)
                 self.replicated = was
 
-    def attach(self, parent):
+    def unnamed(self):
+        """Whether nothing gets a name here. What refers to two groups of replicas follows neither, so at most the first group has names."""
+        return self.replicated and (self.groups > 1 or not self.naming)
+
+    def attach(self, parent, top=False):
         """A part of another model, or of this one."""
         draw, prefix = self.draw, self.always("at")
-        attach = self.add(parent, "attach", prefix=prefix)
+        attach = ET.Element("attach", prefix=prefix)
         if self.parts:
             attach.set("model", draw.choice(self.parts))
-            whole = draw.choice((("body", "arm"), ("body", "hand"), ("frame", "wrist"), None))
+            whole = None if top else draw.choice((("body", "arm"), ("body", "hand"), ("frame", "wrist")))
             if whole:
                 attach.set(*whole)
-            if whole == ("body", "arm"):
+            if whole != ("body", "hand") and whole != ("frame", "wrist") and not self.unnamed():
                 self.joints.append((f"{prefix}turn", "hinge"))
+        elif self.replicated:
+            return  # what is being replicated cannot be attached
         elif self.frames and draw.chance(0.5):
             attach.set("frame", draw.choice(self.frames))
+        elif self.inner:
+            attach.set("body", draw.choice(self.inner))
         else:
-            attach.set("body", draw.choice(self.bodies[1:]))
+            return
+        parent.append(attach)
 
     def body_joints(self, body, depth):
         draw = self.draw
@@ -387,7 +403,7 @@ class Generator:
         self.limit(joint, "range", "limited", value)
 
     def joint_name(self, kind):
-        name = self.name("joint")
+        name = None if self.unnamed() else self.name("joint")
         if name:
             self.joints.append((name, kind))
         return name
@@ -401,8 +417,13 @@ class Generator:
             self.inertial(body)
 
     def wrapped_frame(self, body):
-        if self.draw.chance(0.08):
-            return self.fill(self.classed(self.add(body, "frame")))
+        draw = self.draw
+        if draw.chance(0.08):
+            frame = self.fill(self.classed(self.add(body, "frame")))
+            if draw.chance(0.5) and not self.replicated:
+                frame.set("name", self.always("frame"))
+                self.frames.append(frame.get("name"))
+            return frame
         return body
 
     def inertial(self, body):
@@ -579,10 +600,13 @@ class Generator:
         if draw.chance(0.5):
             return
         section = self.add(self.root, "sensor")
+        copies = any(element.tag in ("replicate", "attach") for element in self.root.iter())
         for _ in range(draw.randint(1, 15)):
             kind = draw.choice((*harmless.SENSORS, "contact", "contact", "rangefinder", "user"))
             attached = self.attached(kind)
             if attached is None:
+                continue
+            if copies and not attached.keys() - {"dim"}:  # each replica would double the sensors that refer to nothing
                 continue
             sensor = self.add(section, kind, **attached)
             if draw.chance(0.3):
