@@ -209,7 +209,7 @@ VALUES = {
         "magnetic": vector(-1, 1),
         "density": scale(0.1, 1500),
         "viscosity": scale(1e-4, 2),
-        "integrator": one_of("Euler", "RK4", "implicitfast"),
+        "integrator": one_of("Euler", "RK4", "implicitfast", "implicit"),
         "cone": one_of("pyramidal", "elliptic"),
         "jacobian": one_of("dense", "sparse", "auto"),
         "solver": one_of("Newton", "CG", "PGS"),

@@ -148,12 +148,13 @@ impl Model {
     fn options(&self) -> RigidOptions {
         RigidOptions(self.0.options)
     }
-    /// str : How time advances: "Euler", "implicitfast" or "RK4".
+    /// str : How time advances: "Euler", "implicitfast", "implicit" or "RK4".
     #[getter]
     fn integrator(&self) -> &'static str {
         match self.0.integrator {
             Integrator::Euler => "Euler",
             Integrator::ImplicitFast => "implicitfast",
+            Integrator::Implicit => "implicit",
             Integrator::Rk4 => "RK4",
         }
     }

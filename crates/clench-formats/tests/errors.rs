@@ -337,7 +337,6 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ("<extension><plugin/></extension>", "plugin"),
         ("<asset><model/></asset>", "model"),
         ("<equality><flex/></equality>", "flex"),
-        ("<option integrator='implicit'/>", "option"),
         ("<option integrator='discrete'/>", "option"),
         ("<option><flag sleep='enable'/></option>", "flag"),
         ("<option><flag speculative='enable'/></option>", "flag"),

@@ -7,7 +7,7 @@ use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::bias::bias_forces;
 use crate::dynamics::com::com_positions;
 use crate::dynamics::euler::euler;
-use crate::dynamics::implicit::implicit_fast;
+use crate::dynamics::implicit::{implicit, implicit_fast};
 use crate::dynamics::inertia::composite_inertia;
 use crate::dynamics::kinematics::kinematics;
 use crate::dynamics::passive::passive_forces;
@@ -118,6 +118,7 @@ pub fn step<T: Real>(
     match model.integrator {
         Integrator::Euler => euler(model, params, state, ws),
         Integrator::ImplicitFast => implicit_fast(model, params, state, ws),
+        Integrator::Implicit => implicit(model, params, state, ws),
         Integrator::Rk4 => rk4(model, params, state, ws, |state, ws| {
             forward_dynamics(model, params, settings, state, ws);
         }),

@@ -44,7 +44,7 @@ fn describe(model: &Model, joint: &Joint) -> Arc<str> {
 /// The joint where the mass matrix of a lane, or the matrix of the implicit integrator, is not positive definite.
 pub(crate) fn massless<T: Real>(model: &Model, ws: &Workspace<T>, lane: usize) -> Option<Arc<str>> {
     let implicit = || match model.integrator {
-        Integrator::Euler | Integrator::ImplicitFast => {
+        Integrator::Euler | Integrator::ImplicitFast | Integrator::Implicit => {
             bad_pivot(&model.tree, &ws.integration.matrix, lane)
         }
         Integrator::Rk4 => None,

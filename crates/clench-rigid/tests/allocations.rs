@@ -77,7 +77,12 @@ fn a_replayed_humanoid_allocates_nothing() {
 
 #[test]
 fn every_kind_of_constraint_and_integrator_allocates_nothing() {
-    for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {
+    for integrator in [
+        Integrator::Euler,
+        Integrator::ImplicitFast,
+        Integrator::Implicit,
+        Integrator::Rk4,
+    ] {
         let mut builder = everything();
         builder.physics.integrator = integrator;
         let mut sim = Sim::new(model(&builder)).expect("valid");

@@ -143,7 +143,12 @@ fn a_crowd_of_bodies() {
 
 #[test]
 fn every_kind_of_constraint_with_every_integrator() {
-    for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {
+    for integrator in [
+        Integrator::Euler,
+        Integrator::ImplicitFast,
+        Integrator::Implicit,
+        Integrator::Rk4,
+    ] {
         let mut builder = everything();
         builder.options = RigidOptions::new();
         builder.physics.integrator = integrator;

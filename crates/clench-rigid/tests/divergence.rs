@@ -31,7 +31,12 @@ fn stiff(integrator: Integrator) -> ModelBuilder {
 
 #[test]
 fn a_motion_beyond_the_bounds_is_a_fault_that_names_the_joint() {
-    for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {
+    for integrator in [
+        Integrator::Euler,
+        Integrator::ImplicitFast,
+        Integrator::Implicit,
+        Integrator::Rk4,
+    ] {
         let mut sim = Sim::<f64>::new(model(&stiff(integrator))).expect("valid");
         sim.state.qpos[1] = 1e-3;
         let fault = loop {

@@ -56,7 +56,11 @@ fn runge_kutta_is_of_fourth_order_in_orientations_too() {
 
 #[test]
 fn euler_and_implicit_are_of_first_order() {
-    for integrator in [Integrator::Euler, Integrator::ImplicitFast] {
+    for integrator in [
+        Integrator::Euler,
+        Integrator::ImplicitFast,
+        Integrator::Implicit,
+    ] {
         let ratio = error_ratio(integrator, 0.001);
         assert!((1.8..2.2).contains(&ratio), "{integrator:?}: {ratio}");
     }
@@ -137,7 +141,11 @@ fn damping_is_taken_at_the_end_of_the_step() {
     builder.bodies[1].joints[0].damping[0] = 30.0;
     // m (v' − v) = −h b v', however large h b / m.
     let implicit = 1.0 / (1.0 + 0.1 * 30.0 / 2.0);
-    for integrator in [Integrator::Euler, Integrator::ImplicitFast] {
+    for integrator in [
+        Integrator::Euler,
+        Integrator::ImplicitFast,
+        Integrator::Implicit,
+    ] {
         builder.physics.integrator = integrator;
         assert!((velocity_after_step(&builder) - implicit).abs() < 1e-15);
     }

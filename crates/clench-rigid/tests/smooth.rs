@@ -3,11 +3,12 @@
 mod machines;
 
 use clench_math::{Force, Motion, Vec3};
+use clench_rigid::dynamics::coriolis::{Coriolis, add_bias_derivatives};
 use clench_rigid::dynamics::derivatives::add_velocity_derivatives;
 use clench_rigid::dynamics::integrate::integrate_positions;
 use clench_rigid::dynamics::project::{force_at, project_forces};
 use clench_rigid::{Sim, readout};
-use clench_solver::TreeMatrix;
+use clench_solver::{TreeLu, TreeMatrix};
 use machines::{distance, everything, floating, shake, sim, turn_between};
 
 /// Displacement of finite differences: their error is its square, and 1e-16 over it from rounding.
@@ -237,6 +238,49 @@ fn velocity_slopes_are_derivatives_of_the_forces() {
                 assert!(error < 1e-6, "seed {seed}, ({i}, {j}): {error}");
             }
         }
+    }
+}
+
+#[test]
+fn bias_slopes_are_derivatives_of_the_bias() {
+    for seed in 0..3 {
+        let sim = shaken(&everything(), seed);
+        let (model, ws) = (sim.model(), sim.workspace());
+        let mut slopes = TreeLu::zeros(&model.tree);
+        add_bias_derivatives(
+            model,
+            &ws.position,
+            &ws.velocity,
+            &sim.state.qvel,
+            1.0,
+            &mut Coriolis::new(model),
+            &mut slopes,
+        );
+        let bias = |dof: usize, change: f64| {
+            let mut other = Sim::new(model.clone()).expect("as the original");
+            other.state.copy_from(&sim.state);
+            other.state.qvel[dof] += change;
+            other.forward().expect("finite");
+            other.workspace().force.qfrc_bias.clone()
+        };
+        let mut expected = vec![vec![0.0; model.nv]; model.nv];
+        for j in 0..model.nv {
+            let (after, before) = (bias(j, H), bias(j, -H));
+            for i in 0..model.nv {
+                expected[i][j] = (after[i] - before[i]) / (2.0 * H);
+            }
+        }
+        for i in 0..model.nv {
+            let (row, column) = slopes.dof_mut(&model.tree, i);
+            for (k, &j) in model.tree.row(i).iter().enumerate() {
+                let j = j as usize;
+                assert!((row[k] - expected[i][j]).abs() < 1e-7, "({i}, {j})");
+                assert!((column[k] - expected[j][i]).abs() < 1e-7, "({j}, {i})");
+                (expected[i][j], expected[j][i]) = (0.0, 0.0);
+            }
+        }
+        // Dofs of different branches do not feel each other.
+        assert!(expected.concat().iter().all(|x| x.abs() < 1e-7));
     }
 }
 

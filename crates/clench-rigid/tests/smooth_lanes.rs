@@ -101,14 +101,24 @@ where
 
 #[test]
 fn lanes_step_as_alone_in_double_precision() {
-    for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {
+    for integrator in [
+        Integrator::Euler,
+        Integrator::ImplicitFast,
+        Integrator::Implicit,
+        Integrator::Rk4,
+    ] {
         compare::<f64, 4>(integrator);
     }
 }
 
 #[test]
 fn lanes_step_as_alone_in_single_precision() {
-    for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {
+    for integrator in [
+        Integrator::Euler,
+        Integrator::ImplicitFast,
+        Integrator::Implicit,
+        Integrator::Rk4,
+    ] {
         compare::<f32, 8>(integrator);
     }
 }

@@ -44,4 +44,4 @@ pub use solver::Solver;
 pub use solver::{SolveClock, SolvePart};
 pub use stats::{LaneStats, SolveStats, Status};
 pub use stopwatch::Stopwatch;
-pub use tree::{Tree, TreeFactor, TreeMatrix};
+pub use tree::{Tree, TreeFactor, TreeLu, TreeMatrix};

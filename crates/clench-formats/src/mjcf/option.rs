@@ -130,7 +130,7 @@ fn read_physics(element: &Element, builder: &mut ModelBuilder) -> Result<(), Loa
         ("Euler", Some(Integrator::Euler)),
         ("RK4", Some(Integrator::Rk4)),
         ("implicitfast", Some(Integrator::ImplicitFast)),
-        ("implicit", None),
+        ("implicit", Some(Integrator::Implicit)),
         ("discrete", None),
     ];
     match element.keyword("integrator", &integrators)? {

@@ -1,12 +1,15 @@
-//! Euler, implicit in the velocity derivatives of damping, fluid and actuation (MuJoCo's `implicitfast`).
+//! Euler, implicit in velocity derivatives: of damping, fluid and actuation (MuJoCo's `implicitfast`), or of Coriolis forces
+//! too (its `implicit`).
 //!
 //! With D = ∂τ/∂v, the acceleration that advances the velocity solves (M − h D) a = τ + Jᵀf, see
 //! [`derivatives`](crate::dynamics::derivatives) for D. A free body that is a tree by itself is then solved once more, with its
-//! gyroscopic forces, see [`gyroscopic`](crate::dynamics::gyroscopic).
+//! gyroscopic forces, see [`gyroscopic`](crate::dynamics::gyroscopic). With Coriolis forces, see
+//! [`coriolis`](crate::dynamics::coriolis), D is not symmetric, and all bodies are solved for by LU.
 
+use crate::dynamics::coriolis::add_bias_derivatives;
 use crate::dynamics::derivatives::add_velocity_derivatives;
 use crate::dynamics::gyroscopic::{is_free_tree, solve_gyroscopic};
-use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit};
+use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit, sum_forces};
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -20,6 +23,52 @@ pub fn implicit_fast<T: Real>(
     state: &mut State<T>,
     ws: &mut Workspace<T>,
 ) {
+    symmetric_part(model, params, state, ws);
+    let Integration { matrix, factor, .. } = &mut ws.integration;
+    ws.singular |= !factor.factor(&model.tree, matrix);
+    solve_implicit(&model.tree, ws);
+    for j in 0..model.joints.len() {
+        if is_free_tree(model, j) {
+            solve_gyroscopic(model, params, j, &state.qvel, ws);
+        }
+    }
+    advance_semi_implicit(model, params, state, ws);
+}
+
+/// The same with the derivatives of Coriolis forces.
+#[kernel]
+pub fn implicit<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    symmetric_part(model, params, state, ws);
+    sum_forces(ws);
+    let Integration {
+        matrix,
+        full,
+        coriolis,
+        qacc,
+        ..
+    } = &mut ws.integration;
+    full.lower.copy_from_slice(&matrix.values);
+    full.upper.copy_from_slice(&matrix.values);
+    let (pos, vel, h) = (&ws.position, &ws.velocity, params.timestep);
+    add_bias_derivatives(model, pos, vel, &state.qvel, h, coriolis, full);
+    ws.singular |= !full.factor(&model.tree);
+    full.solve(&model.tree, qacc);
+    advance_semi_implicit(model, params, state, ws);
+}
+
+/// M − h D without Coriolis forces, in `integration.matrix`.
+#[inline(always)]
+fn symmetric_part<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
     let matrix = &mut ws.integration.matrix;
     matrix.values.copy_from_slice(&ws.problem.mass.values);
     add_velocity_derivatives(
@@ -30,13 +79,4 @@ pub fn implicit_fast<T: Real>(
         -params.timestep,
         matrix,
     );
-    let Integration { matrix, factor, .. } = &mut ws.integration;
-    ws.singular |= !factor.factor(&model.tree, matrix);
-    solve_implicit(&model.tree, ws);
-    for j in 0..model.joints.len() {
-        if is_free_tree(model, j) {
-            solve_gyroscopic(model, params, j, &state.qvel, ws);
-        }
-    }
-    advance_semi_implicit(model, params, state, ws);
 }

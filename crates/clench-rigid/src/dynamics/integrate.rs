@@ -1,12 +1,13 @@
 //! Advancing the state by a time step, once its rates of change are known.
 
 use crate::dynamics::activation::{nearest_setpoint, next_activation};
+use crate::dynamics::coriolis::Coriolis;
 use crate::dynamics::gain::ActuatorMotion;
-use crate::model::{GainKind, JointKind, Model, Params};
+use crate::model::{GainKind, Integrator, JointKind, Model, Params};
 use crate::state::State;
 use crate::workspace::{Positions, Velocities, Workspace};
 use clench_math::{Quat, Real, Vec3, kernel};
-use clench_solver::{Tree, TreeFactor, TreeMatrix};
+use clench_solver::{Tree, TreeFactor, TreeLu, TreeMatrix};
 
 /// Memory of the integrators.
 #[derive(Clone, Debug)]
@@ -15,6 +16,10 @@ pub struct Integration<T> {
     pub matrix: TreeMatrix<T>,
     /// Its factor.
     pub factor: TreeFactor<T>,
+    /// The same with what is not symmetric, then its factors; empty but for [`Integrator::Implicit`].
+    pub full: TreeLu<T>,
+    /// What the derivatives of bias forces take, likewise.
+    pub coriolis: Coriolis<T>,
     /// The acceleration that advances the velocity (nv).
     pub qacc: Vec<T>,
     /// Runge–Kutta: by how much the present stage is later than the state's time, s; else zero.
@@ -51,9 +56,15 @@ impl<T: Real> Rates<T> {
 impl<T: Real> Integration<T> {
     /// Room for the integrators of a model.
     pub fn new(model: &Model) -> Self {
+        let (full, coriolis) = match model.integrator {
+            Integrator::Implicit => (TreeLu::zeros(&model.tree), Coriolis::new(model)),
+            _ => Default::default(),
+        };
         Integration {
             matrix: TreeMatrix::zeros(&model.tree),
             factor: TreeFactor::zeros(&model.tree),
+            full,
+            coriolis,
             qacc: vec![T::ZERO; model.nv],
             offset: T::ZERO,
             start: Rates::new(model, model.nq),
@@ -133,12 +144,18 @@ pub fn advance_time<T: Real>(model: &Model, params: &Params<T>, state: &mut Stat
 /// Solves with `integration.factor` for `integration.qacc`, from the sum of all forces.
 #[inline(always)]
 pub fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
+    sum_forces(ws);
     let Integration { factor, qacc, .. } = &mut ws.integration;
+    factor.solve(tree, qacc);
+}
+
+/// Leaves the sum of all forces in `integration.qacc`.
+#[inline(always)]
+pub fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
     let forces = ws.force.qfrc_smooth.iter().zip(&ws.qfrc_constraint);
-    for (qacc, (&smooth, &constraint)) in qacc.iter_mut().zip(forces) {
+    for (qacc, (&smooth, &constraint)) in ws.integration.qacc.iter_mut().zip(forces) {
         *qacc = smooth + constraint;
     }
-    factor.solve(tree, qacc);
 }
 
 /// Activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit Euler), then time.

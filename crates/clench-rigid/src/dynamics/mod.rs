@@ -13,6 +13,7 @@ pub mod articulated;
 pub mod bias;
 pub mod camera;
 pub mod com;
+pub mod coriolis;
 pub mod dc_motor;
 pub mod derivatives;
 pub mod energy;

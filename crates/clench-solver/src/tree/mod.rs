@@ -8,12 +8,14 @@
 //! column keeps its place in all of them. The kernels here live on that: they run over contiguous values, without indices.
 
 mod factor;
+mod lu;
 mod matrix;
 #[cfg(test)]
 mod tests;
 
 use crate::ProblemError;
 pub use factor::TreeFactor;
+pub use lu::TreeLu;
 pub use matrix::TreeMatrix;
 
 /// Which degrees of freedom (dofs) hang on which: the sparsity pattern of M.

@@ -81,6 +81,35 @@ fn products_and_solutions_equal_dense_ones() {
 }
 
 #[test]
+fn what_is_not_symmetric_is_solved_too() {
+    let mut rng = Rng(7);
+    for nv in 1..40 {
+        let tree = random_tree(&mut rng, nv);
+        let (lower, upper) = (
+            random_matrix(&mut rng, &tree),
+            random_matrix(&mut rng, &tree),
+        );
+        let mut dense = lower.to_dense(&tree);
+        let mut lu = TreeLu::zeros(&tree);
+        for i in 0..nv {
+            let (row, column) = lu.dof_mut(&tree, i);
+            row.copy_from_slice(lower.row(&tree, i));
+            column.copy_from_slice(upper.row(&tree, i));
+            for (&j, &value) in tree.row(i).iter().zip(upper.row(&tree, i)) {
+                if j as usize != i {
+                    dense[j as usize * nv + i] = value;
+                }
+            }
+        }
+        let right: Vec<f64> = (0..nv).map(|_| rng.unit()).collect();
+        let mut solution = right.clone();
+        assert!(lu.factor(&tree));
+        lu.solve(&tree, &mut solution);
+        assert!(far(&dense_mul(&dense, &solution), &right) < 1e-12);
+    }
+}
+
+#[test]
 fn a_factor_written_row_by_row_solves() {
     let mut rng = Rng(3);
     for nv in 1..40 {

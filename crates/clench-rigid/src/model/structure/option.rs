@@ -8,6 +8,8 @@ pub enum Integrator {
     Euler,
     /// Euler, implicit in the derivatives of damping and actuation with respect to velocity.
     ImplicitFast,
+    /// Euler, implicit in the derivatives of all forces but constraints' with respect to velocity, Coriolis forces included.
+    Implicit,
     /// Fourth-order Runge–Kutta.
     Rk4,
 }

@@ -1,0 +1,141 @@
+//! How bias forces change with velocities: ∂bias/∂v, in the pattern of the mass matrix and not symmetric.
+//!
+//! When dof j, of axis s, moves faster by one unit, so does every body b below it, and what changes of its force I a + v ×* I v
+//! is linear in s and in the change of its acceleration (Featherstone 2008, §5.3; Echeandia & Wensing 2021 arrange it so):
+//!
+//! ```text
+//! δv = s     δa = ṡ + s × (v_b − u),  u the velocity with which what follows the joint in the chain is carried along
+//! δf_b = B_b s + I_b (ṡ − s × u)      B_b x = I_b (x × v_b) + x ×* I_b v_b + v_b ×* I_b x
+//! ```
+//!
+//! Summed over the bodies below the later one of two dofs i and j, B and I give both entries of the pair.
+
+use crate::model::{JointKind, Model};
+use crate::workspace::{Positions, Velocities};
+use clench_math::{Force, Inertia, Motion, Real, kernel};
+use clench_solver::TreeLu;
+
+/// What these derivatives take besides: made for models that are integrated with them, else empty.
+#[derive(Clone, Debug, Default)]
+pub struct Coriolis<T> {
+    /// Columns of B, of each body and all below it (nbody).
+    rates: Vec<[Force<T>; 6]>,
+    /// ṡ − s × u of each dof (nv).
+    drift: Vec<Motion<T>>,
+}
+
+impl<T: Real> Coriolis<T> {
+    /// Room for a model.
+    pub fn new(model: &Model) -> Self {
+        Coriolis {
+            rates: vec![[Force::ZERO; 6]; model.nbody()],
+            drift: vec![Motion::ZERO; model.nv],
+        }
+    }
+}
+
+/// `matrix += scale · ∂bias/∂v`.
+#[kernel]
+pub fn add_bias_derivatives<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    qvel: &[T],
+    scale: T,
+    scratch: &mut Coriolis<T>,
+    matrix: &mut TreeLu<T>,
+) {
+    let Coriolis { rates, drift } = scratch;
+    sum_rates(model, pos, vel, rates);
+    drifts(model, pos, vel, qvel, drift);
+    for (i, dof) in model.dofs.iter().enumerate() {
+        let (axis, rate) = (pos.cdof[i], &rates[dof.body]);
+        let momentum = pos.crb[dof.body] * axis;
+        // The change of the force below i with dof i, and the force along i for each component of another's axis.
+        let mut change = pos.crb[dof.body] * drift[i];
+        let mut along = [T::ZERO; 6];
+        for (c, x) in axis.to_array().into_iter().enumerate() {
+            change += rate[c] * x;
+            along[c] = axis.dot(rate[c]);
+        }
+        let (row, column) = matrix.dof_mut(&model.tree, i);
+        for (k, &j) in model.tree.row(i).iter().enumerate() {
+            let other = pos.cdof[j as usize];
+            let mut entry = drift[j as usize].dot(momentum);
+            for (c, x) in other.to_array().into_iter().enumerate() {
+                entry += along[c] * x;
+            }
+            row[k] += scale * entry;
+            column[k] += scale * other.dot(change);
+        }
+    }
+}
+
+/// B of each body, then of each and all below it.
+#[inline(always)]
+fn sum_rates<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    rates: &mut [[Force<T>; 6]],
+) {
+    for (b, rate) in rates.iter_mut().enumerate() {
+        *rate = body_rate(&pos.cinert[b], vel.cvel[b]);
+    }
+    for b in (1..model.nbody()).rev() {
+        let (parent, own) = (model.bodies[b].parent, rates[b]);
+        if parent != 0 {
+            for (sum, column) in rates[parent].iter_mut().zip(own) {
+                *sum += column;
+            }
+        }
+    }
+}
+
+/// The columns of B of one body.
+#[inline(always)]
+fn body_rate<T: Real>(inertia: &Inertia<T>, velocity: Motion<T>) -> [Force<T>; 6] {
+    let momentum = *inertia * velocity;
+    let mut columns = [Force::ZERO; 6];
+    for (c, column) in columns.iter_mut().enumerate() {
+        let mut x = Motion::ZERO;
+        if c < 3 {
+            x.angular[c] = T::ONE;
+        } else {
+            x.linear[c - 3] = T::ONE;
+        }
+        *column = *inertia * x.cross(velocity)
+            + x.cross_force(momentum)
+            + velocity.cross_force(*inertia * x);
+    }
+    columns
+}
+
+/// ṡ − s × u of each dof. The axes of a ball joint turn with the whole joint, those of a free joint's rotations too.
+#[inline(always)]
+fn drifts<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    qvel: &[T],
+    drift: &mut [Motion<T>],
+) {
+    for body in model.bodies.iter().skip(1) {
+        let mut carried = vel.cvel[body.parent];
+        for joint in &model.joints[body.joints.clone()] {
+            let (start, end) = (joint.dof, joint.dof + joint.kind.nv());
+            let rotations = match joint.kind {
+                JointKind::Free => start + 3,
+                JointKind::Ball | JointKind::Slide | JointKind::Hinge => start,
+            };
+            for dofs in [start..rotations, rotations..end] {
+                for i in dofs.clone() {
+                    carried += pos.cdof[i] * qvel[i];
+                }
+                for i in dofs {
+                    drift[i] = vel.cdof_dot[i] - pos.cdof[i].cross(carried);
+                }
+            }
+        }
+    }
+}
