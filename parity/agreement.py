@@ -42,7 +42,7 @@ def constraint_rows(what, ours, theirs):
     if count == 0:
         return
     row_size = np.abs(theirs.jacobian).max(axis=1, initial=SMALL_ROW)
-    speed = row_size * largest(theirs.qvel)
+    speed = row_size * largest(theirs.qvel) + np.abs(theirs.efc_vel)  # with what surfaces move by themselves
     assert_close(what + "pos", program.rows(ours, "pos"), theirs.efc_pos, ROUNDING, 1.0)
     assert_close(what + "jacobian", ours["jacobian"], theirs.jacobian, ROUNDING, row_size[:, None])
     assert_close(what + "vel", program.rows(ours, "vel"), theirs.efc_vel, ROUNDING, speed)
@@ -55,7 +55,7 @@ def asked(theirs):
     row_size = np.abs(theirs.jacobian).max(axis=1, initial=SMALL_ROW)
     stiffness, damping, impedance = np.abs(theirs.efc_KBIP[:, :3].T)
     violation = np.abs(theirs.efc_pos - theirs.efc_margin) + SMALL_VIOLATION
-    speed = row_size * largest(theirs.qvel)
+    speed = row_size * largest(theirs.qvel) + np.abs(theirs.efc_vel)
     return np.abs(theirs.efc_aref) + damping * speed + stiffness * impedance * violation + 1e-9
 
 

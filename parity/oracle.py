@@ -11,7 +11,7 @@ from compare import largest
 
 CONES = {"pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL, "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC}
 SLOW = 1e-3  # m/s² or rad/s²: what violations of 1e-14 m do to constraints is far below 1e-8 of it
-CONTACT_FIELDS = ("dist", "pos", "frame", "includemargin", "friction", "solref", "solreffriction", "solimp", "dim")
+CONTACT_FIELDS = ("dist", "pos", "frame", "includemargin", "friction", "solref", "solreffriction", "solimp", "adhesion", "surfacevel", "dim")
 
 
 def load(path, cone=None):

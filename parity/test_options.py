@@ -30,6 +30,7 @@ CASES = [
     ("parity/models/contacts", "", "contact=disable"),
     ("parity/models/contacts", "gravity='1 0.5 -5'", ""),
     ("parity/models/contacts", "impratio=10", ""),
+    *[(f"parity/models/{name}", "", "diagexact=enable") for name in ("contacts", "equalities", "joints", "tendons", "surfaces")],
     ("parity/models/contacts", "o_margin=0.01 o_solref='0.05 0.7' o_friction='0.3 0.4 0.1 0.1 0.1'", "override=enable"),
     ("parity/models/compiler", "density=1000 viscosity=0.9 wind='0.1 0.2 0.3'", ""),
     ("models/humanoid", "", "filterparent=disable"),

@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 
 /// Bytes of a contact: two geoms, a dimension, and its numbers in single precision.
 const CONTACT: usize = 3 + 4 * NUMBERS;
-const NUMBERS: usize = 28;
+const NUMBERS: usize = 32;
 
 /// Makes contacts of the bytes, and computes with them.
 pub fn contacts(data: &[u8]) -> bool {
@@ -45,6 +45,8 @@ fn contact(bytes: &[u8; CONTACT]) -> Contact<f64> {
         solref: [next(), next()],
         solreffriction: [next(), next()],
         solimp: std::array::from_fn(|_| next()),
+        adhesion: next(),
+        surfacevel: std::array::from_fn(|_| next()),
         block: None,
     }
 }

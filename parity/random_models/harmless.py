@@ -42,6 +42,7 @@ VALUES = {
     "flag": {
         "energy": "enable",
         "fwdinv": "enable",
+        "invdiscrete": "enable",
         "midphase": "disable",
         "nativeccd": "disable",
     },
@@ -59,7 +60,7 @@ VALUES = {
     "frame": {"name": "named_frame"},
     "replicate": {"name": "named_replicate"},
     "joint": USER,
-    "geom": {**USER, "castshadow": "false", "fluidcoef": "1 2 3 4 5"},
+    "geom": {**USER, "castshadow": "false"},
     "site": {**USER, "material": "paint", "rgba": COLOUR},
     "camera": {**USER, "ipd": "0.1", "output": "depth"},
     "light": {

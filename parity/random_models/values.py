@@ -230,7 +230,7 @@ VALUES = {
         name: SWITCH
         for name in (
             "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart filterparent actuation "
-            "refsafe island eulerdamp multiccd autoreset sensor override"
+            "refsafe island eulerdamp multiccd autoreset sensor override diagexact"
         ).split()
     },
     "body": {
@@ -284,6 +284,10 @@ VALUES = {
         "solimp": solimp,
         "margin": number(0, 0.05),
         "gap": number(0, 0.03),
+        "surfacevel": usually(vector(-1, 1, 6), "0.5", "0 0.3 0"),
+        "adhesion": usually(scale(0.1, 20), "0", "-1"),
+        "fluidshape": one_of("none", "ellipsoid"),
+        "fluidcoef": up_to(5, 0, 2),
         "rgba": lambda draw: text(*(draw.random() for _ in range(3)), draw.choice((0, 1))),
     },
     "camera": {
@@ -302,6 +306,7 @@ VALUES = {
         "solimp": solimp,
         "margin": number(0, 0.05),
         "gap": number(0, 0.03),
+        "adhesion": scale(0.1, 20),
     },
     "exclude": {},
     "connect": EQUALITY,

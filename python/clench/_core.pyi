@@ -200,6 +200,11 @@ class Model:
     geom_friction: Final[_Floats]  # (ngeom, 3) Slide, spin and roll friction.
     geom_margin: Final[_Floats]  # (ngeom,) Margin.
     geom_gap: Final[_Floats]  # (ngeom,) Gap.
+    geom_surfacevel: Final[_Floats]  # (ngeom, 6) Velocity of the surface in the geom's frame: linear, angular.
+    geom_adhesion: Final[_Floats]  # (ngeom,) Force with which contacts hold on.
+    geom_fluidcoef: Final[_Floats]  # (ngeom, 5) Coefficients of blunt, slender and angular drag, Kutta and Magnus lift.
+    geom_virtualmass: Final[_Floats]  # (ngeom, 3) Volume of the medium that moves with the geom along each axis.
+    geom_virtualinertia: Final[_Floats]  # (ngeom, 3) Inertia of the medium that turns with the geom, at unit density.
     geom_solmix: Final[_Floats]  # (ngeom,) Weight in mixing.
     geom_solref: Final[_Floats]  # (ngeom, 2) Reference dynamics.
     geom_solimp: Final[_Floats]  # (ngeom, 5) Impedance.
@@ -300,6 +305,7 @@ class Model:
     pair_solimp: Final[_Floats]  # (npair, 5) Impedance.
     pair_margin: Final[_Floats]  # (npair,) Margin.
     pair_gap: Final[_Floats]  # (npair,) Gap.
+    pair_adhesion: Final[_Floats]  # (npair,) Force with which contacts hold on.
     pair_dim: Final[_Codes]  # (npair,) Dimensions of the contact.
     pair_geom1: Final[_Codes]  # (npair,) The geom whose type has the smaller code.
     pair_geom2: Final[_Codes]  # (npair,) The other.
@@ -378,6 +384,10 @@ class Element:
     frictionloss: Final[float]  # tendon
     gainprm: Final[_Floats]  # (10,) actuator
     gaintype: Final[int]  # actuator
+    adhesion: Final[float]  # geom, pair
+    fluidcoef: Final[_Floats]  # (5,) geom
+    virtualmass: Final[_Floats]  # (3,) geom
+    virtualinertia: Final[_Floats]  # (3,) geom
     gap: Final[float]  # geom, pair
     gear: Final[_Floats]  # (6,) actuator
     geom1: Final[int]  # pair
@@ -436,6 +446,7 @@ class Element:
     solreffriction: Final[_Floats]  # (2,) pair
     stiffness: Final[float]  # joint, tendon
     stiffnesspoly: Final[_Floats]  # (2,) joint
+    surfacevel: Final[_Floats]  # (6,) geom
     subtreemass: Final[float]  # body
     time: Final[float]  # keyframe
     torquescale: Final[float]  # equality
@@ -749,6 +760,10 @@ class Contacts:
     def includemargin(self) -> _Floats: ...  # (ncon,)
     @property
     def friction(self) -> _Floats: ...  # (ncon, 5)
+    @property
+    def adhesion(self) -> _Floats: ...  # (ncon,)
+    @property
+    def surfacevel(self) -> _Floats: ...  # (ncon, 3) along both tangents and about the normal
     @property
     def force(self) -> _Floats: ...  # (ncon, 6) in the contact frame
     @property

@@ -32,6 +32,12 @@ pub(crate) struct Contacts {
     /// numpy.ndarray : Friction coefficients (ncon, 5): two slides, spin, two rolls.
     #[pyo3(get)]
     friction: Py<PyAny>,
+    /// numpy.ndarray : Force with which a contact holds on (ncon), N: it acts beyond `includemargin` too, and can pull.
+    #[pyo3(get)]
+    adhesion: Py<PyAny>,
+    /// numpy.ndarray : Velocity of the second surface less that of the first (ncon, 3): along both tangents, m/s, about the normal, rad/s.
+    #[pyo3(get)]
+    surfacevel: Py<PyAny>,
     /// numpy.ndarray : Force in the contact frame (ncon, 6): along normal and tangents, N, then torques about them, N m. It acts
     /// on the second geom, its negative on the first.
     #[pyo3(get)]
@@ -63,6 +69,8 @@ impl Contacts {
             frame: column(py, &rows, [3, 3], |row| row.frame.concat())?,
             includemargin: column(py, &rows, [], |row| [row.includemargin])?,
             friction: column(py, &rows, [5], |row| row.friction)?,
+            adhesion: column(py, &rows, [], |row| [row.adhesion])?,
+            surfacevel: column(py, &rows, [3], |row| row.surfacevel)?,
             force: column(py, &rows, [6], |row| row.force)?,
             wrench: column(py, &rows, [6], |row| row.wrench)?,
         };

@@ -107,10 +107,8 @@ struct ContactLine {
     /// Not zero: the contact is listed but makes no constraint; 1: since it is in the gap, where sensors still tell of it.
     #[serde(default)]
     exclude: i32,
-    /// Not supported: has to be zero.
     #[serde(default)]
     surfacevel: [f64; 3],
-    /// Not supported: has to be zero.
     #[serde(default)]
     adhesion: f64,
     /// What MuJoCo derives from the rest, and our own `force`: read past, so that a whole mjContact or a contact of a
@@ -230,14 +228,6 @@ impl ContactLine {
             "dim: {} is not 1, 3, 4 or 6",
             self.dim
         );
-        ensure!(
-            self.surfacevel == [0.0; 3],
-            "surfacevel: moving surfaces are not supported yet"
-        );
-        ensure!(
-            self.adhesion == 0.0,
-            "adhesion: adhesive contacts are not supported yet"
-        );
         let f = self.frame;
         Ok(Contact {
             geoms,
@@ -258,6 +248,8 @@ impl ContactLine {
             solref: self.solref,
             solreffriction: self.solreffriction,
             solimp: self.solimp,
+            adhesion: self.adhesion,
+            surfacevel: self.surfacevel,
             block: None,
         })
     }
@@ -300,6 +292,9 @@ struct ContactResult {
     includemargin: f64,
     dim: usize,
     friction: [f64; 5],
+    adhesion: f64,
+    /// Of the second surface less that of the first: along both tangents, about the normal.
+    surfacevel: [f64; 3],
     /// In the contact frame: normal, two tangents, spin, two rolls.
     force: [f64; 6],
 }
@@ -384,6 +379,8 @@ impl ContactResult {
             includemargin: contact.includemargin,
             dim: contact.dim,
             friction: contact.friction,
+            adhesion: contact.adhesion,
+            surfacevel: contact.surfacevel,
             force: readout::contact_force(sim.workspace(), index, 0),
         }
     }

@@ -321,9 +321,6 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
     for (line, element) in [
         ("<geom type='sdf' mesh='m'/>", "geom"),
         ("<site type='mesh'/>", "site"),
-        ("<geom size='1' adhesion='1'/>", "geom"),
-        ("<geom size='1' surfacevel='0 0 1'/>", "geom"),
-        ("<geom size='1' fluidshape='ellipsoid'/>", "geom"),
         ("<frame scale='2'/>", "frame"),
         ("<flexcomp/>", "flexcomp"),
         ("<body><joint springyield='1'/></body>", "joint"),
@@ -350,9 +347,8 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
 fn what_is_not_supported_is_accepted_where_it_does_nothing() {
     read_str(
         "<mujoco>
-           <option><flag sleep='disable' diagexact='disable'/></option>
+           <option><flag sleep='disable' ipc='disable' invdiscrete='enable'/></option>
            <worldbody>
-             <geom size='1' adhesion='0' surfacevel='0 0 0' fluidshape='none'/>
              <body><joint springyield='0'/></body>
              <frame scale='1'/>
            </worldbody>

@@ -91,6 +91,17 @@ spatial_vector!(Motion);
 spatial_vector!(Force);
 
 impl<T: Real> Motion<T> {
+    /// The motion whose component `c` of (angular, linear) is one, the others zero.
+    #[inline(always)]
+    pub fn component(c: usize) -> Self {
+        let mut motion = Self::ZERO;
+        if c < 3 {
+            motion.angular[c] = T::ONE;
+        } else {
+            motion.linear[c - 3] = T::ONE;
+        }
+        motion
+    }
     /// Power of a force along this motion, W.
     #[inline(always)]
     pub fn dot(self, f: Force<T>) -> T {

@@ -236,7 +236,7 @@ pub(crate) fn check_contact<T: Scalar>(
     if contact.dim > 1 && !contact.friction.iter().all(|&mu| mu > T::ZERO) {
         return Err("a friction coefficient is not positive");
     }
-    let finite = [contact.dist, contact.includemargin]
+    let finite = [contact.dist, contact.includemargin, contact.adhesion]
         .into_iter()
         .chain(contact.pos.to_array())
         .chain(contact.frame.rows.into_iter().flat_map(|r| r.to_array()))
@@ -244,6 +244,7 @@ pub(crate) fn check_contact<T: Scalar>(
         .chain(contact.solref)
         .chain(contact.solreffriction)
         .chain(contact.solimp)
+        .chain(contact.surfacevel)
         .all(|x| x.is_finite());
     if !finite {
         return Err("it holds a number that is not finite");

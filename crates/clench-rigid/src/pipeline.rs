@@ -58,7 +58,16 @@ pub fn velocity_stage<T: Real>(
 ) {
     let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);
     velocities(model, pos, &state.qvel, vel);
-    passive_forces(model, params, pos, vel, &state.qpos, &state.qvel, force);
+    passive_forces(
+        model,
+        params,
+        pos,
+        vel,
+        &state.qpos,
+        &state.qvel,
+        &ws.contacts,
+        force,
+    );
     bias_forces(model, params, pos, vel, &state.qvel, force);
     ws.clock.lap(Stage::Velocity as usize);
 }

@@ -4,6 +4,7 @@
 use crate::constraint::ConstraintSource;
 use crate::contact::Contact;
 use crate::model::Model;
+use crate::output::of_contact;
 use crate::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar};
 use clench_solver::{Block, Cost};
@@ -107,14 +108,8 @@ pub fn mass_matrix<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
 /// The force of contact `contact` of lane `lane` in the contact frame: along normal and tangents (N), about normal and
 /// tangents (N m). Zero where it is no constraint. It acts on the second geom; its negative on the first.
 pub fn contact_force<T: Real>(ws: &Workspace<T>, contact: usize, lane: usize) -> [f64; 6] {
-    let mut force = [0.0; 6];
-    if let Some(index) = ws.contacts.get(contact).and_then(|c| c.block) {
-        let rows = ws.problem.block(index).rows();
-        for (to, from) in force.iter_mut().zip(&ws.solver.force()[rows]) {
-            *to = from.lane(lane).to_f64();
-        }
-    }
-    force
+    let found = ws.contacts.get(contact).and_then(|c| of_contact(ws, c));
+    found.map_or([0.0; 6], |force| force.map(|f| f.lane(lane).to_f64()))
 }
 
 /// A contact in plain numbers.
@@ -130,8 +125,12 @@ pub struct ContactRow {
     pub pos: [f64; 3],
     /// Rows: normal, first tangent, second tangent.
     pub frame: [[f64; 3]; 3],
-    /// The constraint exists where `dist` is less, m.
+    /// The constraint exists where `dist` is less, m; that of a contact that adheres also beyond.
     pub includemargin: f64,
+    /// Force with which it holds on, N.
+    pub adhesion: f64,
+    /// Velocity of the second surface less that of the first along the tangents, m/s, and about the normal, rad/s.
+    pub surfacevel: [f64; 3],
     /// Two slides, spin, two rolls.
     pub friction: [f64; 5],
     /// See [`contact_force`].
@@ -155,6 +154,8 @@ pub fn contact_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ContactRow> 
             pos: contact.pos.to_array().map(number),
             frame,
             includemargin: number(contact.includemargin),
+            adhesion: number(contact.adhesion),
+            surfacevel: contact.surfacevel.map(number),
             friction: contact.friction.map(number),
             force,
             wrench: from_fn(|i| turned(&force[i / 3 * 3..], i % 3)),

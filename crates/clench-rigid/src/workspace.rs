@@ -115,6 +115,8 @@ pub struct Forces<T> {
     pub qfrc_gravcomp: Vec<T>,
     /// Fluid.
     pub qfrc_fluid: Vec<T>,
+    /// What contacts that adhere pull with.
+    pub qfrc_adhesion: Vec<T>,
     /// All passive forces together.
     pub qfrc_passive: Vec<T>,
     /// Actuators.
@@ -190,6 +192,7 @@ impl<T: Real> Workspace<T> {
                 qfrc_damper: zeros(nv),
                 qfrc_gravcomp: zeros(nv),
                 qfrc_fluid: zeros(nv),
+                qfrc_adhesion: zeros(nv),
                 qfrc_passive: zeros(nv),
                 qfrc_actuator: zeros(nv),
                 qfrc_smooth: zeros(nv),

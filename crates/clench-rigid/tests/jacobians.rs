@@ -179,6 +179,8 @@ fn given_contacts(sim: &Sim) -> Vec<Contact<f64>> {
         solref: DEFAULT_SOLREF,
         solreffriction: [0.0; 2],
         solimp: DEFAULT_SOLIMP,
+        adhesion: 0.0,
+        surfacevel: [0.0; 3],
         block: None,
     })
     .collect()

@@ -229,6 +229,8 @@ fn contact_in(frame: Mat3<f64>) -> Contact<f64> {
         solref: DEFAULT_SOLREF,
         solreffriction: [0.0; 2],
         solimp: DEFAULT_SOLIMP,
+        adhesion: 0.0,
+        surfacevel: [0.0; 3],
         block: None,
     }
 }

@@ -249,8 +249,8 @@ fn bias_slopes_are_derivatives_of_the_bias() {
         let mut slopes = TreeLu::zeros(&model.tree);
         add_bias_derivatives(
             model,
-            &ws.position,
-            &ws.velocity,
+            sim.params(),
+            (&ws.position, &ws.velocity),
             &sim.state.qvel,
             1.0,
             &mut Coriolis::new(model),

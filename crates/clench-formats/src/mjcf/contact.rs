@@ -14,6 +14,7 @@ pub(crate) fn default_pair() -> PairSpec {
         solimp: Some(DEFAULT_SOLIMP),
         margin: Some(0.0),
         gap: Some(0.0),
+        adhesion: Some(0.0),
         ..PairSpec::default()
     }
 }
@@ -30,6 +31,8 @@ pub(crate) fn read_pair(element: &Element, pair: &mut PairSpec) -> Result<(), Lo
         .map(|[margin]| margin)
         .or(pair.margin);
     pair.gap = element.numbers("gap")?.map(|[gap]| gap).or(pair.gap);
+    let adhesion = element.numbers("adhesion")?;
+    pair.adhesion = adhesion.map(|[force]| force).or(pair.adhesion);
     Ok(())
 }
 

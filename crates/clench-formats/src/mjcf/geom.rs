@@ -83,6 +83,11 @@ impl GeomDraft {
         element.overlay("solimp", &mut geom.solimp)?;
         element.set_number("margin", &mut geom.margin)?;
         element.set_number("gap", &mut geom.gap)?;
+        element.overlay("surfacevel", &mut geom.surfacevel)?;
+        element.set_number("adhesion", &mut geom.adhesion)?;
+        let shapes = [("none", false), ("ellipsoid", true)];
+        element.set_keyword("fluidshape", &shapes, &mut geom.fluid_ellipsoid)?;
+        element.overlay("fluidcoef", &mut geom.fluidcoef)?;
         element.set_boolean("shellinertia", &mut geom.shellinertia)?;
         element.set_integer("group", &mut geom.group)?;
         if let Some(mesh) = element.text("mesh") {

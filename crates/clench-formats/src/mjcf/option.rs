@@ -169,6 +169,7 @@ fn element_flags(element: &Element, flags: &mut Flags) -> Result<(), LoadError> 
         ("refsafe", &mut flags.refsafe),
         ("eulerdamp", &mut flags.eulerdamp),
         ("multiccd", &mut flags.multiccd),
+        ("diagexact", &mut flags.diagexact),
         ("sensor", &mut flags.sensor),
     ];
     for (name, target) in targets {

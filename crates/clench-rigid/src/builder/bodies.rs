@@ -180,6 +180,7 @@ fn push_body(model: &mut Model, spec: &BodySpec, parent: usize, simple_inertia: 
         mocap: spec.mocap.then_some(model.nmocap),
         last_dof: parent_body.and_then(|above| above.last_dof),
         simple_inertia,
+        fluid_ellipsoids: false,
         origin: spec.origin.clone(),
     };
     model.bodies.push(body);

@@ -165,6 +165,9 @@ fn check_geom(g: &GeomSpec) -> Result<(), BuildError> {
     g.require_not_negative("friction", &g.friction)?;
     g.require_finite("margin", &[g.margin])?;
     g.require_finite("gap", &[g.gap])?;
+    g.require_finite("surfacevel", &g.surfacevel)?;
+    g.require_finite("adhesion", &[g.adhesion])?;
+    g.require_finite("fluidcoef", &g.fluidcoef)?;
     g.require_finite("solmix", &[g.solmix])?;
     check_softness(g, &[g.solref], &[g.solimp])?;
     g.require_finite("fitscale", &[g.fitscale])?;
@@ -274,6 +277,7 @@ fn check_pair(p: &PairSpec) -> Result<(), BuildError> {
     p.require_not_negative("friction", &p.friction.unwrap_or_default())?;
     p.require_finite("margin", &[p.margin.unwrap_or(0.0)])?;
     p.require_finite("gap", &[p.gap.unwrap_or(0.0)])?;
+    p.require_finite("adhesion", &[p.adhesion.unwrap_or(0.0)])?;
     let solrefs = [p.solref, p.solreffriction].map(Option::unwrap_or_default);
     check_softness(p, &solrefs, &[p.solimp.unwrap_or_default()])
 }

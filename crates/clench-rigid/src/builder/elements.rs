@@ -213,6 +213,14 @@ pub struct GeomSpec {
     pub margin: f64,
     /// Part of the margin in which contacts carry no force, m.
     pub gap: f64,
+    /// Velocity of the surface as contacts see it, in the geom's frame: linear (m/s), and angular about its origin (rad/s).
+    pub surfacevel: [f64; 6],
+    /// Force with which each contact holds on, N; those of two geoms add up.
+    pub adhesion: f64,
+    /// The geom feels a surrounding medium as an ellipsoid, and its body does not as a box.
+    pub fluid_ellipsoid: bool,
+    /// Coefficients of blunt, slender and angular drag, of Kutta and of Magnus lift.
+    pub fluidcoef: [f64; 5],
     /// Mass or density.
     pub mass: GeomMass,
     /// Mass spread over the surface.
@@ -246,6 +254,10 @@ impl Default for GeomSpec {
             solimp: DEFAULT_SOLIMP,
             margin: 0.0,
             gap: 0.0,
+            surfacevel: [0.0; 6],
+            adhesion: 0.0,
+            fluid_ellipsoid: false,
+            fluidcoef: [0.5, 0.25, 1.5, 1.0, 1.0],
             mass: GeomMass::Density(1000.0),
             shellinertia: false,
             visible: true,

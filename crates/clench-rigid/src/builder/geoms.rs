@@ -1,8 +1,10 @@
 //! Geoms and sites.
 
+use super::added_mass::AddedMass;
 use super::element::Element;
 use super::placed::Assets;
 use super::{BuildError, GeomSpec, SiteSpec};
+use crate::dynamics::ellipsoid::semi_axes;
 use crate::model::{Geom, Model, Site};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -34,6 +36,9 @@ pub(super) fn add_geom(
     if spec.kind == ShapeKind::Plane && !weld.joints.is_empty() {
         return Err(spec.error("a plane can only stand on a body that no joint moves"));
     }
+    let flat = matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField);
+    let fluid_ellipsoid = spec.fluid_ellipsoid && !flat;
+    model.bodies[b].fluid_ellipsoids |= fluid_ellipsoid;
     model.geoms.push(Geom {
         name: spec.name.clone(),
         kind: spec.kind,
@@ -46,6 +51,7 @@ pub(super) fn add_geom(
         priority: spec.priority,
         group: spec.group,
         visible: spec.visible,
+        fluid_ellipsoid,
         origin: spec.origin.clone(),
     });
     let (pos, quat) = place(moved, placed.pos, placed.quat);
@@ -57,6 +63,16 @@ pub(super) fn add_geom(
     p.geom_friction.push(spec.friction);
     p.geom_margin.push(spec.margin);
     p.geom_gap.push(spec.gap);
+    p.geom_surfacevel.push(spec.surfacevel);
+    p.geom_adhesion.push(spec.adhesion);
+    let added = if fluid_ellipsoid {
+        AddedMass::of_ellipsoid(semi_axes(spec.kind, placed.size))
+    } else {
+        AddedMass::default()
+    };
+    p.geom_fluidcoef.push(spec.fluidcoef);
+    p.geom_virtualmass.push(added.mass);
+    p.geom_virtualinertia.push(added.inertia);
     p.geom_solmix.push(spec.solmix);
     p.geom_solref.push(spec.solref);
     p.geom_solimp.push(spec.solimp);

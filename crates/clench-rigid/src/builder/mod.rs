@@ -26,6 +26,7 @@
 //! ```
 
 mod actuators;
+mod added_mass;
 mod assets;
 mod bodies;
 mod budget;

@@ -239,6 +239,8 @@ pub struct PairSpec {
     pub margin: Option<f64>,
     /// Gap, m.
     pub gap: Option<f64>,
+    /// Force with which each contact holds on, N.
+    pub adhesion: Option<f64>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

@@ -1,5 +1,6 @@
 //! Where constraints put their rows: the convex problem, and beside it what a reader wants to know of each row.
 
+use super::exact::ExactDiagonal;
 use super::softness::{Softness, is_single, least_regularization};
 use clench_math::Real;
 use clench_solver::{Cost, Problem};
@@ -44,7 +45,7 @@ pub struct ConstraintRecord<T: Real> {
     pub blocks: Vec<BlockRecord<T>>,
     /// Position of each row: violations, signed distances, angles.
     pub pos: Vec<T>,
-    /// Its rate of change, J v.
+    /// Its rate of change, J v and what surfaces move by themselves.
     pub vel: Vec<T>,
     /// The dofs of the next block.
     pub(super) dofs: Vec<u32>,
@@ -61,6 +62,10 @@ pub(super) struct Row<T> {
     pub damping: T,
     /// Regularization.
     pub r: T,
+    /// What else moves along the row, beside the dofs.
+    pub drift: T,
+    /// A force that the row gives where its reference acceleration is met: it is raised by R times this.
+    pub pull: T,
     /// Shape of its cost, see `clench_solver::BlockMut::shape`.
     pub shape: T,
 }
@@ -74,6 +79,8 @@ impl<T: Real> Row<T> {
             aref: -soft.stiffness * (pos - margin),
             damping: soft.damping,
             r: soft.regularization(a0),
+            drift: T::ZERO,
+            pull: T::ZERO,
             shape: T::ZERO,
         }
     }
@@ -86,6 +93,8 @@ pub(super) struct Assembly<'a, T: Real> {
     pub qvel: &'a [T],
     /// Inverse inertia of each dof in the initial configuration.
     pub weights: &'a [T],
+    /// Computes it anew for each row, with the flag `diagexact`.
+    pub exact: Option<ExactDiagonal<'a, T>>,
 }
 
 impl<T: Real> Assembly<'_, T> {
@@ -118,16 +127,20 @@ impl<T: Real> Assembly<'_, T> {
         for (r, row) in r.iter_mut().zip(rows) {
             *r = row.r;
         }
+        if let Some(exact) = &mut self.exact {
+            let matrix = (&*target.jacobian, &dofs[..]);
+            exact.regularize(cost, rows, matrix, block.impedance, &mut r);
+        }
         if is_single::<T>() {
             raise(cost, rows, target.jacobian, dofs, self.weights, &mut r);
         }
         for (i, row) in rows.iter().enumerate() {
             let jacobian = &target.jacobian[i * dofs.len()..(i + 1) * dofs.len()];
-            let mut velocity = T::ZERO;
+            let mut velocity = row.drift;
             for (&j, &dof) in jacobian.iter().zip(&*dofs) {
                 velocity += j * self.qvel[dof as usize];
             }
-            target.aref[i] = row.aref - row.damping * velocity;
+            target.aref[i] = row.aref - row.damping * velocity + r[i] * row.pull;
             target.r[i] = r[i];
             target.d[i] = T::select(block.active, T::ONE / r[i], T::ZERO);
             target.shape[i] = row.shape;

@@ -13,6 +13,11 @@
 //! elliptic:   R_n = A₀ (1 − d) / d,   R_1 = R_n / impratio,   R_j = R_1 μ₁² / μ_j²,   shape μ = μ₁ √(R_1 / R_n)
 //! ```
 //!
+//! Where surfaces move by themselves (`surfacevel`), friction rows count their velocity as part of v. A contact that adheres with
+//! a force δ adds R δ to aref (of each edge of a pyramid its share), while δ also pulls the bodies together as a passive force:
+//! what remains of both is the same contact, which can pull with up to δ (MuJoCo, *Computation*, "Adhesion"). It exists within
+//! the gap too, without friction.
+//!
 //! The pyramid's R makes its friction as stiff as the elliptic cone's. Elliptic friction rows may have their own damping
 //! (`solreffriction`); the rows of a pyramid share the normal's, since its edges mix them.
 
@@ -35,7 +40,7 @@ pub(super) fn push<T: Real>(
     contact: &mut Contact<T>,
 ) {
     contact.block = None;
-    let active = contact.active & contact.dist.lt(contact.includemargin);
+    let active = contact.acts();
     if !active.any() {
         return;
     }
@@ -74,16 +79,20 @@ fn rows<T: Real>(
     soft: &Softness<T>,
     a0: T,
 ) -> (Cost, [Row<T>; MAX_DIM]) {
-    let normal = Row::new(soft, contact.dist, contact.includemargin, a0);
+    let mut normal = Row::new(soft, contact.dist, contact.includemargin, a0);
     let slip = Row {
         pos: T::ZERO,
         aref: T::ZERO,
         ..normal
     };
+    normal.pull = contact.adhesion;
     let mut rows = [slip; MAX_DIM];
     rows[0] = normal;
     if contact.dim == 1 {
         return (Cost::OneSided, rows);
+    }
+    for (row, &drift) in rows[1..].iter_mut().zip(&contact.surfacevel) {
+        row.drift = drift;
     }
     let impratio = context.impratio;
     let mu = contact.friction;
@@ -96,6 +105,7 @@ fn rows<T: Real>(
                 row.r = r;
                 row.shape = if j == 0 { T::ZERO } else { mu[j - 1] };
             }
+            rows[0].pull = contact.adhesion / T::new(2.0 * (contact.dim as f64 - 1.0));
             (Cost::Pyramid, rows)
         }
         FrictionCone::Elliptic => {

@@ -8,6 +8,7 @@ mod chains;
 mod connect;
 mod contact;
 mod coordinate;
+mod exact;
 mod friction;
 mod joint_equality;
 mod limit;
@@ -27,6 +28,7 @@ use crate::workspace::{Positions, Velocities, Workspace};
 use assembly::Assembly;
 use clench_math::{Mask, Real};
 use coordinate::Coordinate;
+use exact::ExactDiagonal;
 
 /// All that constraints read.
 struct ConstraintContext<'a, T: Real> {
@@ -108,11 +110,20 @@ pub fn assemble<T: Real>(
         least_timeconst: least_timeconst(params, settings),
         impratio: T::new(settings.solver.impratio),
     };
+    // Rows are appended to the problem while the factor of its mass is read.
+    let factor = std::mem::take(&mut ws.problem.mass_factor);
+    let exact = settings.flags.diagexact.then(|| ExactDiagonal {
+        tree: &model.tree,
+        factor: &factor,
+        impratio: context.impratio,
+        scratch: &mut ws.integration.qacc,
+    });
     let mut out = Assembly {
         problem: &mut ws.problem,
         record: &mut ws.record,
         qvel: &state.qvel,
         weights: &params.dof_invweight0,
+        exact,
     };
     if settings.flags.equality {
         push_equalities(&context, &mut out);
@@ -129,6 +140,7 @@ pub fn assemble<T: Real>(
     if settings.flags.contact {
         push_contacts(&context, &mut out, &mut ws.contacts);
     }
+    ws.problem.mass_factor = factor;
 }
 
 #[inline(always)]

@@ -70,9 +70,14 @@ impl<T: Real> Softness<T> {
     /// R of a row that sees the inverse inertia `a0`.
     #[inline(always)]
     pub fn regularization(&self, a0: T) -> T {
-        let d = self.impedance;
-        ((T::ONE - d) * a0 / d).max(T::new(MIN_VALUE))
+        inverse_weight(self.impedance, a0)
     }
+}
+
+/// R of a row of impedance `d` that sees the inverse inertia `a`.
+#[inline(always)]
+pub fn inverse_weight<T: Real>(d: T, a: T) -> T {
+    ((T::ONE - d) * a / d).max(T::new(MIN_VALUE))
 }
 
 /// Whether numbers `T` are of single precision, whose rounding needs floors and factors of its own.

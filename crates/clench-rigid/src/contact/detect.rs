@@ -2,7 +2,7 @@
 
 use super::bounding_sphere::{self, BoundingSphere, may_touch};
 use super::dynamic_broad_phase::DynamicBroadPhase;
-use super::{Candidate, Contact, candidates, contact_params, contact_range};
+use super::{Candidate, Contact, candidates, contact_params, contact_range, surface};
 use crate::Budget;
 use crate::model::{Model, Params};
 use crate::profile::Stage;
@@ -169,7 +169,9 @@ pub fn detect<T: Real>(
             collision.points.keep_deepest();
         }
         if !collision.points.as_slice().is_empty() {
-            list(model, params, settings, &candidate, collision, contacts);
+            list(
+                model, params, settings, pos, &candidate, collision, contacts,
+            );
         }
     }
     // Nothing is computed for a step that cannot be.
@@ -202,6 +204,7 @@ fn list<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
+    pos: &Positions<T>,
     candidate: &Candidate,
     collision: &mut Collision<T>,
     contacts: &mut Vec<Contact<T>>,
@@ -211,32 +214,40 @@ fn list<T: Real>(
         let body = &model.bodies[model.geoms[geom as usize].body];
         body.last_dof.map_or(0, |dof| model.tree.row(dof).len())
     };
-    let numbers = mixed.dim * (dofs(candidate.geoms[0]) + dofs(candidate.geoms[1]));
+    let dofs = dofs(candidate.geoms[0]) + dofs(candidate.geoms[1]);
+    let geoms = candidate.geoms.map(|g| g as usize);
+    let adheres = !mixed.adhesion.eq(T::ZERO);
     for i in 0..collision.points.as_slice().len() {
         let point = collision.points.as_slice()[i];
-        let active = collision.count_within_limit(
-            point.active,
-            settings.solver.max_contacts,
-            numbers,
-            &model.budget,
-        );
-        if !active.any() {
-            continue;
+        // Where a contact that adheres is within the gap, it is one without friction.
+        let apart = adheres & !point.distance.lt(mixed.includemargin);
+        for (lanes, dim) in [(!apart, mixed.dim), (apart, 1)] {
+            let active = collision.count_within_limit(
+                point.active & lanes,
+                settings.solver.max_contacts,
+                dim * dofs,
+                &model.budget,
+            );
+            if !active.any() {
+                continue;
+            }
+            contacts.push(Contact {
+                geoms,
+                active,
+                dim,
+                dist: point.distance,
+                pos: point.position,
+                frame: point.frame,
+                includemargin: mixed.includemargin,
+                friction: mixed.friction,
+                solref: mixed.solref,
+                solreffriction: mixed.solreffriction,
+                solimp: mixed.solimp,
+                adhesion: mixed.adhesion,
+                surfacevel: surface::relative(params, pos, geoms, point.position, &point.frame),
+                block: None,
+            });
         }
-        contacts.push(Contact {
-            geoms: candidate.geoms.map(|g| g as usize),
-            active,
-            dim: mixed.dim,
-            dist: point.distance,
-            pos: point.position,
-            frame: point.frame,
-            includemargin: mixed.includemargin,
-            friction: mixed.friction,
-            solref: mixed.solref,
-            solreffriction: mixed.solreffriction,
-            solimp: mixed.solimp,
-            block: None,
-        });
     }
 }
 

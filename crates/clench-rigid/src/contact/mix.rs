@@ -2,7 +2,7 @@
 //!
 //! Margins and gaps add up: a contact is listed where dist ≤ margin + gap and carries force where dist < margin. Of two
 //! geoms the one of higher priority decides everything else; between equals condim and friction take the larger value,
-//! solref and solimp the average weighted by solmix. Averages of a solref in direct format (not both positive) would
+//! solref and solimp the average weighted by solmix, and adhesion the sum. Averages of a solref in direct format (not both positive) would
 //! make no sense: there the smaller of each number, hence the stiffer, wins. An explicit pair brings its own
 //! parameters. The model's override replaces margin, solref, solreffriction, solimp and friction of every contact.
 
@@ -30,6 +30,8 @@ pub struct ContactParams<T> {
     pub solreffriction: [T; 2],
     /// Impedance.
     pub solimp: [T; 5],
+    /// Force with which the contact holds on, N.
+    pub adhesion: T,
 }
 
 /// The margin of a pair, and the distance within which its contacts are listed (margin + gap), m.
@@ -84,6 +86,7 @@ fn pair_params<T: Real>(model: &Model, params: &Params<T>, pair: usize) -> Conta
         solref: params.pair_solref[pair],
         solreffriction: params.pair_solreffriction[pair],
         solimp: params.pair_solimp[pair],
+        adhesion: params.pair_adhesion[pair],
     }
 }
 
@@ -96,7 +99,7 @@ pub(crate) fn mixed_params<T: Real>(
     min_weight: f64,
 ) -> ContactParams<T> {
     let (geom_a, geom_b) = (&model.geoms[a], &model.geoms[b]);
-    let (condim, [slide, spin, roll], solref, solimp);
+    let (condim, [slide, spin, roll], solref, solimp, adhesion);
     if geom_a.priority == geom_b.priority {
         condim = geom_a.condim.max(geom_b.condim);
         let (friction_a, friction_b) = (params.geom_friction[a], params.geom_friction[b]);
@@ -107,6 +110,7 @@ pub(crate) fn mixed_params<T: Real>(
         let weight = weight(params.geom_solmix[a], params.geom_solmix[b], min_weight);
         solref = mix_solref(params.geom_solref[a], params.geom_solref[b], weight);
         solimp = average(params.geom_solimp[a], params.geom_solimp[b], weight);
+        adhesion = params.geom_adhesion[a] + params.geom_adhesion[b];
     } else {
         let winner = if geom_a.priority > geom_b.priority {
             a
@@ -117,6 +121,7 @@ pub(crate) fn mixed_params<T: Real>(
         [slide, spin, roll] = params.geom_friction[winner];
         solref = params.geom_solref[winner];
         solimp = params.geom_solimp[winner];
+        adhesion = params.geom_adhesion[winner];
     }
     ContactParams {
         dim: condim as usize,
@@ -125,6 +130,7 @@ pub(crate) fn mixed_params<T: Real>(
         solref,
         solreffriction: [T::ZERO; 2],
         solimp,
+        adhesion,
     }
 }
 

@@ -6,6 +6,7 @@ mod detect;
 mod dynamic_broad_phase;
 mod mix;
 mod select;
+mod surface;
 
 pub(crate) use detect::shape;
 pub use detect::{Collision, Excess, detect};
@@ -40,6 +41,20 @@ pub struct Contact<T: Real> {
     pub solreffriction: [T; 2],
     /// Impedance.
     pub solimp: [T; 5],
+    /// Force with which it holds on, N: the bodies are pulled together by it, so that the constraint can pull as much. Where it is not
+    /// zero, the contact acts, without friction, within the gap too.
+    pub adhesion: T,
+    /// Velocity of the second surface less that of the first along the tangents, m/s, and about the normal, rad/s.
+    pub surfacevel: [T; 3],
     /// Its block in the problem, if it became a constraint.
     pub block: Option<usize>,
+}
+
+impl<T: Real> Contact<T> {
+    /// Lanes in which it is a constraint, if any dof is between its bodies.
+    #[inline(always)]
+    pub fn acts(&self) -> T::Mask {
+        let adheres = !self.adhesion.eq(T::ZERO);
+        self.active & (self.dist.lt(self.includemargin) | adheres)
+    }
 }

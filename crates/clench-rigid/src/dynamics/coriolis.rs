@@ -8,9 +8,13 @@
 //! δf_b = B_b s + I_b (ṡ − s × u)      B_b x = I_b (x × v_b) + x ×* I_b v_b + v_b ×* I_b x
 //! ```
 //!
+//! What of the medium's forces changes without symmetry is counted as B, too, for it stands in the same entries.
+//!
 //! Summed over the bodies below the later one of two dofs i and j, B and I give both entries of the pair.
 
-use crate::model::{JointKind, Model};
+use crate::dynamics::ellipsoid::ellipsoid_rates;
+use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
+use crate::model::{JointKind, Model, Params};
 use crate::workspace::{Positions, Velocities};
 use clench_math::{Force, Inertia, Motion, Real, kernel};
 use clench_solver::TreeLu;
@@ -34,19 +38,19 @@ impl<T: Real> Coriolis<T> {
     }
 }
 
-/// `matrix += scale · ∂bias/∂v`.
+/// `matrix += scale · ∂(bias − fluid)/∂v`, of the fluid forces only what is not symmetric.
 #[kernel]
 pub fn add_bias_derivatives<T: Real>(
     model: &Model,
-    pos: &Positions<T>,
-    vel: &Velocities<T>,
+    params: &Params<T>,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
     qvel: &[T],
     scale: T,
     scratch: &mut Coriolis<T>,
     matrix: &mut TreeLu<T>,
 ) {
     let Coriolis { rates, drift } = scratch;
-    sum_rates(model, pos, vel, rates);
+    sum_rates(model, params, pos, vel, rates);
     drifts(model, pos, vel, qvel, drift);
     for (i, dof) in model.dofs.iter().enumerate() {
         let (axis, rate) = (pos.cdof[i], &rates[dof.body]);
@@ -75,12 +79,21 @@ pub fn add_bias_derivatives<T: Real>(
 #[inline(always)]
 fn sum_rates<T: Real>(
     model: &Model,
+    params: &Params<T>,
     pos: &Positions<T>,
     vel: &Velocities<T>,
     rates: &mut [[Force<T>; 6]],
 ) {
     for (b, rate) in rates.iter_mut().enumerate() {
         *rate = body_rate(&pos.cinert[b], vel.cvel[b]);
+    }
+    if fluid_acts(model, params) {
+        for b in (1..model.nbody()).filter(|&b| model.bodies[b].fluid_ellipsoids) {
+            let [_, skew] = symmetric_and_skew(ellipsoid_rates(model, params, pos, vel, b));
+            for (sum, column) in rates[b].iter_mut().zip(skew) {
+                *sum -= column;
+            }
+        }
     }
     for b in (1..model.nbody()).rev() {
         let (parent, own) = (model.bodies[b].parent, rates[b]);
@@ -98,12 +111,7 @@ fn body_rate<T: Real>(inertia: &Inertia<T>, velocity: Motion<T>) -> [Force<T>; 6
     let momentum = *inertia * velocity;
     let mut columns = [Force::ZERO; 6];
     for (c, column) in columns.iter_mut().enumerate() {
-        let mut x = Motion::ZERO;
-        if c < 3 {
-            x.angular[c] = T::ONE;
-        } else {
-            x.linear[c - 3] = T::ONE;
-        }
+        let x = Motion::component(c);
         *column = *inertia * x.cross(velocity)
             + x.cross_force(momentum)
             + velocity.cross_force(*inertia * x);

@@ -6,7 +6,8 @@
 
 use crate::dynamics::activation::Given;
 use crate::dynamics::dc_motor;
-use crate::dynamics::fluid::{Drag, has_fluid};
+use crate::dynamics::ellipsoid::ellipsoid_rates;
+use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
 use crate::dynamics::gain::{ActuatorMotion, unlimited_force, unlimited_slope};
 use crate::dynamics::reflected::dof_damper;
 use crate::dynamics::tendon;
@@ -14,7 +15,7 @@ use crate::dynamics::transmission::moment;
 use crate::model::{GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::{Mask, Real, Scalar, kernel};
+use clench_math::{Force, Mask, Motion, Real, Scalar, kernel};
 use clench_solver::TreeMatrix;
 
 /// A sum of scaled forces is at the end of a range if it misses it by so little of it (as in MuJoCo), or by rounding.
@@ -36,7 +37,7 @@ pub fn add_velocity_derivatives<T: Real>(
             add_outer(model, moment(model, pos, u), slope * scale, matrix);
         }
     }
-    if (model.flags.spring || model.flags.damper) && has_fluid(params) {
+    if fluid_acts(model, params) {
         for b in 1..model.nbody() {
             add_fluid(model, params, pos, vel, b, scale, matrix);
         }
@@ -133,7 +134,8 @@ fn reached<T: Real>(sum: T, [low, high]: [T; 2]) -> T::Mask {
     sum.le(low + low.abs() * rounding) | sum.ge(high - high.abs() * rounding)
 }
 
-/// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i.
+/// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i. Of ellipsoids' forces
+/// only what is symmetric is counted.
 #[inline(always)]
 fn add_fluid<T: Real>(
     model: &Model,
@@ -144,10 +146,50 @@ fn add_fluid<T: Real>(
     scale: T,
     matrix: &mut TreeMatrix<T>,
 ) {
-    let drag = Drag::new(model, params, pos, vel, b);
+    if model.bodies[b].fluid_ellipsoids {
+        let [rates, _] = symmetric_and_skew(ellipsoid_rates(model, params, pos, vel, b));
+        add_along_chain(
+            model,
+            pos,
+            b,
+            scale,
+            matrix,
+            #[inline(always)]
+            |axis| {
+                let mut sum = Force::ZERO;
+                for (x, rate) in axis.to_array().into_iter().zip(rates) {
+                    sum += rate * x;
+                }
+                sum
+            },
+        );
+    } else {
+        let drag = Drag::new(model, params, pos, vel, b);
+        add_along_chain(
+            model,
+            pos,
+            b,
+            scale,
+            matrix,
+            #[inline(always)]
+            |axis| drag.derivative(model, pos, axis),
+        );
+    }
+}
+
+/// Adds the change of a force on body `b` with its velocity, `change` of each dof that moves it.
+#[inline(always)]
+fn add_along_chain<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    b: usize,
+    scale: T,
+    matrix: &mut TreeMatrix<T>,
+    change: impl Fn(Motion<T>) -> Force<T>,
+) {
     let mut chain = model.bodies[b].last_dof;
     while let Some(i) = chain {
-        let force = drag.derivative(model, pos, pos.cdof[i]);
+        let force = change(pos.cdof[i]);
         let entries = matrix.row_mut(&model.tree, i);
         for (entry, &j) in entries.iter_mut().zip(model.tree.row(i)) {
             *entry += scale * pos.cdof[j as usize].dot(force);

@@ -1,4 +1,5 @@
-//! Forces of a surrounding medium, on the box that has the body's mass and inertia.
+//! Forces of a surrounding medium, on the box that has the body's mass and inertia. Bodies of which a geom feels the medium as an
+//! ellipsoid feel it so alone, see [`ellipsoid`](crate::dynamics::ellipsoid).
 //!
 //! MuJoCo's default model ("inertia box", *Computation*, fluid forces): in the inertial frame of a body with box sides s and
 //! mean side d, velocity v relative to the medium and angular velocity ω,
@@ -8,6 +9,7 @@
 //! quadratic:  f_i = −½ ρ s_j s_k |v_i| v_i    t_i = −ρ s_i (s_j⁴ + s_k⁴) |ω_i| ω_i / 64
 //! ```
 
+use crate::dynamics::ellipsoid::{Ellipsoid, ellipsoids};
 use crate::dynamics::project::{force_at, project_forces};
 use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
@@ -21,6 +23,33 @@ const TINY: f64 = 1e-15;
 #[inline(always)]
 pub fn has_fluid<T: Real>(params: &Params<T>) -> bool {
     !(params.density.eq(T::ZERO) & params.viscosity.eq(T::ZERO)).all()
+}
+
+/// Whether there is a medium, and passive forces are switched on at all.
+#[inline(always)]
+pub fn fluid_acts<T: Real>(model: &Model, params: &Params<T>) -> bool {
+    (model.flags.spring || model.flags.damper) && has_fluid(params)
+}
+
+/// The symmetric and the skew part of a 6 × 6 matrix, given and returned by columns.
+#[inline(always)]
+pub fn symmetric_and_skew<T: Real>(columns: [Force<T>; 6]) -> [[Force<T>; 6]; 2] {
+    let mut parts = [[Force::ZERO; 6]; 2];
+    let half = T::new(0.5);
+    for c in 0..6 {
+        let mut row = Force::ZERO;
+        for (k, column) in columns.iter().enumerate() {
+            let entry = Motion::component(c).dot(*column);
+            if k < 3 {
+                row.angular[k] = entry;
+            } else {
+                row.linear[k - 3] = entry;
+            }
+        }
+        parts[0][c] = (columns[c] + row) * half;
+        parts[1][c] = (columns[c] - row) * half;
+    }
+    parts
 }
 
 /// `qfrc_fluid` (zero without a medium).
@@ -37,8 +66,15 @@ pub fn fluid_forces<T: Real>(
         return;
     }
     for b in 0..model.nbody() {
-        let drag = Drag::new(model, params, pos, vel, b);
-        force.cfrc_body[b] = drag.force(model, pos);
+        force.cfrc_body[b] = if model.bodies[b].fluid_ellipsoids {
+            let mut sum = Force::ZERO;
+            for geom in ellipsoids(model, b) {
+                sum += Ellipsoid::new(model, params, pos, vel, b, geom).force(model, pos);
+            }
+            sum
+        } else {
+            Drag::new(model, params, pos, vel, b).force(model, pos)
+        };
     }
     project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_fluid);
 }

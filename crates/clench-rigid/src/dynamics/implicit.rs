@@ -54,8 +54,8 @@ pub fn implicit<T: Real>(
     } = &mut ws.integration;
     full.lower.copy_from_slice(&matrix.values);
     full.upper.copy_from_slice(&matrix.values);
-    let (pos, vel, h) = (&ws.position, &ws.velocity, params.timestep);
-    add_bias_derivatives(model, pos, vel, &state.qvel, h, coriolis, full);
+    let (stages, h) = ((&ws.position, &ws.velocity), params.timestep);
+    add_bias_derivatives(model, params, stages, &state.qvel, h, coriolis, full);
     ws.singular |= !full.factor(&model.tree);
     full.solve(&model.tree, qacc);
     advance_semi_implicit(model, params, state, ws);

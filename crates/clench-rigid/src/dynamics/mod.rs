@@ -16,6 +16,7 @@ pub mod com;
 pub mod coriolis;
 pub mod dc_motor;
 pub mod derivatives;
+pub mod ellipsoid;
 pub mod energy;
 pub mod euler;
 pub mod fluid;

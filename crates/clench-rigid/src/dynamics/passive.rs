@@ -1,5 +1,6 @@
-//! Passive forces: springs, dampers, gravity compensation and the medium.
+//! Passive forces: springs, dampers, gravity compensation, the medium, and what adhesive contacts pull with.
 
+use crate::contact::Contact;
 use crate::dynamics::fluid::fluid_forces;
 use crate::dynamics::polynomial::Polynomial;
 use crate::dynamics::project::{force_at, project_forces};
@@ -10,7 +11,7 @@ use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Real, Vec3, kernel};
 
-/// `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid` and their sum `qfrc_passive`. Gravity compensation of joints
+/// `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid`, `qfrc_adhesion` and their sum `qfrc_passive`. Gravity compensation of joints
 /// with `actgravcomp` is left to the actuators. As in MuJoCo, without springs and dampers there is nothing passive at all.
 #[kernel]
 pub fn passive_forces<T: Real>(
@@ -20,12 +21,14 @@ pub fn passive_forces<T: Real>(
     vel: &Velocities<T>,
     qpos: &[T],
     qvel: &[T],
+    contacts: &[Contact<T>],
     force: &mut Forces<T>,
 ) {
     force.qfrc_spring.fill(T::ZERO);
     force.qfrc_damper.fill(T::ZERO);
     force.qfrc_gravcomp.fill(T::ZERO);
     force.qfrc_fluid.fill(T::ZERO);
+    force.qfrc_adhesion.fill(T::ZERO);
     force.qfrc_passive.fill(T::ZERO);
     if !model.flags.spring && !model.flags.damper {
         return;
@@ -38,8 +41,10 @@ pub fn passive_forces<T: Real>(
     }
     gravity_compensation(model, params, pos, force);
     fluid_forces(model, params, pos, vel, force);
+    adhesion(model, pos, contacts, force);
     for (i, dof) in model.dofs.iter().enumerate() {
         let mut sum = force.qfrc_spring[i] + force.qfrc_damper[i] + force.qfrc_fluid[i];
+        sum += force.qfrc_adhesion[i];
         if !model.joints[dof.joint].actgravcomp {
             sum += force.qfrc_gravcomp[i];
         }
@@ -104,6 +109,30 @@ fn dampers<T: Real>(
         let force = -vel.ten_velocity[t] * params.tendon_damping[t];
         add_tendon_force(model, pos, t, force, qfrc);
     }
+}
+
+/// What contacts hold on with pulls their bodies together, against what their constraints give for it.
+#[inline(always)]
+fn adhesion<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    contacts: &[Contact<T>],
+    force: &mut Forces<T>,
+) {
+    let adheres = |contact: &Contact<T>| !contact.adhesion.eq(T::ZERO).all();
+    if !contacts.iter().any(adheres) {
+        return;
+    }
+    force.cfrc_body.fill(Force::ZERO);
+    for contact in contacts {
+        let pull = T::select(contact.acts(), contact.adhesion, T::ZERO);
+        for (geom, sign) in contact.geoms.into_iter().zip([pull, -pull]) {
+            let (b, along) = (model.geoms[geom].body, contact.frame.rows[0] * sign);
+            force.cfrc_body[b] += force_at(model, pos, b, contact.pos, along, Vec3::ZERO);
+        }
+    }
+    force.cfrc_body[0] = Force::ZERO;
+    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_adhesion);
 }
 
 /// Each body's weight, or the share of it that `gravcomp` says, is held at its centre of mass. As in MuJoCo, shares below

@@ -170,6 +170,16 @@ params! {
     geom_margin: Vec<T>, Finite;
     /// Gap.
     geom_gap: Vec<T>, Finite;
+    /// Velocity of the surface in the geom's frame: linear, angular.
+    geom_surfacevel: Vec<[T; 6]>, Finite;
+    /// Force with which contacts hold on.
+    geom_adhesion: Vec<T>, Finite;
+    /// Coefficients of blunt, slender and angular drag and of Kutta and Magnus lift, of ellipsoids in a medium.
+    geom_fluidcoef: Vec<[T; 5]>, Finite;
+    /// Volume of the medium that moves with the geom along each axis.
+    geom_virtualmass: Vec<[T; 3]>, Finite;
+    /// Moment of inertia of the medium that turns with the geom about each axis, at unit density.
+    geom_virtualinertia: Vec<[T; 3]>, Finite;
     /// Weight in mixing.
     geom_solmix: Vec<T>, Finite;
     /// Reference dynamics.
@@ -286,4 +296,6 @@ params! {
     pair_margin: Vec<T>, Finite;
     /// Gap.
     pair_gap: Vec<T>, Finite;
+    /// Force with which contacts hold on.
+    pair_adhesion: Vec<T>, Finite;
 }

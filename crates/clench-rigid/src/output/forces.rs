@@ -5,6 +5,7 @@
 
 use super::Source;
 use crate::constraint::{ConstraintSource, weld_torque};
+use crate::contact::Contact;
 use crate::model::EqualityTarget;
 use crate::workspace::Workspace;
 use clench_math::{Force, Real, Vec3};
@@ -79,7 +80,7 @@ fn accumulate<T: Real, const N: usize>(row: &mut [T], values: [T; N]) {
 }
 
 /// The forces of a block's rows, zero in the lanes that do not have it.
-pub(crate) fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
+fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
     let active = ws.record.blocks[block].active;
     let mut forces = [T::ZERO; 6];
     let found = &ws.solver.force()[ws.problem.block(block).rows()];
@@ -89,11 +90,23 @@ pub(crate) fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
     forces
 }
 
+/// The force of a contact that is a constraint on its second body, in its frame: that of its rows less its adhesion, which pulls as a
+/// passive force. Zero in the lanes that do not have it.
+#[inline(always)]
+pub(crate) fn of_contact<T: Real>(ws: &Workspace<T>, contact: &Contact<T>) -> Option<[T; 6]> {
+    let block = contact.block?;
+    let mut force = rows(ws, block);
+    let active = ws.record.blocks[block].active;
+    force[0] -= T::select(active, contact.adhesion, T::ZERO);
+    Some(force)
+}
+
 /// Shows every contact that is a constraint: its bodies, and the force on the second.
 fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<T>)) {
     for contact in &s.ws.contacts {
-        let Some(block) = contact.block else { continue };
-        let [n, t1, t2, spin, roll1, roll2] = rows(s.ws, block);
+        let Some([n, t1, t2, spin, roll1, roll2]) = of_contact(s.ws, contact) else {
+            continue;
+        };
         let world = |v: Vec3<T>| contact.frame.transpose_mul(v);
         let wrench = Wrench {
             force: world(Vec3::new(n, t1, t2)),

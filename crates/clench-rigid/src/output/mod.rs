@@ -4,7 +4,7 @@
 
 mod forces;
 
-pub(crate) use forces::{external as external_forces, rows as block_force};
+pub(crate) use forces::{external as external_forces, of_contact};
 
 use crate::dynamics::camera::camera_pose;
 use crate::dynamics::energy::energy;

@@ -8,7 +8,7 @@
 use super::Reading;
 use crate::contact::Contact;
 use crate::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
-use crate::output::block_force;
+use crate::output::of_contact;
 use clench_math::{Force, Mask, Motion, Real, Vec3};
 
 /// The most numbers that are told of a contact.
@@ -112,11 +112,10 @@ impl<T: Real> Reading<'_, T> {
 
     /// Force and torque of a contact on its second geom in its frame; zero where it is no constraint.
     fn wrench(&self, contact: &Contact<T>) -> Force<T> {
-        let Some(block) = contact.block else {
+        let Some(force) = of_contact(self.ws, contact) else {
             return Force::ZERO;
         };
-        let rows = block_force(self.ws, block);
-        Force::new(Vec3::from_slice(&rows[3..]), Vec3::from_slice(&rows))
+        Force::new(Vec3::from_slice(&force[3..]), Vec3::from_slice(&force))
     }
 
     /// What is told of one contact.

@@ -1,6 +1,7 @@
 //! Volumes of sites: what touches there, and what is inside.
 
 use super::Reading;
+use crate::output::of_contact;
 use clench_collide::{Pose, Ray, Shape, ShapeKind, ray};
 use clench_math::{Mask, Real, Vec3};
 
@@ -13,12 +14,13 @@ impl<T: Real> Reading<'_, T> {
         let mut sum = T::ZERO;
         for contact in &self.ws.contacts {
             let bodies = contact.geoms.map(|geom| self.model.geoms[geom].body);
-            let Some(block) = contact.block.filter(|_| bodies.contains(&own)) else {
+            if !bodies.contains(&own) {
+                continue;
+            }
+            let Some([normal, ..]) = of_contact(self.ws, contact) else {
                 continue;
             };
-            let active = self.ws.record.blocks[block].active;
-            let normal = self.ws.solver.force()[self.ws.problem.block(block).row];
-            let pressed = active & normal.gt(T::ZERO);
+            let pressed = normal.gt(T::ZERO);
             if !pressed.any() {
                 continue;
             }

@@ -6,8 +6,7 @@ pub(super) const RULES: &[Rule] = &[
     section("contact", "pair exclude", ""),
     Rule {
         element: "pair",
-        read: "name class geom1 geom2 condim friction solref solreffriction solimp margin gap",
-        later: "adhesion=0",
+        read: "name class geom1 geom2 condim friction solref solreffriction solimp margin gap adhesion",
         ..NONE
     },
     Rule {

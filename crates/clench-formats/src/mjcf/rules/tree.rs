@@ -60,10 +60,9 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "geom",
         read: "name class type contype conaffinity condim group priority size friction mass density shellinertia \
-            solmix solref solimp margin gap fromto pos quat axisangle euler xyaxes zaxis mesh hfield fitscale material \
+            solmix solref solimp margin gap surfacevel adhesion fluidshape fluidcoef fromto pos quat axisangle euler xyaxes zaxis mesh hfield fitscale material \
             rgba",
-        ignored: "castshadow user fluidcoef",
-        later: "fluidshape=none surfacevel=0 adhesion=0",
+        ignored: "castshadow user",
         later_children: "plugin",
         ..NONE
     },

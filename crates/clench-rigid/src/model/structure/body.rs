@@ -63,6 +63,8 @@ pub struct Body {
     pub last_dof: Option<usize>,
     /// The inertial frame coincides with the body frame.
     pub simple_inertia: bool,
+    /// Some of its geoms feel a surrounding medium as ellipsoids, and it does not as a box.
+    pub fluid_ellipsoids: bool,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

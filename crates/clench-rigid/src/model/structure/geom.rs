@@ -30,6 +30,8 @@ pub struct Geom {
     pub group: i32,
     /// Whether it can be seen: rays pass through what cannot.
     pub visible: bool,
+    /// Feels a surrounding medium as an ellipsoid.
+    pub fluid_ellipsoid: bool,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

@@ -14,7 +14,7 @@ pub enum Integrator {
     Rk4,
 }
 
-/// Feature switches, all on by default (MuJoCo's disable flags, said positively).
+/// Feature switches: MuJoCo's disable flags, said positively and on by default, and of its enable flags those that act on motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flags {
     /// Any constraint at all.
@@ -52,6 +52,8 @@ pub struct Flags {
     /// Several contacts of a pair whose contacts MuJoCo finds by its general algorithm (see `clench_collide::multiccd_matters`);
     /// without it the deepest alone.
     pub multiccd: bool,
+    /// Constraints see the inverse inertia of the present configuration, not an estimate of that at qpos0. Off by default.
+    pub diagexact: bool,
 }
 
 impl Default for Flags {
@@ -74,6 +76,7 @@ impl Default for Flags {
             eulerdamp: true,
             sensor: true,
             multiccd: true,
+            diagexact: false,
         }
     }
 }

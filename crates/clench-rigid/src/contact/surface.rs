@@ -1,0 +1,34 @@
+//! Surfaces that move while their geoms do not, such as conveyor belts (MuJoCo's `surfacevel`).
+//!
+//! The surface of a geom moves with v + ω × (x − p) at a point x, v and ω given in the geom's frame, whose origin is p. A contact
+//! feels the difference of its two surfaces along its tangents, and about its normal.
+
+use super::detect::pose;
+use crate::model::Params;
+use crate::workspace::Positions;
+use clench_math::{Mask, Mat3, Real, Vec3};
+
+/// Velocity of the second geom's surface less that of the first at `point`: along both tangents of `frame`, and about its normal.
+#[inline(always)]
+pub(super) fn relative<T: Real>(
+    params: &Params<T>,
+    pos: &Positions<T>,
+    geoms: [usize; 2],
+    point: Vec3<T>,
+    frame: &Mat3<T>,
+) -> [T; 3] {
+    let [mut linear, mut angular] = [Vec3::ZERO; 2];
+    for (geom, sign) in geoms.into_iter().zip([-T::ONE, T::ONE]) {
+        let given = &params.geom_surfacevel[geom];
+        if given.iter().all(|v| v.eq(T::ZERO).all()) {
+            continue;
+        }
+        let pose = pose(pos, geom);
+        let turning = pose.rotation * Vec3::from_slice(&given[3..]);
+        let along = pose.rotation * Vec3::from_slice(given);
+        linear += (along + turning.cross(point - pose.position)) * sign;
+        angular += turning * sign;
+    }
+    let [normal, first, second] = frame.rows;
+    [first.dot(linear), second.dot(linear), normal.dot(angular)]
+}
