@@ -21,7 +21,7 @@ SCALAR = ("hinge", "slide")
 # What would keep many of the elements of a class from being compiled: a joint's range fits one type of joint, a place contradicts `fromto`,
 # dampers take no negative controls, and only what has activations can limit them.
 INITIAL = {"geom": ("pos", "mass"), "site": ("pos",)}
-NOT_IN_CLASSES = ("fromto", "ctrlrange", "actrange", "tausmooth")
+NOT_IN_CLASSES = ("fromto", "ctrlrange", "actrange", "tausmooth", "controller", "ki", "slewmax")
 
 
 def generate(seed):
@@ -158,6 +158,8 @@ class Generator:
             if tag == "geom" and self.draw.chance(0.3):
                 element.set("type", self.draw.choice(PRIMITIVES))
                 element.set("size", vector(0.03, 0.15)(self.draw))
+            if tag == "dcmotor":
+                self.constants(element)
             if tag == "damper":  # limits the controls of the whole class
                 element.set("ctrlrange", text(0, self.draw.number(0.2, 2)))
 
@@ -612,6 +614,8 @@ class Generator:
             if draw.chance(0.3):
                 sensor.set("name", self.always("sensor"))
             self.fill(sensor, f"sensor/{kind}")
+            if "nsample" in sensor.attrib and draw.chance(0.7):
+                sensor.set("delay", text(draw.scale(0.001, 0.03)))
             if sensor.get("reduce") == "netforce" and "data" in sensor.attrib:
                 kept = [word for word in sensor.get("data").split() if word not in ("linvel", "angvel")]
                 sensor.set("data", " ".join(kept) or "found")
@@ -691,9 +695,12 @@ class Generator:
             actuator.set("lengthrange", interval(-0.5, 0.5)(draw))
         if kind == "general" and dynamics not in (None, "none") and draw.chance(0.3):
             self.limit(actuator, "actrange", "actlimited", interval(-1, 1)(draw))
-        if kind == "dcmotor" and actuator.get("resistance") is None and actuator.get("nominal") is None:
-            actuator.set("resistance", VALUES[kind]["resistance"](draw))
-            actuator.set("motorconst", VALUES[kind]["motorconst"](draw))
+        if kind == "dcmotor":
+            self.constants(actuator)
+        if kind in ("pid", "dcmotor") and {"controller", "ki", "slewmax"} & set(actuator.attrib):
+            actuator.set("input", draw.choice(("pos", "pos vel", "pos vel ff")))
+        elif kind == "dcmotor" and "input" not in actuator.attrib:
+            actuator.set("input", "")
         if kind == "general" and draw.chance(0.1):
             self.controlled(actuator)
         target = actuator.get("joint") or actuator.get("tendon")
@@ -708,6 +715,12 @@ class Generator:
                 gain = text(draw.scale(0.5, 20))
                 actuator.attrib.update(gaintype="fixed", gainprm=gain, biastype="affine", biasprm=f"0 -{gain}")
 
+
+    def constants(self, motor):
+        """Gives a motor the constants that it cannot be without."""
+        for name in ("resistance", "motorconst"):
+            if name not in motor.attrib and "nominal" not in motor.attrib:
+                motor.set(name, VALUES["dcmotor"][name](self.draw))
 
     def controlled(self, actuator):
         """Turns a general actuator into a PID controller."""

@@ -178,7 +178,8 @@ def words(known):
     return lambda draw: " ".join(word for word in known if draw.chance(0.4)) or known[0]
 
 
-SENSOR = {"noise": scale(0.01, 1), "cutoff": scale(0.02, 5)}
+PAST = {"nsample": one_of(20, 50), "interp": one_of("zoh", "linear", "cubic")}
+SENSOR = {"noise": scale(0.01, 1), "cutoff": scale(0.02, 5), **PAST}
 TURNS = ("framequat", "framexaxis", "frameyaxis", "framezaxis", "ballquat")  # which no cutoff holds
 RAY_DATA = ("dist", "dir", "origin", "point", "normal", "depth")
 CONTACT_DATA = ("found", "force", "torque", "dist", "pos", "normal", "tangent", "linvel", "angvel")
@@ -404,8 +405,8 @@ VALUES = {
     **{f"sensor/{kind}": SENSOR for kind in SENSORS},
     **{f"sensor/{kind}": {**SENSOR, "data": words(RAY_DATA)} for kind in ("rangefinder",)},
     "sensor/contact": {**SENSOR, "num": one_of(1, 2, 5), "data": words(CONTACT_DATA), "reduce": one_of("none", "mindist", "maxforce", "netforce")},
-    "sensor/user": {**SENSOR, "datatype": one_of("real", "positive")},
-    **{f"sensor/{kind}": {"noise": scale(0.01, 1)} for kind in TURNS},
+    "sensor/user": {"noise": scale(0.01, 1), "cutoff": scale(0.02, 5), "datatype": one_of("real", "positive")},
+    **{f"sensor/{kind}": {"noise": scale(0.01, 1), **PAST} for kind in TURNS},
 }
 
 # Ranges with the attribute that says whether they count.

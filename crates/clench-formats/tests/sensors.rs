@@ -54,9 +54,10 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
             "unknown attribute \"joint\"",
         ),
         (
-            "<gyro site='tip' nsample='4'/>",
-            "nsample is not supported yet",
+            "<gyro site='tip' nsample='4' interval='0.1'/>",
+            "interval is not supported yet",
         ),
+        ("<gyro site='tip' delay='0.1'/>", "nsample"),
         ("<giro site='tip'/>", "did you mean \"gyro\"?"),
         ("<jointpos joint='ball'/>", "must be a slide or a hinge"),
         ("<ballquat joint='hinge'/>", "must be a ball joint"),

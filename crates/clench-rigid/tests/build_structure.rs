@@ -264,7 +264,7 @@ const CASES: &[Case] = &[
     (|b| b.tendons.push(TendonSpec::fixed("t", &[("a joint", 1.0), ("a joint", 2.0)])), "tendon \"t\"", "twice"),
     (|b| b.actuators.push(motor("knee")), "actuator \"motor\"", "no joint \"knee\""),
     (|b| b.actuators.push(motor("")), "actuator \"motor\"", "names no joint"),
-    (|b| b.actuators.push(ActuatorSpec { dampratio: Some(1.0), ..motor("a joint") }), "actuator \"motor\"", "servo"),
+    (|b| b.actuators.push(ActuatorSpec { dampratio: Some(1.0), ..motor("a joint") }), "actuator \"motor\"", "needs an affine bias"),
     (|b| b.actuators.push(backwards()), "actuator \"servo\"", "dampratio needs a gain that is not negative"),
     (|b| b.actuators.push(ActuatorSpec { actrange: [0.0, 1.0], ..motor("a joint") }), "actuator \"motor\"", "no activation"),
     (|b| b.equalities.push(connect("a", "a")), "equality constraint \"eq\"", "itself"),

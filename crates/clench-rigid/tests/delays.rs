@@ -1,9 +1,11 @@
 //! Controls that arrive late.
 
 use clench_rigid::builder::{
-    ActuatorSpec, BodySpec, GeomSpec, JointSpec, ModelBuilder, TransmissionSpec,
+    ActuatorSpec, BodySpec, GeomSpec, HistorySpec, JointSpec, ModelBuilder, SensorSpec,
+    TransmissionSpec,
 };
 use clench_rigid::history::Interpolation;
+use clench_rigid::model::SensorKind;
 use clench_rigid::{Batch, Model, Sim, State};
 use std::sync::Arc;
 
@@ -11,6 +13,18 @@ const STEP: f64 = 0.002;
 
 /// A slider, weightless but for its mass, and a motor with so many past controls.
 fn slider(nsample: usize, delay: f64, interp: Interpolation) -> Result<Arc<Model>, String> {
+    slider_with(
+        HistorySpec {
+            nsample,
+            interp,
+            delay,
+        },
+        HistorySpec::default(),
+    )
+}
+
+/// The same with past controls and past positions, which a second sensor tells late.
+fn slider_with(of_motor: HistorySpec, of_sensor: HistorySpec) -> Result<Arc<Model>, String> {
     let mut builder = ModelBuilder::new("slider");
     builder.physics.gravity = [0.0; 3];
     builder.physics.timestep = STEP;
@@ -21,7 +35,11 @@ fn slider(nsample: usize, delay: f64, interp: Interpolation) -> Result<Arc<Model
             .geom(GeomSpec::sphere(0.1).mass(2.0)),
     );
     let mut motor = ActuatorSpec::motor("motor", TransmissionSpec::Joint("slide".into()), 1.0);
-    (motor.nsample, motor.delay, motor.interp) = (nsample, delay, interp);
+    motor.history = of_motor;
+    let now = SensorSpec::new(SensorKind::JointPos, "slide");
+    let mut late = now.clone();
+    late.history = of_sensor;
+    builder.sensors.extend([now, late]);
     builder.actuators.push(motor);
     builder
         .build()
@@ -103,4 +121,28 @@ fn what_a_delay_needs() {
     assert!(before.unwrap_err().contains("delay"));
     let endless = slider(usize::MAX / 4, STEP, Interpolation::Hold);
     assert!(endless.unwrap_err().contains("more than"));
+}
+
+#[test]
+fn a_delayed_sensor_tells_what_was_measured_before() {
+    let late = HistorySpec {
+        nsample: 4,
+        interp: Interpolation::Hold,
+        delay: 3.0 * STEP,
+    };
+    let model = slider_with(HistorySpec::default(), late).expect("valid");
+    let mut sim = Sim::new(model).expect("valid");
+    sim.state.qvel[0] = 1.0;
+    let mut seen = Vec::new();
+    for _ in 0..8 {
+        sim.step().expect("finite");
+        seen.push((
+            sim.workspace().sensors.data[0],
+            sim.workspace().sensors.data[1],
+        ));
+    }
+    assert!(seen[..3].iter().all(|&(_, late)| late == 0.0));
+    for k in 3..8 {
+        assert_eq!(seen[k].1, seen[k - 3].0);
+    }
 }

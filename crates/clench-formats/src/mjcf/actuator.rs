@@ -8,16 +8,23 @@ use super::controller::{self, Saturation};
 use super::document::Element;
 use super::shortcut::{self, ActuatorParams, Shortcut};
 use crate::LoadError;
-use clench_rigid::builder::{ActuatorSpec, TransmissionSpec};
+use clench_rigid::builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
 use clench_rigid::history::Interpolation;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
 
-/// How values are read between samples.
-pub(crate) const INTERPOLATIONS: [(&str, Interpolation); 3] = [
-    ("zoh", Interpolation::Hold),
-    ("linear", Interpolation::Linear),
-    ("cubic", Interpolation::Cubic),
-];
+/// Overwrites what the element says of past values; fewer samples than none are none, as in MuJoCo.
+pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Result<(), LoadError> {
+    if let Some(samples) = element.integer("nsample")? {
+        history.nsample = usize::try_from(samples).unwrap_or(0);
+    }
+    let ways = [
+        ("zoh", Interpolation::Hold),
+        ("linear", Interpolation::Linear),
+        ("cubic", Interpolation::Cubic),
+    ];
+    element.set_keyword("interp", &ways, &mut history.interp)?;
+    element.set_number("delay", &mut history.delay)
+}
 
 /// An actuator as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
@@ -33,9 +40,7 @@ pub(crate) struct ActuatorDraft {
     actlimited: Option<bool>,
     velrange: [f64; 2],
     ffrange: [f64; 2],
-    nsample: i32,
-    interp: Interpolation,
-    delay: f64,
+    history: HistorySpec,
     damping: [f64; 3],
     armature: f64,
     group: i32,
@@ -55,9 +60,7 @@ impl Default for ActuatorDraft {
             actlimited: None,
             velrange: [0.0; 2],
             ffrange: [0.0; 2],
-            nsample: 0,
-            interp: Interpolation::Hold,
-            delay: 0.0,
+            history: HistorySpec::default(),
             damping: [0.0; 3],
             armature: 0.0,
             group: 0,
@@ -87,9 +90,7 @@ impl ActuatorDraft {
         element.set_range("actrange", &mut self.actrange)?;
         element.set_tristate("actlimited", &mut self.actlimited)?;
         element.overlay("gear", &mut self.gear)?;
-        element.set_integer("nsample", &mut self.nsample)?;
-        element.set_keyword("interp", &INTERPOLATIONS, &mut self.interp)?;
-        element.set_number("delay", &mut self.delay)?;
+        read_history(element, &mut self.history)?;
         element.overlay("damping", &mut self.damping)?;
         element.set_number("armature", &mut self.armature)?;
         element.set_integer("group", &mut self.group)?;
@@ -197,9 +198,7 @@ impl ActuatorDraft {
             dampratio,
             inheritrange: if servo { parameters.inheritrange } else { 0.0 },
             gear: self.gear,
-            nsample: usize::try_from(self.nsample).unwrap_or(0),
-            interp: self.interp,
-            delay: self.delay,
+            history: self.history,
             damping: self.damping,
             armature: self.armature,
             lengthrange,

@@ -1,10 +1,12 @@
 //! `<sensor>`: which attributes a kind of sensor has follows from what it is attached to.
 
+use super::actuator::read_history;
 use super::document::Element;
 use super::rules::{NONE, Rule};
 use crate::LoadError;
 use clench_rigid::builder::{
-    ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
+    ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, HistorySpec, SensorSpec,
+    SensorSubject,
 };
 use clench_rigid::model::{
     Attachment, ContactField, ContactReduction, RayField, SensorData, SensorKind,
@@ -18,9 +20,9 @@ macro_rules! rule {
     ($attributes:literal, $ignored:literal) => {
         Rule {
             element: "sensor",
-            read: concat!("name cutoff noise ", $attributes),
+            read: concat!("name cutoff noise nsample interp delay ", $attributes),
             ignored: concat!("user ", $ignored),
-            later: "nsample=0 interp delay=0 interval=0",
+            later: "interval=0",
             ..NONE
         }
     };
@@ -102,11 +104,13 @@ pub(crate) fn read(element: &Element, kind: SensorKind) -> Result<SensorSpec, Lo
         subject,
         cutoff: 0.0,
         noise: 0.0,
+        history: HistorySpec::default(),
         origin: Some(element.origin.clone()),
     };
     element.refuse_negative(&["cutoff", "noise"])?;
     element.set_number("cutoff", &mut spec.cutoff)?;
     element.set_number("noise", &mut spec.noise)?;
+    read_history(element, &mut spec.history)?;
     Ok(spec)
 }
 

@@ -4,11 +4,9 @@ use super::controllers::{Controller, controller};
 use super::element::{Element, resolve_range};
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
-use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec};
+use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec, histories};
 use crate::budget::RAISE;
-use crate::model::{
-    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Model, Transmission,
-};
+use crate::model::{Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, Model, Transmission};
 
 /// Adds all actuators, and numbers their activations.
 ///
@@ -70,7 +68,7 @@ fn add(
     if spec.bias == BiasKind::Muscle {
         check_muscle(spec, "biasprm", &spec.biasprm)?;
     }
-    let history = history(builder, spec, controls.len(), model)?;
+    let history = histories::add(builder, spec, spec.history, controls.len(), model)?;
     model.actuators.push(Actuator {
         name: spec.name.clone(),
         transmission,
@@ -91,7 +89,6 @@ fn add(
         group: spec.group,
     });
     model.na += activations;
-    model.nhistory += history.map_or(0, |history| history.size());
     push_dofs(transmission, model);
     let p = &mut model.params;
     p.actuator_gear.push(spec.gear);
@@ -103,7 +100,7 @@ fn add(
     p.actuator_forcerange.push(spec.forcerange);
     p.actuator_actrange.push(spec.actrange);
     p.actuator_lengthrange.push(spec.lengthrange);
-    p.actuator_delay.push(spec.delay);
+    p.actuator_delay.push(spec.history.delay);
     let [linear, quadratic, cubic] = spec.damping;
     p.actuator_damping.push(linear);
     p.actuator_dampingpoly.push([quadratic, cubic]);
@@ -140,37 +137,6 @@ fn control_range(spec: &ActuatorSpec, input: ControlInput, ctrllimited: bool) ->
         _ => return (ctrllimited, spec.ctrlrange),
     };
     (own[0] < own[1], own)
-}
-
-/// The buffer of past controls, if any are kept.
-fn history(
-    builder: &ModelBuilder,
-    spec: &ActuatorSpec,
-    width: usize,
-    model: &Model,
-) -> Result<Option<History>, BuildError> {
-    if spec.delay > 0.0 && spec.nsample == 0 {
-        return Err(spec.error("a delay needs past controls (nsample)"));
-    }
-    if spec.nsample == 0 {
-        return Ok(None);
-    }
-    if width == 0 {
-        return Err(spec.error("nsample needs an input, and it has none"));
-    }
-    let most = builder.budget.matrix;
-    let numbers = (spec.nsample as u64).saturating_mul(width as u64 + 1);
-    if numbers.saturating_add(model.nhistory as u64) > most {
-        return Err(spec.error(format!(
-            "with its past controls there are more than {most} past numbers; {RAISE}"
-        )));
-    }
-    Ok(Some(History {
-        start: model.nhistory,
-        samples: spec.nsample,
-        width,
-        interpolation: spec.interp,
-    }))
 }
 
 /// How many activations the actuator has.

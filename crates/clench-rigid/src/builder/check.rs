@@ -248,7 +248,6 @@ fn check_actuator(a: &ActuatorSpec) -> Result<(), BuildError> {
     a.require_finite("lengthrange", &a.lengthrange)?;
     a.require_finite("damping", &a.damping)?;
     a.require_not_negative("armature", &[a.armature])?;
-    a.require_not_negative("delay", &[a.delay])?;
     a.require_not_negative("inheritrange", &[a.inheritrange])?;
     a.require_not_negative("dampratio", &[a.dampratio.unwrap_or(0.0)])
 }

@@ -2,11 +2,11 @@
 //! and struct update syntax reaches it: `GeomSpec { condim: 6, ..GeomSpec::sphere(0.1) }`.
 
 use super::{
-    ActuatorSpec, BodySpec, EqualityKind, EqualitySpec, GeomMass, GeomSpec, InertiaSpec,
-    InertialSpec, JointSpec, KeyframeSpec, ModelBuilder, SiteSpec, TendonSpec, TransmissionSpec,
+    ActuatorSpec, BodySpec, EqualityKind, EqualitySpec, GeomMass, GeomSpec, HistorySpec,
+    InertiaSpec, InertialSpec, JointSpec, KeyframeSpec, ModelBuilder, SiteSpec, TendonSpec,
+    TransmissionSpec,
 };
 use super::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use crate::history::Interpolation;
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -291,9 +291,7 @@ impl ActuatorSpec {
             gear: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             damping: [0.0; 3],
             armature: 0.0,
-            nsample: 0,
-            interp: Interpolation::Hold,
-            delay: 0.0,
+            history: HistorySpec::default(),
             lengthrange: [0.0; 2],
             ctrlrange: [0.0; 2],
             ctrllimited: None,

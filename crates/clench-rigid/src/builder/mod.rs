@@ -42,6 +42,7 @@ mod equalities;
 mod error;
 mod fuse;
 mod geoms;
+mod histories;
 mod inertia;
 mod invweight0;
 mod joints;
@@ -65,6 +66,7 @@ pub use elements::{
     JointSpec, SiteSpec,
 };
 pub use error::{BuildError, Origin, shorten};
+pub use histories::HistorySpec;
 pub use length_range::{LengthRangeMode, LengthRangeSpec};
 pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
 pub use relations::{

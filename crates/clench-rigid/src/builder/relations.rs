@@ -1,8 +1,7 @@
 //! Elements that name others: tendons, actuators, equality constraints, contact pairs and keyframes, with MuJoCo's defaults.
 
-use super::Origin;
 use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use crate::history::Interpolation;
+use super::{HistorySpec, Origin};
 use crate::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 use clench_math::{Quat, Vec3};
 
@@ -106,12 +105,8 @@ pub struct ActuatorSpec {
     pub damping: [f64; 3],
     /// Inertia that the joint or tendon gets, likewise.
     pub armature: f64,
-    /// How many past controls are kept.
-    pub nsample: usize,
-    /// How they are read between samples.
-    pub interp: Interpolation,
-    /// How late controls arrive, s; needs past controls.
-    pub delay: f64,
+    /// Which past controls are kept, and how late they arrive.
+    pub history: HistorySpec,
     /// Lengths between which the transmission can be, of use to muscles; where they do not rise they are not given.
     pub lengthrange: [f64; 2],
     /// Allowed controls.

@@ -1,6 +1,6 @@
 //! What an author says of sensors.
 
-use super::Origin;
+use super::{HistorySpec, Origin};
 use crate::model::{ContactField, ContactReduction, RayField, SensorData, SensorKind};
 
 /// A kind of object with a frame.
@@ -135,6 +135,8 @@ pub struct SensorSpec {
     pub cutoff: f64,
     /// Standard deviation of the noise that the author expects; none is added.
     pub noise: f64,
+    /// Which past values are kept, and how late they are told.
+    pub history: HistorySpec,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -148,6 +150,7 @@ impl SensorSpec {
             subject: SensorSubject::Element(element.into()),
             cutoff: 0.0,
             noise: 0.0,
+            history: HistorySpec::default(),
             origin: None,
         }
     }

@@ -5,7 +5,7 @@ use super::resolve::AllNames;
 use super::sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
 };
-use super::{BuildError, ModelBuilder};
+use super::{BuildError, ModelBuilder, histories};
 use crate::model::{
     Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, JointKind,
     Model, RayField, RaySource, Sensor, SensorData, SensorTarget,
@@ -41,6 +41,8 @@ pub(super) fn add_all(
         if spec.cutoff > 0.0 && turns && !searched {
             return Err(spec.error("a direction or an orientation has no cutoff"));
         }
+        let history = histories::add(builder, spec, spec.history, dim, model)?;
+        model.params.sensor_delay.push(spec.history.delay);
         let start = model.nsensordata();
         model.sensors.push(Sensor {
             name: spec.name.clone(),
@@ -50,6 +52,7 @@ pub(super) fn add_all(
             cutoff: spec.cutoff,
             noise: spec.noise,
             numbers: start..start + dim,
+            history,
             origin: spec.origin.clone(),
         });
     }

@@ -129,13 +129,24 @@ pub fn advance_activations<T: Real>(
     }
 }
 
-/// Keeps the controls of the step for those that they reach late, and lets the step pass.
+/// Keeps the controls of the step, and what sensors measured, for those that they reach late, and lets the step pass.
 #[inline(always)]
-pub fn advance_time<T: Real>(model: &Model, params: &Params<T>, state: &mut State<T>) {
+pub fn advance_time<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    measured: &[T],
+    state: &mut State<T>,
+) {
     for actuator in &model.actuators {
         if let Some(history) = &actuator.history {
             let ctrl = &state.ctrl[actuator.controls.clone()];
             history.push(&mut state.history, ctrl, params.timestep);
+        }
+    }
+    for sensor in &model.sensors {
+        if let Some(history) = &sensor.history {
+            let sample = &measured[sensor.numbers.clone()];
+            history.push(&mut state.history, sample, params.timestep);
         }
     }
     state.pass(params.timestep);
@@ -171,5 +182,5 @@ pub fn advance_semi_implicit<T: Real>(
     advance_activations(model, params, at, act_dot, &mut state.act);
     add_scaled(&mut state.qvel, &ws.integration.qacc, h);
     integrate_positions(model, &mut state.qpos, &state.qvel, h);
-    advance_time(model, params, state);
+    advance_time(model, params, &ws.sensors.measured, state);
 }

@@ -67,7 +67,7 @@ pub fn rk4<T: Real>(
     advance_activations(model, params, at, &mean.activation, act);
     add_scaled(&mut state.qvel, &mean.velocity, h);
     integrate_positions(model, &mut state.qpos, &mean.position, h);
-    advance_time(model, params, state);
+    advance_time(model, params, &ws.sensors.measured, state);
 }
 
 /// Keeps the state, and the rates of stage 0.

@@ -111,9 +111,9 @@ impl Model {
     }
     /// The buffers of past values.
     pub fn histories(&self) -> impl Iterator<Item = &History> {
-        self.actuators
-            .iter()
-            .filter_map(|actuator| actuator.history.as_ref())
+        let of_actuators = self.actuators.iter().filter_map(|a| a.history.as_ref());
+        let of_sensors = self.sensors.iter().filter_map(|s| s.history.as_ref());
+        of_actuators.chain(of_sensors)
     }
     /// Lets actuator `u` damp its target and add inertia to it; false where the target cannot be damped.
     pub(crate) fn let_reflect(&mut self, u: usize) -> bool {

@@ -267,6 +267,9 @@ params! {
     /// Lengths between which the transmission can be; of use to muscles.
     actuator_lengthrange: Vec<[T; 2]>, Finite;
 
+    /// How late sensors tell what they measure, s; only those that keep past values.
+    sensor_delay: Vec<T>, NotNegative;
+
     /// Anchor (connect) or weld point in the first body's frame.
     eq_anchor1: Vec<Vec3<T>>, Finite;
     /// Anchor (connect) or weld point in the second body's frame.

@@ -1,5 +1,6 @@
 //! What a model measures: the table of kinds of sensor, and the sensors of a model.
 
+use super::History;
 use super::sensor_target::SensorTarget;
 use crate::builder::Origin;
 use std::fmt;
@@ -231,6 +232,8 @@ pub struct Sensor {
     pub noise: f64,
     /// Where its numbers are in `sensordata`.
     pub numbers: Range<usize>,
+    /// The buffer of its past values.
+    pub history: Option<History>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

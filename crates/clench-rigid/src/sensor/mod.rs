@@ -21,7 +21,7 @@ use crate::model::{
 use crate::state::State;
 use crate::workspace::Workspace;
 use bodies::BodyForces;
-use clench_math::{Quat, Real, Vec3};
+use clench_math::{Mask, Quat, Real, Vec3};
 
 /// What sensors give, and what they are computed from.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub struct SensorReadings<T> {
     pub wanted: bool,
     /// All numbers, sensor after sensor (nsensordata).
     pub data: Vec<T>,
+    /// The same as they are measured, before any delay; empty where no sensor keeps past values.
+    pub measured: Vec<T>,
     /// Accelerations of bodies and forces between them, where anybody asked for them.
     pub(crate) bodies: BodyForces<T>,
 }
@@ -40,19 +42,29 @@ impl<T: Real> SensorReadings<T> {
         SensorReadings {
             wanted: false,
             data: vec![T::ZERO; model.nsensordata()],
+            measured: match keeps_past(model) {
+                true => vec![T::ZERO; model.nsensordata()],
+                false => Vec::new(),
+            },
             bodies: BodyForces::new(model),
         }
     }
 }
 
-/// Evaluates all sensors of the model, if anybody wants them.
+/// Whether any sensor keeps past values.
+fn keeps_past(model: &Model) -> bool {
+    model.sensors.iter().any(|sensor| sensor.history.is_some())
+}
+
+/// Evaluates all sensors of the model, if anybody wants them, or will.
 pub(crate) fn evaluate<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
-    if !ws.sensors.wanted || !model.flags.sensor {
+    let kept = !ws.sensors.measured.is_empty();
+    if !(ws.sensors.wanted || kept) || !model.flags.sensor {
         return;
     }
     let mut data = std::mem::take(&mut ws.sensors.data);
@@ -73,7 +85,35 @@ pub(crate) fn evaluate<T: Real>(
             clip(sensor, out);
         }
     }
+    if kept {
+        delay(model, params, state, &mut data, &mut ws.sensors.measured);
+    }
     ws.sensors.data = data;
+}
+
+/// Keeps what was measured, and puts what was measured before in the place of what is told late.
+fn delay<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    data: &mut [T],
+    measured: &mut [T],
+) {
+    measured.copy_from_slice(data);
+    for (s, sensor) in model.sensors.iter().enumerate() {
+        let Some(history) = &sensor.history else {
+            continue;
+        };
+        let late = params.sensor_delay[s];
+        let delayed = late.gt(T::ZERO);
+        if delayed.any() {
+            let told = &mut data[sensor.numbers.clone()];
+            history.read(&state.history, -late, told);
+            for (told, &now) in told.iter_mut().zip(&measured[sensor.numbers.clone()]) {
+                *told = T::select(delayed, *told, now);
+            }
+        }
+    }
 }
 
 /// Whether a cutoff holds the numbers of a kind of sensor within it.

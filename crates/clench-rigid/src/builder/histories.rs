@@ -1,0 +1,56 @@
+//! Buffers of past values: what actuators and sensors keep, so that it can arrive late.
+
+use super::element::Element;
+use super::{BuildError, ModelBuilder};
+use crate::budget::RAISE;
+use crate::history::Interpolation;
+use crate::model::{History, Model};
+
+/// What is kept of the past, and how late it is read: MuJoCo's `nsample`, `interp` and `delay`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HistorySpec {
+    /// How many samples are kept.
+    pub nsample: usize,
+    /// How they are read between samples.
+    pub interp: Interpolation,
+    /// How late values arrive, s; needs samples.
+    pub delay: f64,
+}
+
+/// The buffer of an element with so many numbers a sample, if it keeps any; room for it is taken.
+///
+/// # Errors
+/// A delay without samples, or that is negative; samples of nothing, or more of them than the budget has.
+pub(super) fn add(
+    builder: &ModelBuilder,
+    element: &impl Element,
+    spec: HistorySpec,
+    width: usize,
+    model: &mut Model,
+) -> Result<Option<History>, BuildError> {
+    element.require_not_negative("delay", &[spec.delay])?;
+    if spec.delay > 0.0 && spec.nsample == 0 {
+        return Err(element.error("a delay needs past values (nsample)"));
+    }
+    if spec.nsample == 0 {
+        return Ok(None);
+    }
+    if width == 0 {
+        return Err(element.error("nsample needs values to keep, and it has none"));
+    }
+    let most = builder.budget.matrix;
+    let numbers = (spec.nsample as u64).saturating_mul(width as u64 + 1);
+    if numbers.saturating_add(model.nhistory as u64) > most {
+        return Err(element.error(format!(
+            "with it there are more than {most} past numbers; {RAISE}"
+        )));
+    }
+    let history = History {
+        start: model.nhistory,
+        samples: spec.nsample,
+        width,
+        interpolation: spec.interp,
+    };
+    model.nhistory += history.size();
+    Ok(Some(history))
+}
