@@ -16,7 +16,7 @@ ASSETS = pathlib.Path(__file__).resolve().parent.parent / "shapes/assets"
 MESH_FILES = (("rock.obj", "model/obj"), ("wedge.stl", "model/stl"), ("bracket.obj", "model/obj"))
 PRIMITIVES = ("sphere", "capsule", "ellipsoid", "cylinder", "box")
 STRETCHED = ("capsule", "ellipsoid", "cylinder", "box")
-SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "pid", "dcmotor")
+SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "pid", "dcmotor", "adhesion")
 SCALAR = ("hinge", "slide")
 # What would keep many of the elements of a class from being compiled: a joint's range fits one type of joint, a place contradicts `fromto`,
 # dampers take no negative controls, and only what has activations can limit them.
@@ -41,6 +41,7 @@ class Generator:
         self.frames, self.inner = [], []  # what the model can attach to itself
         self.bodies, self.geoms, self.sites, self.joints, self.tendons = ["world"], [], [], [], []
         self.cameras, self.actuator_names = [], []
+        self.round = []  # spheres and cylinders, which tendons can go around
         self.limited = set()  # joints and tendons whose range an actuator can take over
         self.replicated, self.groups = 0, 0  # how deep in replicas, and how many outermost groups of them so far
         self.count = 0
@@ -160,7 +161,7 @@ class Generator:
                 element.set("size", vector(0.03, 0.15)(self.draw))
             if tag == "dcmotor":
                 self.constants(element)
-            if tag == "damper":  # limits the controls of the whole class
+            if tag in ("damper", "adhesion"):  # limits the controls of the whole class
                 element.set("ctrlrange", text(0, self.draw.number(0.2, 2)))
 
     def assets(self):
@@ -467,6 +468,8 @@ class Generator:
                     geom.attrib.pop(name, None)
                 geom.set("fromto", vector(-0.25, 0.25, 6)(draw))
                 geom.set("size", text(sizes[0]))
+        if geom.get("type") in ("sphere", "cylinder") and geom.get("name"):
+            self.round.append(geom.get("name"))
         if self.materials and draw.chance(0.3):
             geom.set("material", draw.choice(self.materials))
 
@@ -526,17 +529,37 @@ class Generator:
 
     def tendon_section(self):
         draw, joints = self.draw, self.scalar_joints()
-        if not joints or draw.chance(0.5):
+        kinds = ["fixed"] * bool(joints) + ["spatial"] * (len(self.sites) > 1)
+        if not kinds or draw.chance(0.4):
             return
         section = self.add(self.root, "tendon")
         for _ in range(draw.randint(1, 3)):
-            tendon = self.classed(self.add(section, "fixed", name=self.always("tendon")))
+            tendon = self.classed(self.add(section, draw.choice(kinds), name=self.always("tendon")))
             self.fill(tendon)
-            for joint in draw.sample(joints, draw.randint(1, min(3, len(joints)))):
-                self.add(tendon, "joint", joint=joint, coef=VALUES["fixed/joint"]["coef"](draw))
+            if tendon.tag == "fixed":
+                for joint in draw.sample(joints, draw.randint(1, min(3, len(joints)))):
+                    self.add(tendon, "joint", joint=joint, coef=VALUES["fixed/joint"]["coef"](draw))
+            else:
+                self.string(tendon)
             self.tendons.append(tendon.get("name"))
             if "range" in tendon.attrib:
                 self.limited.add(tendon.get("name"))
+
+    def string(self, tendon):
+        """One branch or two, each through some sites, around geoms between them; a string without geoms can have inertia."""
+        draw = self.draw
+        for branch in range(draw.choice((1, 1, 2))):
+            if branch > 0 or draw.chance(0.2):
+                self.add(tendon, "pulley", divisor=text(draw.number(0.5, 3)))
+            path = draw.sample(self.sites, min(len(self.sites), draw.randint(2, 4)))
+            for k, (site, _) in enumerate(path):
+                if k > 0 and self.round and draw.chance(0.5):
+                    geom = self.add(tendon, "geom", geom=draw.choice(self.round))
+                    if draw.chance(0.5):
+                        geom.set("sidesite", draw.choice(self.sites)[0])
+                self.add(tendon, "site", site=site)
+        if tendon.find("geom") is None and draw.chance(0.3):
+            tendon.set("armature", text(draw.scale(0.001, 1)))
 
     def equalities(self):
         draw = self.draw
@@ -590,10 +613,7 @@ class Generator:
             if draw.chance(0.5):
                 actuator.set("name", self.always("actuator"))
                 self.actuator_names.append(actuator.get("name"))
-            if self.tendons and draw.chance(0.3):
-                actuator.set("tendon", draw.choice(self.tendons))
-            else:
-                actuator.set(draw.choice(("joint", "joint", "jointinparent")), draw.choice(self.joints)[0])
+            self.target(actuator)
             self.fill(actuator, without=() if kind == "intvelocity" else ("actrange",))
             self.law(actuator)
 
@@ -676,14 +696,35 @@ class Generator:
         kind = self.draw.choice([kind for kind in sorted(kinds) if kinds[kind]])
         return {f"{word}type": kind, f"{word}name": self.draw.choice(kinds[kind])}
 
+    def target(self, actuator):
+        """What an actuator pulls on."""
+        draw = self.draw
+        if actuator.tag == "adhesion" or actuator.tag == "general" and draw.chance(0.1):
+            actuator.set("body", draw.choice(self.bodies))
+        elif self.tendons and draw.chance(0.3):
+            actuator.set("tendon", draw.choice(self.tendons))
+        elif len(self.sites) > 1 and draw.chance(0.3):
+            first, second = (name for name, _ in draw.sample(self.sites, 2))
+            if draw.chance(0.4):
+                actuator.attrib.update(cranksite=first, slidersite=second, cranklength=text(draw.scale(0.1, 2)))
+            else:
+                actuator.set("site", first)
+                if draw.chance(0.5):
+                    actuator.set("refsite", second)
+        else:
+            actuator.set(draw.choice(("joint", "joint", "jointinparent")), draw.choice(self.joints)[0])
+
     def law(self, actuator):
         """What depends on other attributes of an actuator, or on its target."""
         draw, kind = self.draw, actuator.tag
-        if "tendon" in actuator.attrib:  # tendons are not damped by actuators yet
+        if not {"joint", "jointinparent"} & actuator.attrib.keys():  # what else there is is not damped by actuators yet
+            for name in ("damping", "armature"):
+                actuator.attrib.pop(name, None)
+        if "tendon" in actuator.attrib:
             actuator.attrib.update(damping="0 0 0", armature="0")
         if "nsample" in actuator.attrib and draw.chance(0.7):
             actuator.set("delay", text(draw.scale(0.001, 0.03)))
-        if kind == "damper":
+        if kind in ("damper", "adhesion"):
             ends = sorted((draw.number(0, 1), draw.number(0, 2)))
             actuator.set("ctrlrange", text(ends[0], ends[1] + 0.01))
         dynamics = actuator.get("dyntype")

@@ -87,9 +87,10 @@ VALUES = {
         "texture": "checks",
     },
     "fixed": TENDON,
+    "spatial": {**TENDON, "width": "0.1", "material": "paint", "rgba": COLOUR},
     "default/tendon": {**TENDON, "width": "0.1", "material": "paint", "rgba": COLOUR},
     "general": USER,
-    **{kind: USER for kind in "motor position velocity intvelocity damper cylinder muscle pid dcmotor".split()},
+    **{kind: USER for kind in "motor position velocity intvelocity damper cylinder muscle pid dcmotor adhesion".split()},
     "global": {
         "cameraid": "0",
         "orthographic": "true",
@@ -218,7 +219,7 @@ def decorate(root, draw):
     for tag in ("extension", "deformable", "sensor"):
         if draw.chance(0.2):
             ET.SubElement(root, tag)
-    of_others = [child for tag in ("fixed", "equality") for section in root.iter(tag) for child in section]
+    of_others = [child for tag in ("fixed", "spatial", "equality") for section in root.iter(tag) for child in section]
     for element in root.iter():
         if element in of_others:
             continue

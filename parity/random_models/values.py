@@ -141,8 +141,8 @@ POSE = {
 ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 TENDON = {
     "margin": number(0, 0.1),
-    "stiffness": scale(1, 100),
-    "damping": scale(0.01, 5),
+    "stiffness": polynomial(1, 100),
+    "damping": polynomial(0.01, 5),
     "frictionloss": scale(0.01, 2),
     "springlength": usually(lambda draw: text(*sorted(draw.number(-0.3, 0.3) for _ in range(draw.randint(1, 2)))), "-1", "-1 -1"),
     "solreflimit": solref,
@@ -155,6 +155,7 @@ POLYCOEF = lambda draw: text(*(draw.number(-0.5, 0.5) for _ in range(draw.randin
 ACTUATOR = {
     "group": one_of(0, 0, 1, 2, 3, 30),
     "gear": lambda draw: text(*gear(draw)),
+    "cranklength": None,  # goes with a target
     "damping": lambda draw: text(*(draw.choice((0, draw.scale(0.003, 1))) for _ in range(draw.randint(1, 3)))),
     "armature": usually(scale(0.001, 0.3), "0"),
     "nsample": one_of(20, 50),  # before `delay`, which needs it
@@ -315,9 +316,10 @@ VALUES = {
     "equality/joint": {**EQUALITY, "polycoef": POLYCOEF},
     "equality/tendon": {**EQUALITY, "polycoef": POLYCOEF},
     "default/equality": EQUALITY,
-    "fixed": TENDON,
+    "fixed": {**TENDON, "armature": scale(0.001, 0.5)},
+    "spatial": {**TENDON, "springlength": usually(lambda draw: text(*sorted(draw.number(0, 1) for _ in range(draw.randint(1, 2)))), "-1")},
     "fixed/joint": {"coef": number(-2, 2)},
-    "default/tendon": TENDON,
+    "default/tendon": {**TENDON, "armature": one_of("0", "0", "0.05")},
     "general": {
         **ACTUATOR,
         "actearly": BOOLEAN,
@@ -388,6 +390,7 @@ VALUES = {
         "interval": scale(0.1, 1),
         "tolrange": scale(0.01, 0.2),
     },
+    "adhesion": {**{name: ACTUATOR[name] for name in ("group", "nsample", "interp")}, "gain": usually(scale(0.1, 10), "0")},
     "key": {},
     "material": {"rgba": lambda draw: text(*(draw.random() for _ in range(3)), draw.choice((0, 1)))},
     "mesh": {
@@ -413,6 +416,7 @@ VALUES = {
 RANGES = {
     "joint": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
     "fixed": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
+    "spatial": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
     "default/tendon": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
     "general": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited", "actrange": "actlimited"},
     "motor": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
@@ -420,6 +424,7 @@ RANGES = {
     "velocity": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
     "intvelocity": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited", "actrange": "actlimited"},
     "damper": {"forcerange": "forcelimited"},
+    "adhesion": {"forcerange": "forcelimited"},
     "cylinder": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
     "muscle": {"ctrlrange": "ctrllimited", "forcerange": "forcelimited"},
     "pid": {"ctrlrange": "ctrllimited", "posrange": "ctrllimited", "forcerange": "forcelimited"},

@@ -232,11 +232,16 @@ class Model:
     cam_bodyid: Final[_Codes]  # (ncam,) The body that carries it.
     cam_resolution: Final[_Codes]  # (ncam, 2) Pixels: width, height.
 
-    wrap_coef: Final[_Floats]  # (nwrap,) Coefficients of tendons, one after the other.
-    wrap_objid: Final[_Codes]  # (nwrap,) The joint of each coefficient.
+    wrap_coef: Final[_Floats]  # (nwrap,) What tendons are made of: coefficients of joints, divisors of pulleys, else 0.
+    wrap_type: Final[_Codes]  # (nwrap,) 1 joint, 2 pulley, 3 site, 4 sphere, 5 cylinder.
+    wrap_objid: Final[_Codes]  # (nwrap,) The joint, site or geom; -1 for pulleys.
+    wrap_sideid: Final[_Codes]  # (nwrap,) The side site of a geom, or -1.
 
     tendon_stiffness: Final[_Floats]  # (ntendon,) Spring stiffness.
+    tendon_stiffnesspoly: Final[_Floats]  # (ntendon, 2) Coefficients of the spring's quadratic and cubic force.
     tendon_damping: Final[_Floats]  # (ntendon,) Damping.
+    tendon_dampingpoly: Final[_Floats]  # (ntendon, 2) Coefficients of quadratic and cubic damping.
+    tendon_armature: Final[_Floats]  # (ntendon,) Inertia of changes of the length.
     tendon_lengthspring: Final[_Floats]  # (ntendon, 2) Dead band of the spring.
     tendon_length0: Final[_Floats]  # (ntendon,) Length at qpos0.
     tendon_invweight0: Final[_Floats]  # (ntendon,) Inverse inertia at qpos0.
@@ -248,12 +253,14 @@ class Model:
     tendon_solimp_lim: Final[_Floats]  # (ntendon, 5) Limit impedance.
     tendon_solref_fri: Final[_Floats]  # (ntendon, 2) Dry-friction reference dynamics.
     tendon_solimp_fri: Final[_Floats]  # (ntendon, 5) Dry-friction impedance.
-    tendon_num: Final[_Codes]  # (ntendon,) How many joints.
-    tendon_adr: Final[_Codes]  # (ntendon,) The first of its coefficients, or -1.
+    tendon_type: Final[_Codes]  # (ntendon,) 0 fixed, 1 spatial.
+    tendon_num: Final[_Codes]  # (ntendon,) How many elements its path has.
+    tendon_adr: Final[_Codes]  # (ntendon,) The first element of its path, or -1.
     tendon_limited: Final[_Flags]  # (ntendon,) Whether its range is a limit.
     tendon_actfrclimited: Final[_Flags]  # (ntendon,) Whether the force of its actuators is limited.
 
     actuator_gear: Final[_Floats]  # (nactuator, 6) Scaling of the force onto the transmission's axes.
+    actuator_cranklength: Final[_Floats]  # (nactuator,) Length of the rod of a slider-crank, or 0.
     actuator_dynprm: Final[_Floats]  # (nactuator, 10) Parameters of the dynamics.
     actuator_gainprm: Final[_Floats]  # (nactuator, 10) Parameters of the gain.
     actuator_biasprm: Final[_Floats]  # (nactuator, 10) Parameters of the bias.
@@ -266,8 +273,8 @@ class Model:
     actuator_armature: Final[_Floats]  # (nactuator,) Inertia that the target gets, likewise.
     actuator_acc0: Final[_Floats]  # (nactuator,) Norm of the acceleration that a unit force causes at qpos0.
     actuator_lengthrange: Final[_Floats]  # (nactuator, 2) Lengths between which the transmission can be; of use to muscles.
-    actuator_trntype: Final[_Codes]  # (nactuator,) 0 joint, 1 joint in the parent's frame, 3 tendon.
-    actuator_trnid: Final[_Codes]  # (nactuator, 2) What it pulls on, and -1.
+    actuator_trntype: Final[_Codes]  # (nactuator,) 0 joint, 1 in the parent's frame, 2 slider-crank, 3 tendon, 4 site, 5 body.
+    actuator_trnid: Final[_Codes]  # (nactuator, 2) What it pulls on; the slider or reference site, or -1.
     actuator_dyntype: Final[_Codes]  # (nactuator,) 0 none, 1 integrator, 2 filter, 3 filterexact, 4 muscle, 5 dcmotor, 6 pid, 7 user.
     actuator_gaintype: Final[_Codes]  # (nactuator,) 0 fixed, 1 affine, 2 muscle, 3 dcmotor, 5 pid, 6 user.
     actuator_biastype: Final[_Codes]  # (nactuator,) 0 none, 1 affine, 2 muscle, 3 dcmotor, 5 user.

@@ -4,7 +4,8 @@ use crate::assets::ASSETS;
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::rigid::model::{
-    BiasKind, DynamicsKind, EqualityTarget, GainKind, JointKind, Keyframe, ParamField, Transmission,
+    BiasKind, DynamicsKind, EqualityTarget, GainKind, JointKind, Keyframe, ParamField,
+    Transmission, Wrap,
 };
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{Element, PyArrayDyn, PyArrayMethods};
@@ -127,7 +128,12 @@ const STRUCTURE: &[Reader] = &[
     ("tendon_actfrclimited", |m| {
         flags(&m.tendons, |t| t.actfrclimited)
     }),
-    ("wrap_objid", wrapped_joints),
+    ("tendon_type", |m| {
+        codes(&m.tendons, |t| i32::from(t.is_spatial()))
+    }),
+    ("wrap_type", |m| wraps(m, |wrap| wrap.0)),
+    ("wrap_objid", |m| wraps(m, |wrap| wrap.1)),
+    ("wrap_sideid", |m| wraps(m, |wrap| wrap.2)),
     ("actuator_trntype", |m| {
         codes(&m.actuators, |a| transmission(a.transmission).0)
     }),
@@ -236,17 +242,16 @@ fn resolutions(model: &Model) -> Field {
     }
 }
 
-/// The joint of each coefficient of each tendon.
-fn wrapped_joints(model: &Model) -> Field {
-    let joints: Vec<usize> = (model.tendons.iter())
-        .flat_map(|tendon| tendon.joints.iter().copied())
-        .collect();
-    codes(&joints, |&joint| id(joint))
+/// A code of each element of each tendon's path.
+fn wraps(model: &Model, code: impl Fn((i32, i32, i32)) -> i32) -> Field {
+    let path = model.tendons.iter().flat_map(|tendon| &tendon.path);
+    let found: Vec<i32> = path.map(|&element| code(wrap(model, element))).collect();
+    codes(&found, |&code| code)
 }
 
 /// What each actuator pulls on; the second index is for transmissions between two things.
 fn transmission_targets(model: &Model) -> Field {
-    let targets = (model.actuators.iter()).flat_map(|a| [transmission(a.transmission).1, NONE]);
+    let targets = (model.actuators.iter()).flat_map(|a| transmission(a.transmission).1);
     Field {
         shape: vec![model.actuators.len(), 2],
         numbers: Numbers::Code(targets.collect()),
@@ -326,11 +331,28 @@ fn bias_type(kind: BiasKind) -> i32 {
 }
 
 /// Type, and what is pulled on.
-fn transmission(transmission: Transmission) -> (i32, i32) {
+fn transmission(transmission: Transmission) -> (i32, [i32; 2]) {
     match transmission {
-        Transmission::Joint(joint) => (0, id(joint)),
-        Transmission::JointInParent(joint) => (1, id(joint)),
-        Transmission::Tendon(tendon) => (3, id(tendon)),
+        Transmission::Joint(joint) => (0, [id(joint), NONE]),
+        Transmission::JointInParent(joint) => (1, [id(joint), NONE]),
+        Transmission::SliderCrank(sites) => (2, sites.map(id)),
+        Transmission::Tendon(tendon) => (3, [id(tendon), NONE]),
+        Transmission::Site(site) => (4, [id(site), NONE]),
+        Transmission::SiteInFrame(sites) => (4, sites.map(id)),
+        Transmission::Body(body) => (5, [id(body), NONE]),
+    }
+}
+
+/// Type, what the element of a tendon's path is, and the side site of a geom.
+fn wrap(model: &Model, wrap: Wrap) -> (i32, i32, i32) {
+    match wrap {
+        Wrap::Joint(joint) => (1, id(joint), NONE),
+        Wrap::Pulley => (2, NONE, NONE),
+        Wrap::Site(site) => (3, id(site), NONE),
+        Wrap::Geom { geom, side } => {
+            let cylinder = model.geoms[geom].kind == ShapeKind::Cylinder;
+            (4 + i32::from(cylinder), id(geom), id_or_none(side))
+        }
     }
 }
 

@@ -52,7 +52,7 @@ OPTIONS = {
     "override_friction": "o_friction",
 }
 # What it keeps in another form: these have a test of their own.
-OURS = {"wrap_coef", "eq_anchor1", "eq_anchor2", "eq_quat1", "eq_quat2", "eq_torquescale", "eq_polycoef"}
+OURS = {"wrap_coef", "wrap_sideid", "eq_anchor1", "eq_anchor2", "eq_quat1", "eq_quat2", "eq_torquescale", "eq_polycoef"}
 # What it keeps with fewer digits, or may cut into other triangles.
 OURS |= {"mesh_vert", "mesh_face", "hfield_data", "cam_sensorsize", "cam_intrinsic"}
 # Many rows for an element.
@@ -118,7 +118,9 @@ def test_robots_of_other_packages_are_those_of_mujoco(name: str) -> None:
 
 def test_fields_that_mujoco_packs(both: tuple[clench.Model, mujoco.MjModel]) -> None:
     ours, theirs = both
-    np.testing.assert_array_equal(ours.wrap_coef, theirs.wrap_prm)
+    numbered, geoms = theirs.wrap_type <= 2, theirs.wrap_type >= 4
+    np.testing.assert_array_equal(ours.wrap_coef, np.where(numbered, theirs.wrap_prm, 0))
+    np.testing.assert_array_equal(ours.wrap_sideid, np.where(geoms, theirs.wrap_prm, -1))
     of_bodies = theirs.eq_objtype == int(mujoco.mjtObj.mjOBJ_BODY)
     connect, weld = (of_bodies & (theirs.eq_type == code) for code in (0, 1))
     scalar = theirs.eq_type >= 2

@@ -175,17 +175,6 @@ impl Element {
         Ok(())
     }
 
-    /// The linear coefficient of a spring or damper polynomial; its higher coefficients must be zero.
-    pub fn set_linear(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
-        let mut coefficients = [*target, 0.0, 0.0];
-        self.overlay(name, &mut coefficients)?;
-        if coefficients[1..] != [0.0, 0.0] {
-            return Err(self.error(format!("polynomial {name} is not supported yet")));
-        }
-        *target = coefficients[0];
-        Ok(())
-    }
-
     /// An integer.
     pub fn integer(&self, name: &str) -> Result<Option<i32>, LoadError> {
         let words: Vec<&str> = self

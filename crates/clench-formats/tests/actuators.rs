@@ -46,9 +46,61 @@ fn transmissions() {
     assert_eq!(tendon, TransmissionSpec::Tendon("t".into()));
     let parent = actuator("", "<motor jointinparent='j'/>").transmission;
     assert_eq!(parent, TransmissionSpec::JointInParent("j".into()));
-    assert!(rejected("<motor/>").contains("required"));
-    assert!(rejected("<motor joint='j' tendon='t'/>").contains("both"));
-    assert!(rejected("<motor site='s'/>").contains("not supported yet"));
+    let site = actuator("", "<motor site='s'/>").transmission;
+    assert_eq!(site, TransmissionSpec::Site("s".into()));
+    let relative = actuator("", "<position site='s' refsite='r'/>").transmission;
+    let (site, reference) = ("s".into(), "r".into());
+    assert_eq!(relative, TransmissionSpec::SiteInFrame { site, reference });
+    let crank = actuator(
+        "<default><general cranklength='0.3'/></default>",
+        "<motor cranksite='c' slidersite='s'/>",
+    );
+    let (pin, slider) = ("c".into(), "s".into());
+    assert_eq!(
+        crank.transmission,
+        TransmissionSpec::SliderCrank { crank: pin, slider }
+    );
+    assert_eq!(crank.cranklength, 0.3);
+    let body = actuator("", "<general body='b'/>").transmission;
+    assert_eq!(body, TransmissionSpec::Body("b".into()));
+}
+
+#[test]
+fn what_names_no_target_or_two_is_refused() {
+    for (element, message) in [
+        ("<motor/>", "required"),
+        ("<motor refsite='r'/>", "refsite goes with site"),
+        ("<motor joint='j' tendon='t'/>", "both"),
+        ("<motor joint='j' site='s'/>", "both"),
+        ("<motor joint='j' refsite='r'/>", "refsite goes with site"),
+        ("<motor joint='j' slidersite='s'/>", "slidersite goes with"),
+        (
+            "<motor joint='j' cranklength='1'/>",
+            "cranklength goes with",
+        ),
+        ("<motor cranksite='c'/>", "slidersite"),
+        ("<motor body='b'/>", "unknown attribute"),
+        ("<adhesion ctrlrange='0 1'/>", "body"),
+        ("<adhesion body='b' ctrlrange='-1 1'/>", "ctrlrange"),
+        ("<adhesion body='b' ctrlrange='0 1' gain='-1'/>", "gain"),
+    ] {
+        let error = rejected(element);
+        assert!(error.contains(message), "{element}: {error}");
+    }
+}
+
+#[test]
+fn an_adhesion_draws_only() {
+    let adhesion = actuator("", "<adhesion body='b' ctrlrange='0 2' gain='3'/>");
+    assert_eq!(adhesion.transmission, TransmissionSpec::Body("b".into()));
+    assert_eq!(
+        (adhesion.gainprm[0], adhesion.ctrllimited),
+        (3.0, Some(true))
+    );
+    assert_eq!(
+        (adhesion.gain, adhesion.bias),
+        (GainKind::Fixed, BiasKind::None)
+    );
 }
 
 #[test]
@@ -214,7 +266,6 @@ fn what_is_not_supported_yet_says_so() {
         "<general joint='j' gaintype='so3'/>",
         "<motor joint='j' delay='0.1'/>",
         "<orientation joint='j'/>",
-        "<adhesion body='b'/>",
     ] {
         assert!(rejected(element).contains("not supported yet"), "{element}");
     }

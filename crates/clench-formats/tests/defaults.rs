@@ -115,6 +115,9 @@ fn every_kind_of_element_has_defaults() {
     let weld = &model.equalities[0];
     assert_eq!((weld.active, weld.solref), (false, [0.5, 1.0]));
     let tendon = &model.tendons[0];
-    assert_eq!((tendon.stiffness, tendon.damping), (4.0, 5.0));
+    assert_eq!(
+        (tendon.stiffness, tendon.damping),
+        ([4.0, 0.0, 0.0], [5.0, 0.0, 0.0])
+    );
     assert_eq!(tendon.springlength, Some([1.0, 1.0]));
 }

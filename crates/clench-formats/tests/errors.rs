@@ -329,7 +329,10 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
     }
     for (line, element) in [
         ("<sensor><tactile/></sensor>", "tactile"),
-        ("<tendon><spatial/></tendon>", "spatial"),
+        (
+            "<tendon><spatial springyield='1'><site site='a'/></spatial></tendon>",
+            "spatial",
+        ),
         ("<deformable><flex/></deformable>", "flex"),
         ("<extension><plugin/></extension>", "plugin"),
         ("<asset><model/></asset>", "model"),

@@ -2,7 +2,7 @@
 
 use clench_formats::read_str;
 use clench_math::Vec3;
-use clench_rigid::builder::{ConnectAnchor, EqualityKind, InertiaFromGeom, ModelBuilder};
+use clench_rigid::builder::{ConnectAnchor, EqualityKind, InertiaFromGeom, ModelBuilder, WrapSpec};
 use clench_rigid::model::Integrator;
 use clench_solver::{ConstraintSolver, FrictionCone, Switch};
 
@@ -252,12 +252,52 @@ fn fixed_tendons_sum_joints() {
          </fixed></tendon>",
     );
     let tendon = &model.tendons[0];
+    let joint = |joint: &str, coef| WrapSpec::Joint {
+        joint: joint.to_owned(),
+        coef,
+    };
+    assert_eq!(tendon.path, [joint("a", 2.0), joint("b", -1.0)]);
     assert_eq!(
-        tendon.terms,
-        [("a".to_owned(), 2.0), ("b".to_owned(), -1.0)]
+        (tendon.springlength, tendon.stiffness),
+        (None, [2.0, 0.0, 0.0])
     );
-    assert_eq!((tendon.springlength, tendon.stiffness), (None, 2.0));
     assert_eq!((tendon.range, tendon.limited), ([0.0, 1.0], None));
+}
+
+#[test]
+fn spatial_tendons_pass_sites_geoms_and_pulleys() {
+    let model = read(
+        "<default><tendon armature='0.1' width='1'/></default>
+         <tendon><spatial name='t' stiffness='1 2' damping='0 0 3' springlength='0.1 0.2' rgba='1 0 0 1'>
+           <pulley divisor='2'/><site site='a'/><geom geom='g' sidesite='s'/><site site='b'/>
+           <pulley divisor='0.5'/><site site='a'/><geom geom='h'/><site site='c'/>
+         </spatial></tendon>",
+    );
+    let tendon = &model.tendons[0];
+    let site = |name: &str| WrapSpec::Site(name.into());
+    let geom = |name: &str, side: Option<&str>| WrapSpec::Geom {
+        geom: name.into(),
+        side: side.map(Into::into),
+    };
+    let path = [
+        WrapSpec::Pulley(2.0),
+        site("a"),
+        geom("g", Some("s")),
+        site("b"),
+        WrapSpec::Pulley(0.5),
+        site("a"),
+        geom("h", None),
+        site("c"),
+    ];
+    assert_eq!(tendon.path, path);
+    assert_eq!(
+        (tendon.stiffness, tendon.damping),
+        ([1.0, 2.0, 0.0], [0.0, 0.0, 3.0])
+    );
+    assert_eq!(
+        (tendon.armature, tendon.springlength),
+        (0.1, Some([0.1, 0.2]))
+    );
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use crate::constraint::constraint_stage;
 use crate::contact::detect;
 use crate::dynamics::actuation::actuation;
+use crate::dynamics::adhesion::adhesion;
 use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::bias::bias_forces;
 use crate::dynamics::com::com_positions;
@@ -14,6 +15,7 @@ use crate::dynamics::passive::passive_forces;
 use crate::dynamics::rk4::rk4;
 use crate::dynamics::smooth::{smooth_acceleration, smooth_forces};
 use crate::dynamics::tendon::tendons;
+use crate::dynamics::tendon_armature::{add_tendon_bias, add_tendon_inertia};
 use crate::dynamics::transmission::transmissions;
 use crate::dynamics::velocity::velocities;
 use crate::model::{Integrator, Model, Params};
@@ -39,6 +41,7 @@ pub fn position_stage<T: Real>(
     transmissions(model, params, &state.qpos, pos);
     ws.clock.lap(Stage::Kinematics as usize);
     composite_inertia(model, params, pos, &mut ws.problem.mass);
+    add_tendon_inertia(model, params, pos, &mut ws.problem.mass);
     ws.clock.lap(Stage::Inertia as usize);
     ws.singular = !if ws.articulated.is_empty() {
         ws.problem.factor_mass()
@@ -69,6 +72,8 @@ pub fn velocity_stage<T: Real>(
         force,
     );
     bias_forces(model, params, pos, vel, &state.qvel, force);
+    let bias = &mut force.qfrc_bias;
+    add_tendon_bias(model, params, pos, vel, &state.qvel, bias);
     ws.clock.lap(Stage::Velocity as usize);
 }
 
@@ -110,6 +115,7 @@ fn forward_dynamics<T: Real>(
     ws.clock.start();
     position_stage(model, params, state, ws);
     detect(model, params, settings, ws);
+    adhesion(model, &ws.contacts, &mut ws.position);
     velocity_stage(model, params, state, ws);
     force_stage(model, params, state, ws);
     constraint_stage(model, params, settings, state, ws);

@@ -4,6 +4,7 @@ use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, GeomSpec,
     JointSpec, KeyframeSpec, ModelBuilder, Origin, PairSpec, TendonSpec, TransmissionSpec,
+    WrapSpec,
 };
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
@@ -262,6 +263,21 @@ const CASES: &[Case] = &[
     (|b| b.bodies[2].joints[0].name = "a joint".into(), "joint \"a joint\"", "taken"),
     (|b| b.tendons.push(TendonSpec::fixed("t", &[])), "tendon \"t\"", "no joint"),
     (|b| b.tendons.push(TendonSpec::fixed("t", &[("a joint", 1.0), ("a joint", 2.0)])), "tendon \"t\"", "twice"),
+    (|b| string(b, vec![site("tip")]), "tendon \"t\"", "one element"),
+    (|b| string(b, vec![site("tip"), site("tip")]), "tendon \"t\"", "twice in a row"),
+    (|b| string(b, vec![site("tip"), site("x")]), "tendon \"t\"", "no site \"x\""),
+    (|b| string(b, vec![site("tip"), around("x"), site("base")]), "tendon \"t\"", "no geom \"x\""),
+    (|b| { string(b, vec![site("tip"), around("a geom"), site("base")]); *geom(b) = GeomSpec::cuboid([0.1; 3]).named("a geom") }, "tendon \"t\"", "a sphere or a cylinder"),
+    (|b| string(b, vec![site("tip"), around("drum")]), "tendon \"t\"", "between two sites"),
+    (|b| string(b, vec![site("tip"), around("drum"), around("drum"), site("base")]), "tendon \"t\"", "between two sites"),
+    (|b| string(b, vec![site("tip"), site("base"), WrapSpec::Pulley(2.0)]), "tendon \"t\"", "starts no branch"),
+    (|b| string(b, vec![site("tip"), WrapSpec::Pulley(2.0), site("tip"), site("base")]), "tendon \"t\"", "one element"),
+    (|b| string(b, vec![site("tip"), site("base"), WrapSpec::Pulley(0.0), site("tip"), site("base")]), "tendon \"t\"", "divisor"),
+    (|b| string(b, vec![site("tip"), WrapSpec::Joint { joint: "a joint".into(), coef: 1.0 }]), "tendon \"t\"", "not both"),
+    (|b| { string(b, vec![site("tip"), around("drum"), site("base")]); b.tendons[0].armature = 1.0 }, "tendon \"t\"", "armature"),
+    (|b| pull(b, TransmissionSpec::SliderCrank { crank: "tip".into(), slider: "base".into() }), "actuator \"pull\"", "cranklength"),
+    (|b| pull(b, TransmissionSpec::Site("x".into())), "actuator \"pull\"", "no site \"x\""),
+    (|b| pull(b, TransmissionSpec::Body("x".into())), "actuator \"pull\"", "no body \"x\""),
     (|b| b.actuators.push(motor("knee")), "actuator \"motor\"", "no joint \"knee\""),
     (|b| b.actuators.push(motor("")), "actuator \"motor\"", "names no joint"),
     (|b| b.actuators.push(ActuatorSpec { dampratio: Some(1.0), ..motor("a joint") }), "actuator \"motor\"", "needs an affine bias"),
@@ -275,6 +291,34 @@ const CASES: &[Case] = &[
     (|b| b.keyframes.push(KeyframeSpec::at("k", vec![0.0; 3])), "keyframe \"k\"", "qpos has 3 numbers, the model has 2"),
     (|b| b.keyframes.push(KeyframeSpec::at("k", vec![f64::NAN])), "keyframe \"k\"", "qpos"),
 ];
+
+/// Adds a tendon between sites and geoms that are there.
+fn string(b: &mut ModelBuilder, path: Vec<WrapSpec>) {
+    b.bodies[2] = std::mem::take(&mut b.bodies[2]).site("tip", [0.0; 3]);
+    b.bodies[0] = std::mem::take(&mut b.bodies[0]).site("base", [0.0, 1.0, 0.0]);
+    b.add_ground(GeomSpec {
+        name: "drum".into(),
+        ..GeomSpec::cylinder(0.1, 0.1)
+    });
+    b.tendons.push(TendonSpec::spatial("t", path));
+}
+
+fn site(name: &str) -> WrapSpec {
+    WrapSpec::Site(name.into())
+}
+
+fn around(geom: &str) -> WrapSpec {
+    WrapSpec::Geom {
+        geom: geom.into(),
+        side: None,
+    }
+}
+
+/// Adds an actuator and the sites that it may name.
+fn pull(b: &mut ModelBuilder, target: TransmissionSpec) {
+    string(b, vec![site("tip"), site("base")]);
+    b.actuators.push(ActuatorSpec::motor("pull", target, 1.0));
+}
 
 #[test]
 fn what_cannot_be_is_refused_by_name() {

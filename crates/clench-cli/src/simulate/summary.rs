@@ -123,6 +123,7 @@ pub fn is_conservative(model: &Model) -> bool {
     none(&p.dof_damping)
         && none(p.dof_dampingpoly.as_flattened())
         && none(&p.tendon_damping)
+        && none(p.tendon_dampingpoly.as_flattened())
         && none(&p.body_gravcomp)
         && model.actuators.is_empty()
         && p.density == 0.0

@@ -7,8 +7,9 @@
 use super::controller::{self, Saturation};
 use super::document::Element;
 use super::shortcut::{self, ActuatorParams, Shortcut};
+use super::transmission;
 use crate::LoadError;
-use clench_rigid::builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
+use clench_rigid::builder::{ActuatorSpec, HistorySpec};
 use clench_rigid::history::Interpolation;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
 
@@ -32,6 +33,7 @@ pub(crate) struct ActuatorDraft {
     pub shortcut: Shortcut,
     pub parameters: ActuatorParams,
     gear: [f64; 6],
+    cranklength: f64,
     ctrlrange: [f64; 2],
     ctrllimited: Option<bool>,
     forcerange: [f64; 2],
@@ -52,6 +54,7 @@ impl Default for ActuatorDraft {
             shortcut: Shortcut::General,
             parameters: ActuatorParams::default(),
             gear: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            cranklength: 0.0,
             ctrlrange: [0.0; 2],
             ctrllimited: None,
             forcerange: [0.0; 2],
@@ -93,6 +96,7 @@ impl ActuatorDraft {
         read_history(element, &mut self.history)?;
         element.overlay("damping", &mut self.damping)?;
         element.set_number("armature", &mut self.armature)?;
+        element.set_number("cranklength", &mut self.cranklength)?;
         element.set_integer("group", &mut self.group)?;
         if matches!(shortcut, Shortcut::General | Shortcut::Pid) {
             element.set_range("posrange", &mut self.ctrlrange)?;
@@ -110,12 +114,13 @@ impl ActuatorDraft {
             Shortcut::Muscle => shortcut::read_muscle(element, inherited)?,
             Shortcut::Pid => controller::read_pid(element, inherited)?,
             Shortcut::DcMotor => self.read_dc_motor(element, inherited)?,
+            Shortcut::Adhesion => shortcut::read_adhesion(element, inherited)?,
         };
         self.parameters = parameters;
         match shortcut {
             // As in MuJoCo, whatever the file says of it: an activation range limits if there is one.
             Shortcut::IntVelocity => self.actlimited = None,
-            Shortcut::Damper => self.require_positive_controls(element)?,
+            Shortcut::Damper | Shortcut::Adhesion => self.require_positive_controls(element)?,
             _ => {}
         }
         self.settle_inheritrange(element)
@@ -139,10 +144,13 @@ impl ActuatorDraft {
         Ok(parameters)
     }
 
-    /// A damper is limited to positive controls.
+    /// Dampers and adhesions are limited to positive controls.
     fn require_positive_controls(&mut self, element: &Element) -> Result<(), LoadError> {
         if self.ctrlrange.iter().any(|&end| end < 0.0) {
-            return Err(element.error("the ctrlrange of a damper cannot be negative"));
+            return Err(element.error(format!(
+                "the ctrlrange of <{}> cannot be negative",
+                element.tag
+            )));
         }
         self.ctrllimited = Some(true);
         Ok(())
@@ -188,7 +196,7 @@ impl ActuatorDraft {
         }
         Ok(ActuatorSpec {
             name: element.string("name"),
-            transmission: read_transmission(element)?,
+            transmission: transmission::read(element)?,
             dynamics: parameters.dynamics,
             dynprm: parameters.dynprm,
             gain: parameters.gain,
@@ -202,6 +210,7 @@ impl ActuatorDraft {
             damping: self.damping,
             armature: self.armature,
             lengthrange,
+            cranklength: self.cranklength,
             ctrlrange: self.ctrlrange,
             ctrllimited: self.ctrllimited,
             velrange: self.velrange,
@@ -275,14 +284,4 @@ fn supported(element: &Element, name: &str, unsupported: &[&str]) -> Result<(), 
         }
         _ => Ok(()),
     }
-}
-
-fn read_transmission(element: &Element) -> Result<TransmissionSpec, LoadError> {
-    element.at_most_one(&["joint", "jointinparent", "tendon"])?;
-    let name = |attribute| element.text(attribute).map(str::to_owned);
-    name("joint")
-        .map(TransmissionSpec::Joint)
-        .or_else(|| name("jointinparent").map(TransmissionSpec::JointInParent))
-        .or_else(|| name("tendon").map(TransmissionSpec::Tendon))
-        .ok_or_else(|| element.error("one of joint, jointinparent or tendon is required"))
 }

@@ -32,6 +32,7 @@ mod site;
 mod source;
 mod support;
 mod tendon;
+mod transmission;
 
 pub use support::{Support, supported};
 

@@ -50,7 +50,7 @@ pub(crate) fn read(
 
 fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadError> {
     let draft = sources.of(element).classes.of(element)?.tendon.clone();
-    let mut tendon = tendon::read_fixed(element, draft)?;
+    let mut tendon = tendon::read(element, draft)?;
     let settle = |what, range, said| sources.settle_limit(element, what, range, said);
     settle("", tendon.range, &mut tendon.limited)?;
     settle(

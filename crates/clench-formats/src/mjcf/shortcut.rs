@@ -20,6 +20,7 @@ pub(crate) enum Shortcut {
     Muscle,
     Pid,
     DcMotor,
+    Adhesion,
 }
 
 impl Shortcut {
@@ -36,6 +37,7 @@ impl Shortcut {
             "muscle" => Shortcut::Muscle,
             "pid" => Shortcut::Pid,
             "dcmotor" => Shortcut::DcMotor,
+            "adhesion" => Shortcut::Adhesion,
             _ => return None,
         })
     }
@@ -251,4 +253,20 @@ pub(crate) fn not_negative(element: &Element, name: &str) -> Result<Option<f64>,
         Some([value]) if value < 0.0 => Err(element.error(format!("{name} cannot be negative"))),
         value => Ok(value.map(|[value]| value)),
     }
+}
+
+/// `adhesion`: force = gain · control.
+pub(super) fn read_adhesion(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let mut gain = inherited.gainprm[0];
+    element.set_number("gain", &mut gain)?;
+    if gain < 0.0 {
+        return Err(element.error("gain cannot be negative"));
+    }
+    Ok(ActuatorParams {
+        gainprm: params([gain]),
+        ..ActuatorParams::default()
+    })
 }

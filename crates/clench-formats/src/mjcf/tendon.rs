@@ -1,8 +1,8 @@
-//! `<tendon>`: fixed tendons.
+//! `<tendon>`: sums of joint positions, and strings through sites and around geoms.
 
 use super::document::Element;
 use crate::LoadError;
-use clench_rigid::builder::TendonSpec;
+use clench_rigid::builder::{TendonSpec, WrapSpec};
 
 /// Overwrites what the element gives of the attributes that default classes also have.
 pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<(), LoadError> {
@@ -11,8 +11,9 @@ pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<
     element.set_range("actuatorfrcrange", &mut tendon.actuatorfrcrange)?;
     element.set_tristate("actuatorfrclimited", &mut tendon.actuatorfrclimited)?;
     element.set_number("margin", &mut tendon.margin)?;
-    element.set_linear("stiffness", &mut tendon.stiffness)?;
-    element.set_linear("damping", &mut tendon.damping)?;
+    element.overlay("stiffness", &mut tendon.stiffness)?;
+    element.overlay("damping", &mut tendon.damping)?;
+    element.set_number("armature", &mut tendon.armature)?;
     element.set_number("frictionloss", &mut tendon.frictionloss)?;
     element.overlay("solreflimit", &mut tendon.solref_limit)?;
     element.overlay("solimplimit", &mut tendon.solimp_limit)?;
@@ -24,29 +25,48 @@ pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<
         1 => tendon.springlength = Some([rest[0]; 2]),
         _ => tendon.springlength = Some(rest),
     }
-    // MuJoCo writes "the length in the initial configuration" as -1.
+    // MuJoCo writes "the length where springs rest" as -1.
     tendon.springlength = tendon.springlength.filter(|rest| *rest != [-1.0; 2]);
     Ok(())
 }
 
-/// The tendon that a `<fixed>` describes.
-pub(crate) fn read_fixed(
-    element: &Element,
-    mut tendon: TendonSpec,
-) -> Result<TendonSpec, LoadError> {
+/// The tendon that a `<fixed>` or `<spatial>` describes.
+pub(crate) fn read(element: &Element, mut tendon: TendonSpec) -> Result<TendonSpec, LoadError> {
     read_common(element, &mut tendon)?;
-    for term in &element.children {
-        let [coefficient] = term.required_numbers("coef")?;
-        tendon
-            .terms
-            .push((term.required_text("joint")?.to_owned(), coefficient));
+    for child in &element.children {
+        tendon.path.push(read_wrap(child)?);
     }
-    if tendon.terms.is_empty() {
-        return Err(element.error("a fixed tendon needs at least one joint"));
+    if tendon.path.is_empty() {
+        return Err(element.error(match element.tag.as_str() {
+            "fixed" => "a fixed tendon needs at least one joint",
+            _ => "a spatial tendon needs at least two sites",
+        }));
     }
     Ok(TendonSpec {
         name: element.string("name"),
         origin: Some(element.origin.clone()),
         ..tendon
+    })
+}
+
+fn read_wrap(element: &Element) -> Result<WrapSpec, LoadError> {
+    let named = |attribute| Ok::<_, LoadError>(element.required_text(attribute)?.to_owned());
+    Ok(match element.tag.as_str() {
+        "joint" => WrapSpec::Joint {
+            joint: named("joint")?,
+            coef: element.required_numbers::<1>("coef")?[0],
+        },
+        "geom" => WrapSpec::Geom {
+            geom: named("geom")?,
+            side: element.text("sidesite").map(str::to_owned),
+        },
+        "pulley" => {
+            let [divisor] = element.required_numbers("divisor")?;
+            if divisor <= 0.0 {
+                return Err(element.error("divisor must be positive"));
+            }
+            WrapSpec::Pulley(divisor)
+        }
+        _ => WrapSpec::Site(named("site")?),
     })
 }

@@ -4,7 +4,9 @@ use super::controllers::{Controller, controller};
 use super::element::{Element, resolve_range};
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
-use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec, histories};
+use super::{
+    ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec, histories, transmissions,
+};
 use crate::budget::RAISE;
 use crate::model::{Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, Model, Transmission};
 
@@ -20,21 +22,11 @@ pub(super) fn add_all(
 ) -> Result<(), BuildError> {
     for spec in &builder.actuators {
         let mut spec = spec.clone();
-        let transmission = transmission(&spec, names)?;
+        let transmission = transmissions::find(&spec, names)?;
         inherit_range(&mut spec, transmission, model)?;
         add(builder, &spec, transmission, model)?;
     }
     Ok(())
-}
-
-fn transmission(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission, BuildError> {
-    Ok(match &spec.transmission {
-        TransmissionSpec::Joint(name) => Transmission::Joint(names.joints.find(name, spec)?),
-        TransmissionSpec::JointInParent(name) => {
-            Transmission::JointInParent(names.joints.find(name, spec)?)
-        }
-        TransmissionSpec::Tendon(name) => Transmission::Tendon(names.tendons.find(name, spec)?),
-    })
 }
 
 fn add(
@@ -89,9 +81,10 @@ fn add(
         group: spec.group,
     });
     model.na += activations;
-    push_dofs(transmission, model);
+    transmissions::push_dofs(transmission, model);
     let p = &mut model.params;
     p.actuator_gear.push(spec.gear);
+    p.actuator_cranklength.push(spec.cranklength);
     p.actuator_dynprm.push(spec.dynprm);
     p.actuator_gainprm.push(spec.gainprm);
     p.actuator_biasprm.push(spec.biasprm);
@@ -112,21 +105,6 @@ fn add(
         }
     }
     Ok(())
-}
-
-/// Notes which dofs a transmission acts on.
-fn push_dofs(transmission: Transmission, model: &mut Model) {
-    match transmission {
-        Transmission::Joint(j) | Transmission::JointInParent(j) => {
-            let joint = &model.joints[j];
-            let dofs = joint.dof..joint.dof + joint.kind.nv();
-            model.actuator_dofs.push(dofs.map(|dof| dof as u32));
-        }
-        Transmission::Tendon(t) => {
-            let dofs = model.tendon_dofs.dofs(t).iter().copied();
-            model.actuator_dofs.push(dofs);
-        }
-    }
 }
 
 /// Whether a control is clamped, and to what. Of a PID controller `ctrlrange` is that of the position.

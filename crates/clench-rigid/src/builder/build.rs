@@ -62,7 +62,9 @@ impl ModelBuilder {
         cameras::aim_all(self, &order, &names, &mut model)?;
         sensors::add_all(self, &names, &mut model)?;
 
-        let mut pose0 = initial_pose(&model);
+        let mut pose0 = pose(&model, &model.params.qpos0);
+        let rest = |model: &Model| pose(model, &model.params.qpos_spring);
+        tendons::lengths(self, &pose0, rest, &mut model);
         cameras::set_initial_frames(&pose0, &mut model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
         budget::equalities(self, &model)?;
@@ -132,9 +134,10 @@ fn tree(model: &Model) -> Result<Tree, BuildError> {
     Tree::new(&parents).map_err(|e| BuildError::new("model", e.to_string()))
 }
 
-/// Poses, and all that depends on them alone, at qpos0.
-fn initial_pose(model: &Model) -> Positions<f64> {
-    let (params, state) = (&model.params, State::new(model));
+/// Poses, and all that depends on them alone, at `qpos`.
+fn pose(model: &Model, qpos: &[f64]) -> Positions<f64> {
+    let (params, mut state) = (&model.params, State::new(model));
+    state.qpos.copy_from_slice(qpos);
     let mut pos = Positions::new(model);
     kinematics::kinematics(model, params, &state, &mut pos);
     com::com_positions(model, params, &mut pos);

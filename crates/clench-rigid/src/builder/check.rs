@@ -5,7 +5,7 @@ use super::element::Element;
 use super::{
     ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, EqualityKind, EqualitySpec,
     GeomMass, GeomSpec, InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec,
-    TendonSpec,
+    TendonSpec, WrapSpec,
 };
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -225,12 +225,17 @@ fn check_camera(c: &CameraSpec) -> Result<(), BuildError> {
 }
 
 fn check_tendon(t: &TendonSpec) -> Result<(), BuildError> {
-    for (_, coef) in &t.terms {
-        t.require_finite("coef", &[*coef])?;
+    for element in &t.path {
+        match element {
+            WrapSpec::Joint { coef, .. } => t.require_finite("coef", &[*coef])?,
+            WrapSpec::Pulley(divisor) => t.require_finite("divisor", &[*divisor])?,
+            WrapSpec::Site(_) | WrapSpec::Geom { .. } => {}
+        }
     }
     t.require_finite("margin", &[t.margin])?;
-    t.require_finite("stiffness", &[t.stiffness])?;
-    t.require_finite("damping", &[t.damping])?;
+    t.require_finite("stiffness", &t.stiffness)?;
+    t.require_finite("damping", &t.damping)?;
+    t.require_not_negative("armature", &[t.armature])?;
     t.require_not_negative("frictionloss", &[t.frictionloss])?;
     t.require_finite("springlength", &t.springlength.unwrap_or_default())?;
     check_softness(
@@ -248,6 +253,7 @@ fn check_actuator(a: &ActuatorSpec) -> Result<(), BuildError> {
     a.require_finite("lengthrange", &a.lengthrange)?;
     a.require_finite("damping", &a.damping)?;
     a.require_not_negative("armature", &[a.armature])?;
+    a.require_finite("cranklength", &[a.cranklength])?;
     a.require_not_negative("inheritrange", &[a.inheritrange])?;
     a.require_not_negative("dampratio", &[a.dampratio.unwrap_or(0.0)])
 }

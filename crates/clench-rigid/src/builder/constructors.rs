@@ -4,7 +4,7 @@
 use super::{
     ActuatorSpec, BodySpec, EqualityKind, EqualitySpec, GeomMass, GeomSpec, HistorySpec,
     InertiaSpec, InertialSpec, JointSpec, KeyframeSpec, ModelBuilder, SiteSpec, TendonSpec,
-    TransmissionSpec,
+    TransmissionSpec, WrapSpec,
 };
 use super::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind};
@@ -292,6 +292,7 @@ impl ActuatorSpec {
             damping: [0.0; 3],
             armature: 0.0,
             history: HistorySpec::default(),
+            cranklength: 0.0,
             lengthrange: [0.0; 2],
             ctrlrange: [0.0; 2],
             ctrllimited: None,
@@ -329,9 +330,21 @@ impl TendonSpec {
     pub fn fixed(name: impl Into<String>, terms: &[(&str, f64)]) -> Self {
         TendonSpec {
             name: name.into(),
-            terms: (terms.iter())
-                .map(|&(joint, coef)| (joint.to_owned(), coef))
+            path: (terms.iter())
+                .map(|&(joint, coef)| WrapSpec::Joint {
+                    joint: joint.to_owned(),
+                    coef,
+                })
                 .collect(),
+            ..TendonSpec::default()
+        }
+    }
+
+    /// A string along a path of sites, geoms and pulleys.
+    pub fn spatial(name: impl Into<String>, path: Vec<WrapSpec>) -> Self {
+        TendonSpec {
+            name: name.into(),
+            path,
             ..TendonSpec::default()
         }
     }

@@ -7,6 +7,7 @@ use super::bodies::{is_null, is_null_position};
 use super::check::describe;
 use super::{BuildError, ModelBuilder};
 use crate::dynamics::inertia::composite_inertia;
+use crate::dynamics::tendon_armature::add_tendon_inertia;
 use crate::dynamics::{tendon, transmission};
 use crate::model::{JointKind, Model};
 use crate::singular::first_bad_pivot;
@@ -106,6 +107,7 @@ impl InverseInertia {
     fn new(model: &Model, pose0: &mut Positions<f64>) -> Result<Self, BuildError> {
         let mut mass = TreeMatrix::zeros(&model.tree);
         composite_inertia(model, &model.params, pose0, &mut mass);
+        add_tendon_inertia(model, &model.params, pose0, &mut mass);
         let mut factor = TreeFactor::zeros(&model.tree);
         match factor.factor(&model.tree, &mass) {
             true => Ok(InverseInertia {

@@ -118,6 +118,10 @@ fn limit(model: &Model, transmission: Transmission) -> Option<[f64; 2]> {
             (model.joints[j].limited).then(|| model.params.jnt_range[j])
         }
         Transmission::Tendon(t) => (model.tendons[t].limited).then(|| model.params.tendon_range[t]),
+        Transmission::Site(_)
+        | Transmission::SiteInFrame(_)
+        | Transmission::SliderCrank(_)
+        | Transmission::Body(_) => None,
     }
 }
 

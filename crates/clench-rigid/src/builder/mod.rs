@@ -58,6 +58,7 @@ mod sensors;
 mod shapes;
 mod solid;
 mod tendons;
+mod transmissions;
 
 pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};
 pub use cameras::{CameraLens, CameraSpec, CameraTracking};
@@ -71,7 +72,7 @@ pub use length_range::{LengthRangeMode, LengthRangeSpec};
 pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
 pub use relations::{
     ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec,
-    TendonSpec, TransmissionSpec,
+    TendonSpec, TransmissionSpec, WrapSpec,
 };
 
 use crate::Budget;
@@ -100,7 +101,7 @@ pub struct ModelBuilder {
     pub meshes: Vec<MeshSpec>,
     /// Height fields that geoms refer to.
     pub height_fields: Vec<HeightFieldSpec>,
-    /// Fixed tendons.
+    /// Tendons.
     pub tendons: Vec<TendonSpec>,
     /// Actuators.
     pub actuators: Vec<ActuatorSpec>,

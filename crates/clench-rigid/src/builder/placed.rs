@@ -3,7 +3,7 @@
 use super::element::Element;
 use super::meshes::{Processed, process};
 use super::resolve::Names;
-use super::{BuildError, GeomSpec, ModelBuilder};
+use super::{BuildError, GeomSpec, ModelBuilder, WrapSpec};
 use crate::model::{HeightField, Model};
 use clench_collide::{Shape, ShapeKind, bounding_radius};
 use clench_math::{Quat, Vec3};
@@ -191,7 +191,7 @@ fn around(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
     Ok(Vec3::from_array(size))
 }
 
-/// Whether a geom is only seen: it collides with nothing, by masks or explicit pairs.
+/// Whether a geom is only seen: it collides with nothing, by masks or explicit pairs, and no tendon goes around it.
 fn is_visual(builder: &ModelBuilder, geom: &GeomSpec) -> bool {
     let paired = || {
         let names = builder
@@ -202,7 +202,12 @@ fn is_visual(builder: &ModelBuilder, geom: &GeomSpec) -> bool {
             .into_iter()
             .any(|name| !name.is_empty() && *name == geom.name)
     };
-    geom.contype == 0 && geom.conaffinity == 0 && !paired()
+    let wrapped = || {
+        let elements = builder.tendons.iter().flat_map(|tendon| &tendon.path);
+        let is_this = |wrap: &WrapSpec| matches!(wrap, WrapSpec::Geom { geom: name, .. } if *name == geom.name);
+        !geom.name.is_empty() && elements.into_iter().any(is_this)
+    };
+    geom.contype == 0 && geom.conaffinity == 0 && !paired() && !wrapped()
 }
 
 /// Whether a geom is left out of the model.

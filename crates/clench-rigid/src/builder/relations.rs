@@ -5,13 +5,37 @@ use super::{HistorySpec, Origin};
 use crate::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 use clench_math::{Quat, Vec3};
 
-/// A fixed tendon: a weighted sum of joint positions.
+/// What a tendon is made of, or passes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WrapSpec {
+    /// A joint of a fixed tendon: its position, times a coefficient.
+    Joint {
+        /// The joint, a slide or a hinge.
+        joint: String,
+        /// The coefficient.
+        coef: f64,
+    },
+    /// A site that a spatial tendon passes.
+    Site(String),
+    /// A sphere, or a cylinder without ends, that a spatial tendon goes around between two sites.
+    Geom {
+        /// The geom.
+        geom: String,
+        /// A site on the side where the tendon has to pass. If it is inside the geom, so has the tendon.
+        side: Option<String>,
+    },
+    /// Starts a branch of a spatial tendon, whose length counts divided by this.
+    Pulley(f64),
+}
+
+/// A tendon: fixed, a weighted sum of joint positions, or spatial, a string through sites and around geoms. What follows from its
+/// length and its gradient is the same for both: limits, springs, dampers, friction, inertia, actuators.
 #[derive(Clone, Debug)]
 pub struct TendonSpec {
     /// Name, possibly empty.
     pub name: String,
-    /// Joint name and coefficient of each term.
-    pub terms: Vec<(String, f64)>,
+    /// What it is made of: joints alone, or branches that begin and end with a site.
+    pub path: Vec<WrapSpec>,
     /// Allowed lengths.
     pub range: [f64; 2],
     /// Whether the range limits the tendon; `None`: if `autolimits` and a range is given.
@@ -22,11 +46,13 @@ pub struct TendonSpec {
     pub actuatorfrclimited: Option<bool>,
     /// Distance at which the limit constraint appears.
     pub margin: f64,
-    /// Spring stiffness.
-    pub stiffness: f64,
-    /// Damping.
-    pub damping: f64,
-    /// Dead band of the spring; `None`: the length in the initial configuration.
+    /// Spring stiffness: coefficients of the force's first, second and third power of the stretch.
+    pub stiffness: [f64; 3],
+    /// Damping: coefficients of v, v |v| and v³ at the velocity v.
+    pub damping: [f64; 3],
+    /// Inertia of changes of the length, for a tendon that goes around no geom.
+    pub armature: f64,
+    /// Dead band of the spring; `None`: the length where the springs of joints rest.
     pub springlength: Option<[f64; 2]>,
     /// Dry friction.
     pub frictionloss: f64,
@@ -46,14 +72,15 @@ impl Default for TendonSpec {
     fn default() -> Self {
         TendonSpec {
             name: String::new(),
-            terms: Vec::new(),
+            path: Vec::new(),
             range: [0.0; 2],
             limited: None,
             actuatorfrcrange: [0.0; 2],
             actuatorfrclimited: None,
             margin: 0.0,
-            stiffness: 0.0,
-            damping: 0.0,
+            stiffness: [0.0; 3],
+            damping: [0.0; 3],
+            armature: 0.0,
             springlength: None,
             frictionloss: 0.0,
             solref_limit: DEFAULT_SOLREF,
@@ -72,8 +99,26 @@ pub enum TransmissionSpec {
     Joint(String),
     /// A joint, its axes in the parent frame for ball and free joints.
     JointInParent(String),
-    /// A fixed tendon.
+    /// A tendon.
     Tendon(String),
+    /// A site: the gears are a force and a torque along its axes.
+    Site(String),
+    /// The pose of a site in the frame of another: the gears are directions of position and of rotation in it.
+    SiteInFrame {
+        /// The site that moves.
+        site: String,
+        /// The site in whose frame it does.
+        reference: String,
+    },
+    /// A slider on the axis z of a site, which a rod of the actuator's `cranklength` joins to a crank's pin.
+    SliderCrank {
+        /// The site of the pin.
+        crank: String,
+        /// The site of the slider's axis.
+        slider: String,
+    },
+    /// The contacts of a body, which share the force equally: it draws their two sides together.
+    Body(String),
 }
 
 /// An actuator: force = gain · (control or activation) + bias.
@@ -107,6 +152,8 @@ pub struct ActuatorSpec {
     pub armature: f64,
     /// Which past controls are kept, and how late they arrive.
     pub history: HistorySpec,
+    /// Length of the rod of a slider-crank, m.
+    pub cranklength: f64,
     /// Lengths between which the transmission can be, of use to muscles; where they do not rise they are not given.
     pub lengthrange: [f64; 2],
     /// Allowed controls.

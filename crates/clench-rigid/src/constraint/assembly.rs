@@ -2,7 +2,7 @@
 
 use super::exact::ExactDiagonal;
 use super::softness::{Softness, is_single, least_regularization};
-use clench_math::Real;
+use clench_math::{Mask, Real};
 use clench_solver::{Cost, Problem};
 
 /// The most rows of a block.
@@ -105,12 +105,13 @@ impl<T: Real> Assembly<'_, T> {
     }
 
     /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` gets them and
-    /// writes its Jacobian (rows × dofs, row-major, zeros before).
+    /// writes its Jacobian (rows × dofs, row-major, zeros before). A single row that nothing can change is no constraint, as in
+    /// MuJoCo: so a string that misses the only geom that moves is neither limited nor held.
     #[inline(always)]
     pub fn push(
         &mut self,
         cost: Cost,
-        block: BlockRecord<T>,
+        mut block: BlockRecord<T>,
         rows: &[Row<T>],
         fill: impl FnOnce(&[u32], &mut [T]),
     ) {
@@ -122,6 +123,9 @@ impl<T: Real> Assembly<'_, T> {
         } = &mut *self.record;
         let target = self.problem.push(cost, rows.len(), dofs);
         fill(dofs, target.jacobian);
+        if rows.len() == 1 {
+            block.active &= any_nonzero(target.jacobian);
+        }
         blocks.push(block);
         let mut r = [T::ZERO; MAX_DIM];
         for (r, row) in r.iter_mut().zip(rows) {
@@ -148,6 +152,16 @@ impl<T: Real> Assembly<'_, T> {
             vel.push(velocity);
         }
     }
+}
+
+/// Lanes in which a row is not all zero.
+#[inline(always)]
+fn any_nonzero<T: Real>(row: &[T]) -> T::Mask {
+    let mut found = T::Mask::splat(false);
+    for entry in row {
+        found |= !entry.eq(T::ZERO);
+    }
+    found
 }
 
 /// Raises R to what the rounding of single precision leaves of it, see [`least_regularization`]. The rows of a cone are

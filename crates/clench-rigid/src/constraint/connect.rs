@@ -10,7 +10,7 @@
 
 use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
-use super::chains::{BodyPoint, Chains, Side};
+use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use clench_math::{Motion, Real, Vec3, kernel};
 use clench_solver::Cost;
 
@@ -21,7 +21,7 @@ pub(super) fn push<T: Real>(
     equality: usize,
     bodies: [usize; 2],
 ) {
-    let chains = Chains::new(context, bodies);
+    let chains = Chains::new(context.model, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
@@ -58,13 +58,13 @@ impl<T: Real> Anchors<T> {
         let [body1, body2] = bodies;
         let world1 = pos.xpos[body1] + pos.xmat[body1] * params.eq_anchor1[equality];
         let world2 = pos.xpos[body2] + pos.xmat[body2] * params.eq_anchor2[equality];
-        let first = BodyPoint::new(context, body1, world1);
-        let second = BodyPoint::new(context, body2, world2);
+        let first = BodyPoint::new(context.model, context.position, body1, world1);
+        let second = BodyPoint::new(context.model, context.position, body2, world2);
         Anchors {
             separation: world1 - world2,
             bias: [
-                first.bias_acceleration(context),
-                second.bias_acceleration(context),
+                first.bias_acceleration(context.model, context.velocity, &context.state.qvel),
+                second.bias_acceleration(context.model, context.velocity, &context.state.qvel),
             ],
             offsets: [first.offset, second.offset],
         }

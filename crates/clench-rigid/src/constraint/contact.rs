@@ -22,9 +22,9 @@
 //! (`solreffriction`); the rows of a pyramid share the normal's, since its edges mix them.
 
 use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
-use super::chains::{BodyPoint, Chains, Side};
 use super::{ConstraintContext, Softness};
 use crate::contact::Contact;
+use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::{Cost, FrictionCone};
 
@@ -46,7 +46,7 @@ pub(super) fn push<T: Real>(
     }
     let body = |i: usize| context.model.geoms[contact.geoms[i]].body;
     let bodies = [body(0), body(1)];
-    let chains = Chains::new(context, bodies).without_common();
+    let chains = Chains::new(context.model, bodies).without_common();
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
@@ -143,7 +143,7 @@ fn fill<T: Real>(
             Side::Second => (bodies[1], T::ONE),
             _ => (bodies[0], -T::ONE),
         };
-        let offset = BodyPoint::new(context, body, contact.pos).offset;
+        let offset = BodyPoint::new(context.model, context.position, body, contact.pos).offset;
         for &dof in dofs {
             let motion = context.position.cdof[dof as usize];
             let velocity = motion.velocity_at(offset) * sign;

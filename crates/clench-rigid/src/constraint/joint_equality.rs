@@ -10,6 +10,8 @@
 use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
 use super::coordinate::Coordinate;
+use crate::model::Params;
+use crate::workspace::Positions;
 use clench_math::{Real, kernel};
 use clench_solver::Cost;
 
@@ -43,6 +45,18 @@ pub(super) fn push<T: Real>(
             leader.add_gradient(context, dofs, -slope, jacobian);
         }
     });
+}
+
+/// P′ of tendon equality `equality` where the tendon that leads, `leader`, is now.
+#[inline(always)]
+pub(crate) fn equality_slope<T: Real>(
+    params: &Params<T>,
+    pos: &Positions<T>,
+    equality: usize,
+    leader: usize,
+) -> T {
+    let error = pos.ten_length[leader] - params.tendon_length0[leader];
+    evaluate(params.eq_polycoef[equality], error).1
 }
 
 /// P(e) and P′(e).

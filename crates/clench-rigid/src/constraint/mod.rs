@@ -4,7 +4,6 @@
 //! stand in MuJoCo's order: equalities, dry friction, limits, contacts.
 
 mod assembly;
-mod chains;
 mod connect;
 mod contact;
 mod coordinate;
@@ -16,6 +15,7 @@ pub mod softness;
 mod weld;
 
 pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
+pub(crate) use joint_equality::equality_slope;
 pub use softness::Softness;
 pub(crate) use weld::weld_torque;
 

@@ -14,8 +14,8 @@
 
 use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
-use super::chains::{Chains, Side};
 use super::connect::Anchors;
+use crate::dynamics::chains::{Chains, Side};
 use crate::model::Params;
 use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
@@ -28,7 +28,7 @@ pub(super) fn push<T: Real>(
     equality: usize,
     bodies: [usize; 2],
 ) {
-    let chains = Chains::new(context, bodies);
+    let chains = Chains::new(context.model, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;

@@ -149,7 +149,8 @@ pub fn input<T: Real>(
     nearest_setpoint(model, params, u, input, at.length)
 }
 
-/// The setpoint of a servo on a ball joint, moved by whole turns to the one nearest to `near`; other inputs pass
+/// The setpoint of a servo on a ball joint, or on the rotation of a site in the frame of another, moved by whole turns to the one
+/// nearest to `near`; other inputs pass
 /// unchanged.
 ///
 /// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
@@ -162,20 +163,23 @@ pub fn nearest_setpoint<T: Real>(
     near: T,
 ) -> T {
     let actuator = &model.actuators[u];
-    let on_ball = match actuator.transmission {
+    let gear = &params.actuator_gear[u];
+    let (rotates, axis) = match actuator.transmission {
         Transmission::Joint(j) | Transmission::JointInParent(j) => {
-            model.joints[j].kind == JointKind::Ball
+            let on_ball = model.joints[j].kind == JointKind::Ball;
+            (T::Mask::splat(on_ball), &gear[..3])
         }
-        Transmission::Tendon(_) => false,
+        Transmission::SiteInFrame(_) => (Vec3::from_slice(gear).norm().eq(T::ZERO), &gear[3..]),
+        _ => (T::Mask::splat(false), &gear[..3]),
     };
     let pid = actuator.gain == GainKind::Pid;
     let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
-    if !on_ball || !(pid || fixed) {
+    if !rotates.any() || !(pid || fixed) {
         return input;
     }
-    let turn = Vec3::from_slice(&params.actuator_gear[u]).norm() * T::new(std::f64::consts::TAU);
+    let turn = Vec3::from_slice(axis).norm() * T::new(std::f64::consts::TAU);
     let pulls_back = params.actuator_gainprm[u][0].eq(-params.actuator_biasprm[u][1]);
-    let wraps = (pulls_back | T::Mask::splat(pid)) & turn.gt(T::ZERO);
+    let wraps = rotates & (pulls_back | T::Mask::splat(pid)) & turn.gt(T::ZERO);
     if !wraps.any() {
         return input;
     }

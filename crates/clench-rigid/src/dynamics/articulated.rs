@@ -107,10 +107,12 @@ impl<T: Real> ArticulatedInertia<T> {
 /// takes a part of the smallest pivots that grows with the cube of their number, at 20 about a hundredth.
 const MAX_DOFS: usize = 20;
 
-/// Memory for [`articulated_factor`] where numbers `T` and the model need it, else none: the model alone decides.
+/// Memory for [`articulated_factor`] where numbers `T` and the model need it, else none: the model alone decides. The inertia of
+/// tendons is not that of a body: with it M is factored itself.
 pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> {
     let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();
-    if is_single::<T>() && longest.is_some_and(|n| n > MAX_DOFS) {
+    let heavy_tendons = model.params.tendon_armature.iter().any(|&m| m > 0.0);
+    if is_single::<T>() && longest.is_some_and(|n| n > MAX_DOFS) && !heavy_tendons {
         vec![ArticulatedInertia::ZERO; model.nbody()]
     } else {
         Vec::new()

@@ -9,7 +9,7 @@ use crate::dynamics::dc_motor;
 use crate::dynamics::ellipsoid::ellipsoid_rates;
 use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
 use crate::dynamics::gain::{ActuatorMotion, unlimited_force, unlimited_slope};
-use crate::dynamics::reflected::dof_damper;
+use crate::dynamics::reflected::{dof_damper, tendon_damper};
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
 use crate::model::{GainKind, Model, Params, Transmission};
@@ -48,7 +48,8 @@ pub fn add_velocity_derivatives<T: Real>(
                 *diagonal -= dof_damper(model, params, i).damping_slope(v) * scale;
             }
         }
-        for (t, &damping) in params.tendon_damping.iter().enumerate() {
+        for (t, &velocity) in vel.ten_velocity.iter().enumerate() {
+            let damping = tendon_damper(params, t).damping_slope(velocity);
             let row = tendon::gradient(model, pos, t);
             add_outer(model, row, -damping * scale, matrix);
         }
@@ -57,7 +58,7 @@ pub fn add_velocity_derivatives<T: Real>(
 
 /// Adds `scale · JᵀJ` of a sparse row J, where the pattern has room for it.
 #[inline(always)]
-fn add_outer<T: Real>(
+pub fn add_outer<T: Real>(
     model: &Model,
     row: impl Iterator<Item = (usize, T)> + Clone,
     scale: T,

@@ -1,6 +1,8 @@
 //! Mechanical energy, J.
 
-use crate::dynamics::spring::{JointStretch, joint_spring, joint_stretch, tendon_stretch};
+use crate::dynamics::spring::{
+    JointStretch, joint_spring, joint_stretch, tendon_spring, tendon_stretch,
+};
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
 use clench_math::{Real, kernel};
@@ -43,7 +45,6 @@ pub fn energy<T: Real>(
 /// The energy of every spring.
 #[inline(always)]
 fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>, qpos: &[T]) -> T {
-    let half = T::new(0.5);
     let mut energy = T::ZERO;
     for j in 0..model.joints.len() {
         let spring = joint_spring(params, j);
@@ -56,8 +57,8 @@ fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>,
             }
         };
     }
-    for (t, &stiffness) in params.tendon_stiffness.iter().enumerate() {
-        energy += half * stiffness * tendon_stretch(params, t, pos.ten_length[t]).squared();
+    for (t, &length) in pos.ten_length.iter().enumerate() {
+        energy += tendon_spring(params, t).energy(tendon_stretch(params, t, length));
     }
     energy
 }

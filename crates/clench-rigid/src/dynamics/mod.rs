@@ -9,9 +9,11 @@
 
 pub mod activation;
 pub mod actuation;
+pub mod adhesion;
 pub mod articulated;
 pub mod bias;
 pub mod camera;
+pub mod chains;
 pub mod com;
 pub mod coriolis;
 pub mod dc_motor;
@@ -34,8 +36,12 @@ pub mod project;
 pub mod reflected;
 pub mod rk4;
 pub mod setpoint;
+pub mod site_transmission;
 pub mod smooth;
 pub mod spring;
 pub mod tendon;
+pub mod tendon_armature;
+pub mod tendon_path;
 pub mod transmission;
 pub mod velocity;
+pub mod wrap;

@@ -4,8 +4,10 @@ use crate::contact::Contact;
 use crate::dynamics::fluid::fluid_forces;
 use crate::dynamics::polynomial::Polynomial;
 use crate::dynamics::project::{force_at, project_forces};
-use crate::dynamics::reflected::dof_damper;
-use crate::dynamics::spring::{JointStretch, joint_spring, joint_stretch, tendon_stretch};
+use crate::dynamics::reflected::{dof_damper, tendon_damper};
+use crate::dynamics::spring::{
+    JointStretch, joint_spring, joint_stretch, tendon_spring, tendon_stretch,
+};
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
@@ -75,7 +77,7 @@ fn springs<T: Real>(
     }
     for t in 0..model.tendons.len() {
         let stretch = tendon_stretch(params, t, pos.ten_length[t]);
-        let force = -stretch * params.tendon_stiffness[t];
+        let force = -stretch * tendon_spring(params, t).stiffness(stretch);
         add_tendon_force(model, pos, t, force, qfrc);
     }
 }
@@ -106,7 +108,8 @@ fn dampers<T: Real>(
         *qfrc = -v * dof_damper(model, params, i).damping(v);
     }
     for t in 0..model.tendons.len() {
-        let force = -vel.ten_velocity[t] * params.tendon_damping[t];
+        let velocity = vel.ten_velocity[t];
+        let force = -velocity * tendon_damper(params, t).damping(velocity);
         add_tendon_force(model, pos, t, force, qfrc);
     }
 }

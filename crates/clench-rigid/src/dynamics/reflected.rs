@@ -15,6 +15,12 @@ pub fn dof_damper<T: Real>(model: &Model, params: &Params<T>, i: usize) -> Polyn
     add_dampers(params, actuators, own)
 }
 
+/// The force law of the damper of tendon `t`.
+#[inline(always)]
+pub fn tendon_damper<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
+    Polynomial::new(params.tendon_damping[t], params.tendon_dampingpoly[t])
+}
+
 #[inline(always)]
 fn add_dampers<T: Real>(
     params: &Params<T>,

@@ -48,6 +48,12 @@ pub fn joint_stretch<T: Real>(
     })
 }
 
+/// The force law of tendon `t`'s spring.
+#[inline(always)]
+pub fn tendon_spring<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
+    Polynomial::new(params.tendon_stiffness[t], params.tendon_stiffnesspoly[t])
+}
+
 /// How far tendon `t` of length `length` is outside the dead band of its spring.
 #[inline(always)]
 pub fn tendon_stretch<T: Real>(params: &Params<T>, t: usize, length: T) -> T {

@@ -2,7 +2,8 @@
 //!
 //! Springs, dampers, limits, dry friction, equalities and actuators of tendons read lengths and rows, and nothing else.
 
-use crate::model::{Model, Params};
+use crate::dynamics::tendon_path::spatial_tendon;
+use crate::model::{Model, Params, Wrap};
 use crate::workspace::Positions;
 use clench_math::{Real, kernel};
 
@@ -20,19 +21,40 @@ pub fn gradient<'a, T: Real>(
 #[kernel]
 pub fn tendons<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], pos: &mut Positions<T>) {
     for (t, tendon) in model.tendons.iter().enumerate() {
-        let coefs = &params.wrap_coef[tendon.coefs.clone()];
-        let dofs = model.tendon_dofs.dofs(t);
-        let row = &mut pos.ten_jacobian[model.tendon_dofs.range(t)];
-        let mut length = T::ZERO;
-        for (&j, &coef) in tendon.joints.iter().zip(coefs) {
-            let joint = &model.joints[j];
-            length += coef * qpos[joint.qpos];
-            if let Ok(column) = dofs.binary_search(&(joint.dof as u32)) {
-                row[column] = coef;
-            }
+        if tendon.is_spatial() {
+            spatial_tendon(model, params, pos, t);
+        } else {
+            fixed_tendon(model, params, qpos, pos, t);
         }
-        pos.ten_length[t] = length;
     }
+}
+
+/// A sum of joint positions: its gradient are the coefficients.
+#[inline(always)]
+fn fixed_tendon<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qpos: &[T],
+    pos: &mut Positions<T>,
+    t: usize,
+) {
+    let tendon = &model.tendons[t];
+    let dofs = model.tendon_dofs.dofs(t);
+    let row = &mut pos.ten_jacobian[model.tendon_dofs.range(t)];
+    let mut length = T::ZERO;
+    for (wrap, &coef) in tendon
+        .path
+        .iter()
+        .zip(&params.wrap_coef[tendon.coefs.clone()])
+    {
+        let &Wrap::Joint(j) = wrap else { continue };
+        let joint = &model.joints[j];
+        length += coef * qpos[joint.qpos];
+        if let Ok(column) = dofs.binary_search(&(joint.dof as u32)) {
+            row[column] = coef;
+        }
+    }
+    pos.ten_length[t] = length;
 }
 
 /// Rate of change of each tendon's length (ntendon).

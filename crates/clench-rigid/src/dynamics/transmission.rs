@@ -1,5 +1,6 @@
 //! Transmissions: the length of each actuator and its moment arms, ∂length/∂q along each dof.
 
+use crate::dynamics::site_transmission::{relative_pose, slider_crank, wrench_arms};
 use crate::model::{Joint, JointKind, Model, Params, Transmission};
 use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
@@ -17,7 +18,7 @@ pub fn moment<'a, T: Real>(
 /// `actuator_length` and `actuator_moment`, after the kinematics and the tendons.
 ///
 /// A ball joint's length is its rotation vector along the gear, a free joint has none (zero); their gears are wrenches in
-/// the child's frame, or for [`Transmission::JointInParent`] in the parent's.
+/// the child's frame, or for [`Transmission::JointInParent`] in the parent's. What pulls on contacts has no length.
 #[kernel]
 pub fn transmissions<T: Real>(
     model: &Model,
@@ -25,9 +26,10 @@ pub fn transmissions<T: Real>(
     qpos: &[T],
     pos: &mut Positions<T>,
 ) {
+    let mut moments = std::mem::take(&mut pos.actuator_moment);
     for (u, actuator) in model.actuators.iter().enumerate() {
         let gear = &params.actuator_gear[u];
-        let row = &mut pos.actuator_moment[model.actuator_dofs.range(u)];
+        let row = &mut moments[model.actuator_dofs.range(u)];
         pos.actuator_length[u] = match actuator.transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 let joint = &model.joints[j];
@@ -42,8 +44,17 @@ pub fn transmissions<T: Real>(
                 }
                 pos.ten_length[t] * gear[0]
             }
+            Transmission::Site(site) => {
+                wrench_arms(model, pos, site, gear, row);
+                T::ZERO
+            }
+            Transmission::SiteInFrame(sites) => relative_pose(model, params, pos, sites, gear, row),
+            Transmission::SliderCrank(sites) => slider_crank(model, params, pos, u, sites, row),
+            // Its moment arms wait for the contacts, see `adhesion`.
+            Transmission::Body(_) => T::ZERO,
         };
     }
+    pos.actuator_moment = moments;
 }
 
 /// Writes the moment arms on a joint that stands at `q`, or at the rotation `turn`, and returns the length.

@@ -21,6 +21,8 @@ pub(super) enum Rule {
     NotNegative,
     /// Finite, positive where the model's number is, else zero or more.
     AsModel,
+    /// Finite, zero or more where the model's number is positive, else zero.
+    IfModel,
     /// Pairs that do not fall, infinite if need be.
     Range,
     /// Quaternions, which are made unit ones.
@@ -109,10 +111,11 @@ impl Rule {
     /// What a number must be, if it is not.
     fn refuses<S: Scalar>(self, x: S, of_model: f64) -> Option<&'static str> {
         let positive = self == Rule::Positive || self == Rule::AsModel && of_model > 0.0;
-        let not_negative = matches!(self, Rule::NotNegative | Rule::AsModel);
+        let not_negative = matches!(self, Rule::NotNegative | Rule::AsModel | Rule::IfModel);
         let (holds, range) = match self {
             Rule::Range => (!x.to_f64().is_nan(), "a number, or infinite"),
             _ if positive => (x > S::ZERO && x.is_finite(), "positive and finite"),
+            Rule::IfModel if of_model <= 0.0 => (x == S::ZERO, "zero, as in the model"),
             _ if not_negative => (x >= S::ZERO && x.is_finite(), "finite, zero or more"),
             _ => (x.is_finite(), "finite"),
         };

@@ -21,7 +21,8 @@ pub use sensor_target::{
 pub use structure::{
     Actuator, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates, Dof,
     DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField, History,
-    Integrator, Joint, JointKind, Keyframe, Mesh, Pair, RowPattern, Site, Tendon, Transmission,
+    Integrator, Joint, JointKind, Keyframe, Mesh, Pair, RowPattern, Section, Site, Tendon,
+    Transmission, Wrap,
 };
 
 use crate::Budget;
@@ -50,7 +51,7 @@ pub struct Model {
     pub sites: Vec<Site>,
     /// Cameras.
     pub cameras: Vec<Camera>,
-    /// Fixed tendons.
+    /// Tendons.
     pub tendons: Vec<Tendon>,
     /// The dofs that change the length of each tendon.
     pub tendon_dofs: RowPattern,
@@ -121,7 +122,7 @@ impl Model {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 &mut self.joints[j].reflecting
             }
-            Transmission::Tendon(_) => return false,
+            _ => return false,
         };
         if let Err(place) = reflecting.binary_search(&u) {
             reflecting.insert(place, u);
@@ -134,7 +135,7 @@ impl Model {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 self.joints[j].reflecting.contains(&u)
             }
-            Transmission::Tendon(_) => false,
+            _ => false,
         }
     }
     /// Numbers that all sensors give.

@@ -211,12 +211,19 @@ params! {
     /// Focal length and principal point, two numbers each.
     cam_intrinsic: Vec<[T; 4]>, Finite;
 
-    /// Coefficients of fixed tendons, tendon after tendon.
+    /// Numbers of what tendons are made of, tendon after tendon: coefficients of joints, divisors of pulleys; 0 for sites and
+    /// geoms.
     wrap_coef: Vec<T>, Finite;
     /// Spring stiffness.
     tendon_stiffness: Vec<T>, Finite;
+    /// Coefficients of the spring's quadratic and cubic force.
+    tendon_stiffnesspoly: Vec<[T; 2]>, Finite;
     /// Damping.
     tendon_damping: Vec<T>, Finite;
+    /// Coefficients of quadratic and cubic damping.
+    tendon_dampingpoly: Vec<[T; 2]>, Finite;
+    /// Inertia of changes of the length.
+    tendon_armature: Vec<T>, IfModel;
     /// Dead band of the spring.
     tendon_lengthspring: Vec<[T; 2]>, Range;
     /// Length at qpos0.
@@ -242,6 +249,8 @@ params! {
 
     /// Scaling of the force onto the transmission's axes.
     actuator_gear: Vec<[T; 6]>, Finite;
+    /// Length of the rod of a slider-crank.
+    actuator_cranklength: Vec<T>, Finite;
     /// Parameters of the dynamics.
     actuator_dynprm: Vec<[T; 10]>, Finite;
     /// Parameters of the gain.

@@ -1,9 +1,10 @@
-//! Forces on bodies from outside their tree of joints: applied ones, contacts, connects and welds.
+//! Forces on bodies from outside their tree of joints: applied ones, contacts, connects, welds and spatial tendons.
 //!
 //! A force F at a point p with a couple Q has the moment Q + (p − o) × F about o. The second body of a contact takes its
 //! force, the first its negative; a connect or weld pulls its first body along its rows, and the second against them.
 
 use super::Source;
+use super::tendon_forces::each_pull;
 use crate::constraint::{ConstraintSource, weld_torque};
 use crate::contact::Contact;
 use crate::model::EqualityTarget;
@@ -56,6 +57,16 @@ pub(crate) fn external<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     each_joint_of_bodies(s, |bodies, wrenches| {
         add(bodies[0], T::ONE, &wrenches[0]);
         add(bodies[1], -T::ONE, &wrenches[1]);
+    });
+    each_pull(s, |span, force| {
+        for (end, sign) in [(0, -T::ONE), (1, T::ONE)] {
+            let wrench = Wrench {
+                force: span.pull * force,
+                couple: Vec3::ZERO,
+                at: span.points[end],
+            };
+            add(span.bodies[end], sign, &wrench);
+        }
     });
 }
 

@@ -3,6 +3,7 @@
 //! Names, order and frames are MuJoCo's where it has the same thing.
 
 mod forces;
+mod tendon_forces;
 
 pub(crate) use forces::{external as external_forces, of_contact};
 
@@ -133,8 +134,8 @@ outputs! {
     qfrc_smooth [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_smooth);
     /// Constraint forces along dofs (nv).
     qfrc_constraint [m.nv] of Everything => out.extend_from_slice(&s.ws.qfrc_constraint);
-    /// What acts on each body from outside: applied forces, contacts, connects and welds. Torque, then force, about the
-    /// centre of mass of its tree (nbody, 6).
+    /// What acts on each body from outside: applied forces, contacts, connects, welds and strings. Torque, then force, about
+    /// the centre of mass of its tree (nbody, 6).
     cfrc_ext [m.nbody(), 6] of Everything => forces::external(s, out);
     /// What each body's joints carry: the torque, then the force of its parent on it, about the centre of mass of its tree (nbody, 6).
     cfrc_int [m.nbody(), 6] of Everything => wrenches(&body_forces(s).cfrc_int, out);

@@ -8,6 +8,7 @@ use clench_math::{Quat, Vec3};
 use clench_rigid::Sim;
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, GeomSpec, JointSpec, ModelBuilder, TendonSpec, TransmissionSpec,
+    WrapSpec,
 };
 use clench_rigid::model::{BiasKind, DynamicsKind, Flags, GainKind};
 pub use common::*;
@@ -129,15 +130,104 @@ pub fn everything() -> ModelBuilder {
     knee.actuatorgravcomp = true;
     knee.actuatorfrcrange = [-2.0, 2.0];
     let hamstring = &mut b.tendons[0];
-    hamstring.stiffness = 5.0;
-    hamstring.damping = 0.4;
+    hamstring.stiffness = [5.0, 0.0, 0.0];
+    hamstring.damping = [0.4, 0.0, 0.0];
     hamstring.springlength = Some([-0.1, 0.1]);
     hamstring.actuatorfrcrange = [-1.0, 1.0];
+    add_strings(&mut b);
     b.physics.density = 20.0;
     b.physics.viscosity = 0.5;
     b.physics.wind = [0.5, -0.3, 0.2];
     b.actuators = actuators();
     b
+}
+
+/// Adds strings of every kind: straight, around and through a ball and a drum, to either side, in branches.
+fn add_strings(b: &mut ModelBuilder) {
+    let sites = [
+        (0, "post", [0.1, 0.2, 2.0]),
+        (1, "hip", [-0.1, 0.1, -0.2]),
+        (3, "palm", [0.1, 0.0, 0.1]),
+        (5, "thigh", [0.1, 0.01, -0.2]),
+        (5, "patella", [0.1, 0.0, -0.4]),
+        (5, "core", [0.01, 0.02, -0.4]),
+        (6, "shin", [0.08, 0.0, -0.2]),
+        (6, "heel", [-0.07, 0.02, -0.2]),
+        (6, "axle", [0.005, 0.01, -0.1]),
+    ];
+    for (body, name, pos) in sites {
+        b.bodies[body] = std::mem::take(&mut b.bodies[body]).site(name, pos);
+    }
+    for (body, name, geom) in [
+        (5, "ball", GeomSpec::sphere(0.07).at([0.0, 0.0, -0.4])),
+        (
+            6,
+            "drum",
+            GeomSpec::cylinder(0.04, 0.1)
+                .at([0.0, 0.0, -0.1])
+                .turned([0.8, 0.6, 0.0, 0.0]),
+        ),
+    ] {
+        b.bodies[body].geoms.push(GeomSpec {
+            name: name.into(),
+            ..geom.mass(0.1)
+        });
+    }
+    let site = |name: &str| WrapSpec::Site(name.into());
+    let geom = |name: &str, side: &str| WrapSpec::Geom {
+        geom: name.into(),
+        side: (!side.is_empty()).then(|| side.into()),
+    };
+    let strings = [
+        ("straight", vec![site("post"), site("palm"), site("hip")]),
+        (
+            "around ball",
+            vec![site("hip"), geom("ball", ""), site("heel")],
+        ),
+        (
+            "past ball",
+            vec![site("thigh"), geom("ball", "patella"), site("shin")],
+        ),
+        (
+            "through ball",
+            vec![site("thigh"), geom("ball", "core"), site("heel")],
+        ),
+        (
+            "around drum",
+            vec![site("palm"), geom("drum", ""), site("post")],
+        ),
+        (
+            "past drum",
+            vec![site("palm"), geom("drum", "shin"), site("hip")],
+        ),
+        (
+            "through drum",
+            vec![site("hip"), geom("drum", "axle"), site("palm")],
+        ),
+        (
+            "branches",
+            vec![
+                WrapSpec::Pulley(1.5),
+                site("post"),
+                geom("ball", "patella"),
+                site("shin"),
+                site("palm"),
+                WrapSpec::Pulley(2.0),
+                site("hip"),
+                geom("drum", "heel"),
+                site("thigh"),
+            ],
+        ),
+    ];
+    for (name, path) in strings {
+        let mut string = TendonSpec::spatial(name, path);
+        string.stiffness = [3.0, 0.4, 1.5];
+        string.damping = [0.2, 0.1, 0.03];
+        string.springlength = Some([0.3, 0.5]);
+        b.tendons.push(string);
+    }
+    b.tendons[1].armature = 0.3;
+    b.tendons[0].armature = 0.02;
 }
 
 fn actuators() -> Vec<ActuatorSpec> {
@@ -173,6 +263,12 @@ fn actuators() -> Vec<ActuatorSpec> {
         early,
         ActuatorSpec::velocity("pull", tendon(), 1.0),
         ActuatorSpec::velocity("knee", joint("knee"), 0.5),
+        ActuatorSpec::position(
+            "string",
+            TransmissionSpec::Tendon("branches".into()),
+            2.0,
+            0.3,
+        ),
         ball,
         thruster,
     ]

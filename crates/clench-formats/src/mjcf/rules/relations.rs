@@ -40,13 +40,37 @@ pub(super) const RULES: &[Rule] = &[
         read: "active solref solimp",
         ..NONE
     },
-    section("tendon", "fixed", "spatial"),
+    section("tendon", "spatial fixed", ""),
+    Rule {
+        element: "spatial",
+        read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
+            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction",
+        ignored: "group user width material rgba",
+        later: "springyield=0",
+        children: "site geom pulley",
+        ..NONE
+    },
+    Rule {
+        element: "spatial/site",
+        read: "site",
+        ..NONE
+    },
+    Rule {
+        element: "spatial/geom",
+        read: "geom sidesite",
+        ..NONE
+    },
+    Rule {
+        element: "pulley",
+        read: "divisor",
+        ..NONE
+    },
     Rule {
         element: "fixed",
-        read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping frictionloss \
-            springlength solreflimit solimplimit solreffriction solimpfriction",
+        read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
+            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction",
         ignored: "group user",
-        later: "armature=0 springyield=0",
+        later: "springyield=0",
         children: "joint",
         ..NONE
     },
@@ -57,10 +81,10 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "default/tendon",
-        read: "limited range actuatorfrclimited actuatorfrcrange margin stiffness damping frictionloss springlength \
-            solreflimit solimplimit solreffriction solimpfriction",
+        read: "limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
+            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction",
         ignored: "group user width material rgba",
-        later: "armature=0 springyield=0",
+        later: "springyield=0",
         ..NONE
     },
 ];

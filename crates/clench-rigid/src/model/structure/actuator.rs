@@ -10,8 +10,16 @@ pub enum Transmission {
     Joint(usize),
     /// A joint, axes in the parent frame.
     JointInParent(usize),
-    /// A fixed tendon.
+    /// A tendon.
     Tendon(usize),
+    /// A site: a wrench along its axes.
+    Site(usize),
+    /// The pose of the first site in the frame of the second.
+    SiteInFrame([usize; 2]),
+    /// The slider of a slider-crank, by the site of the crank's pin and the one whose axis z the slider moves along.
+    SliderCrank([usize; 2]),
+    /// The contacts of a body.
+    Body(usize),
 }
 
 /// How a control becomes an activation.

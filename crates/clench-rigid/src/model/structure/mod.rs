@@ -22,4 +22,4 @@ pub use history::History;
 pub use keyframe::Keyframe;
 pub use option::{Flags, Integrator};
 pub use pattern::RowPattern;
-pub use tendon::Tendon;
+pub use tendon::{Section, Tendon, Wrap};

@@ -3,28 +3,31 @@
 //! The dofs that move a body are its chain: a row of the tree. Of two chains the common part comes first in both; what
 //! is left lies on different branches, and dofs are numbered depth first, so one rest comes wholly before the other.
 
-use super::ConstraintContext;
+use crate::model::Model;
+use crate::workspace::{Positions, Velocities};
 use clench_math::{Motion, Real, Vec3};
 
 /// Which of the two bodies a dof moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub enum Side {
+    /// Both.
     Both,
+    /// The first alone.
     First,
+    /// The second alone.
     Second,
 }
 
 /// The dofs of two bodies, ascending, in three parts.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Chains<'a> {
+pub struct Chains<'a> {
     parts: [(&'a [u32], Side); 3],
 }
 
 impl<'a> Chains<'a> {
     /// All dofs that move either body.
     #[inline(always)]
-    pub fn new<T: Real>(context: &ConstraintContext<'a, T>, [body1, body2]: [usize; 2]) -> Self {
-        let model = context.model;
+    pub fn new(model: &'a Model, [body1, body2]: [usize; 2]) -> Self {
         let chain = |body: usize| match model.bodies[body].last_dof {
             Some(dof) => model.tree.row(dof),
             None => &[],
@@ -78,7 +81,8 @@ impl<'a> Chains<'a> {
 
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BodyPoint<T> {
+pub struct BodyPoint<T> {
+    /// The body.
     pub body: usize,
     /// From the reference point of the body's tree.
     pub offset: Vec3<T>,
@@ -87,25 +91,25 @@ pub(super) struct BodyPoint<T> {
 impl<T: Real> BodyPoint<T> {
     /// The point of `body` that is at `point` (world coordinates) now.
     #[inline(always)]
-    pub fn new(context: &ConstraintContext<T>, body: usize, point: Vec3<T>) -> Self {
-        let root = context.model.bodies[body].root;
+    pub fn new(model: &Model, pos: &Positions<T>, body: usize, point: Vec3<T>) -> Self {
+        let root = model.bodies[body].root;
         BodyPoint {
             body,
-            offset: point - context.position.subtree_com[root],
+            offset: point - pos.subtree_com[root],
         }
     }
 
     /// Acceleration of the body and of the point while no dof accelerates (J̇ v): angular, then linear at the point.
     #[inline(always)]
-    pub fn bias_acceleration(&self, context: &ConstraintContext<T>) -> Motion<T> {
+    pub fn bias_acceleration(&self, model: &Model, vel: &Velocities<T>, qvel: &[T]) -> Motion<T> {
         let mut sum = Motion::ZERO;
-        if let Some(last) = context.model.bodies[self.body].last_dof {
-            for &dof in context.model.tree.row(last) {
+        if let Some(last) = model.bodies[self.body].last_dof {
+            for &dof in model.tree.row(last) {
                 let dof = dof as usize;
-                sum += context.velocity.cdof_dot[dof] * context.state.qvel[dof];
+                sum += vel.cdof_dot[dof] * qvel[dof];
             }
         }
-        let velocity = context.velocity.cvel[self.body];
+        let velocity = vel.cvel[self.body];
         let turning = velocity.angular.cross(velocity.velocity_at(self.offset));
         Motion::new(sum.angular, sum.velocity_at(self.offset) + turning)
     }

@@ -1,0 +1,53 @@
+//! What an actuator pulls on, by the attributes that name it.
+
+use super::document::Element;
+use crate::LoadError;
+use clench_rigid::builder::TransmissionSpec;
+
+/// Attributes that name a target; an actuator has one.
+const TARGETS: &[&str] = &[
+    "joint",
+    "jointinparent",
+    "tendon",
+    "site",
+    "cranksite",
+    "body",
+];
+
+/// The target of an actuator.
+pub(super) fn read(element: &Element) -> Result<TransmissionSpec, LoadError> {
+    element.at_most_one(TARGETS)?;
+    let name = |attribute| element.text(attribute).map(str::to_owned);
+    let (reference, slider) = (name("refsite"), name("slidersite"));
+    if reference.is_some() && element.text("site").is_none() {
+        return Err(element.error("refsite goes with site only"));
+    }
+    if element.text("cranksite").is_none() {
+        let given = |attribute: &&str| element.text(attribute).is_some();
+        if let Some(attribute) = ["slidersite", "cranklength"].iter().find(|a| given(a)) {
+            return Err(element.error(format!("{attribute} goes with cranksite only")));
+        }
+    }
+    if let Some(crank) = name("cranksite") {
+        return Ok(TransmissionSpec::SliderCrank {
+            crank,
+            slider: slider.ok_or_else(|| element.missing("slidersite"))?,
+        });
+    }
+    let site = |site| match reference {
+        Some(reference) => TransmissionSpec::SiteInFrame { site, reference },
+        None => TransmissionSpec::Site(site),
+    };
+    name("joint")
+        .map(TransmissionSpec::Joint)
+        .or_else(|| name("jointinparent").map(TransmissionSpec::JointInParent))
+        .or_else(|| name("tendon").map(TransmissionSpec::Tendon))
+        .or_else(|| name("body").map(TransmissionSpec::Body))
+        .or_else(|| name("site").map(site))
+        .ok_or_else(|| match element.tag.as_str() {
+            "adhesion" => element.missing("body"),
+            _ => {
+                element.error("one of joint, jointinparent, tendon, site or cranksite is required")
+            }
+        })
+}

@@ -1,0 +1,61 @@
+//! Transmissions to contacts: a body is drawn to whatever it touches.
+//!
+//! The force is shared equally by all contacts of the body, those among them that are within the gap and carry no force yet. Along
+//! a contact's normal n, from its first body to the second, the bodies come apart with n · (v₂ − v₁): the moment arms are minus
+//! the mean of that over the contacts, and zero where there is none. Gears do not count.
+
+use crate::contact::Contact;
+use crate::dynamics::chains::{BodyPoint, Chains, Side};
+use crate::model::{Model, Transmission};
+use crate::workspace::Positions;
+use clench_math::{Real, kernel};
+
+/// Moment arms of all actuators on contacts, once these are found.
+#[kernel]
+pub fn adhesion<T: Real>(model: &Model, contacts: &[Contact<T>], pos: &mut Positions<T>) {
+    let mut moments = std::mem::take(&mut pos.actuator_moment);
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        if let Transmission::Body(body) = actuator.transmission {
+            let row = &mut moments[model.actuator_dofs.range(u)];
+            body_arms(model, contacts, pos, body, row);
+        }
+    }
+    pos.actuator_moment = moments;
+}
+
+/// Moment arms, over all dofs of the model, of an actuator on the contacts of `body`.
+#[inline(always)]
+fn body_arms<T: Real>(
+    model: &Model,
+    contacts: &[Contact<T>],
+    pos: &Positions<T>,
+    body: usize,
+    row: &mut [T],
+) {
+    row.fill(T::ZERO);
+    let mut count = T::ZERO;
+    for contact in contacts {
+        let bodies = contact.geoms.map(|geom| model.geoms[geom].body);
+        if !bodies.contains(&body) {
+            continue;
+        }
+        let share = T::select(contact.active, T::ONE, T::ZERO);
+        count += share;
+        let normal = contact.frame.rows[0] * share;
+        let chains = Chains::new(model, bodies).without_common();
+        for (part, side) in chains.parts() {
+            let (body, along) = match side {
+                Side::Second => (bodies[1], -normal),
+                _ => (bodies[0], normal),
+            };
+            let offset = BodyPoint::new(model, pos, body, contact.pos).offset;
+            for &dof in part {
+                let dof = dof as usize;
+                row[dof] += along.dot(pos.cdof[dof].velocity_at(offset));
+            }
+        }
+    }
+    let touched = count.gt(T::ZERO);
+    let mean = T::ONE / T::select(touched, count, T::ONE);
+    row.iter_mut().for_each(|arm| *arm *= mean);
+}

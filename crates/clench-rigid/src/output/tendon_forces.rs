@@ -1,0 +1,93 @@
+//! Forces of spatial tendons on bodies.
+//!
+//! A tendon that pulls with f, in the sense that J f are its forces along dofs, pulls at each end of each of its straight spans with
+//! f times the change of its length with that end. All that acts along a tendon counts: spring, damper, actuators, inertia, and
+//! the constraints.
+
+use super::Source;
+use crate::constraint::{ConstraintSource, equality_slope};
+use crate::dynamics::reflected::tendon_damper;
+use crate::dynamics::spring::{tendon_spring, tendon_stretch};
+use crate::dynamics::tendon::gradient;
+use crate::dynamics::tendon_path::{Span, bias_acceleration, each_span};
+use crate::model::{EqualityTarget, Transmission};
+use clench_math::{Mask, Real};
+
+/// Shows every span of every spatial tendon, with the force of the tendon.
+pub(super) fn each_pull<T: Real>(s: &Source<T>, mut show: impl FnMut(Span<T>, T)) {
+    for (t, tendon) in s.model.tendons.iter().enumerate() {
+        if !tendon.is_spatial() {
+            continue;
+        }
+        let force = smooth_force(s, t) + constraint_force(s, t);
+        each_span(s.model, s.params, &s.ws.position, tendon, |span| {
+            show(span, force);
+        });
+    }
+}
+
+/// What springs, dampers, actuators and inertia do along tendon `t`.
+fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
+    let (model, params, ws) = (s.model, s.params, &s.ws);
+    let mut force = T::ZERO;
+    if model.flags.spring {
+        let stretch = tendon_stretch(params, t, ws.position.ten_length[t]);
+        force -= stretch * tendon_spring(params, t).stiffness(stretch);
+    }
+    if model.flags.damper {
+        let velocity = ws.velocity.ten_velocity[t];
+        force -= velocity * tendon_damper(params, t).damping(velocity);
+    }
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        if actuator.transmission == Transmission::Tendon(t) {
+            force += ws.force.actuator_force[u] * params.actuator_gear[u][0];
+        }
+    }
+    let armature = params.tendon_armature[t];
+    if !armature.eq(T::ZERO).all() {
+        let (pos, vel) = (&ws.position, &ws.velocity);
+        let mut acceleration = bias_acceleration(model, params, pos, vel, &s.state.qvel, t);
+        for (dof, arm) in gradient(model, pos, t) {
+            acceleration += arm * ws.qacc[dof];
+        }
+        force -= armature * acceleration;
+    }
+    force
+}
+
+/// What limits, dry friction and equalities do along tendon `t`.
+fn constraint_force<T: Real>(s: &Source<T>, t: usize) -> T {
+    let ws = &s.ws;
+    let mut sum = T::ZERO;
+    for (index, record) in ws.record.blocks.iter().enumerate() {
+        let block = ws.problem.block(index);
+        let scale = match record.source {
+            ConstraintSource::TendonFriction(of) if of == t => T::ONE,
+            // The row of a limit is the tendon's gradient, or minus that.
+            ConstraintSource::TendonLimit(of) if of == t => {
+                let mut along = T::ZERO;
+                for (&entry, (_, arm)) in
+                    block
+                        .jacobian
+                        .iter()
+                        .zip(gradient(s.model, &ws.position, t))
+                {
+                    along += entry * arm;
+                }
+                T::select(along.ge(T::ZERO), T::ONE, -T::ONE)
+            }
+            ConstraintSource::Equality(e) => match s.model.equalities[e].target {
+                EqualityTarget::Tendon { tendon1, .. } if tendon1 == t => T::ONE,
+                EqualityTarget::Tendon {
+                    tendon2: Some(leader),
+                    ..
+                } if leader == t => -equality_slope(s.params, &ws.position, e, leader),
+                _ => continue,
+            },
+            _ => continue,
+        };
+        let force = scale * ws.solver.force()[block.row];
+        sum += T::select(record.active, force, T::ZERO);
+    }
+    sum
+}
