@@ -233,6 +233,9 @@ fn velocity_slopes_are_derivatives_of_the_forces() {
         for j in 0..nv {
             let (after, before) = (force(j, H), force(j, -H));
             for i in 0..nv {
+                if !model.tree.row(i.max(j)).contains(&(i.min(j) as u32)) {
+                    continue;
+                }
                 let expected = (after[i] - before[i]) / (2.0 * H);
                 let error = (slopes[i * nv + j] - expected).abs();
                 assert!(error < 1e-6, "seed {seed}, ({i}, {j}): {error}");
@@ -293,7 +296,7 @@ fn actuator_velocity_is_the_rate_of_its_length() {
     let (a, b) = (length(&after), length(&before));
     for (u, actuator) in sim.model().actuators.iter().enumerate() {
         // Rotation vectors do not add up, and a free joint has no length.
-        if ["ball", "thruster"].contains(&actuator.name.as_str()) {
+        if ["ball", "thruster", "jet"].contains(&actuator.name.as_str()) {
             continue;
         }
         let expected = (a[u] - b[u]) / (2.0 * H);

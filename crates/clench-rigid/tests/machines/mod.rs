@@ -255,6 +255,20 @@ fn actuators() -> Vec<ActuatorSpec> {
     let parent = TransmissionSpec::JointInParent("root".into());
     let mut thruster = ActuatorSpec::motor("thruster", parent, 0.0);
     thruster.gear = [1.0, 0.2, 0.3, 0.4, 0.5, -0.6];
+    let mut jet = ActuatorSpec::motor("jet", TransmissionSpec::Site("palm".into()), 0.0);
+    jet.gear = [0.3, -0.2, 0.5, 0.1, 0.2, -0.1];
+    let above = TransmissionSpec::SiteInFrame {
+        site: "palm".into(),
+        reference: "post".into(),
+    };
+    let mut reach = ActuatorSpec::position("reach", above, 1.0, 0.1);
+    reach.gear[..3].copy_from_slice(&[1.0, 0.5, -0.3]);
+    let piston = TransmissionSpec::SliderCrank {
+        crank: "heel".into(),
+        slider: "hip".into(),
+    };
+    let mut piston = ActuatorSpec::velocity("piston", piston, 0.3);
+    piston.cranklength = 1.5;
     vec![
         limited,
         affine,
@@ -271,6 +285,9 @@ fn actuators() -> Vec<ActuatorSpec> {
         ),
         ball,
         thruster,
+        jet,
+        reach,
+        piston,
     ]
 }
 
