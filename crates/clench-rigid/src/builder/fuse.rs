@@ -10,7 +10,7 @@ use super::inertia::{MassProperties, combine, mass_properties, unbounded_mass_pr
 use super::placed::Assets;
 use super::{
     BodySpec, BuildError, EqualityKind, FrameKind, FrameName, GeomsName, InertiaFromGeom,
-    InertiaSpec, InertialSpec, ModelBuilder, SensorSubject,
+    InertiaSpec, InertialSpec, ModelBuilder, SensorSubject, TransmissionSpec,
 };
 use super::{CameraSpec, CameraTracking, ConnectAnchor, ContactSideName, GeomSpec, SiteSpec};
 use crate::model::{Attachment, SensorKind};
@@ -233,6 +233,11 @@ impl<'a> Named<'a> {
         }
         for exclude in &builder.excludes {
             bodies.extend([&exclude.body1[..], &exclude.body2[..]]);
+        }
+        for actuator in &builder.actuators {
+            if let TransmissionSpec::Body(name) = &actuator.transmission {
+                bodies.insert(&name[..]);
+            }
         }
         for sensor in &builder.sensors {
             let kind = sensor.kind;
