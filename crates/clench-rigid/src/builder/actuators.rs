@@ -4,9 +4,7 @@ use super::controllers::{Controller, controller};
 use super::element::{Element, resolve_range};
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
-use super::{
-    ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec, histories, transmissions,
-};
+use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec, histories, transmissions};
 use crate::budget::RAISE;
 use crate::model::{Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, Model, Transmission};
 
