@@ -7,7 +7,11 @@ use crate::kind::Kind;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use clench::rigid::model::{Integrator, ParamField};
+use numpy::PyArray1;
+use pyo3::exceptions::{PyKeyError, PyUserWarning};
 use pyo3::prelude::*;
+use std::collections::HashMap;
+use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -26,6 +30,17 @@ use std::sync::Arc;
 pub(crate) struct Model(Arc<clench::Model>);
 
 impl Model {
+    /// A model, after a warning about what was left out of it.
+    fn told(py: Python<'_>, model: clench::Model) -> PyResult<Self> {
+        if !model.left_out.is_empty() {
+            let category = py.get_type::<PyUserWarning>();
+            let message = format!("left out of the model:\n{}", model.left_out.join("\n"));
+            let message = CString::new(message.replace('\0', " "))?;
+            PyErr::warn(py, &category, &message, 1)?;
+        }
+        Ok(Model(Arc::new(model)))
+    }
+
     /// The model itself.
     pub(crate) fn inner(&self) -> &Arc<clench::Model> {
         &self.0
@@ -71,6 +86,9 @@ impl Model {
     /// package_path : sequence of str or os.PathLike
     ///     Folders that hold packages, by which URDF files name meshes (``package://NAME/...``). After them, the folder of the file and
     ///     those around it are searched.
+    /// ignore_unsupported : bool
+    ///     Leave out of an MJCF model what is not supported yet, where the rest still means the same: plugins, deformable bodies,
+    ///     sensors, forces and flags, but no joint, tendon or actuator. A warning and :attr:`left_out` say what.
     ///
     /// Returns
     /// -------
@@ -81,19 +99,21 @@ impl Model {
     /// LoadError
     ///     A file that cannot be read, is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new()),
-           text_signature = "(path, *, budget=1.0, package_path=())")]
+    #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new(), ignore_unsupported = false),
+           text_signature = "(path, *, budget=1.0, package_path=(), ignore_unsupported=False)")]
     fn from_file(
         py: Python<'_>,
         path: PathBuf,
         budget: f64,
         package_path: Vec<PathBuf>,
+        ignore_unsupported: bool,
     ) -> PyResult<Self> {
         let loader = clench::Loader::new()
             .budget(clench::Budget::default().times(budget))
-            .package_path(package_path);
+            .package_path(package_path)
+            .ignore_unsupported(ignore_unsupported);
         let model = py.detach(|| loader.load(&path)).map_err(load_error)?;
-        Ok(Model(Arc::new(model)))
+        Model::told(py, model)
     }
 
     /// Load a model from the text of an MJCF or URDF file.
@@ -104,6 +124,11 @@ impl Model {
     ///     What the file would contain. What it includes is found from the working directory.
     /// budget : float
     ///     As of :meth:`from_file`.
+    /// ignore_unsupported : bool
+    ///     As of :meth:`from_file`.
+    /// assets : dict of str to bytes
+    ///     Files in memory that the text names: meshes, height fields, included and attached models. Folders and capitals of the names do
+    ///     not count.
     ///
     /// Returns
     /// -------
@@ -114,13 +139,21 @@ impl Model {
     /// LoadError
     ///     A text that is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    #[pyo3(signature = (text, *, budget = 1.0))]
-    fn from_xml(py: Python<'_>, text: &str, budget: f64) -> PyResult<Self> {
-        let budget = clench::Budget::default().times(budget);
-        let model = py
-            .detach(|| clench::load_str_within(text, budget))
-            .map_err(load_error)?;
-        Ok(Model(Arc::new(model)))
+    #[pyo3(signature = (text, *, budget = 1.0, ignore_unsupported = false, assets = HashMap::new()),
+           text_signature = "(text, *, budget=1.0, ignore_unsupported=False, assets={})")]
+    fn from_xml(
+        py: Python<'_>,
+        text: &str,
+        budget: f64,
+        ignore_unsupported: bool,
+        assets: HashMap<String, Vec<u8>>,
+    ) -> PyResult<Self> {
+        let loader = clench::Loader::new()
+            .budget(clench::Budget::default().times(budget))
+            .ignore_unsupported(ignore_unsupported)
+            .assets(assets);
+        let model = py.detach(|| loader.load_str(text)).map_err(load_error)?;
+        Model::told(py, model)
     }
 
     /// Itself: a model never changes.
@@ -142,6 +175,71 @@ impl Model {
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.0.notes.clone()
+    }
+    /// list of str : What was left out because it is not supported yet, each with its place in the file.
+    #[getter]
+    fn left_out(&self) -> Vec<String> {
+        self.0.left_out.clone()
+    }
+    /// The user's array of numbers with this name (MJCF's ``custom/numeric``).
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     A name that the model does not have.
+    fn numeric<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let found = self
+            .0
+            .numeric(name)
+            .ok_or_else(|| unknown("numeric", name))?;
+        Ok(PyArray1::from_slice(py, found))
+    }
+    /// The user's text with this name (MJCF's ``custom/text``).
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     A name that the model does not have.
+    fn text(&self, name: &str) -> PyResult<&str> {
+        self.0.text(name).ok_or_else(|| unknown("text", name))
+    }
+    /// The user's list of elements with this name (MJCF's ``custom/tuple``).
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///
+    /// Returns
+    /// -------
+    /// list of tuple
+    ///     For each element its kind in MJCF's words, its name, and the number that goes with it.
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     A name that the model does not have.
+    fn custom_tuple(&self, name: &str) -> PyResult<Vec<(&str, &str, f64)>> {
+        let found = self.0.tuple(name).ok_or_else(|| unknown("tuple", name))?;
+        let entries = found.iter();
+        Ok(entries
+            .map(|e| (e.kind.as_str(), e.name.as_str(), e.value))
+            .collect())
     }
     /// RigidOptions : The options that the file sets, over the defaults of its format.
     #[getter]
@@ -357,4 +455,9 @@ impl Model {
             m.nu()
         )
     }
+}
+
+/// The error of a name of the user's data that the model does not have.
+fn unknown(kind: &str, name: &str) -> PyErr {
+    PyKeyError::new_err(format!("the model has no {kind} \"{name}\""))
 }

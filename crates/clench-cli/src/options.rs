@@ -20,6 +20,9 @@ pub struct ModelArguments {
     /// A folder that holds packages, of which URDF files name meshes by `package://`; may be repeated
     #[arg(long, value_name = "FOLDER")]
     package_path: Vec<PathBuf>,
+    /// Leave out of an MJCF model what is not supported yet and what the rest can do without, and say what
+    #[arg(long)]
+    ignore_unsupported: bool,
 
     #[command(flatten)]
     overrides: Overrides,
@@ -113,10 +116,14 @@ impl ModelArguments {
     pub fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
         let loader = Loader::new()
             .budget(Budget::default().times(self.budget))
-            .package_path(&self.package_path);
+            .package_path(&self.package_path)
+            .ignore_unsupported(self.ignore_unsupported);
         let mut model: Model = loader.load(&self.model)?;
         for note in &model.notes {
             tell(format_args!("note: {note}"));
+        }
+        for left_out in &model.left_out {
+            tell(format_args!("left out: {left_out}"));
         }
         if let Some(timestep) = self.overrides.timestep {
             ensure!(

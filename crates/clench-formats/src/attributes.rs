@@ -99,6 +99,16 @@ impl Element {
         self.parse_numbers(name, usize::MAX, false)
     }
 
+    /// Any numbers at all, also those that are not finite, as a user's own data may be.
+    pub fn any_numbers(&self, name: &str) -> Result<Vec<f64>, LoadError> {
+        let words = self.text(name).unwrap_or_default().split_ascii_whitespace();
+        let number = |word: &str| {
+            let wrong = |_| self.error(format!("\"{word}\" in {name} is not a number"));
+            word.parse().map_err(wrong)
+        };
+        words.map(number).collect()
+    }
+
     /// Overwrites a number if the attribute is there.
     pub fn set_number(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
         if let Some([number]) = self.numbers(name)? {

@@ -5,6 +5,7 @@
 
 use crate::LoadError;
 use crate::spending::Spending;
+use crate::tolerant;
 use clench_rigid::builder::Origin;
 use roxmltree::{Document, Node};
 use std::sync::Arc;
@@ -64,35 +65,57 @@ impl Drop for Element {
 
 /// The root element of a file's content.
 ///
+/// Where MuJoCo's parser, TinyXML, takes more than XML allows, so does this. Bytes that are not UTF-8 stand for some character, as they
+/// do in comments of older files.
+///
 /// # Errors
-/// Where it is not UTF-8, empty, not well-formed, nested too deeply, has names in a namespace, or is larger than the budget.
+/// Where it is empty, not well-formed, nested too deeply, has names in a namespace, or is larger than the budget.
 pub(crate) fn parse(
     bytes: &[u8],
     file: &Arc<str>,
     spending: &mut Spending,
 ) -> Result<Element, LoadError> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let line = 1 + count_newlines(&bytes[..error.valid_up_to()]);
-        LoadError::line(file, line, "the text is not valid UTF-8")
-    })?;
+    let text = String::from_utf8_lossy(bytes);
     if text.trim().is_empty() {
         return Err(LoadError::file(file, "the file is empty"));
     }
-    check_marks(text, file, spending)?;
+    let first = match parse_strictly(&text, file, spending) {
+        Err(Failure::Malformed(error)) => error,
+        Err(Failure::Other(error)) => return Err(error),
+        Ok(root) => return Ok(root),
+    };
+    match parse_strictly(&tolerant::strict(&text), file, spending) {
+        Err(Failure::Malformed(_)) => Err(first),
+        Err(Failure::Other(error)) => Err(error),
+        Ok(root) => Ok(root),
+    }
+}
+
+/// Why a text is no document.
+enum Failure {
+    /// It is not XML.
+    Malformed(LoadError),
+    Other(LoadError),
+}
+
+fn parse_strictly(
+    text: &str,
+    file: &Arc<str>,
+    spending: &mut Spending,
+) -> Result<Element, Failure> {
+    check_marks(text, file, spending).map_err(Failure::Other)?;
     let document = Document::parse(text).map_err(|error| {
-        LoadError::line(
-            file,
-            error.pos().row,
-            format!("not well-formed XML: {error}"),
-        )
+        let message = format!("not well-formed XML: {error}");
+        Failure::Malformed(LoadError::line(file, error.pos().row, message))
     })?;
-    Converter {
+    let converter = Converter {
         text,
         file,
         newlines: text.match_indices('\n').map(|(at, _)| at).collect(),
         namespaces: is_urdf(document.root_element().tag_name().name()),
-    }
-    .convert(document.root_element(), spending)
+    };
+    let root = converter.convert(document.root_element(), spending);
+    root.map_err(Failure::Other)
 }
 
 /// Whether a root element is that of a URDF file, in small letters or capitals, as MuJoCo has it.
@@ -213,7 +236,7 @@ impl Converter<'_> {
             },
             attributes: node
                 .attributes()
-                .filter(|a| !self.namespaces || a.namespace().is_none())
+                .filter(|a| a.namespace().is_none())
                 .map(|a| (a.name().to_owned(), a.value().to_owned()))
                 .collect(),
             children: Vec::new(),
@@ -231,7 +254,10 @@ impl Converter<'_> {
                 "unknown element <{name}>: its name is in a namespace, and MJCF has none"
             )));
         }
-        if let Some(attribute) = node.attributes().find(|a| a.namespace().is_some()) {
+        // At the root they tell editors where to find a schema.
+        let is_root = node.parent_element().is_none();
+        let named = |a: &roxmltree::Attribute| a.namespace().is_some() && !is_root;
+        if let Some(attribute) = node.attributes().find(named) {
             let name = &self.text[attribute.range_qname()];
             return Err(element.error(format!(
                 "unknown attribute \"{name}\": it is in a namespace, and MJCF has none"

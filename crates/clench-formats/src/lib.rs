@@ -15,6 +15,7 @@ mod loader;
 mod mesh;
 mod mjcf;
 mod spending;
+mod tolerant;
 mod urdf;
 
 pub use error::LoadError;

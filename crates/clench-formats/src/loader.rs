@@ -1,14 +1,15 @@
 //! Reading a model: its bytes, which format they are in, and what that format's reader is told.
 
 use crate::document;
-use crate::spending::Spending;
+use crate::spending::{Memory, Spending, memory_name};
 use crate::{LoadError, mjcf, urdf};
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::{Budget, Model};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How model files are loaded: within which [`Budget`], and where the packages are that URDF files name.
+/// How model files are loaded: within which [`Budget`], where the packages are that URDF files name, which files are in memory, and
+/// whether what is not supported yet may be left out.
 ///
 /// ```no_run
 /// let model = clench_formats::Loader::new()
@@ -20,6 +21,8 @@ use std::sync::Arc;
 pub struct Loader {
     budget: Budget,
     packages: Vec<PathBuf>,
+    ignore_unsupported: bool,
+    memory: Arc<Memory>,
 }
 
 impl Loader {
@@ -40,6 +43,41 @@ impl Loader {
     #[must_use]
     pub fn package_path<P: Into<PathBuf>>(mut self, folders: impl IntoIterator<Item = P>) -> Self {
         self.packages.extend(folders.into_iter().map(Into::into));
+        self
+    }
+
+    /// Leaves out of an MJCF model what is not supported yet, where the rest still means the same: plugins, deformable bodies,
+    /// sensors, forces and flags, but no joint, tendon or actuator. `left_out` of the model says what.
+    #[must_use]
+    pub fn ignore_unsupported(mut self, ignore: bool) -> Self {
+        self.ignore_unsupported = ignore;
+        self
+    }
+
+    /// Files in memory, by name: meshes, height fields, included and attached models. As in MuJoCo, neither the folders nor the capitals of
+    /// a name count, and these files go before those on disk.
+    ///
+    /// ```
+    /// let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4";
+    /// let model = clench_formats::Loader::new()
+    ///     .assets([("tetrahedron.obj", tetrahedron)])
+    ///     .load_str(
+    ///         "<mujoco>
+    ///            <asset><mesh file='tetrahedron.obj'/></asset>
+    ///            <worldbody><geom type='mesh' mesh='tetrahedron'/></worldbody>
+    ///          </mujoco>",
+    ///     )?;
+    /// assert_eq!(model.meshes.len(), 1);
+    /// # Ok::<(), clench_formats::LoadError>(())
+    /// ```
+    #[must_use]
+    pub fn assets<N: AsRef<Path>, B: Into<Vec<u8>>>(
+        mut self,
+        files: impl IntoIterator<Item = (N, B)>,
+    ) -> Self {
+        let files = files.into_iter();
+        let named = files.map(|(name, bytes)| (memory_name(name.as_ref()), bytes.into()));
+        Arc::make_mut(&mut self.memory).extend(named);
         self
     }
 
@@ -73,7 +111,7 @@ impl Loader {
     pub fn read(&self, path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
         let path = path.as_ref();
         let file = Arc::from(path.to_string_lossy());
-        let mut spending = Spending::new(self.budget);
+        let mut spending = Spending::new(self.budget, self.memory.clone());
         let unreadable = |error| LoadError::file(&file, format!("cannot read the file: {error}"));
         let bytes = spending.read(path).map_err(unreadable)?;
         self.read_bytes(&bytes, &file, Some(path), &mut spending)
@@ -84,7 +122,7 @@ impl Loader {
     /// # Errors
     /// As [`read`](crate::read); the file name of an error is empty.
     pub fn read_str(&self, text: &str) -> Result<ModelBuilder, LoadError> {
-        let mut spending = Spending::new(self.budget);
+        let mut spending = Spending::new(self.budget, self.memory.clone());
         self.read_bytes(text.as_bytes(), &Arc::from(""), None, &mut spending)
     }
 
@@ -98,7 +136,7 @@ impl Loader {
         let root = document::parse(bytes, file, spending)?;
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
         if root.tag == "mujoco" {
-            return mjcf::read(root, path, spending);
+            return mjcf::read(root, path, self.ignore_unsupported, spending);
         }
         if document::is_urdf(&root.tag) {
             return urdf::read(&root, directory, &self.packages, spending);

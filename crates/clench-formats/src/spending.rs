@@ -1,24 +1,38 @@
-//! What a model's files have asked for so far, held against their budget.
+//! A model's files, on disk or in memory, and what they have asked for so far, held against their budget.
 
 use clench_rigid::Budget;
 use clench_rigid::budget::RAISE;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Files in memory, by the last part of their names in small letters; they go before those on disk.
+pub(crate) type Memory = HashMap<String, Vec<u8>>;
+
+/// What a file in memory is called: as in MuJoCo, neither folders nor capitals count.
+pub(crate) fn memory_name(path: &Path) -> String {
+    let text = path.to_string_lossy().replace('\\', "/");
+    let last = text.rsplit('/').next().unwrap_or_default();
+    last.to_lowercase()
+}
 
 /// A budget and what has been taken from it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Spending {
     pub budget: Budget,
+    memory: Arc<Memory>,
     bytes: u64,
     elements: u64,
 }
 
 impl Spending {
     /// Nothing taken yet.
-    pub fn new(budget: Budget) -> Self {
+    pub fn new(budget: Budget, memory: Arc<Memory>) -> Self {
         Spending {
             budget,
+            memory,
             bytes: 0,
             elements: 0,
         }
@@ -54,11 +68,32 @@ impl Spending {
         }
     }
 
+    /// Whether there is a file.
+    pub fn has_file(&self, path: &Path) -> bool {
+        self.memory.contains_key(&memory_name(path)) || path.is_file()
+    }
+
+    /// What tells a file from others, whatever path leads to it.
+    ///
+    /// # Errors
+    /// What to say where there is no such file.
+    pub fn identity(&self, path: &Path) -> Result<PathBuf, String> {
+        let name = memory_name(path);
+        match self.memory.contains_key(&name) {
+            true => Ok(PathBuf::from(name)),
+            false => path.canonicalize().map_err(|error| error.to_string()),
+        }
+    }
+
     /// Reads a file, and takes its length.
     ///
     /// # Errors
     /// What to say where it cannot be read or is too long.
     pub fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
+        if let Some(bytes) = self.memory.clone().get(&memory_name(path)) {
+            self.bytes(bytes.len() as u64)?;
+            return Ok(bytes.clone());
+        }
         let read = || -> io::Result<Vec<u8>> {
             let left = self.budget.bytes.saturating_sub(self.bytes);
             let mut bytes = Vec::new();

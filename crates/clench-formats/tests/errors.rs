@@ -67,7 +67,6 @@ fn broken_xml_is_located() {
         "<mujoco>\n<geom size='1' size='2'/>\n</mujoco>",
         "<mujoco>\n<geom size=1/>\n</mujoco>",
         "<mujoco>\n<option/>",
-        "<mujoco/>\n<mujoco/>",
         "<!DOCTYPE m [<!ENTITY a 'b'>]>\n<mujoco model='&a;'/>",
     ] {
         let error = rejected(text);
@@ -79,16 +78,12 @@ fn broken_xml_is_located() {
 }
 
 #[test]
-fn text_must_be_utf8() {
+fn bytes_that_are_not_utf8_stand_for_some_character() {
     let path = std::env::temp_dir().join(format!("clench-latin-{}.xml", std::process::id()));
-    std::fs::write(&path, b"<mujoco>\n<option/>\n<!-- \xe9 -->\n</mujoco>").unwrap();
-    let error = load(&path).unwrap_err();
+    std::fs::write(&path, b"<mujoco>\n<!-- \xe9 -->\n</mujoco>").unwrap();
+    let loaded = load(&path);
     std::fs::remove_file(&path).unwrap();
-    assert_eq!(
-        (error.line, error.message.contains("UTF-8")),
-        (Some(3), true),
-        "{error}"
-    );
+    loaded.unwrap();
 }
 
 #[test]

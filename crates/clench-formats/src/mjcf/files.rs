@@ -55,7 +55,7 @@ impl Files {
         let written = Path::new(&*element.origin.file).parent();
         let below = written.and_then(|file| file.strip_prefix(&self.model_directory).ok());
         places.extend(below.map(|below| self.meshes.join(below).join(&name)));
-        let found = places.iter().find(|path| path.is_file());
+        let found = places.iter().find(|path| spending.has_file(path));
         let path = found.ok_or_else(|| {
             element.error(format!("cannot find the file \"{}\"", places[0].display()))
         })?;

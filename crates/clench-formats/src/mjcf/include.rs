@@ -19,14 +19,14 @@ pub(crate) struct Includes {
 
 impl Includes {
     /// For a model in a file, or from text (`None`), whose includes are found from the working directory.
-    pub fn new(model: Option<&Path>) -> Self {
+    pub fn new(model: Option<&Path>, spending: &Spending) -> Self {
         Includes {
             model_directory: model
                 .and_then(Path::parent)
                 .unwrap_or(Path::new(""))
                 .to_owned(),
             seen: model
-                .and_then(|path| path.canonicalize().ok())
+                .and_then(|path| spending.identity(path).ok())
                 .into_iter()
                 .collect(),
         }
@@ -91,13 +91,12 @@ impl Includes {
         let name = element.required_text("file")?;
         let path = [self.model_directory.join(name), directory.join(name)]
             .into_iter()
-            .find(|path| path.is_file())
+            .find(|path| spending.has_file(path))
             .ok_or_else(|| element.error(format!("cannot find the file \"{name}\"")))?;
         let unreadable =
             |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
-        let canonical = path.canonicalize();
-        let canonical = canonical.map_err(|error| unreadable(error.to_string()))?;
-        if !self.seen.insert(canonical) {
+        let identity = spending.identity(&path).map_err(unreadable)?;
+        if !self.seen.insert(identity) {
             return Err(element.error(format!("\"{name}\" is already included")));
         }
         let bytes = spending.read(&path).map_err(unreadable)?;

@@ -11,6 +11,7 @@ pub(crate) mod compiler;
 mod compose;
 mod contact;
 mod controller;
+mod custom;
 mod defaults;
 mod equality;
 pub(crate) mod files;
@@ -20,6 +21,7 @@ mod include;
 mod joint;
 mod kept;
 pub(crate) mod keyframe;
+mod leave_out;
 mod mesh;
 pub(crate) mod option;
 pub(crate) mod orientation;
@@ -46,18 +48,20 @@ use include::Includes;
 use option::OptionReader;
 use std::path::Path;
 
-/// Reads the model below a root element, which came from a file or (`None`) from text.
+/// Reads the model below a root element, which came from a file or (`None`) from text, without what is not supported yet if that
+/// may be left out.
 ///
 /// # Errors
 /// What breaks a rule of the format, or asks for something that is not supported yet.
 pub(crate) fn read(
     mut root: Element,
     path: Option<&Path>,
+    ignore_unsupported: bool,
     spending: &mut Spending,
 ) -> Result<ModelBuilder, LoadError> {
     let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
-    Includes::new(path).expand(&mut root, directory, spending)?;
-    let composed = compose::compose(root, path, directory, spending)?;
+    Includes::new(path, spending).expand(&mut root, directory, spending)?;
+    let composed = compose::compose(root, path, ignore_unsupported, spending)?;
     assets::check_materials(&composed.root)?;
     read_model(&composed, spending)
 }
@@ -82,6 +86,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         compiler: (*sources.main().spec).clone(),
         bodies: vec![body::world()],
         notes: composed.notes.clone(),
+        left_out: composed.left_out.clone(),
         ..ModelBuilder::default()
     };
     let mut options = OptionReader::default();
@@ -97,6 +102,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         bodies.read_world(section)?;
     }
     relations::read(root, sources, &mut builder)?;
+    builder.custom = custom::read(root, spending)?;
     if builder.compiler.fusestatic {
         kept::keep_named(root, &mut builder.bodies);
     }

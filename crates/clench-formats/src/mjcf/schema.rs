@@ -48,6 +48,23 @@ fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
     of(&format!("{parent}/{tag}")).or_else(|| of(tag))
 }
 
+/// Whether an element is known in its parent and not supported yet.
+pub(crate) fn is_later(parent: &str, tag: &str) -> bool {
+    // Which rule a parent has does not depend on where it stands itself, but for those that cannot hold anything.
+    let rule = find("", parent);
+    rule.is_some_and(|rule| words(rule.later_children).any(|later| later == tag))
+}
+
+/// Whether an attribute of an element is known and not supported yet with this value.
+pub(crate) fn is_later_attribute(parent: &str, tag: &str, name: &str, value: &str) -> bool {
+    let rule = find(parent, tag);
+    let mut later = rule.into_iter().flat_map(|rule| words(rule.later));
+    later.any(|later| {
+        let (later, harmless) = later.split_once('=').unwrap_or((later, ""));
+        later == name && !is_harmless(value, harmless)
+    })
+}
+
 /// An element whose children are being checked.
 struct Level<'a> {
     element: &'a Element,

@@ -125,6 +125,8 @@ impl ModelBuilder {
                 ..Params::default()
             },
             notes: self.notes.clone(),
+            left_out: self.left_out.clone(),
+            custom: self.custom.clone(),
         }
     }
 }

@@ -76,6 +76,7 @@ pub use relations::{
 };
 
 use crate::Budget;
+use crate::model::Custom;
 pub use sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
 };
@@ -117,6 +118,10 @@ pub struct ModelBuilder {
     pub keyframes: Vec<KeyframeSpec>,
     /// Things worth telling the user once, such as a solver that was replaced.
     pub notes: Vec<String>,
+    /// What was left out of the file because it is not supported yet, each with its place.
+    pub left_out: Vec<String>,
+    /// The user's own data.
+    pub custom: Custom,
 }
 
 /// A world without anything in it.
@@ -139,6 +144,8 @@ impl Default for ModelBuilder {
             excludes: Vec::new(),
             keyframes: Vec::new(),
             notes: Vec::new(),
+            left_out: Vec::new(),
+            custom: Custom::default(),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! joint is a hinge, which geoms may collide. Numbers (masses, lengths, stiffnesses) live in [`Params`], so that a
 //! batch can give each environment its own.
 
+mod custom;
 mod fields;
 pub(crate) mod flat;
 mod lookup;
@@ -12,6 +13,7 @@ mod sensor;
 mod sensor_target;
 mod structure;
 
+pub use custom::{Custom, TupleEntry};
 pub use params::{ParamField, Params};
 pub use sensor::{Attachment, Sensor, SensorData, SensorKind};
 pub use sensor_target::{
@@ -99,6 +101,10 @@ pub struct Model {
     pub params: Params<f64>,
     /// Things worth telling the user once.
     pub notes: Vec<String>,
+    /// What was left out of the file because it is not supported yet, each with its place.
+    pub left_out: Vec<String>,
+    /// The user's own data.
+    pub custom: Custom,
 }
 
 impl Model {

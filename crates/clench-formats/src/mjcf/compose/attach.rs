@@ -50,11 +50,9 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Element, LoadErr
     let path = directory.join(name.replace('\\', "/"));
     let unreadable =
         |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
-    let canonical = path
-        .canonicalize()
-        .map_err(|error| unreadable(error.to_string()))?;
-    if let Some(start) = shared.open.iter().position(|open| *open == canonical) {
-        let chain = shared.open[start..].iter().chain([&canonical]);
+    let identity = shared.spending.identity(&path).map_err(unreadable)?;
+    if let Some(start) = shared.open.iter().position(|open| *open == identity) {
+        let chain = shared.open[start..].iter().chain([&identity]);
         let chain: Vec<String> = chain.map(|file| file.display().to_string()).collect();
         return Err(element.error(format!("the model attaches itself: {}", chain.join(" -> "))));
     }
@@ -69,9 +67,9 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Element, LoadErr
         _ => return Err(root.error("the root element of a model is <mujoco>")),
     }
     let directory = path.parent().unwrap_or(Path::new(""));
-    Includes::new(Some(&path)).expand(&mut root, directory, shared.spending)?;
-    schema::check(&root)?;
-    shared.open.push(canonical);
+    Includes::new(Some(&path), shared.spending).expand(&mut root, directory, shared.spending)?;
+    shared.check(&mut root)?;
+    shared.open.push(identity);
     compose_model(&mut root, directory, shared)?;
     shared.open.pop();
     Ok(root)
@@ -208,22 +206,23 @@ impl Composer<'_, '_> {
         Ok(())
     }
 
-    /// A model's own options count, and no other's.
+    /// A model's own options count, and no other's, and so do its keyframes.
     fn check_options(&mut self, element: &Element, model: &Element) -> Result<(), LoadError> {
-        if sections(model, "option").next().is_none() {
-            return Ok(());
-        }
-        if self.shared.sources.of(element).compiler.merges_options {
+        let has_options = sections(model, "option").next().is_some();
+        if has_options && self.shared.sources.of(element).compiler.merges_options {
             let message = "options of attached models can only be left out: another conflict than \
                            \"warning\" is not supported yet";
             return Err(element.error(message));
         }
-        let name = element.text("model").unwrap_or_default();
-        let note = format!(
-            "the options of the attached model \"{name}\" are left out; those of the model itself count"
-        );
-        if !self.shared.notes.contains(&note) {
-            self.shared.notes.push(note);
+        let has_keyframes = sections(model, "keyframe").any(|section| !section.children.is_empty());
+        for (what, left_out) in [("options", has_options), ("keyframes", has_keyframes)] {
+            let name = element.text("model").unwrap_or_default();
+            let note = format!(
+                "the {what} of the attached model \"{name}\" are left out; those of the model itself count"
+            );
+            if left_out && !self.shared.notes.contains(&note) {
+                self.shared.notes.push(note);
+            }
         }
         Ok(())
     }
@@ -239,44 +238,54 @@ impl Composer<'_, '_> {
         let (tag, name) = wanted.ok_or_else(|| {
             element.error("either model, or a body or frame of this model must be given")
         })?;
-        let mut found = None;
-        let mut class = None;
-        for (depth, level) in open.iter().enumerate() {
-            found =
-                find(&level.element, tag, name, class).map(|(part, class)| (depth, part, class));
-            if found.is_some() {
-                break;
-            }
-            class = class_within(&level.element).or(class);
-        }
-        let (depth, part, class) = found.ok_or_else(|| {
-            element.error(format!(
-                "there is no {tag} \"{name}\" before this in the model"
-            ))
-        })?;
-        let is_open = std::ptr::eq(part, &open[depth].element);
-        if is_open
-            && open[depth..]
-                .iter()
-                .any(|level| level.element.tag == "replicate")
-        {
-            let message =
-                "what is being replicated cannot be attached to itself: not supported yet";
-            return Err(element.error(message));
-        }
-        self.shared.charge(element, part)?;
+        let (part, class) = self.find_own(element, tag, name, open)?;
+        self.shared.charge(element, &part)?;
         let mut frame = Element::in_place_of(element, "frame");
-        frame.children.extend(match is_open {
-            true => read_so_far(&open[depth..]),
-            false => Some(part.clone()),
-        });
-        self.finish(element, &mut frame, class, namespace, open.len())?;
+        frame.children.push(part);
+        self.finish(element, &mut frame, class.as_deref(), namespace, open.len())?;
         for section in FOLLOWING {
             let from = self.list(section).clone();
             let from: Vec<&Element> = from.iter().filter(|part| follows(section, part)).collect();
             self.copy_following(element, section, &from, namespace)?;
         }
         Ok(frame)
+    }
+
+    /// A copy of a body or frame of the model itself, as far as it is read, and the class around it.
+    fn find_own(
+        &self,
+        element: &Element,
+        tag: &str,
+        name: &str,
+        open: &[Level],
+    ) -> Result<(Element, Option<String>), LoadError> {
+        let mut worlds = self.worlds.iter();
+        if let Some((part, class)) = worlds.find_map(|world| find(world, tag, name, None)) {
+            return Ok((part.clone(), class.map(str::to_owned)));
+        }
+        let mut around = None;
+        for (depth, level) in open.iter().enumerate() {
+            let Some((part, class)) = find(&level.element, tag, name, around) else {
+                around = class_within(&level.element).or(around);
+                continue;
+            };
+            let class = class.map(str::to_owned);
+            if !std::ptr::eq(part, &level.element) {
+                return Ok((part.clone(), class));
+            }
+            if open[depth..]
+                .iter()
+                .any(|level| level.element.tag == "replicate")
+            {
+                let message =
+                    "what is being replicated cannot be attached to itself: not supported yet";
+                return Err(element.error(message));
+            }
+            let so_far = read_so_far(&open[depth..]);
+            return Ok((so_far.unwrap_or_else(|| part.clone()), class));
+        }
+        let message = format!("there is no {tag} \"{name}\" before this in the model");
+        Err(element.error(message))
     }
 
     /// Renames a copied part; elements in it without a class start from the one that they had where they came from.

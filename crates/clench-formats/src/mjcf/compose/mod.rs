@@ -10,6 +10,7 @@ mod relations;
 mod replicate;
 
 use super::document::{self, Element, MAX_DEPTH};
+use super::leave_out::leave_out;
 use super::schema;
 use super::source::Sources;
 use crate::LoadError;
@@ -23,8 +24,10 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Composed {
     pub root: Element,
     pub sources: Sources,
-    /// What a user should know of what was left out.
+    /// What a user should know of what was done.
     pub notes: Vec<String>,
+    /// What was left out because it is not supported yet.
+    pub left_out: Vec<String>,
 }
 
 /// Makes one model of a document whose includes are expanded.
@@ -34,21 +37,25 @@ pub(crate) struct Composed {
 pub(crate) fn compose(
     mut root: Element,
     file: Option<&Path>,
-    directory: &Path,
+    ignore_unsupported: bool,
     spending: &mut Spending,
 ) -> Result<Composed, LoadError> {
-    schema::check(&root)?;
+    let identity = file.and_then(|path| spending.identity(path).ok());
+    let directory = file.and_then(Path::parent).unwrap_or(Path::new(""));
     let mut shared = Shared {
         sources: Sources::default(),
         spending,
-        open: file.map(Path::to_owned).into_iter().collect(),
+        open: identity.into_iter().collect(),
         notes: Vec::new(),
+        left_out: ignore_unsupported.then(Vec::new),
     };
+    shared.check(&mut root)?;
     compose_model(&mut root, directory, &mut shared)?;
     Ok(Composed {
         root,
         sources: shared.sources,
         notes: shared.notes,
+        left_out: shared.left_out.unwrap_or_default(),
     })
 }
 
@@ -59,9 +66,19 @@ struct Shared<'a> {
     /// The files of the models that are being read, the outermost first.
     open: Vec<PathBuf>,
     notes: Vec<String>,
+    /// What was left out because it is not supported yet, if it may be.
+    left_out: Option<Vec<String>>,
 }
 
 impl Shared<'_> {
+    /// Holds a document against the schema, after what can be left out is.
+    fn check(&mut self, root: &mut Element) -> Result<(), LoadError> {
+        if let Some(left_out) = &mut self.left_out {
+            leave_out(root, left_out);
+        }
+        schema::check(root)
+    }
+
     /// Takes copies of an element and all in it, before they are made.
     fn charge(&mut self, at: &Element, what: &Element) -> Result<(), LoadError> {
         let (mut count, mut bytes, mut pending) = (0, 0, vec![what]);
@@ -94,16 +111,19 @@ fn compose_model(
         source,
         names: Names::default(),
         lists: take_lists(root),
+        worlds: Vec::new(),
         shared,
     };
     composer.add_list_names();
-    for section in &mut root.children {
-        if section.tag == "worldbody" {
-            composer.expand(section)?;
-        }
+    let (worlds, others) = std::mem::take(&mut root.children)
+        .into_iter()
+        .partition(|section| section.tag == "worldbody");
+    root.children = others;
+    for world in worlds as Vec<Element> {
+        composer.expand(world)?;
     }
-    let lists = std::mem::take(&mut composer.lists);
-    root.children.extend(lists);
+    root.children.append(&mut composer.worlds);
+    root.children.append(&mut composer.lists);
     Ok(())
 }
 
@@ -133,6 +153,8 @@ struct Composer<'a, 's> {
     names: Names,
     /// Its sections outside the tree that can grow.
     lists: Vec<Element>,
+    /// Those parts of the world that are expanded.
+    worlds: Vec<Element>,
     shared: &'a mut Shared<'s>,
 }
 
@@ -166,10 +188,8 @@ impl Composer<'_, '_> {
     }
 
     /// Expands one `<worldbody>`.
-    fn expand(&mut self, world: &mut Element) -> Result<(), LoadError> {
-        let empty = Element::in_place_of(world, "worldbody");
-        let whole = std::mem::replace(world, empty);
-        let mut open = vec![Level::new(whole)];
+    fn expand(&mut self, world: Element) -> Result<(), LoadError> {
+        let mut open = vec![Level::new(world)];
         while let Some(level) = open.last_mut() {
             let Some(child) = level.left.next() else {
                 let Some(Level { element, .. }) = open.pop() else {
@@ -181,7 +201,7 @@ impl Composer<'_, '_> {
                 };
                 match open.last_mut() {
                     Some(around) => around.element.children.extend(expanded),
-                    None => world.children = expanded.into_iter().flat_map(take_children).collect(),
+                    None => self.worlds.extend(expanded),
                 }
                 continue;
             };
@@ -219,10 +239,6 @@ impl Composer<'_, '_> {
         }
         Ok(copied)
     }
-}
-
-fn take_children(mut element: Element) -> Vec<Element> {
-    std::mem::take(&mut element.children)
 }
 
 /// Refuses a copy that would stand too deep.

@@ -1,0 +1,85 @@
+//! `<custom>`: what a file keeps for its user's program.
+
+use super::document::Element;
+use super::{entries, schema};
+use crate::LoadError;
+use crate::spending::Spending;
+use clench_rigid::model::{Custom, TupleEntry};
+
+/// Kinds of elements that a tuple may list.
+const KINDS: &str = "body xbody joint geom site camera light flex mesh skin hfield texture material pair exclude equality tendon \
+    actuator sensor numeric text tuple key plugin";
+
+/// Reads the user's numbers, texts and tuples.
+pub(crate) fn read(root: &Element, spending: &mut Spending) -> Result<Custom, LoadError> {
+    let mut custom = Custom::default();
+    for element in entries(root, "custom") {
+        let name = element.required_text("name")?.to_owned();
+        let is_repeated = match element.tag.as_str() {
+            "numeric" => {
+                let repeated = custom.numerics.iter().any(|(other, _)| *other == name);
+                custom
+                    .numerics
+                    .push((name, read_numbers(element, spending)?));
+                repeated
+            }
+            "text" => {
+                let repeated = custom.texts.iter().any(|(other, _)| *other == name);
+                let text = element.string("data");
+                if text.is_empty() {
+                    return Err(element.error("data cannot be empty"));
+                }
+                custom.texts.push((name, text));
+                repeated
+            }
+            _ => {
+                let repeated = custom.tuples.iter().any(|(other, _)| *other == name);
+                custom.tuples.push((name, read_entries(element)?));
+                repeated
+            }
+        };
+        if is_repeated && element.text("name") != Some("") {
+            return Err(element.error("the name is repeated"));
+        }
+    }
+    Ok(custom)
+}
+
+/// As many numbers as `size` says, with zeros at the end, or as `data` has.
+fn read_numbers(element: &Element, spending: &mut Spending) -> Result<Vec<f64>, LoadError> {
+    let mut numbers = element.any_numbers("data")?;
+    let size = element.integer("size")?;
+    let size = usize::try_from(size.unwrap_or(numbers.len() as i32)).unwrap_or_default();
+    if size == 0 {
+        return Err(element.error("the size must be positive"));
+    }
+    if numbers.len() > size {
+        return Err(element.error(format!("data has more than {size} numbers")));
+    }
+    let taken = spending.bytes((size * size_of::<f64>()) as u64);
+    taken.map_err(|excess| element.error(excess))?;
+    numbers.resize(size, 0.0);
+    Ok(numbers)
+}
+
+fn read_entries(tuple: &Element) -> Result<Vec<TupleEntry>, LoadError> {
+    if tuple.children.is_empty() {
+        return Err(tuple.error("a tuple needs at least one element"));
+    }
+    let read = |element: &Element| {
+        let kind = element.required_text("objtype")?;
+        let known = || KINDS.split_ascii_whitespace();
+        if !known().any(|name| name == kind) {
+            let hint = schema::suggestion(kind, known());
+            return Err(element.error(format!("unknown objtype \"{kind}\"{hint}")));
+        }
+        let mut entry = TupleEntry {
+            kind: kind.to_owned(),
+            name: element.required_text("objname")?.to_owned(),
+            value: 0.0,
+        };
+        element.set_number("prm", &mut entry.value)?;
+        Ok(entry)
+    };
+    tuple.children.iter().map(read).collect()
+}

@@ -1,0 +1,89 @@
+//! Leaves out of a model what this library cannot simulate yet, where a user asks for that, and says what.
+//!
+//! Only that is left out without which the rest still means the same: a plugin, a deformable body, a sensor, a force or a flag. A tendon
+//! or an actuator that is missing would change what the controls and the coordinates of the model are, so those are refused as ever, and
+//! so is what names an element that was left out.
+
+use super::document::Element;
+use super::schema;
+
+/// Elements that a model cannot do without.
+const ESSENTIAL: &[&str] = &[
+    "spatial",
+    "fixed",
+    "general",
+    "motor",
+    "position",
+    "velocity",
+    "intvelocity",
+    "damper",
+    "cylinder",
+    "orientation",
+    "pid",
+    "muscle",
+    "adhesion",
+    "dcmotor",
+];
+
+/// Attributes that an element cannot do without: what it acts on, and what it is.
+const ESSENTIAL_ATTRIBUTES: &[&str] = &[
+    "site",
+    "refsite",
+    "cranksite",
+    "slidersite",
+    "cranklength",
+    "body",
+    "scale",
+    "scaling",
+    "massscale",
+    "mesh",
+    "camera",
+    "data",
+];
+
+/// Takes what is not supported out of a document, and adds a line about each such thing.
+pub(crate) fn leave_out(root: &mut Element, left_out: &mut Vec<String>) {
+    let mut pending = vec![root];
+    while let Some(element) = pending.pop() {
+        let parent = element.tag.clone();
+        element.children.retain_mut(|child| {
+            let reason = unsupported(&parent, child);
+            let Some(reason) = reason else {
+                leave_out_attributes(&parent, child, left_out);
+                return true;
+            };
+            left_out.push(child.error(reason).to_string());
+            false
+        });
+        pending.extend(&mut element.children);
+    }
+}
+
+/// Why an element is left out, if it is.
+fn unsupported(parent: &str, element: &Element) -> Option<String> {
+    let tag = element.tag.as_str();
+    let later = schema::is_later(parent, tag) && (parent == "default" || !ESSENTIAL.contains(&tag));
+    let of_a_plugin =
+        |element: &Element| element.children.iter().any(|child| child.tag == "plugin");
+    let is_field = parent != "default" && element.text("type") == Some("sdf");
+    let has_no_shape = tag == "mesh" && element.text("file").is_none() && of_a_plugin(element);
+    let is_of_flex = parent == "equality" && element.text("flex").is_some();
+    (later || is_field || has_no_shape || is_of_flex)
+        .then(|| "is left out: it is not supported yet".to_owned())
+}
+
+fn leave_out_attributes(parent: &str, element: &mut Element, left_out: &mut Vec<String>) {
+    let is_left = |(name, value): &(String, String)| {
+        let essential = ESSENTIAL_ATTRIBUTES.contains(&name.as_str());
+        !essential && schema::is_later_attribute(parent, &element.tag, name, value)
+    };
+    let left: Vec<String> = (element.attributes.iter())
+        .filter(|attribute| is_left(attribute))
+        .map(|(name, _)| name.clone())
+        .collect();
+    for name in left {
+        let note = format!("the attribute {name} is left out: it is not supported yet");
+        left_out.push(element.error(note).to_string());
+        element.attributes.retain(|(other, _)| *other != name);
+    }
+}

@@ -1,0 +1,175 @@
+//! What MuJoCo's XML parser, TinyXML, takes and XML itself does not, put in words that a strict parser takes.
+//!
+//! Comments may hold `--`, values may hold `<` and a bare `&`, attributes may touch each other, and whatever stands between elements
+//! does not count, nor do elements after the first. Lines stay where they are, so that errors find them.
+
+/// The text of a file with what only TinyXML takes written as XML has it.
+pub(crate) fn strict(text: &str) -> String {
+    let mut writer = Writer {
+        rest: text.strip_prefix('\u{feff}').unwrap_or(text),
+        out: String::with_capacity(text.len() + text.len() / 8),
+        depth: 0,
+        complete: false,
+    };
+    while !writer.rest.is_empty() && !writer.complete {
+        writer.piece();
+    }
+    writer.end();
+    writer.out
+}
+
+struct Writer<'a> {
+    rest: &'a str,
+    out: String,
+    /// How many elements are open.
+    depth: usize,
+    /// The first element has ended.
+    complete: bool,
+}
+
+impl<'a> Writer<'a> {
+    /// Takes text up to and with its first occurrence of `end`, or all.
+    fn take(&mut self, end: &str) -> &'a str {
+        let length = self
+            .rest
+            .find(end)
+            .map_or(self.rest.len(), |at| at + end.len());
+        let (taken, rest) = self.rest.split_at(length);
+        self.rest = rest;
+        taken
+    }
+
+    /// Drops text but for its ends of lines.
+    fn blank(&mut self, text: &str) {
+        self.out.extend(text.chars().filter(|c| *c == '\n'));
+    }
+
+    /// The next comment, declaration, element's tag, or text between them.
+    fn piece(&mut self) {
+        let rest = self.rest;
+        let kinds = [
+            ("<!--", "-->"),
+            ("<![CDATA[", "]]>"),
+            ("<?", "?>"),
+            ("<!", ">"),
+        ];
+        if let Some((open, close)) = kinds.into_iter().find(|(open, _)| rest.starts_with(open)) {
+            if open == "<?" && self.depth > 0 {
+                // A declaration inside of elements is an error for both parsers.
+                let taken = self.take(close);
+                self.out.push_str(taken);
+                return;
+            }
+            let (start, tail) = rest.split_at(open.len());
+            self.rest = tail;
+            let closed = tail.contains(close);
+            let taken = self.take(close);
+            self.blank(taken);
+            if !closed {
+                self.out.push_str(start);
+            }
+        } else if rest.starts_with('<') {
+            self.tag();
+        } else {
+            let length = rest.find('<').unwrap_or(rest.len());
+            let (text, tail) = rest.split_at(length);
+            self.rest = tail;
+            match self.depth {
+                0 => self.out.push_str(text),
+                _ => self.blank(text),
+            }
+        }
+    }
+
+    /// A tag, with its values as XML has them.
+    fn tag(&mut self) {
+        let closes = self.rest.starts_with("</");
+        let mut last = ' ';
+        let mut chars = self.rest.char_indices();
+        while let Some((at, c)) = chars.next() {
+            match c {
+                '>' => {
+                    self.out.push('>');
+                    self.rest = &self.rest[at + 1..];
+                    match (closes, last) {
+                        (true, _) => self.depth = self.depth.saturating_sub(1),
+                        (false, '/') => {}
+                        (false, _) => self.depth += 1,
+                    }
+                    self.complete = self.depth == 0;
+                    return;
+                }
+                '"' | '\'' if last == '=' => {
+                    let value = &self.rest[at + 1..];
+                    let Some(length) = value.find(c) else {
+                        // The strict parser says that the value does not end.
+                        self.out.push_str(&self.rest[at..]);
+                        self.rest = "";
+                        return;
+                    };
+                    self.value(&value[..length], c);
+                    // The next attribute may follow at once.
+                    self.out.push(' ');
+                    chars = self.rest.char_indices();
+                    chars.find(|(start, _)| *start == at + 1 + length);
+                    last = c;
+                }
+                '<' if at > 0 => {
+                    // The tag is not closed: the strict parser says where.
+                    self.out.push_str(" <");
+                    self.rest = &self.rest[at + 1..];
+                    return;
+                }
+                c => {
+                    self.out.push(c);
+                    if !c.is_whitespace() {
+                        last = c;
+                    }
+                }
+            }
+        }
+        self.rest = "";
+    }
+
+    /// A value in quotes.
+    fn value(&mut self, value: &str, quote: char) {
+        self.out.push(quote);
+        for (at, c) in value.char_indices() {
+            match c {
+                '<' => self.out.push_str("&lt;"),
+                '&' if !is_reference(&value[at..]) => self.out.push_str("&amp;"),
+                '\u{1}'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' => {
+                    self.out.push('\u{fffd}')
+                }
+                c => self.out.push(c),
+            }
+        }
+        self.out.push(quote);
+    }
+
+    /// What stands after the first element: further elements and comments do not count, text is an error.
+    fn end(&mut self) {
+        let rest = self.rest.trim_start();
+        if self.complete && !rest.starts_with('<') {
+            self.out.push_str(self.rest);
+        }
+    }
+}
+
+/// Whether a text begins with a reference that XML knows without a declaration: of a character, or one of the five entities.
+fn is_reference(text: &str) -> bool {
+    let Some(name) = text[1..].split_once(';').map(|(name, _)| name) else {
+        return false;
+    };
+    let number = |digits: &str, radix| {
+        let code = u32::from_str_radix(digits, radix)
+            .ok()
+            .and_then(char::from_u32);
+        code.is_some_and(|c| !c.is_control() || c.is_whitespace())
+    };
+    match (name.strip_prefix("#x"), name.strip_prefix('#')) {
+        (Some(digits), _) => number(digits, 16),
+        (None, Some(digits)) => number(digits, 10),
+        (None, None) => ["lt", "gt", "amp", "quot", "apos"].contains(&name),
+    }
+}

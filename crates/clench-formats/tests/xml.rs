@@ -1,0 +1,86 @@
+//! XML as TinyXML reads it, which MuJoCo uses: each of these loads in MuJoCo 4.0.0.
+
+use clench_formats::read_str;
+
+#[track_caller]
+fn loads(text: &str) {
+    let model = read_str(text);
+    assert!(model.is_ok(), "{text}: {:?}", model.err());
+}
+
+#[test]
+fn comments_may_hold_dashes() {
+    loads("<mujoco><!-- a -- b --><!-----></mujoco>");
+    loads("<!----- models -----><mujoco/>");
+}
+
+#[test]
+fn what_stands_before_the_model_does_not_count() {
+    loads("\u{feff}<mujoco/>");
+    loads(" \n<?xml version='1.0'?>\n<mujoco/>");
+    loads("<!DOCTYPE mujoco>\n<mujoco/>");
+    loads("<?foo bar?><mujoco/>");
+}
+
+#[test]
+fn elements_after_the_model_do_not_count() {
+    loads("<mujoco/><mujoco/>");
+    loads("<mujoco/><!-- a -- b -->");
+    assert!(read_str("<mujoco/>text").is_err());
+}
+
+#[test]
+fn text_between_elements_does_not_count() {
+    loads(
+        "<mujoco>a & b<worldbody>x<body name='b'>y</body></worldbody><![CDATA[ <foo> ]]></mujoco>",
+    );
+}
+
+#[test]
+fn values_may_hold_marks() {
+    let name = |value: &str| {
+        read_str(&format!("<mujoco model=\"{value}\"/>"))
+            .unwrap()
+            .name
+    };
+    assert_eq!(name("a & b"), "a & b");
+    assert_eq!(name("a < b > c"), "a < b > c");
+    assert_eq!(name("&foo;&lt;&#65;&#x42;"), "&foo;<AB");
+    assert_eq!(name("it's"), "it's");
+}
+
+#[test]
+fn attributes_may_touch() {
+    let text = "<mujoco><worldbody><geom name=\"a\"size=\"1\"type='box'pos=\"1 & 2\"/></worldbody></mujoco>";
+    let error = read_str(text).unwrap_err();
+    assert!(error.message.contains("pos"), "{error}");
+}
+
+#[test]
+fn the_root_may_say_where_its_schema_is() {
+    loads(
+        "<mujoco xmlns:xsi='http://www.w3.org/2001/XMLSchema-instance' xsi:noNamespaceSchemaLocation='mjcf.xsd'/>",
+    );
+}
+
+#[test]
+fn lines_stay_where_they_are() {
+    let text = "<mujoco>\n<!-- a -- \n b -->\n<worldbody>\n<geom size='x'/></worldbody></mujoco>";
+    assert_eq!(read_str(text).unwrap_err().line, Some(5));
+}
+
+#[test]
+fn what_is_broken_stays_broken() {
+    for text in [
+        "<mujoco><!-- a -- b --><worldbody></mujoco>",
+        "<mujoco><!-- a -- b --><worldbody/>",
+        "<mujoco><!-- a -- b --><worldbody",
+        "<mujoco><!-- a -- b --><worldbody a=\"",
+        "<mujoco><!-- a -- b",
+        "<mujoco model=a/><!-- a -- b -->",
+        "<mujoco><!-- a -- b --><?xml version='1.0'?></mujoco>",
+    ] {
+        let error = read_str(text).expect_err(text);
+        assert!(error.message.contains("well-formed"), "{error}");
+    }
+}
