@@ -55,7 +55,7 @@ pub(crate) fn leave_out(root: &mut Element, left_out: &mut Vec<String>) {
             left_out.push(child.error(reason).to_string());
             false
         });
-        pending.extend(&mut element.children);
+        pending.extend(element.children.iter_mut().rev());
     }
 }
 
