@@ -264,7 +264,6 @@ fn a_positive_velocity_bias_of_a_servo_is_a_damping_ratio() {
 fn what_is_not_supported_yet_says_so() {
     for element in [
         "<general joint='j' gaintype='so3'/>",
-        "<motor joint='j' delay='0.1'/>",
         "<orientation joint='j'/>",
     ] {
         assert!(rejected(element).contains("not supported yet"), "{element}");
