@@ -129,6 +129,9 @@ class Generator:
                 for name in ("constraint", "contact", "actuation"):  # without these there is little to compare
                     if self.draw.chance(0.7):
                         flags.attrib.pop(name, None)
+        if any(option.get("integrator") == "RK4" for option in self.root.iter("option")):
+            for flags in self.root.iter("flag"):
+                flags.attrib.pop("sleep", None)  # is refused beside it
 
     def defaults(self):
         if self.draw.chance(0.4):
@@ -316,6 +319,10 @@ class Generator:
             body.set("mocap", "true")
         else:
             self.body_joints(body, depth)
+        if depth == 0 and body.find("joint") is not None and draw.chance(self.density):
+            # In a state that is given, MuJoCo has no smooth forces of what begins asleep.
+            sleeps = any(flags.get("sleep") == "enable" for flags in self.root.iter("flag"))
+            body.set("sleep", draw.choice(("auto", "never", "allowed", *(() if sleeps else ("init",)))))
         self.solids(body, index)
         for _ in range(draw.choice((0, 0, 1, 2))):
             self.site(body, index)

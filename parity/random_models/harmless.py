@@ -37,7 +37,6 @@ VALUES = {
         "ccd_iterations": "1",
         "sdf_iterations": "5",
         "sdf_initpoints": "20",
-        "sleep_tolerance": "0.1",
     },
     "flag": {
         "energy": "enable",
@@ -56,7 +55,7 @@ VALUES = {
         **{f"nuser_{kind}": "4" for kind in "body jnt geom site cam tendon actuator sensor".split()},
     },
     "statistic": {"meaninertia": "2", "meanmass": "3", "meansize": "0.5", "extent": "2", "center": "1 2 3"},
-    "body": {**USER, "sleep": "never", "fuse": "false"},
+    "body": {**USER, "fuse": "false"},
     "frame": {"name": "named_frame"},
     "replicate": {"name": "named_replicate"},
     "joint": USER,
@@ -198,7 +197,7 @@ UNTRIED = {("skin", "file")}
 
 # Attributes that name something, or exclude others: only the test, which knows its scene, gives them.
 NAMED = {"class", "target", "texture", "material", "file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback", "normal", "texcoord"}
-NAMED |= {"sleep", "sensorsize", "focal", "focalpixel", "principal", "principalpixel", "fovy", "directional", "smoothnormal", "mode", "memory", "njmax", "nstack", "objname", "objtype", "nkey", "name", "content_type", "gridlayout", *POSE}
+NAMED |= {"sensorsize", "focal", "focalpixel", "principal", "principalpixel", "fovy", "directional", "smoothnormal", "mode", "memory", "njmax", "nstack", "objname", "objtype", "nkey", "name", "content_type", "gridlayout", *POSE}
 WHOLE = ("visual", "statistic", "custom", "size", "compiler", "option")
 VISUAL = ("global", "quality", "headlight", "map", "scale", "rgba")
 

@@ -211,6 +211,7 @@ VALUES = {
         "magnetic": vector(-1, 1),
         "density": scale(0.1, 1500),
         "viscosity": scale(1e-4, 2),
+        "sleep_tolerance": usually(scale(1e-5, 0.1), "0", "-1"),
         "integrator": one_of("Euler", "RK4", "implicitfast", "implicit"),
         "cone": one_of("pyramidal", "elliptic"),
         "jacobian": one_of("dense", "sparse", "auto"),
@@ -232,6 +233,7 @@ VALUES = {
         name: SWITCH
         for name in (
             "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart filterparent actuation "
+        "sleep_tolerance": usually(scale(1e-5, 0.1), "0", "-1"),
             "refsafe island eulerdamp multiccd autoreset sensor override diagexact"
         ).split()
     },

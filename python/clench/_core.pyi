@@ -148,6 +148,7 @@ class Model:
     magnetic: Final[_Floats]  # (3,) The magnetic field, which magnetometers measure.
     density: Final[float]  # Density of the medium.
     viscosity: Final[float]  # Viscosity of the medium.
+    sleep_tolerance: Final[float]  # Speed below which trees fall asleep, m/s.
     override_margin: Final[float]  # Margin of every contact, with the flag override.
     override_solref: Final[_Floats]  # (2,) Reference dynamics of every contact, likewise.
     override_solimp: Final[_Floats]  # (5,) Impedance of every contact, likewise.
@@ -194,6 +195,7 @@ class Model:
     jnt_actgravcomp: Final[_Flags]  # (njnt,) Whether gravity compensation counts as actuation.
 
     dof_armature: Final[_Floats]  # (nv,) Added inertia.
+    dof_length: Final[_Floats]  # (nv,) What makes a velocity of a rotation that is compared with `sleep_tolerance`, m.
     dof_damping: Final[_Floats]  # (nv,) Damping.
     dof_dampingpoly: Final[_Floats]  # (nv, 2) Coefficients of quadratic and cubic damping.
     dof_frictionloss: Final[_Floats]  # (nv,) Dry friction.
@@ -481,6 +483,7 @@ class Element:
     dof_damping: Final[_Floats]  # (nv,)
     dof_dampingpoly: Final[_Floats]  # (nv, 2)
     dof_frictionloss: Final[_Floats]  # (nv,)
+    dof_length: Final[_Floats]  # (nv,)
     dof_solref: Final[_Floats]  # (nv, 2)
     dof_solimp: Final[_Floats]  # (nv, 5)
     dof_invweight0: Final[_Floats]  # (nv,)
@@ -600,6 +603,14 @@ class StateViews:
     def qacc_warmstart(self) -> NDArray[Any]: ...  # (nv,)
     @qacc_warmstart.setter
     def qacc_warmstart(self, values: ArrayLike) -> None: ...
+    @property
+    def tree_asleep(self) -> NDArray[np.int32]: ...  # (ntree,), empty where no tree may sleep
+    @tree_asleep.setter
+    def tree_asleep(self, values: ArrayLike) -> None: ...
+    @property
+    def pose_asleep(self) -> NDArray[Any]: ...  # (nq + 7 nmocap,), empty where no tree may sleep
+    @pose_asleep.setter
+    def pose_asleep(self, values: ArrayLike) -> None: ...
 
 class _Outputs(StateViews):
     # What the last step or forward computed: copies for a simulation; for a batch, views of those that are recorded, with the

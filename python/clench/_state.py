@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 __all__ = ["State"]
 
 # What the bytes hold is said by this number: readers refuse what is newer than they know. Before version 2, times were of
-# the precision of all other numbers; before version 3, nothing was delayed.
+# the precision of all other numbers; before version 3, nothing was delayed and nothing slept.
 _VERSION = 3
 # The most entries of an archive that are looked at: more than any version has.
 _MAX_ENTRIES = 100
@@ -39,6 +39,10 @@ class State:
         Numbers, all float64 or all float32.
     eq_active : numpy.ndarray
         Switches of equality constraints, bool.
+    tree_asleep : numpy.ndarray
+        Which trees sleep, int32; empty where none may.
+    pose_asleep : numpy.ndarray
+        Where they lie, numbers as the others; empty where none may.
 
     Raises
     ------
@@ -58,6 +62,8 @@ class State:
     mocap_quat: NDArray[Any]
     eq_active: NDArray[np.bool_]
     qacc_warmstart: NDArray[Any]
+    tree_asleep: NDArray[np.int32]
+    pose_asleep: NDArray[Any]
 
     def __post_init__(self) -> None:
         self._arrays()
@@ -66,7 +72,11 @@ class State:
         """The fields by name, their types checked: fields can be replaced."""
         arrays = {field.name: getattr(self, field.name) for field in fields(self)}
         numbers = np.dtype(np.float32 if getattr(self.qpos, "dtype", None) == np.float32 else np.float64)
-        special = {"time": np.dtype(np.float64), "eq_active": np.dtype(np.bool_)}
+        special = {
+            "time": np.dtype(np.float64),
+            "eq_active": np.dtype(np.bool_),
+            "tree_asleep": np.dtype(np.int32),
+        }
         for name, array in arrays.items():
             wanted = special.get(name, numbers)
             found = getattr(array, "dtype", type(array).__name__)
@@ -136,7 +146,8 @@ class State:
         if version == 1 and "time" in arrays:
             arrays["time"] = arrays["time"].astype(np.float64)
         if version < 3 and "qpos" in arrays:
-            arrays["history"] = np.zeros((*arrays["qpos"].shape[:-1], 0), arrays["qpos"].dtype)
+            empty = np.zeros((*arrays["qpos"].shape[:-1], 0), arrays["qpos"].dtype)
+            arrays.update(history=empty, tree_asleep=empty.astype(np.int32), pose_asleep=empty)
         try:
             return State(**arrays)
         except TypeError as error:

@@ -104,6 +104,9 @@ impl Viewed for f64 {
 impl Viewed for f32 {
     type As = f32;
 }
+impl Viewed for i32 {
+    type As = i32;
+}
 /// A truth value is a byte for NumPy too.
 impl Viewed for u8 {
     type As = bool;

@@ -90,7 +90,7 @@ NUMBERS = (
     "mocap_quat",
     "qacc_warmstart",
 )
-FIELDS = (*NUMBERS, "eq_active")
+FIELDS = (*NUMBERS, "eq_active", "tree_asleep", "pose_asleep")
 
 
 def same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:

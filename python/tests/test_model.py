@@ -46,6 +46,7 @@ OPTIONS = {
     "magnetic": "magnetic",
     "density": "density",
     "viscosity": "viscosity",
+    "sleep_tolerance": "sleep_tolerance",
     "override_margin": "o_margin",
     "override_solref": "o_solref",
     "override_solimp": "o_solimp",

@@ -242,10 +242,12 @@ def test_times_of_the_first_version_had_the_precision_of_the_rest() -> None:
     assert clench.State.from_bytes(old).time == np.float32(state.time)
 
 
-def test_nothing_was_delayed_before_the_third_version() -> None:
+def test_nothing_was_delayed_and_nothing_slept_before_the_third_version() -> None:
     state = moving("batch").state
-    old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(2), history=None))
-    assert old.history.shape == (len(state.qpos), 0) and old.history.dtype == state.qpos.dtype
+    added = {"history": None, "tree_asleep": None, "pose_asleep": None}
+    old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(2), **added))
+    for array, kind in ((old.history, state.qpos.dtype), (old.tree_asleep, np.int32), (old.pose_asleep, state.qpos.dtype)):
+        assert array.shape == (len(state.qpos), 0) and array.dtype == kind
 
 
 @pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])

@@ -24,6 +24,12 @@ impl Written for kind::Number {
         json
     }
 }
+impl Written for kind::Integer {
+    type Json = i32;
+    fn read(json: i32) -> f64 {
+        f64::from(json)
+    }
+}
 impl Written for kind::Vector {
     type Json = [f64; 3];
     fn read(json: [f64; 3]) -> Vec3<f64> {
@@ -177,6 +183,8 @@ pub struct NextState {
     qpos: Vec<f64>,
     qvel: Vec<f64>,
     act: Vec<f64>,
+    tree_asleep: Vec<i32>,
+    pose_asleep: Vec<f64>,
 }
 
 impl NextState {
@@ -193,6 +201,8 @@ impl NextState {
             qpos: after.qpos,
             qvel: after.qvel,
             act: after.act,
+            tree_asleep: after.tree_asleep.iter().map(|&tree| tree as i32).collect(),
+            pose_asleep: after.pose_asleep,
         })
     }
 }

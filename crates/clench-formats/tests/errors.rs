@@ -333,7 +333,6 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ("<asset><model/></asset>", "model"),
         ("<equality><flex/></equality>", "flex"),
         ("<option integrator='discrete'/>", "option"),
-        ("<option><flag sleep='enable'/></option>", "flag"),
         ("<option><flag speculative='enable'/></option>", "flag"),
         ("<compiler fusestatic='true'/>", "compiler"),
     ] {
@@ -345,7 +344,7 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
 fn what_is_not_supported_is_accepted_where_it_does_nothing() {
     read_str(
         "<mujoco>
-           <option><flag sleep='disable' ipc='disable' invdiscrete='enable'/></option>
+           <option><flag ipc='disable' invdiscrete='enable'/></option>
            <worldbody>
              <body><joint springyield='0'/></body>
              <frame scale='1'/>

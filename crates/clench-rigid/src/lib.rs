@@ -27,6 +27,7 @@ pub mod sensor;
 pub mod settings;
 mod sim;
 mod singular;
+pub mod sleep;
 pub mod state;
 pub mod workspace;
 

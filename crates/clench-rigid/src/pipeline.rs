@@ -22,6 +22,7 @@ use crate::model::{Integrator, Model, Params};
 use crate::profile::Stage;
 use crate::sensor;
 use crate::settings::StepSettings;
+use crate::sleep;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::Real;
@@ -113,12 +114,29 @@ fn forward_dynamics<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     ws.clock.start();
+    let sleep = settings.flags.sleep;
+    if sleep {
+        sleep::wake_touched(model, state, ws);
+    }
     position_stage(model, params, state, ws);
+    if sleep {
+        sleep::wake_pulled(model, params, settings, ws);
+    }
     detect(model, params, settings, ws);
+    if sleep {
+        while sleep::wake_touching(model, ws) {
+            detect(model, params, settings, ws);
+        }
+        sleep::wake_coupled(model, state, ws);
+    }
     adhesion(model, &ws.contacts, &mut ws.position);
     velocity_stage(model, params, state, ws);
     force_stage(model, params, state, ws);
     constraint_stage(model, params, settings, state, ws);
+    if sleep {
+        ws.sleep.still(model, &mut ws.qacc);
+        ws.sleep.note(model, state);
+    }
 }
 
 /// Advances the state by one time step. The next step's solver starts from this one's acceleration.
@@ -129,7 +147,14 @@ pub fn step<T: Real>(
     state: &mut State<T>,
     ws: &mut Workspace<T>,
 ) {
+    if settings.flags.sleep && sleep::is_idle(model, state, ws) {
+        sleep::idle(model, params, settings, state, ws);
+        return;
+    }
     forward(model, params, settings, state, ws);
+    if settings.flags.sleep {
+        sleep::fall_asleep(model, params, settings, state, ws);
+    }
     match model.integrator {
         Integrator::Euler => euler(model, params, state, ws),
         Integrator::ImplicitFast => implicit_fast(model, params, state, ws),
@@ -137,6 +162,9 @@ pub fn step<T: Real>(
         Integrator::Rk4 => rk4(model, params, state, ws, |state, ws| {
             forward_dynamics(model, params, settings, state, ws);
         }),
+    }
+    if settings.flags.sleep {
+        sleep::hold(model, state, ws);
     }
     state.qacc_warmstart.copy_from_slice(&ws.qacc);
     ws.clock.lap(Stage::Integration as usize);

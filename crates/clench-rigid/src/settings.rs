@@ -44,6 +44,7 @@ impl StepSettings {
             Some(disable) => !disable,
             None => flags.constraint && !solver.disable_constraint,
         };
+        flags.sleep &= model.may_sleep();
         let file_limits = flags.limit && solver.enable_joint_limit;
         let joint_limits = user.enable_joint_limit.unwrap_or(file_limits);
         if user.warmstart.is_none() {

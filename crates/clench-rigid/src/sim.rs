@@ -178,6 +178,12 @@ impl<T: Precision> Sim<T> {
         self.know(Extent::Positions)
     }
 
+    /// What is known holds no longer: it followed from other parameters.
+    fn forget(&mut self) {
+        self.known.forget();
+        self.ws.sleep.forget();
+    }
+
     /// Sees to it that so much is known.
     pub(crate) fn know(&mut self, wanted: Extent) -> Result<(), SimError> {
         if wanted <= self.known.extent(&self.state) {
@@ -188,6 +194,7 @@ impl<T: Precision> Sim<T> {
         }
         self.check_state()?;
         self.ws.clock.start();
+        self.ws.sleep.forget();
         T::position_stage(&self.model, &self.params, &self.state, &mut self.ws);
         self.known.note(Extent::Positions, &self.state);
         Ok(())
@@ -313,7 +320,7 @@ impl<T: Precision> Sim<T> {
         Model::clear_structural_guarantees(&mut self.model, field, &row);
         self.params.write_lane(field, 0, &row);
         self.params.derive(&self.model, field);
-        self.known.forget();
+        self.forget();
         Ok(())
     }
 
@@ -345,7 +352,7 @@ impl<T: Precision> Sim<T> {
     /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is checked or
     /// derived anew, as [`set_param`](Self::set_param) does.
     pub fn params_mut(&mut self) -> &mut Params<T> {
-        self.known.forget();
+        self.forget();
         &mut self.params
     }
     /// The options that the user set.

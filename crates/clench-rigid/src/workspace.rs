@@ -7,6 +7,7 @@ use crate::dynamics::articulated::{ArticulatedInertia, articulated_bodies};
 use crate::dynamics::integrate::Integration;
 use crate::profile::{Profile, StepClock};
 use crate::sensor::SensorReadings;
+use crate::sleep::Sleep;
 use clench_math::{Force, Inertia, Mask, Mat3, Motion, Quat, Real, Vec3};
 use clench_solver::{Problem, Solver};
 
@@ -160,6 +161,10 @@ pub struct Workspace<T: Real> {
     pub qacc: Vec<T>,
     /// Constraint forces along dofs (nv).
     pub qfrc_constraint: Vec<T>,
+    /// Whether anybody reads what a step leaves here: else a step in which everything sleeps need not know it.
+    pub read: bool,
+    /// Which trees are awake.
+    pub sleep: Sleep<T>,
     /// What sensors measure.
     pub sensors: SensorReadings<T>,
     /// Where the mass matrix is factored by articulated bodies: scratch of that (nbody); else empty.
@@ -210,6 +215,8 @@ impl<T: Real> Workspace<T> {
             solver: Solver::new(&model.tree),
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
+            read: true,
+            sleep: Sleep::new(model),
             sensors: SensorReadings::new(model),
             articulated: articulated_bodies(model),
             integration: Integration::new(model),

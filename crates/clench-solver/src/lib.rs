@@ -38,6 +38,7 @@ mod workspace;
 
 pub use check::ProblemError;
 pub use options::{ConstraintSolver, FrictionCone, MaxContacts, RigidOptions, Settings, Switch};
+pub use partition::{Island, Partition};
 pub use plain::PlainBlock;
 pub use problem::{Block, BlockMut, Cost, Problem};
 pub use solver::Solver;

@@ -3,6 +3,8 @@
 //! A block couples the trees of its dofs in the lanes in which it acts. What is coupled, directly or through others, is an
 //! island. It is written as a list of trees: ascending, and in an order that fills little of the Hessian where there are
 //! many. That list follows from the lane alone, so lanes with the same list can share a problem.
+//!
+//! Others than the solver ask for it too: what sleeps, sleeps by islands.
 
 use crate::Problem;
 use crate::minimum_degree::MinimumDegree;
@@ -12,7 +14,8 @@ use std::ops::Range;
 
 /// An island, and the lanes that have it.
 #[derive(Clone, Debug)]
-pub(crate) struct Island<T: Real> {
+pub struct Island<T: Real> {
+    /// The lanes that have it.
     pub lanes: T::Mask,
     /// Its lowest tree.
     first: u32,
@@ -22,7 +25,7 @@ pub(crate) struct Island<T: Real> {
 
 /// The islands of all lanes.
 #[derive(Clone, Debug)]
-pub(crate) struct Partition<T: Real> {
+pub struct Partition<T: Real> {
     /// Lanes in which each block acts.
     acting: Vec<T::Mask>,
     /// Lanes in which some block acts on each tree.
@@ -93,18 +96,23 @@ impl<T: Real> Partition<T> {
         &self.trees[island.trees.clone()]
     }
 
+    /// The lanes in which some block acts on a tree.
+    pub fn constrained(&self, tree: usize) -> T::Mask {
+        self.constrained[tree]
+    }
+
     /// Whether the trees of an island are in ascending order.
-    pub fn is_ascending(&self, island: &Island<T>) -> bool {
+    pub(crate) fn is_ascending(&self, island: &Island<T>) -> bool {
         island.trees.len() <= MAX_ASCENDING
     }
 
     /// The lanes in which each block acts.
-    pub fn acting(&self) -> &[T::Mask] {
+    pub(crate) fn acting(&self) -> &[T::Mask] {
         &self.acting
     }
 
     /// Whether the problem is a single small island, in all lanes and with all of its blocks: then it need not be copied.
-    pub fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         let [island] = &self.islands[..] else {
             return false;
         };

@@ -100,6 +100,15 @@ impl Column {
             ..Column::number(name)
         }
     }
+    /// Which trees sleep, where any may.
+    fn asleep(model: &Model) -> Option<Self> {
+        let trees = model.tree_asleep0.len();
+        let column = Column {
+            whole: true,
+            ..Column::of_row("tree_asleep", trees)
+        };
+        (trees > 0).then_some(column)
+    }
     fn of_each(self, envs: usize) -> Self {
         Column { envs, ..self }
     }
@@ -179,13 +188,13 @@ impl Record {
 /// The record of one environment.
 ///
 /// Arrays: `time` (n), `qpos` (n, nq), `qvel` (n, nv), `ctrl` (n, nu), `contacts`, `penetration`, `iterations`, `gradient`,
-/// `improvement`, `gap`, `status` (n).
+/// `improvement`, `gap`, `status` (n), and where the model may sleep `tree_asleep` (n, ntree).
 pub struct Recorder(Record);
 
 impl Recorder {
     /// An empty record.
     pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
-        let columns = vec![
+        let mut columns = vec![
             Column::number("time"),
             Column::of_row("qpos", model.nq),
             Column::of_row("qvel", model.nv),
@@ -198,6 +207,7 @@ impl Recorder {
             Column::number("gap"),
             Column::count("status"),
         ];
+        columns.extend(Column::asleep(model));
         options.begin(1, false, columns).map(Recorder)
     }
 
@@ -219,6 +229,7 @@ impl Recorder {
             vec![stats.improvement],
             vec![stats.gap],
             vec![f64::from(stats.status as u8)],
+            widen(&state.tree_asleep),
         ];
         self.0.push(&[state.time], row.iter().map(Vec::as_slice));
     }
@@ -232,13 +243,13 @@ impl Recorder {
 /// The record of a batch. Numbers come step by step and are written environment by environment.
 ///
 /// Arrays: `time` (envs, n), `qpos` (envs, n, nq), `qvel` (envs, n, nv), `ctrl` (envs, n, nu), `contacts`, `iterations`
-/// (envs, n).
+/// (envs, n), and where the model may sleep `tree_asleep` (envs, n, ntree).
 pub struct BatchRecorder(Record);
 
 impl BatchRecorder {
     /// An empty record.
     pub fn create(options: &RecordOptions, model: &Model, envs: usize) -> Result<Self> {
-        let columns = vec![
+        let mut columns = vec![
             Column::number("time").of_each(envs),
             Column::of_row("qpos", model.nq).of_each(envs),
             Column::of_row("qvel", model.nv).of_each(envs),
@@ -247,6 +258,7 @@ impl BatchRecorder {
             Column::count("contacts").of_each(envs),
             Column::count("iterations").of_each(envs),
         ];
+        columns.extend(Column::asleep(model).map(|column| column.of_each(envs)));
         options.begin(envs, true, columns).map(BatchRecorder)
     }
 
@@ -260,7 +272,11 @@ impl BatchRecorder {
         let states = [&state.qpos, &state.qvel].map(|rows| rows.as_slice());
         let output = |name| batch.output(name).map_or(&[][..], |rows| rows.as_slice());
         let outputs = BATCH_OUTPUTS.map(output);
+        let asleep: Vec<S> = (state.tree_asleep.as_slice().iter())
+            .map(|&tree| S::new(f64::from(tree)))
+            .collect();
         let others = states.into_iter().chain([ctrl]).chain(outputs);
+        let others = others.chain([&asleep[..]]);
         self.0.push(state.time.as_slice(), others);
     }
 

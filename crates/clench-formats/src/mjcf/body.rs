@@ -13,6 +13,7 @@ use clench_math::{Mat3, Quat, Vec3};
 use clench_rigid::builder::{
     BodySpec, CameraSpec, CompilerSpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, SiteSpec,
 };
+use clench_rigid::model::SleepPolicy;
 use std::sync::Arc;
 
 /// Reads the body tree into a list of bodies, parents before children.
@@ -22,6 +23,13 @@ pub(crate) struct BodyReader<'a> {
     bodies: &'a mut Vec<BodySpec>,
     spending: &'a mut Spending,
 }
+
+const SLEEP_POLICIES: [(&str, SleepPolicy); 4] = [
+    ("auto", SleepPolicy::Auto),
+    ("never", SleepPolicy::Never),
+    ("allowed", SleepPolicy::Allowed),
+    ("init", SleepPolicy::Init),
+];
 
 /// What is read of an element stands in the builder, then in the model, and for a while in both.
 const COPIES: usize = 3;
@@ -145,6 +153,9 @@ impl<'a> BodyReader<'a> {
             ..BodySpec::default()
         };
         element.set_boolean("mocap", &mut body.mocap)?;
+        if let Some(policy) = element.keyword("sleep", &SLEEP_POLICIES)? {
+            body.sleep = policy;
+        }
         let simple = element.keyword("simple", &[("false", false), ("auto", true)])?;
         body.never_simple = simple == Some(false);
         let fused = element.keyword("fuse", &[("false", false), ("auto", true)])?;

@@ -57,6 +57,10 @@ impl OptionReader {
             solver_flags(flag, &mut builder.options)?;
             flag.set_keyword("override", &SWITCHES, &mut self.contact_override)?;
         }
+        if builder.physics.flags.sleep && builder.physics.integrator == Integrator::Rk4 {
+            let message = "the flag sleep and the integrator RK4 cannot go together: what falls asleep would wake in the next step";
+            return Err(element.error(message));
+        }
         Ok(())
     }
 
@@ -126,6 +130,7 @@ fn read_physics(element: &Element, builder: &mut ModelBuilder) -> Result<(), Loa
     element.refuse_negative(&["density", "viscosity"])?;
     element.set_number("density", &mut physics.density)?;
     element.set_number("viscosity", &mut physics.viscosity)?;
+    element.set_number("sleep_tolerance", &mut physics.sleep_tolerance)?;
     let integrators = [
         ("Euler", Some(Integrator::Euler)),
         ("RK4", Some(Integrator::Rk4)),
@@ -171,6 +176,7 @@ fn element_flags(element: &Element, flags: &mut Flags) -> Result<(), LoadError> 
         ("multiccd", &mut flags.multiccd),
         ("diagexact", &mut flags.diagexact),
         ("sensor", &mut flags.sensor),
+        ("sleep", &mut flags.sleep),
     ];
     for (name, target) in targets {
         element.set_keyword(name, &SWITCHES, target)?;

@@ -59,6 +59,7 @@ macro_rules! shared {
 shared!(f64 in AtomicU64, f64::from_bits, f64::to_bits);
 shared!(f32 in AtomicU32, f32::from_bits, f32::to_bits);
 shared!(u8 in AtomicU8, u8::from, u8::from);
+shared!(i32 in AtomicU32, u32::cast_signed, i32::cast_unsigned);
 
 /// What a batch needs of a number type; outside this crate only its name is known.
 pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {

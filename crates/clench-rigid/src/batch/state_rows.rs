@@ -8,6 +8,7 @@ use crate::check::check_length;
 use crate::error::SimError;
 use crate::model::Model;
 use crate::sim::no_such;
+use crate::sleep::AWAKE;
 use crate::state::kind::{self, Kind};
 use crate::state::{FIELDS, State};
 use clench_math::{Clock, Real};
@@ -234,7 +235,8 @@ impl<S: Precision> StateRows<S> {
 }
 
 impl<S: Lanewise> MovingRows<'_, S> {
-    /// Replaces the row of an environment by time, `nq` positions, `nv` velocities and activations. The solver starts anew.
+    /// Replaces the row of an environment by time, `nq` positions, `nv` velocities and activations. The solver starts anew, and everything is
+    /// awake.
     pub fn start(&self, env: usize, row: &[S], nq: usize, nv: usize) {
         let (time, row) = row.split_at(1);
         let (qpos, row) = row.split_at(nq);
@@ -245,5 +247,6 @@ impl<S: Lanewise> MovingRows<'_, S> {
         self.act.put(env, act.iter().copied());
         self.qacc_warmstart
             .put(env, std::iter::repeat_n(S::ZERO, nv));
+        self.tree_asleep.put(env, std::iter::repeat(AWAKE as i32));
     }
 }

@@ -144,6 +144,9 @@ where
                 own.read(env, lane, &mut self.params);
             }
         }
+        if !job.params.is_empty() {
+            self.ws.sleep.forget();
+        }
         let has_occasional = (group.iter()).any(|(_, env)| job.inputs.has_occasional(env));
         if has_occasional {
             for (lane, env) in group.fill() {
@@ -285,11 +288,16 @@ where
                 }
             }
         }
+        let asleep = self.ws.sleep.all_asleep();
         for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
             if job.pass == Pass::Step {
                 job.motion.write(env, lane, &self.state);
             }
-            job.sort_keys[env].store(gray_rank(signatures[lane]), Relaxed);
+            let rank = match asleep.lane(lane) {
+                true => ASLEEP_RANK,
+                false => gray_rank(signatures[lane]),
+            };
+            job.sort_keys[env].store(rank, Relaxed);
         }
         if job.pass == Pass::Query {
             return;
@@ -338,6 +346,9 @@ where
     }
 }
 
+/// The place of environments in which everything sleeps: together, for a group of them costs next to nothing.
+const ASLEEP_RANK: u64 = u64::MAX;
+
 /// One of 64 bits for a pair of geoms.
 fn contact_bit(a: u64, b: u64) -> u64 {
     // Fibonacci hashing: the upper bits of a multiple of the golden ratio spread neighbours well.
@@ -365,6 +376,8 @@ where
     fn run(&mut self, envs: &[u32], job: &Job<T::Scalar>) {
         let sensors = &job.targets[Output::sensordata as usize];
         self.ws.sensors.wanted = sensors.last.is_some() || sensors.trace.is_some();
+        let targets = job.targets.iter();
+        self.ws.read = { targets }.any(|target| target.last.is_some() || target.trace.is_some());
         self.advance(Group::new(envs), Start::Rows, job.first, job);
         // Each by itself, which changes no bit of what comes out.
         while let Some((env, step)) = self.restarts.pop() {

@@ -4,7 +4,7 @@ use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
     BuildError, ModelBuilder, actuators, bodies, budget, cameras, check, contacts, equalities,
-    fuse, invweight0, keyframes, length_range, sensors, tendons,
+    fuse, invweight0, keyframes, length_range, sensors, sleep, tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -61,11 +61,13 @@ impl ModelBuilder {
         actuators::add_all(self, &names, &mut model)?;
         cameras::aim_all(self, &order, &names, &mut model)?;
         sensors::add_all(self, &names, &mut model)?;
+        sleep::add_trees(self, &order, &mut model)?;
 
         let mut pose0 = pose(&model, &model.params.qpos0);
         let rest = |model: &Model| pose(model, &model.params.qpos_spring);
         tendons::lengths(self, &pose0, rest, &mut model);
         cameras::set_initial_frames(&pose0, &mut model);
+        sleep::dof_lengths(&pose0, &mut model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
         budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
@@ -74,6 +76,7 @@ impl ModelBuilder {
         length_range::find_all(self, &mut model)?;
         budget::keyframes(self, &model)?;
         keyframes::add_all(self, &mut model)?;
+        sleep::begin_asleep(&mut model)?;
         Ok(model)
     }
 
@@ -106,6 +109,9 @@ impl ModelBuilder {
             nhistory: 0,
             nmocap: 0,
             tree: Arc::default(),
+            trees: Vec::new(),
+            tendon_ties: Vec::new(),
+            tree_asleep0: Vec::new(),
             integrator: physics.integrator,
             flags: physics.flags,
             override_contacts: physics.contact_override.is_some(),
@@ -118,6 +124,7 @@ impl ModelBuilder {
                 magnetic: Vec3::from_array(physics.magnetic),
                 density: physics.density,
                 viscosity: physics.viscosity,
+                sleep_tolerance: physics.sleep_tolerance,
                 override_margin: contacts.margin,
                 override_solref: contacts.solref,
                 override_solimp: contacts.solimp,

@@ -7,6 +7,7 @@ use super::{
     GeomMass, GeomSpec, InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec,
     TendonSpec, WrapSpec,
 };
+use crate::model::Integrator;
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 
@@ -69,6 +70,16 @@ fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
     require(finite(&physics.magnetic), "magnetic", "finite")?;
     require(not_negative(physics.density), "density", "zero or more")?;
     require(not_negative(physics.viscosity), "viscosity", "zero or more")?;
+    require(
+        physics.sleep_tolerance.is_finite(),
+        "sleep_tolerance",
+        "finite",
+    )?;
+    require(
+        !(physics.flags.sleep && physics.integrator == Integrator::Rk4),
+        "the integrator",
+        "another than RK4 where the flag sleep is on: what falls asleep between its stages would wake again",
+    )?;
     require(
         not_negative(compiler.boundmass),
         "boundmass",

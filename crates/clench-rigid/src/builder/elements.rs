@@ -1,7 +1,7 @@
 //! Bodies and what stands on them, with MuJoCo's defaults.
 
 use super::{CameraSpec, CompilerSpec, ModelBuilder, Origin};
-use crate::model::JointKind;
+use crate::model::{JointKind, SleepPolicy};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
@@ -33,6 +33,8 @@ pub struct BodySpec {
     pub never_simple: bool,
     /// Stays a body of its own where `CompilerSpec::fusestatic` would make it part of its parent.
     pub never_fused: bool,
+    /// Whether the tree of which this body is the root may sleep.
+    pub sleep: SleepPolicy,
     /// Share of the body's weight that is lifted. As in MuJoCo, shares below zero count only if some body's is positive.
     pub gravcomp: f64,
     /// Joints, in the order in which they act.

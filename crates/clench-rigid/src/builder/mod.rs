@@ -56,6 +56,7 @@ mod resolve;
 mod sensor_specs;
 mod sensors;
 mod shapes;
+mod sleep;
 mod solid;
 mod tendons;
 mod transmissions;

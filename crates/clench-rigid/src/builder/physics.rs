@@ -81,6 +81,8 @@ pub struct PhysicsSpec {
     pub viscosity: f64,
     /// How velocity and position advance.
     pub integrator: Integrator,
+    /// Speed below which trees fall asleep where the flag `sleep` is on, m/s.
+    pub sleep_tolerance: f64,
     /// Feature switches.
     pub flags: Flags,
     /// Contact parameters that replace all others (MuJoCo's `override` flag): margin, solref, solimp, friction.
@@ -123,6 +125,7 @@ impl Default for PhysicsSpec {
             magnetic: [0.0, -0.5, 0.0],
             density: 0.0,
             viscosity: 0.0,
+            sleep_tolerance: 1e-3,
             integrator: Integrator::Euler,
             flags: Flags::default(),
             contact_override: None,

@@ -40,12 +40,12 @@ pub(super) fn push<T: Real>(
     contact: &mut Contact<T>,
 ) {
     contact.block = None;
-    let active = contact.acts();
+    let body = |i: usize| context.model.geoms[contact.geoms[i]].body;
+    let bodies = [body(0), body(1)];
+    let active = contact.acts() & context.sleep.is_either_awake(bodies);
     if !active.any() {
         return;
     }
-    let body = |i: usize| context.model.geoms[contact.geoms[i]].body;
-    let bodies = [body(0), body(1)];
     let chains = Chains::new(context.model, bodies).without_common();
     chains.collect(out.dofs());
     if out.dofs().is_empty() {

@@ -69,8 +69,9 @@ impl Coordinate {
         });
     }
 
+    /// Shows its dofs to `visit`, each with its derivative by it.
     #[inline(always)]
-    fn each<T: Real>(self, context: &ConstraintContext<T>, mut visit: impl FnMut(u32, T)) {
+    pub fn each<T: Real>(self, context: &ConstraintContext<T>, mut visit: impl FnMut(u32, T)) {
         match self {
             Coordinate::Joint(joint) => visit(context.model.joints[joint].dof as u32, T::ONE),
             Coordinate::Tendon(tendon) => {

@@ -26,6 +26,7 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
         dofs.push(i as u32);
         let friction = Friction {
             source: ConstraintSource::DofFriction(i),
+            awake: context.sleep.is_awake(model.tree.tree_of(i)),
             loss: params.dof_frictionloss[i],
             solref: params.dof_solref[i],
             solimp: params.dof_solimp[i],
@@ -43,6 +44,7 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
         coordinate.insert_dofs(context, dofs);
         let friction = Friction {
             source: ConstraintSource::TendonFriction(i),
+            awake: context.awake([coordinate]),
             loss: params.tendon_frictionloss[i],
             solref: params.tendon_solref_fri[i],
             solimp: params.tendon_solimp_fri[i],
@@ -54,8 +56,10 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
     }
 }
 
-struct Friction<T> {
+struct Friction<T: Real> {
     source: ConstraintSource,
+    /// Lanes in which anything that it brakes is awake.
+    awake: T::Mask,
     loss: T,
     solref: [T; 2],
     solimp: [T; 5],
@@ -70,7 +74,7 @@ impl<T: Real> Friction<T> {
         out: &mut Assembly<T>,
         fill: impl FnOnce(&[u32], &mut [T]),
     ) {
-        let active = self.loss.gt(T::ZERO);
+        let active = self.awake & self.loss.gt(T::ZERO);
         if !active.any() {
             return;
         }

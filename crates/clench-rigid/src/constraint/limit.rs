@@ -24,6 +24,12 @@ pub(super) fn push_joints<T: Real>(context: &ConstraintContext<T>, out: &mut Ass
         if !joint.limited {
             continue;
         }
+        let awake = context
+            .sleep
+            .is_awake(context.model.tree.tree_of(joint.dof));
+        if !awake.any() {
+            continue;
+        }
         let margin = params.jnt_margin[i];
         if let JointKind::Hinge | JointKind::Slide = joint.kind {
             // Most joints are well within their range.
@@ -34,6 +40,7 @@ pub(super) fn push_joints<T: Real>(context: &ConstraintContext<T>, out: &mut Ass
         }
         let limit = Limit {
             source: ConstraintSource::JointLimit(i),
+            awake,
             margin,
             solref: &params.jnt_solref[i],
             solimp: &params.jnt_solimp[i],
@@ -59,6 +66,7 @@ pub(super) fn push_tendons<T: Real>(context: &ConstraintContext<T>, out: &mut As
         }
         let limit = Limit {
             source: ConstraintSource::TendonLimit(i),
+            awake: context.awake([Coordinate::Tendon(i)]),
             margin: params.tendon_margin[i],
             solref: &params.tendon_solref_lim[i],
             solimp: &params.tendon_solimp_lim[i],
@@ -69,8 +77,10 @@ pub(super) fn push_tendons<T: Real>(context: &ConstraintContext<T>, out: &mut As
     }
 }
 
-struct Limit<'a, T> {
+struct Limit<'a, T: Real> {
     source: ConstraintSource,
+    /// Lanes in which anything that it holds is awake.
+    awake: T::Mask,
     margin: T,
     solref: &'a [T; 2],
     solimp: &'a [T; 5],
@@ -89,7 +99,7 @@ impl<T: Real> Limit<'_, T> {
     ) {
         let value = coordinate.value(context);
         for (dist, sign) in [(value - low, T::ONE), (high - value, -T::ONE)] {
-            if !dist.lt(self.margin).any() {
+            if !(self.awake & dist.lt(self.margin)).any() {
                 continue;
             }
             let dofs = out.dofs();
@@ -118,7 +128,7 @@ impl<T: Real> Limit<'_, T> {
         let (axis, angle) = orientation.to_rotation_vector().normalize();
         let [low, high] = context.params.jnt_range[joint];
         let dist = low.max(high) - angle;
-        if !dist.lt(self.margin).any() {
+        if !(self.awake & dist.lt(self.margin)).any() {
             return;
         }
         let dofs = out.dofs();
@@ -145,7 +155,7 @@ impl<T: Real> Limit<'_, T> {
         let row = Row::new(&soft, dist, self.margin, self.a0);
         let block = BlockRecord {
             source: self.source,
-            active: dist.lt(self.margin),
+            active: self.awake & dist.lt(self.margin),
             margin: self.margin,
             impedance: soft.impedance,
         };

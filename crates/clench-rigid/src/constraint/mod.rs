@@ -23,6 +23,7 @@ use crate::contact::Contact;
 use crate::model::{EqualityTarget, Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
+use crate::sleep::Sleep;
 use crate::state::State;
 use crate::workspace::{Positions, Velocities, Workspace};
 use assembly::Assembly;
@@ -38,6 +39,7 @@ struct ConstraintContext<'a, T: Real> {
     state: &'a State<T>,
     position: &'a Positions<T>,
     velocity: &'a Velocities<T>,
+    sleep: &'a Sleep<T>,
     /// No constraint has a shorter time constant, s.
     least_timeconst: T,
     /// Ratio of friction to normal impedance.
@@ -45,6 +47,41 @@ struct ConstraintContext<'a, T: Real> {
 }
 
 impl<T: Real> ConstraintContext<'_, T> {
+    /// Lanes in which an equality is on and couples anything that is awake.
+    #[inline(always)]
+    fn active_equality(&self, equality: usize) -> T::Mask {
+        let active = self.state.eq_active[equality];
+        if !self.settings.flags.sleep {
+            return active;
+        }
+        let awake = match self.model.equalities[equality].target {
+            EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 } => {
+                self.sleep.is_either_awake([body1, body2])
+            }
+            EqualityTarget::Joint { joint1, joint2 } => {
+                let joints = [Some(joint1), joint2].into_iter().flatten();
+                self.awake(joints.map(Coordinate::Joint))
+            }
+            EqualityTarget::Tendon { tendon1, tendon2 } => {
+                let tendons = [Some(tendon1), tendon2].into_iter().flatten();
+                self.awake(tendons.map(Coordinate::Tendon))
+            }
+        };
+        active & awake
+    }
+
+    /// Lanes in which anything that moves one of these coordinates is awake.
+    #[inline(always)]
+    fn awake(&self, coordinates: impl IntoIterator<Item = Coordinate>) -> T::Mask {
+        let mut awake = T::Mask::splat(!self.settings.flags.sleep);
+        for coordinate in coordinates {
+            coordinate.each(self, |dof, _| {
+                awake |= self.sleep.is_awake(self.model.tree.tree_of(dof as usize));
+            });
+        }
+        awake
+    }
+
     /// How soft an equality is at a violation of this size, and the record of its block.
     #[inline(always)]
     fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
@@ -56,7 +93,7 @@ impl<T: Real> ConstraintContext<'_, T> {
         );
         let record = BlockRecord {
             source: ConstraintSource::Equality(equality),
-            active: self.state.eq_active[equality],
+            active: self.active_equality(equality),
             margin: T::ZERO,
             impedance: soft.impedance,
         };
@@ -107,6 +144,7 @@ pub fn assemble<T: Real>(
         state,
         position: &ws.position,
         velocity: &ws.velocity,
+        sleep: &ws.sleep,
         least_timeconst: least_timeconst(params, settings),
         impratio: T::new(settings.solver.impratio),
     };
@@ -155,7 +193,7 @@ fn least_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
 
 fn push_equalities<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
     for (i, equality) in context.model.equalities.iter().enumerate() {
-        if !context.state.eq_active[i].any() {
+        if !context.active_equality(i).any() {
             continue;
         }
         match equality.target {

@@ -7,6 +7,7 @@ use crate::Budget;
 use crate::model::{Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
+use crate::sleep::Sleep;
 use crate::workspace::{Positions, Workspace};
 use clench_collide::{Contacts, Pose, Shape, collide, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
@@ -126,6 +127,24 @@ impl<T: Real> Collision<T> {
     }
 }
 
+/// What sleeps: two bodies neither of which is awake make no contact.
+struct Awake<'a, T: Real> {
+    model: &'a Model,
+    /// Nothing does without it.
+    sleep: Option<&'a Sleep<T>>,
+}
+
+impl<T: Real> Awake<'_, T> {
+    /// Lanes in which the geoms of a candidate can make a contact.
+    #[inline(always)]
+    fn of(&self, candidate: &Candidate) -> T::Mask {
+        let Some(sleep) = self.sleep else {
+            return T::Mask::splat(true);
+        };
+        sleep.is_either_awake(candidate.geoms.map(|g| self.model.geoms[g as usize].body))
+    }
+}
+
 /// Fills `ws.contacts` from the geoms' poses, in canonical order.
 #[kernel]
 pub fn detect<T: Real>(
@@ -135,6 +154,10 @@ pub fn detect<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let (collision, contacts, pos) = (&mut ws.collision, &mut ws.contacts, &ws.position);
+    let awake = Awake {
+        model,
+        sleep: settings.flags.sleep.then_some(&ws.sleep),
+    };
     collision.excess = T::ZERO;
     if collision.given {
         return;
@@ -155,8 +178,13 @@ pub fn detect<T: Real>(
     }
     collision.near.clear();
     for (index, candidate) in collision.candidates.iter().enumerate() {
+        let awake = awake.of(candidate);
+        if !awake.any() {
+            continue;
+        }
         let range = || contact_range(model, params, candidate).1;
-        if may_touch(candidate, &collision.spheres, pos, range).any() {
+        let near = may_touch(candidate, &collision.spheres, pos, range);
+        if (awake & near).any() {
             collision.near.push(index as u32);
         }
     }
@@ -170,7 +198,7 @@ pub fn detect<T: Real>(
         }
         if !collision.points.as_slice().is_empty() {
             list(
-                model, params, settings, pos, &candidate, collision, contacts,
+                params, settings, pos, &candidate, &awake, collision, contacts,
             );
         }
     }
@@ -201,14 +229,15 @@ fn narrow<T: Real>(
 /// Makes contacts of the points of one candidate.
 #[kernel]
 fn list<T: Real>(
-    model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
     pos: &Positions<T>,
     candidate: &Candidate,
+    awake: &Awake<T>,
     collision: &mut Collision<T>,
     contacts: &mut Vec<Contact<T>>,
 ) {
+    let (model, awake) = (awake.model, awake.of(candidate));
     let mixed = contact_params(model, params, candidate);
     let dofs = |geom: u32| {
         let body = &model.bodies[model.geoms[geom as usize].body];
@@ -223,7 +252,7 @@ fn list<T: Real>(
         let apart = adheres & !point.distance.lt(mixed.includemargin);
         for (lanes, dim) in [(!apart, mixed.dim), (apart, 1)] {
             let active = collision.count_within_limit(
-                point.active & lanes,
+                point.active & awake & lanes,
                 settings.solver.max_contacts,
                 dim * dofs,
                 &model.budget,

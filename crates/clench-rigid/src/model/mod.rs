@@ -23,8 +23,8 @@ pub use sensor_target::{
 pub use structure::{
     Actuator, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates, Dof,
     DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField, History,
-    Integrator, Joint, JointKind, Keyframe, Mesh, Pair, RowPattern, Section, Site, Tendon,
-    Transmission, Wrap,
+    Integrator, Joint, JointKind, Keyframe, KinematicTree, Mesh, Pair, RowPattern, Section, Site,
+    SleepPolicy, Tendon, Transmission, Wrap,
 };
 
 use crate::Budget;
@@ -87,6 +87,12 @@ pub struct Model {
     pub nmocap: usize,
     /// Sparsity of the mass matrix.
     pub tree: Arc<Tree>,
+    /// Kinematic trees, in the order of their dofs.
+    pub trees: Vec<KinematicTree>,
+    /// Of each tendon that pulls on two trees, these.
+    pub tendon_ties: Vec<Option<[usize; 2]>>,
+    /// The initial [`State::tree_asleep`](crate::State::tree_asleep), which has no numbers without the flag `sleep`.
+    pub tree_asleep0: Vec<f64>,
     /// How time advances.
     pub integrator: Integrator,
     /// Feature switches.
@@ -111,6 +117,25 @@ impl Model {
     /// Number of bodies, the world included.
     pub fn nbody(&self) -> usize {
         self.bodies.len()
+    }
+    /// Whether any tree can sleep.
+    pub fn may_sleep(&self) -> bool {
+        !self.tree_asleep0.is_empty()
+    }
+    /// Number of kinematic trees.
+    pub fn ntree(&self) -> usize {
+        self.trees.len()
+    }
+    /// The kinematic tree of a body; none where nothing moves it.
+    pub fn tree_of_body(&self, body: usize) -> Option<usize> {
+        self.bodies[body].last_dof.map(|dof| self.tree.tree_of(dof))
+    }
+    /// The kinematic trees of some dofs, each once.
+    pub(crate) fn trees_of(&self, dofs: &[u32]) -> Vec<usize> {
+        let mut trees = Vec::from_iter(dofs.iter().map(|&dof| self.tree.tree_of(dof as usize)));
+        trees.sort_unstable();
+        trees.dedup();
+        trees
     }
     /// Number of controls. Most actuators have one.
     pub fn nu(&self) -> usize {

@@ -89,6 +89,8 @@ params! {
     density: T, NotNegative;
     /// Viscosity of the medium.
     viscosity: T, NotNegative;
+    /// Speed below which trees fall asleep, m/s.
+    sleep_tolerance: T, Finite;
     /// Margin of every contact, with `Model::override_contacts`.
     override_margin: T, Finite;
     /// Reference dynamics of every contact, likewise.
@@ -143,6 +145,9 @@ params! {
 
     /// Added inertia.
     dof_armature: Vec<T>, NotNegative;
+    /// What a velocity is multiplied by before it is compared with `sleep_tolerance`: 1 for translations, for rotations the size
+    /// of the body, m.
+    dof_length: Vec<T>, NotNegative;
     /// Damping.
     dof_damping: Vec<T>, Finite;
     /// Coefficients of quadratic and cubic damping.

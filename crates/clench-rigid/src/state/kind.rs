@@ -73,6 +73,38 @@ impl Kind for Number {
     }
 }
 
+/// An integer a lane, of a size that every number type holds exactly; in rows 32 bits.
+#[derive(Debug)]
+pub enum Integer {}
+
+impl Kind for Integer {
+    type Of<T: Real> = T;
+    type Cell<S> = i32;
+    const WIDTH: usize = 1;
+
+    fn zero<T: Real>() -> T {
+        T::ZERO
+    }
+    fn zero_cell<S: Real>() -> i32 {
+        0
+    }
+    #[inline(always)]
+    fn cell<T: Real>(number: &T, _: usize, lane: usize) -> i32 {
+        number.lane(lane).to_f64() as i32
+    }
+    #[inline(always)]
+    fn set_cell<T: Real>(number: &mut T, _: usize, lane: usize, cell: i32) {
+        number.set_lane(lane, T::Scalar::new(f64::from(cell)));
+    }
+    #[inline(always)]
+    fn numbers<T: Real>(numbers: &[T], mut look: impl FnMut(usize, &[T])) {
+        look(0, numbers);
+    }
+    fn same<T: Real>(one: &T, other: &T) -> bool {
+        same_bits(*one, *other)
+    }
+}
+
 /// Kinds of several numbers, by the order of their parts.
 macro_rules! compound {
     ($($(#[$doc:meta])* $name:ident: $of:ident, $zero:expr, [$($($part:ident).+),*];)*) => {$(

@@ -27,6 +27,10 @@ pub(crate) enum Size {
     MocapBodies,
     /// neq.
     Equalities,
+    /// ntree where trees may sleep, else none.
+    Trees,
+    /// nq + 7 nmocap where trees may sleep, else none.
+    AsleepPose,
 }
 
 impl Size {
@@ -40,6 +44,9 @@ impl Size {
             Size::Bodies => model.nbody(),
             Size::MocapBodies => model.nmocap,
             Size::Equalities => model.equalities.len(),
+            Size::Trees => model.tree_asleep0.len(),
+            Size::AsleepPose if model.may_sleep() => model.nq + 7 * model.nmocap,
+            Size::AsleepPose => 0,
         }
     }
 
@@ -145,6 +152,16 @@ impl<T: Real> State<T> {
         }
         for (active, equality) in state.eq_active.iter_mut().zip(&model.equalities) {
             *active = T::Mask::splat(equality.active0);
+        }
+        broadcast(&model.tree_asleep0, &mut state.tree_asleep);
+        if model.may_sleep() {
+            let (qpos, mocap) = state.pose_asleep.split_at_mut(model.nq);
+            broadcast(&model.params.qpos0, qpos);
+            for (m, pose) in mocap.chunks_exact_mut(7).enumerate() {
+                let (pos, turn) = (state.mocap_pos[m], state.mocap_quat[m]);
+                pos.write(pose);
+                turn.write(&mut pose[3..]);
+            }
         }
         state
     }

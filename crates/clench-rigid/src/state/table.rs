@@ -26,6 +26,12 @@ macro_rules! state_fields {
                 history set_history: Number, History, Finite;
                 /// Acceleration of the previous step, where the solver starts (nv).
                 qacc_warmstart set_qacc_warmstart: Number, Dofs, Finite;
+                /// Which trees sleep (ntree, where the flag ``sleep`` is on, else none): below zero a tree is awake, from -11 for one that
+                /// moves to -1 for one that has come to rest; else the next tree of the sleeping island, in a circle.
+                tree_asleep set_tree_asleep: Integer, Trees, Finite;
+                /// Where sleeping trees lie: positions (nq), then position and orientation of each mocap body after the last step. What
+                /// lies elsewhere wakes. None without the flag ``sleep``.
+                pose_asleep set_pose_asleep: Number, AsleepPose, Finite;
             }
             inputs {
                 /// Controls of actuators (nu).

@@ -177,11 +177,16 @@ pub fn assert_state<S: Precision>(
             &rows.qacc_warmstart,
             &expected.qacc_warmstart,
         ),
+        ("pose_asleep", &rows.pose_asleep, &expected.pose_asleep),
     ] {
         let what = || format!("{}, row {row}: {field}", what());
         assert_bits(found.row(row), expected, &what);
     }
     assert_bits(rows.time.row(row), &[expected.time], what);
+    let trees = rows.tree_asleep.row(row).iter();
+    let trees = Vec::from_iter(trees.map(|&tree| S::new(f64::from(tree))));
+    let what_of_trees = || format!("{}, row {row}: tree_asleep", what());
+    assert_bits(&trees, &expected.tree_asleep, &what_of_trees);
     let switches = rows.eq_active.row(row).iter().map(|&on| on != 0);
     assert!(
         switches.eq(expected.eq_active.iter().copied()),

@@ -28,23 +28,23 @@ pub(super) const RULES: &[Rule] = &[
         element: "option",
         read: "timestep gravity wind magnetic density viscosity integrator cone jacobian solver impratio tolerance \
             ls_tolerance noslip_tolerance iterations ls_iterations noslip_iterations o_margin o_solref o_solimp \
-            o_friction actuatorgroupdisable",
+            o_friction actuatorgroupdisable sleep_tolerance",
         // MuJoCo's general collision stops at a tolerance or after so many iterations; ours goes on to the last digit.
-        // The rest is for sensors, signed distance fields and sleep, which are refused where a file asks for them.
-        ignored: "ccd_tolerance ccd_iterations sdf_iterations sdf_initpoints sleep_tolerance",
+        // The rest is for signed distance fields, which are refused where a file asks for them.
+        ignored: "ccd_tolerance ccd_iterations sdf_iterations sdf_initpoints",
         once: "flag",
         ..NONE
     },
     Rule {
         element: "flag",
         read: "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart \
-            filterparent actuation refsafe island eulerdamp multiccd autoreset sensor override \
+            filterparent actuation refsafe island eulerdamp multiccd autoreset sensor sleep override \
             diagexact",
         // `nativeccd` and `midphase` choose between algorithms that look for the same contacts.
         // The energy is there whenever it is asked for. `fwdinv` and `invdiscrete` concern inverse dynamics alone.
         ignored: "energy fwdinv invdiscrete midphase nativeccd",
         // `ipc` is a mode of flexes. `speculative` contacts, which MuJoCo 4.0 calls subject to change, sweep shapes through a step.
-        later: "ipc=disable sleep=disable speculative=disable",
+        later: "ipc=disable speculative=disable",
         ..NONE
     },
     ignored(

@@ -11,8 +11,8 @@ pub(super) const RULES: &[Rule] = &[
     section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
     Rule {
         element: "body",
-        read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp simple fuse",
-        ignored: "user sleep",
+        read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp simple fuse sleep",
+        ignored: "user",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
         ..NONE

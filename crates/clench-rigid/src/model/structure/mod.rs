@@ -9,6 +9,7 @@ mod history;
 mod keyframe;
 mod option;
 mod pattern;
+mod sleep;
 mod tendon;
 
 pub use actuator::{
@@ -22,4 +23,5 @@ pub use history::History;
 pub use keyframe::Keyframe;
 pub use option::{Flags, Integrator};
 pub use pattern::RowPattern;
+pub use sleep::{KinematicTree, SleepPolicy};
 pub use tendon::{Section, Tendon, Wrap};

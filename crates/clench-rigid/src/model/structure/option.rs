@@ -54,6 +54,8 @@ pub struct Flags {
     pub multiccd: bool,
     /// Constraints see the inverse inertia of the present configuration, not an estimate of that at qpos0. Off by default.
     pub diagexact: bool,
+    /// Trees that rest sleep.
+    pub sleep: bool,
 }
 
 impl Default for Flags {
@@ -77,6 +79,7 @@ impl Default for Flags {
             sensor: true,
             multiccd: true,
             diagexact: false,
+            sleep: false,
         }
     }
 }

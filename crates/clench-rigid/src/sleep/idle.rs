@@ -1,0 +1,99 @@
+//! Steps in which everything sleeps.
+//!
+//! If no lane has a tree that is awake, and nothing can wake one, a step only lets time pass. What the workspace holds then is
+//! that of the last pass, if all trees slept in it where they sleep now: no number of it would come out differently. Otherwise
+//! the step is done in full once, unless nobody reads the workspace.
+
+use super::wake::wake_coupled;
+use super::{hold, mocap_pose, wake_touched};
+use crate::constraint::assemble;
+use crate::model::{Model, Params};
+use crate::sensor;
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Mask, Real};
+
+/// Whether a step only lets time pass. Actuators and mocap bodies act on what sleeps, or may touch it, so a model that has them
+/// is looked at in full.
+pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) -> bool {
+    if !model.actuators.is_empty() || ws.collision.given {
+        return false;
+    }
+    wake_touched(model, state, ws);
+    if !ws.sleep.all_asleep().all() {
+        return false;
+    }
+    if wake_coupled(model, state, ws) {
+        // A pass looks for what touches before, and for that among what is not yet awake.
+        ws.sleep.begin(model, state);
+        return false;
+    }
+    ws.sleep.lies_as_before(model, state) || (model.nmocap == 0 && !ws.read)
+}
+
+/// Such a step.
+pub(crate) fn idle<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    if !ws.sleep.at_rest {
+        clear(model, params, settings, state, ws);
+    }
+    sensor::evaluate(model, params, state, ws);
+    state.pass(params.timestep);
+    hold(model, state, ws);
+    state.qacc_warmstart.fill(T::ZERO);
+}
+
+/// Lets the workspace say that nothing acts and nothing went wrong; poses and forces are not known.
+fn clear<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    ws.contacts.clear();
+    ws.collision.excess = T::ZERO;
+    ws.collision.overflow = T::Mask::splat(false);
+    ws.singular = T::Mask::splat(false);
+    ws.problem.qacc_smooth.fill(T::ZERO);
+    assemble(model, params, settings, state, ws);
+    (ws.solver.solve(&ws.problem, &settings.solver, None))
+        .expect("a problem without constraints has the model's lengths");
+    ws.qacc.fill(T::ZERO);
+    ws.qfrc_constraint.fill(T::ZERO);
+}
+
+impl<T: Real> super::Sleep<T> {
+    /// What the workspace holds belongs to other numbers from now on.
+    pub(crate) fn forget(&mut self) {
+        self.at_rest = false;
+    }
+
+    /// Takes note of a pass over a state.
+    pub(crate) fn note(&mut self, model: &Model, state: &State<T>) {
+        self.at_rest = self.all_asleep().all();
+        if self.at_rest {
+            let (qpos, mocap) = self.pose.split_at_mut(model.nq);
+            qpos.copy_from_slice(&state.qpos);
+            for (m, pose) in mocap.chunks_exact_mut(7).enumerate() {
+                pose.copy_from_slice(&mocap_pose(state, m));
+            }
+        }
+    }
+
+    /// Whether all trees slept in the last pass where they sleep now, and no mocap body has moved.
+    fn lies_as_before(&self, model: &Model, state: &State<T>) -> bool {
+        let (qpos, mocap) = self.pose.split_at(model.nq);
+        let same = |(one, other): (&T, &T)| one.eq(*other).all();
+        self.at_rest
+            && qpos.iter().zip(&state.qpos).all(same)
+            && (mocap.chunks_exact(7).enumerate())
+                .all(|(m, pose)| pose.iter().zip(&mocap_pose(state, m)).all(same))
+    }
+}
