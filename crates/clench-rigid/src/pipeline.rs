@@ -35,9 +35,16 @@ pub fn position_stage<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
-    let pos = &mut ws.position;
-    kinematics(model, params, state, pos);
-    com_positions(model, params, pos);
+    ws.sleep.forget();
+    positions(model, params, state, ws);
+}
+
+/// The same, where the workspace still holds what follows from the poses of trees that are in none of the parts of
+/// [`Sleep`](sleep::Sleep).
+fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let (pos, parts) = (&mut ws.position, ws.sleep.parts());
+    kinematics(model, params, state, parts, pos);
+    com_positions(model, params, parts, pos);
     tendons(model, params, &state.qpos, pos);
     transmissions(model, params, &state.qpos, pos);
     ws.clock.lap(Stage::Kinematics as usize);
@@ -117,8 +124,9 @@ fn forward_dynamics<T: Real>(
     let sleep = settings.flags.sleep;
     if sleep {
         sleep::wake_touched(model, state, ws);
+        ws.sleep.find_parts(model, state);
     }
-    position_stage(model, params, state, ws);
+    positions(model, params, state, ws);
     if sleep {
         sleep::wake_pulled(model, params, settings, ws);
     }

@@ -41,6 +41,8 @@ pub struct Positions<T> {
     /// Centre of mass of each body and all below it (nbody). That of a body's `root` is the reference point of all
     /// spatial vectors of its tree.
     pub subtree_com: Vec<Vec3<T>>,
+    /// The same times the mass (nbody).
+    pub subtree_moment: Vec<Vec3<T>>,
     /// Motion of each dof at unit velocity (nv).
     pub cdof: Vec<Motion<T>>,
     /// Inertia of each body (nbody).
@@ -79,6 +81,7 @@ impl<T: Real> Positions<T> {
             site_xpos: points(ns),
             site_xmat: frames(ns),
             subtree_com: points(nbody),
+            subtree_moment: points(nbody),
             cdof: vec![Motion::ZERO; nv],
             cinert: vec![Inertia::ZERO; nbody],
             crb: vec![Inertia::ZERO; nbody],

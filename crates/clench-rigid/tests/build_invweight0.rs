@@ -25,8 +25,9 @@ fn bob(name: &str, mass: f64) -> BodySpec {
 
 fn positions(model: &Model) -> (Positions<f64>, Vec<f64>) {
     let mut pos = Positions::new(model);
-    kinematics::kinematics(model, &model.params, &State::new(model), &mut pos);
-    com::com_positions(model, &model.params, &mut pos);
+    let parts = [0..model.nbody()];
+    kinematics::kinematics(model, &model.params, &State::new(model), &parts, &mut pos);
+    com::com_positions(model, &model.params, &parts, &mut pos);
     let mut mass = TreeMatrix::zeros(&model.tree);
     inertia::composite_inertia(model, &model.params, &mut pos, &mut mass);
     let dense = mass.to_dense(&model.tree);

@@ -341,11 +341,10 @@ mod policies {
     }
 
     fn tendon(stiffness: f64, of: &[&str]) -> TendonSpec {
+        let terms = Vec::from_iter(of.iter().map(|&name| (name, 1.0)));
         TendonSpec {
-            name: "tendon".into(),
-            terms: of.iter().map(|&name| (name.to_owned(), 1.0)).collect(),
-            stiffness,
-            ..TendonSpec::default()
+            stiffness: [stiffness, 0.0, 0.0],
+            ..TendonSpec::fixed("tendon", &terms)
         }
     }
 

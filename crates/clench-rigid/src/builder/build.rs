@@ -148,8 +148,9 @@ fn pose(model: &Model, qpos: &[f64]) -> Positions<f64> {
     let (params, mut state) = (&model.params, State::new(model));
     state.qpos.copy_from_slice(qpos);
     let mut pos = Positions::new(model);
-    kinematics::kinematics(model, params, &state, &mut pos);
-    com::com_positions(model, params, &mut pos);
+    let parts = [0..model.nbody()];
+    kinematics::kinematics(model, params, &state, &parts, &mut pos);
+    com::com_positions(model, params, &parts, &mut pos);
     tendon::tendons(model, params, &state.qpos, &mut pos);
     transmission::transmissions(model, params, &state.qpos, &mut pos);
     pos

@@ -3,46 +3,66 @@
 use crate::model::{JointKind, Model, Params};
 use crate::workspace::Positions;
 use clench_math::{Inertia, Motion, Real, Vec3, kernel};
+use std::ops::Range;
 
 /// Below this mass (kg) a subtree's centre of mass is that of its top body (MuJoCo's `mjMINVAL`).
 const MASSLESS: f64 = 1e-15;
 
-/// `subtree_com`, `cinert` and `cdof` from the poses.
+/// `subtree_com`, `cinert` and `cdof` of the bodies in `parts`, from the poses.
 #[kernel]
-pub fn com_positions<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T>) {
-    subtree_com(model, params, pos);
+pub fn com_positions<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    parts: &[Range<usize>],
+    pos: &mut Positions<T>,
+) {
+    subtree_com(model, params, parts, pos);
     pos.cinert[0] = Inertia::ZERO;
-    for b in 1..model.nbody() {
-        let offset = pos.xipos[b] - pos.subtree_com[model.bodies[b].root];
-        pos.cinert[b] = Inertia::from_principal(
-            params.body_inertia[b],
-            &pos.ximat[b],
-            offset,
-            params.body_mass[b],
-        );
+    for part in parts {
+        for b in part.start.max(1)..part.end {
+            let offset = pos.xipos[b] - pos.subtree_com[model.bodies[b].root];
+            pos.cinert[b] = Inertia::from_principal(
+                params.body_inertia[b],
+                &pos.ximat[b],
+                offset,
+                params.body_mass[b],
+            );
+        }
+        dof_axes(model, part, pos);
     }
-    dof_axes(model, pos);
 }
 
+/// Moments add up from the last body to the first. What is in none of the parts are whole trees on the world, whose moments
+/// are still known.
 #[inline(always)]
-fn subtree_com<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T>) {
-    for ((com, &xipos), &mass) in (pos.subtree_com.iter_mut())
-        .zip(&pos.xipos)
-        .zip(&params.body_mass)
-    {
-        *com = xipos * mass;
+fn subtree_com<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    parts: &[Range<usize>],
+    pos: &mut Positions<T>,
+) {
+    for b in parts.iter().cloned().flatten() {
+        pos.subtree_moment[b] = pos.xipos[b] * params.body_mass[b];
     }
-    for b in (1..model.nbody()).rev() {
-        let moment = pos.subtree_com[b];
-        pos.subtree_com[model.bodies[b].parent] += moment;
+    for b in parts.iter().rev().cloned().flat_map(Range::rev) {
+        let parent = model.bodies[b].parent;
+        if parent != 0 {
+            let moment = pos.subtree_moment[b];
+            pos.subtree_moment[parent] += moment;
+        }
     }
-    for ((com, &xipos), &mass) in (pos.subtree_com.iter_mut())
-        .zip(&pos.xipos)
-        .zip(&params.body_subtreemass)
-    {
+    for (b, body) in model.bodies.iter().enumerate().skip(1).rev() {
+        if body.parent == 0 {
+            let moment = pos.subtree_moment[b];
+            pos.subtree_moment[0] += moment;
+        }
+    }
+    for b in parts.iter().cloned().flatten() {
+        let mass = params.body_subtreemass[b];
         let massless = mass.lt(T::new(MASSLESS));
         let inverse = T::ONE / T::select(massless, T::ONE, mass);
-        *com = Vec3::select(massless, xipos, *com * inverse);
+        let com = pos.subtree_moment[b] * inverse;
+        pos.subtree_com[b] = Vec3::select(massless, pos.xipos[b], com);
     }
 }
 
@@ -50,8 +70,9 @@ fn subtree_com<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T
 /// the centre of mass is axis × (com − anchor). Ball and free joints rotate about the body's own axes as they end up; a
 /// free joint translates along the world's.
 #[inline(always)]
-fn dof_axes<T: Real>(model: &Model, pos: &mut Positions<T>) {
-    for (j, joint) in model.joints.iter().enumerate() {
+fn dof_axes<T: Real>(model: &Model, part: &Range<usize>, pos: &mut Positions<T>) {
+    for j in model.joints_of(part) {
+        let joint = &model.joints[j];
         let offset = pos.subtree_com[model.bodies[joint.body].root] - pos.xanchor[j];
         let rotation = |axis: Vec3<T>| Motion::new(axis, axis.cross(offset));
         let mut dof = joint.dof;

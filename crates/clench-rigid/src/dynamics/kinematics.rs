@@ -6,13 +6,16 @@
 //!
 //! The joints' own rotations come first, in a pass of their own: they do not depend on one another, and so do not wait for
 //! one another, as poses along a chain do.
+//!
+//! Only bodies in some parts of the model are looked at: what sleeps, and lies where it lay in the last pass, is none of them.
 
 use crate::model::{JointKind, Model, Params};
 use crate::state::State;
 use crate::workspace::Positions;
 use clench_math::{Mat3, Quat, Real, Vec3, kernel};
+use std::ops::Range;
 
-/// Poses of bodies, inertial frames, joints, geoms and sites from `state.qpos` and the mocap poses.
+/// Poses of the bodies in `parts`, and of inertial frames, joints, geoms and sites on them, from `state.qpos` and the mocap poses.
 ///
 /// Quaternions need not be of unit length: they are read normalized, and never written.
 #[kernel]
@@ -20,25 +23,37 @@ pub fn kinematics<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
+    parts: &[Range<usize>],
     pos: &mut Positions<T>,
 ) {
-    joint_turns(model, params, &state.qpos, &mut pos.jnt_turn);
     pos.xpos[0] = Vec3::ZERO;
     pos.xquat[0] = Quat::IDENTITY;
     pos.xmat[0] = Mat3::IDENTITY;
-    for b in 1..model.nbody() {
-        let (xpos, xquat) = body_pose(model, params, state, pos, b);
-        pos.xpos[b] = xpos;
-        pos.xquat[b] = xquat;
-        pos.xmat[b] = xquat.to_matrix();
+    for part in parts {
+        let joints = model.joints_of(part);
+        let turns = &mut pos.jnt_turn[joints.clone()];
+        joint_turns(model, params, &state.qpos, joints, turns);
+        for b in part.start.max(1)..part.end {
+            let (xpos, xquat) = body_pose(model, params, state, pos, b);
+            pos.xpos[b] = xpos;
+            pos.xquat[b] = xquat;
+            pos.xmat[b] = xquat.to_matrix();
+        }
+        attached_poses(model, params, part, pos);
     }
-    attached_poses(model, params, pos);
 }
 
-/// The rotation of each joint from its position at `qpos0` (a ball or free joint's whole orientation).
+/// The rotation of each of some joints from its position at `qpos0` (a ball or free joint's whole orientation).
 #[inline(always)]
-fn joint_turns<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], turns: &mut [Quat<T>]) {
-    for ((joint, &axis), turn) in model.joints.iter().zip(&params.jnt_axis).zip(turns) {
+fn joint_turns<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qpos: &[T],
+    joints: Range<usize>,
+    turns: &mut [Quat<T>],
+) {
+    let axes = &params.jnt_axis[joints.clone()];
+    for ((joint, &axis), turn) in model.joints[joints].iter().zip(axes).zip(turns) {
         let q = &qpos[joint.qpos..];
         match joint.kind {
             JointKind::Slide => {}
@@ -95,8 +110,13 @@ fn body_pose<T: Real>(
 
 /// Inertial frames, geoms and sites, each fixed to its body.
 #[inline(always)]
-fn attached_poses<T: Real>(model: &Model, params: &Params<T>, pos: &mut Positions<T>) {
-    for b in 0..model.nbody() {
+fn attached_poses<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    part: &Range<usize>,
+    pos: &mut Positions<T>,
+) {
+    for b in part.clone() {
         let body = &model.bodies[b];
         let (xpos, xquat, xmat) = (pos.xpos[b], pos.xquat[b], pos.xmat[b]);
         if body.simple_inertia {

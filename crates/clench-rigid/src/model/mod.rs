@@ -118,6 +118,15 @@ impl Model {
     pub fn nbody(&self) -> usize {
         self.bodies.len()
     }
+    /// The joints of consecutive bodies.
+    #[inline(always)]
+    pub(crate) fn joints_of(&self, bodies: &Range<usize>) -> Range<usize> {
+        match self.bodies[bodies.clone()] {
+            [ref first, .., ref last] => first.joints.start..last.joints.end,
+            [ref only] => only.joints.clone(),
+            [] => 0..0,
+        }
+    }
     /// Whether any tree can sleep.
     pub fn may_sleep(&self) -> bool {
         !self.tree_asleep0.is_empty()

@@ -20,6 +20,7 @@ use crate::model::Model;
 use crate::state::State;
 use clench_math::{Mask, Quat, Real, Scalar, Vec3};
 use clench_solver::Partition;
+use std::ops::Range;
 
 /// The number of a tree that moves: it must stay below the tolerance for so many steps less one (MuJoCo's `mjMINAWAKE`, 10).
 pub const AWAKE: f64 = -11.0;
@@ -37,10 +38,13 @@ pub struct Sleep<T: Real> {
     awake: Vec<T::Mask>,
     /// Lanes in which each body is: mocap bodies always, for the user may move them, and fixed bodies never.
     bodies: Vec<T::Mask>,
-    /// Whether all trees slept in the last pass, in all lanes.
-    at_rest: bool,
-    /// Positions and poses of mocap bodies in that pass.
+    /// Whether the workspace holds what follows from the positions and the poses of mocap bodies in `pose`.
+    placed: bool,
     pose: Vec<T>,
+    /// Whether besides all trees slept in the last pass, in all lanes.
+    at_rest: bool,
+    /// The bodies that the position stage looks at, all but trees that lie as they did.
+    parts: Vec<Range<usize>>,
     partition: Partition<T>,
     /// The trees of an island.
     members: Vec<u32>,
@@ -58,6 +62,8 @@ impl<T: Real> Sleep<T> {
             awake: awake(model.ntree()),
             bodies: awake(model.nbody()),
             at_rest: false,
+            placed: false,
+            parts: std::iter::once(0..model.nbody()).collect(),
             pose: vec![T::ZERO; numbers(model.nq + 7 * model.nmocap)],
             partition: Partition::default(),
             members: Vec::new(),
