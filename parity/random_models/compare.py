@@ -30,8 +30,6 @@ IDLE = 1e-14  # metres: a lever that is nothing but rounding
 NEXT = 1e-8  # of what a step changes
 FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
 CLEARLY = 1e-6  # metres: whether a contact exists is certain
-# Of parallel faces or axes many points are nearest, and both engines may be right.
-UNDECIDED = (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO)
 FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
 
 
@@ -224,9 +222,22 @@ def judge(model, question, ours):
     agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
     if not question.own:
         forces(what, ours, theirs)
-        agreement.sensors(model, what, ours, theirs, skipped=UNDECIDED)
+        agreement.sensors(model, what, ours, theirs, is_undecided=lambda sensor: is_undecided(model, sensor))
     if question.after is not None:
         next_state(model, what, question, ours["next"])
+
+
+def is_undecided(model, sensor):
+    """Whether both engines may be right: many points of parallel faces are nearest, and equal moments have no principal axes."""
+    if model.sensor_type[sensor] in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
+        return True
+    ends = ((model.sensor_objtype, model.sensor_objid), (model.sensor_reftype, model.sensor_refid))
+    for kind, index in ends:
+        if kind[sensor] == mujoco.mjtObj.mjOBJ_BODY and index[sensor] >= 0:
+            moments = np.sort(model.body_inertia[index[sensor]])
+            if (np.diff(moments) <= 1e-6 * moments[-1]).any():
+                return True
+    return False
 
 
 def forces(what, ours, theirs):

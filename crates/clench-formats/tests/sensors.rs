@@ -107,6 +107,10 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
             "<rangefinder site='tip' data='far'/>",
             "not one of dist, dir",
         ),
+        (
+            "<insidesite site='tip' objtype='body' objname='arm' enclosed='true'/>",
+            "enclosed is not supported yet",
+        ),
         ("<contact geom1='no'/>", "there is no geom \"no\""),
         (
             "<contact geom1='rod' body1='arm'/>",

@@ -36,7 +36,10 @@ const ACTUATOR: Rule = rule!("actuator");
 const BODY: Rule = rule!("body");
 const FRAME: Rule = rule!("objtype objname reftype refname");
 const WORLD_FRAME: Rule = rule!("objtype objname");
-const INSIDE: Rule = rule!("site objtype objname");
+const INSIDE: Rule = Rule {
+    later: "enclosed=false interval=0",
+    ..rule!("site objtype objname")
+};
 const GEOMS: Rule = rule!("geom1 geom2 body1 body2");
 /// What the user's numbers belong to and when they are computed matters to the user's program alone.
 const USER: Rule = rule!("dim datatype", "objtype objname needstage");
