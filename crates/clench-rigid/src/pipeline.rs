@@ -69,16 +69,7 @@ pub fn velocity_stage<T: Real>(
 ) {
     let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);
     velocities(model, pos, &state.qvel, vel);
-    passive_forces(
-        model,
-        params,
-        pos,
-        vel,
-        &state.qpos,
-        &state.qvel,
-        &ws.contacts,
-        force,
-    );
+    passive_forces(model, params, pos, vel, state, &ws.contacts, force);
     bias_forces(model, params, pos, vel, &state.qvel, force);
     let bias = &mut force.qfrc_bias;
     add_tendon_bias(model, params, pos, vel, &state.qvel, bias);

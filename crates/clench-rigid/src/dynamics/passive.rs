@@ -10,6 +10,7 @@ use crate::dynamics::spring::{
 };
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
+use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Real, Vec3, kernel};
 
@@ -21,8 +22,7 @@ pub fn passive_forces<T: Real>(
     params: &Params<T>,
     pos: &Positions<T>,
     vel: &Velocities<T>,
-    qpos: &[T],
-    qvel: &[T],
+    state: &State<T>,
     contacts: &[Contact<T>],
     force: &mut Forces<T>,
 ) {
@@ -36,10 +36,10 @@ pub fn passive_forces<T: Real>(
         return;
     }
     if model.flags.spring {
-        springs(model, params, pos, qpos, &mut force.qfrc_spring);
+        springs(model, params, pos, &state.qpos, &mut force.qfrc_spring);
     }
     if model.flags.damper {
-        dampers(model, params, pos, vel, qvel, &mut force.qfrc_damper);
+        dampers(model, params, pos, vel, &state.qvel, &mut force.qfrc_damper);
     }
     gravity_compensation(model, params, pos, force);
     fluid_forces(model, params, pos, vel, force);
