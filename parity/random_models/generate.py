@@ -712,7 +712,7 @@ class Generator:
             actuator.set("tendon", draw.choice(self.tendons))
         elif len(self.sites) > 1 and draw.chance(0.3):
             first, second = (name for name, _ in draw.sample(self.sites, 2))
-            if draw.chance(0.4):
+            if actuator.tag == "muscle" or draw.chance(0.4):  # muscles do not pull on sites
                 actuator.attrib.update(cranksite=first, slidersite=second, cranklength=text(draw.scale(0.1, 2)))
             else:
                 actuator.set("site", first)
@@ -724,10 +724,7 @@ class Generator:
     def law(self, actuator):
         """What depends on other attributes of an actuator, or on its target."""
         draw, kind = self.draw, actuator.tag
-        if not {"joint", "jointinparent"} & actuator.attrib.keys():  # what else there is is not damped by actuators yet
-            for name in ("damping", "armature"):
-                actuator.attrib.pop(name, None)
-        if "tendon" in actuator.attrib:
+        if kind != "adhesion" and not {"joint", "jointinparent"} & actuator.attrib.keys():  # tendons are not damped by actuators yet
             actuator.attrib.update(damping="0 0 0", armature="0")
         if "nsample" in actuator.attrib and draw.chance(0.7):
             actuator.set("delay", text(draw.scale(0.001, 0.03)))
@@ -739,7 +736,7 @@ class Generator:
             actuator.set("actdim", {None: "-1", "none": draw.choice(("-1", "0")), "user": draw.choice("123")}.get(dynamics, "1"))
         if kind == "general" and dynamics == "muscle":
             actuator.set("dynprm", VALUES["muscle"]["timeconst"](draw))
-        if kind == "muscle" or draw.chance(0.1):
+        if kind != "adhesion" and (kind == "muscle" or draw.chance(0.1)):
             actuator.set("lengthrange", interval(-0.5, 0.5)(draw))
         if kind == "general" and dynamics not in (None, "none") and draw.chance(0.3):
             self.limit(actuator, "actrange", "actlimited", interval(-1, 1)(draw))

@@ -64,7 +64,7 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "muscle",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
+        read: "name class group nsample interp delay joint jointinparent tendon cranksite slidersite \
             cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited \
             ctrllimited timeconst tausmooth range force scale lmin lmax vmax fpmax fvmax",
         ignored: "user",
