@@ -207,8 +207,13 @@ fn kinetic_energy_is_that_of_the_bodies() {
 /// Everything but Coriolis: ∂(passive + actuator)/∂v in the entries that the tree has.
 #[test]
 fn velocity_slopes_are_derivatives_of_the_forces() {
+    let mut machine = everything();
+    // As in MuJoCo the range of a joint's total force does not hold the slopes of what pulls on it from elsewhere.
+    machine
+        .actuators
+        .retain(|a| a.name != "string" && a.name != "piston");
     for seed in 0..3 {
-        let sim = shaken(&everything(), seed);
+        let sim = shaken(&machine, seed);
         let (model, ws) = (sim.model(), sim.workspace());
         let mut slopes = TreeMatrix::zeros(&model.tree);
         add_velocity_derivatives(
@@ -246,8 +251,11 @@ fn velocity_slopes_are_derivatives_of_the_forces() {
 
 #[test]
 fn bias_slopes_are_derivatives_of_the_bias() {
+    let mut machine = everything();
+    // As in MuJoCo the bias of tendons with inertia is left out.
+    machine.tendons.iter_mut().for_each(|t| t.armature = 0.0);
     for seed in 0..3 {
-        let sim = shaken(&everything(), seed);
+        let sim = shaken(&machine, seed);
         let (model, ws) = (sim.model(), sim.workspace());
         let mut slopes = TreeLu::zeros(&model.tree);
         add_bias_derivatives(
