@@ -1,7 +1,7 @@
 //! What is done with a model that was read: whatever it says, nothing may panic, and no result may be other than finite.
 
 use clench::math::Vec3;
-use clench::{Budget, Model, RayFilter, Sim};
+use clench::{Budget, Model, RayFilter, SaveModel, Sim};
 use std::sync::Arc;
 
 /// What a model may ask for: so little that a step takes a moment, for a fuzzer takes thousands in a second. What it bounds is
@@ -13,8 +13,17 @@ pub fn budget() -> Budget {
 /// Steps of a trial.
 const STEPS: usize = 3;
 
-/// Steps a model, and asks it some questions.
+/// Saves a model, steps it, and asks it some questions.
 pub fn run(model: Model) {
+    // What cannot be said in MJCF is an error; what is said can be read, within what a file may ask for.
+    if let Ok(text) = model.to_mjcf() {
+        let again = clench::load_str_within(&text, Budget::default());
+        let again = again.unwrap_or_else(|error| panic!("a saved model is refused: {error}"));
+        assert_eq!(
+            (again.nq, again.nv, again.nu()),
+            (model.nq, model.nv, model.nu())
+        );
+    }
     let Ok(mut sim) = Sim::<f64>::new(Arc::new(model)) else {
         return;
     };

@@ -6,9 +6,10 @@ use crate::fields;
 use crate::kind::Kind;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
+use clench::SaveModel;
 use clench::rigid::model::{Integrator, ParamField};
 use numpy::PyArray1;
-use pyo3::exceptions::{PyKeyError, PyUserWarning};
+use pyo3::exceptions::{PyKeyError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use std::collections::HashMap;
 use std::ffi::CString;
@@ -154,6 +155,30 @@ impl Model {
             .assets(assets);
         let model = py.detach(|| loader.load_str(text)).map_err(load_error)?;
         Model::told(py, model)
+    }
+
+    /// The model as an MJCF file that stands alone.
+    ///
+    /// Every number is resolved: inertials, limits and poses are explicit, angles radians, meshes and height fields in the file. It loads
+    /// to the same model, here and in MuJoCo; what is computed while it loads may differ in the last digits.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     What MJCF cannot say, such as a floor of time constants that acts.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = clench.Model.from_file("models/gripper/gripper.urdf")
+    /// >>> clench.Model.from_xml(robot.to_xml()).nv
+    /// 3
+    fn to_xml(&self) -> PyResult<String> {
+        let text = self.0.to_mjcf();
+        text.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
     /// Itself: a model never changes.

@@ -339,6 +339,15 @@ def test_robots_in_urdf_find_their_packages(tmp_path: Path) -> None:
     assert (model.nv, model.neq) == (3, 1)
 
 
+@pytest.mark.parametrize("path", [*EXAMPLES, *FEATURES], ids=lambda path: path.stem)
+def test_a_saved_model_is_the_model(path: Path) -> None:
+    model = clench.Model.from_file(path)
+    again = clench.Model.from_xml(model.to_xml())
+    for field in clench.PARAMETERS:
+        before, after = getattr(model, field), getattr(again, field)
+        np.testing.assert_allclose(after, before, rtol=1e-9, atol=1e-12, err_msg=field)
+
+
 def test_models_load_in_many_threads() -> None:
     masses: list[float] = []
     threads = [Thread(target=lambda: masses.append(clench.Model.from_file(HUMANOID).body_mass.sum())) for _ in range(8)]

@@ -1,9 +1,10 @@
-//! The `clench` program: `simulate`, `forward` and `inspect` a robot file, and say what files may hold (`mjcf`).
+//! The `clench` program: `simulate`, `forward` and `inspect` a robot file, `convert` it to MJCF, and say what files may hold (`mjcf`).
 //!
 //! One module a subcommand, plus what they share: options that override the file (`options`), files that replace others when
 //! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`), and what the library
 //! beside this file reads and writes. Physics lives in the library `clench`.
 
+mod convert;
 mod forward;
 mod inspect;
 mod interrupt;
@@ -47,7 +48,9 @@ Examples:
   echo '{}' | clench forward models/quadruped.xml
       accelerations, contacts and constraint forces of the initial state, as JSON
   clench inspect models/four_bar.xml --steps 100
-      sizes, tree, options, and the constraints that act after 100 steps";
+      sizes, tree, options, and the constraints that act after 100 steps
+  clench convert models/gripper/gripper.urdf gripper.xml
+      a URDF file, or any other model, as MJCF";
 
 #[derive(Subcommand)]
 enum Command {
@@ -57,6 +60,8 @@ enum Command {
     Forward(forward::Arguments),
     /// Show a model: sizes, tree, options, and the constraints that act
     Inspect(inspect::Arguments),
+    /// Write a model as MJCF, with every number resolved
+    Convert(convert::Arguments),
     /// Say what of MJCF is read, what is ignored, and what is refused
     Mjcf(mjcf::Arguments),
 }
@@ -66,6 +71,7 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Forward(arguments) => forward::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Convert(arguments) => convert::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Mjcf(arguments) => mjcf::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {

@@ -8,9 +8,9 @@ use clench::{Budget, Loader, Model, RigidOptions, Sim};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The model file and the options that override it.
+/// A model file, and how it is read.
 #[derive(Args)]
-pub struct ModelArguments {
+pub struct ModelFile {
     /// Model file (MJCF or URDF)
     #[arg(help_heading = "Arguments")]
     pub model: PathBuf,
@@ -23,7 +23,13 @@ pub struct ModelArguments {
     /// Leave out of an MJCF model what is not supported yet and what the rest can do without, and say what
     #[arg(long)]
     ignore_unsupported: bool,
+}
 
+/// The model file and the options that override it.
+#[derive(Args)]
+pub struct ModelArguments {
+    #[command(flatten)]
+    pub file: ModelFile,
     #[command(flatten)]
     overrides: Overrides,
 }
@@ -111,20 +117,28 @@ impl From<SwitchName> for Switch {
     }
 }
 
-impl ModelArguments {
+impl ModelFile {
     /// Loads the model, and says on standard error what the loader wants known.
-    pub fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
+    pub fn load(&self) -> Result<Model> {
         let loader = Loader::new()
             .budget(Budget::default().times(self.budget))
             .package_path(&self.package_path)
             .ignore_unsupported(self.ignore_unsupported);
-        let mut model: Model = loader.load(&self.model)?;
+        let model = loader.load(&self.model)?;
         for note in &model.notes {
             tell(format_args!("note: {note}"));
         }
         for left_out in &model.left_out {
             tell(format_args!("left out: {left_out}"));
         }
+        Ok(model)
+    }
+}
+
+impl ModelArguments {
+    /// Loads the model with the user's time step.
+    pub fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
+        let mut model = self.file.load()?;
         if let Some(timestep) = self.overrides.timestep {
             ensure!(
                 timestep > 0.0 && timestep.is_finite(),

@@ -20,7 +20,7 @@ mod urdf;
 
 pub use error::LoadError;
 pub use loader::Loader;
-pub use mjcf::{Support, supported};
+pub use mjcf::{SaveError, SaveModel, Support, supported};
 
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::{Budget, Model};

@@ -466,7 +466,7 @@ fn our_own_robot_grips() {
     sim.state.qfrc_applied[1] = 0.5;
     step(&mut sim, 500);
     let [left, right] = [1, 2].map(|j| sim.state.qpos[j]);
-    assert!(left > 0.03 && (left - right).abs() < 1e-3, "{left} {right}");
+    assert!(left > 0.03 && (left - right).abs() < 2e-3, "{left} {right}");
 }
 
 fn rejected(parts: &[&str]) -> LoadError {

@@ -179,7 +179,9 @@ pub use clench_math as math;
 pub use clench_rigid as rigid;
 pub use clench_solver as solver;
 
-pub use clench_formats::{LoadError, Loader, load, load_str, load_str_within, load_within};
+pub use clench_formats::{
+    LoadError, Loader, SaveError, SaveModel, load, load_str, load_str_within, load_within,
+};
 pub use clench_rigid::batch::Controls;
 pub use clench_rigid::{
     Batch, BatchOptions, Budget, EnvStatus, Fault, Model, Output, Precision, RayFilter, RayHit,
@@ -194,8 +196,8 @@ struct Readme;
 /// What most programs need: `use clench::prelude::*`.
 pub mod prelude {
     pub use crate::{
-        Batch, BatchOptions, Controls, EnvStatus, Fault, LoadError, Model, RigidOptions, Sim,
-        SimError, State, load, load_str,
+        Batch, BatchOptions, Controls, EnvStatus, Fault, LoadError, Model, RigidOptions, SaveModel,
+        Sim, SimError, State, load, load_str,
     };
     pub use clench_math::{Quat, Vec3};
     pub use clench_solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};

@@ -147,7 +147,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let limit = arguments.memory.limit();
     if let Some(path) = &arguments.record {
         let inputs = [
-            ("the model", Some(arguments.model.model.as_path())),
+            ("the model", Some(arguments.model.file.model.as_path())),
             ("--ctrl", arguments.ctrl.as_deref()),
             ("--states", arguments.start.states()),
         ];

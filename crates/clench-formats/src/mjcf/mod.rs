@@ -35,8 +35,10 @@ mod source;
 mod support;
 mod tendon;
 mod transmission;
+mod write;
 
 pub use support::{Support, supported};
+pub use write::{SaveError, SaveModel};
 
 use crate::LoadError;
 use crate::document::{self, Element};

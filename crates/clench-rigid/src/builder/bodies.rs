@@ -181,6 +181,7 @@ fn push_body(model: &mut Model, spec: &BodySpec, parent: usize, simple_inertia: 
         last_dof: parent_body.and_then(|above| above.last_dof),
         simple_inertia,
         fluid_ellipsoids: false,
+        never_simple: spec.never_simple,
         origin: spec.origin.clone(),
     };
     model.bodies.push(body);

@@ -28,6 +28,7 @@ pub(super) fn add_all(
         model.equalities.push(Equality {
             name: spec.name.clone(),
             target,
+            sites: data.sites,
             active0: spec.active,
         });
         let p = &mut model.params;
@@ -46,6 +47,7 @@ pub(super) fn add_all(
 /// The numbers of a constraint; a kind leaves those that it does not use at their defaults.
 #[derive(Default)]
 struct Data {
+    sites: Option<[usize; 2]>,
     /// In the frames of the first and the second body.
     points: [Vec3<f64>; 2],
     quats: [Quat<f64>; 2],
@@ -95,21 +97,23 @@ impl EqualityContext<'_> {
     }
 
     fn connect(&self, spec: &EqualitySpec, anchor: &ConnectAnchor) -> Resolved {
-        let ([body1, body2], points) = match anchor {
+        let ([body1, body2], (points, sites)) = match anchor {
             ConnectAnchor::Bodies {
                 body1,
                 body2,
                 anchor,
             } => {
                 let bodies = self.two_bodies(spec, body1, body2)?;
-                (bodies, [*anchor, carry(self.pose0, bodies, *anchor)])
+                let points = [*anchor, carry(self.pose0, bodies, *anchor)];
+                (bodies, (points, None))
             }
             ConnectAnchor::Sites { site1, site2 } => {
                 let (bodies, data) = self.two_sites(spec, site1, site2)?;
-                (bodies, data.points)
+                (bodies, (data.points, data.sites))
             }
         };
         let data = Data {
+            sites,
             points,
             ..Data::default()
         };
@@ -180,6 +184,7 @@ impl EqualityContext<'_> {
         ];
         require_different(spec, sites[0] != sites[1])?;
         let data = Data {
+            sites: Some(sites),
             points: sites.map(|s| self.model.params.site_pos[s]),
             quats: sites.map(|s| self.model.params.site_quat[s]),
             ..Data::default()

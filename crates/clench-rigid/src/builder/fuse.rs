@@ -115,7 +115,9 @@ fn matters(builder: &ModelBuilder, masses: &[Mass], b: usize, target: usize) -> 
     let in_fluid = physics.density > 0.0 || physics.viscosity > 0.0;
     let has_mass = masses[b].bounded.mass > 0.0;
     let from_geoms = builder.compiler.inertiafromgeom == InertiaFromGeom::Always;
-    has_mass && (in_fluid || body.gravcomp != parent.gravcomp)
+    let ellipsoids = body.geoms.iter().any(|geom| geom.fluid_ellipsoid);
+    in_fluid && ellipsoids
+        || has_mass && (in_fluid || body.gravcomp != parent.gravcomp)
         || from_geoms && (masses[b].adjusted || masses[target].adjusted)
 }
 

@@ -83,6 +83,7 @@ pub(super) fn process(spec: &MeshSpec, collides: bool) -> Result<Processed, Buil
             hull: surface
                 .filter(|_| collides)
                 .map(|s| Hull::new(&s, &vertices)),
+            spec: spec.clone(),
             on_demand: Default::default(),
             vertices,
             faces,

@@ -58,6 +58,7 @@ impl<'a> Assets<'a> {
                     clench_collide::HeightField::new(spec.rows, spec.columns, heights, spec.size);
                 Ok(Arc::new(HeightField {
                     name: spec.name.clone(),
+                    heights: spec.heights.clone(),
                     shape: shape.map_err(|error| spec.error(error.to_string()))?,
                 }))
             })

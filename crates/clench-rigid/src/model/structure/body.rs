@@ -65,6 +65,8 @@ pub struct Body {
     pub simple_inertia: bool,
     /// Some of its geoms feel a surrounding medium as ellipsoids, and it does not as a box.
     pub fluid_ellipsoids: bool,
+    /// Its constraints are scaled by the mean over all directions, even where it only slides along coordinate axes.
+    pub never_simple: bool,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

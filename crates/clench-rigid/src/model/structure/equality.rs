@@ -41,6 +41,8 @@ pub struct Equality {
     pub name: String,
     /// What it holds.
     pub target: EqualityTarget,
+    /// The sites that are held together, where it names sites and not bodies.
+    pub sites: Option<[usize; 2]>,
     /// On in the initial state.
     pub active0: bool,
 }

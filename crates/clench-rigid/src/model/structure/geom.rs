@@ -1,6 +1,6 @@
 //! What collides: geoms, the meshes and height fields that they are made of, and pairs.
 
-use crate::builder::Origin;
+use crate::builder::{MeshSpec, Origin};
 use clench_collide::{Hull, ShapeKind, TriangleMesh, convex_hull};
 use clench_math::{Quat, Vec3};
 use std::sync::OnceLock;
@@ -53,6 +53,8 @@ pub struct Mesh {
     pub faces: Vec<[u32; 3]>,
     /// What collides; `None` where no geom with this mesh does.
     pub hull: Option<Hull>,
+    /// As its author gave it, which is what a saved model says.
+    pub spec: MeshSpec,
     /// What queries need of it, made when they first do.
     pub(crate) on_demand: OnDemand,
     /// Where it was written.
@@ -94,6 +96,8 @@ pub struct HeightField {
     pub name: String,
     /// Heights and size.
     pub shape: clench_collide::HeightField,
+    /// Heights as their author gave them, in any unit.
+    pub heights: Vec<f64>,
 }
 
 /// A geom pair that always collides; its parameters are in `params.pair_*`.

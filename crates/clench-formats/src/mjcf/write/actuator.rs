@@ -1,0 +1,152 @@
+//! Actuators, each as `<general>`.
+
+use super::xml::{Tag, Xml};
+use super::{SaveError, body_name, label, named};
+use clench_rigid::Model;
+use clench_rigid::history::Interpolation;
+use clench_rigid::model::{
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Transmission,
+};
+
+pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
+    for u in 0..model.actuators.len() {
+        write_actuator(model, u, xml)?;
+    }
+    Ok(())
+}
+
+fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveError> {
+    let Actuator {
+        name,
+        transmission,
+        dynamics,
+        acts,
+        gain,
+        bias,
+        states: _,
+        controls,
+        inputs,
+        ctrllimited,
+        history,
+        forcelimited,
+        actlimited,
+        actearly,
+        disabled: _,
+        group,
+    } = &model.actuators[u];
+    let p = &model.params;
+    let &[ControlInput::Command] = &inputs[..] else {
+        let reason = "the inputs of controllers and motors are not written yet";
+        return Err(SaveError::new(label("actuator", name, u), reason));
+    };
+    let (control, clamped) = (controls.start, ctrllimited[0]);
+    let pulls_back =
+        *bias == BiasKind::Affine && p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1];
+    if pulls_back && p.actuator_biasprm[u][2] > 0.0 {
+        let reason = "MJCF takes its positive velocity coefficient for a damping ratio";
+        return Err(SaveError::new(label("actuator", name, u), reason));
+    }
+    let [quadratic, cubic] = p.actuator_dampingpoly[u];
+    let joint = |j: usize| named("joint", &model.joints[j].name, j);
+    let site = |s: usize| named("site", &model.sites[s].name, s);
+    let tag = xml.tag("general").name(name);
+    let tag = match *transmission {
+        Transmission::Joint(j) => tag.text("joint", joint(j)?),
+        Transmission::JointInParent(j) => tag.text("jointinparent", joint(j)?),
+        Transmission::Tendon(t) => tag.text("tendon", named("tendon", &model.tendons[t].name, t)?),
+        Transmission::Site(s) => tag.text("site", site(s)?),
+        Transmission::SiteInFrame([s, reference]) => {
+            tag.text("site", site(s)?).text("refsite", site(reference)?)
+        }
+        Transmission::SliderCrank([crank, slider]) => tag
+            .text("cranksite", site(crank)?)
+            .text("slidersite", site(slider)?)
+            .numbers("cranklength", &[p.actuator_cranklength[u]]),
+        Transmission::Body(b) => tag.text("body", body_name(model, b)?),
+    };
+    let mut tag = tag
+        .numbers_unless("ctrlrange", &p.actuator_ctrlrange[control], &[0.0; 2])
+        .boolean("ctrllimited", clamped)
+        .numbers_unless("forcerange", &p.actuator_forcerange[u], &[0.0; 2])
+        .boolean("forcelimited", *forcelimited)
+        .numbers_unless("actrange", &p.actuator_actrange[u], &[0.0; 2])
+        .boolean("actlimited", *actlimited)
+        .numbers("gear", &p.actuator_gear[u])
+        .numbers_unless("lengthrange", &p.actuator_lengthrange[u], &[0.0; 2])
+        .text("dyntype", dynamics_type(*dynamics))
+        .text("gaintype", gain_type(*gain))
+        .text("biastype", bias_type(*bias))
+        .numbers("dynprm", &p.actuator_dynprm[u])
+        .numbers("gainprm", &p.actuator_gainprm[u])
+        .numbers("biasprm", &p.actuator_biasprm[u])
+        .polynomial("damping", [p.actuator_damping[u], quadratic, cubic])
+        .number_unless("armature", p.actuator_armature[u], 0.0)
+        .integer_unless("group", (*group).into(), 0);
+    let usual = usize::from(*dynamics != DynamicsKind::None);
+    if acts.len() != usual {
+        tag = tag.integer("actdim", acts.len() as i64);
+    }
+    if let Some(history) = history {
+        tag = write_history(history, p.actuator_delay[u], tag);
+    }
+    if *actearly {
+        tag = tag.boolean("actearly", true);
+    }
+    tag.end();
+    Ok(())
+}
+
+/// Which past values are kept, and how late they arrive.
+pub(super) fn write_history<'a>(history: &History, delay: f64, tag: Tag<'a>) -> Tag<'a> {
+    let History {
+        start: _,
+        samples,
+        width: _,
+        interpolation: between,
+    } = history;
+    tag.integer("nsample", *samples as i64)
+        .text("interp", interpolation(*between))
+        .numbers("delay", &[delay])
+}
+
+fn interpolation(between: Interpolation) -> &'static str {
+    match between {
+        Interpolation::Hold => "zoh",
+        Interpolation::Linear => "linear",
+        Interpolation::Cubic => "cubic",
+    }
+}
+
+fn dynamics_type(kind: DynamicsKind) -> &'static str {
+    match kind {
+        DynamicsKind::None => "none",
+        DynamicsKind::Integrator => "integrator",
+        DynamicsKind::Filter => "filter",
+        DynamicsKind::FilterExact => "filterexact",
+        DynamicsKind::Muscle => "muscle",
+        DynamicsKind::DcMotor => "dcmotor",
+        DynamicsKind::Pid => "pid",
+        DynamicsKind::User => "user",
+    }
+}
+
+fn gain_type(kind: GainKind) -> &'static str {
+    match kind {
+        GainKind::Fixed => "fixed",
+        GainKind::Affine => "affine",
+        GainKind::Muscle => "muscle",
+        GainKind::DcMotor => "dcmotor",
+        GainKind::Pid => "pid",
+        GainKind::User => "user",
+    }
+}
+
+fn bias_type(kind: BiasKind) -> &'static str {
+    match kind {
+        BiasKind::None => "none",
+        BiasKind::Affine => "affine",
+        BiasKind::Muscle => "muscle",
+        BiasKind::DcMotor => "dcmotor",
+        BiasKind::User => "user",
+    }
+}

@@ -1,0 +1,71 @@
+//! Meshes and height fields, as their author gave them: what follows from them is computed again when the file is loaded.
+
+use super::SaveError;
+use super::xml::Xml;
+use clench_math::Vec3;
+use clench_rigid::Model;
+use clench_rigid::builder::{MeshInertia, MeshSpec};
+use clench_rigid::model::HeightField;
+
+pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
+    for mesh in &model.meshes {
+        write_mesh(&mesh.spec, xml);
+    }
+    for field in &model.height_fields {
+        write_height_field(field, xml);
+    }
+    Ok(())
+}
+
+fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
+    let MeshSpec {
+        name,
+        vertices,
+        faces,
+        refpos,
+        refquat,
+        scale,
+        inertia,
+        max_hull_vertices,
+        origin: _,
+    } = spec;
+    let vertices: Vec<[f64; 3]> = vertices.iter().copied().map(Vec3::to_array).collect();
+    let inertia = match inertia {
+        MeshInertia::Convex => "convex",
+        MeshInertia::Exact => "exact",
+        MeshInertia::Legacy => "legacy",
+        MeshInertia::Shell => "shell",
+    };
+    let mut tag = xml
+        .tag("mesh")
+        .text("name", name)
+        .text("inertia", inertia)
+        .numbers_unless("refpos", &refpos.to_array(), &[0.0; 3])
+        .numbers_unless("refquat", &refquat.to_array(), &[1.0, 0.0, 0.0, 0.0])
+        .numbers_unless("scale", &scale.to_array(), &[1.0; 3]);
+    if let Some(bound) = max_hull_vertices {
+        tag = tag.integer("maxhullvert", *bound as i64);
+    }
+    tag = tag.singles("vertex", vertices.as_flattened().iter().copied());
+    if !faces.is_empty() {
+        tag = tag.integers("face", faces.as_flattened().iter().map(|&v| v.into()));
+    }
+    tag.end();
+}
+
+/// Rows from the positive end of y, as MJCF has them.
+fn write_height_field(field: &HeightField, xml: &mut Xml) {
+    let HeightField {
+        name,
+        shape,
+        heights,
+    } = field;
+    let rows = heights.chunks_exact(shape.columns()).rev().flatten();
+    xml.tag("hfield")
+        .text("name", name)
+        .integer("nrow", shape.rows() as i64)
+        .integer("ncol", shape.columns() as i64)
+        .numbers("size", &shape.size())
+        .singles("elevation", rows.copied())
+        .end();
+}

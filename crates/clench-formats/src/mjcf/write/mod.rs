@@ -1,0 +1,164 @@
+//! A model as MJCF: what was loaded or built, with every number resolved.
+//!
+//! The file says all that the model is and leaves nothing to a compiler: explicit inertials, limits and ranges, poses as quaternions,
+//! angles in radians, no default classes, meshes as vertices in the file. An attribute that has the value which MJCF means where nothing is
+//! said is left out. Each function takes a record of the model apart field by field, so that a new field is an error here until
+//! it has its place; what MJCF cannot say is an error that names it.
+
+mod actuator;
+mod assets;
+mod option;
+mod relations;
+mod sensor;
+mod tree;
+mod xml;
+
+#[cfg(test)]
+mod tests;
+
+use clench_rigid::Model;
+use clench_rigid::model::{Body, Custom, Keyframe, TupleEntry};
+use xml::Xml;
+
+/// What of a model MJCF cannot say.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{element} cannot be written as MJCF: {reason}")]
+pub struct SaveError {
+    /// The element, such as `joint "knee"`.
+    pub element: String,
+    /// Why it cannot be written.
+    pub reason: String,
+}
+
+impl SaveError {
+    fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
+        SaveError {
+            element: element.into(),
+            reason: reason.into(),
+        }
+    }
+}
+
+/// Writing a model as MJCF.
+///
+/// ```
+/// use clench_formats::{SaveModel, load_str};
+///
+/// let model = load_str("<mujoco><worldbody><body><freejoint/><geom size='0.1' mass='2'/></body></worldbody></mujoco>")?;
+/// let text = model.to_mjcf()?;
+/// assert!(text.contains("mass=\"2\""));
+/// assert_eq!(load_str(&text)?.params.body_inertia, model.params.body_inertia);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait SaveModel {
+    /// The model as an MJCF file that stands alone: it loads to the same model, here and in MuJoCo.
+    ///
+    /// Numbers are written to their last digit. What is computed from them while the file is loaded (unit quaternions, where meshes have their
+    /// centres of mass, inverse inertias) may differ in the last digits.
+    ///
+    /// # Errors
+    /// What MJCF cannot say: a floor of time constants that acts, parts of a joint that differ, bodies nested more than 500 deep.
+    fn to_mjcf(&self) -> Result<String, SaveError>;
+}
+
+impl SaveModel for Model {
+    fn to_mjcf(&self) -> Result<String, SaveError> {
+        let mut xml = Xml::default();
+        xml.tag("mujoco").text("model", &self.name).open();
+        option::write(self, &mut xml)?;
+        xml.section("asset", |xml| assets::write(self, xml))?;
+        tree::write(self, &mut xml)?;
+        xml.section("contact", |xml| relations::write_contacts(self, xml))?;
+        xml.section("equality", |xml| relations::write_equalities(self, xml))?;
+        xml.section("tendon", |xml| relations::write_tendons(self, xml))?;
+        xml.section("actuator", |xml| actuator::write(self, xml))?;
+        xml.section("sensor", |xml| sensor::write(self, xml))?;
+        xml.section("custom", |xml| write_custom(self, xml))?;
+        xml.section("keyframe", |xml| write_keyframes(self, xml))?;
+        Ok(xml.finish())
+    }
+}
+
+/// How errors call an element.
+fn label(kind: &str, name: &str, index: usize) -> String {
+    match name {
+        "" => format!("{kind} {index}"),
+        name => format!("{kind} \"{name}\""),
+    }
+}
+
+/// The name by which another element refers to one.
+fn named<'a>(kind: &str, name: &'a str, index: usize) -> Result<&'a str, SaveError> {
+    match name {
+        "" => Err(SaveError::new(
+            label(kind, name, index),
+            "another element refers to it, but it has no name",
+        )),
+        name => Ok(name),
+    }
+}
+
+/// The name of a body; the world has one whatever else it is called.
+fn body_name(model: &Model, index: usize) -> Result<&str, SaveError> {
+    let Body { name, .. } = &model.bodies[index];
+    match index {
+        0 => Ok("world"),
+        _ => named("body", name, index),
+    }
+}
+
+/// What belongs to a user's program.
+fn write_custom(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
+    let Custom {
+        numerics,
+        texts,
+        tuples,
+    } = &model.custom;
+    for (name, data) in numerics {
+        xml.tag("numeric")
+            .text("name", name)
+            .numbers("data", data)
+            .end();
+    }
+    for (name, data) in texts {
+        xml.tag("text").text("name", name).text("data", data).end();
+    }
+    for (name, entries) in tuples {
+        xml.tag("tuple").text("name", name).open();
+        for TupleEntry { kind, name, value } in entries {
+            xml.tag("element")
+                .text("objtype", kind)
+                .text("objname", name)
+                .numbers("prm", &[*value])
+                .end();
+        }
+        xml.close();
+    }
+    Ok(())
+}
+
+fn write_keyframes(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
+    for keyframe in &model.keyframes {
+        let Keyframe {
+            name,
+            time,
+            qpos,
+            qvel,
+            act,
+            ctrl,
+            mocap_pos,
+            mocap_quat,
+        } = keyframe;
+        xml.tag("key")
+            .name(name)
+            .number_unless("time", *time, 0.0)
+            .numbers_unless("qpos", qpos, &[])
+            .numbers_unless("qvel", qvel, &[])
+            .numbers_unless("act", act, &[])
+            .numbers_unless("ctrl", ctrl, &[])
+            .numbers_unless("mpos", mocap_pos, &[])
+            .numbers_unless("mquat", mocap_quat, &[])
+            .end();
+    }
+    Ok(())
+}

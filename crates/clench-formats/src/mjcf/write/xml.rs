@@ -1,0 +1,201 @@
+//! Elements as text, indented, each with its attributes on one line.
+
+use std::fmt::Write;
+
+/// The text so far, and how deep its end is.
+#[derive(Default)]
+pub(super) struct Xml {
+    text: String,
+    open: Vec<&'static str>,
+}
+
+/// An element that is being written: its attributes come next.
+pub(super) struct Tag<'a> {
+    xml: &'a mut Xml,
+    name: &'static str,
+}
+
+impl Xml {
+    /// Begins an element.
+    pub fn tag(&mut self, name: &'static str) -> Tag<'_> {
+        self.indent();
+        self.text.push('<');
+        self.text.push_str(name);
+        Tag { xml: self, name }
+    }
+
+    /// Ends the innermost element that has children.
+    pub fn close(&mut self) {
+        if let Some(name) = self.open.pop() {
+            self.indent();
+            self.text.push_str("</");
+            self.text.push_str(name);
+            self.text.push_str(">\n");
+        }
+    }
+
+    /// How many elements are open.
+    pub fn depth(&self) -> usize {
+        self.open.len()
+    }
+
+    /// The whole text, with every element ended.
+    pub fn finish(mut self) -> String {
+        while !self.open.is_empty() {
+            self.close();
+        }
+        self.text
+    }
+
+    /// Writes a section with what `write` puts into it, or nothing where that is nothing.
+    pub fn section<E>(
+        &mut self,
+        name: &'static str,
+        write: impl FnOnce(&mut Xml) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let before = self.text.len();
+        self.tag(name).open();
+        let empty = self.text.len();
+        write(self)?;
+        if self.text.len() == empty {
+            self.open.pop();
+            self.text.truncate(before);
+        } else {
+            self.close();
+        }
+        Ok(())
+    }
+
+    fn indent(&mut self) {
+        let depth = self.open.len();
+        self.text.extend(std::iter::repeat_n("  ", depth));
+    }
+}
+
+impl Tag<'_> {
+    /// Ends an element without children.
+    pub fn end(self) {
+        self.xml.text.push_str("/>\n");
+    }
+
+    /// Ends the attributes of an element that has children.
+    pub fn open(self) {
+        self.xml.text.push_str(">\n");
+        self.xml.open.push(self.name);
+    }
+
+    /// An attribute.
+    pub fn text(self, name: &str, value: &str) -> Self {
+        let text = &mut self.xml.text;
+        let _ = write!(text, " {name}=\"");
+        for c in value.chars() {
+            match c {
+                '&' => text.push_str("&amp;"),
+                '<' => text.push_str("&lt;"),
+                '>' => text.push_str("&gt;"),
+                '"' => text.push_str("&quot;"),
+                c if c.is_control() => {
+                    let _ = write!(text, "&#{};", u32::from(c));
+                }
+                c => text.push(c),
+            }
+        }
+        text.push('"');
+        self
+    }
+
+    /// A name, where there is one.
+    pub fn name(self, name: &str) -> Self {
+        match name {
+            "" => self,
+            name => self.text("name", name),
+        }
+    }
+
+    /// `true` or `false`.
+    pub fn boolean(self, name: &str, value: bool) -> Self {
+        self.text(name, if value { "true" } else { "false" })
+    }
+
+    /// An integer.
+    pub fn integer(self, name: &str, value: impl Into<i64>) -> Self {
+        let value: i64 = value.into();
+        self.text(name, &value.to_string())
+    }
+
+    /// An integer, unless it is what the format means where nothing is said.
+    pub fn integer_unless(self, name: &str, value: i64, default: i64) -> Self {
+        match value == default {
+            true => self,
+            false => self.integer(name, value),
+        }
+    }
+
+    /// Numbers, each with as many digits as tell it from all others.
+    pub fn numbers(self, name: &str, values: &[f64]) -> Self {
+        let text = &mut self.xml.text;
+        let _ = write!(text, " {name}=\"");
+        for (k, value) in values.iter().enumerate() {
+            let digits = format!("{value:?}");
+            let space = if k == 0 { "" } else { " " };
+            let _ = write!(
+                text,
+                "{space}{}",
+                digits.strip_suffix(".0").unwrap_or(&digits)
+            );
+        }
+        text.push('"');
+        self
+    }
+
+    /// Numbers of single precision, likewise.
+    pub fn singles(self, name: &str, values: impl Iterator<Item = f64>) -> Self {
+        let text = &mut self.xml.text;
+        let _ = write!(text, " {name}=\"");
+        for (k, value) in values.enumerate() {
+            let space = if k == 0 { "" } else { " " };
+            let digits = format!("{:?}", value as f32);
+            let _ = write!(
+                text,
+                "{space}{}",
+                digits.strip_suffix(".0").unwrap_or(&digits)
+            );
+        }
+        text.push('"');
+        self
+    }
+
+    /// Numbers, unless they are what the format means where nothing is said.
+    pub fn numbers_unless(self, name: &str, values: &[f64], default: &[f64]) -> Self {
+        match values == default {
+            true => self,
+            false => self.numbers(name, values),
+        }
+    }
+
+    /// Coefficients of a polynomial, the linear one first, without those that are zero at the end.
+    pub fn polynomial(self, name: &str, coefficients: [f64; 3]) -> Self {
+        let used = coefficients.iter().rposition(|&c| c != 0.0);
+        self.numbers_unless(name, &coefficients[..used.map_or(0, |last| last + 1)], &[])
+    }
+
+    /// A number, likewise.
+    pub fn number_unless(self, name: &str, value: f64, default: f64) -> Self {
+        self.numbers_unless(name, &[value], &[default])
+    }
+
+    /// Words, if there are any.
+    pub fn words<'w>(self, name: &str, words: impl Iterator<Item = &'w str>) -> Self {
+        let words: Vec<&str> = words.collect();
+        match words.is_empty() {
+            true => self,
+            false => self.text(name, &words.join(" ")),
+        }
+    }
+
+    /// Integers, one after the other.
+    pub fn integers(self, name: &str, values: impl Iterator<Item = i64>) -> Self {
+        let words: Vec<String> = values.map(|value| value.to_string()).collect();
+        self.text(name, &words.join(" "))
+    }
+}
