@@ -130,7 +130,6 @@ impl<'a> BodyReader<'a> {
                 .classes(element)
                 .named_by(element, "childclass", place.class)?,
             frame: Pose::IDENTITY,
-            ..place.clone()
         };
         Ok(Level {
             element,

@@ -148,9 +148,10 @@ fn pose(model: &Model, qpos: &[f64]) -> Positions<f64> {
     let (params, mut state) = (&model.params, State::new(model));
     state.qpos.copy_from_slice(qpos);
     let mut pos = Positions::new(model);
-    let parts = [0..model.nbody()];
-    kinematics::kinematics(model, params, &state, &parts, &mut pos);
-    com::com_positions(model, params, &parts, &mut pos);
+    let all = 0..model.nbody();
+    let parts = std::slice::from_ref(&all);
+    kinematics::kinematics(model, params, &state, parts, &mut pos);
+    com::com_positions(model, params, parts, &mut pos);
     tendon::tendons(model, params, &state.qpos, &mut pos);
     transmission::transmissions(model, params, &state.qpos, &mut pos);
     pos
