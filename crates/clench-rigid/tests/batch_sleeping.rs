@@ -34,7 +34,7 @@ fn disturb<S: Precision>(env: usize, step: usize, qvel: &mut [S], qfrc_applied: 
             *v = S::new(0.3 * numbers.next());
         }
     }
-    if step == 120 + 7 * env && env % 2 == 0 {
+    if step == 120 + 7 * env && env.is_multiple_of(2) {
         qvel[12 + env % 3] = S::new(0.2);
     }
     qfrc_applied[18] = S::new(if step == 150 + 3 * env { -0.0 } else { 0.0 });

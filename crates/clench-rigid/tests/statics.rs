@@ -1,8 +1,5 @@
 //! Scenes of many geoms that stand still, which are looked at once and not in each step.
 
-#[allow(dead_code)]
-mod common;
-#[allow(dead_code)]
 mod scenes;
 
 use clench_math::Vec3;

@@ -165,10 +165,11 @@ fn the_bias_of_a_tendon_is_its_inertia_times_the_change_of_its_rate() {
         let rate = |sim: &Sim, t: usize| sim.workspace().velocity.ten_velocity[t];
         let light = light(&sim);
         for dof in 0..sim.model().nv {
+            let armatures = sim.model().params.tendon_armature.iter();
             let mut expected = 0.0;
-            for (t, &m) in sim.model().params.tendon_armature.iter().enumerate() {
+            for (t, (&m, gradient)) in armatures.zip(&gradients).enumerate() {
                 let change = (rate(&after, t) - rate(&before, t)) / (2.0 * H);
-                expected += m * gradients[t][dof] * change;
+                expected += m * gradient[dof] * change;
             }
             let bias = |sim: &Sim| sim.workspace().force.qfrc_bias[dof];
             let found = bias(&sim) - bias(&light);

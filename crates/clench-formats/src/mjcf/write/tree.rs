@@ -225,7 +225,7 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
         // A geom stands where its mesh has its centre of mass, and is written where the mesh's author put its origin.
         let mesh = &model.meshes[*mesh];
         quat = (quat * mesh.quat.conjugate()).normalize();
-        pos = pos - quat.rotate(mesh.pos);
+        pos -= quat.rotate(mesh.pos);
         tag = tag.text("mesh", &mesh.name);
     } else if let Some(field) = height_field {
         let field = &model.height_fields[*field];
