@@ -233,7 +233,6 @@ VALUES = {
         name: SWITCH
         for name in (
             "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart filterparent actuation "
-        "sleep_tolerance": usually(scale(1e-5, 0.1), "0", "-1"),
             "refsafe island eulerdamp multiccd autoreset sensor override diagexact"
         ).split()
     },

@@ -201,7 +201,7 @@ mod tests {
             "\"<joint\"",
             "\"</worldbody>\"",
             "\" condim='\"",
-            "\" adhesion='0\"",
+            "\" springyield='0\"",
         ] {
             assert!(dictionary.lines().any(|line| line == word), "{word}");
         }

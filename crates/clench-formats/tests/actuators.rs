@@ -52,7 +52,7 @@ fn transmissions() {
     let (site, reference) = ("s".into(), "r".into());
     assert_eq!(relative, TransmissionSpec::SiteInFrame { site, reference });
     let crank = actuator(
-        "<default><general cranklength='0.3'/></default>",
+        "<general cranklength='0.3'/>",
         "<motor cranksite='c' slidersite='s'/>",
     );
     let (pin, slider) = ("c".into(), "s".into());

@@ -330,11 +330,9 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ),
         ("<deformable><flex/></deformable>", "flex"),
         ("<extension><plugin/></extension>", "plugin"),
-        ("<asset><model/></asset>", "model"),
         ("<equality><flex/></equality>", "flex"),
         ("<option integrator='discrete'/>", "option"),
         ("<option><flag speculative='enable'/></option>", "flag"),
-        ("<compiler fusestatic='true'/>", "compiler"),
     ] {
         expect_section(line, element, later);
     }

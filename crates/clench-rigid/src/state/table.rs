@@ -3,8 +3,10 @@
 
 /// Hands the table to the macro `$then`: groups of lines
 ///
-///     /// What it is (how many).
-///     name set_name: Kind, Size, Bound;
+/// ```text
+/// /// What it is (how many).
+/// name set_name: Kind, Size, Bound;
+/// ```
 ///
 /// with one of the [kinds](crate::state::kind), the [size](crate::state::Size) that says how many elements there are, how large
 /// its numbers may be, and the name of its setter in Python. The groups say what a step does with a field: `moving` ones it reads
