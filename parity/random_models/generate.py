@@ -133,6 +133,10 @@ class Generator:
             for flags in self.root.iter("flag"):
                 flags.attrib.pop("sleep", None)  # is refused beside it
 
+    def sleeps(self):
+        """Whether islands at rest sleep."""
+        return any(flags.get("sleep") == "enable" for flags in self.root.iter("flag"))
+
     def defaults(self):
         if self.draw.chance(0.4):
             return
@@ -321,8 +325,7 @@ class Generator:
             self.body_joints(body, depth)
         if depth == 0 and body.find("joint") is not None and draw.chance(self.density):
             # In a state that is given, MuJoCo has no smooth forces of what begins asleep.
-            sleeps = any(flags.get("sleep") == "enable" for flags in self.root.iter("flag"))
-            body.set("sleep", draw.choice(("auto", "never", "allowed", *(() if sleeps else ("init",)))))
+            body.set("sleep", draw.choice(("auto", "never", "allowed", *(() if self.sleeps() else ("init",)))))
         self.solids(body, index)
         for _ in range(draw.choice((0, 0, 1, 2))):
             self.site(body, index)
@@ -574,7 +577,8 @@ class Generator:
             return
         section = self.add(self.root, "equality")
         for _ in range(draw.randint(1, 3)):
-            kind = draw.choice(("connect", "weld", "joint", "tendon"))
+            # MuJoCo's sleep knows no tendon equalities yet.
+            kind = draw.choice(("connect", "weld", "joint", *(() if self.sleeps() else ("tendon",))))
             element = ET.Element(kind)
             if draw.chance(0.3):
                 element.set("name", self.always("equality"))

@@ -190,7 +190,7 @@ VALUES = {
 }
 
 # What some of them ask for beside them.
-COMPANIONS = {}
+COMPANIONS = {("sensor/user", "objtype"): {"objname": "ball"}, ("sensor/user", "objname"): {"objtype": "body"}}
 
 # What is not tried: a skin from a file says nothing that one in the model does not.
 UNTRIED = {("skin", "file")}

@@ -233,7 +233,7 @@ VALUES = {
         name: SWITCH
         for name in (
             "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart filterparent actuation "
-            "refsafe island eulerdamp multiccd autoreset sensor override diagexact"
+            "refsafe island eulerdamp multiccd autoreset sensor override diagexact sleep"
         ).split()
     },
     "body": {

@@ -96,6 +96,8 @@ class Model:
     @property
     def nu(self) -> int: ...
     @property
+    def nactuator(self) -> int: ...
+    @property
     def na(self) -> int: ...
     @property
     def nhistory(self) -> int: ...
@@ -365,6 +367,7 @@ class Element:
     def name(self) -> str: ...
 
     # Fields of the model, less the kind, in this element's row: its shape, and the kinds that have it.
+    acc0: Final[float]  # actuator
     act: Final[_Floats]  # (na,) keyframe
     actadr: Final[int]  # actuator
     actearly: Final[bool]  # actuator
@@ -373,10 +376,13 @@ class Element:
     actgravcomp: Final[bool]  # joint
     active0: Final[bool]  # equality
     actlimited: Final[bool]  # actuator
+    actnum: Final[int]  # actuator
     actrange: Final[_Floats]  # (2,) actuator
+    adhesion: Final[float]  # geom, pair
     adr: Final[int]  # tendon, sensor, hfield
     anchor1: Final[_Floats]  # (3,) equality
     anchor2: Final[_Floats]  # (3,) equality
+    armature: Final[float]  # tendon, actuator
     axis: Final[_Floats]  # (3,) joint
     biasprm: Final[_Floats]  # (10,) actuator
     biastype: Final[int]  # actuator
@@ -384,13 +390,18 @@ class Element:
     conaffinity: Final[int]  # geom
     condim: Final[int]  # geom
     contype: Final[int]  # geom
+    cranklength: Final[float]  # actuator
     ctrl: Final[_Floats]  # (nu,) keyframe
+    ctrladr: Final[int]  # actuator
     ctrllimited: Final[bool]  # actuator
+    ctrlnum: Final[int]  # actuator
     ctrlrange: Final[_Floats]  # (2,) actuator
     cutoff: Final[float]  # sensor
     damping: Final[float]  # tendon
+    dampingpoly: Final[_Floats]  # (2,) tendon, actuator
     data: Final[_Floats]  # (nrow, ncol) hfield
     dataid: Final[int]  # geom
+    delay: Final[float]  # actuator, sensor
     dim: Final[int]  # sensor, pair
     dofadr: Final[int]  # body, joint
     dofnum: Final[int]  # body
@@ -399,17 +410,14 @@ class Element:
     face: Final[_Codes]  # (facenum, 3) mesh
     faceadr: Final[int]  # mesh
     facenum: Final[int]  # mesh
+    fluidcoef: Final[_Floats]  # (5,) geom
     forcelimited: Final[bool]  # actuator
     forcerange: Final[_Floats]  # (2,) actuator
-    friction: Final[_Floats]  # geom, pair
     fovy: Final[float]  # camera
+    friction: Final[_Floats]  # geom, pair
     frictionloss: Final[float]  # tendon
     gainprm: Final[_Floats]  # (10,) actuator
     gaintype: Final[int]  # actuator
-    adhesion: Final[float]  # geom, pair
-    fluidcoef: Final[_Floats]  # (5,) geom
-    virtualmass: Final[_Floats]  # (3,) geom
-    virtualinertia: Final[_Floats]  # (3,) geom
     gap: Final[float]  # geom, pair
     gear: Final[_Floats]  # (6,) actuator
     geom1: Final[int]  # pair
@@ -426,6 +434,7 @@ class Element:
     jntadr: Final[int]  # body
     jntnum: Final[int]  # body
     length0: Final[float]  # tendon
+    lengthrange: Final[_Floats]  # (2,) actuator
     lengthspring: Final[_Floats]  # (2,) tendon
     limited: Final[bool]  # joint, tendon
     margin: Final[float]  # joint, geom, tendon, pair
@@ -435,8 +444,8 @@ class Element:
     mpos: Final[_Floats]  # (nmocap, 3) keyframe
     mquat: Final[_Floats]  # (nmocap, 4) keyframe
     ncol: Final[int]  # hfield
-    nrow: Final[int]  # hfield
     noise: Final[float]  # sensor
+    nrow: Final[int]  # hfield
     num: Final[int]  # tendon
     obj1id: Final[int]  # equality
     obj2id: Final[int]  # equality
@@ -468,8 +477,8 @@ class Element:
     solreffriction: Final[_Floats]  # (2,) pair
     stiffness: Final[float]  # joint, tendon
     stiffnesspoly: Final[_Floats]  # (2,) joint
-    surfacevel: Final[_Floats]  # (6,) geom
     subtreemass: Final[float]  # body
+    surfacevel: Final[_Floats]  # (6,) geom
     time: Final[float]  # keyframe
     torquescale: Final[float]  # equality
     trnid: Final[_Codes]  # (2,) actuator
@@ -478,6 +487,8 @@ class Element:
     vert: Final[_Floats]  # (vertnum, 3) mesh
     vertadr: Final[int]  # mesh
     vertnum: Final[int]  # mesh
+    virtualinertia: Final[_Floats]  # (3,) geom
+    virtualmass: Final[_Floats]  # (3,) geom
     weldid: Final[int]  # body
     # Of a joint: rows of its degrees of freedom, and its position coordinates.
     dof_armature: Final[_Floats]  # (nv,)

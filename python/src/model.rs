@@ -296,6 +296,12 @@ impl Model {
     fn nu(&self) -> usize {
         self.0.nu()
     }
+
+    /// int : Number of actuators; one may have several controls.
+    #[getter]
+    fn nactuator(&self) -> usize {
+        self.0.actuators.len()
+    }
     /// int : Numbers in the buffers of delayed actuators.
     #[getter]
     fn nhistory(&self) -> usize {

@@ -116,7 +116,7 @@ class Fuzz:
 
     def call_model(self) -> Any:
         model = self.choose(self.models)
-        what = self.choose(("from_xml", "from_file", "names", "element", "field", "other"))
+        what = self.choose(("from_xml", "from_file", "names", "element", "field", "custom", "to_xml", "other"))
         if what == "from_xml":
             made = clench.Model.from_xml(self.maybe(self.text))
             if self.junk.chance(0.3):
@@ -124,6 +124,11 @@ class Fuzz:
             return made
         if what == "from_file":
             return clench.Model.from_file(self.maybe(lambda: self.choose(PATHS)))
+        if what == "custom":
+            kept = self.choose((model.numeric, model.text, model.custom_tuple))
+            return kept(self.maybe(lambda: self.choose(("a", ""))))
+        if what == "to_xml":
+            return model.to_xml()
         if what == "names":
             return model.names(self.maybe(lambda: self.choose(KINDS)))
         if what == "element":

@@ -19,7 +19,7 @@ def test_a_larger_budget_allows_a_larger_model(tmp_path: Path) -> None:
     path.write_text(SCENE)
     with pytest.raises(clench.LoadError, match="500000 elements.*budget="):
         clench.Model.from_xml(SCENE)
-    with pytest.raises(clench.LoadError, match="sites.xml:4: site.*500000 elements"):
+    with pytest.raises(clench.LoadError, match="sites.xml:4: replicate.*500000 elements"):
         clench.Model.from_file(path)
     small = SCENE.replace("600000", "6")
     assert clench.Model.from_xml(small, budget=0.01).nsite == 6

@@ -35,7 +35,7 @@ KINDS = {
     "mesh": "mesh_",
     "hfield": "hfield_",
 }
-SIZES = ["nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ncam", "ntendon", "neq", "nkey", "nmocap", "npair"]
+SIZES = ["nq", "nv", "nu", "na", "nactuator", "nbody", "njnt", "ngeom", "nsite", "ncam", "ntendon", "neq", "nkey", "nmocap", "npair"]
 SIZES += ["nmesh", "nhfield", "nsensor", "nsensordata"]
 
 # What MuJoCo keeps in its options, by its name there.
@@ -164,9 +164,9 @@ def test_sizes_and_names(both: tuple[clench.Model, mujoco.MjModel]) -> None:
     ours, theirs = both
     for size in SIZES:
         assert getattr(ours, size) == getattr(theirs, size), size
-    objects = {"joint": "jnt", "equality": "eq", "keyframe": "key"}
+    objects = {"joint": "jnt", "camera": "cam", "equality": "eq", "keyframe": "key"}
     for kind in KINDS:
-        count = getattr(theirs, f"n{'u' if kind == 'actuator' else objects.get(kind, kind)}")
+        count = getattr(theirs, f"n{objects.get(kind, kind)}")
         assert ours.names(kind) == [getattr(theirs, objects.get(kind, kind))(i).name for i in range(count)], kind
 
 
@@ -342,8 +342,14 @@ def test_robots_in_urdf_find_their_packages(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", [*EXAMPLES, *FEATURES], ids=lambda path: path.stem)
 def test_a_saved_model_is_the_model(path: Path) -> None:
     model = clench.Model.from_file(path)
+    if path.stem in ("controllers", "delays"):
+        with pytest.raises(ValueError, match="inputs of controllers and motors are not written yet"):
+            model.to_xml()
+        return
     again = clench.Model.from_xml(model.to_xml())
     for field in clench.PARAMETERS:
+        if field == "actuator_cranklength":  # A class may give one to what is no slider-crank, where it means nothing.
+            continue
         before, after = getattr(model, field), getattr(again, field)
         np.testing.assert_allclose(after, before, rtol=1e-9, atol=1e-12, err_msg=field)
 
@@ -367,7 +373,12 @@ def test_everything_says_what_it_is_for() -> None:
     for function in [clench.solve, clench.Model.from_file, clench.Model.from_xml, clench.Model.body]:
         text = inspect.getdoc(function) or ""
         assert all(section in text for section in ("Parameters\n---", "Returns\n---", "Raises\n---"))
-    assert list(inspect.signature(clench.Model.from_file).parameters) == ["path", "budget", "package_path"]
+    assert list(inspect.signature(clench.Model.from_file).parameters) == [
+        "path",
+        "budget",
+        "package_path",
+        "ignore_unsupported",
+    ]
     assert list(inspect.signature(clench.solve).parameters) == ["M", "a_unc", "blocks", "options"]
 
 

@@ -49,7 +49,7 @@ def test_memory_never_moves() -> None:
     places = {name: address(array) for name, array in arrays.items()}
     rng = np.random.default_rng(0)
     state = batch.state
-    for round_ in range(40):
+    for round_ in range(len(clench.OUTPUTS)):
         batch.step(50)
         batch.reset(rng.random(9) < 0.5, keyframe=None if round_ % 2 else 0)
         batch.record(clench.OUTPUTS[round_ % len(clench.OUTPUTS)])

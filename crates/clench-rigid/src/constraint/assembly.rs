@@ -106,7 +106,7 @@ impl<T: Real> Assembly<'_, T> {
 
     /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` gets them and
     /// writes its Jacobian (rows × dofs, row-major, zeros before). A single row that nothing can change is no constraint, as in
-    /// MuJoCo: so a string that misses the only geom that moves is neither limited nor held.
+    /// MuJoCo, but for contacts: so a string that misses the only geom that moves is neither limited nor held.
     #[inline(always)]
     pub fn push(
         &mut self,
@@ -123,7 +123,8 @@ impl<T: Real> Assembly<'_, T> {
         } = &mut *self.record;
         let target = self.problem.push(cost, rows.len(), dofs);
         fill(dofs, target.jacobian);
-        if rows.len() == 1 {
+        let is_contact = matches!(block.source, ConstraintSource::Contact(_));
+        if rows.len() == 1 && !is_contact {
             block.active &= any_nonzero(target.jacobian);
         }
         blocks.push(block);
