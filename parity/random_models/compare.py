@@ -69,7 +69,7 @@ def compiled(text):
     """MuJoCo's model of a text, made to solve as exactly as it can."""
     try:
         model = oracle.exact(mujoco.MjModel.from_xml_string(text))
-    except ValueError as error:
+    except (ValueError, RuntimeError) as error:  # Its compiler may fail without saying why.
         raise Refused(str(error)) from None
     model.opt.iterations = ITERATIONS
     return model
