@@ -26,6 +26,7 @@ from junk import TEXTS, Junk, Odd
 from scenes import BALL, FIELDS, PUPPET, ROOT, ball, example, puppet, same_bits
 
 ALLOWED = (
+    KeyError,  # of numbers, texts and tuples that a file does not have
     *(ValueError, TypeError, IndexError, AttributeError, OverflowError, MemoryError, clench.ClenchError, Odd),
     pickle.PicklingError,
 )
