@@ -25,9 +25,10 @@ fn bob(name: &str, mass: f64) -> BodySpec {
 
 fn positions(model: &Model) -> (Positions<f64>, Vec<f64>) {
     let mut pos = Positions::new(model);
-    let parts = [0..model.nbody()];
-    kinematics::kinematics(model, &model.params, &State::new(model), &parts, &mut pos);
-    com::com_positions(model, &model.params, &parts, &mut pos);
+    let bodies = 0..model.nbody();
+    let parts = std::slice::from_ref(&bodies);
+    kinematics::kinematics(model, &model.params, &State::new(model), parts, &mut pos);
+    com::com_positions(model, &model.params, parts, &mut pos);
     let mut mass = TreeMatrix::zeros(&model.tree);
     inertia::composite_inertia(model, &model.params, &mut pos, &mut mass);
     let dense = mass.to_dense(&model.tree);

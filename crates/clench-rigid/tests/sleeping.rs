@@ -147,7 +147,8 @@ fn without_the_flag_nothing_sleeps_and_until_then_nothing_differs() {
 
 #[test]
 fn what_a_user_touches_wakes_with_its_island() {
-    let touches: [(&str, fn(&mut State<f64>)); 6] = [
+    type Touch = fn(&mut State<f64>);
+    let touches: [(&str, Touch); 6] = [
         ("position", |s| s.qpos[0] += 1e-12),
         ("velocity", |s| s.qvel[6] = 1e-9),
         ("minus nothing", |s| s.qvel[3] = -0.0),
