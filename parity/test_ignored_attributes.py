@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from random_models import harmless, rules
-from random_models.generate import ASSETS
+from random_models.preamble import ASSETS
 
 STEPS = 100
 SAME = 1e-9  # metres or radians: the order of a sum may change

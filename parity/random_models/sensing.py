@@ -1,0 +1,88 @@
+"""The sensors of a random model."""
+
+from random_models import harmless
+from random_models.maker import Maker
+from random_models.values import text
+
+
+class Sensing(Maker):
+    """What measures."""
+
+    def sensors(self):
+        draw = self.draw
+        if draw.chance(0.5):
+            return
+        section = self.add(self.root, "sensor")
+        copies = any(element.tag in ("replicate", "attach") for element in self.root.iter())
+        for _ in range(draw.randint(1, 15)):
+            kind = draw.choice((*harmless.SENSORS, "contact", "contact", "rangefinder", "user"))
+            attached = self.attached(kind)
+            if attached is None:
+                continue
+            if copies and not attached.keys() - {"dim"}:  # each replica would double the sensors that refer to nothing
+                continue
+            sensor = self.add(section, kind, **attached)
+            if draw.chance(0.3):
+                sensor.set("name", self.always("sensor"))
+            self.fill(sensor, f"sensor/{kind}")
+            if "nsample" in sensor.attrib and draw.chance(0.7):
+                sensor.set("delay", text(draw.scale(0.001, 0.03)))
+            if sensor.get("reduce") == "netforce" and "data" in sensor.attrib:
+                kept = [word for word in sensor.get("data").split() if word not in ("linvel", "angvel")]
+                sensor.set("data", " ".join(kept) or "found")
+
+    def attached(self, kind):
+        """What a sensor of this kind measures, None where there is nothing of the sort."""
+        draw = self.draw
+        sites, geoms = ([name for name, _ in found] for found in (self.sites, self.geoms))
+        joints = [name for name, of in self.joints if of == "ball" or not kind.startswith("ball")]
+        one = lambda attribute, names: {attribute: draw.choice(names)} if names else None
+        switches = {element.get("name"): element.get("limited") for element in self.root.iter()}
+        limited = [name for name in (*joints, *self.tendons) if name in self.limited and switches.get(name) == "true"]
+        if "limit" in kind:
+            return one("joint" if kind.startswith("joint") else "tendon", [n for n in limited if n.startswith("tendon") != kind.startswith("joint")])
+        if not kind.startswith("ball"):
+            joints = self.scalar_joints()
+        if kind in ("e_potential", "e_kinetic", "clock"):
+            return {}
+        if kind == "user":
+            return {"dim": draw.choice((1, 3))}
+        if kind.startswith("frame"):
+            objects = self.frame("obj", sites, geoms)
+            referred = self.frame("ref", sites, geoms) if draw.chance(0.4) and not kind.endswith("acc") else {}
+            return {**objects, **referred}
+        if kind.startswith(("joint", "ball")):
+            return one("joint", joints)
+        if kind.startswith("tendon"):
+            return one("tendon", self.tendons)
+        if kind.startswith("actuator"):
+            return one("actuator", self.actuator_names)
+        if kind.startswith("subtree"):
+            return {"body": draw.choice(self.bodies)}
+        if kind == "insidesite":
+            return {**one("site", sites), **self.frame("obj", sites, geoms)} if sites else None
+        if kind == "camprojection":
+            return {**one("site", sites), **one("camera", self.cameras)} if sites and self.cameras else None
+        if kind == "rangefinder" and self.cameras and draw.chance(0.5):
+            return one("camera", self.cameras)
+        if kind in ("distance", "normal", "fromto"):
+            two = self.two([name for name in geoms if name != "ground"]) if draw.chance(0.6) else self.two(self.bodies)
+            word = "body" if two and two[0] in self.bodies else "geom"
+            return two and {f"{word}{k + 1}": name for k, name in enumerate(two)}
+        if kind == "contact":
+            named = {"geom": geoms, "body": self.bodies, "subtree": self.bodies}
+            chosen = {}
+            for side in (1, 2):
+                if draw.chance(0.6):
+                    word = draw.choice(sorted(named))
+                    chosen |= one(f"{word}{side}", named[word]) or {}
+                elif side == 1 and draw.chance(0.4):
+                    chosen |= one("site", sites) or {}
+            return chosen
+        return one("site", sites)
+
+    def frame(self, word, sites, geoms):
+        """The object of a frame."""
+        kinds = {"body": self.bodies, "xbody": self.bodies, "site": sites, "geom": geoms, "camera": self.cameras}
+        kind = self.draw.choice([kind for kind in sorted(kinds) if kinds[kind]])
+        return {f"{word}type": kind, f"{word}name": self.draw.choice(kinds[kind])}
