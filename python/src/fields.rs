@@ -154,7 +154,7 @@ const STRUCTURE: &[Reader] = &[
         codes(&m.actuators, |a| id(a.acts.len()))
     }),
     ("actuator_ctrladr", |m| {
-        codes(&m.actuators, |a| first(&a.controls))
+        codes(&m.actuators, |a| id(a.controls.start))
     }),
     ("actuator_ctrlnum", |m| {
         codes(&m.actuators, |a| id(a.controls.len()))

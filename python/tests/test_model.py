@@ -58,8 +58,6 @@ OURS = {"wrap_coef", "wrap_sideid", "eq_anchor1", "eq_anchor2", "eq_quat1", "eq_
 OURS |= {"mesh_vert", "mesh_face", "hfield_data", "cam_sensorsize", "cam_intrinsic", "cam_fovy"}
 # In one field, `geom_fluid`; and what is of use to cameras that track alone.
 OURS |= {"geom_fluidcoef", "geom_virtualmass", "geom_virtualinertia", "cam_poscom0"}
-# Differences that are not explained yet: the order of a pair of equal shapes, and where the controls of some actuator begin.
-OPEN = {("surfaces", "pair_geom1"), ("surfaces", "pair_geom2"), ("controllers", "actuator_ctrladr")}
 # Many rows for an element.
 LISTS = {"mesh_vert", "mesh_face", "hfield_data"}
 
@@ -93,10 +91,10 @@ def expected_field(theirs: mujoco.MjModel, name: str) -> np.ndarray:
     return value
 
 
-def test_fields_are_those_of_mujoco(both: tuple[clench.Model, mujoco.MjModel], request: pytest.FixtureRequest) -> None:
+def test_fields_are_those_of_mujoco(both: tuple[clench.Model, mujoco.MjModel]) -> None:
     ours, theirs = both
     for name in field_names():
-        if name in OURS or (request.node.callspec.id, name) in OPEN:
+        if name in OURS:
             continue
         found, expected = np.asarray(getattr(ours, name)), expected_field(theirs, name)
         assert (found.shape, found.dtype) == (expected.shape, expected.dtype), name

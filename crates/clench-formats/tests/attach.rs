@@ -1,37 +1,10 @@
 //! Models that are attached to models. The names and numbers are those of MuJoCo 4.0.0.
 
-use clench_formats::{LoadError, read, read_str};
+mod files;
+
+use clench_formats::read_str;
 use clench_rigid::builder::ModelBuilder;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicU32, Ordering};
-
-/// A directory of files, removed when dropped.
-struct Files(PathBuf);
-
-impl Files {
-    fn new(files: &[(&str, &str)]) -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let root =
-            std::env::temp_dir().join(format!("clench-attach-{}-{number}", std::process::id()));
-        for (name, content) in files {
-            let path = root.join(name);
-            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-            std::fs::write(path, content).unwrap();
-        }
-        Files(root)
-    }
-
-    fn read(&self) -> Result<ModelBuilder, LoadError> {
-        read(self.0.join("main.xml"))
-    }
-}
-
-impl Drop for Files {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use files::Files;
 
 const ARM: &str = "<mujoco model='arm'>
   <compiler angle='radian' autolimits='false' eulerseq='zyx' inertiafromgeom='true' meshdir='stl'/>
@@ -158,6 +131,24 @@ fn a_model_attaches_parts_of_itself_that_stand_before() {
     assert_eq!(bodies, ["world", "P", "Q", "xQ", "yP", "yQ", "yxQ"]);
     let actuators = names(&model.actuators, |a| &a.name);
     assert_eq!(actuators, ["m", "xm", "ym", "yxm"]);
+}
+
+#[test]
+fn what_acts_on_the_world_alone_follows_no_part_of_it() {
+    let model = read_str(
+        "<mujoco><worldbody><geom type='plane' size='1 1 1'/>
+           <body name='b'><joint/><geom size='1'/></body><attach body='b' prefix='c_'/>
+         </worldbody>
+         <actuator><adhesion name='floor' body='world' ctrlrange='0 1'/>
+           <adhesion name='own' body='b' ctrlrange='0 1'/></actuator>
+         <equality><weld name='w' body1='world' body2='b'/></equality></mujoco>",
+    )
+    .unwrap();
+    assert_eq!(
+        names(&model.actuators, |a| &a.name),
+        ["floor", "own", "c_own"]
+    );
+    assert_eq!(names(&model.equalities, |e| &e.name), ["w", "c_w"]);
 }
 
 #[test]

@@ -1,37 +1,8 @@
 //! Models of several files.
 
-use clench_formats::{LoadError, read};
-use clench_rigid::builder::ModelBuilder;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicU32, Ordering};
+mod files;
 
-/// A directory of files, removed when dropped.
-struct Files(PathBuf);
-
-impl Files {
-    fn new(files: &[(&str, &str)]) -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let root =
-            std::env::temp_dir().join(format!("clench-includes-{}-{number}", std::process::id()));
-        for (name, content) in files {
-            let path = root.join(name);
-            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-            std::fs::write(path, content).unwrap();
-        }
-        Files(root)
-    }
-
-    fn read(&self) -> Result<ModelBuilder, LoadError> {
-        read(self.0.join("main.xml"))
-    }
-}
-
-impl Drop for Files {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use files::Files;
 
 #[test]
 fn the_children_of_the_other_root_take_the_place_of_the_include() {

@@ -72,13 +72,9 @@ fn add_pair(spec: &PairSpec, geoms: [usize; 2], model: &mut Model) -> Result<(),
     p.pair_gap.push(gap);
     p.pair_adhesion
         .push(spec.adhesion.unwrap_or(mixed.adhesion));
-    let mut ordered = geoms;
-    if model.geoms[geoms[0]].kind > model.geoms[geoms[1]].kind {
-        ordered.swap(0, 1);
-    }
     model.pairs.push(Pair {
         name: spec.name.clone(),
-        geoms: ordered,
+        geoms,
         condim,
     });
     Ok(())

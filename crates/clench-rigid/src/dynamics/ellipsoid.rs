@@ -15,7 +15,7 @@
 //! A_max is the largest area, J_i = 8/15 π r_i max(r_j, r_k)⁴. C_b, C_s, C_a, C_K, C_M are the geom's `fluidcoef`: of blunt, slender and
 //! angular drag and of both lifts.
 
-use crate::dynamics::project::force_at;
+use crate::dynamics::project::{force_at, local_velocity};
 use crate::model::{Model, Params};
 use crate::workspace::{Positions, Velocities};
 use clench_collide::ShapeKind;
@@ -81,7 +81,8 @@ impl<T: Real> Ellipsoid<T> {
         b: usize,
         geom: usize,
     ) -> Self {
-        let mut velocity = local_velocity(model, pos, b, geom, vel.cvel[b]);
+        let arm = pos.geom_xpos[geom] - pos.subtree_com[model.bodies[b].root];
+        let mut velocity = local_velocity(vel.cvel[b], arm, &pos.geom_xmat[geom]);
         velocity.linear -= pos.geom_xmat[geom].transpose_mul(params.wind);
         let heavy = params.body_mass[b].ge(T::new(TINY));
         let density = T::select(heavy, params.density.max(T::ZERO), T::ZERO);
@@ -153,10 +154,11 @@ impl<T: Real> Ellipsoid<T> {
             linear: v,
         } = self.velocity;
         let b = model.geoms[self.geom].body;
+        let arm = pos.geom_xpos[self.geom] - pos.subtree_com[model.bodies[b].root];
         let Motion {
             angular: dw,
             linear: dv,
-        } = local_velocity(model, pos, b, self.geom, motion);
+        } = local_velocity(motion, arm, &pos.geom_xmat[self.geom]);
         let (momentum, spin) = (
             v.scale_by(self.virtual_mass),
             w.scale_by(self.virtual_inertia),
@@ -247,23 +249,6 @@ impl<T: Real> Ellipsoid<T> {
 #[inline(always)]
 fn positive<T: Real>(x: T) -> T {
     T::select(x.gt(T::ZERO), x, T::ONE)
-}
-
-/// A spatial velocity of body `b` at the centre of one of its geoms, in the geom's frame.
-#[inline(always)]
-fn local_velocity<T: Real>(
-    model: &Model,
-    pos: &Positions<T>,
-    b: usize,
-    geom: usize,
-    motion: Motion<T>,
-) -> Motion<T> {
-    let arm = pos.geom_xpos[geom] - pos.subtree_com[model.bodies[b].root];
-    let axes = &pos.geom_xmat[geom];
-    Motion::new(
-        axes.transpose_mul(motion.angular),
-        axes.transpose_mul(motion.velocity_at(arm)),
-    )
 }
 
 /// How the fluid forces on the ellipsoids of body `b` change with its velocity: for each component of a motion about the reference

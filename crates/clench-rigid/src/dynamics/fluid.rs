@@ -10,7 +10,7 @@
 //! ```
 
 use crate::dynamics::ellipsoid::{Ellipsoid, ellipsoids};
-use crate::dynamics::project::{force_at, project_forces};
+use crate::dynamics::project::{force_at, local_velocity, project_forces};
 use crate::model::{Model, Params};
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
@@ -124,7 +124,8 @@ impl<T: Real> Drag<T> {
             s.scale_by(Vec3::new(y4 + z4, x4 + z4, x4 + y4)) * (density / T::new(64.0)),
             Vec3::new(s.y * s.z, s.x * s.z, s.x * s.y) * (density * T::new(0.5)),
         );
-        let mut velocity = local_velocity(model, pos, b, vel.cvel[b]);
+        let arm = pos.xipos[b] - pos.subtree_com[model.bodies[b].root];
+        let mut velocity = local_velocity(vel.cvel[b], arm, &pos.ximat[b]);
         velocity.linear -= pos.ximat[b].transpose_mul(params.wind);
         Drag {
             body: b,
@@ -156,7 +157,8 @@ impl<T: Real> Drag<T> {
     /// The change of [`force`](Self::force) with a change `motion` of the body's velocity.
     #[inline(always)]
     pub fn derivative(&self, model: &Model, pos: &Positions<T>, motion: Motion<T>) -> Force<T> {
-        let local = local_velocity(model, pos, self.body, motion);
+        let arm = pos.xipos[self.body] - pos.subtree_com[model.bodies[self.body].root];
+        let local = local_velocity(motion, arm, &pos.ximat[self.body]);
         self.to_world(
             model,
             pos,
@@ -186,22 +188,6 @@ impl<T: Real> Drag<T> {
         let (b, axes) = (self.body, &pos.ximat[self.body]);
         force_at(model, pos, b, pos.xipos[b], *axes * force, *axes * torque)
     }
-}
-
-/// A spatial velocity at the body's centre of mass, in its inertial frame.
-#[inline(always)]
-fn local_velocity<T: Real>(
-    model: &Model,
-    pos: &Positions<T>,
-    b: usize,
-    motion: Motion<T>,
-) -> Motion<T> {
-    let arm = pos.xipos[b] - pos.subtree_com[model.bodies[b].root];
-    let axes = &pos.ximat[b];
-    Motion::new(
-        axes.transpose_mul(motion.angular),
-        axes.transpose_mul(motion.velocity_at(arm)),
-    )
 }
 
 /// −(c₁ v + c₂ |v| v), axis by axis.

@@ -1,8 +1,8 @@
-//! From forces on bodies to forces along dofs: Σ_b J_bᵀ f_b in one pass over the tree instead of a chain a body.
+//! Between bodies and dofs: Σ_b J_bᵀ f_b in one pass over the tree instead of a chain a body, and the frames that forces are told in.
 
 use crate::model::Model;
 use crate::workspace::Positions;
-use clench_math::{Force, Real, Vec3, kernel};
+use clench_math::{Force, Mat3, Motion, Real, Vec3, kernel};
 
 /// The spatial force, about the reference point of its tree, of a force and a torque that act on body `b` at `point`.
 #[inline(always)]
@@ -36,4 +36,13 @@ pub fn project_forces<T: Real>(
     for ((qfrc, dof), axis) in qfrc.iter_mut().zip(&model.dofs).zip(&pos.cdof) {
         *qfrc += axis.dot(forces[dof.body]);
     }
+}
+
+/// A spatial velocity at the point that is `arm` from where it is measured, along the axes of a frame.
+#[inline(always)]
+pub fn local_velocity<T: Real>(motion: Motion<T>, arm: Vec3<T>, axes: &Mat3<T>) -> Motion<T> {
+    Motion::new(
+        axes.transpose_mul(motion.angular),
+        axes.transpose_mul(motion.velocity_at(arm)),
+    )
 }

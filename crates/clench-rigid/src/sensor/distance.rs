@@ -19,7 +19,7 @@ impl<T: Real> Reading<'_, T> {
             };
             match (sensor.kind, nearest) {
                 (SensorKind::Distance, found) => put(&[found.map_or(limit, |f| f.distance)]),
-                (SensorKind::Normal, Some(found)) => put(&found.normal.to_array()),
+                (SensorKind::Normal, Some(found)) => put(&direction(&found).to_array()),
                 (SensorKind::FromTo, Some(found)) => {
                     let points = found.points.map(Vec3::to_array);
                     put(points.as_flattened());
@@ -69,4 +69,10 @@ impl<T: Real> Reading<'_, T> {
         };
         (shape, pose)
     }
+}
+
+/// From the first end to the second, as MuJoCo has it: against the normal where the geoms overlap.
+fn direction<T: Real>(found: &Separation<T>) -> Vec3<T> {
+    let overlap = found.distance.lt(T::ZERO);
+    Vec3::select(overlap, -found.normal, found.normal)
 }

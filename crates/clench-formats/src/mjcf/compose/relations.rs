@@ -2,7 +2,7 @@
 //!
 //! As in MuJoCo 4.0, an element is copied where all that it refers to is there under its new name. Of a contact pair, an exclusion
 //! and a sensor with two objects one of them is enough, and of a tendon one element of its path: the rest is then looked for under
-//! its old name. What refers to nothing, such as a clock, is copied always.
+//! its old name. What refers to nothing, such as a clock, is copied always; an actuator of the world never.
 
 use super::names::{Kind, Names, Namespace, Reference, WORLD, references};
 use crate::mjcf::document::Element;
@@ -51,9 +51,13 @@ pub(super) fn copy(
         }
         _ => {
             let parts = std::iter::once(element).chain(&element.children);
+            // The world is everybody's, but what acts on it belongs to its own model.
+            let acts_on_world = |name: &str| section == "actuator" && name == WORLD;
             let renamed = |part: &Element| {
-                let exists = |r: &Reference| names.has(r.kind, &target(part, *r, namespace));
-                references(part).iter().all(exists)
+                references(part).iter().all(|reference| {
+                    let name = target(part, *reference, namespace);
+                    names.has(reference.kind, &name) && !acts_on_world(&name)
+                })
             };
             if !parts.clone().all(renamed) {
                 return None;

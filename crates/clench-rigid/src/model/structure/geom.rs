@@ -105,7 +105,7 @@ pub struct HeightField {
 pub struct Pair {
     /// Name, possibly empty.
     pub name: String,
-    /// The geoms, the one of smaller [`ShapeKind`] first.
+    /// The geoms, that of the earlier body first.
     pub geoms: [usize; 2],
     /// Dimensions of the contact.
     pub condim: u32,
