@@ -38,14 +38,38 @@ pub(crate) trait Jacobian<T: Real> {
     fn mul(&self, x: &[T], out: &mut [T]);
     /// `out += Jᵀ f`.
     fn add_transposed(&self, f: &[T], out: &mut [T]);
-    /// `hessian += Jᵀ W J`, in the pattern of `tree`, a path of which holds the dofs of each block. `weigh` writes the Hessian
-    /// block of a constraint.
+    /// `hessian += Jᵀ W J`, in a pattern that holds an entry for each two dofs of a block. `weigh` writes the Hessian block of a
+    /// constraint.
     fn add_gram(
         &self,
         weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
-        tree: &Tree,
+        pattern: &impl Pattern,
         hessian: &mut [T],
     );
+}
+
+/// Where the entries of a symmetric matrix are stored.
+pub(crate) trait Pattern {
+    /// Adds `entry(c)` to what row `dofs.last()` has in the column of each `dofs[c]`; the dofs are ascending.
+    fn add_to_row<T: Real>(&self, dofs: &[u32], values: &mut [T], entry: impl Fn(usize) -> T);
+}
+
+impl Pattern for Tree {
+    #[inline(always)]
+    fn add_to_row<T: Real>(&self, dofs: &[u32], values: &mut [T], entry: impl Fn(usize) -> T) {
+        let Some(&dof) = dofs.last() else { return };
+        let start = self.row_start(dof as usize);
+        if self.depth(dof as usize) + 1 == dofs.len() {
+            // The whole path.
+            for (c, value) in values[start..start + dofs.len()].iter_mut().enumerate() {
+                *value += entry(c);
+            }
+        } else {
+            for (c, &column) in dofs.iter().enumerate() {
+                values[start + self.depth(column as usize)] += entry(c);
+            }
+        }
+    }
 }
 
 /// Rows stored block by block, over the dofs on which the block acts.
@@ -176,30 +200,23 @@ impl<T: Real> StoredRows<T> {
         b: &BlockIndex,
         weight: &Weight<T>,
         form: Form,
-        tree: &Tree,
+        pattern: &impl Pattern,
         hessian: &mut [T],
     ) {
         let rows = self.rows::<DIM>(b);
         let dofs = self.dofs(b);
-        let whole_path = dofs
-            .last()
-            .is_some_and(|&last| tree.depth(last as usize) + 1 == dofs.len());
-        for (k, &dof) in dofs.iter().enumerate() {
+        for k in 0..dofs.len() {
             let wj = weigh_column::<T, DIM>(weight, form, &array(|i| rows[i][k]));
             let mut rows = rows;
             for row in &mut rows {
                 *row = &row[..=k];
             }
-            let start = tree.row_start(dof as usize);
-            if whole_path {
-                for (c, h) in hessian[start..=start + k].iter_mut().enumerate() {
-                    *h += weighted(&wj, &rows, c);
-                }
-            } else {
-                for (c, &column) in dofs[..=k].iter().enumerate() {
-                    hessian[start + tree.depth(column as usize)] += weighted(&wj, &rows, c);
-                }
-            }
+            pattern.add_to_row(
+                &dofs[..=k],
+                hessian,
+                #[inline(always)]
+                |c| weighted(&wj, &rows, c),
+            );
         }
     }
 }
@@ -307,14 +324,14 @@ impl<T: Real> Jacobian<T> for StoredRows<T> {
     fn add_gram(
         &self,
         mut weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
-        tree: &Tree,
+        pattern: &impl Pattern,
         hessian: &mut [T],
     ) {
         let mut weight = [[T::ZERO; MAX_DIM]; MAX_DIM];
         for b in &self.blocks {
             let form = weigh(b, &mut weight);
             if form != Form::Zero {
-                with_dim!(b.dim, DIM => self.add_gram_block::<DIM>(b, &weight, form, tree, hessian));
+                with_dim!(b.dim, DIM => self.add_gram_block::<DIM>(b, &weight, form, pattern, hessian));
             }
         }
     }

@@ -30,6 +30,7 @@ mod plain;
 mod problem;
 mod results;
 mod solver;
+mod sparse;
 mod stats;
 mod stopwatch;
 mod transfer;

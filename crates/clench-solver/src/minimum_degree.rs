@@ -76,7 +76,7 @@ impl MinimumDegree {
 }
 
 /// The union of two ascending lists, ascending.
-fn merge(a: &[u32], b: &[u32], out: &mut Vec<u32>) {
+pub(crate) fn merge(a: &[u32], b: &[u32], out: &mut Vec<u32>) {
     out.clear();
     let (mut a, mut b) = (a, b);
     while let (Some((&x, rest_a)), Some((&y, rest_b))) = (a.split_first(), b.split_first()) {

@@ -1,0 +1,151 @@
+//! The Hessian H = M + Jᵀ W J of the problem, and its factorization H = LᵀDL.
+//!
+//! Rows are eliminated from the last to the first, as for M itself: then a constraint within one branch of the tree
+//! creates no fill. A constraint between branches makes one hang on the other, and what comes out is a tree again, the
+//! elimination tree. H is stored in one of two forms. [`PathForm`] stores the paths of that tree whole, like M those of the model's: the
+//! model's tree where no constraint couples branches, a chain for the dense choice. [`FilledForm`] stores what is filled, for heaps of
+//! many bodies. Both sum in the same order, so **all choices agree to the bit**.
+
+mod filled;
+mod paths;
+
+use crate::costs::{Form, RankOne, Weight};
+use crate::jacobian::{BlockIndex, StoredRows};
+use crate::{Problem, SolveClock, Tree};
+use clench_math::Real;
+use filled::FilledForm;
+use paths::PathForm;
+
+/// H and its factor.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hessian<T> {
+    paths: PathForm<T>,
+    filled: FilledForm<T>,
+    is_filled: bool,
+    /// What the pattern was made from: the model's parents, the couplings that are not within a branch, the choice.
+    parents: Vec<Option<u32>>,
+    couplings: Vec<u32>,
+    dense: bool,
+    /// The couplings of the problem at hand.
+    found: Vec<u32>,
+}
+
+/// Smaller problems store paths: what is filled is not worth a search.
+const MIN_FILLED_DOFS: usize = 36;
+/// Paths are stored up to this many times the arithmetic of what is filled, whose blocks are small and have to be found.
+const WORTH_FILLED: f64 = 2.0;
+
+impl<T: Real> Hessian<T> {
+    /// Fits the pattern to a problem. False where it would have more than `most` entries.
+    pub fn prepare(&mut self, problem: &Problem<T>, dense: bool, most: usize) -> bool {
+        let tree = problem.tree();
+        self.found.clear();
+        if !dense {
+            find_couplings(tree, &problem.jacobian, &mut self.found);
+        }
+        let same =
+            self.parents == tree.parents() && self.dense == dense && self.couplings == self.found;
+        if !same {
+            self.dense = dense;
+            self.couplings.clear();
+            self.couplings.extend_from_slice(&self.found);
+            self.parents.clear();
+            self.parents.extend_from_slice(tree.parents());
+            if !self.choose(tree, most) {
+                // Forgotten, so that it is looked at again.
+                self.parents.clear();
+                return false;
+            }
+        }
+        let nnz = if self.is_filled {
+            self.filled.nnz()
+        } else {
+            self.paths.nnz()
+        };
+        nnz <= most
+    }
+
+    /// Chooses how H is stored, and fits the pattern. False where it would have more than `most` entries.
+    fn choose(&mut self, tree: &Tree, most: usize) -> bool {
+        self.is_filled = !self.dense
+            && tree.nv() >= MIN_FILLED_DOFS
+            && !self.found.is_empty()
+            && self.filled.analyse(tree, &self.found, most)
+            && self.filled.saves() > WORTH_FILLED;
+        if self.is_filled {
+            return true;
+        }
+        if self.dense {
+            // The one coupling of a dense Hessian is that of all dofs.
+            self.found.push(tree.nv() as u32);
+            self.found.extend(0..tree.nv() as u32);
+        }
+        self.paths.rebuild(tree, &self.found, most)
+    }
+
+    /// Factors H = M + Jᵀ W J in the lanes of `mask`. `weigh` writes the Hessian block of a constraint.
+    #[inline(always)]
+    pub fn factor(
+        &mut self,
+        problem: &Problem<T>,
+        mask: T::Mask,
+        clock: &mut SolveClock,
+        weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
+    ) {
+        if self.is_filled {
+            self.filled.factor(problem, mask, clock, weigh);
+        } else {
+            self.paths.factor(problem, mask, clock, weigh);
+        }
+    }
+
+    /// Applies a rank-one change of a block's Hessian. False in lanes whose factor it spoils.
+    pub fn update(&mut self, problem: &Problem<T>, b: &BlockIndex, change: RankOne<T>) -> T::Mask {
+        if self.is_filled {
+            self.filled.update(problem, b, change)
+        } else {
+            self.paths.update(problem, b, change)
+        }
+    }
+
+    /// `x ← H⁻¹ x`.
+    #[inline(always)]
+    pub fn solve(&mut self, x: &mut [T]) {
+        if self.is_filled {
+            self.filled.solve(x);
+        } else {
+            self.paths.solve(x);
+        }
+    }
+}
+
+/// The vector of a rank-one change of a block's Hessian, entry by entry.
+#[inline(always)]
+fn each_of_change<T: Real>(
+    problem: &Problem<T>,
+    b: &BlockIndex,
+    change: &RankOne<T>,
+    mut put: impl FnMut(usize, T),
+) {
+    let (dofs, values) = (problem.jacobian.dofs(b), problem.jacobian.values(b));
+    let row = |i: usize| &values[i * b.ndof..(i + 1) * b.ndof];
+    for (k, &dof) in dofs.iter().enumerate() {
+        let side = change
+            .side
+            .map_or(T::ZERO, |(side, factor)| factor * row(side)[k]);
+        put(dof as usize, row(change.row)[k] + side);
+    }
+}
+
+/// Lists the dofs of each block that acts on more than one branch: a count, then the dofs.
+fn find_couplings<T: Real>(tree: &Tree, rows: &StoredRows<T>, found: &mut Vec<u32>) {
+    let mut last = &[][..];
+    for b in &rows.blocks {
+        let dofs = rows.dofs(b);
+        if dofs != last && !tree.is_path(dofs) {
+            found.push(dofs.len() as u32);
+            found.extend_from_slice(dofs);
+        }
+        last = dofs;
+    }
+}

@@ -1,0 +1,104 @@
+//! The Hessian in whole paths of its elimination tree.
+
+use super::each_of_change;
+use crate::costs::{Form, RankOne, Weight};
+use crate::jacobian::{BlockIndex, Jacobian};
+use crate::tree::Coupling;
+use crate::{Problem, SolveClock, SolvePart, Tree, TreeFactor, TreeMatrix};
+use clench_math::{Mask, Real, kernel};
+
+/// H and its factor over a tree.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PathForm<T> {
+    tree: Tree,
+    matrix: TreeMatrix<T>,
+    factor: TreeFactor<T>,
+    /// Where some lanes are factored while others keep what they have.
+    spare: TreeFactor<T>,
+    /// The vector of a rank-one update, along its path.
+    direction: Vec<T>,
+    scratch: Coupling,
+}
+
+impl<T: Real> PathForm<T> {
+    /// Fits the tree to that of M with couplings. False where it would have more than `most` entries.
+    pub fn rebuild(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
+        if !(self.tree).rebuild_coupled(tree, couplings, most, &mut self.scratch) {
+            return false;
+        }
+        self.matrix.values.clear();
+        self.matrix.values.resize(self.tree.nnz(), T::ZERO);
+        self.factor.resize(&self.tree);
+        true
+    }
+
+    /// Number of entries.
+    pub fn nnz(&self) -> usize {
+        self.tree.nnz()
+    }
+
+    /// See [`Hessian::factor`](super::Hessian::factor).
+    #[inline(always)]
+    pub fn factor(
+        &mut self,
+        problem: &Problem<T>,
+        mask: T::Mask,
+        clock: &mut SolveClock,
+        weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
+    ) {
+        self.set(problem.tree(), &problem.mass);
+        problem
+            .jacobian
+            .add_gram(weigh, &self.tree, &mut self.matrix.values);
+        clock.lap(SolvePart::Hessian as usize);
+        if mask.all() {
+            self.factor.factor_safely(&self.tree, &self.matrix);
+        } else {
+            self.spare.factor_safely(&self.tree, &self.matrix);
+            self.factor.take(mask, &self.spare);
+        }
+        clock.lap(SolvePart::Factorization as usize);
+    }
+
+    /// See [`Hessian::update`](super::Hessian::update).
+    #[kernel]
+    pub fn update(&mut self, problem: &Problem<T>, b: &BlockIndex, change: RankOne<T>) -> T::Mask {
+        let Some(&last) = problem.jacobian.dofs(b).last() else {
+            return T::Mask::splat(true);
+        };
+        let last = last as usize;
+        self.direction.clear();
+        self.direction.resize(self.tree.depth(last) + 1, T::ZERO);
+        let (tree, direction) = (&self.tree, &mut self.direction);
+        each_of_change(
+            problem,
+            b,
+            &change,
+            #[inline(always)]
+            |dof, x| direction[tree.depth(dof)] = x,
+        );
+        self.factor.update(tree, last, direction, change.sigma)
+    }
+
+    /// H = M.
+    #[kernel]
+    fn set(&mut self, tree: &Tree, mass: &TreeMatrix<T>) {
+        if self.tree.nnz() == tree.nnz() {
+            self.matrix.values.copy_from_slice(&mass.values);
+            return;
+        }
+        self.matrix.values.fill(T::ZERO);
+        for i in 0..tree.nv() {
+            let row = self.matrix.row_mut(&self.tree, i);
+            for (&c, &m) in tree.row(i).iter().zip(mass.row(tree, i)) {
+                row[self.tree.depth(c as usize)] = m;
+            }
+        }
+    }
+
+    /// `x ← H⁻¹ x`.
+    #[inline(always)]
+    pub fn solve(&self, x: &mut [T]) {
+        self.factor.solve(&self.tree, x);
+    }
+}

@@ -1,0 +1,390 @@
+//! The factorization H = LᵀDL of what a [`SparsePattern`] stores.
+//!
+//! A supernode's rows are done when their turn comes; what they take off the rows above, `A_ij −= L_ki U_kj` with U = D L, is subtracted at once,
+//! in tiles that stay in registers. Every entry is changed by the rows below in the same order as over a [`Tree`](crate::Tree), from the last
+//! to the first, and by each alone, **so that both give the same bits**.
+
+use super::pattern::{Run, SparsePattern, Supernode};
+use crate::jacobian::Pattern;
+use crate::{Tree, TreeMatrix};
+use clench_math::{Mask, Real, Scalar, array, kernel};
+
+/// The matrix, and in its place the factor.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SparseFactor<T> {
+    /// The blocks of the supernodes, row by row: of the matrix, then of L.
+    values: Vec<T>,
+    /// The diagonal of the matrix, then D; 1 / D.
+    diagonal: Vec<T>,
+    inverse: Vec<T>,
+    /// U of the supernode at hand; of a solve, the numbers in its columns.
+    upper: Vec<T>,
+    gathered: Vec<T>,
+}
+
+impl<T: Real> SparseFactor<T> {
+    /// Becomes the zero matrix over `pattern`.
+    pub fn clear(&mut self, pattern: &SparsePattern) {
+        self.values.clear();
+        self.values.resize(pattern.nnz(), T::ZERO);
+        for v in [&mut self.diagonal, &mut self.inverse] {
+            v.resize(pattern.nv(), T::ZERO);
+        }
+    }
+
+    /// The matrix, to be written before it is factored.
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+
+    /// Adds a matrix over `tree`, whose entries `pattern` holds.
+    #[kernel]
+    pub fn add_matrix(&mut self, pattern: &SparsePattern, tree: &Tree, matrix: &TreeMatrix<T>) {
+        for dof in 0..tree.nv() {
+            let row = matrix.row(tree, dof);
+            pattern.add_to_row(
+                tree.row(dof),
+                &mut self.values,
+                #[inline(always)]
+                |c| row[c],
+            );
+        }
+    }
+
+    /// Factors the matrix; a pivot that rounding has consumed is replaced by the diagonal it came from.
+    #[kernel]
+    pub fn factor_safely(&mut self, pattern: &SparsePattern) {
+        for s in pattern.supernodes() {
+            for m in 0..s.len {
+                self.diagonal[s.first + m] = self.values[s.start + m * s.width() + s.shared() + m];
+            }
+        }
+        for s in pattern.supernodes() {
+            self.factor_block(s);
+            self.update_ancestors(pattern, s);
+        }
+    }
+
+    /// Turns the rows of a supernode, from which all rows below are taken off, into those of L, and leaves those of U in `upper`.
+    #[inline(always)]
+    fn factor_block(&mut self, s: &Supernode) {
+        let (width, shared) = (s.width(), s.shared());
+        let floor = T::splat(T::Scalar::EPSILON);
+        let block = &mut self.values[s.block()];
+        for m in (0..s.len).rev() {
+            let (above, below) = block.split_at_mut((m + 1) * width);
+            let row = &mut above[m * width..][..shared + m + 1];
+            for k in (m + 1..s.len).rev() {
+                let other = &below[(k - m - 1) * width..][..shared + m + 1];
+                let multiplier =
+                    below[(k - m - 1) * width + shared + m] * self.inverse[s.first + k];
+                for (x, &u) in row.iter_mut().zip(other) {
+                    *x -= multiplier * u;
+                }
+            }
+            let dof = s.first + m;
+            let (pivot, diagonal) = (row[shared + m], self.diagonal[dof]);
+            let pivot = T::select(pivot.gt(floor * diagonal), pivot, diagonal);
+            self.diagonal[dof] = pivot;
+            self.inverse[dof] = T::ONE / pivot;
+        }
+        self.upper.clear();
+        self.upper.extend_from_slice(block);
+        for (m, row) in block.chunks_exact_mut(width).enumerate() {
+            for x in row {
+                *x *= self.inverse[s.first + m];
+            }
+        }
+    }
+
+    /// Takes what the rows of a supernode take off the rows above.
+    #[inline(always)]
+    fn update_ancestors(&mut self, pattern: &SparsePattern, s: &Supernode) {
+        let (done, above) = self.values.split_at_mut(s.block().end);
+        let mut tiles = Tiles {
+            lower: &done[s.start..],
+            upper: &self.upper,
+            width: s.width(),
+            above,
+            offset: s.block().end,
+        };
+        let runs = pattern.runs(s);
+        let columns = pattern.columns(s);
+        let mut first = 0;
+        while first < columns.len() {
+            let target = pattern.supernode_of(columns[first] as usize);
+            let end = target.first + target.len;
+            let count = columns[first..]
+                .iter()
+                .take_while(|&&dof| (dof as usize) < end)
+                .count();
+            let rows = Rows {
+                dofs: &columns[first..first + count],
+                place: first,
+                target,
+            };
+            tiles.subtract(&rows, runs, pattern.runs(target));
+            first += count;
+        }
+    }
+
+    /// Turns the factor of A into that of A + σ x xᵀ, where the last dof with a number in x (by dof) is `last`; x is zero afterwards. False in lanes
+    /// where the change consumes a pivot. See [`TreeFactor::update`](crate::TreeFactor).
+    #[kernel]
+    pub fn update(
+        &mut self,
+        pattern: &SparsePattern,
+        last: usize,
+        x: &mut [T],
+        mut sigma: T,
+    ) -> T::Mask {
+        let consumed = T::splat(T::Scalar::EPSILON).sqrt();
+        let mut good = T::Mask::splat(true);
+        let mut next = Some(last);
+        while let Some(dof) = next {
+            let s = pattern.supernode_of(dof);
+            let (m, columns) = (dof - s.first, pattern.columns(s));
+            next = if m > 0 {
+                Some(dof - 1)
+            } else {
+                columns.last().map(|&c| c as usize)
+            };
+            let p = std::mem::replace(&mut x[dof], T::ZERO);
+            if p.eq(T::ZERO).all() {
+                continue;
+            }
+            let old = self.diagonal[dof];
+            let new = old + sigma * p * p;
+            good &= new.gt(consumed * old);
+            let inverse = T::ONE / new;
+            let beta = sigma * p * inverse;
+            sigma *= old / new;
+            self.diagonal[dof] = new;
+            self.inverse[dof] = inverse;
+            let row = &mut self.values[s.start + m * s.width()..][..s.shared() + m];
+            let own = s.first as u32..dof as u32;
+            for (l, column) in row.iter_mut().zip(columns.iter().copied().chain(own)) {
+                let x = &mut x[column as usize];
+                *x -= p * *l;
+                *l += beta * *x;
+            }
+        }
+        good
+    }
+
+    /// Takes the lanes of `mask` from `other`, a factor over the same pattern.
+    #[kernel]
+    pub fn take(&mut self, mask: T::Mask, other: &SparseFactor<T>) {
+        for (to, from) in [
+            (&mut self.values, &other.values),
+            (&mut self.diagonal, &other.diagonal),
+            (&mut self.inverse, &other.inverse),
+        ] {
+            for (to, &from) in to.iter_mut().zip(from) {
+                *to = T::select(mask, from, *to);
+            }
+        }
+    }
+
+    /// `x ← A⁻¹ x`.
+    #[kernel]
+    pub fn solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
+        for s in pattern.supernodes() {
+            self.solve_transposed(pattern, s, x);
+        }
+        for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
+            *x *= inverse;
+        }
+        for s in pattern.supernodes().iter().rev() {
+            self.solve_rows(pattern, s, x);
+        }
+    }
+
+    /// What the rows of a supernode, of which the rows below are taken off, do to the rows above.
+    #[inline(always)]
+    fn solve_transposed(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
+        let (width, shared) = (s.width(), s.shared());
+        self.gather(pattern.columns(s), x);
+        let gathered = &mut self.gathered[..];
+        let block = &self.values[s.block()];
+        for (m, row) in block.chunks_exact(width).enumerate().rev() {
+            let (row, own_row) = row.split_at(shared);
+            let (before, own) = x[s.first..].split_at_mut(m);
+            for (x, &l) in before.iter_mut().zip(own_row) {
+                *x -= l * own[0];
+            }
+            for (x, &l) in gathered.iter_mut().zip(row) {
+                *x -= l * own[0];
+            }
+        }
+        for (&x_of, &dof) in gathered.iter().zip(pattern.columns(s)) {
+            x[dof as usize] = x_of;
+        }
+    }
+
+    /// `x ← L⁻¹ x` in the rows of a supernode, of which the rows above are done.
+    #[inline(always)]
+    fn solve_rows(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
+        let (width, shared) = (s.width(), s.shared());
+        self.gather(pattern.columns(s), x);
+        let block = &self.values[s.block()];
+        // Several sums run side by side: each waits for itself.
+        let mut m = 0;
+        while m < s.len {
+            let count = if s.len - m >= SUMS { SUMS } else { 1 };
+            let own = &mut x[s.first + m..][..count];
+            let rows = &block[m * width..];
+            match count {
+                SUMS => subtract_products::<T, SUMS>(own, rows, width, &self.gathered),
+                _ => subtract_products::<T, 1>(own, rows, width, &self.gathered),
+            }
+            m += count;
+        }
+        for m in 1..s.len {
+            let row = &block[m * width + shared..][..m];
+            let (before, own) = x[s.first..].split_at_mut(m);
+            for (&x, &l) in before.iter().zip(row) {
+                own[0] -= l * x;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn gather(&mut self, columns: &[u32], x: &[T]) {
+        self.gathered.clear();
+        self.gathered
+            .extend(columns.iter().map(|&dof| x[dof as usize]));
+    }
+}
+
+/// Sums that run side by side in a solve.
+const SUMS: usize = 6;
+
+/// `own −= rows · x` for N rows.
+#[inline(always)]
+fn subtract_products<T: Real, const N: usize>(own: &mut [T], rows: &[T], width: usize, x: &[T]) {
+    let mut sums: [T; N] = array(|m| own[m]);
+    let rows: [&[T]; N] = array(|m| &rows[m * width..][..x.len()]);
+    for (k, &x) in x.iter().enumerate() {
+        for m in 0..N {
+            sums[m] -= rows[m][k] * x;
+        }
+    }
+    own.copy_from_slice(&sums);
+}
+
+/// A supernode that is done, and the values of those above.
+struct Tiles<'a, T> {
+    /// L and U of it, and the length of their rows.
+    lower: &'a [T],
+    upper: &'a [T],
+    width: usize,
+    /// The values from `offset` on.
+    above: &'a mut [T],
+    offset: usize,
+}
+
+/// Rows above that lie in one supernode.
+struct Rows<'a> {
+    dofs: &'a [u32],
+    /// The place of the first among the columns of the supernode that is done.
+    place: usize,
+    target: &'a Supernode,
+}
+
+impl<T: Real> Tiles<'_, T> {
+    /// Subtracts from some rows, up to their diagonal, what the supernode takes off. Right of the diagonal, where nothing is stored, the block
+    /// of `rows.target` takes numbers that nobody reads.
+    #[inline(always)]
+    fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
+        let last = rows.place + rows.dofs.len();
+        let mut candidates = target_runs.iter();
+        let mut candidate = candidates.next();
+        for run in runs {
+            let (place, dof) = (run.place as usize, run.dof as usize);
+            if place >= last {
+                break;
+            }
+            let to = if dof >= rows.target.first {
+                rows.target.shared() + dof - rows.target.first
+            } else {
+                while candidate.is_some_and(|c| ((c.dof + c.len) as usize) <= dof) {
+                    candidate = candidates.next();
+                }
+                let Some(found) = candidate else { break };
+                found.place as usize + dof - found.dof as usize
+            };
+            let len = (run.len as usize).min(last - place);
+            self.subtract_run(rows, place, len, to);
+        }
+    }
+
+    /// The same for `len` columns from `place` on, which are those from `to` on in the rows of the target.
+    #[inline(always)]
+    fn subtract_run(&mut self, rows: &Rows, place: usize, len: usize, to: usize) {
+        let mut column = 0;
+        while column < len {
+            let count = match len - column {
+                6.. => 6,
+                2..=5 => 2,
+                _ => 1,
+            };
+            let (from, to) = (place + column, to + column);
+            match count {
+                6 => self.subtract_columns::<6>(rows, from, to),
+                2 => self.subtract_columns::<2>(rows, from, to),
+                _ => self.subtract_columns::<1>(rows, from, to),
+            }
+            column += count;
+        }
+    }
+
+    #[inline(always)]
+    fn subtract_columns<const N: usize>(&mut self, rows: &Rows, from: usize, to: usize) {
+        let mut row = 0;
+        while row + 3 <= rows.dofs.len() {
+            self.subtract_tile::<3, N>(rows, row, from, to);
+            row += 3;
+        }
+        while row < rows.dofs.len() {
+            self.subtract_tile::<1, N>(rows, row, from, to);
+            row += 1;
+        }
+    }
+
+    /// R rows by N columns.
+    #[inline(always)]
+    fn subtract_tile<const R: usize, const N: usize>(
+        &mut self,
+        rows: &Rows,
+        row: usize,
+        from: usize,
+        to: usize,
+    ) {
+        let target = rows.target;
+        let starts: [usize; R] = array(|r| {
+            let m = rows.dofs[row + r] as usize - target.first;
+            target.start - self.offset + m * target.width() + to
+        });
+        let mut sums = [[T::ZERO; N]; R];
+        for r in 0..R {
+            sums[r].copy_from_slice(&self.above[starts[r]..starts[r] + N]);
+        }
+        let multipliers = rows.place + row;
+        let below = self
+            .lower
+            .chunks_exact(self.width)
+            .zip(self.upper.chunks_exact(self.width));
+        for (lower, upper) in below.rev() {
+            let (lower, upper) = (&lower[multipliers..][..R], &upper[from..][..N]);
+            for r in 0..R {
+                for c in 0..N {
+                    sums[r][c] -= lower[r] * upper[c];
+                }
+            }
+        }
+        for r in 0..R {
+            self.above[starts[r]..starts[r] + N].copy_from_slice(&sums[r]);
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! Which entries elimination fills: the symbolic analysis.
+//!
+//! Rows are eliminated from the last to the first. What row i has left of its diagonal when its turn comes is what the matrix has
+//! there and what the rows have that were eliminated before and whose own last entry was in column i (its children in the elimination
+//! tree). A row with the same entries as the one after it, but for that one's own column, joins its supernode. (George & Liu,
+//! *Computer Solution of Large Sparse Positive Definite Systems*, 1981; Davis, *Direct Methods for Sparse Linear Systems*, 2006, §4.)
+
+use crate::Tree;
+use crate::jacobian::Pattern;
+use crate::minimum_degree::merge;
+use crate::partition::Lists;
+use clench_math::Real;
+use std::ops::Range;
+
+/// The filled pattern of a symmetric matrix, in supernodes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SparsePattern {
+    /// In the order of elimination: those of the last dofs come first.
+    supernodes: Vec<Supernode>,
+    /// The supernode of each dof.
+    supernode_of: Vec<u32>,
+    /// The columns that supernodes have left of their own, ascending, and the runs in which they follow each other.
+    columns: Vec<u32>,
+    runs: Vec<Run>,
+    nnz: usize,
+    scratch: Scratch,
+}
+
+/// Consecutive dofs whose rows share their columns. Row m of a supernode has its `columns` and those of its first m + 1 dofs; all of its rows
+/// are stored with the same length, so that it is one dense block.
+#[derive(Clone, Debug)]
+pub(crate) struct Supernode {
+    pub first: usize,
+    /// How many dofs: 1 to [`MAX_DOFS`].
+    pub len: usize,
+    columns: Range<usize>,
+    runs: Range<usize>,
+    /// Where its block starts among the values.
+    pub start: usize,
+}
+
+impl Supernode {
+    /// How many columns are left of its own.
+    #[inline(always)]
+    pub fn shared(&self) -> usize {
+        self.columns.len()
+    }
+    /// The stored length of its rows.
+    #[inline(always)]
+    pub fn width(&self) -> usize {
+        self.shared() + self.len
+    }
+    /// Where its block lies among the values.
+    #[inline(always)]
+    pub fn block(&self) -> Range<usize> {
+        self.start..self.start + self.len * self.width()
+    }
+}
+
+/// Consecutive dofs among the columns of a supernode. They are neighbours in every row that has them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    pub dof: u32,
+    /// The place of the first among the columns.
+    pub place: u32,
+    pub len: u32,
+}
+
+/// Longer supernodes are cut: a factor of more rows gains little from being one block.
+const MAX_DOFS: usize = 12;
+
+/// Memory of an analysis.
+#[derive(Clone, Debug, Default)]
+struct Scratch {
+    /// The couplings whose last dof is this one, as places in their list; the supernodes whose last column it is.
+    couplings: Lists,
+    children: Lists,
+    /// The row for which each column was found last.
+    found: Vec<u32>,
+    union: Vec<u32>,
+    merged: Vec<u32>,
+    has_child: Vec<bool>,
+}
+
+impl SparsePattern {
+    /// Analyses the pattern of M over `tree` with `couplings` (each a count, then ascending dofs) coupled as well. False where it
+    /// would have more than `most` entries.
+    pub fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
+        let nv = tree.nv();
+        self.supernodes.clear();
+        self.supernode_of.clear();
+        self.supernode_of.resize(nv, 0);
+        self.columns.clear();
+        self.runs.clear();
+        self.nnz = 0;
+        self.scratch.start(tree, couplings);
+        for dof in (0..nv).rev() {
+            self.find_columns(tree, couplings, dof);
+            let is_child = self.open_child(dof).is_some();
+            let columns = self.scratch.union.len();
+            let fits = |open: &&mut Supernode| {
+                is_child && open.len < MAX_DOFS && open.shared() == columns + 1
+            };
+            if let Some(open) = self.supernodes.last_mut().filter(fits) {
+                self.columns.pop();
+                open.columns.end -= 1;
+                (open.first, open.len) = (dof, open.len + 1);
+            } else {
+                if !self.close(most) {
+                    return false;
+                }
+                let start = self.columns.len();
+                self.columns.extend_from_slice(&self.scratch.union);
+                self.supernodes.push(Supernode {
+                    first: dof,
+                    len: 1,
+                    columns: start..self.columns.len(),
+                    runs: 0..0,
+                    start: self.nnz,
+                });
+            }
+            self.supernode_of[dof] = self.supernodes.len() as u32 - 1;
+        }
+        self.close(most)
+    }
+
+    /// Collects in `scratch.union` the columns of row `dof` left of the diagonal.
+    fn find_columns(&mut self, tree: &Tree, couplings: &[u32], dof: usize) {
+        let open = self.open_child(dof);
+        let Scratch {
+            found,
+            union,
+            merged,
+            has_child,
+            couplings: lists,
+            children,
+        } = &mut self.scratch;
+        let row = dof as u32;
+        union.clear();
+        // Those of the matrix. A row of M that has a child gets its columns from there.
+        if !has_child[dof] {
+            union.extend(tree.row(dof).iter().filter(|&&column| column < row));
+            (union.iter()).for_each(|&column| found[column as usize] = row);
+        }
+        let own = union.len();
+        for at in lists.iter(row) {
+            let (count, at) = (couplings[at as usize] as usize, at as usize + 1);
+            for &column in &couplings[at..at + count - 1] {
+                if found[column as usize] != row {
+                    found[column as usize] = row;
+                    union.push(column);
+                }
+            }
+        }
+        if union.len() > own {
+            union.sort_unstable();
+        }
+        // Those of the rows eliminated before, but for this one's own.
+        for child in children.iter(row).chain(open) {
+            let columns = &self.columns[self.supernodes[child as usize].columns.clone()];
+            let columns = &columns[..columns.len() - 1];
+            if union.is_empty() {
+                union.extend_from_slice(columns);
+            } else {
+                merge(union, columns, merged);
+                std::mem::swap(union, merged);
+            }
+        }
+    }
+
+    /// The supernode begun last, if its last column is `dof`.
+    fn open_child(&self, dof: usize) -> Option<u32> {
+        let open = self.supernodes.last()?;
+        let is_last = self.columns[open.columns.clone()].last() == Some(&(dof as u32));
+        is_last.then_some(self.supernodes.len() as u32 - 1)
+    }
+
+    /// Completes the supernode begun last. False where there are more than `most` entries by now.
+    fn close(&mut self, most: usize) -> bool {
+        let Some(last) = self.supernodes.last_mut() else {
+            return true;
+        };
+        let (columns, start) = (&self.columns[last.columns.clone()], self.runs.len());
+        for (place, &dof) in columns.iter().enumerate() {
+            match self.runs[start..].last_mut() {
+                Some(run) if run.dof + run.len == dof => run.len += 1,
+                _ => self.runs.push(Run {
+                    dof,
+                    place: place as u32,
+                    len: 1,
+                }),
+            }
+        }
+        last.runs = start..self.runs.len();
+        self.nnz += last.len * last.width();
+        if let Some(&parent) = columns.last() {
+            let index = self.supernodes.len() as u32 - 1;
+            self.scratch.children.push_front(parent, index);
+        }
+        self.nnz <= most
+    }
+
+    /// Number of stored values.
+    pub fn nnz(&self) -> usize {
+        self.nnz
+    }
+    /// Number of dofs.
+    pub fn nv(&self) -> usize {
+        self.supernode_of.len()
+    }
+    /// In the order of elimination.
+    #[inline(always)]
+    pub fn supernodes(&self) -> &[Supernode] {
+        &self.supernodes
+    }
+    /// The supernode of a dof.
+    #[inline(always)]
+    pub fn supernode_of(&self, dof: usize) -> &Supernode {
+        &self.supernodes[self.supernode_of[dof] as usize]
+    }
+    /// The columns left of a supernode's own, ascending.
+    #[inline(always)]
+    pub fn columns(&self, supernode: &Supernode) -> &[u32] {
+        &self.columns[supernode.columns.clone()]
+    }
+    /// The same in runs.
+    #[inline(always)]
+    pub fn runs(&self, supernode: &Supernode) -> &[Run] {
+        &self.runs[supernode.runs.clone()]
+    }
+
+    /// The place in its supernode's rows of a column that they have.
+    #[inline(always)]
+    fn place(&self, supernode: &Supernode, column: usize) -> usize {
+        if column >= supernode.first {
+            return supernode.shared() + column - supernode.first;
+        }
+        let runs = self.runs(supernode);
+        let run = runs[runs.partition_point(|run| run.dof as usize <= column) - 1];
+        run.place as usize + column - run.dof as usize
+    }
+
+    /// Multiplications of a factorization, about.
+    pub fn cost(&self) -> f64 {
+        let of = |s: &Supernode| s.len as f64 * (s.width() as f64).powi(2) / 2.0;
+        self.supernodes.iter().map(of).sum()
+    }
+
+    /// Those of a factorization that stores the paths of the elimination tree whole.
+    pub fn cost_of_paths(&mut self) -> f64 {
+        let depths = &mut self.scratch.found;
+        let mut cost = 0.0;
+        for s in self.supernodes.iter().rev() {
+            let parent = self.columns[s.columns.clone()].last();
+            let above = parent.map_or(0, |&parent| depths[parent as usize] + 1);
+            for m in 0..s.len {
+                depths[s.first + m] = above + m as u32;
+                cost += f64::from(above + m as u32).powi(2) / 2.0;
+            }
+        }
+        cost
+    }
+}
+
+impl Pattern for SparsePattern {
+    #[inline(always)]
+    fn add_to_row<T: Real>(&self, dofs: &[u32], values: &mut [T], entry: impl Fn(usize) -> T) {
+        let Some(&dof) = dofs.last() else { return };
+        let s = self.supernode_of(dof as usize);
+        let start = s.start + (dof as usize - s.first) * s.width();
+        let mut c = 0;
+        while c < dofs.len() {
+            let place = start + self.place(s, dofs[c] as usize);
+            // Columns that follow each other are neighbours.
+            let first = c;
+            while c < dofs.len() && dofs[c] as usize - dofs[first] as usize == c - first {
+                values[place + c - first] += entry(c);
+                c += 1;
+            }
+        }
+    }
+}
+
+impl Scratch {
+    fn start(&mut self, tree: &Tree, couplings: &[u32]) {
+        let nv = tree.nv();
+        self.found.clear();
+        self.found.resize(nv, u32::MAX);
+        self.has_child.clear();
+        self.has_child.resize(nv, false);
+        for parent in (0..nv).filter_map(|dof| tree.parent(dof)) {
+            self.has_child[parent] = true;
+        }
+        self.children.clear(nv);
+        self.couplings.clear(nv);
+        let mut at = 0;
+        while at < couplings.len() {
+            let next = at + 1 + couplings[at] as usize;
+            self.couplings.push_front(couplings[next - 1], at as u32);
+            at = next;
+        }
+    }
+}
