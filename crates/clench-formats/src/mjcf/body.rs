@@ -1,12 +1,12 @@
 //! `<worldbody>` and what is in it: bodies, frames and the elements that bodies carry.
 
-use super::assets::Visibility;
 use super::compiler::CompilerOptions;
 use super::defaults::{Classes, MAIN};
 use super::document::Element;
 use super::joint;
 use super::orientation::{Orientation, Pose};
 use super::source::Sources;
+use super::visual::Palette;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_math::{Mat3, Quat, Vec3};
@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Reads the body tree into a list of bodies, parents before children.
 pub(crate) struct BodyReader<'a> {
     sources: &'a Sources,
-    visibility: &'a Visibility,
+    palette: &'a Palette,
     bodies: &'a mut Vec<BodySpec>,
     spending: &'a mut Spending,
 }
@@ -66,13 +66,13 @@ impl<'a> BodyReader<'a> {
     /// A reader that adds to a list of bodies which begins with the world.
     pub fn new(
         sources: &'a Sources,
-        visibility: &'a Visibility,
+        palette: &'a Palette,
         bodies: &'a mut Vec<BodySpec>,
         spending: &'a mut Spending,
     ) -> Self {
         BodyReader {
             sources,
-            visibility,
+            palette,
             bodies,
             spending,
         }
@@ -288,12 +288,7 @@ impl<'a> BodyReader<'a> {
         geom.read(element)?;
         let bytes = size_of::<GeomSpec>() + geom.text_length();
         self.charge(element, bytes, &[])?;
-        let geom = geom.finish(
-            element,
-            self.compiler(element),
-            self.visibility,
-            &place.frame,
-        )?;
+        let geom = geom.finish(element, self.compiler(element), self.palette, &place.frame)?;
         self.bodies[place.body].geoms.push(geom);
         Ok(())
     }

@@ -4,7 +4,6 @@
 //! class. Copies, not a search for the nearest value, because an attribute with several numbers may give only some.
 
 use super::actuator::ActuatorDraft;
-use super::assets;
 use super::camera::CameraDraft;
 use super::contact;
 use super::document::Element;
@@ -15,9 +14,10 @@ use super::mesh::MeshDraft;
 use super::shortcut::{ActuatorParams, Shortcut};
 use super::site::SiteDraft;
 use super::tendon;
+use super::visual;
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_rigid::builder::{JointSpec, PairSpec, TendonSpec};
+use clench_rigid::builder::{JointSpec, MaterialSpec, PairSpec, TendonSpec};
 use std::collections::HashMap;
 
 /// One class: what each kind of element starts as.
@@ -26,8 +26,7 @@ pub(crate) struct Class {
     name: String,
     parent: Option<usize>,
     pub mesh: MeshDraft,
-    /// Opacity of materials.
-    pub material_alpha: f64,
+    pub material: MaterialSpec,
     pub joint: JointSpec,
     pub geom: GeomDraft,
     pub site: SiteDraft,
@@ -54,7 +53,7 @@ impl Default for Classes {
             name: "main".to_owned(),
             parent: None,
             mesh: MeshDraft::default(),
-            material_alpha: 1.0,
+            material: MaterialSpec::default(),
             joint: JointSpec::default(),
             geom: GeomDraft::default(),
             site: SiteDraft::default(),
@@ -149,7 +148,7 @@ impl Classes {
         let class = &mut self.list[class];
         match element.tag.as_str() {
             "mesh" => class.mesh.read(element),
-            "material" => assets::read_alpha(element, &mut class.material_alpha),
+            "material" => visual::read_material(element, &mut class.material),
             "joint" => joint::read(element, &mut class.joint),
             "geom" => class.geom.read(element),
             "site" => class.site.read(element),

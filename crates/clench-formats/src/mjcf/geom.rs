@@ -1,9 +1,9 @@
 //! `<geom>`.
 
-use super::assets::{Visibility, read_alpha};
 use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::{Orientation, Pose, segment};
+use super::visual::{Palette, read_appearance};
 use crate::LoadError;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
@@ -43,9 +43,6 @@ pub(crate) struct GeomDraft {
     fromto: Option<[f64; 6]>,
     mass: Option<f64>,
     density: f64,
-    /// Opacity of its own colour, and the material that goes before it.
-    alpha: f64,
-    material: String,
 }
 
 impl Default for GeomDraft {
@@ -58,8 +55,6 @@ impl Default for GeomDraft {
             fromto: None,
             mass: None,
             density: 1000.0,
-            alpha: 1.0,
-            material: String::new(),
         }
     }
 }
@@ -96,10 +91,7 @@ impl GeomDraft {
         if let Some(hfield) = element.text("hfield") {
             hfield.clone_into(&mut geom.hfield);
         }
-        read_alpha(element, &mut self.alpha)?;
-        if let Some(material) = element.text("material") {
-            material.clone_into(&mut self.material);
-        }
+        read_appearance(element, &mut geom.appearance)?;
         element.set_number("fitscale", &mut geom.fitscale)?;
         element.overlay("size", &mut self.size)?;
         element.set_numbers("pos", &mut self.pos)?;
@@ -111,7 +103,7 @@ impl GeomDraft {
 
     /// Length of the texts in it, bytes.
     pub fn text_length(&self) -> usize {
-        self.spec.mesh.len() + self.spec.hfield.len() + self.material.len()
+        self.spec.mesh.len() + self.spec.hfield.len()
     }
 
     /// The geom in its body: shorthand resolved, carried along with the frame that it is written in.
@@ -119,7 +111,7 @@ impl GeomDraft {
         mut self,
         element: &Element,
         compiler: &CompilerOptions,
-        visibility: &Visibility,
+        palette: &Palette,
         frame: &Pose,
     ) -> Result<GeomSpec, LoadError> {
         let pose = match self.fromto {
@@ -135,9 +127,11 @@ impl GeomDraft {
             },
         };
         let pose = frame.then(pose);
+        let appearance = palette.of_geom(self.spec.appearance, &self.spec.mesh);
         Ok(GeomSpec {
             name: element.string("name"),
-            visible: visibility.shows(self.alpha, &self.material, &self.spec.mesh),
+            visible: palette.shows(&appearance),
+            appearance,
             size: Vec3::from_array(self.size),
             pos: pose.pos,
             quat: pose.quat,

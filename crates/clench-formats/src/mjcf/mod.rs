@@ -35,6 +35,7 @@ mod source;
 mod support;
 mod tendon;
 mod transmission;
+mod visual;
 mod write;
 
 pub use support::{Support, supported};
@@ -98,8 +99,9 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
     options.finish(&mut builder);
     builder.options = builder.options.or(option::format_defaults());
     assets::read(root, sources, &mut builder, spending)?;
-    let visibility = assets::Visibility::read(root, sources)?;
-    let mut bodies = BodyReader::new(sources, &visibility, &mut builder.bodies, spending);
+    visual::read(root, sources, &mut builder, spending)?;
+    let palette = visual::Palette::new(root, &builder.materials);
+    let mut bodies = BodyReader::new(sources, &palette, &mut builder.bodies, spending);
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }

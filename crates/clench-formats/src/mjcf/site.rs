@@ -4,10 +4,11 @@ use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::geom::{place_segment, read_kind};
 use super::orientation::{Orientation, Pose};
+use super::visual::read_appearance;
 use crate::LoadError;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
-use clench_rigid::builder::SiteSpec;
+use clench_rigid::builder::{AppearanceSpec, SiteSpec};
 
 /// A site as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
@@ -18,6 +19,7 @@ pub(crate) struct SiteDraft {
     orientation: Orientation,
     fromto: Option<[f64; 6]>,
     group: i32,
+    appearance: AppearanceSpec,
 }
 
 impl Default for SiteDraft {
@@ -29,6 +31,7 @@ impl Default for SiteDraft {
             orientation: Orientation::default(),
             fromto: None,
             group: 0,
+            appearance: AppearanceSpec::default(),
         }
     }
 }
@@ -51,7 +54,8 @@ impl SiteDraft {
         element.set_numbers("pos", &mut self.pos)?;
         self.orientation.read(element)?;
         self.fromto = element.numbers("fromto")?.or(self.fromto);
-        element.set_integer("group", &mut self.group)
+        element.set_integer("group", &mut self.group)?;
+        read_appearance(element, &mut self.appearance)
     }
 
     /// The site in its body, carried along with the frame that it is written in.
@@ -76,6 +80,7 @@ impl SiteDraft {
             kind: self.kind,
             size: self.size,
             group: self.group,
+            appearance: self.appearance,
             origin: Some(element.origin.clone()),
         })
     }

@@ -1,6 +1,7 @@
 //! `<tendon>`: sums of joint positions, and strings through sites and around geoms.
 
 use super::document::Element;
+use super::visual::read_appearance;
 use crate::LoadError;
 use clench_rigid::builder::{TendonSpec, WrapSpec};
 
@@ -19,6 +20,8 @@ pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<
     element.overlay("solimplimit", &mut tendon.solimp_limit)?;
     element.overlay("solreffriction", &mut tendon.solref_friction)?;
     element.overlay("solimpfriction", &mut tendon.solimp_friction)?;
+    read_appearance(element, &mut tendon.appearance)?;
+    element.set_number("width", &mut tendon.width)?;
     let mut rest = tendon.springlength.unwrap_or([-1.0; 2]);
     match element.overlay("springlength", &mut rest)? {
         0 => {}

@@ -14,8 +14,8 @@ use std::collections::{HashMap, HashSet};
 /// What only shows is in this group, as in MuJoCo.
 const VISUAL_GROUP: i32 = 1;
 
-/// The opacity of materials, by name.
-pub(super) struct Materials(HashMap<String, f64>);
+/// The colours of materials, by name.
+pub(super) struct Materials(HashMap<String, [f32; 4]>);
 
 impl Materials {
     /// Collects the coloured materials of a whole file; the first of a name counts.
@@ -28,7 +28,7 @@ impl Materials {
                 && !found.contains_key(name)
                 && let Some(color) = element.child("color")?
             {
-                found.insert(name.to_owned(), opacity(color)?);
+                found.insert(name.to_owned(), read_rgba(color)?);
             }
             pending.extend(element.children.iter().rev());
         }
@@ -36,9 +36,9 @@ impl Materials {
     }
 }
 
-fn opacity(color: &Element) -> Result<f64, LoadError> {
-    let [.., alpha] = color.required_numbers::<4>("rgba")?;
-    Ok(alpha)
+fn read_rgba(color: &Element) -> Result<[f32; 4], LoadError> {
+    let rgba: [f64; 4] = color.required_numbers("rgba")?;
+    Ok(rgba.map(|x| x as f32))
 }
 
 /// Reads the shapes of all links.
@@ -63,7 +63,7 @@ impl GeomReader<'_> {
     ) -> Result<Vec<GeomSpec>, LoadError> {
         let mut geoms = Vec::new();
         // The colour of the last visual is also that of what follows.
-        let mut alpha = 1.0;
+        let mut rgba = None;
         for element in &link.children {
             let visual = match element.tag.as_str() {
                 "visual" => true,
@@ -71,7 +71,7 @@ impl GeomReader<'_> {
                 _ => continue,
             };
             if visual {
-                self.read_color(element, &mut alpha)?;
+                self.read_color(element, &mut rgba)?;
                 if self.discard_visual {
                     continue;
                 }
@@ -80,7 +80,8 @@ impl GeomReader<'_> {
             charge(element, size_of::<GeomSpec>(), &[&name], spending)?;
             let mut geom = self.read_shape(element, spending)?;
             geom.name = name;
-            geom.visible = alpha != 0.0;
+            geom.visible = rgba.is_none_or(|[.., alpha]| alpha != 0.0);
+            geom.appearance.rgba = rgba;
             if visual {
                 (geom.contype, geom.conaffinity) = (0, 0);
                 geom.group = VISUAL_GROUP;
@@ -91,19 +92,19 @@ impl GeomReader<'_> {
         Ok(geoms)
     }
 
-    fn read_color(&self, visual: &Element, alpha: &mut f64) -> Result<(), LoadError> {
+    fn read_color(&self, visual: &Element, rgba: &mut Option<[f32; 4]>) -> Result<(), LoadError> {
         let Some(material) = visual.child("material")? else {
             return Ok(());
         };
         let found = match material.child("color")? {
-            Some(color) => Some(opacity(color)?),
+            Some(color) => Some(read_rgba(color)?),
             None => self
                 .materials
                 .0
                 .get(material.required_text("name")?)
                 .copied(),
         };
-        *alpha = found.unwrap_or(*alpha);
+        *rgba = found.or(*rgba);
         Ok(())
     }
 

@@ -136,7 +136,7 @@ fn add(
     }
     model.bodies[b].geoms.end = model.geoms.len();
     for site in &spec.sites {
-        geoms::add_site(site, b, frame.moved, model);
+        geoms::add_site(site, b, frame.moved, assets, model);
     }
     model.bodies[b].sites.end = model.sites.len();
     for camera in &spec.cameras {

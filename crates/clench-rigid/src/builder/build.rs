@@ -8,7 +8,7 @@ use super::{
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
-use crate::model::{Model, Params, RowPattern};
+use crate::model::{Model, Params, RowPattern, Visuals};
 use crate::workspace::Positions;
 use clench_math::Vec3;
 use clench_solver::Tree;
@@ -49,6 +49,8 @@ impl ModelBuilder {
         let order = bodies::depth_first(&self.bodies)?;
         let names = AllNames::new(self, &order)?;
         let mut model = self.empty_model();
+        let palette = Arc::clone(&assets.palette);
+        model.visuals = palette.visuals();
 
         bodies::add_all(self, &order, &assets, &mut model)?;
         assets.keep(self, &mut model);
@@ -57,7 +59,7 @@ impl ModelBuilder {
         budget::matrices(self, &model)?;
         model.tree = Arc::new(tree(&model)?);
         contacts::add_all(self, &names, &mut model)?;
-        tendons::add_all(self, &names, &mut model)?;
+        tendons::add_all(self, &names, &palette, &mut model)?;
         actuators::add_all(self, &names, &mut model)?;
         cameras::aim_all(self, &order, &names, &mut model)?;
         sensors::add_all(self, &names, &mut model)?;
@@ -134,6 +136,7 @@ impl ModelBuilder {
             notes: self.notes.clone(),
             left_out: self.left_out.clone(),
             custom: self.custom.clone(),
+            visuals: Visuals::default(),
         }
     }
 }

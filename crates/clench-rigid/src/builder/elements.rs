@@ -1,6 +1,6 @@
 //! Bodies and what stands on them, with MuJoCo's defaults.
 
-use super::{CameraSpec, CompilerSpec, ModelBuilder, Origin};
+use super::{AppearanceSpec, CameraSpec, CompilerSpec, ModelBuilder, Origin};
 use crate::model::{JointKind, SleepPolicy};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -231,6 +231,8 @@ pub struct GeomSpec {
     pub visible: bool,
     /// Group.
     pub group: i32,
+    /// How it looks.
+    pub appearance: AppearanceSpec,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -264,6 +266,7 @@ impl Default for GeomSpec {
             shellinertia: false,
             visible: true,
             group: 0,
+            appearance: AppearanceSpec::default(),
             origin: None,
         }
     }
@@ -284,6 +287,8 @@ pub struct SiteSpec {
     pub size: [f64; 3],
     /// Group.
     pub group: i32,
+    /// How it looks.
+    pub appearance: AppearanceSpec,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -298,6 +303,7 @@ impl Default for SiteSpec {
             kind: ShapeKind::Sphere,
             size: [0.005; 3],
             group: 0,
+            appearance: AppearanceSpec::default(),
             origin: None,
         }
     }

@@ -54,6 +54,8 @@ pub(super) fn add_geom(
         fluid_ellipsoid,
         origin: spec.origin.clone(),
     });
+    let appearance = assets.palette.resolve(&spec.appearance);
+    model.visuals.geoms.push(appearance);
     let (pos, quat) = place(moved, placed.pos, placed.quat);
     let p = &mut model.params;
     p.geom_pos.push(pos);
@@ -80,7 +82,15 @@ pub(super) fn add_geom(
 }
 
 /// Adds a site of body `b`.
-pub(super) fn add_site(spec: &SiteSpec, b: usize, moved: Moved, model: &mut Model) {
+pub(super) fn add_site(
+    spec: &SiteSpec,
+    b: usize,
+    moved: Moved,
+    assets: &Assets,
+    model: &mut Model,
+) {
+    let appearance = assets.palette.resolve(&spec.appearance);
+    model.visuals.sites.push(appearance);
     model.sites.push(Site {
         name: spec.name.clone(),
         body: b,

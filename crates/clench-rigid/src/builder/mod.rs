@@ -60,6 +60,7 @@ mod sleep;
 mod solid;
 mod tendons;
 mod transmissions;
+mod visuals;
 
 pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};
 pub use cameras::{CameraLens, CameraSpec, CameraTracking};
@@ -77,10 +78,12 @@ pub use relations::{
 };
 
 use crate::Budget;
-use crate::model::Custom;
+use crate::model::{Custom, Texture};
 pub use sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
 };
+
+pub use visuals::{AppearanceSpec, MaterialSpec};
 
 use clench_solver::RigidOptions;
 
@@ -103,6 +106,10 @@ pub struct ModelBuilder {
     pub meshes: Vec<MeshSpec>,
     /// Height fields that geoms refer to.
     pub height_fields: Vec<HeightFieldSpec>,
+    /// Surfaces that elements refer to by name.
+    pub materials: Vec<MaterialSpec>,
+    /// Pictures that materials refer to by name.
+    pub textures: Vec<Texture>,
     /// Tendons.
     pub tendons: Vec<TendonSpec>,
     /// Actuators.
@@ -137,6 +144,8 @@ impl Default for ModelBuilder {
             bodies: vec![BodySpec::new("world")],
             meshes: Vec::new(),
             height_fields: Vec::new(),
+            materials: Vec::new(),
+            textures: Vec::new(),
             tendons: Vec::new(),
             actuators: Vec::new(),
             sensors: Vec::new(),

@@ -3,6 +3,7 @@
 use super::element::Element;
 use super::meshes::{Processed, process};
 use super::resolve::Names;
+use super::visuals::Palette;
 use super::{BuildError, GeomSpec, ModelBuilder, WrapSpec};
 use crate::model::{HeightField, Model};
 use clench_collide::{Shape, ShapeKind, bounding_radius};
@@ -15,6 +16,8 @@ pub(super) struct Assets<'a> {
     field_names: Names<'a>,
     pub meshes: Vec<Processed>,
     pub height_fields: Vec<Arc<HeightField>>,
+    /// How elements look.
+    pub palette: Arc<Palette>,
     /// Fit primitives to bounding boxes instead of equivalent boxes.
     fitaabb: bool,
 }
@@ -68,6 +71,7 @@ impl<'a> Assets<'a> {
             field_names: Names::new(&builder.height_fields)?,
             meshes,
             height_fields,
+            palette: Arc::new(Palette::new(builder)),
             fitaabb: builder.compiler.fitaabb,
         })
     }

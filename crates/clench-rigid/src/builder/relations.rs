@@ -1,7 +1,7 @@
 //! Elements that name others: tendons, actuators, equality constraints, contact pairs and keyframes, with MuJoCo's defaults.
 
 use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use super::{HistorySpec, Origin};
+use super::{AppearanceSpec, HistorySpec, Origin};
 use crate::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 use clench_math::{Quat, Vec3};
 
@@ -64,6 +64,10 @@ pub struct TendonSpec {
     pub solref_friction: [f64; 2],
     /// Dry-friction impedance.
     pub solimp_friction: [f64; 5],
+    /// How it looks.
+    pub appearance: AppearanceSpec,
+    /// Radius with which it is drawn, m.
+    pub width: f64,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -87,6 +91,8 @@ impl Default for TendonSpec {
             solimp_limit: DEFAULT_SOLIMP,
             solref_friction: DEFAULT_SOLREF,
             solimp_friction: DEFAULT_SOLIMP,
+            appearance: AppearanceSpec::default(),
+            width: 0.003,
             origin: None,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::element::{Element, resolve_range};
 use super::resolve::AllNames;
+use super::visuals::Palette;
 use super::{BuildError, ModelBuilder, TendonSpec, WrapSpec};
 use crate::dynamics::chains::Chains;
 use crate::model::{JointKind, Model, Tendon, Wrap};
@@ -16,6 +17,7 @@ use clench_collide::ShapeKind;
 pub(super) fn add_all(
     builder: &ModelBuilder,
     names: &AllNames,
+    palette: &Palette,
     model: &mut Model,
 ) -> Result<(), BuildError> {
     for spec in &builder.tendons {
@@ -46,6 +48,9 @@ pub(super) fn add_all(
         model.tendon_dofs.push(dofs);
         model.tendons.push(tendon);
         push_params(spec, model);
+        let visuals = &mut model.visuals;
+        visuals.tendons.push(palette.resolve(&spec.appearance));
+        visuals.tendon_width.push(spec.width);
     }
     Ok(())
 }

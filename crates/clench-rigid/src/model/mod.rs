@@ -21,10 +21,11 @@ pub use sensor_target::{
     SensorTarget,
 };
 pub use structure::{
-    Actuator, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates, Dof,
+    Actuator, Appearance, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates, Dof,
     DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField, History,
-    Integrator, Joint, JointKind, Keyframe, KinematicTree, Mesh, Pair, RowPattern, Section, Site,
-    SleepPolicy, Tendon, Transmission, Wrap,
+    Integrator, Joint, JointKind, Keyframe, KinematicTree, Material, Mesh, Pair, RowPattern,
+    Section, Site, SleepPolicy, Tendon, Texture, TextureMark, TexturePattern, Transmission,
+    Visuals, Wrap,
 };
 
 use crate::Budget;
@@ -111,6 +112,8 @@ pub struct Model {
     pub left_out: Vec<String>,
     /// The user's own data.
     pub custom: Custom,
+    /// How its elements look.
+    pub visuals: Visuals,
 }
 
 impl Model {

@@ -68,8 +68,8 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "site",
-        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis",
-        ignored: "material rgba user",
+        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis material rgba",
+        ignored: "user",
         later: "mesh",
         ..NONE
     },

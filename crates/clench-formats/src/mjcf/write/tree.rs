@@ -8,7 +8,7 @@ use clench_math::{Quat, Vec3};
 use clench_rigid::Model;
 use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use clench_rigid::model::{
-    Body, Camera, CameraMode, Dof, Geom, Joint, JointKind, Site, SleepPolicy,
+    Appearance, Body, Camera, CameraMode, Dof, Geom, Joint, JointKind, Site, SleepPolicy, Visuals,
 };
 
 const NO_TURN: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
@@ -256,11 +256,24 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
     if *fluid_ellipsoid {
         tag = tag.text("fluidshape", "ellipsoid");
     }
-    if !*visible {
-        tag = tag.numbers("rgba", &[0.5, 0.5, 0.5, 0.0]);
-    }
-    tag.end();
+    let rgba = match visible {
+        true => colour(&model.visuals, model.visuals.geoms[g]).filter(|rgba| rgba[3] > 0.0),
+        false => Some([0.5, 0.5, 0.5, 0.0]),
+    };
+    coloured(tag, rgba).end();
     Ok(())
+}
+
+/// The colour of an element, its own or that of its material; none where it has neither. Textures are not written.
+fn colour(visuals: &Visuals, appearance: Appearance) -> Option<[f32; 4]> {
+    (appearance != Appearance::default()).then(|| visuals.rgba(appearance))
+}
+
+fn coloured<'x>(tag: Tag<'x>, rgba: Option<[f32; 4]>) -> Tag<'x> {
+    match rgba {
+        Some(rgba) => tag.singles("rgba", rgba.into_iter().map(f64::from)),
+        None => tag,
+    }
 }
 
 fn write_site(model: &Model, s: usize, xml: &mut Xml) {
@@ -270,10 +283,11 @@ fn write_site(model: &Model, s: usize, xml: &mut Xml) {
         kind,
     } = &model.sites[s];
     let p = &model.params;
+    let rgba = colour(&model.visuals, model.visuals.sites[s]);
     let tag = xml.tag("site").name(name).text("type", geom_type(*kind));
-    placed(tag, p.site_pos[s], p.site_quat[s])
-        .numbers("size", &p.site_size[s].to_array())
-        .end();
+    let tag = placed(tag, p.site_pos[s], p.site_quat[s]);
+    let tag = tag.numbers("size", &p.site_size[s].to_array());
+    coloured(tag, rgba).end();
 }
 
 fn write_camera(model: &Model, c: usize, xml: &mut Xml) -> Result<(), SaveError> {

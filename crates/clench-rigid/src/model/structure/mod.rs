@@ -11,6 +11,7 @@ mod option;
 mod pattern;
 mod sleep;
 mod tendon;
+mod visual;
 
 pub use actuator::{
     Actuator, BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind, Transmission,
@@ -25,3 +26,4 @@ pub use option::{Flags, Integrator};
 pub use pattern::RowPattern;
 pub use sleep::{KinematicTree, SleepPolicy};
 pub use tendon::{Section, Tendon, Wrap};
+pub use visual::{Appearance, Material, Texture, TextureMark, TexturePattern, Visuals};
