@@ -9,6 +9,7 @@ mod run;
 mod sanitize;
 mod soak;
 mod stages;
+mod web;
 
 use std::process::ExitCode;
 
@@ -20,10 +21,12 @@ Usage: cargo xtask COMMAND
 Commands:
   test [STAGE...]   Check everything, or only the named stages, in this order:
                       fmt      rustfmt finds nothing to change
+                      page     the viewer's page, built by Node; without npm skipped
                       clippy   no warnings in any crate, test or example
                       unit     all Rust tests
                       doc      rustdoc without warnings
                       build    the release `clench` program
+                      browser  the page driven in Chromium; without one skipped (CHROMIUM names another than /usr/bin/chromium)
                       python   .venv with MuJoCo and gymnasium
                       package  the Python package, built and installed in .venv by pip; its types
                       pytest   its tests, every example in a short form among them

@@ -3,6 +3,7 @@
 use crate::package;
 use crate::python;
 use crate::run::{Profile, cargo, command, run};
+use crate::web;
 use std::time::Instant;
 
 /// One check: its name on the command line, what to do when it fails, and how to run it.
@@ -10,6 +11,8 @@ struct Stage {
     name: &'static str,
     remedy: &'static str,
     check: fn() -> Result<(), String>,
+    /// Why it cannot run on this machine, if it cannot.
+    missing: fn() -> Option<String>,
 }
 
 /// From cheap to dear, so that most mistakes show early.
@@ -18,46 +21,67 @@ const STAGES: &[Stage] = &[
         name: "fmt",
         remedy: "run `cargo fmt --all`",
         check: fmt,
+        missing: nothing,
+    },
+    Stage {
+        name: "page",
+        remedy: "see the message above",
+        check: web::build,
+        missing: web::no_node,
     },
     Stage {
         name: "clippy",
         remedy: "mend the warnings above",
         check: clippy,
+        missing: nothing,
     },
     Stage {
         name: "unit",
         remedy: "run the failing crate alone with `cargo test -p CRATE`",
         check: unit,
+        missing: nothing,
     },
     Stage {
         name: "doc",
         remedy: "mend the documentation comments named above",
         check: doc,
+        missing: nothing,
     },
     Stage {
         name: "build",
         remedy: "mend the errors above",
         check: build,
+        missing: nothing,
+    },
+    Stage {
+        name: "browser",
+        remedy: "run one case alone in web/ with `npm test -- --test-name-pattern NAME`",
+        check: web::test,
+        missing: web::no_browser,
     },
     Stage {
         name: "python",
         remedy: "see the message above",
         check: python::prepare,
+        missing: nothing,
     },
     Stage {
         name: "package",
         remedy: "see the message above",
         check: package::check,
+        missing: nothing,
     },
     Stage {
         name: "pytest",
         remedy: "run one case alone with `.venv/bin/python -m pytest python/tests -k NAME`",
         check: package::test,
+        missing: nothing,
     },
     Stage {
         name: "parity",
         remedy: "run one case alone with `.venv/bin/python -m pytest parity -k NAME`",
         check: parity,
+        missing: nothing,
     },
 ];
 
@@ -77,6 +101,11 @@ pub fn test(names: &[String]) -> Result<(), String> {
     let mut summary = String::new();
     for (k, stage) in chosen.iter().enumerate() {
         println!("\n==> [{}/{}] {}", k + 1, chosen.len(), stage.name);
+        if let Some(reason) = (stage.missing)() {
+            println!("skipped: {reason}");
+            summary += &format!("  {:<8}skipped: {reason}\n", stage.name);
+            continue;
+        }
         let start = Instant::now();
         let outcome = (stage.check)();
         let seconds = start.elapsed().as_secs_f64();
@@ -90,7 +119,7 @@ pub fn test(names: &[String]) -> Result<(), String> {
         summary += &format!("  {:<8}ok      {seconds:6.1} s\n", stage.name);
     }
     println!(
-        "\n{summary}\nAll {} stages passed in {:.1} s.",
+        "\n{summary}\nAll {} stages passed or were skipped, in {:.1} s.",
         chosen.len(),
         begin.elapsed().as_secs_f64()
     );
@@ -112,6 +141,11 @@ pub fn bench(args: &[String]) -> Result<(), String> {
     script.env("BATCH_STEP", profile.program("examples/batch_step"));
     script.env("PAIRS", profile.program("examples/pairs"));
     run(script)
+}
+
+/// What every machine can do that builds the rest.
+fn nothing() -> Option<String> {
+    None
 }
 
 fn fmt() -> Result<(), String> {

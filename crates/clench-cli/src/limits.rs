@@ -52,6 +52,11 @@ impl Default for MemoryLimit {
 }
 
 impl MemoryLimit {
+    /// The number.
+    pub fn bytes(&self) -> usize {
+        self.bytes as usize
+    }
+
     /// Lets `amount` things of so many bytes each pass if they fit; `what` names them.
     ///
     /// # Errors

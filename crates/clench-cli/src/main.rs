@@ -1,4 +1,4 @@
-//! The `clench` program: `simulate`, `forward` and `inspect` a robot file, `convert` it to MJCF, and say what files may hold (`mjcf`).
+//! The `clench` program: `view`, `simulate`, `forward` and `inspect` a robot file, `convert` it to MJCF, and say what files may hold (`mjcf`).
 //!
 //! One module a subcommand, plus what they share: options that override the file (`options`), files that replace others when
 //! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`), and what the library
@@ -14,6 +14,7 @@ mod options;
 mod replacement;
 mod simulate;
 mod table;
+mod view;
 
 use cap::Cap;
 use clap::{Parser, Subcommand};
@@ -39,6 +40,8 @@ struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
+  clench view models/humanoid.xml
+      see a robot move in the browser, and pull it about
   clench simulate models/humanoid.xml --time 2
       step a robot for two seconds and summarise what happened
   clench simulate models/pendulum.xml --steps 500 --record swing.npz --every 5
@@ -54,6 +57,8 @@ Examples:
 
 #[derive(Subcommand)]
 enum Command {
+    /// See a model move in the browser, and touch it
+    View(view::Arguments),
     /// Step a model through time and summarise the run
     Simulate(simulate::Arguments),
     /// Compute accelerations and forces of states: one JSON state a line in, one JSON result a line out
@@ -68,6 +73,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
+        Command::View(arguments) => view::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Forward(arguments) => forward::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| ExitCode::SUCCESS),

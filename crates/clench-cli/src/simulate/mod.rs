@@ -5,6 +5,7 @@
 mod batch;
 mod display;
 mod energy;
+mod page;
 mod quality;
 mod record;
 mod report;
@@ -25,6 +26,7 @@ use clench::Model;
 use indicatif::{ProgressBar, ProgressStyle};
 use record::RecordOptions;
 use report::Report;
+pub use start::find_keyframe;
 use start::{StartArguments, Starts};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -49,8 +51,9 @@ pub struct Arguments {
     /// Controls as a NumPy array (N, nu): row k for step k, the same in every environment
     #[arg(long, value_name = "FILE.npy")]
     ctrl: Option<PathBuf>,
-    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays, in place of an old file once all is done
-    #[arg(long, value_name = "OUT.npz")]
+    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`), or a page that replays the run in a
+    /// browser (`.html`, of one environment), in place of an old file once all is done
+    #[arg(long, value_name = "OUT")]
     record: Option<PathBuf>,
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]

@@ -35,7 +35,8 @@ impl RecordOptions<'_> {
         let context = || format!("--record {}", self.path.display());
         ensure!(
             (self.path.extension()).is_some_and(|end| end.eq_ignore_ascii_case(EXTENSION)),
-            "--record {}: a record is an archive of NumPy arrays, and its name must end in .{EXTENSION}",
+            "--record {}: a record is an archive of NumPy arrays, whose name must end in .{EXTENSION}, or, of one environment, a page \
+             (.html)",
             self.path.display()
         );
         let file = Replacement::begin(self.path).with_context(context)?;

@@ -1,8 +1,8 @@
 //! A run of one environment.
 
 use super::energy::{EnergyAccount, STEPS_A_LOOK};
+use super::page::RunRecorder;
 use super::quality::verdict;
-use super::record::Recorder;
 use super::report::{Report, stages};
 use super::summary::{Summary, energy};
 use super::{Arguments, Run};
@@ -21,7 +21,7 @@ pub fn run<T: Precision>(
     let mut sim = Sim::<T>::with_options(Arc::clone(&run.model), options)?;
     start(&mut sim, run)?;
     let mut recorder = (run.record.as_ref())
-        .map(|options| Recorder::create(options, &run.model))
+        .map(|options| RunRecorder::create(options, &run.model))
         .transpose()?;
     let mut summary = Summary::new(&mut sim)?;
     let mut account = EnergyAccount::open(&run.model, [energy(&mut sim)?]);
@@ -49,7 +49,7 @@ pub fn run<T: Precision>(
             watch(account, step, arguments.profile, &mut sim)?;
         }
         if let Some(recorder) = &mut recorder {
-            recorder.after_steps(step + 1, &sim);
+            recorder.after_steps(step + 1, &mut sim)?;
         }
         progress.inc(1);
     }
@@ -57,7 +57,7 @@ pub fn run<T: Precision>(
         account.look(0, energy(&mut sim)?);
     }
     progress.finish_and_clear();
-    let recorded_rows = recorder.map(Recorder::write).transpose()?;
+    let recorded_rows = recorder.map(RunRecorder::write).transpose()?;
     sim.run_clocks(false);
     let verdict = verdict(&run.model, summary.quality(), account.as_ref());
     let mut report = summary.finish(&mut sim, spent.as_secs_f64(), verdict);

@@ -123,7 +123,11 @@ impl Noise {
     }
 }
 
-fn find_keyframe(model: &Model, key: &str) -> Result<usize> {
+/// The keyframe of a name or an index.
+///
+/// # Errors
+/// That the model has none such, and which it has.
+pub fn find_keyframe(model: &Model, key: &str) -> Result<usize> {
     let keyframes = &model.keyframes;
     if let Some(k) = keyframes.iter().position(|k| k.name == key) {
         return Ok(k);

@@ -1,0 +1,96 @@
+//! A record that is a page: it replays the run in a browser, without a server.
+
+use super::record::{RecordOptions, Recorder};
+use crate::message::tell;
+use crate::replacement::Replacement;
+use anyhow::{Context, Result};
+use clench::rigid::Precision;
+use clench::{Model, Sim};
+use clench_view::{Page, Recording, Scene};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// How the name of such a record ends.
+const EXTENSION: &str = "html";
+
+/// The record of one environment, in the form that its name asks for.
+pub enum RunRecorder {
+    /// NumPy's arrays.
+    Arrays(Recorder),
+    /// A page.
+    Page(Box<PageRecorder>),
+}
+
+impl RunRecorder {
+    /// An empty record.
+    pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
+        let end = options.path.extension();
+        if end.is_some_and(|end| end.eq_ignore_ascii_case(EXTENSION)) {
+            let page = PageRecorder::create(options, model)?;
+            return Ok(RunRecorder::Page(Box::new(page)));
+        }
+        Recorder::create(options, model).map(RunRecorder::Arrays)
+    }
+
+    /// Appends what `steps` steps led to, if it is wanted.
+    pub fn after_steps<T: Precision>(&mut self, steps: usize, sim: &mut Sim<T>) -> Result<()> {
+        match self {
+            RunRecorder::Arrays(recorder) => recorder.after_steps(steps, sim),
+            RunRecorder::Page(recorder) => recorder.after_steps(steps, sim)?,
+        }
+        Ok(())
+    }
+
+    /// Writes the record; how many rows or frames it has.
+    pub fn write(self) -> Result<usize> {
+        match self {
+            RunRecorder::Arrays(recorder) => recorder.write(),
+            RunRecorder::Page(recorder) => recorder.write(),
+        }
+    }
+}
+
+/// A page in the making.
+pub struct PageRecorder {
+    path: PathBuf,
+    file: Replacement,
+    page: Page,
+    recording: Recording,
+    every: usize,
+}
+
+fn context(path: &Path) -> String {
+    format!("--record {}", path.display())
+}
+
+impl PageRecorder {
+    fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
+        let path = options.path.to_path_buf();
+        let file = Replacement::begin(&path).with_context(|| context(&path))?;
+        Ok(PageRecorder {
+            page: Page::find(|text| tell(text)).with_context(|| context(&path))?,
+            recording: Recording::new(Scene::new(model), options.limit.bytes()),
+            every: options.every,
+            path,
+            file,
+        })
+    }
+
+    fn after_steps<T: Precision>(&mut self, steps: usize, sim: &mut Sim<T>) -> Result<()> {
+        if !steps.is_multiple_of(self.every) {
+            return Ok(());
+        }
+        (self.recording.append(sim))
+            .with_context(|| format!("{} (see --every and --max-memory)", context(&self.path)))
+    }
+
+    fn write(self) -> Result<usize> {
+        let html = self.recording.to_html(&self.page);
+        let write = || {
+            self.file.file()?.write_all(html.as_bytes())?;
+            self.file.finish()
+        };
+        write().with_context(|| context(&self.path))?;
+        Ok(self.recording.len())
+    }
+}

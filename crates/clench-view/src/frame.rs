@@ -1,0 +1,221 @@
+//! Where everything is at one moment, what pushes on what, and how the solver did: bytes that the page reads as they are.
+//!
+//! A frame is, in little-endian order: the letters `CLNF`, flags (u32), the time in seconds (f64), the number of sections
+//! (u32), how many rows each has (u32 each), then the rows of all sections in order, in f32. [`SECTIONS`] says what they are.
+
+use crate::drag::Drag;
+use clench::math::{Mask, Scalar, Vec3};
+use clench::rigid::dynamics::tendon_path::each_span;
+use clench::rigid::readout::{ContactRow, contact_rows};
+use clench::rigid::{Precision, Sim, Workspace};
+use clench::{Model, SimError};
+use std::time::Duration;
+
+/// What a frame begins with.
+pub const MAGIC: [u8; 4] = *b"CLNF";
+/// The flag of a simulation that stands still.
+pub const PAUSED: u32 = 1;
+
+/// A part of a frame: rows of equal width.
+#[derive(Clone, Copy, Debug)]
+pub struct Section {
+    /// Its name, by which the page finds it.
+    pub name: &'static str,
+    /// Numbers in a row.
+    pub width: usize,
+}
+
+/// How the last step went; the numbers that are plotted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timing {
+    /// What a step takes.
+    pub step: Duration,
+    /// Simulated over real time.
+    pub speed: f64,
+}
+
+/// What a frame shows.
+struct Shown<'a, T: Precision> {
+    sim: &'a Sim<T>,
+    energy: [f64; 2],
+    timing: Timing,
+    drag: Option<&'a Drag>,
+}
+
+macro_rules! sections {
+    ($shown:ident, $out:ident; $($(#[$doc:meta])* $name:ident: $width:expr => $write:expr;)*) => {
+        /// The sections of a frame, in order.
+        pub const SECTIONS: &[Section] = &[
+            $(Section { name: stringify!($name), width: $width },)*
+        ];
+
+        /// Appends all sections; how many rows each has.
+        fn write_sections<T: Precision>($shown: &Shown<T>, numbers: &mut Vec<f32>) -> Vec<u32> {
+            let mut counts = Vec::with_capacity(SECTIONS.len());
+            $({
+                let start = numbers.len();
+                let $out = &mut *numbers;
+                $write;
+                counts.push(((numbers.len() - start) / $width) as u32);
+            })*
+            counts
+        }
+    };
+}
+
+sections! {
+    s, out;
+    /// Position and orientation of each body.
+    bodies: 7 => bodies(s.sim.workspace(), out);
+    /// Contacts: position, normal and two tangents, force along these, distance, sliding friction, both geoms, dimensions.
+    contacts: 20 => contact_rows(s.sim.workspace(), 0).iter().for_each(|row| contact(row, out));
+    /// Constraints but contacts: kind (0 equality, 1 joint limit, 2 tendon limit, 3 dry friction), element, size of its force.
+    constraints: 3 => constraints(s.sim.workspace(), out);
+    /// Straight parts of tendons: the tendon, both ends.
+    spans: 7 => spans(s.sim.model(), s.sim, out);
+    /// Position coordinates of the state.
+    qpos: 1 => narrow(&s.sim.state.qpos, out);
+    /// Velocities of the state.
+    qvel: 1 => narrow(&s.sim.state.qvel, out);
+    /// Controls.
+    ctrl: 1 => narrow(&s.sim.state.ctrl, out);
+    /// Which equalities are on.
+    eq_active: 1 => out.extend(s.sim.state.eq_active.iter().map(|&on| f32::from(u8::from(on))));
+    /// Which trees sleep: not below zero.
+    asleep: 1 => narrow(&s.sim.state.tree_asleep, out);
+    /// What sensors measure.
+    sensors: 1 => narrow(&s.sim.workspace().sensors.data, out);
+    /// The spring that drags a body: the body, the point, where it is drawn to, the force.
+    drag: 10 => out.extend(s.drag.into_iter().flat_map(|drag| drag.row(s.sim.workspace())));
+    /// Plotted: iterations, log10 of the duality gap and of the gradient, deepest penetration (m), contacts, potential
+    /// and kinetic energy (J), time of a step (µs), simulated over real time.
+    plots: 9 => plots(s, out);
+}
+
+/// The bytes of the frame of a simulation as it is now.
+///
+/// # Errors
+/// A state that cannot be evaluated.
+pub fn encode<T: Precision>(
+    sim: &mut Sim<T>,
+    flags: u32,
+    timing: Timing,
+    drag: Option<&Drag>,
+) -> Result<Vec<u8>, SimError> {
+    sim.refresh()?;
+    let energy = sim.energy()?;
+    let shown = Shown {
+        sim,
+        energy: [energy.potential.to_f64(), energy.kinetic.to_f64()],
+        timing,
+        drag,
+    };
+    let mut numbers = Vec::new();
+    let counts = write_sections(&shown, &mut numbers);
+    let mut bytes = Vec::with_capacity(20 + 4 * (counts.len() + numbers.len()));
+    bytes.extend(MAGIC);
+    bytes.extend(flags.to_le_bytes());
+    bytes.extend(shown.sim.state.time.to_le_bytes());
+    bytes.extend((counts.len() as u32).to_le_bytes());
+    counts.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+    numbers.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    Ok(bytes)
+}
+
+fn narrow<T: Scalar>(values: &[T], out: &mut Vec<f32>) {
+    out.extend(values.iter().map(|x| x.to_f64() as f32));
+}
+
+fn point<T: Scalar>(v: Vec3<T>) -> [f32; 3] {
+    v.to_array().map(|x| x.to_f64() as f32)
+}
+
+fn bodies<T: Precision>(ws: &Workspace<T>, out: &mut Vec<f32>) {
+    for (&pos, quat) in ws.position.xpos.iter().zip(&ws.position.xquat) {
+        out.extend(point(pos));
+        narrow(&quat.to_array(), out);
+    }
+}
+
+fn contact(row: &ContactRow, out: &mut Vec<f32>) {
+    let numbers = (row.pos.iter())
+        .chain(row.frame.as_flattened())
+        .chain(&row.force[..3])
+        .chain([&row.dist, &row.friction[0]])
+        .map(|&x| x as f32);
+    out.extend(numbers);
+    out.extend([row.geoms[0] as f32, row.geoms[1] as f32, row.dim as f32]);
+}
+
+fn constraints<T: Precision>(ws: &Workspace<T>, out: &mut Vec<f32>) {
+    let forces = ws.solver.force();
+    for (index, record) in ws.record.blocks.iter().enumerate() {
+        let kind = match record.source.kind() {
+            "equality" => 0.0,
+            "limit_joint" => 1.0,
+            "limit_tendon" => 2.0,
+            "contact" => continue,
+            _ => 3.0,
+        };
+        if !record.active.any() {
+            continue;
+        }
+        let rows = &forces[ws.problem.block(index).rows()];
+        let squares = rows.iter().map(|f| f.to_f64() * f.to_f64());
+        let size = squares.sum::<f64>().sqrt();
+        out.extend([kind, record.source.index() as f32, size as f32]);
+    }
+}
+
+fn spans<T: Precision>(model: &Model, sim: &Sim<T>, out: &mut Vec<f32>) {
+    for (t, tendon) in model.tendons.iter().enumerate() {
+        if !tendon.is_spatial() {
+            continue;
+        }
+        // Where a string lies on a geom, a chord stands for its arc.
+        let mut last: Option<([f32; 3], usize)> = None;
+        each_span(
+            model,
+            sim.params(),
+            &sim.workspace().position,
+            tendon,
+            |span| {
+                if span.pull.norm_squared().lane(0).to_f64() == 0.0 {
+                    return;
+                }
+                let [from, to] = span.points.map(point);
+                if let Some((end, body)) = last
+                    && end != from
+                    && body == span.bodies[0]
+                {
+                    out.push(t as f32);
+                    out.extend(end.into_iter().chain(from));
+                }
+                out.push(t as f32);
+                out.extend(from.into_iter().chain(to));
+                last = Some((to, span.bodies[1]));
+            },
+        );
+    }
+}
+
+/// Gaps and gradients below this are drawn as this.
+const LEAST: f64 = 1e-20;
+
+fn plots<T: Precision>(s: &Shown<T>, out: &mut Vec<f32>) {
+    let stats = s.sim.stats();
+    let contacts = s.sim.contacts();
+    let depths = contacts.iter().map(|contact| -contact.dist.to_f64());
+    let numbers = [
+        stats.iterations as f64,
+        stats.gap.max(LEAST).log10(),
+        stats.gradient.max(LEAST).log10(),
+        depths.fold(0.0, f64::max),
+        contacts.len() as f64,
+        s.energy[0],
+        s.energy[1],
+        1e6 * s.timing.step.as_secs_f64(),
+        s.timing.speed,
+    ];
+    out.extend(numbers.map(|x| x as f32));
+}

@@ -1,0 +1,263 @@
+//! As much of HTTP/1.1 as a page and a WebSocket need: the head of a request, checked, and a reply.
+//!
+//! A page on the web may try to reach a viewer that runs on its reader's machine. It does not know the token; and where the
+//! browser tells that the request comes from another page (`Origin`), or under a name that is not this machine's (`Host`, after the
+//! attacker's name came to mean this machine), it is refused before the token is looked at.
+
+use std::io::{self, Read, Write};
+use std::net::{IpAddr, TcpStream};
+use std::time::{Duration, Instant};
+
+/// The longest head of a request, bytes.
+const MAX_HEAD: usize = 16 * 1024;
+/// The most header fields of a request.
+const MAX_FIELDS: usize = 64;
+/// A request's head must have come by then.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// What a request asks for.
+#[derive(Debug, PartialEq)]
+pub enum Request {
+    /// The page.
+    Page,
+    /// A WebSocket, with the key of its handshake.
+    Socket(String),
+}
+
+/// A request that is not answered as it wants: its status and what is said.
+#[derive(Debug, PartialEq)]
+pub struct Refusal(pub &'static str, pub &'static str);
+
+const BAD: Refusal = Refusal(
+    "400 Bad Request",
+    "This is no request that the viewer knows.",
+);
+const FOREIGN: Refusal = Refusal(
+    "403 Forbidden",
+    "The viewer only answers its own page, under an address of the machine that it runs on.",
+);
+const NO_TOKEN: Refusal = Refusal(
+    "403 Forbidden",
+    "The token is wrong: open the whole address that the program printed. Each start has one of its own.",
+);
+const UNKNOWN: Refusal = Refusal("404 Not Found", "There is nothing here.");
+const METHOD: Refusal = Refusal("405 Method Not Allowed", "Only GET is allowed.");
+/// For one client too many.
+pub const CROWDED: Refusal = Refusal(
+    "503 Service Unavailable",
+    "Too many pages look at this viewer already.",
+);
+
+/// Reads the head of a request and checks it.
+///
+/// # Errors
+/// A connection that breaks or is too slow; inside, a request that is refused.
+pub fn read_request(
+    stream: &mut TcpStream,
+    token: &str,
+    anywhere: bool,
+) -> io::Result<Result<Request, Refusal>> {
+    let deadline = Instant::now() + PATIENCE;
+    let mut head = Vec::new();
+    let mut piece = [0; 2048];
+    while !head.windows(4).any(|end| end == b"\r\n\r\n") {
+        if head.len() > MAX_HEAD {
+            return Ok(Err(BAD));
+        }
+        let left = deadline.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        stream.set_read_timeout(Some(left))?;
+        match stream.read(&mut piece)? {
+            0 => return Err(io::ErrorKind::UnexpectedEof.into()),
+            count => head.extend(&piece[..count]),
+        }
+    }
+    Ok(parse(&head, token, anywhere))
+}
+
+fn parse(head: &[u8], token: &str, anywhere: bool) -> Result<Request, Refusal> {
+    let mut fields = [httparse::EMPTY_HEADER; MAX_FIELDS];
+    let mut request = httparse::Request::new(&mut fields);
+    match request.parse(head) {
+        Ok(status) if status.is_complete() => {}
+        _ => return Err(BAD),
+    }
+    let field = |name: &str| {
+        let mut found = (request.headers.iter()).filter(|f| f.name.eq_ignore_ascii_case(name));
+        let first = found.next()?;
+        // Of a field that comes twice, nobody knows which one counts.
+        let text = std::str::from_utf8(first.value).ok()?.trim();
+        found.next().is_none().then_some(text)
+    };
+    if request.method != Some("GET") {
+        return Err(METHOD);
+    }
+    let host = field("host").ok_or(BAD)?;
+    if !is_ours(host, anywhere) {
+        return Err(FOREIGN);
+    }
+    let same = |origin: &str| {
+        ["http://", "https://"]
+            .iter()
+            .any(|s| origin.strip_prefix(s) == Some(host))
+    };
+    if request
+        .headers
+        .iter()
+        .any(|f| f.name.eq_ignore_ascii_case("origin"))
+        && !field("origin").is_some_and(same)
+    {
+        return Err(FOREIGN);
+    }
+    let target = request.path.ok_or(BAD)?;
+    let (path, query) = target.split_once('?').unwrap_or((target, ""));
+    if !matches!(path, "/" | "/socket") {
+        return Err(UNKNOWN);
+    }
+    let given = query
+        .split('&')
+        .find_map(|part| part.strip_prefix("token="));
+    if !given.is_some_and(|given| same_token(given, token)) {
+        return Err(NO_TOKEN);
+    }
+    if path == "/" {
+        return Ok(Request::Page);
+    }
+    let upgrades = field("upgrade").is_some_and(|to| to.eq_ignore_ascii_case("websocket"));
+    match field("sec-websocket-key") {
+        Some(key) if upgrades && field("sec-websocket-version") == Some("13") => {
+            Ok(Request::Socket(key.to_owned()))
+        }
+        _ => Err(BAD),
+    }
+}
+
+/// Whether a `Host` names this machine: a loopback address or name, and any address by its number for a server that
+/// listens to other machines.
+fn is_ours(host: &str, anywhere: bool) -> bool {
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if port.bytes().all(|b| b.is_ascii_digit()) => name,
+        _ => host,
+    };
+    let number = name.trim_start_matches('[').trim_end_matches(']');
+    match number.parse::<IpAddr>() {
+        Ok(address) => anywhere || address.is_loopback(),
+        Err(_) => name.eq_ignore_ascii_case("localhost"),
+    }
+}
+
+/// Compares all of both, so that the time it takes tells nothing.
+fn same_token(given: &str, token: &str) -> bool {
+    let differing = given.bytes().zip(token.bytes()).map(|(a, b)| a ^ b);
+    given.len() == token.len() && differing.fold(0, |all, bits| all | bits) == 0
+}
+
+/// Sends the page.
+///
+/// # Errors
+/// A connection that breaks.
+pub fn send_page(stream: &mut TcpStream, html: &str) -> io::Result<()> {
+    send(stream, "200 OK", "text/html; charset=utf-8", html)
+}
+
+/// Says why a request is refused.
+///
+/// # Errors
+/// A connection that breaks.
+pub fn send_refusal(stream: &mut TcpStream, Refusal(status, text): &Refusal) -> io::Result<()> {
+    send(stream, status, "text/plain; charset=utf-8", text)
+}
+
+fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &str) -> io::Result<()> {
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\nCache-Control: no-store\r\n\
+         Referrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\nContent-Security-Policy: default-src 'none'; \
+         script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; connect-src 'self'\r\n\r\n",
+        body.len()
+    );
+    stream.write_all(head.as_bytes())?;
+    stream.write_all(body.as_bytes())?;
+    stream.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOKEN: &str = "0123456789abcdef";
+
+    fn ask(line: &str, fields: &str) -> Result<Request, Refusal> {
+        let head = format!("{line} HTTP/1.1\r\n{fields}\r\n");
+        parse(head.as_bytes(), TOKEN, false)
+    }
+
+    fn page(fields: &str) -> Result<Request, Refusal> {
+        ask(&format!("GET /?token={TOKEN}"), fields)
+    }
+
+    #[test]
+    fn the_page_is_for_this_machine_alone() {
+        for host in ["127.0.0.1:8000", "localhost:9", "LOCALHOST", "[::1]:80"] {
+            assert_eq!(
+                page(&format!("Host: {host}\r\n")),
+                Ok(Request::Page),
+                "{host}"
+            );
+        }
+        for host in [
+            "evil.example",
+            "evil.example:8000",
+            "192.168.0.9:8000",
+            "localhost.evil.example",
+        ] {
+            assert_eq!(page(&format!("Host: {host}\r\n")), Err(FOREIGN), "{host}");
+        }
+        assert_eq!(page(""), Err(BAD));
+        assert_eq!(page("Host: localhost\r\nHost: evil.example\r\n"), Err(BAD));
+    }
+
+    #[test]
+    fn other_pages_are_refused_whatever_they_know() {
+        let from = |origin: &str| page(&format!("Host: localhost:80\r\nOrigin: {origin}\r\n"));
+        assert_eq!(from("http://localhost:80"), Ok(Request::Page));
+        for origin in [
+            "http://evil.example",
+            "null",
+            "http://localhost:81",
+            "localhost:80",
+            "http://localhost:80.evil.example",
+        ] {
+            assert_eq!(from(origin), Err(FOREIGN), "{origin}");
+        }
+    }
+
+    #[test]
+    fn nobody_enters_without_the_token() {
+        let host = "Host: localhost\r\n";
+        for target in [
+            "/",
+            "/?token=",
+            "/?token=0123456789abcdeg",
+            "/?token=0123456789abcdef0",
+            "/socket?x=1",
+        ] {
+            assert_eq!(
+                ask(&format!("GET {target}"), host),
+                Err(NO_TOKEN),
+                "{target}"
+            );
+        }
+        assert_eq!(ask("GET /etc/passwd", host), Err(UNKNOWN));
+        assert_eq!(ask(&format!("POST /?token={TOKEN}"), host), Err(METHOD));
+    }
+
+    #[test]
+    fn a_socket_needs_its_handshake() {
+        let socket = format!("GET /socket?token={TOKEN}");
+        let whole = "Host: localhost\r\nUpgrade: WebSocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: abc\r\n";
+        assert_eq!(ask(&socket, whole), Ok(Request::Socket("abc".into())));
+        assert_eq!(ask(&socket, "Host: localhost\r\n"), Err(BAD));
+    }
+}

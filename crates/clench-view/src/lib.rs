@@ -1,0 +1,26 @@
+//! The viewer: a page in the browser that shows a simulation and lets users touch it.
+//!
+//! [`scene`] says what there is to draw, [`frame`] where it is now and what pushes on what; viewers, recordings and films share
+//! both. [`Server`] hands a page, a scene and frames to browsers, and their [`Command`]s to whoever steps the simulation:
+//! [`Player`], which steps it itself in real time, or a loop of the user's. The page itself stands in `web/`.
+//!
+//! No physics here, and nothing of the page's looks.
+
+pub mod command;
+mod drag;
+pub mod frame;
+mod http;
+pub mod page;
+mod player;
+mod recording;
+pub mod scene;
+mod server;
+mod socket;
+
+pub use command::Command;
+pub use drag::Drag;
+pub use page::Page;
+pub use player::Player;
+pub use recording::Recording;
+pub use scene::Scene;
+pub use server::{ServeError, Server, ServerOptions};

@@ -1,0 +1,97 @@
+//! The page that browsers load: one HTML document with its script in it.
+//!
+//! It is built from `web/` by Node and embedded when this crate is compiled, if it was there by then. In a checkout where it
+//! was not, it is built when it is first needed.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{fs, io};
+
+/// The page that was there when this crate was compiled; empty if none was.
+const EMBEDDED: &str = include_str!(concat!(env!("OUT_DIR"), "/page.html"));
+/// The folder of its source.
+const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web");
+
+/// The page.
+#[derive(Clone, Debug)]
+pub struct Page(String);
+
+/// No page could be had.
+#[derive(Debug, thiserror::Error)]
+pub enum PageError {
+    /// It was not built, and its source is not here.
+    #[error(
+        "the viewer's page is not part of this build: build it with `npm ci && npm run build` in web/ and compile again"
+    )]
+    NotBuilt,
+    /// A program that builds it cannot be started.
+    #[error(
+        "the viewer's page has to be built once, which needs Node.js 20 or later with npm: {0}; install it, \
+         on Debian with `apt-get install nodejs npm`"
+    )]
+    NoNode(io::Error),
+    /// A program that builds it failed.
+    #[error("`{0}` failed in {1}:\n{2}")]
+    Failed(String, PathBuf, String),
+    /// What was built cannot be read.
+    #[error("{0}: {1}")]
+    Unreadable(PathBuf, io::Error),
+}
+
+impl Page {
+    /// The embedded page, else the one in the source folder, which is built first if it is not there; `tell` is told when.
+    ///
+    /// # Errors
+    /// That there is none, and what to do about it.
+    pub fn find(tell: impl Fn(&str)) -> Result<Self, PageError> {
+        if !EMBEDDED.is_empty() {
+            return Ok(Page(EMBEDDED.to_owned()));
+        }
+        let source = Path::new(SOURCE);
+        if !source.join("package.json").is_file() {
+            return Err(PageError::NotBuilt);
+        }
+        let built = source.join("dist/index.html");
+        if !built.is_file() {
+            tell(
+                "building the viewer's page, once (npm fetches three packages and their tools) ...",
+            );
+            npm(source, &["ci", "--no-audit", "--no-fund"])?;
+            npm(source, &["run", "build"])?;
+        }
+        let text = fs::read_to_string(&built);
+        text.map(Page)
+            .map_err(|error| PageError::Unreadable(built, error))
+    }
+
+    /// A page of this text, for tests.
+    pub fn of(text: impl Into<String>) -> Self {
+        Page(text.into())
+    }
+
+    /// Its HTML.
+    pub fn html(&self) -> &str {
+        &self.0
+    }
+
+    /// The page with data in it, which it shows instead of connecting to a server.
+    pub(crate) fn with_data(&self, json: &str) -> String {
+        // A script ends at `</`, wherever that stands.
+        let data = json.replace("</", "<\\/");
+        let script = format!("<script id=\"recording\" type=\"application/json\">{data}</script>");
+        self.0.replacen("<body>", &format!("<body>{script}"), 1)
+    }
+}
+
+fn npm(source: &Path, arguments: &[&str]) -> Result<(), PageError> {
+    let mut npm = Command::new("npm");
+    npm.args(arguments).current_dir(source);
+    let output = npm.output().map_err(PageError::NoNode)?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said).trim().to_owned();
+    let command = format!("npm {}", arguments.join(" "));
+    Err(PageError::Failed(command, source.to_path_buf(), said))
+}

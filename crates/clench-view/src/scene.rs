@@ -1,0 +1,310 @@
+//! What there is to draw: everything of a model that stays as it is while it moves. The page reads it as JSON.
+
+use crate::frame::SECTIONS;
+use clench::Model;
+use clench::collide::ShapeKind;
+use clench::math::{Quat, Vec3};
+use clench::rigid::model::{
+    Appearance, EqualityTarget, Joint, JointKind, Mesh, TextureMark, TexturePattern, Visuals,
+};
+use data_encoding::BASE64;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// What there is to draw. Poses are relative to bodies, quaternions have w first, lengths are in metres.
+#[derive(Clone, Debug, Serialize)]
+pub struct Scene {
+    name: String,
+    timestep: f64,
+    /// Names and widths of the sections of frames, in order.
+    sections: Vec<Value>,
+    bodies: Vec<Value>,
+    geoms: Vec<Value>,
+    sites: Vec<Value>,
+    joints: Vec<Value>,
+    controls: Vec<Value>,
+    tendons: Vec<Value>,
+    equalities: Vec<Value>,
+    sensors: Vec<Value>,
+    keyframes: Vec<String>,
+    meshes: Vec<Value>,
+    height_fields: Vec<Value>,
+    materials: Vec<Value>,
+    textures: Vec<Value>,
+    /// The tree of each body, where one moves it.
+    trees: Vec<Option<usize>>,
+    /// Whether commands reach a simulation that the viewer itself steps.
+    active: bool,
+}
+
+impl Scene {
+    /// The scene of a model.
+    pub fn new(model: &Model) -> Self {
+        Scene {
+            name: model.name.clone(),
+            timestep: model.params.timestep,
+            sections: (SECTIONS.iter())
+                .map(|section| json!({"name": section.name, "width": section.width}))
+                .collect(),
+            bodies: (0..model.nbody()).map(|b| body(model, b)).collect(),
+            geoms: (0..model.geoms.len()).map(|g| geom(model, g)).collect(),
+            sites: (0..model.sites.len()).map(|s| site(model, s)).collect(),
+            joints: (0..model.joints.len()).map(|j| joint(model, j)).collect(),
+            controls: controls(model),
+            tendons: (0..model.tendons.len()).map(|t| tendon(model, t)).collect(),
+            equalities: (model.equalities.iter())
+                .map(|equality| json!({"name": equality.name, "kind": kind_of(equality.target)}))
+                .collect(),
+            sensors: (model.sensors.iter())
+                .map(
+                    |s| json!({"name": s.name, "start": s.numbers.start, "count": s.numbers.len()}),
+                )
+                .collect(),
+            keyframes: model.keyframes.iter().map(|k| k.name.clone()).collect(),
+            meshes: model.meshes.iter().map(|mesh| surface(mesh)).collect(),
+            height_fields: (model.height_fields.iter())
+                .map(|field| {
+                    let heights = field.shape.heights().iter().map(|&h| h as f32);
+                    json!({
+                        "rows": field.shape.rows(),
+                        "columns": field.shape.columns(),
+                        "size": field.shape.size(),
+                        "heights": packed(heights.map(f32::to_le_bytes)),
+                    })
+                })
+                .collect(),
+            materials: materials(&model.visuals),
+            textures: textures(&model.visuals),
+            trees: (0..model.nbody()).map(|b| model.tree_of_body(b)).collect(),
+            active: true,
+        }
+    }
+
+    /// The same for a page whose commands reach no simulation.
+    pub fn passive(self) -> Self {
+        Scene {
+            active: false,
+            ..self
+        }
+    }
+
+    /// As the page reads it.
+    pub fn to_json(&self) -> String {
+        // Numbers, texts and lists of them: nothing that JSON could not hold.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+fn body(model: &Model, b: usize) -> Value {
+    let (body, p) = (&model.bodies[b], &model.params);
+    json!({
+        "name": body.name,
+        "parent": body.parent,
+        "mass": p.body_mass[b],
+        "inertia": p.body_inertia[b].to_array(),
+        "ipos": p.body_ipos[b].to_array(),
+        "iquat": p.body_iquat[b].to_array(),
+        // Whether a force can move it.
+        "free": p.body_invweight0[b][0] > 0.0,
+    })
+}
+
+/// The word of MJCF for a shape.
+fn shape(kind: ShapeKind) -> &'static str {
+    match kind {
+        ShapeKind::Plane => "plane",
+        ShapeKind::HeightField => "hfield",
+        ShapeKind::Sphere => "sphere",
+        ShapeKind::Capsule => "capsule",
+        ShapeKind::Ellipsoid => "ellipsoid",
+        ShapeKind::Cylinder => "cylinder",
+        ShapeKind::Box => "box",
+        ShapeKind::Mesh => "mesh",
+    }
+}
+
+fn placed(pos: Vec3<f64>, quat: Quat<f64>, appearance: Appearance, visuals: &Visuals) -> Value {
+    json!({
+        "pos": pos.to_array(),
+        "quat": quat.to_array(),
+        "rgba": visuals.rgba(appearance),
+        "material": appearance.material,
+    })
+}
+
+/// The entries of both objects.
+fn merged(mut first: Value, second: Value) -> Value {
+    if let (Value::Object(first), Value::Object(second)) = (&mut first, second) {
+        first.extend(second);
+    }
+    first
+}
+
+fn geom(model: &Model, g: usize) -> Value {
+    let (geom, p) = (&model.geoms[g], &model.params);
+    let place = placed(
+        p.geom_pos[g],
+        p.geom_quat[g],
+        model.visuals.geoms[g],
+        &model.visuals,
+    );
+    let own = json!({
+        "name": geom.name,
+        "kind": shape(geom.kind),
+        "body": geom.body,
+        "group": geom.group,
+        "size": p.geom_size[g].to_array(),
+        "mesh": geom.mesh,
+        "hfield": geom.height_field,
+        "friction": p.geom_friction[g],
+        "condim": geom.condim,
+    });
+    merged(place, own)
+}
+
+fn site(model: &Model, s: usize) -> Value {
+    let (site, p) = (&model.sites[s], &model.params);
+    let place = placed(
+        p.site_pos[s],
+        p.site_quat[s],
+        model.visuals.sites[s],
+        &model.visuals,
+    );
+    let own = json!({
+        "name": site.name,
+        "kind": shape(site.kind),
+        "body": site.body,
+        "size": p.site_size[s].to_array(),
+    });
+    merged(place, own)
+}
+
+fn joint(model: &Model, j: usize) -> Value {
+    let Joint {
+        name,
+        kind,
+        body,
+        qpos,
+        dof,
+        limited,
+        ..
+    } = &model.joints[j];
+    let kind = match kind {
+        JointKind::Free => "free",
+        JointKind::Ball => "ball",
+        JointKind::Slide => "slide",
+        JointKind::Hinge => "hinge",
+    };
+    json!({
+        "name": name,
+        "kind": kind,
+        "body": body,
+        "qpos": qpos,
+        "dof": dof,
+        "range": limited.then(|| model.params.jnt_range[j]),
+        "pos": model.params.jnt_pos[j].to_array(),
+        "axis": model.params.jnt_axis[j].to_array(),
+    })
+}
+
+fn controls(model: &Model) -> Vec<Value> {
+    let of_actuator = |actuator: &clench::rigid::model::Actuator| {
+        let several = actuator.controls.len() > 1;
+        let one = |(k, u): (usize, usize)| {
+            let name = match several {
+                true => format!("{} {k}", actuator.name),
+                false => actuator.name.clone(),
+            };
+            let limited = actuator.ctrllimited.get(k).copied().unwrap_or(false);
+            json!({"name": name, "range": limited.then(|| model.params.actuator_ctrlrange[u])})
+        };
+        (actuator.controls.clone().enumerate())
+            .map(one)
+            .collect::<Vec<_>>()
+    };
+    model.actuators.iter().flat_map(of_actuator).collect()
+}
+
+fn tendon(model: &Model, t: usize) -> Value {
+    let visuals = &model.visuals;
+    json!({
+        "name": model.tendons[t].name,
+        "rgba": visuals.rgba(visuals.tendons[t]),
+        "width": visuals.tendon_width[t],
+    })
+}
+
+fn kind_of(target: EqualityTarget) -> &'static str {
+    match target {
+        EqualityTarget::Connect { .. } => "connect",
+        EqualityTarget::Weld { .. } => "weld",
+        EqualityTarget::Joint { .. } => "joint",
+        EqualityTarget::Tendon { .. } => "tendon",
+    }
+}
+
+/// Vertices and triangles of a mesh, and the triangles of its hull where it has one.
+fn surface(mesh: &Mesh) -> Value {
+    let numbers = |points: &[Vec3<f64>]| {
+        let numbers = points.iter().flat_map(|v| v.to_array());
+        packed(numbers.map(|x| (x as f32).to_le_bytes()))
+    };
+    let corners = |faces: &[[u32; 3]]| packed(faces.iter().flatten().map(|i| i.to_le_bytes()));
+    let hull = mesh.hull.as_ref().map(|hull| {
+        // Faces are polygons; a fan of triangles draws each.
+        let fans = (0..hull.face_count()).flat_map(|f| {
+            let corners = hull.corners(f);
+            let pairs = corners.windows(2).skip(1);
+            pairs.map(|pair| [corners[0], pair[0], pair[1]])
+        });
+        let fans: Vec<_> = fans.collect();
+        json!({"vertices": numbers(hull.vertices()), "faces": corners(&fans)})
+    });
+    json!({
+        "name": mesh.name,
+        "vertices": numbers(&mesh.vertices),
+        "faces": corners(&mesh.faces),
+        "hull": hull,
+    })
+}
+
+/// Numbers of four bytes each, in base 64.
+fn packed(numbers: impl Iterator<Item = [u8; 4]>) -> String {
+    BASE64.encode(&numbers.flatten().collect::<Vec<u8>>())
+}
+
+fn materials(visuals: &Visuals) -> Vec<Value> {
+    let material = |material: &clench::rigid::model::Material| {
+        json!({
+            "texture": material.texture,
+            "repeat": material.texrepeat,
+            "uniform": material.texuniform,
+            "emission": material.emission,
+            "specular": material.specular,
+            "shininess": material.shininess,
+            "reflectance": material.reflectance,
+        })
+    };
+    visuals.materials.iter().map(material).collect()
+}
+
+fn textures(visuals: &Visuals) -> Vec<Value> {
+    let texture = |texture: &clench::rigid::model::Texture| {
+        json!({
+            "pattern": match texture.pattern {
+                TexturePattern::Gradient => "gradient",
+                TexturePattern::Checker => "checker",
+                TexturePattern::Flat => "flat",
+            },
+            "mark": match texture.mark {
+                TextureMark::None => "none",
+                TextureMark::Edge => "edge",
+                TextureMark::Cross => "cross",
+            },
+            "rgb1": texture.rgb1,
+            "rgb2": texture.rgb2,
+            "markrgb": texture.markrgb,
+        })
+    };
+    visuals.textures.iter().map(texture).collect()
+}

@@ -1,0 +1,67 @@
+// The connection to the server. A frame is asked for when the last one has been drawn.
+
+import { decode, type Frame } from "./frame.ts";
+import type { Scene } from "./scene.ts";
+
+export type Command = { do: string } & Record<string, unknown>;
+
+export interface Listener {
+  scene(scene: Scene): void;
+  frame(frame: Frame): void;
+  error(text: string): void;
+  lost(): void;
+}
+
+/** How long to wait before trying again, ms. */
+const PAUSE = 1000;
+
+export class Link {
+  private socket: WebSocket | null = null;
+  private scene: Scene | null = null;
+
+  constructor(private listener: Listener) {
+    this.connect();
+  }
+
+  private connect(): void {
+    const token = new URLSearchParams(location.search).get("token") ?? "";
+    const address = `${location.origin.replace(/^http/, "ws")}/socket?token=${encodeURIComponent(token)}`;
+    const socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = (event) => this.take(event.data as string | ArrayBuffer);
+    socket.onclose = () => {
+      this.listener.lost();
+      setTimeout(() => this.connect(), PAUSE);
+    };
+    this.socket = socket;
+  }
+
+  private take(data: string | ArrayBuffer): void {
+    if (typeof data === "string") {
+      const said = JSON.parse(data) as Scene | { error: string };
+      if ("error" in said) {
+        this.listener.error(said.error);
+        return;
+      }
+      this.scene = said;
+      this.listener.scene(said);
+      this.next();
+    } else {
+      const frame = this.scene && decode(this.scene, data);
+      if (frame) this.listener.frame(frame);
+      requestAnimationFrame(() => this.next());
+    }
+  }
+
+  private next(): void {
+    this.say({ do: "next" });
+  }
+
+  private say(what: object): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(what));
+  }
+
+  send(command: Command): void {
+    this.say(command);
+  }
+}

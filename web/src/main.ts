@@ -1,0 +1,103 @@
+// The viewer's page: a live simulation from the server, or a recording that the page carries.
+
+import "./style.css";
+import type { Sight } from "./bodies.ts";
+import type { Frame } from "./frame.ts";
+import { Link, type Command } from "./link.ts";
+import type { Layers } from "./overlays.ts";
+import { Panel } from "./panel.ts";
+import { Plots } from "./plots.ts";
+import { Replay } from "./replay.ts";
+import type { Scene } from "./scene.ts";
+import { Stage } from "./stage.ts";
+import { listen } from "./touch.ts";
+
+/** Geoms of these groups are not seen at first, as in MuJoCo. */
+const HIDDEN = [3, 4, 5];
+
+const sight: Sight = {
+  groups: Array.from({ length: 32 }, (_, group) => !HIDDEN.includes(group)),
+  hulls: false,
+  transparent: false,
+  sites: true,
+};
+const layers: Layers = {
+  contacts: true,
+  forces: true,
+  cones: false,
+  tendons: true,
+  frames: false,
+  joints: false,
+  masses: false,
+  inertia: false,
+};
+
+/** The parts of the page that are there once a scene and a frame are. */
+interface Parts {
+  stage: Stage;
+  panel: Panel;
+  plots: Plots;
+}
+
+const view = document.getElementById("view")!;
+const notice = document.getElementById("notice")!;
+
+function notify(text: string): void {
+  notice.textContent = text;
+  notice.hidden = text === "";
+}
+
+function open(scene: Scene, first: Frame, send: (command: Command) => void, replay: Replay | null): Parts {
+  view.replaceChildren();
+  const stage = new Stage(scene, first, sight, layers, view);
+  const panel = new Panel(scene, stage, sight, layers, send, replay);
+  const plots = new Plots(scene, document.getElementById("plots")!);
+  listen(replay ? { ...scene, active: false } : scene, stage, panel, send);
+  return { stage, panel, plots };
+}
+
+function show(parts: Parts, frame: Frame): void {
+  parts.stage.draw(frame, parts.panel.chosen);
+  parts.panel.update(frame);
+  parts.plots.add(frame);
+  // For tests and the curious: what is drawn, from the console.
+  Object.assign(window, { clench: { ...parts, frame } });
+}
+
+function watch(): void {
+  let scene: Scene | null = null;
+  let parts: Parts | null = null;
+  const link = new Link({
+    scene(told) {
+      scene = told;
+      parts = null;
+      notify("");
+    },
+    frame(frame) {
+      parts ??= open(scene!, frame, (command) => link.send(command), null);
+      show(parts, frame);
+    },
+    error: notify,
+    lost: () => notify("The simulation has ended, or is not reached. If it was started anew, open the address that it printed."),
+  });
+}
+
+function play(replay: Replay): void {
+  if (replay.frames.length === 0) {
+    notify("This recording is empty.");
+    return;
+  }
+  const parts = open(replay.scene, replay.frames[0], () => {}, replay);
+  let last = performance.now();
+  const tick = (now: number) => {
+    show(parts, replay.advance((now - last) / 1000));
+    last = now;
+    requestAnimationFrame(tick);
+  };
+  requestAnimationFrame(tick);
+}
+
+notify("");
+const replay = Replay.inPage();
+if (replay) play(replay);
+else watch();

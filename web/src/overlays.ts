@@ -1,0 +1,265 @@
+// What no camera would see: contacts, forces, friction cones, tendons, frames, joint axes, centres of mass.
+
+import * as THREE from "three";
+import type { Frame } from "./frame.ts";
+import { poseOf } from "./poses.ts";
+import type { Scene } from "./scene.ts";
+
+/** What users choose to see besides bodies. */
+export interface Layers {
+  contacts: boolean;
+  forces: boolean;
+  cones: boolean;
+  tendons: boolean;
+  frames: boolean;
+  joints: boolean;
+  masses: boolean;
+  inertia: boolean;
+}
+
+const UP = new THREE.Vector3(0, 1, 0);
+const NORMAL = new THREE.Color(0x2f7de1);
+const FRICTION = new THREE.Color(0xf08a24);
+const PULL = new THREE.Color(0xd5348b);
+const STICKS = new THREE.Color(0x2eb872);
+const SLIPS = new THREE.Color(0xe0342c);
+
+/** As many of one shape as a frame needs. */
+class Many {
+  readonly group = new THREE.Group();
+  private mesh: THREE.InstancedMesh;
+  private count = 0;
+
+  constructor(
+    private shape: THREE.BufferGeometry,
+    private surface: THREE.Material,
+    private order = 0,
+  ) {
+    this.mesh = this.make(64);
+  }
+
+  private make(room: number): THREE.InstancedMesh {
+    const mesh = new THREE.InstancedMesh(this.shape, this.surface, room);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = this.order;
+    mesh.setColorAt(0, new THREE.Color());
+    this.group.clear();
+    this.group.add(mesh);
+    return mesh;
+  }
+
+  begin(most: number): void {
+    this.count = 0;
+    if (most > this.mesh.instanceMatrix.count) {
+      this.mesh.dispose();
+      this.mesh = this.make(2 * most);
+    }
+  }
+
+  add(place: THREE.Matrix4, colour: THREE.Color): void {
+    this.mesh.setMatrixAt(this.count, place);
+    this.mesh.setColorAt(this.count, colour);
+    this.count += 1;
+  }
+
+  end(): void {
+    this.mesh.count = this.count;
+    this.mesh.instanceMatrix.needsUpdate = true;
+    if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
+  }
+
+  /** The length of an instance along its own y, as it is drawn. */
+  lengthOf(index: number): number {
+    const place = new THREE.Matrix4();
+    this.mesh.getMatrixAt(index, place);
+    return new THREE.Vector3().setFromMatrixColumn(place, 1).length();
+  }
+
+  get size(): number {
+    return this.count;
+  }
+}
+
+/** Bright and unshaded, over what is in front of it, so that a force inside a foot is seen. */
+function glow(opacity: number, through = true): THREE.MeshBasicMaterial {
+  return new THREE.MeshBasicMaterial({
+    transparent: true,
+    opacity,
+    depthTest: !through,
+    depthWrite: false,
+    toneMapped: false,
+  });
+}
+
+/** From y = 0 to y = 1. */
+function standing(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
+  return geometry.translate(0, 0.5, 0);
+}
+
+export class Overlays {
+  readonly group = new THREE.Group();
+  /** Metres a newton. */
+  forceScale = 0.002;
+  private discs = new Many(new THREE.CylinderGeometry(1, 1, 0.12, 32), glow(0.85), 3);
+  private shafts = new Many(standing(new THREE.CylinderGeometry(1, 1, 1, 12)), glow(0.95), 5);
+  private heads = new Many(standing(new THREE.ConeGeometry(1, 1, 20)), glow(0.95), 5);
+  private cones = new Many(
+    standing(new THREE.ConeGeometry(1, 1, 40, 1, true).rotateX(Math.PI)),
+    new THREE.MeshBasicMaterial({
+      transparent: true,
+      opacity: 0.22,
+      side: THREE.DoubleSide,
+      depthWrite: false,
+      toneMapped: false,
+    }),
+    2,
+  );
+  private strings = new Many(
+    standing(new THREE.CylinderGeometry(1, 1, 1, 10)),
+    new THREE.MeshStandardMaterial({ roughness: 0.6 }),
+  );
+  private balls = new Many(new THREE.SphereGeometry(1, 20, 14), glow(0.9), 4);
+  private boxes = new Many(new THREE.BoxGeometry(2, 2, 2), glow(0.3), 4);
+
+  constructor(
+    private scene: Scene,
+    private layers: Layers,
+    /** A length that suits the model, m. */
+    private extent: number,
+  ) {
+    for (const many of this.all()) this.group.add(many.group);
+    const weight = 9.81 * scene.bodies.reduce((sum, body) => sum + body.mass, 0);
+    if (weight > 0) this.forceScale = (1.1 * extent) / weight;
+  }
+
+  private all(): Many[] {
+    return [this.discs, this.shafts, this.heads, this.cones, this.strings, this.balls, this.boxes];
+  }
+
+  update(frame: Frame, poses: THREE.Matrix4[]): void {
+    const { contacts, spans, drag } = frame.rows;
+    const { scene, layers } = this;
+    const marks = 3 * (scene.bodies.length + scene.joints.length);
+    const arrows = 2 * contacts.count + marks + 1;
+    this.discs.begin(contacts.count);
+    this.cones.begin(contacts.count);
+    this.shafts.begin(arrows);
+    this.heads.begin(arrows);
+    this.strings.begin(spans.count);
+    this.balls.begin(scene.bodies.length + 1);
+    this.boxes.begin(scene.bodies.length);
+    for (let row = 0; row < contacts.count; row++) {
+      this.contact(contacts.data.subarray(20 * row, 20 * row + 20));
+    }
+    if (layers.tendons) {
+      for (let row = 0; row < spans.count; row++) this.span(spans.data.subarray(7 * row, 7 * row + 7));
+    }
+    if (layers.frames) poses.forEach((pose, body) => body > 0 && this.axes(pose));
+    if (layers.joints) scene.joints.forEach((_, joint) => this.joint(joint, poses));
+    scene.bodies.forEach((_, body) => body > 0 && this.mass(body, poses[body]));
+    if (drag.count > 0) this.drag(drag.data);
+    for (const many of this.all()) many.end();
+  }
+
+  private contact(row: Float32Array): void {
+    const place = new THREE.Vector3(row[0], row[1], row[2]);
+    const axis = (k: number) => new THREE.Vector3(row[3 + 3 * k], row[4 + 3 * k], row[5 + 3 * k]);
+    const [normal, first, second] = [axis(0), axis(1), axis(2)];
+    const [pressure, along, across] = [row[12], row[13], row[14]];
+    const friction = row[16];
+    const sideways = Math.hypot(along, across);
+    // 0 where it sticks without effort, 1 on the cone.
+    const limit = friction * Math.max(pressure, 1e-9);
+    const near = row[19] > 1 ? Math.min(1, sideways / limit) : 0;
+    const colour = STICKS.clone().lerp(SLIPS, near);
+    const radius = 0.018 * this.extent;
+    if (this.layers.contacts) {
+      this.discs.add(stretched(place, normal, radius, radius), pressure > 0 ? colour : new THREE.Color(0x9a9aa2));
+    }
+    if (pressure > 0 && this.layers.forces) {
+      this.arrow(place, normal.clone().multiplyScalar(pressure * this.forceScale), NORMAL);
+      const force = first.multiplyScalar(along).addScaledVector(second, across);
+      this.arrow(place, force.multiplyScalar(this.forceScale), FRICTION);
+    }
+    if (pressure > 0 && this.layers.cones && row[19] > 1) {
+      const height = pressure * this.forceScale;
+      this.cones.add(stretched(place, normal, friction * height, height), colour);
+    }
+  }
+
+  /** An arrow; too short a one is nothing. */
+  private arrow(from: THREE.Vector3, along: THREE.Vector3, colour: THREE.Color): void {
+    const length = along.length();
+    const thick = 0.0085 * this.extent;
+    if (length < 0.2 * thick) return;
+    const direction = along.clone().divideScalar(length);
+    const head = Math.min(4 * thick, 0.5 * length);
+    this.shafts.add(stretched(from, direction, thick, length), colour);
+    const base = from.clone().addScaledVector(direction, length - head);
+    this.heads.add(stretched(base, direction, 2.4 * thick, 1.15 * head), colour);
+  }
+
+  private span(row: Float32Array): void {
+    const { rgba, width } = this.scene.tendons[row[0]];
+    const from = new THREE.Vector3(row[1], row[2], row[3]);
+    const along = new THREE.Vector3(row[4], row[5], row[6]).sub(from);
+    const length = along.length();
+    if (length === 0) return;
+    const colour = new THREE.Color().setRGB(rgba[0], rgba[1], rgba[2], THREE.SRGBColorSpace);
+    this.strings.add(stretched(from, along.divideScalar(length), width, length), colour);
+  }
+
+  private axes(pose: THREE.Matrix4): void {
+    const place = new THREE.Vector3().setFromMatrixPosition(pose);
+    [0xd94141, 0x3aa757, 0x3f6fd9].forEach((colour, k) => {
+      const axis = new THREE.Vector3().setFromMatrixColumn(pose, k);
+      this.arrow(place, axis.multiplyScalar(0.1 * this.extent), new THREE.Color(colour));
+    });
+  }
+
+  private joint(index: number, poses: THREE.Matrix4[]): void {
+    const { kind, body, pos, axis } = this.scene.joints[index];
+    if (kind === "free" || kind === "ball") return;
+    const place = new THREE.Vector3(...pos).applyMatrix4(poses[body]);
+    const along = new THREE.Vector3(...axis).transformDirection(poses[body]);
+    this.arrow(place, along.multiplyScalar(0.14 * this.extent), new THREE.Color(0x25a7b8));
+  }
+
+  private mass(body: number, pose: THREE.Matrix4): void {
+    const { mass, inertia, ipos, iquat } = this.scene.bodies[body];
+    if (mass <= 0) return;
+    const centre = new THREE.Vector3(...ipos).applyMatrix4(pose);
+    if (this.layers.masses) {
+      const radius = 0.02 * this.extent;
+      this.balls.add(stretched(centre, UP, radius, radius), new THREE.Color(0x8d5bd1));
+    }
+    if (this.layers.inertia) {
+      // The box of equal density that has these moments: x² = 3/2 (Iy + Iz − Ix) / m for its half length x.
+      const [x, y, z] = inertia;
+      const half = (sum: number) => Math.sqrt(Math.max(0, (1.5 * sum) / mass));
+      const place = pose.clone().multiply(poseOf(ipos, iquat));
+      place.scale(new THREE.Vector3(half(y + z - x), half(x + z - y), half(x + y - z)));
+      this.boxes.add(place, new THREE.Color(0x8d5bd1));
+    }
+  }
+
+  private drag(row: Float32Array): void {
+    const from = new THREE.Vector3(row[1], row[2], row[3]);
+    const along = new THREE.Vector3(row[4], row[5], row[6]).sub(from);
+    this.arrow(from, along, PULL);
+    const radius = 0.012 * this.extent;
+    this.balls.add(stretched(from, UP, radius, radius), PULL);
+  }
+
+  /** Lengths of all arrows as they are drawn, m. */
+  arrowLengths(): number[] {
+    return Array.from({ length: this.shafts.size }, (_, k) => this.shafts.lengthOf(k));
+  }
+}
+
+/** A unit shape along y, so wide, and so long along a direction from a point. */
+function stretched(from: THREE.Vector3, along: THREE.Vector3, wide: number, long: number): THREE.Matrix4 {
+  const turn = new THREE.Quaternion().setFromUnitVectors(UP, along);
+  return new THREE.Matrix4().compose(from, turn, new THREE.Vector3(wide, long, wide));
+}
+

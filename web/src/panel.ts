@@ -1,0 +1,282 @@
+// The controls beside the picture.
+
+import type { Layers } from "./overlays.ts";
+import type { Sight } from "./bodies.ts";
+import { brief, button, check, choice, element, fold, paint, slider, type Slider } from "./elements.ts";
+import type { Frame } from "./frame.ts";
+import type { Command } from "./link.ts";
+import type { Replay } from "./replay.ts";
+import { nameOf, type Scene } from "./scene.ts";
+import type { Stage } from "./stage.ts";
+
+const SPEEDS: [string, string][] = [
+  ["0.1", "0.1 ×"],
+  ["0.25", "0.25 ×"],
+  ["0.5", "0.5 ×"],
+  ["1", "1 ×"],
+  ["2", "2 ×"],
+  ["4", "4 ×"],
+  ["0", "fastest"],
+];
+
+const LAYERS: [keyof Layers, string][] = [
+  ["contacts", "contacts"],
+  ["forces", "forces"],
+  ["cones", "friction cones"],
+  ["tendons", "tendons"],
+  ["frames", "frames"],
+  ["joints", "joint axes"],
+  ["masses", "centres of mass"],
+  ["inertia", "inertia boxes"],
+];
+
+/** Range of a slider for what has none. */
+const OPEN: [number, number] = [-3.1416, 3.1416];
+
+export class Panel {
+  chosen: number | null = null;
+  private controls: Slider[] = [];
+  private joints: { slider: Slider; qpos: number }[] = [];
+  private equalities: HTMLInputElement[] = [];
+  private clock = element("output", { id: "clock" });
+  private pause: HTMLButtonElement;
+  private time: HTMLInputElement | null = null;
+  private facts = element("div", { id: "facts" });
+  private rows = new Map<number, HTMLElement>();
+  private paused = false;
+
+  constructor(
+    private scene: Scene,
+    private stage: Stage,
+    private sight: Sight,
+    private layers: Layers,
+    private send: (command: Command) => void,
+    private replay: Replay | null,
+  ) {
+    this.pause = button("pause", "pause or go on (space)", () => this.toggle());
+    this.pause.id = "pause";
+    document.getElementById("bar")!.replaceChildren(...this.bar());
+    document.getElementById("panel")!.replaceChildren(...this.sections());
+    document.title = `${scene.name} · Clench`;
+  }
+
+  private get live(): boolean {
+    return this.scene.active && this.replay === null;
+  }
+
+  toggle(): void {
+    if (this.replay) this.replay.playing = !this.replay.playing;
+    else this.send({ do: "pause", on: !this.paused });
+  }
+
+  private bar(): HTMLElement[] {
+    const { scene, replay } = this;
+    const title = element("strong", {}, scene.name || "Clench");
+    if (replay) {
+      const last = replay.frames.length - 1;
+      this.time = element("input", { id: "time", type: "range", min: "0", max: `${last}`, step: "1" });
+      this.time.oninput = () => {
+        replay.playing = false;
+        replay.seek(this.time!.valueAsNumber);
+      };
+      const speed = choice(SPEEDS.slice(0, -1), "1", (value) => (replay.speed = Number(value)));
+      return [title, this.pause, this.time, speed, this.clock];
+    }
+    if (!this.live) return [title, this.clock];
+    const keys = scene.keyframes.map((name, index): [string, string] => [`${index}`, nameOf("key", index, name)]);
+    const keyframe = choice([["", "keyframe"], ...keys], "", (value) => {
+      if (value !== "") this.send({ do: "keyframe", index: Number(value) });
+      keyframe.value = "";
+    });
+    const step = button("step", "one step (→)", () => this.send({ do: "step", count: 1 }));
+    step.id = "step";
+    return [
+      title,
+      this.pause,
+      step,
+      button("back", "a second back (←)", () => this.send({ do: "rewind", seconds: 1 })),
+      button("reset", "reset (backspace)", () => this.send({ do: "reset" })),
+      ...(keys.length > 0 ? [keyframe] : []),
+      choice(SPEEDS, "1", (value) => this.send({ do: "speed", factor: Number(value) })),
+      this.clock,
+    ];
+  }
+
+  private sections(): HTMLElement[] {
+    const { scene } = this;
+    const parts = [fold("Show", true, this.layerChecks()), fold("Selection", true, this.facts)];
+    if (this.live) {
+      if (scene.controls.length > 0) parts.push(fold("Controls", false, this.controlSliders()));
+      if (scene.joints.length > 0) parts.push(fold("Joints", false, this.jointSliders()));
+      if (scene.equalities.length > 0) parts.push(fold("Equalities", true, this.equalityChecks()));
+      parts.push(fold("Solver", false, this.solver()));
+    }
+    parts.push(fold("Bodies", false, this.tree()));
+    this.describe(null);
+    return parts;
+  }
+
+  private layerChecks(): HTMLElement {
+    const box = element("div", { className: "checks" });
+    for (const [key, text] of LAYERS) {
+      box.append(check(text, this.layers[key], (on) => (this.layers[key] = on)));
+    }
+    box.append(check("sites", this.sight.sites, (on) => (this.sight.sites = on)));
+    const anew = (key: "hulls" | "transparent") => (on: boolean) => {
+      this.sight[key] = on;
+      this.stage.bodies.rebuild();
+    };
+    box.append(check("transparent", this.sight.transparent, anew("transparent")));
+    if (this.scene.meshes.length > 0) box.append(check("collision hulls", this.sight.hulls, anew("hulls")));
+    const used = new Set(this.scene.geoms.map((geom) => geom.group));
+    if (used.size > 1) {
+      [...used].sort().forEach((group) => {
+        box.append(check(`group ${group}`, this.sight.groups[group], (on) => (this.sight.groups[group] = on)));
+      });
+    }
+    const { overlays } = this.stage;
+    const first = overlays.forceScale;
+    const scale = slider("arrow length", -2, 2, (power) => (overlays.forceScale = first * 10 ** power), (power) =>
+      `${brief(1000 * first * 10 ** power)} mm/N`,
+    );
+    scale.show(0);
+    return element("div", {}, box, scale.row);
+  }
+
+  private controlSliders(): HTMLElement {
+    this.controls = this.scene.controls.map(({ name, range }, index) => {
+      const [low, high] = range ?? [-1, 1];
+      return slider(nameOf("control", index, name), low, high, (value) =>
+        this.send({ do: "control", index, value }),
+      );
+    });
+    return element("div", { id: "controls" }, ...this.controls.map(({ row }) => row));
+  }
+
+  private jointSliders(): HTMLElement {
+    const box = element("div", {});
+    this.scene.joints.forEach((joint, index) => {
+      if (joint.kind !== "slide" && joint.kind !== "hinge") return;
+      const [low, high] = joint.range ?? OPEN;
+      const made = slider(nameOf("joint", index, joint.name), low, high, (value) => {
+        this.send({ do: "pause", on: true });
+        this.send({ do: "position", index: joint.qpos, value });
+      });
+      this.joints.push({ slider: made, qpos: joint.qpos });
+      box.append(made.row);
+    });
+    return box;
+  }
+
+  private equalityChecks(): HTMLElement {
+    const box = element("div", { id: "equalities" });
+    this.scene.equalities.forEach(({ name, kind }, index) => {
+      const label = check(nameOf(kind, index, name), true, (on) => this.send({ do: "equality", index, on }));
+      this.equalities.push(label.querySelector("input")!);
+      box.append(label);
+    });
+    return box;
+  }
+
+  private solver(): HTMLElement {
+    const number = (text: string, key: string, value: string) => {
+      const field = element("input", { type: "number", placeholder: value, min: "0", step: "any" });
+      field.onchange = () => this.send({ do: "options", [key]: field.valueAsNumber });
+      return element("label", { className: "slider" }, element("span", {}, text), field);
+    };
+    return element(
+      "div",
+      {},
+      check("elliptic cones", false, (on) => this.send({ do: "options", elliptic: on })),
+      number("iterations", "iterations", "of the file"),
+      number("tolerance", "tolerance", "of the file"),
+      number("noslip", "noslip_iterations", "of the file"),
+    );
+  }
+
+  private tree(): HTMLElement {
+    const box = element("div", { id: "tree" });
+    const depth: number[] = [];
+    this.scene.bodies.forEach((body, index) => {
+      depth[index] = index === 0 ? 0 : depth[body.parent] + 1;
+      const row = element("div", { className: "body" }, nameOf("body", index, index === 0 ? "world" : body.name));
+      row.style.paddingLeft = `${0.4 + 0.8 * depth[index]}em`;
+      row.onclick = () => this.choose(index);
+      this.rows.set(index, row);
+      box.append(row);
+    });
+    return box;
+  }
+
+  choose(body: number | null): void {
+    if (this.chosen !== null) this.rows.get(this.chosen)?.classList.remove("chosen");
+    this.chosen = body;
+    if (body !== null) this.rows.get(body)?.classList.add("chosen");
+    if (this.stage.followed !== null) this.stage.followed = body;
+  }
+
+  /** Shows what a frame says. */
+  update(frame: Frame): void {
+    this.paused = frame.paused;
+    const still = this.replay ? !this.replay.playing : frame.paused;
+    paint(this.pause, still ? "play" : "pause");
+    const speed = frame.rows.plots.data[8];
+    const rate = this.live && !frame.paused ? ` · ${speed.toFixed(2)} ×` : "";
+    this.clock.value = `${frame.time.toFixed(3)} s${rate} · ${frame.rows.contacts.count} contacts`;
+    if (this.time && this.replay) this.time.valueAsNumber = this.replay.at;
+    this.controls.forEach((control, index) => control.show(frame.rows.ctrl.data[index]));
+    this.joints.forEach(({ slider: joint, qpos }) => joint.show(frame.rows.qpos.data[qpos]));
+    this.equalities.forEach((box, index) => (box.checked = frame.rows.eq_active.data[index] > 0));
+    this.describe(frame);
+  }
+
+  private describe(frame: Frame | null): void {
+    const body = this.chosen;
+    if (body === null || frame === null) {
+      this.facts.replaceChildren(
+        element("p", { className: "hint" }, "Click a body to see its numbers. " + (this.live ? "Ctrl-drag pulls it." : "")),
+      );
+      return;
+    }
+    const { name, mass } = this.scene.bodies[body];
+    const pose = frame.rows.bodies.data.subarray(7 * body, 7 * body + 7);
+    const lines: [string, string][] = [
+      ["body", nameOf("body", body, body === 0 ? "world" : name)],
+      ["mass", `${brief(mass)} kg`],
+      ["position", [...pose.subarray(0, 3)].map(brief).join("  ")],
+      ["quaternion", [...pose.subarray(3)].map(brief).join("  ")],
+      ["contact force", `${brief(this.pushOn(body, frame))} N`],
+    ];
+    this.scene.joints.forEach((joint, index) => {
+      if (joint.body !== body || joint.kind === "free" || joint.kind === "ball") return;
+      const { qpos, qvel } = frame.rows;
+      lines.push([
+        nameOf("joint", index, joint.name),
+        `${brief(qpos.data[joint.qpos])}  (${brief(qvel.data[joint.dof])} /s)`,
+      ]);
+    });
+    const follow = check("follow with the camera", this.stage.followed === body, (on) => {
+      this.stage.followed = on ? body : null;
+    });
+    const table = element("table", {}, ...lines.map(([what, value]) =>
+      element("tr", {}, element("td", {}, what), element("td", {}, value))));
+    if (this.facts.querySelector("table") && this.facts.dataset.body === `${body}`) {
+      this.facts.querySelector("table")!.replaceWith(table);
+    } else {
+      this.facts.replaceChildren(table, follow);
+      this.facts.dataset.body = `${body}`;
+    }
+  }
+
+  /** The sum of the sizes of contact forces on a body, N. */
+  private pushOn(body: number, frame: Frame): number {
+    const { data, count } = frame.rows.contacts;
+    let sum = 0;
+    for (let row = 0; row < count; row++) {
+      const contact = data.subarray(20 * row, 20 * row + 20);
+      const touches = [contact[17], contact[18]].some((geom) => this.scene.geoms[geom]?.body === body);
+      if (touches) sum += Math.hypot(contact[12], contact[13], contact[14]);
+    }
+    return sum;
+  }
+}

@@ -1,0 +1,26 @@
+// Poses of bodies out of frames.
+
+import * as THREE from "three";
+import type { Frame } from "./frame.ts";
+import type { Numbers3, Numbers4 } from "./scene.ts";
+
+export const ONE = new THREE.Vector3(1, 1, 1);
+
+export function poseOf(pos: ArrayLike<number>, quat: ArrayLike<number>): THREE.Matrix4 {
+  // Quaternions of models have w first, those of three have it last.
+  const turn = new THREE.Quaternion(quat[1], quat[2], quat[3], quat[0]);
+  return new THREE.Matrix4().compose(new THREE.Vector3(pos[0], pos[1], pos[2]), turn, ONE);
+}
+
+export function localPose(placed: { pos: Numbers3; quat: Numbers4 }): THREE.Matrix4 {
+  return poseOf(placed.pos, placed.quat);
+}
+
+/** Writes the pose of every body; makes room for them first. */
+export function readPoses(frame: Frame, poses: THREE.Matrix4[]): void {
+  const { data, count } = frame.rows.bodies;
+  for (let body = 0; body < count; body++) {
+    const at = 7 * body;
+    poses[body] = poseOf(data.subarray(at, at + 3), data.subarray(at + 3, at + 7));
+  }
+}

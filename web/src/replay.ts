@@ -1,0 +1,47 @@
+// A recording in the page itself: frames one after the other, with a slider for time.
+
+import { decode, type Frame } from "./frame.ts";
+import { bytesOf, type Scene } from "./scene.ts";
+
+interface Recording {
+  scene: Scene;
+  frames: string[];
+}
+
+export class Replay {
+  readonly scene: Scene;
+  readonly frames: Frame[];
+  at = 0;
+  playing = true;
+  speed = 1;
+  private clock = 0;
+
+  constructor(recording: Recording) {
+    this.scene = recording.scene;
+    const decoded = recording.frames.map((frame) => decode(this.scene, bytesOf(frame)));
+    this.frames = decoded.filter((frame): frame is Frame => frame !== null);
+    this.clock = this.frames[0]?.time ?? 0;
+  }
+
+  /** The recording that a page carries, if it carries one. */
+  static inPage(): Replay | null {
+    const carried = document.getElementById("recording")?.textContent;
+    return carried ? new Replay(JSON.parse(carried) as Recording) : null;
+  }
+
+  /** Goes on by so much real time, s, and from the end to the beginning. */
+  advance(seconds: number): Frame {
+    const { frames } = this;
+    if (this.playing) {
+      this.clock += seconds * this.speed;
+      if (this.clock > frames[frames.length - 1].time) this.seek(0);
+      while (this.at + 1 < frames.length && frames[this.at + 1].time <= this.clock) this.at += 1;
+    }
+    return frames[this.at];
+  }
+
+  seek(index: number): void {
+    this.at = index;
+    this.clock = this.frames[index].time;
+  }
+}

@@ -1,0 +1,92 @@
+// What the server says there is to draw; see crates/clench-view/src/scene.rs.
+
+export type Numbers3 = [number, number, number];
+export type Numbers4 = [number, number, number, number];
+
+export interface Placed {
+  name: string;
+  body: number;
+  kind: string;
+  pos: Numbers3;
+  quat: Numbers4;
+  size: Numbers3;
+  rgba: Numbers4;
+  material: number | null;
+}
+
+export interface Geom extends Placed {
+  group: number;
+  mesh: number | null;
+  hfield: number | null;
+  friction: Numbers3;
+  condim: number;
+}
+
+export interface Body {
+  name: string;
+  parent: number;
+  mass: number;
+  inertia: Numbers3;
+  ipos: Numbers3;
+  iquat: Numbers4;
+  free: boolean;
+}
+
+export interface Joint {
+  name: string;
+  kind: "free" | "ball" | "slide" | "hinge";
+  body: number;
+  qpos: number;
+  dof: number;
+  range: [number, number] | null;
+  pos: Numbers3;
+  axis: Numbers3;
+}
+
+export interface Surface {
+  vertices: string;
+  faces: string;
+}
+
+export interface Scene {
+  name: string;
+  timestep: number;
+  sections: { name: string; width: number }[];
+  bodies: Body[];
+  geoms: Geom[];
+  sites: Placed[];
+  joints: Joint[];
+  controls: { name: string; range: [number, number] | null }[];
+  tendons: { name: string; rgba: Numbers4; width: number }[];
+  equalities: { name: string; kind: string }[];
+  sensors: { name: string; start: number; count: number }[];
+  keyframes: string[];
+  meshes: (Surface & { name: string; hull: Surface | null })[];
+  height_fields: { rows: number; columns: number; size: Numbers4; heights: string }[];
+  materials: {
+    texture: number | null;
+    repeat: [number, number];
+    uniform: boolean;
+    emission: number;
+    specular: number;
+    shininess: number;
+    reflectance: number;
+  }[];
+  textures: {
+    pattern: "gradient" | "checker" | "flat";
+    mark: "none" | "edge" | "cross";
+    rgb1: Numbers3;
+    rgb2: Numbers3;
+    markrgb: Numbers3;
+  }[];
+  trees: (number | null)[];
+  active: boolean;
+}
+
+export function bytesOf(text: string): ArrayBuffer {
+  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer;
+}
+
+export function nameOf(kind: string, index: number, name: string): string {
+  return name === "" ? `${kind} ${index}` : name;
+}

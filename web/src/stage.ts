@@ -1,0 +1,177 @@
+// Camera, light, ground, and the picture of a frame.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
+import { Bodies, type Sight } from "./bodies.ts";
+import type { Frame } from "./frame.ts";
+import { Overlays, type Layers } from "./overlays.ts";
+import { localPose, readPoses } from "./poses.ts";
+import type { Scene } from "./scene.ts";
+
+const SKY = 0xdfe6ee;
+
+export class Stage {
+  readonly camera = new THREE.PerspectiveCamera(42, 1, 0.01, 500);
+  readonly bodies: Bodies;
+  readonly overlays: Overlays;
+  readonly controls: OrbitControls;
+  readonly poses: THREE.Matrix4[] = [];
+  /** The body that the camera follows. */
+  followed: number | null = null;
+  private renderer: THREE.WebGLRenderer;
+  private world = new THREE.Scene();
+  private sun = new THREE.DirectionalLight(0xffffff, 2.6);
+  private centre = new THREE.Vector3();
+  private followedAt: THREE.Vector3 | null = null;
+  readonly extent: number;
+
+  constructor(
+    scene: Scene,
+    first: Frame,
+    sight: Sight,
+    layers: Layers,
+    private place: HTMLElement,
+  ) {
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
+    this.renderer.toneMappingExposure = 0.95;
+    place.append(this.renderer.domElement);
+
+    readPoses(first, this.poses);
+    this.extent = this.measure(scene);
+    this.world.background = new THREE.Color(SKY);
+    this.world.fog = new THREE.Fog(SKY, 9 * this.extent, 34 * this.extent);
+    const surroundings = new THREE.PMREMGenerator(this.renderer);
+    this.world.environment = surroundings.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.world.environmentIntensity = 0.42;
+    this.light();
+    this.bodies = new Bodies(scene, sight);
+    this.overlays = new Overlays(scene, layers, this.extent);
+    this.world.add(this.bodies.group, this.overlays.group, this.ground(scene));
+
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    this.home();
+    new ResizeObserver(() => this.fit()).observe(place);
+    this.fit();
+  }
+
+  get canvas(): HTMLCanvasElement {
+    return this.renderer.domElement;
+  }
+
+  /** The size of what can move, or of all where nothing can, m; `centre` is put in its middle. */
+  private measure(scene: Scene): number {
+    const bounds = new THREE.Box3();
+    const whole = new THREE.Box3();
+    for (const geom of scene.geoms) {
+      const place = this.poses[geom.body].clone().multiply(localPose(geom));
+      const at = new THREE.Vector3().setFromMatrixPosition(place);
+      const flat = geom.kind === "plane";
+      const reach = flat ? 0.5 : Math.min(Math.hypot(...geom.size), 5);
+      const ball = new THREE.Box3().setFromCenterAndSize(at, new THREE.Vector3(reach, reach, reach).multiplyScalar(1.2));
+      whole.union(ball);
+      if (geom.body > 0) bounds.union(ball);
+    }
+    const seen = bounds.isEmpty() ? whole : bounds;
+    if (seen.isEmpty()) return 1;
+    seen.getCenter(this.centre);
+    return Math.max(0.05, seen.getSize(new THREE.Vector3()).length() * 0.6);
+  }
+
+  private light(): void {
+    this.world.add(new THREE.HemisphereLight(0xffffff, 0xb9b4ac, 0.9));
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.bias = -0.0002;
+    this.sun.shadow.normalBias = 0.004 * this.extent;
+    this.sun.shadow.radius = 3;
+    const camera = this.sun.shadow.camera;
+    const half = 2.4 * this.extent;
+    camera.left = camera.bottom = -half;
+    camera.right = camera.top = half;
+    camera.near = 0.1 * this.extent;
+    camera.far = 14 * this.extent;
+    this.world.add(this.sun, this.sun.target);
+  }
+
+  /** Lines on the lowest plane, a metre or a tenth of the model apart. */
+  private ground(scene: Scene): THREE.Object3D {
+    const planes = scene.geoms.filter((geom) => geom.kind === "plane" && geom.body === 0);
+    if (planes.length === 0) return new THREE.Group();
+    const lowest = Math.min(...planes.map((plane) => plane.pos[2]));
+    const cell = this.extent > 1.2 ? 0.5 : this.extent > 0.25 ? 0.1 : 0.02;
+    const grid = new THREE.GridHelper(80 * cell, 80, 0x6b7684, 0x98a2ae);
+    grid.rotateX(Math.PI / 2);
+    grid.position.z = lowest + 0.0006 * this.extent;
+    const lines = grid.material as THREE.LineBasicMaterial;
+    lines.transparent = true;
+    lines.opacity = 0.42;
+    lines.depthWrite = false;
+    return grid;
+  }
+
+  /** Looks at the whole model from the side and above. */
+  home(): void {
+    const away = new THREE.Vector3(1.35, -1.55, 0.62).multiplyScalar(1.4 * this.extent);
+    // The plots cover the lower edge: what matters stands a little higher.
+    this.controls.target.copy(this.centre).addScaledVector(this.camera.up, -0.14 * this.extent);
+    this.camera.position.copy(this.centre).add(away);
+    this.camera.near = 0.01 * this.extent;
+    this.camera.far = 120 * this.extent;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+  }
+
+  private fit(): void {
+    const { clientWidth: width, clientHeight: height } = this.place;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+  }
+
+  draw(frame: Frame, chosen: number | null): void {
+    readPoses(frame, this.poses);
+    this.bodies.update(frame, this.poses, chosen);
+    this.overlays.update(frame, this.poses);
+    this.follow();
+    this.controls.update();
+    const target = this.controls.target;
+    this.sun.target.position.copy(target);
+    this.sun.position.copy(target).add(new THREE.Vector3(2.2, -1.6, 4.6).multiplyScalar(this.extent));
+    this.renderer.render(this.world, this.camera);
+  }
+
+  private follow(): void {
+    if (this.followed === null) {
+      this.followedAt = null;
+      return;
+    }
+    const now = new THREE.Vector3().setFromMatrixPosition(this.poses[this.followed]);
+    if (this.followedAt) {
+      const moved = now.clone().sub(this.followedAt);
+      this.controls.target.add(moved);
+      this.camera.position.add(moved);
+    }
+    this.followedAt = now;
+  }
+
+  /** The ray through a point of the window. */
+  rayAt(x: number, y: number): THREE.Raycaster {
+    const frame = this.canvas.getBoundingClientRect();
+    const at = new THREE.Vector2(
+      (2 * (x - frame.left)) / frame.width - 1,
+      1 - (2 * (y - frame.top)) / frame.height,
+    );
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(at, this.camera);
+    return ray;
+  }
+}

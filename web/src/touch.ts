@@ -1,0 +1,83 @@
+// The pointer in the picture: names under it, clicks that choose, drags that pull.
+
+import * as THREE from "three";
+import type { Command } from "./link.ts";
+import type { Panel } from "./panel.ts";
+import { nameOf, type Scene } from "./scene.ts";
+import type { Stage } from "./stage.ts";
+
+/** A press that moves less than this is a click, pixels. */
+const CLICK = 4;
+
+export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command: Command) => void): void {
+  const { canvas } = stage;
+  const label = document.getElementById("label")!;
+  let pressed: { x: number; y: number } | null = null;
+  let pulled: { body: number; point: [number, number, number]; plane: THREE.Plane } | null = null;
+
+  const pull = (event: PointerEvent) => {
+    const target = stage.rayAt(event.clientX, event.clientY).ray.intersectPlane(pulled!.plane, new THREE.Vector3());
+    if (target) send({ do: "drag", body: pulled!.body, point: pulled!.point, target: target.toArray() });
+  };
+
+  canvas.addEventListener(
+    "pointerdown",
+    (event) => {
+      pressed = { x: event.clientX, y: event.clientY };
+      if (!(event.ctrlKey || event.shiftKey || event.metaKey) || !scene.active) return;
+      const hit = stage.bodies.pick(stage.rayAt(event.clientX, event.clientY));
+      if (!hit || !scene.bodies[hit.body].free) return;
+      const facing = stage.camera.getWorldDirection(new THREE.Vector3());
+      const local = hit.point.clone().applyMatrix4(stage.poses[hit.body].clone().invert());
+      pulled = {
+        body: hit.body,
+        point: local.toArray(),
+        plane: new THREE.Plane().setFromNormalAndCoplanarPoint(facing, hit.point),
+      };
+      stage.controls.enabled = false;
+      canvas.setPointerCapture(event.pointerId);
+      panel.choose(hit.body);
+      pull(event);
+    },
+    { capture: true },
+  );
+
+  canvas.addEventListener("pointermove", (event) => {
+    if (pulled) {
+      pull(event);
+      return;
+    }
+    if (event.buttons !== 0) return;
+    const hit = stage.bodies.pick(stage.rayAt(event.clientX, event.clientY));
+    label.hidden = !hit;
+    if (!hit) return;
+    const body = scene.bodies[hit.body];
+    const geom = nameOf("geom", hit.geom, scene.geoms[hit.geom].name);
+    label.textContent = `${geom} · ${nameOf("body", hit.body, hit.body === 0 ? "world" : body.name)}`;
+    label.style.transform = `translate(${event.clientX + 14}px, ${event.clientY + 14}px)`;
+  });
+
+  canvas.addEventListener("pointerup", (event) => {
+    if (pulled) {
+      send({ do: "release" });
+      pulled = null;
+      stage.controls.enabled = true;
+    } else if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) < CLICK) {
+      panel.choose(stage.bodies.pick(stage.rayAt(event.clientX, event.clientY))?.body ?? null);
+    }
+    pressed = null;
+  });
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+
+  window.onkeydown = (event) => {
+    if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement) return;
+    if (event.key === " ") panel.toggle();
+    else if (event.key === "h") stage.home();
+    else if (!scene.active) return;
+    else if (event.key === "ArrowRight") send({ do: "step", count: 1 });
+    else if (event.key === "ArrowLeft") send({ do: "rewind", seconds: 1 });
+    else if (event.key === "Backspace") send({ do: "reset" });
+    else return;
+    event.preventDefault();
+  };
+}

@@ -1,0 +1,69 @@
+// Starts the program and the browser that tests look through.
+
+import { spawn, type ChildProcess } from "node:child_process";
+import { existsSync, mkdtempSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium, type Browser, type Page } from "playwright-core";
+
+/** npm runs scripts in the folder of its package. */
+export const ROOT = join(process.cwd(), "..");
+const PROGRAM = process.env.CLENCH ?? join(ROOT, "target/release/clench");
+const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+/** Where pictures go that a person may want to look at. */
+export const PICTURES = process.env.PICTURES ?? mkdtempSync(join(tmpdir(), "clench-view-"));
+
+/** Why tests cannot run here, if they cannot. */
+export const missing = [CHROMIUM, PROGRAM].find((path) => !existsSync(path));
+
+export function launch(): Promise<Browser> {
+  return chromium.launch({
+    executablePath: CHROMIUM,
+    args: [
+      "--no-sandbox",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
+  });
+}
+
+/** Starts `clench view`; its address, and how to end it. */
+export async function view(...words: string[]): Promise<{ url: string; end(): Promise<void> }> {
+  const program: ChildProcess = spawn(PROGRAM, ["view", "--no-open", ...words], {
+    cwd: ROOT,
+    stdio: ["ignore", "pipe", "inherit"],
+  });
+  const gone = new Promise<void>((done) => program.once("exit", () => done()));
+  const url = await new Promise<string>((found, failed) => {
+    let said = "";
+    program.stdout!.on("data", (piece: Buffer) => {
+      said += piece.toString();
+      const line = said.match(/http\S+/);
+      if (line) found(line[0]);
+    });
+    program.once("exit", () => failed(new Error("clench view ended before it printed its address")));
+  });
+  return {
+    url,
+    async end() {
+      program.kill("SIGTERM");
+      await gone;
+    },
+  };
+}
+
+/** Opens a page and waits until it has drawn something. */
+export async function open(browser: Browser, url: string): Promise<Page> {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 760 } });
+  page.on("pageerror", (error) => {
+    throw error;
+  });
+  await page.goto(url);
+  await page.waitForFunction("window.clench && window.clench.frame");
+  return page;
+}

@@ -1,0 +1,208 @@
+// The page, driven as a user drives it.
+
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import type { Browser, Page } from "playwright-core";
+import { PICTURES, ROOT, launch, missing, open, view } from "./browser.ts";
+
+const skip = missing ? `${missing} is not here` : false;
+let browser: Browser;
+
+before(async () => {
+  if (!skip) browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+});
+
+/** What the page last drew, as its console sees it. */
+interface Seen {
+  frame: { time: number; paused: boolean; rows: Record<string, { count: number; data: Float32Array }> };
+  stage: {
+    extent: number;
+    overlays: { forceScale: number; arrowLengths(): number[] };
+    camera: { projectionMatrix: unknown };
+    poses: { elements: number[] }[];
+  };
+  plots: { counts(): number[] };
+}
+declare const window: { clench: Seen };
+
+const time = (page: Page) => page.evaluate(() => window.clench.frame.time);
+const height = (page: Page, body: number) =>
+  page.evaluate((body) => window.clench.frame.rows.bodies.data[7 * body + 2], body);
+
+async function until(page: Page, condition: () => boolean): Promise<void> {
+  await page.waitForFunction(condition, undefined, { timeout: 60_000 });
+}
+
+/** The shares of pixels of a part of the picture (0 to 1 along both sides) that differ from their neighbours on the left. */
+async function detail(page: Page, [left, top, right, bottom]: number[]): Promise<number> {
+  return page.evaluate(
+    ([left, top, right, bottom]) => {
+      const canvas = document.querySelector("canvas")!;
+      const copy = document.createElement("canvas");
+      copy.width = canvas.width;
+      copy.height = canvas.height;
+      const pen = copy.getContext("2d")!;
+      pen.drawImage(canvas, 0, 0);
+      const [x, y] = [Math.floor(left * copy.width), Math.floor(top * copy.height)];
+      const [width, height] = [Math.floor((right - left) * copy.width), Math.floor((bottom - top) * copy.height)];
+      const { data } = pen.getImageData(x, y, width, height);
+      let brown = 0;
+      // The humanoid's colour: red above green above blue.
+      for (let at = 0; at < data.length; at += 4) {
+        if (data[at] > data[at + 1] + 12 && data[at + 1] > data[at + 2] + 8) brown += 1;
+      }
+      return brown / (data.length / 4);
+    },
+    [left, top, right, bottom],
+  );
+}
+
+test("the humanoid is seen where it stands", { skip }, async () => {
+  const program = await view("models/humanoid.xml", "--keyframe", "standing", "--paused");
+  try {
+    const page = await open(browser, program.url);
+    await page.waitForTimeout(500);
+    assert.match(await page.title(), /humanoid/);
+    const middle = await detail(page, [0.4, 0.25, 0.6, 0.75]);
+    const corner = await detail(page, [0.02, 0.1, 0.2, 0.5]);
+    assert.ok(middle > 0.06, `the robot fills ${middle} of the middle`);
+    assert.ok(corner < 0.01, `and ${corner} of the left edge`);
+    await page.screenshot({ path: join(PICTURES, "humanoid.png") });
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("pause, step, reset and keys do what they say", { skip }, async () => {
+  const program = await view("models/box_stack.xml");
+  try {
+    const page = await open(browser, program.url);
+    await until(page, () => window.clench.frame.time > 0.05);
+    await page.click("#pause");
+    await until(page, () => window.clench.frame.paused);
+    const still = await time(page);
+    await page.waitForTimeout(300);
+    assert.equal(await time(page), still);
+    await page.click("#step");
+    await page.waitForFunction((still) => window.clench.frame.time > still, still);
+    const timestep = (await time(page)) - still;
+    assert.ok(timestep > 0 && timestep < 0.011, `${timestep}`);
+    await page.locator("body").press("Backspace");
+    await until(page, () => window.clench.frame.time === 0);
+    assert.ok((await page.evaluate(() => window.clench.plots.counts()))[0] > 0);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("a body follows the pointer that drags it, and only with the key", { skip }, async () => {
+  const program = await view("models/box_stack.xml");
+  try {
+    const page = await open(browser, program.url);
+    await page.waitForTimeout(800);
+    // Where the top body is on the screen.
+    const at = await page.evaluate(() => {
+      const { stage, frame } = window.clench as unknown as {
+        stage: { camera: never; poses: { elements: number[] }[] };
+        frame: Seen["frame"];
+      };
+      const rows = frame.rows.bodies;
+      let top = 1;
+      for (let body = 1; body < rows.count; body++) {
+        if (rows.data[7 * body + 2] > rows.data[7 * top + 2]) top = body;
+      }
+      const place = stage.poses[top].elements.slice(12, 15);
+      const camera = stage.camera as { matrixWorldInverse: { elements: number[] }; projectionMatrix: { elements: number[] } };
+      const times = (m: number[], v: number[]) => [0, 1, 2, 3].map((i) => m[i] * v[0] + m[i + 4] * v[1] + m[i + 8] * v[2] + m[i + 12] * v[3]);
+      const [x, y, , w] = times(camera.projectionMatrix.elements, times(camera.matrixWorldInverse.elements, [...place, 1]));
+      return { body: top, x: ((x / w + 1) / 2) * innerWidth, y: ((1 - y / w) / 2) * innerHeight };
+    });
+    const before = await height(page, at.body);
+    await page.keyboard.down("Control");
+    await page.mouse.move(at.x, at.y);
+    await page.mouse.down();
+    await page.mouse.move(at.x, at.y - 120, { steps: 4 });
+    await page.waitForFunction(
+      ({ body, before }) => window.clench.frame.rows.bodies.data[7 * body + 2] > before + 0.03,
+      { body: at.body, before },
+      { timeout: 60_000 },
+    );
+    assert.equal(await page.evaluate(() => window.clench.frame.rows.drag.count), 1);
+    await page.mouse.up();
+    await page.keyboard.up("Control");
+    await until(page, () => window.clench.frame.rows.drag.count === 0);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("arrows are as long as contact forces are strong", { skip }, async () => {
+  const program = await view("models/box_stack.xml");
+  try {
+    const page = await open(browser, program.url);
+    await until(page, () => window.clench.frame.time > 1);
+    await page.click("#pause");
+    await until(page, () => window.clench.frame.paused);
+    await page.waitForTimeout(200);
+    const { drawn, forces } = await page.evaluate(() => {
+      const { stage, frame } = window.clench;
+      const { data, count } = frame.rows.contacts;
+      const forces = Array.from({ length: count }, (_, row) => data[20 * row + 12]);
+      const drawn = stage.overlays.arrowLengths().map((length) => length / stage.overlays.forceScale);
+      return { drawn, forces };
+    });
+    const strongest = Math.max(...forces);
+    assert.ok(strongest > 0);
+    assert.ok(Math.abs(Math.max(...drawn) / strongest - 1) < 1e-4, `${drawn} ${forces}`);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("an equality that is switched off lets go", { skip }, async () => {
+  const program = await view("models/toggled_weld.xml");
+  try {
+    const page = await open(browser, program.url);
+    const box = page.locator("#equalities input").first();
+    const on = await box.isChecked();
+    await box.click();
+    await page.waitForFunction((on) => (window.clench.frame.rows.eq_active.data[0] > 0) !== on, on);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("a page whose program has ended says so", { skip }, async () => {
+  const program = await view("models/pendulum.xml");
+  const page = await open(browser, program.url);
+  await program.end();
+  await page.waitForSelector("#notice:not([hidden])");
+  assert.match((await page.textContent("#notice")) ?? "", /ended/);
+  await page.close();
+});
+
+test("a recording opens from a disk and replays", { skip }, async () => {
+  const file = join(mkdtempSync(join(tmpdir(), "clench-recording-")), "fall.html");
+  const program = process.env.CLENCH ?? join(ROOT, "target/release/clench");
+  const words = ["simulate", "models/humanoid.xml", "--time", "0.5", "--every", "8", "--record", file];
+  const done = spawnSync(program, words, { cwd: ROOT, encoding: "utf8" });
+  assert.equal(done.status, 0, done.stderr);
+  const page = await open(browser, `file://${file}`);
+  await until(page, () => window.clench.frame.time > 0.1);
+  await page.locator("#time").fill("3");
+  const chosen = await page.waitForFunction(() => window.clench.frame.time < 0.1 && window.clench.frame.time);
+  assert.ok(Math.abs(Number(await chosen.jsonValue()) - 0.064) < 1e-9);
+  await page.close();
+});

@@ -1,0 +1,61 @@
+//! The viewer's page: built by Node, and driven in a browser by its tests.
+
+use crate::run::{Profile, command, root, run};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// Builds the page, which the program and the Python package embed when they are compiled after it.
+///
+/// # Errors
+/// That a package cannot be had, or that the page has errors of types.
+pub fn build() -> Result<(), String> {
+    npm(&["ci", "--silent", "--no-audit", "--no-fund"]).map_err(|e| {
+        format!("{e}\nA registry of npm must be reachable, on the first run at least.")
+    })?;
+    npm(&["run", "--silent", "check"])?;
+    npm(&["run", "--silent", "build"])
+}
+
+/// Drives the page in Chromium.
+///
+/// # Errors
+/// That a test failed.
+pub fn test() -> Result<(), String> {
+    let mut tests = in_web("npm", &["run", "--silent", "test"]);
+    tests.env("CLENCH", Profile::Release.program("clench"));
+    tests.env("CHROMIUM", chromium());
+    run(tests)
+}
+
+/// Why the page cannot be built here, if it cannot.
+pub fn no_node() -> Option<String> {
+    let installed = in_web("npm", &["--version"]).stdout(Stdio::null()).status();
+    match installed {
+        Ok(status) if status.success() => None,
+        _ => Some("npm is not installed".to_owned()),
+    }
+}
+
+/// Why the page cannot be driven here, if it cannot.
+pub fn no_browser() -> Option<String> {
+    no_node().or_else(|| {
+        let path = chromium();
+        let missing = !path.is_file();
+        missing.then(|| format!("there is no Chromium at {}", path.display()))
+    })
+}
+
+/// Debian's Chromium, or that of the environment variable `CHROMIUM`.
+fn chromium() -> PathBuf {
+    std::env::var_os("CHROMIUM").map_or_else(|| "/usr/bin/chromium".into(), PathBuf::from)
+}
+
+fn npm(arguments: &[&str]) -> Result<(), String> {
+    run(in_web("npm", arguments))
+}
+
+fn in_web(program: &str, arguments: &[&str]) -> Command {
+    let mut made = command(program, arguments);
+    made.current_dir(root().join("web"));
+    made
+}
