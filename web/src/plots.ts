@@ -62,7 +62,7 @@ class Plot {
         scales: { x: { time: false } },
         axes: [
           { size: 22, font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
-          { size: 46, font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
+          { size: 46, values: (_, ticks) => ticks.map(tick), font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
         ],
         series: [{}, { stroke: colour, width: 1.5, points: { show: false } }],
       },
@@ -97,6 +97,12 @@ class Plot {
   }
 }
 
+/** A number of an axis, as short as it can be. */
+function tick(value: number): string {
+  const rounded = Number(value.toPrecision(4));
+  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : `${rounded}`;
+}
+
 export class Plots {
   private plots: Plot[];
   private turn = 0;
@@ -110,8 +116,8 @@ export class Plots {
   add(frame: Frame): void {
     for (const plot of this.plots) plot.add(frame);
     // One of them a frame is often enough to look at.
-    this.turn = (this.turn + 1) % (2 * this.plots.length);
-    if (this.turn % 2 === 0) this.plots[this.turn / 2].draw();
+    this.turn = (this.turn + 1) % this.plots.length;
+    this.plots[this.turn].draw();
   }
 
   /** Moments in each. */

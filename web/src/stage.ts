@@ -70,7 +70,9 @@ export class Stage {
   private measure(scene: Scene): number {
     const bounds = new THREE.Box3();
     const whole = new THREE.Box3();
+    const lost = this.strays();
     for (const geom of scene.geoms) {
+      if (lost.has(geom.body)) continue;
       const place = this.poses[geom.body].clone().multiply(localPose(geom));
       const at = new THREE.Vector3().setFromMatrixPosition(place);
       const flat = geom.kind === "plane";
@@ -83,6 +85,20 @@ export class Stage {
     if (seen.isEmpty()) return 1;
     seen.getCenter(this.centre);
     return Math.max(0.05, seen.getSize(new THREE.Vector3()).length() * 0.6);
+  }
+
+  /** Bodies that have gone far away from most others. */
+  private strays(): Set<number> {
+    const places = this.poses.slice(1).map((pose) => new THREE.Vector3().setFromMatrixPosition(pose));
+    const middle = (numbers: number[]) => numbers.sort((a, b) => a - b)[numbers.length >> 1] ?? 0;
+    const centre = new THREE.Vector3(
+      middle(places.map(({ x }) => x)),
+      middle(places.map(({ y }) => y)),
+      middle(places.map(({ z }) => z)),
+    );
+    const distances = places.map((place) => place.distanceTo(centre));
+    const usual = middle([...distances]);
+    return new Set(distances.flatMap((distance, k) => (distance > 8 * usual + 1 ? [k + 1] : [])));
   }
 
   private light(): void {

@@ -59,11 +59,24 @@ export async function view(...words: string[]): Promise<{ url: string; end(): Pr
 
 /** Opens a page and waits until it has drawn something. */
 export async function open(browser: Browser, url: string): Promise<Page> {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 760 } });
+  const page = await browser.newPage({ viewport: { width: 900, height: 560 } });
   page.on("pageerror", (error) => {
     throw error;
   });
-  await page.goto(url);
-  await page.waitForFunction("window.clench && window.clench.frame");
+  // Drawing in software takes its time.
+  page.setDefaultTimeout(PATIENCE);
+  await page.goto(url, { waitUntil: "commit" });
+  await until(page, () => "clench" in window);
   return page;
+}
+
+const PATIENCE = 120_000;
+
+/** Waits until something holds in the page. Playwright's own wait evaluates text, which the page does not let happen. */
+export async function until<T>(page: Page, condition: (about: T) => boolean, about?: T): Promise<void> {
+  const deadline = Date.now() + PATIENCE;
+  while (!(await page.evaluate(condition as (about: unknown) => boolean, about))) {
+    if (Date.now() > deadline) throw new Error(`in vain: ${condition}`);
+    await new Promise((done) => setTimeout(done, 50));
+  }
 }

@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
-import { PICTURES, ROOT, launch, missing, open, view } from "./browser.ts";
+import { PICTURES, ROOT, launch, missing, open, until, view } from "./browser.ts";
 
 const skip = missing ? `${missing} is not here` : false;
 let browser: Browser;
@@ -35,10 +35,6 @@ declare const window: { clench: Seen };
 const time = (page: Page) => page.evaluate(() => window.clench.frame.time);
 const height = (page: Page, body: number) =>
   page.evaluate((body) => window.clench.frame.rows.bodies.data[7 * body + 2], body);
-
-async function until(page: Page, condition: () => boolean): Promise<void> {
-  await page.waitForFunction(condition, undefined, { timeout: 60_000 });
-}
 
 /** The shares of pixels of a part of the picture (0 to 1 along both sides) that differ from their neighbours on the left. */
 async function detail(page: Page, [left, top, right, bottom]: number[]): Promise<number> {
@@ -92,7 +88,7 @@ test("pause, step, reset and keys do what they say", { skip }, async () => {
     await page.waitForTimeout(300);
     assert.equal(await time(page), still);
     await page.click("#step");
-    await page.waitForFunction((still) => window.clench.frame.time > still, still);
+    await until(page, (still) => window.clench.frame.time > still, still);
     const timestep = (await time(page)) - still;
     assert.ok(timestep > 0 && timestep < 0.011, `${timestep}`);
     await page.locator("body").press("Backspace");
@@ -131,11 +127,10 @@ test("a body follows the pointer that drags it, and only with the key", { skip }
     await page.mouse.move(at.x, at.y);
     await page.mouse.down();
     await page.mouse.move(at.x, at.y - 120, { steps: 4 });
-    await page.waitForFunction(
-      ({ body, before }) => window.clench.frame.rows.bodies.data[7 * body + 2] > before + 0.03,
-      { body: at.body, before },
-      { timeout: 60_000 },
-    );
+    await until(page, ({ body, before }) => window.clench.frame.rows.bodies.data[7 * body + 2] > before + 0.03, {
+      body: at.body,
+      before,
+    });
     assert.equal(await page.evaluate(() => window.clench.frame.rows.drag.count), 1);
     await page.mouse.up();
     await page.keyboard.up("Control");
@@ -177,7 +172,7 @@ test("an equality that is switched off lets go", { skip }, async () => {
     const box = page.locator("#equalities input").first();
     const on = await box.isChecked();
     await box.click();
-    await page.waitForFunction((on) => (window.clench.frame.rows.eq_active.data[0] > 0) !== on, on);
+    await until(page, (on) => (window.clench.frame.rows.eq_active.data[0] > 0) !== on, on);
     await page.close();
   } finally {
     await program.end();
@@ -202,7 +197,7 @@ test("a recording opens from a disk and replays", { skip }, async () => {
   const page = await open(browser, `file://${file}`);
   await until(page, () => window.clench.frame.time > 0.1);
   await page.locator("#time").fill("3");
-  const chosen = await page.waitForFunction(() => window.clench.frame.time < 0.1 && window.clench.frame.time);
-  assert.ok(Math.abs(Number(await chosen.jsonValue()) - 0.064) < 1e-9);
+  await until(page, () => window.clench.frame.time < 0.1);
+  assert.ok(Math.abs((await time(page)) - 0.064) < 1e-9);
   await page.close();
 });

@@ -4,7 +4,7 @@ use crate::interrupt::Interrupt;
 use crate::message::tell;
 use crate::options::ModelArguments;
 use crate::simulate::find_keyframe;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use clench::Sim;
 use clench_view::{Page, Player, Scene, Server, ServerOptions};
@@ -66,8 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let server = Server::start(&place, page, &Scene::new(&model))?;
     announce(arguments, &server);
-    play(Player::new(sim, arguments.paused), &server, &interrupt)
-        .context("the simulation ends here")?;
+    play(Player::new(sim, arguments.paused), &server, &interrupt);
     Ok(ExitCode::SUCCESS)
 }
 
@@ -83,7 +82,7 @@ fn announce(arguments: &Arguments, server: &Server) {
 }
 
 /// Steps and shows, frame by frame, and does what users do.
-fn play(mut player: Player, server: &Server, interrupt: &Interrupt) -> Result<()> {
+fn play(mut player: Player, server: &Server, interrupt: &Interrupt) {
     let period = Duration::from_secs_f64(1.0 / RATE);
     let mut last = Instant::now();
     while interrupt.signal().is_none() {
@@ -98,9 +97,12 @@ fn play(mut player: Player, server: &Server, interrupt: &Interrupt) -> Result<()
         }
         last = now;
         if server.clients() > 0 {
-            server.publish(player.frame()?);
+            match player.frame() {
+                Ok(frame) => server.publish(frame),
+                // One can still go back, or reset.
+                Err(error) => server.tell(&format!("nothing to show: {error}")),
+            }
         }
         sleep(period.saturating_sub(now.elapsed()));
     }
-    Ok(())
 }
