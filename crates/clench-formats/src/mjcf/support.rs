@@ -12,7 +12,7 @@ pub struct Support {
     pub element: Cow<'static, str>,
     /// Attributes that are read.
     pub read: Vec<&'static str>,
-    /// Attributes that are accepted and do not act on motion.
+    /// Attributes that are accepted and do not act on motion; viewers may show what they say.
     pub ignored: Vec<&'static str>,
     /// Attributes that are refused; one written as `name=value` is accepted with that value, which does nothing.
     pub refused: Vec<&'static str>,

@@ -9,25 +9,20 @@ pub(super) const RULES: &[Rule] = &[
         read: "name file content_type",
         ..NONE
     },
-    Rule {
-        element: "texture",
-        read: "name type builtin rgb1 rgb2 mark markrgb width height",
-        ignored: "class colorspace content_type embed file gridsize gridlayout fileright fileleft fileup \
-            filedown filefront fileback random hflip vflip nchannel",
-        ..NONE
-    },
+    ignored(
+        "texture",
+        "name class type colorspace content_type embed file gridsize gridlayout fileright fileleft fileup \
+        filedown filefront fileback builtin rgb1 rgb2 mark markrgb random width height hflip vflip nchannel",
+        "",
+    ),
     Rule {
         element: "material",
-        read: "name class rgba texture texrepeat texuniform emission specular shininess reflectance",
-        ignored: "metallic roughness",
+        read: "name class rgba",
+        ignored: "texture texrepeat texuniform emission specular shininess reflectance metallic roughness",
         children: "layer",
         ..NONE
     },
-    Rule {
-        element: "layer",
-        read: "texture role",
-        ..NONE
-    },
+    ignored("layer", "texture role", ""),
     Rule {
         element: "mesh",
         read: "name class file content_type builtin params vertex face refpos refquat scale inertia maxhullvert \

@@ -16,7 +16,7 @@ pub(crate) struct Rule {
     pub element: &'static str,
     /// Attributes that are read.
     pub read: &'static str,
-    /// Attributes that do not act on motion.
+    /// Attributes that do not act on motion. What some of them say of colours and surfaces is kept for viewers.
     pub ignored: &'static str,
     /// Attributes that are not supported yet, each with the value that does nothing if there is one.
     pub later: &'static str,

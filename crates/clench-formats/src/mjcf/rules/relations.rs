@@ -44,8 +44,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "spatial",
         read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction width material rgba",
-        ignored: "group user",
+            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction",
+        ignored: "group user width material rgba",
         later: "springyield=0",
         children: "site geom pulley",
         ..NONE
@@ -82,8 +82,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "default/tendon",
         read: "limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction width material rgba",
-        ignored: "group user",
+            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction",
+        ignored: "group user width material rgba",
         later: "springyield=0",
         ..NONE
     },

@@ -68,8 +68,8 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "site",
-        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis material rgba",
-        ignored: "user",
+        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis",
+        ignored: "material rgba user",
         later: "mesh",
         ..NONE
     },
