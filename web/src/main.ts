@@ -60,6 +60,7 @@ function show(parts: Parts, frame: Frame): void {
   parts.stage.draw(frame, parts.panel.chosen);
   parts.panel.update(frame);
   parts.plots.add(frame);
+  parts.plots.draw();
   // For tests and the curious: what is drawn, from the console.
   Object.assign(window, { clench: { ...parts, frame } });
 }
@@ -89,8 +90,13 @@ function play(replay: Replay): void {
   }
   const parts = open(replay.scene, replay.frames[0], () => {}, replay);
   let last = performance.now();
+  let plotted = -1;
   const tick = (now: number) => {
-    show(parts, replay.advance((now - last) / 1000));
+    const frame = replay.advance((now - last) / 1000);
+    // The plots show all moments up to this one, also those that were not drawn.
+    if (replay.at < plotted) plotted = -1;
+    while (plotted < replay.at) parts.plots.add(replay.frames[++plotted]);
+    show(parts, frame);
     last = now;
     requestAnimationFrame(tick);
   };

@@ -125,7 +125,9 @@ export class Overlays {
     private scene: Scene,
     private layers: Layers,
     /** A length that suits the model, m. */
-    private extent: number,
+    extent: number,
+    /** One that suits marks on its bodies, m. */
+    private size: number,
   ) {
     for (const many of this.all()) this.group.add(many.group);
     const weight = 9.81 * scene.bodies.reduce((sum, body) => sum + body.mass, 0);
@@ -172,7 +174,7 @@ export class Overlays {
     const limit = friction * Math.max(pressure, 1e-9);
     const near = row[19] > 1 ? Math.min(1, sideways / limit) : 0;
     const colour = STICKS.clone().lerp(SLIPS, near);
-    const radius = 0.018 * this.extent;
+    const radius = 0.018 * this.size;
     if (this.layers.contacts) {
       this.discs.add(stretched(place, normal, radius, radius), pressure > 0 ? colour : new THREE.Color(0x9a9aa2));
     }
@@ -190,7 +192,7 @@ export class Overlays {
   /** An arrow; too short a one is nothing. */
   private arrow(from: THREE.Vector3, along: THREE.Vector3, colour: THREE.Color): void {
     const length = along.length();
-    const thick = 0.0085 * this.extent;
+    const thick = 0.0085 * this.size;
     if (length < 0.2 * thick) return;
     const direction = along.clone().divideScalar(length);
     const head = Math.min(4 * thick, 0.5 * length);
@@ -213,7 +215,7 @@ export class Overlays {
     const place = new THREE.Vector3().setFromMatrixPosition(pose);
     [0xd94141, 0x3aa757, 0x3f6fd9].forEach((colour, k) => {
       const axis = new THREE.Vector3().setFromMatrixColumn(pose, k);
-      this.arrow(place, axis.multiplyScalar(0.1 * this.extent), new THREE.Color(colour));
+      this.arrow(place, axis.multiplyScalar(0.1 * this.size), new THREE.Color(colour));
     });
   }
 
@@ -222,7 +224,7 @@ export class Overlays {
     if (kind === "free" || kind === "ball") return;
     const place = new THREE.Vector3(...pos).applyMatrix4(poses[body]);
     const along = new THREE.Vector3(...axis).transformDirection(poses[body]);
-    this.arrow(place, along.multiplyScalar(0.14 * this.extent), new THREE.Color(0x25a7b8));
+    this.arrow(place, along.multiplyScalar(0.14 * this.size), new THREE.Color(0x25a7b8));
   }
 
   private mass(body: number, pose: THREE.Matrix4): void {
@@ -230,7 +232,7 @@ export class Overlays {
     if (mass <= 0) return;
     const centre = new THREE.Vector3(...ipos).applyMatrix4(pose);
     if (this.layers.masses) {
-      const radius = 0.02 * this.extent;
+      const radius = 0.02 * this.size;
       this.balls.add(stretched(centre, UP, radius, radius), new THREE.Color(0x8d5bd1));
     }
     if (this.layers.inertia) {
@@ -247,7 +249,7 @@ export class Overlays {
     const from = new THREE.Vector3(row[1], row[2], row[3]);
     const along = new THREE.Vector3(row[4], row[5], row[6]).sub(from);
     this.arrow(from, along, PULL);
-    const radius = 0.012 * this.extent;
+    const radius = 0.012 * this.size;
     this.balls.add(stretched(from, UP, radius, radius), PULL);
   }
 

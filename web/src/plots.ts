@@ -115,7 +115,10 @@ export class Plots {
 
   add(frame: Frame): void {
     for (const plot of this.plots) plot.add(frame);
-    // One of them a frame is often enough to look at.
+  }
+
+  /** Draws one of them, which is often enough to look at. */
+  draw(): void {
     this.turn = (this.turn + 1) % this.plots.length;
     this.plots[this.turn].draw();
   }

@@ -21,9 +21,10 @@ export class Stage {
   followed: number | null = null;
   private renderer: THREE.WebGLRenderer;
   private world = new THREE.Scene();
-  private sun = new THREE.DirectionalLight(0xffffff, 2.6);
+  private sun = new THREE.DirectionalLight(0xffffff, 2.8);
   private centre = new THREE.Vector3();
   private followedAt: THREE.Vector3 | null = null;
+  /** A length that suits the whole, m. */
   readonly extent: number;
 
   constructor(
@@ -50,7 +51,7 @@ export class Stage {
     this.world.environmentIntensity = 0.42;
     this.light();
     this.bodies = new Bodies(scene, sight);
-    this.overlays = new Overlays(scene, layers, this.extent);
+    this.overlays = new Overlays(scene, layers, this.extent, Math.min(this.extent, usualSize(scene)));
     this.world.add(this.bodies.group, this.overlays.group, this.ground(scene));
 
     this.camera.up.set(0, 0, 1);
@@ -102,7 +103,7 @@ export class Stage {
   }
 
   private light(): void {
-    this.world.add(new THREE.HemisphereLight(0xffffff, 0xb9b4ac, 0.9));
+    this.world.add(new THREE.HemisphereLight(0xffffff, 0xb9b4ac, 0.7));
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.bias = -0.0002;
@@ -190,4 +191,11 @@ export class Stage {
     ray.setFromCamera(at, this.camera);
     return ray;
   }
+}
+
+/** A length that marks on bodies are measured by: several times the half size of a usual geom, m. */
+function usualSize(scene: Scene): number {
+  const moving = scene.geoms.filter((geom) => geom.body > 0);
+  const sizes = moving.map((geom) => Math.hypot(...geom.size)).sort((a, b) => a - b);
+  return 7 * (sizes[sizes.length >> 1] ?? 1) || 1;
 }
