@@ -250,21 +250,23 @@ def forces(what, ours, theirs):
 
 
 def drop_idle_rows(ours, theirs):
-    """Takes out equalities that nothing can act on, such as a weld of a body to itself: rounding decides whether they have rows."""
+    """Takes out what nothing can act on, such as a weld of a body to itself or a tendon of one body: it moves nothing, and rounding, or
+    how MuJoCo stores the Jacobian, decides whether it has rows.
+    """
     sources = [(row["kind"], row["source"]) for row in ours["constraints"]]
-    kept = acted_on(sources, ours["jacobian"], [kind == "equality" for kind, _ in sources])
+    kept = acted_on(sources, ours["jacobian"], [kind == "contact" for kind, _ in sources])
     for name in ("constraints", "jacobian"):
         ours[name] = [ours[name][k] for k in kept]
-    equality = theirs.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
-    kept = acted_on(list(zip(theirs.efc_type, theirs.efc_id)), theirs.jacobian, equality)
+    contact = theirs.efc_type >= mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS
+    kept = acted_on(list(zip(theirs.efc_type, theirs.efc_id)), theirs.jacobian, contact)
     for name in ("jacobian", *(name for name in vars(theirs) if name.startswith("efc_"))):
         setattr(theirs, name, getattr(theirs, name)[kept])
 
 
-def acted_on(sources, jacobian, equality):
-    """The rows that are no equality, or belong to one that has a lever."""
+def acted_on(sources, jacobian, contact):
+    """The rows that are of a contact, or belong to something that has a lever."""
     moving = {source for source, row in zip(sources, jacobian) if np.abs(row).max() > IDLE}
-    return [k for k, source in enumerate(sources) if not equality[k] or source in moving]
+    return [k for k, source in enumerate(sources) if contact[k] or source in moving]
 
 
 def next_state(model, what, question, ours):

@@ -3,7 +3,7 @@
 //! Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2. A motion pairs an angular velocity with the
 //! velocity of the body point at the reference point; a force pairs the moment about that point with a linear force.
 
-use crate::{Mat3, Real, Vec3};
+use crate::{Mat3, Quat, Real, Vec3};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// A spatial motion vector: velocity, acceleration or joint axis.
@@ -127,6 +127,15 @@ impl<T: Real> Motion<T> {
     #[inline(always)]
     pub fn velocity_at(self, offset: Vec3<T>) -> Vec3<T> {
         self.linear + self.angular.cross(offset)
+    }
+    /// The same motion told in a frame that stands at `offset` and is turned by `rotation`: about its origin, along its axes.
+    #[inline(always)]
+    pub fn in_frame(self, offset: Vec3<T>, rotation: Quat<T>) -> Self {
+        let back = rotation.conjugate();
+        Motion::new(
+            back.rotate(self.angular),
+            back.rotate(self.velocity_at(offset)),
+        )
     }
 }
 

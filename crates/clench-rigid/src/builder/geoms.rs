@@ -65,7 +65,7 @@ pub(super) fn add_geom(
     p.geom_friction.push(spec.friction);
     p.geom_margin.push(spec.margin);
     p.geom_gap.push(spec.gap);
-    p.geom_surfacevel.push(spec.surfacevel);
+    p.geom_surfacevel.push(placed.surfacevel);
     p.geom_adhesion.push(spec.adhesion);
     let added = if fluid_ellipsoid {
         AddedMass::of_ellipsoid(semi_axes(spec.kind, placed.size))

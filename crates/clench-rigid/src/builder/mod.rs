@@ -72,6 +72,7 @@ pub use error::{BuildError, Origin, shorten};
 pub use histories::HistorySpec;
 pub use length_range::{LengthRangeMode, LengthRangeSpec};
 pub use physics::{CompilerSpec, ContactOverride, InertiaFromGeom, PhysicsSpec};
+pub use placed::surfacevel_in_frame;
 pub use relations::{
     ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec,
     TendonSpec, TransmissionSpec, WrapSpec,

@@ -7,7 +7,7 @@ use super::visuals::Palette;
 use super::{BuildError, GeomSpec, ModelBuilder, WrapSpec};
 use crate::model::{HeightField, Model};
 use clench_collide::{Shape, ShapeKind, bounding_radius};
-use clench_math::{Quat, Vec3};
+use clench_math::{Motion, Quat, Vec3};
 use std::sync::Arc;
 
 /// The processed meshes and height fields of a model.
@@ -29,6 +29,8 @@ pub(super) struct PlacedGeom<'a> {
     /// Of unit length.
     pub quat: Quat<f64>,
     pub size: Vec3<f64>,
+    /// Of the surface, at its origin and along its axes.
+    pub surfacevel: [f64; 6],
     /// Radius of a sphere about its origin that holds it; 0 for a plane.
     pub rbound: f64,
     /// For mesh geoms.
@@ -113,6 +115,7 @@ impl<'a> Assets<'a> {
             pos: spec.pos,
             quat: spec.quat.normalize(),
             size: spec.size,
+            surfacevel: spec.surfacevel,
             rbound: 0.0,
             mesh: None,
             height_field: None,
@@ -163,11 +166,24 @@ impl<'a> PlacedGeom<'a> {
         } else {
             self.size = alike(self.spec, mesh.half_box)? * self.spec.fitscale;
         }
-        let (pos, quat) = (mesh.mesh.pos, mesh.mesh.quat);
-        self.pos += self.quat.rotate(pos + quat.rotate(center));
+        let quat = mesh.mesh.quat;
+        let pos = mesh.mesh.pos + quat.rotate(center);
+        self.surfacevel = surfacevel_in_frame(&self.surfacevel, pos, quat);
+        self.pos += self.quat.rotate(pos);
         self.quat = (self.quat * quat).normalize();
         Ok(())
     }
+}
+
+/// A geom's `surfacevel` (linear, angular) told in another frame, which stands at `offset` in the geom's and is turned by `rotation`.
+pub fn surfacevel_in_frame(
+    surfacevel: &[f64; 6],
+    offset: Vec3<f64>,
+    rotation: Quat<f64>,
+) -> [f64; 6] {
+    let [linear, angular] = [&surfacevel[..3], &surfacevel[3..]].map(Vec3::from_slice);
+    let [a, b, c, x, y, z] = (Motion::new(angular, linear).in_frame(offset, rotation)).to_array();
+    [x, y, z, a, b, c]
 }
 
 /// The size of a primitive like a box with these half sizes.

@@ -6,7 +6,7 @@ use crate::document::MAX_DEPTH;
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 use clench_rigid::Model;
-use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, surfacevel_in_frame};
 use clench_rigid::model::{
     Appearance, Body, Camera, CameraMode, Dof, Geom, Joint, JointKind, Site, SleepPolicy, Visuals,
 };
@@ -220,12 +220,15 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
     } = &model.geoms[g];
     let p = &model.params;
     let (mut pos, mut quat) = (p.geom_pos[g], p.geom_quat[g]);
+    let mut surfacevel = p.geom_surfacevel[g];
     let mut tag = xml.tag("geom").name(name).text("type", geom_type(*kind));
     if let Some(mesh) = mesh {
         // A geom stands where its mesh has its centre of mass, and is written where the mesh's author put its origin.
         let mesh = &model.meshes[*mesh];
         quat = (quat * mesh.quat.conjugate()).normalize();
         pos -= quat.rotate(mesh.pos);
+        let back = mesh.quat.conjugate();
+        surfacevel = surfacevel_in_frame(&surfacevel, -back.rotate(mesh.pos), back);
         tag = tag.text("mesh", &mesh.name);
     } else if let Some(field) = height_field {
         let field = &model.height_fields[*field];
@@ -246,7 +249,7 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
         .number_unless("margin", p.geom_margin[g], 0.0)
         .number_unless("gap", p.geom_gap[g], 0.0);
     tag = tag
-        .numbers_unless("surfacevel", &p.geom_surfacevel[g], &[0.0; 6])
+        .numbers_unless("surfacevel", &surfacevel, &[0.0; 6])
         .number_unless("adhesion", p.geom_adhesion[g], 0.0)
         .numbers_unless(
             "fluidcoef",
