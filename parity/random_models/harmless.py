@@ -57,7 +57,7 @@ VALUES = {
     "statistic": {"meaninertia": "2", "meanmass": "3", "meansize": "0.5", "extent": "2", "center": "1 2 3"},
     "body": {**USER, "fuse": "false"},
     "frame": {"name": "named_frame"},
-    "replicate": {"name": "named_replicate"},
+    "replicate": {"name": "named_replicate", "prefix": "copy_"},
     "joint": USER,
     "geom": {**USER, "castshadow": "false"},
     "site": {**USER, "material": "paint", "rgba": COLOUR},

@@ -205,6 +205,22 @@ fn what_is_only_seen_weighs_but_may_be_discarded() {
 }
 
 #[test]
+fn what_other_elements_name_is_not_only_seen() {
+    let model = clench_formats::load_str(
+        "<mujoco><compiler discardvisual='true'/>
+           <default><geom size='.1' contype='0' conaffinity='0'/></default>
+           <worldbody><geom name='a'/><geom name='b'/><geom name='c'/><geom name='d'/><geom name='e'/><geom name='seen'/>
+             <body><freejoint/><geom name='f' contype='1'/></body></worldbody>
+           <contact><pair geom1='a' geom2='f'/></contact>
+           <sensor><framepos objtype='geom' objname='b'/><distance geom1='c' body2='world'/><contact geom1='d'/></sensor>
+           <custom><tuple name='t'><element objtype='geom' objname='e'/></tuple></custom></mujoco>",
+    )
+    .unwrap();
+    let names: Vec<&str> = model.geoms.iter().map(|geom| geom.name.as_str()).collect();
+    assert_eq!(names, ["a", "b", "c", "d", "e", "f"]);
+}
+
+#[test]
 fn a_shell_spreads_its_mass_over_the_surface() {
     let folder = Folder::new("shell");
     let model = folder

@@ -3,7 +3,7 @@
 use super::check::describe;
 use super::element::Element;
 use super::inertia::{MassProperties, mass_properties};
-use super::placed::{Assets, is_discarded};
+use super::placed::Assets;
 use super::{
     BodySpec, BuildError, CompilerSpec, GeomSpec, InertiaFromGeom, JointSpec, ModelBuilder,
     cameras, geoms, joints,
@@ -124,7 +124,7 @@ fn add(
     model.bodies[b].joints.end = model.joints.len();
     model.bodies[b].dofs.end = model.nv;
     for geom in &spec.geoms {
-        match is_discarded(builder, geom) {
+        match assets.uses.is_discarded(geom) {
             true if !is_world && is_needed(&builder.compiler, geom) => {
                 let message =
                     "cannot be discarded as visual where all inertia comes from geoms of its group";

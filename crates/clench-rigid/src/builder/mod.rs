@@ -60,6 +60,7 @@ mod sleep;
 mod solid;
 mod tendons;
 mod transmissions;
+mod uses;
 mod visuals;
 
 pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};

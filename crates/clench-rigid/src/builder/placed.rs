@@ -3,8 +3,9 @@
 use super::element::Element;
 use super::meshes::{Processed, process};
 use super::resolve::Names;
+use super::uses::GeomUses;
 use super::visuals::Palette;
-use super::{BuildError, GeomSpec, ModelBuilder, WrapSpec};
+use super::{BuildError, GeomSpec, ModelBuilder};
 use crate::model::{HeightField, Model};
 use clench_collide::{Shape, ShapeKind, bounding_radius};
 use clench_math::{Motion, Quat, Vec3};
@@ -12,6 +13,8 @@ use std::sync::Arc;
 
 /// The processed meshes and height fields of a model.
 pub(super) struct Assets<'a> {
+    /// What else is said of geoms.
+    pub(super) uses: GeomUses<'a>,
     names: Names<'a>,
     field_names: Names<'a>,
     pub meshes: Vec<Processed>,
@@ -46,9 +49,10 @@ impl<'a> Assets<'a> {
     /// Names that are taken; meshes and height fields that cannot be.
     pub fn new(builder: &'a ModelBuilder) -> Result<Self, BuildError> {
         let names = Names::new(&builder.meshes)?;
+        let uses = GeomUses::of(builder);
         let mut collides = vec![false; builder.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
-            let counts = geom.kind == ShapeKind::Mesh && !is_visual(builder, geom);
+            let counts = geom.kind == ShapeKind::Mesh && uses.collides(geom);
             if counts && let Ok(mesh) = names.find(&geom.mesh, geom) {
                 collides[mesh] = true;
             }
@@ -69,6 +73,7 @@ impl<'a> Assets<'a> {
             })
             .collect::<Result<_, _>>()?;
         Ok(Assets {
+            uses,
             names,
             field_names: Names::new(&builder.height_fields)?,
             meshes,
@@ -83,7 +88,7 @@ impl<'a> Assets<'a> {
         let mut used = vec![!builder.compiler.discardvisual; self.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
             // A primitive that was fitted to a mesh keeps it too, as in MuJoCo.
-            if !is_discarded(builder, geom)
+            if !self.uses.is_discarded(geom)
                 && let Ok(mesh) = self.names.find(&geom.mesh, geom)
             {
                 used[mesh] = true;
@@ -210,30 +215,6 @@ fn around(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
         _ => return Err(spec.error("this shape cannot be fitted to a mesh")),
     };
     Ok(Vec3::from_array(size))
-}
-
-/// Whether a geom is only seen: it collides with nothing, by masks or explicit pairs, and no tendon goes around it.
-fn is_visual(builder: &ModelBuilder, geom: &GeomSpec) -> bool {
-    let paired = || {
-        let names = builder
-            .pairs
-            .iter()
-            .flat_map(|pair| [&pair.geom1, &pair.geom2]);
-        names
-            .into_iter()
-            .any(|name| !name.is_empty() && *name == geom.name)
-    };
-    let wrapped = || {
-        let elements = builder.tendons.iter().flat_map(|tendon| &tendon.path);
-        let is_this = |wrap: &WrapSpec| matches!(wrap, WrapSpec::Geom { geom: name, .. } if *name == geom.name);
-        !geom.name.is_empty() && elements.into_iter().any(is_this)
-    };
-    geom.contype == 0 && geom.conaffinity == 0 && !paired() && !wrapped()
-}
-
-/// Whether a geom is left out of the model.
-pub(super) fn is_discarded(builder: &ModelBuilder, geom: &GeomSpec) -> bool {
-    builder.compiler.discardvisual && is_visual(builder, geom)
 }
 
 fn check_size(spec: &GeomSpec, size: Vec3<f64>) -> Result<(), BuildError> {

@@ -1,7 +1,7 @@
 //! From names to indices.
 
 use super::element::Element;
-use super::placed::is_discarded;
+use super::uses::GeomUses;
 use super::{BodySpec, BuildError, GeomSpec, ModelBuilder};
 use std::collections::HashMap;
 
@@ -64,7 +64,8 @@ impl<'a> AllNames<'a> {
     /// A name that two elements of one kind share, those included that nothing refers to.
     pub fn new(builder: &'a ModelBuilder, order: &[usize]) -> Result<Self, BuildError> {
         let in_order = || order.iter().map(|&b| &builder.bodies[b]);
-        let kept = |geom: &&GeomSpec| !is_discarded(builder, geom);
+        let uses = GeomUses::of(builder);
+        let kept = |geom: &&GeomSpec| !uses.is_discarded(geom);
         Names::new(&builder.sensors)?;
         Names::new(&builder.equalities)?;
         Names::new(&builder.pairs)?;

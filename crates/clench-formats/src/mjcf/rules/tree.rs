@@ -28,7 +28,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "replicate",
         read: "class childclass count offset euler sep",
-        ignored: "name",
+        ignored: "name prefix",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
         ..NONE

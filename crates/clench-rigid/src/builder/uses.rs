@@ -1,0 +1,83 @@
+//! What a description says of geoms besides themselves: which collide, and which are only seen and named by nothing else.
+
+use super::sensor_specs::{ContactSideName, FrameKind, FrameName, GeomsName, SensorSubject};
+use super::{GeomSpec, ModelBuilder, WrapSpec};
+use std::collections::HashSet;
+
+/// What a description says of geoms besides themselves.
+pub(super) struct GeomUses<'a> {
+    /// Geoms of explicit pairs.
+    paired: HashSet<&'a str>,
+    /// Geoms that tendons, sensors and tuples name.
+    named: HashSet<&'a str>,
+    discardvisual: bool,
+}
+
+impl<'a> GeomUses<'a> {
+    pub fn of(builder: &'a ModelBuilder) -> Self {
+        let pairs = builder.pairs.iter();
+        let paths = builder.tendons.iter().flat_map(|tendon| &tendon.path);
+        let tuples = builder
+            .custom
+            .tuples
+            .iter()
+            .flat_map(|(_, entries)| entries);
+        let mut named: HashSet<&str> = paths
+            .filter_map(|wrap| match wrap {
+                WrapSpec::Geom { geom, .. } => Some(geom.as_str()),
+                _ => None,
+            })
+            .collect();
+        named
+            .extend((tuples.filter(|entry| entry.kind == "geom")).map(|entry| entry.name.as_str()));
+        for sensor in &builder.sensors {
+            named.extend(geoms_of(&sensor.subject));
+        }
+        GeomUses {
+            paired: pairs
+                .flat_map(|pair| [&*pair.geom1, &*pair.geom2])
+                .collect(),
+            named,
+            discardvisual: builder.compiler.discardvisual,
+        }
+    }
+
+    /// Whether it can collide, by its masks or by explicit pairs.
+    pub fn collides(&self, geom: &GeomSpec) -> bool {
+        geom.contype != 0 || geom.conaffinity != 0 || has(&self.paired, geom)
+    }
+
+    /// Whether it is left out of the model.
+    pub fn is_discarded(&self, geom: &GeomSpec) -> bool {
+        self.discardvisual && !self.collides(geom) && !has(&self.named, geom)
+    }
+}
+
+fn has(names: &HashSet<&str>, geom: &GeomSpec) -> bool {
+    !geom.name.is_empty() && names.contains(geom.name.as_str())
+}
+
+/// The geoms that a sensor names.
+fn geoms_of(subject: &SensorSubject) -> Vec<&str> {
+    let of_frame = |frame: &FrameName| frame.kind == FrameKind::Geom;
+    match subject {
+        SensorSubject::Frame { object, reference } => (std::iter::once(object).chain(reference))
+            .filter(|frame| of_frame(frame))
+            .map(|frame| frame.name.as_str())
+            .collect(),
+        SensorSubject::Inside { object, .. } if of_frame(object) => vec![&object.name],
+        SensorSubject::Geoms(sides) => (sides.iter())
+            .filter_map(|side| match side {
+                GeomsName::Geom(name) => Some(name.as_str()),
+                GeomsName::Body(_) => None,
+            })
+            .collect(),
+        SensorSubject::Contacts(query) => (query.sides.iter())
+            .filter_map(|side| match side {
+                ContactSideName::Geom(name) => Some(name.as_str()),
+                _ => None,
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
