@@ -1,13 +1,24 @@
 """Types of the compiled part of :mod:`clench`."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias, final
+from typing import Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, disjoint_base
 
+from clench._named import (
+    ActuatorView,
+    BodyView,
+    CameraView,
+    EqualityView,
+    GeomView,
+    JointView,
+    Parameters,
+    SiteView,
+    TendonView,
+)
 from clench._state import State
 
 __all__ = [
@@ -16,6 +27,7 @@ __all__ = [
     "Batch",
     "Block",
     "Constraints",
+    "Contact",
     "Contacts",
     "Element",
     "Model",
@@ -662,6 +674,18 @@ class _Outputs(StateViews):
     sensordata: Final[NDArray[Any]]  # (nsensordata,) What the sensors measured.
     energy: Final[NDArray[Any]]  # (2,) Potential and kinetic energy of the state.
 
+    # Elements, with what belongs to each.
+    def body(self, which: str | SupportsIndex) -> BodyView: ...
+    def joint(self, which: str | SupportsIndex) -> JointView: ...
+    def geom(self, which: str | SupportsIndex) -> GeomView: ...
+    def site(self, which: str | SupportsIndex) -> SiteView: ...
+    def camera(self, which: str | SupportsIndex) -> CameraView: ...
+    def tendon(self, which: str | SupportsIndex) -> TendonView: ...
+    def actuator(self, which: str | SupportsIndex) -> ActuatorView: ...
+    def equality(self, which: str | SupportsIndex) -> EqualityView: ...
+    @property
+    def params(self) -> Parameters: ...
+
 @final
 class Sim(_Outputs):
     def __new__(cls, model: Model, options: RigidOptions | None = None, *, precision: _Precision = "64") -> Self: ...
@@ -669,6 +693,8 @@ class Sim(_Outputs):
     def model(self) -> Model: ...
     @property
     def options(self) -> RigidOptions: ...
+    @options.setter
+    def options(self, options: RigidOptions) -> None: ...
     @property
     def precision(self) -> _Precision: ...
     @property
@@ -734,6 +760,8 @@ class Batch(_Outputs):
     def model(self) -> Model: ...
     @property
     def options(self) -> RigidOptions: ...
+    @options.setter
+    def options(self, options: RigidOptions) -> None: ...
     @property
     def n_envs(self) -> int: ...
     @property
@@ -777,6 +805,22 @@ class Batch(_Outputs):
         record: Sequence[str] = ("qpos", "qvel"),
         steps: SupportsIndex | None = None,
     ) -> dict[str, NDArray[Any]]: ...  # (n, steps, ...) each
+    def contacts(self, env: SupportsIndex) -> Contacts: ...
+    def constraints(self, env: SupportsIndex) -> Constraints: ...
+    def mass_matrix(self) -> _Floats: ...  # (n, nv, nv)
+    def ray(
+        self,
+        origin: ArrayLike,
+        direction: ArrayLike,
+        *,
+        groups: ArrayLike | None = None,
+        fixed: bool | np.bool_ = True,
+        exclude_body: str | SupportsIndex | None = None,
+    ) -> tuple[_Floats, NDArray[np.int64]]: ...  # (n,) each: distance, geom
+    def distance(
+        self, geom1: str | SupportsIndex, geom2: str | SupportsIndex, limit: SupportsFloat | None = None
+    ) -> _Floats: ...  # (n,)
+    def set_equality(self, which: str | SupportsIndex, active: bool | np.bool_ | ArrayLike) -> None: ...
     def sim(self, env: SupportsIndex) -> Sim: ...
     def __len__(self) -> int: ...
 
@@ -810,7 +854,44 @@ class Contacts:
     def force(self) -> _Floats: ...  # (ncon, 6) in the contact frame
     @property
     def wrench(self) -> _Floats: ...  # (ncon, 6) in world axes, on the second geom
+    def of_geom(self, which: str | SupportsIndex) -> Contacts: ...
+    def of_body(self, which: str | SupportsIndex) -> Contacts: ...
+    def between(self, geom1: str | SupportsIndex, geom2: str | SupportsIndex) -> Contacts: ...
+    @overload
+    def __getitem__(self, which: int | np.integer[Any], /) -> Contact: ...
+    @overload
+    def __getitem__(self, which: slice | Sequence[int] | NDArray[Any], /) -> Contacts: ...
+    def __iter__(self) -> Iterator[Contact]: ...
     def __len__(self) -> int: ...
+
+@final
+class Contact:
+    @property
+    def geom(self) -> tuple[int, int]: ...
+    @property
+    def geom_names(self) -> tuple[str, str]: ...
+    @property
+    def body(self) -> tuple[int, int]: ...
+    @property
+    def dim(self) -> int: ...
+    @property
+    def dist(self) -> float: ...
+    @property
+    def pos(self) -> _Floats: ...  # (3,)
+    @property
+    def frame(self) -> _Floats: ...  # (3, 3)
+    @property
+    def includemargin(self) -> float: ...
+    @property
+    def friction(self) -> _Floats: ...  # (5,)
+    @property
+    def adhesion(self) -> float: ...
+    @property
+    def surfacevel(self) -> _Floats: ...  # (3,)
+    @property
+    def force(self) -> _Floats: ...  # (6,) in the contact frame
+    @property
+    def wrench(self) -> _Floats: ...  # (6,) in world axes, on the second geom
 
 @final
 class RayHit:

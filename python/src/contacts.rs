@@ -1,17 +1,26 @@
 //! The contacts of a simulation, as arrays.
 
-use crate::arrays::column;
-use clench::Precision;
+use crate::arrays::{column, indices};
+use crate::contact::Contact;
+use crate::kind::Kind;
 use clench::rigid::readout::{self, ContactRow};
+use clench::{Model, Precision};
+use numpy::PyArray1;
+use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
+use std::sync::Arc;
 
 /// Contacts between geoms, an array a quantity: entry i of each belongs to contact i. All are copies, in float64.
+///
+/// Indexed by a number or iterated they give each `Contact`; by a slice, by numbers or by a mask (ncon) some of them. `of_geom`,
+/// `of_body` and `between` find those of a geom, a body or a pair.
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Contacts {
     /// numpy.ndarray : The geoms (ncon, 2), int64; the normal points from the first to the second.
     #[pyo3(get)]
     geom: Py<PyAny>,
-    /// list of tuple of str : Their names, empty where a geom has none.
+    /// list of tuple of str : Their names; a geom without one goes by its body and its number there, as in ``torso[1]``.
     #[pyo3(get)]
     geom_names: Vec<(String, String)>,
     /// numpy.ndarray : Dimensions (ncon), int64: 1 without friction, 3 with sliding, 4 with spin, 6 with rolling friction.
@@ -45,7 +54,8 @@ pub(crate) struct Contacts {
     /// numpy.ndarray : The same in world axes (ncon, 6): force, N, then torque about `pos`, N m.
     #[pyo3(get)]
     wrench: Py<PyAny>,
-    count: usize,
+    geoms: Vec<[usize; 2]>,
+    model: Arc<Model>,
 }
 
 impl Contacts {
@@ -55,12 +65,13 @@ impl Contacts {
         sim: &clench::Sim<S>,
     ) -> PyResult<Bound<'py, Self>> {
         let rows = readout::contact_rows(sim.workspace(), 0);
+        let model = Arc::clone(sim.model());
         let names = |row: &ContactRow| {
-            let [first, second] = row.geoms.map(|geom| sim.model().geoms[geom].name.clone());
+            let [first, second] = row.geoms.map(|geom| model.geom_label(geom));
             (first, second)
         };
         let contacts = Contacts {
-            count: rows.len(),
+            geoms: rows.iter().map(|row| row.geoms).collect(),
             geom_names: rows.iter().map(names).collect(),
             geom: column(py, &rows, [2], |row| row.geoms.map(|geom| geom as i64))?,
             dim: column(py, &rows, [], |row| [row.dim as i64])?,
@@ -73,18 +84,162 @@ impl Contacts {
             surfacevel: column(py, &rows, [3], |row| row.surfacevel)?,
             force: column(py, &rows, [6], |row| row.force)?,
             wrench: column(py, &rows, [6], |row| row.wrench)?,
+            model,
         };
         Bound::new(py, contacts)
+    }
+
+    /// Some of them, in this order.
+    fn take(&self, py: Python<'_>, chosen: &[usize]) -> PyResult<Contacts> {
+        let index = PyArray1::from_iter(py, chosen.iter().map(|&i| i as i64));
+        let rows = |array: &Py<PyAny>| array.call_method1(py, "take", (&index, 0));
+        Ok(Contacts {
+            geoms: chosen.iter().map(|&i| self.geoms[i]).collect(),
+            geom_names: (chosen.iter().map(|&i| self.geom_names[i].clone())).collect(),
+            geom: rows(&self.geom)?,
+            dim: rows(&self.dim)?,
+            dist: rows(&self.dist)?,
+            pos: rows(&self.pos)?,
+            frame: rows(&self.frame)?,
+            includemargin: rows(&self.includemargin)?,
+            friction: rows(&self.friction)?,
+            adhesion: rows(&self.adhesion)?,
+            surfacevel: rows(&self.surfacevel)?,
+            force: rows(&self.force)?,
+            wrench: rows(&self.wrench)?,
+            model: Arc::clone(&self.model),
+        })
+    }
+
+    /// Those whose geoms are so.
+    fn filter(&self, py: Python<'_>, wanted: impl Fn([usize; 2]) -> bool) -> PyResult<Contacts> {
+        let all = self.geoms.iter().enumerate();
+        let chosen: Vec<usize> = all
+            .filter(|(_, geoms)| wanted(**geoms))
+            .map(|(i, _)| i)
+            .collect();
+        self.take(py, &chosen)
+    }
+
+    /// Contact `i`.
+    fn single(&self, py: Python<'_>, i: usize) -> PyResult<Contact> {
+        let row = |array: &Py<PyAny>| {
+            let row = array.bind(py).get_item(i)?;
+            // A view of the arrays would keep all of them.
+            Ok::<_, PyErr>(row.call_method0("copy")?.unbind())
+        };
+        let number = |array: &Py<PyAny>| array.bind(py).get_item(i)?.extract::<f64>();
+        let [first, second] = self.geoms[i];
+        Ok(Contact {
+            geom: (first, second),
+            geom_names: self.geom_names[i].clone(),
+            body: (self.model.geoms[first].body, self.model.geoms[second].body),
+            dim: self.dim.bind(py).get_item(i)?.extract()?,
+            dist: number(&self.dist)?,
+            pos: row(&self.pos)?,
+            frame: row(&self.frame)?,
+            includemargin: number(&self.includemargin)?,
+            friction: row(&self.friction)?,
+            adhesion: number(&self.adhesion)?,
+            surfacevel: row(&self.surfacevel)?,
+            force: row(&self.force)?,
+            wrench: row(&self.wrench)?,
+        })
+    }
+
+    fn find_geom(&self, which: &Bound<'_, PyAny>) -> PyResult<usize> {
+        Kind::Geom.find(&self.model, which)
     }
 }
 
 #[pymethods]
 impl Contacts {
+    /// Those of a geom.
+    ///
+    /// Parameters
+    /// ----------
+    /// which : str or int
+    ///     Its name or index.
+    ///
+    /// Returns
+    /// -------
+    /// Contacts
+    fn of_geom(&self, which: &Bound<'_, PyAny>) -> PyResult<Contacts> {
+        let geom = self.find_geom(which)?;
+        self.filter(which.py(), |geoms| geoms.contains(&geom))
+    }
+
+    /// Those of any geom of a body.
+    ///
+    /// Parameters
+    /// ----------
+    /// which : str or int
+    ///     Its name or index.
+    ///
+    /// Returns
+    /// -------
+    /// Contacts
+    fn of_body(&self, which: &Bound<'_, PyAny>) -> PyResult<Contacts> {
+        let body = Kind::Body.find(&self.model, which)?;
+        self.filter(which.py(), |geoms| {
+            geoms
+                .iter()
+                .any(|&geom| self.model.geoms[geom].body == body)
+        })
+    }
+
+    /// Those between two geoms, whichever comes first.
+    ///
+    /// Parameters
+    /// ----------
+    /// geom1, geom2 : str or int
+    ///     The geoms, by name or index.
+    ///
+    /// Returns
+    /// -------
+    /// Contacts
+    fn between(&self, geom1: &Bound<'_, PyAny>, geom2: &Bound<'_, PyAny>) -> PyResult<Contacts> {
+        let (one, other) = (self.find_geom(geom1)?, self.find_geom(geom2)?);
+        self.filter(geom1.py(), |geoms| {
+            geoms == [one, other] || geoms == [other, one]
+        })
+    }
+
+    fn __getitem__<'py>(&self, which: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, count) = (which.py(), self.geoms.len());
+        if let Ok(index) = which.extract::<isize>() {
+            let from_end = if index < 0 {
+                index + count as isize
+            } else {
+                index
+            };
+            let Some(found) = usize::try_from(from_end).ok().filter(|&i| i < count) else {
+                let text = format!("there is no contact {index}: there are {count}");
+                return Err(PyIndexError::new_err(text));
+            };
+            return Ok(self.single(py, found)?.into_pyobject(py)?.into_any());
+        }
+        let numbers = PyArray1::from_iter(py, 0..count as i64);
+        let chosen = numbers.as_any().get_item(which)?;
+        let chosen = indices("contacts", &chosen, count)?;
+        Ok(self.take(py, &chosen)?.into_pyobject(py)?.into_any())
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let all: Vec<Contact> = (0..self.geoms.len())
+            .map(|i| self.single(py, i))
+            .collect::<PyResult<_>>()?;
+        PyList::new(py, all)?
+            .as_any()
+            .try_iter()
+            .map(|iterator| iterator.into_any())
+    }
+
     fn __len__(&self) -> usize {
-        self.count
+        self.geoms.len()
     }
 
     fn __repr__(&self) -> String {
-        format!("<clench.Contacts: {}>", self.count)
+        format!("<clench.Contacts: {}>", self.geoms.len())
     }
 }

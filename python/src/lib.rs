@@ -7,6 +7,7 @@ mod batch;
 mod block;
 mod busy;
 mod constraints;
+mod contact;
 mod contacts;
 mod count;
 mod element;
@@ -14,6 +15,7 @@ mod error;
 mod fields;
 mod kind;
 mod model;
+mod named;
 mod names;
 mod option_values;
 mod options;
@@ -43,6 +45,8 @@ mod _core {
     use crate::block::Block;
     #[pymodule_export]
     use crate::constraints::Constraints;
+    #[pymodule_export]
+    use crate::contact::Contact;
     #[pymodule_export]
     use crate::contacts::Contacts;
     #[pymodule_export]

@@ -1,10 +1,11 @@
-//! What `Sim.ray` and `Sim.distance` find.
+//! What rays and distances are asked with, and what they find.
 
-use crate::arrays::{column, require_finite, shaped};
-use clench::Precision;
+use crate::arrays::{column, indices, require_finite, shaped};
+use crate::kind::Kind;
 use clench::RayHit as Hit;
 use clench::collide::Separation as Found;
 use clench::math::Vec3;
+use clench::{Model, Precision, RayFilter};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -13,7 +14,7 @@ use pyo3::prelude::*;
 pub(crate) struct RayHit {
     /// int : The geom.
     geom: usize,
-    /// str : Its name, empty if it has none.
+    /// str : Its name; a geom without one goes by its body and its number there, as in ``torso[1]``.
     geom_name: String,
     /// float : From the ray's origin, in lengths of its direction.
     distance: f64,
@@ -28,13 +29,13 @@ impl RayHit {
     pub(crate) fn new<S: Precision>(
         py: Python<'_>,
         hit: &Hit<S>,
-        name: &str,
+        geom_name: String,
         origin: Vec3<S>,
         direction: Vec3<S>,
     ) -> PyResult<Self> {
         Ok(RayHit {
             geom: hit.geom,
-            geom_name: name.to_owned(),
+            geom_name,
             distance: hit.distance.to_f64(),
             position: array(py, origin + direction * hit.distance)?,
             normal: array(py, hit.normal)?,
@@ -45,14 +46,8 @@ impl RayHit {
 #[pymethods]
 impl RayHit {
     fn __repr__(&self) -> String {
-        let name = match self.geom_name.as_str() {
-            "" => String::new(),
-            name => format!(" '{name}'"),
-        };
-        format!(
-            "<clench.RayHit: geom {}{name} at {}>",
-            self.geom, self.distance
-        )
+        let (geom, name) = (self.geom, &self.geom_name);
+        format!("<clench.RayHit: geom {geom} '{name}' at {}>", self.distance)
     }
 }
 
@@ -103,4 +98,25 @@ pub(crate) fn direction<S: Precision>(value: &Bound<'_, PyAny>) -> PyResult<Vec3
 
 fn array<S: Precision>(py: Python<'_>, v: Vec3<S>) -> PyResult<Py<PyAny>> {
     column(py, &v.to_array(), [], |x| [x.to_f64()])
+}
+
+/// Which geoms rays can hit, as users say it.
+pub(crate) fn ray_filter(
+    model: &Model,
+    groups: Option<&Bound<'_, PyAny>>,
+    fixed: bool,
+    exclude_body: Option<&Bound<'_, PyAny>>,
+) -> PyResult<RayFilter> {
+    let mut filter = RayFilter {
+        fixed,
+        excluded_body: exclude_body
+            .map(|which| Kind::Body.find(model, which))
+            .transpose()?,
+        ..RayFilter::default()
+    };
+    if let Some(groups) = groups {
+        let chosen = indices("groups", groups, filter.groups.len())?;
+        filter.groups = std::array::from_fn(|group| chosen.contains(&group));
+    }
+    Ok(filter)
 }

@@ -183,7 +183,7 @@ fn source(sim: &Sim, row: &ConstraintRow) -> String {
 }
 
 fn geoms(model: &Model, geoms: [usize; 2]) -> String {
-    let [a, b] = geoms.map(|g| name_or_index(&model.geoms[g].name, "geom", g));
+    let [a, b] = geoms.map(|g| model.geom_label(g));
     format!("{a} – {b}")
 }
 

@@ -1,6 +1,8 @@
 //! What a step is told besides model and state: the options of user and file, decided, and the feature switches.
 
 use crate::Model;
+use crate::contact::check_supported;
+use crate::error::SimError;
 use crate::model::Flags;
 use clench_math::Real;
 use clench_solver::{RigidOptions, Settings, Switch};
@@ -58,6 +60,18 @@ impl StepSettings {
             flags,
             joint_limits,
         })
+    }
+
+    /// The same for a model whose contacts are then sought.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and shapes that may meet and cannot be collided.
+    pub(crate) fn supported<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, SimError> {
+        let settings = StepSettings::new::<T>(model, user)?;
+        if settings.flags.constraint && settings.flags.contact {
+            check_supported(model)?;
+        }
+        Ok(settings)
     }
 }
 

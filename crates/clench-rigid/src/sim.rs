@@ -1,12 +1,14 @@
 //! A simulation of one environment.
 
+mod parameters;
+
 use crate::Precision;
 use crate::check::{self, check_contact, check_values};
-use crate::contact::{Contact, check_supported};
+use crate::contact::Contact;
 use crate::dynamics::energy::{Energy, energy};
 use crate::error::SimError;
 use crate::known::{Extent, Known};
-use crate::model::{Model, ParamField, Params};
+use crate::model::{Model, Params};
 use crate::output::{Output, Source};
 use crate::profile::{Profile, Stage};
 use crate::readout;
@@ -50,10 +52,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_options(model: Arc<Model>, options: RigidOptions) -> Result<Self, SimError> {
-        let settings = StepSettings::new::<T>(&model, options)?;
-        if settings.flags.constraint && settings.flags.contact {
-            check_supported(&model)?;
-        }
+        let settings = StepSettings::supported::<T>(&model, options)?;
         let initial = State::new(&model);
         Ok(Sim {
             state: initial.clone(),
@@ -306,54 +305,9 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// Replaces the numbers of a field of [`params`](Self::params), element after element, and computes what follows from
-    /// them: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. The
-    /// inverse inertias `*_invweight0`, by which constraints are scaled, stay as they are unless they are set themselves.
-    ///
-    /// # Errors
-    /// A name that no field has, a field that follows from another, a wrong number of numbers, or numbers that the field
-    /// cannot have. The parameters are then as before.
-    pub fn set_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
-        let field = ParamField::settable(field)?;
-        let mut row = values.to_vec();
-        field.check_row(&self.model, &mut row)?;
-        Model::clear_structural_guarantees(&mut self.model, field, &row);
-        self.params.write_lane(field, 0, &row);
-        self.params.derive(&self.model, field);
-        self.forget();
-        Ok(())
-    }
-
-    /// The numbers of a field of [`params`](Self::params), by its name, element after element.
-    ///
-    /// # Errors
-    /// A name that no field has.
-    pub fn param(&self, field: &str) -> Result<Vec<T>, SimError> {
-        let field = ParamField::find(field)?;
-        Ok(self.params.read_lane(field, 0))
-    }
-
-    /// Sets the time step, s.
-    ///
-    /// # Errors
-    /// A time step that is not positive and finite.
-    pub fn set_timestep(&mut self, timestep: f64) -> Result<(), SimError> {
-        self.set_param("timestep", &[T::new(timestep)])
-    }
-
     /// The model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
-    }
-    /// The model's numbers as this simulation uses them.
-    pub fn params(&self) -> &Params<T> {
-        &self.params
-    }
-    /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is checked or
-    /// derived anew, as [`set_param`](Self::set_param) does.
-    pub fn params_mut(&mut self) -> &mut Params<T> {
-        self.forget();
-        &mut self.params
     }
     /// The options that the user set.
     pub fn options(&self) -> RigidOptions {

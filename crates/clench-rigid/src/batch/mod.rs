@@ -30,7 +30,6 @@ pub use run::Summary;
 pub use snapshot::Snapshot;
 pub use state_rows::StateRows;
 
-use crate::contact::check_supported;
 use crate::error::{Fault, SimError};
 use crate::model::Model;
 use crate::profile::Profile;
@@ -120,10 +119,7 @@ impl<S: Precision> Batch<S> {
         count: usize,
         options: BatchOptions,
     ) -> Result<Self, SimError> {
-        let settings = StepSettings::new::<S>(&model, options.options)?;
-        if settings.flags.constraint && settings.flags.contact {
-            check_supported(&model)?;
-        }
+        let settings = StepSettings::supported::<S>(&model, options.options)?;
         if u32::try_from(count).is_err() {
             return Err(SimError::OutOfRange {
                 field: "number of environments",

@@ -1,11 +1,13 @@
-//! Parameters that each environment has for itself.
+//! Parameters that each environment has for itself, and options of all.
 
 use super::precision::Lanewise;
 use super::{Batch, Precision, Rows};
 use crate::check::check_length;
 use crate::error::SimError;
 use crate::model::{Model, ParamField, Params};
+use crate::settings::StepSettings;
 use clench_math::Real;
+use clench_solver::RigidOptions;
 
 /// A field of the parameters, a row an environment.
 pub struct ParamRows<S> {
@@ -82,6 +84,19 @@ impl<S: Precision> Batch<S> {
             Some(own) => own.rows.row(env).to_vec(),
             None => model_row(&self.model, field),
         })
+    }
+
+    /// Replaces the options that go before those of the model, for the steps to come.
+    ///
+    /// # Errors
+    /// Options out of range; shapes that may meet and cannot be collided. The options are then as before.
+    pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
+        self.settings = StepSettings::supported::<S>(&self.model, options)?;
+        self.options.options = options;
+        if let Some(seen) = &mut self.seen {
+            (0..self.status.len()).for_each(|env| seen.forget(env));
+        }
+        Ok(())
     }
 
     /// The rows of a field, which hold the model's numbers when they are new.

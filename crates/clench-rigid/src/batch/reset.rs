@@ -61,15 +61,25 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`reset`](Self::reset).
     pub fn sim(&self, env: usize) -> Result<Sim<S>, SimError> {
+        let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
+        self.copy_to_sim(env, &mut sim)?;
+        Ok(sim)
+    }
+
+    /// Brings a simulation of the same model into the state and to the parameters of `env`: so one simulation can be asked about
+    /// many environments, one after the other.
+    ///
+    /// # Errors
+    /// As [`reset`](Self::reset), and a simulation of another model.
+    pub fn copy_to_sim(&self, env: usize, sim: &mut Sim<S>) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;
-        let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
         let mut row = StateRows::new(&self.model, 1)?;
         row.copy_row(0, &self.state, env);
         row.read(0, &mut sim.state)?;
         for own in &self.params {
             own.read(env, 0, sim.params_mut());
         }
-        Ok(sim)
+        Ok(())
     }
 }

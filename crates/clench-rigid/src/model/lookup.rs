@@ -1,4 +1,4 @@
-//! Elements by name.
+//! Elements by name, and what to call those that have none.
 
 use super::Model;
 
@@ -39,4 +39,24 @@ lookups! {
     mesh in meshes;
     /// Index of the height field of that name.
     height_field in height_fields;
+}
+
+impl Model {
+    /// What to call a geom where it is shown: its name, or else its body and its number among the geoms of that, as in `torso[1]`. A body
+    /// without a name goes by its index, as in `body 3[0]`.
+    ///
+    /// # Panics
+    /// If there is no such geom, as slices do.
+    pub fn geom_label(&self, geom: usize) -> String {
+        let found = &self.geoms[geom];
+        if !found.name.is_empty() {
+            return found.name.clone();
+        }
+        let body = &self.bodies[found.body];
+        let number = geom - body.geoms.start;
+        match body.name.as_str() {
+            "" => format!("body {}[{number}]", found.body),
+            name => format!("{name}[{number}]"),
+        }
+    }
 }

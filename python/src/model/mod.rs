@@ -1,9 +1,10 @@
 //! `clench.Model`.
 
-use crate::element::Element;
+mod counts;
+mod elements;
+
 use crate::error::{load_error, sim_error};
 use crate::fields;
-use crate::kind::Kind;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use clench::SaveModel;
@@ -52,25 +53,6 @@ impl Model {
         let field = ParamField::find(field).map_err(sim_error)?;
         Ok(field.shape(&self.0))
     }
-}
-
-/// What is said of each method that finds an element.
-macro_rules! named {
-    ($kind:literal) => {
-        concat!(
-            "The ",
-            $kind,
-            " of that name or index.\n\n",
-            "Parameters\n----------\n",
-            "which : str or int\n    Its name or index.\n\n",
-            "Returns\n-------\nElement\n\n",
-            "Raises\n------\n",
-            "ValueError\n    A name that no ",
-            $kind,
-            " has.\n",
-            "IndexError\n    An index that is negative or too large.",
-        )
-    };
 }
 
 #[pymethods]
@@ -280,180 +262,6 @@ impl Model {
             Integrator::Implicit => "implicit",
             Integrator::Rk4 => "RK4",
         }
-    }
-    /// int : Number of position coordinates.
-    #[getter]
-    fn nq(&self) -> usize {
-        self.0.nq
-    }
-    /// int : Number of degrees of freedom.
-    #[getter]
-    fn nv(&self) -> usize {
-        self.0.nv
-    }
-    /// int : Number of controls. Most actuators have one.
-    #[getter]
-    fn nu(&self) -> usize {
-        self.0.nu()
-    }
-
-    /// int : Number of actuators; one may have several controls.
-    #[getter]
-    fn nactuator(&self) -> usize {
-        self.0.actuators.len()
-    }
-    /// int : Numbers in the buffers of delayed actuators.
-    #[getter]
-    fn nhistory(&self) -> usize {
-        self.0.nhistory
-    }
-    /// int : Number of activations.
-    #[getter]
-    fn na(&self) -> usize {
-        self.0.na
-    }
-    /// int : Number of bodies, the world included.
-    #[getter]
-    fn nbody(&self) -> usize {
-        self.0.nbody()
-    }
-    /// int : Number of joints.
-    #[getter]
-    fn njnt(&self) -> usize {
-        self.0.joints.len()
-    }
-    /// int : Number of geoms.
-    #[getter]
-    fn ngeom(&self) -> usize {
-        self.0.geoms.len()
-    }
-    /// int : Number of sites.
-    #[getter]
-    fn nsite(&self) -> usize {
-        self.0.sites.len()
-    }
-    /// int : Number of cameras.
-    #[getter]
-    fn ncam(&self) -> usize {
-        self.0.cameras.len()
-    }
-    /// int : Number of tendons.
-    #[getter]
-    fn ntendon(&self) -> usize {
-        self.0.tendons.len()
-    }
-    /// int : Number of equality constraints.
-    #[getter]
-    fn neq(&self) -> usize {
-        self.0.equalities.len()
-    }
-    /// int : Number of sensors.
-    #[getter]
-    fn nsensor(&self) -> usize {
-        self.0.sensors.len()
-    }
-    /// int : Numbers that all sensors give.
-    #[getter]
-    fn nsensordata(&self) -> usize {
-        self.0.nsensordata()
-    }
-    /// int : Number of keyframes.
-    #[getter]
-    fn nkey(&self) -> usize {
-        self.0.keyframes.len()
-    }
-    /// int : Number of mocap bodies.
-    #[getter]
-    fn nmocap(&self) -> usize {
-        self.0.nmocap
-    }
-    /// int : Number of explicit geom pairs.
-    #[getter]
-    fn npair(&self) -> usize {
-        self.0.pairs.len()
-    }
-    /// int : Number of meshes.
-    #[getter]
-    fn nmesh(&self) -> usize {
-        self.0.meshes.len()
-    }
-    /// int : Number of height fields.
-    #[getter]
-    fn nhfield(&self) -> usize {
-        self.0.height_fields.len()
-    }
-
-    /// Names of all elements of a kind.
-    ///
-    /// Parameters
-    /// ----------
-    /// kind : {"body", "joint", "geom", "site", "camera", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"}
-    ///     What to name.
-    ///
-    /// Returns
-    /// -------
-    /// list of str
-    ///     In the order of their indices; empty where an element has no name.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     Another kind.
-    fn names(&self, kind: &str) -> PyResult<Vec<&str>> {
-        Ok(Kind::of_name(kind)?.names(&self.0))
-    }
-
-    #[doc = named!("body")]
-    fn body(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Body, which)
-    }
-    #[doc = named!("joint")]
-    fn joint(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Joint, which)
-    }
-    #[doc = named!("geom")]
-    fn geom(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Geom, which)
-    }
-    #[doc = named!("site")]
-    fn site(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Site, which)
-    }
-    #[doc = named!("camera")]
-    fn camera(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Camera, which)
-    }
-    #[doc = named!("tendon")]
-    fn tendon(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Tendon, which)
-    }
-    #[doc = named!("actuator")]
-    fn actuator(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Actuator, which)
-    }
-    #[doc = named!("equality constraint")]
-    fn equality(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Equality, which)
-    }
-    #[doc = named!("sensor")]
-    fn sensor(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Sensor, which)
-    }
-    #[doc = named!("keyframe")]
-    fn keyframe(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Keyframe, which)
-    }
-    #[doc = named!("explicit geom pair")]
-    fn pair(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Pair, which)
-    }
-    #[doc = named!("mesh")]
-    fn mesh(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::Mesh, which)
-    }
-    #[doc = named!("height field")]
-    fn hfield(&self, which: &Bound<'_, PyAny>) -> PyResult<Element> {
-        Element::find(&self.0, Kind::HeightField, which)
     }
 
     fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

@@ -1,9 +1,9 @@
 //! `clench.Sim`.
 
-use crate::arrays::{indices, shaped};
+mod parameters;
+mod queries;
+
 use crate::busy::{in_portions, lock};
-use crate::constraints::Constraints;
-use crate::contacts::Contacts;
 use crate::count::Count;
 use crate::error::sim_error;
 use crate::kind::Kind;
@@ -11,15 +11,13 @@ use crate::model::Model;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use crate::precision::Bits;
-use crate::queries::{self, RayHit, Separation};
 use crate::row_sim::{AnySim, each_sim};
 use crate::state_views::StateViews;
 use crate::stats::SolverStats;
 use crate::view::{Keeper, read_only};
-use clench::math::{Real, Scalar};
-use clench::{Output, RayFilter};
+use clench::Output;
+use clench::math::Scalar;
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PySlice;
 use std::sync::{Arc, Mutex};
@@ -64,7 +62,6 @@ pub(crate) fn sensor_numbers<'py>(
 pub(crate) struct Sim {
     inner: Arc<Mutex<AnySim>>,
     model: Py<Model>,
-    options: RigidOptions,
     precision: Bits,
 }
 
@@ -74,7 +71,6 @@ impl Sim {
         py: Python<'_>,
         sim: AnySim,
         model: Py<Model>,
-        options: RigidOptions,
     ) -> PyResult<PyClassInitializer<Self>> {
         let precision = sim.precision();
         let inner = Arc::new(Mutex::new(sim));
@@ -86,7 +82,6 @@ impl Sim {
         Ok(PyClassInitializer::from(views).add_subclass(Sim {
             inner,
             model,
-            options,
             precision,
         }))
     }
@@ -109,7 +104,7 @@ impl Sim {
             Bits::B64 => clench::Sim::with_options(inner, given).and_then(AnySim::f64),
             Bits::B32 => clench::Sim::with_options(inner, given).and_then(AnySim::f32),
         };
-        Sim::wrap(py, sim.map_err(sim_error)?, own, options)
+        Sim::wrap(py, sim.map_err(sim_error)?, own)
     }
 
     /// Advances the state.
@@ -163,51 +158,6 @@ impl Sim {
         let key = keyframe.map(find).transpose()?;
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => own.reset(key)).map_err(sim_error)
-    }
-
-    /// Replaces the numbers of a parameter for this simulation alone.
-    ///
-    /// What follows directly is computed with it (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from ``geom_size``);
-    /// quaternions and axes are normalized.
-    ///
-    /// Parameters
-    /// ----------
-    /// field : str
-    ///     A parameter of the model, such as ``"body_mass"``; see `clench.PARAMETERS`.
-    /// values : array_like
-    ///     The whole field, in its shape in the model.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     A name that no parameter has, a wrong shape, or numbers that the field cannot have. All is then as before.
-    fn set_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
-        let shape = self.model.get().param_shape(field)?;
-        let mut guard = lock(&self.inner, "simulation")?;
-        each_sim!(&mut *guard, own => {
-            let values = shaped(field, values, &shape)?;
-            own.sim.set_param(field, values.as_slice()?).map_err(sim_error)
-        })
-    }
-
-    /// The numbers of a parameter as this simulation uses them.
-    ///
-    /// Parameters
-    /// ----------
-    /// field : str
-    ///     A parameter of the model.
-    ///
-    /// Returns
-    /// -------
-    /// numpy.ndarray
-    ///     A copy in the shape that the field has in the model.
-    fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
-        let shape = self.model.get().param_shape(field)?;
-        let guard = lock(&self.inner, "simulation")?;
-        each_sim!(&*guard, own => {
-            let values = own.sim.param(field).map_err(sim_error)?;
-            Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any())
-        })
     }
 
     /// An output of the last step or forward, or of the state.
@@ -281,20 +231,6 @@ impl Sim {
         Ok(names)
     }
 
-    /// Contacts : The contacts, at the positions that queries see (see `Sim`).
-    #[getter]
-    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Contacts>> {
-        let mut guard = lock(&self.inner, "simulation")?;
-        each_sim!(&mut *guard, own => Contacts::of(py, own.refreshed().map_err(sim_error)?))
-    }
-
-    /// Constraints : The constraint rows, with their forces, in the state that queries see (see `Sim`).
-    #[getter]
-    fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Constraints>> {
-        let mut guard = lock(&self.inner, "simulation")?;
-        each_sim!(&mut *guard, own => Constraints::of(py, own.refreshed().map_err(sim_error)?))
-    }
-
     /// SolverStats : How the last solve went; with the Runge-Kutta integrator, that of the last stage.
     #[getter]
     fn solver_stats(&self) -> PyResult<SolverStats> {
@@ -314,114 +250,6 @@ impl Sim {
     fn contact_overflow(&self) -> PyResult<bool> {
         let guard = lock(&self.inner, "simulation")?;
         Ok(each_sim!(&*guard, own => own.sim.contact_overflow()))
-    }
-
-    /// The joint-space mass matrix, of the positions that queries see (see `Sim`).
-    ///
-    /// Returns
-    /// -------
-    /// numpy.ndarray
-    ///     Dense (nv, nv), float64.
-    fn mass_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = lock(&self.inner, "simulation")?;
-        let values = each_sim!(&mut *guard, own => own.current().and_then(|sim| sim.mass_matrix()));
-        let values = values.map_err(sim_error)?;
-        let nv = self.model.get().inner().nv;
-        Ok(PyArray1::from_vec(py, values).reshape([nv, nv])?.into_any())
-    }
-
-    /// The geom that a ray hits first, where geoms are as queries see them (see `Sim`).
-    ///
-    /// As MuJoCo's ``mj_ray``: planes are hit from above and within their size (where that is positive), meshes on their
-    /// own triangles, from either side; a ray that begins inside another shape hits it where it leaves, and rays pass through what
-    /// cannot be seen (colours of opacity 0).
-    ///
-    /// Parameters
-    /// ----------
-    /// origin : array_like
-    ///     Where the ray begins (3,), m.
-    /// direction : array_like
-    ///     Where it leads (3,). Its length is the unit of `RayHit.distance`.
-    /// groups : array_like of int, optional
-    ///     The groups of geoms, 0 to 5, that can be hit; all of them if not given.
-    /// fixed : bool
-    ///     Whether geoms can be hit that are fixed to the world.
-    /// exclude_body : str or int, optional
-    ///     A body, by name or index, whose geoms are not hit.
-    ///
-    /// Returns
-    /// -------
-    /// RayHit or None
-    ///     None if the ray hits nothing.
-    #[pyo3(signature = (origin, direction, *, groups = None, fixed = true, exclude_body = None))]
-    fn ray(
-        &self,
-        py: Python<'_>,
-        origin: &Bound<'_, PyAny>,
-        direction: &Bound<'_, PyAny>,
-        groups: Option<&Bound<'_, PyAny>>,
-        fixed: bool,
-        exclude_body: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Option<RayHit>> {
-        let model = self.model.get().inner();
-        let mut filter = RayFilter {
-            fixed,
-            excluded_body: exclude_body
-                .map(|which| Kind::Body.find(model, which))
-                .transpose()?,
-            ..RayFilter::default()
-        };
-        if let Some(groups) = groups {
-            let chosen = indices("groups", groups, filter.groups.len())?;
-            filter.groups = std::array::from_fn(|group| chosen.contains(&group));
-        }
-        let mut guard = lock(&self.inner, "simulation")?;
-        each_sim!(&mut *guard, own => {
-            let (origin, direction) = (queries::vector("origin", origin)?, queries::direction(direction)?);
-            let hit = own.current().and_then(|sim| sim.ray(origin, direction, &filter)).map_err(sim_error)?;
-            let name = |geom: usize| &*model.geoms[geom].name;
-            hit.map(|hit| RayHit::new(py, &hit, name(hit.geom), origin, direction)).transpose()
-        })
-    }
-
-    /// How far apart two geoms are, where queries see them (see `Sim`), whatever they collide with.
-    ///
-    /// As MuJoCo's ``mj_geomDistance``. A mesh counts as its convex hull.
-    ///
-    /// Parameters
-    /// ----------
-    /// geom1, geom2 : str or int
-    ///     The geoms, by name or index.
-    /// limit : float, optional
-    ///     Geoms further apart than this, m, are not measured, which saves time.
-    ///
-    /// Returns
-    /// -------
-    /// Separation or None
-    ///     None if they are further apart than the limit, or have no distance: two planes or height fields, or a mesh that is flat.
-    #[pyo3(signature = (geom1, geom2, limit = None))]
-    fn distance(
-        &self,
-        py: Python<'_>,
-        geom1: &Bound<'_, PyAny>,
-        geom2: &Bound<'_, PyAny>,
-        limit: Option<f64>,
-    ) -> PyResult<Option<Separation>> {
-        let limit = limit.unwrap_or(f64::INFINITY);
-        let model = self.model.get().inner();
-        let (geom1, geom2) = (
-            Kind::Geom.find(model, geom1)?,
-            Kind::Geom.find(model, geom2)?,
-        );
-        if limit.is_nan() {
-            return Err(PyValueError::new_err("limit is not a number"));
-        }
-        let mut guard = lock(&self.inner, "simulation")?;
-        each_sim!(&mut *guard, own => {
-            let found = own.current().and_then(|sim| sim.distance(geom1, geom2, Real::new(limit)));
-            let found = found.map_err(sim_error)?;
-            found.map(|found| Separation::new(py, &found)).transpose()
-        })
     }
 
     /// Switches an equality constraint on or off.
@@ -462,10 +290,17 @@ impl Sim {
         self.model.clone_ref(py)
     }
 
-    /// RigidOptions : The options that were given.
+    /// RigidOptions : The options that were given. Assigning others counts from the next step or forward on.
     #[getter]
-    fn options(&self) -> RigidOptions {
-        self.options
+    fn options(&self) -> PyResult<RigidOptions> {
+        let guard = lock(&self.inner, "simulation")?;
+        Ok(RigidOptions(each_sim!(&*guard, own => own.sim.options())))
+    }
+
+    #[setter]
+    fn set_options(&self, options: &RigidOptions) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => own.sim.set_options(options.0)).map_err(sim_error)
     }
 
     /// str : Bits of every number, "64" or "32".

@@ -1,0 +1,67 @@
+//! Numbers and options of a simulation, changed while it runs.
+
+use super::Sim;
+use crate::Precision;
+use crate::error::SimError;
+use crate::model::{Model, ParamField, Params};
+use crate::settings::StepSettings;
+use clench_solver::RigidOptions;
+
+impl<T: Precision> Sim<T> {
+    /// Replaces the numbers of a field of [`params`](Self::params), element after element, and computes what follows from
+    /// them: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. The
+    /// inverse inertias `*_invweight0`, by which constraints are scaled, stay as they are unless they are set themselves.
+    ///
+    /// # Errors
+    /// A name that no field has, a field that follows from another, a wrong number of numbers, or numbers that the field
+    /// cannot have. The parameters are then as before.
+    pub fn set_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
+        let field = ParamField::settable(field)?;
+        let mut row = values.to_vec();
+        field.check_row(&self.model, &mut row)?;
+        Model::clear_structural_guarantees(&mut self.model, field, &row);
+        self.params.write_lane(field, 0, &row);
+        self.params.derive(&self.model, field);
+        self.forget();
+        Ok(())
+    }
+
+    /// The numbers of a field of [`params`](Self::params), by its name, element after element.
+    ///
+    /// # Errors
+    /// A name that no field has.
+    pub fn param(&self, field: &str) -> Result<Vec<T>, SimError> {
+        let field = ParamField::find(field)?;
+        Ok(self.params.read_lane(field, 0))
+    }
+
+    /// Sets the time step, s.
+    ///
+    /// # Errors
+    /// A time step that is not positive and finite.
+    pub fn set_timestep(&mut self, timestep: f64) -> Result<(), SimError> {
+        self.set_param("timestep", &[T::new(timestep)])
+    }
+
+    /// The model's numbers as this simulation uses them.
+    pub fn params(&self) -> &Params<T> {
+        &self.params
+    }
+    /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is checked or
+    /// derived anew, as [`set_param`](Self::set_param) does.
+    pub fn params_mut(&mut self) -> &mut Params<T> {
+        self.forget();
+        &mut self.params
+    }
+
+    /// Replaces the options that the user set, for the steps to come.
+    ///
+    /// # Errors
+    /// Options out of range; shapes that may meet and cannot be collided. The options are then as before.
+    pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
+        self.settings = StepSettings::supported::<T>(&self.model, options)?;
+        self.options = options;
+        self.forget();
+        Ok(())
+    }
+}

@@ -1,0 +1,155 @@
+//! How a batch moves: steps, forward passes, resets and rollouts.
+
+use super::{AnyBatch, Batch};
+use crate::busy::{in_portions, lock};
+use crate::count::Count;
+use crate::error::sim_error;
+use crate::kind::Kind;
+use crate::names::Names;
+use crate::rollout::rollout;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+#[pymethods]
+impl Batch {
+    /// Advances every running environment.
+    ///
+    /// Other Python threads run meanwhile; what they write to the arrays of this batch meets the step half-way. With the option
+    /// `autoreset` an environment that diverges does the step from the initial state instead, controls and applied forces
+    /// included, which counts in `resets`.
+    ///
+    /// Parameters
+    /// ----------
+    /// n : int
+    ///     How many time steps, with the same controls and applied forces.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     How many environments failed in this call.
+    ///
+    /// Raises
+    /// ------
+    /// BusyError
+    ///     While another thread is in a call of this batch.
+    /// ClenchError
+    ///     In a process forked from the one that made this batch, if it has several threads: a fork does not copy them.
+    #[pyo3(signature = (n = Count(1)), text_signature = "($self, n=1)")]
+    fn step(&self, py: Python<'_>, n: Count) -> PyResult<usize> {
+        let mut guard = lock(&self.inner, "batch")?;
+        let any = &mut *guard;
+        let mut failed = 0;
+        in_portions(py, n.0, |steps| {
+            let summary = each!(any, batch => batch.step_n(steps));
+            failed += summary.map_err(sim_error)?.failed;
+            Ok(())
+        })?;
+        Ok(failed)
+    }
+
+    /// Computes the recorded outputs that follow from the states, and leaves the states alone.
+    ///
+    /// Parameters
+    /// ----------
+    /// mask : array_like of bool, optional
+    ///     Which environments (n); by default all. The outputs of the others stay as they are.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     How many environments failed in this call.
+    #[pyo3(signature = (mask = None))]
+    fn forward(&self, py: Python<'_>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+        let chosen = self.mask(mask)?;
+        let mut guard = lock(&self.inner, "batch")?;
+        let any = &mut *guard;
+        let summary = py.detach(|| each!(any, batch => batch.forward_mask(&chosen)));
+        Ok(summary.map_err(sim_error)?.failed)
+    }
+
+    /// Puts environments into their initial state, or that of a keyframe, and lets them run.
+    ///
+    /// Parameters
+    /// ----------
+    /// mask : array_like of bool, optional
+    ///     Which environments (n); by default all.
+    /// keyframe : str or int, optional
+    ///     A keyframe of the model, by name or index.
+    #[pyo3(signature = (mask = None, keyframe = None))]
+    fn reset(
+        &self,
+        py: Python<'_>,
+        mask: Option<&Bound<'_, PyAny>>,
+        keyframe: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let chosen = self.mask(mask)?;
+        let find = |which| Kind::Keyframe.find(self.model.get().inner(), which);
+        let key = keyframe.map(find).transpose()?;
+        let mut guard = lock(&self.inner, "batch")?;
+        let any = &mut *guard;
+        let envs = (0..self.n_envs).filter(|&env| chosen[env]);
+        let done = py.detach(|| {
+            each!(any, batch => envs.into_iter().try_for_each(|env| match key {
+                None => batch.reset(env),
+                Some(key) => batch.reset_to_keyframe(env, key),
+            }))
+        });
+        done.map_err(sim_error)
+    }
+
+    /// Lets environments run on from the states in their rows.
+    ///
+    /// Parameters
+    /// ----------
+    /// mask : array_like of bool, optional
+    ///     Which environments (n); by default all.
+    #[pyo3(signature = (mask = None))]
+    fn revive(&self, mask: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let chosen = self.mask(mask)?;
+        let mut guard = lock(&self.inner, "batch")?;
+        let mut envs = (0..self.n_envs).filter(|&env| chosen[env]);
+        each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
+    }
+
+    /// Steps all running environments and records outputs after each step.
+    ///
+    /// Other Python threads run meanwhile. Ctrl-C is looked at now and then, and loses what was recorded.
+    ///
+    /// Parameters
+    /// ----------
+    /// initial : array_like, optional
+    ///     States to start from (n, 1 + nq + nv + na): time, positions, velocities, activations. All environments then run, and
+    ///     the solver starts anew, so that what comes out depends on no earlier step. By default they go on from where they are.
+    /// ctrl : array_like, optional
+    ///     Controls of each step, for all (steps, nu) or each (n, steps, nu) environment. By default those in `ctrl`, which
+    ///     stay as they are in any case.
+    /// record : sequence of str
+    ///     Outputs to record, see `clench.OUTPUTS`.
+    /// steps : int, optional
+    ///     How many steps; needed only without `ctrl`.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to numpy.ndarray
+    ///     Each output (n, steps, ...). Steps that an environment did not do are NaN.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Wrong shapes; names that no output has. The states are then as before.
+    #[pyo3(signature = (initial = None, ctrl = None, record = None, steps = None),
+           text_signature = "($self, initial=None, ctrl=None, record=('qpos', 'qvel'), steps=None)")]
+    fn rollout<'py>(
+        &self,
+        py: Python<'py>,
+        initial: Option<&Bound<'py, PyAny>>,
+        ctrl: Option<&Bound<'py, PyAny>>,
+        record: Option<Names>,
+        steps: Option<Count>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let record = record.map_or_else(|| vec!["qpos".into(), "qvel".into()], |names| names.0);
+        let steps = steps.map(|count| count.0);
+        let mut guard = lock(&self.inner, "batch")?;
+        each!(&mut *guard, batch => rollout(py, batch, initial, ctrl, &record, steps))
+    }
+}

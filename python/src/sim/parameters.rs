@@ -1,0 +1,57 @@
+//! Parameters of a simulation.
+
+use super::Sim;
+use crate::arrays::shaped;
+use crate::busy::lock;
+use crate::error::sim_error;
+use crate::row_sim::{AnySim, each_sim};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+
+#[pymethods]
+impl Sim {
+    /// Replaces the numbers of a parameter for this simulation alone.
+    ///
+    /// What follows directly is computed with it (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from ``geom_size``);
+    /// quaternions and axes are normalized.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : str
+    ///     A parameter of the model, such as ``"body_mass"``; see `clench.PARAMETERS`.
+    /// values : array_like
+    ///     The whole field, in its shape in the model.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A name that no parameter has, a wrong shape, or numbers that the field cannot have. All is then as before.
+    fn set_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
+        let shape = self.model.get().param_shape(field)?;
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let values = shaped(field, values, &shape)?;
+            own.sim.set_param(field, values.as_slice()?).map_err(sim_error)
+        })
+    }
+
+    /// The numbers of a parameter as this simulation uses them.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : str
+    ///     A parameter of the model.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     A copy in the shape that the field has in the model.
+    fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
+        let shape = self.model.get().param_shape(field)?;
+        let guard = lock(&self.inner, "simulation")?;
+        each_sim!(&*guard, own => {
+            let values = own.sim.param(field).map_err(sim_error)?;
+            Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any())
+        })
+    }
+}
