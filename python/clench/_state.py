@@ -15,8 +15,20 @@ from numpy.typing import NDArray
 __all__ = ["State"]
 
 # What the bytes hold is said by this number: readers refuse what is newer than they know. Before version 2, times were of
-# the precision of all other numbers; before version 3, nothing was delayed and nothing slept.
-_VERSION = 3
+# the precision of all other numbers; before version 3, nothing was delayed and nothing slept; before version 4,
+# nothing was tied together at run time.
+_VERSION = 4
+# The fields of 32 bits, and how many numbers an element of each field has that came with version 4.
+_INTEGERS = ("tree_asleep", "dynamic_kind", "dynamic_serial", "dynamic_body1", "dynamic_body2")
+_SINCE_4 = {
+    "dynamic_kind": (),
+    "dynamic_serial": (),
+    "dynamic_body1": (),
+    "dynamic_body2": (),
+    "dynamic_anchor1": (3,),
+    "dynamic_anchor2": (3,),
+    "dynamic_quat": (4,),
+}
 # The most entries of an archive that are looked at: more than any version has.
 _MAX_ENTRIES = 100
 
@@ -43,6 +55,10 @@ class State:
         Which trees sleep, int32; empty where none may.
     pose_asleep : numpy.ndarray
         Where they lie, numbers as the others; empty where none may.
+    dynamic_kind, dynamic_serial, dynamic_body1, dynamic_body2 : numpy.ndarray
+        What was added at run time, slot by slot, int32: see `Sim.add_weld`. Empty in states that are older than it.
+    dynamic_anchor1, dynamic_anchor2, dynamic_quat : numpy.ndarray
+        Where it holds, numbers as the others.
 
     Raises
     ------
@@ -64,6 +80,13 @@ class State:
     qacc_warmstart: NDArray[Any]
     tree_asleep: NDArray[np.int32]
     pose_asleep: NDArray[Any]
+    dynamic_kind: NDArray[np.int32]
+    dynamic_serial: NDArray[np.int32]
+    dynamic_body1: NDArray[np.int32]
+    dynamic_body2: NDArray[np.int32]
+    dynamic_anchor1: NDArray[Any]
+    dynamic_anchor2: NDArray[Any]
+    dynamic_quat: NDArray[Any]
 
     def __post_init__(self) -> None:
         self._arrays()
@@ -75,7 +98,7 @@ class State:
         special = {
             "time": np.dtype(np.float64),
             "eq_active": np.dtype(np.bool_),
-            "tree_asleep": np.dtype(np.int32),
+            **dict.fromkeys(_INTEGERS, np.dtype(np.int32)),
         }
         for name, array in arrays.items():
             wanted = special.get(name, numbers)
@@ -148,6 +171,10 @@ class State:
         if version < 3 and "qpos" in arrays:
             empty = np.zeros((*arrays["qpos"].shape[:-1], 0), arrays["qpos"].dtype)
             arrays.update(history=empty, tree_asleep=empty.astype(np.int32), pose_asleep=empty)
+        if version < 4 and "qpos" in arrays:
+            for name, width in _SINCE_4.items():
+                dtype = np.int32 if name in _INTEGERS else arrays["qpos"].dtype
+                arrays[name] = np.zeros((*arrays["qpos"].shape[:-1], 0, *width), dtype)
         try:
             return State(**arrays)
         except TypeError as error:

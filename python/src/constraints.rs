@@ -10,15 +10,15 @@ use pyo3::prelude::*;
 /// are copies, in float64.
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Constraints {
-    /// list of str : Kind of constraint: "equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon" or
-    /// "contact".
+    /// list of str : Kind of constraint: "equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon",
+    /// "contact" or, of what was added at run time, "dynamic".
     #[pyo3(get)]
     kind: Vec<&'static str>,
-    /// numpy.ndarray : Number of the constraint among those of its kind (nefc), int64: the equality, dof, joint, tendon or
-    /// contact.
+    /// numpy.ndarray : Number of the constraint among those of its kind (nefc), int64: the equality, dof, joint, tendon,
+    /// contact or slot.
     #[pyo3(get)]
     id: Py<PyAny>,
-    /// list of str : Its name, of the joint for a dof; empty where it has none and for contacts.
+    /// list of str : Its name, of the joint for a dof; empty where it has none, for contacts and for what was added at run time.
     #[pyo3(get)]
     name: Vec<String>,
     /// numpy.ndarray : Violation of an equality, signed distance of a limit or contact, zero for friction (nefc).

@@ -41,6 +41,9 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         | SimError::Parameter { .. }
         | SimError::Follows { .. }
         | SimError::Unknown { .. }
+        | SimError::NoFreeSlot { .. }
+        | SimError::StaleConstraint
+        | SimError::CannotHold { .. }
         | SimError::Contact { .. } => PyValueError::new_err(text),
     }
 }

@@ -148,7 +148,12 @@ impl StateViews {
         let values = state.call_method0(intern!(py, "_arrays"))?;
         let mut pairs = Vec::new();
         for (name, array) in self.named() {
-            let (to, from) = (array.bind(py), values.get_item(name)?);
+            let (to, mut from) = (array.bind(py), values.get_item(name)?);
+            // States of versions that knew no constraints at run time have no slots for them: nothing is tied.
+            if name.starts_with("dynamic_") && from.getattr("size")?.extract::<usize>()? == 0 {
+                from = to.call_method0("copy")?;
+                from.call_method1("fill", (0,))?;
+            }
             let (found, needed) = (from.getattr("shape")?, to.getattr("shape")?);
             if !found.eq(&needed)? {
                 return Err(PyValueError::new_err(format!(

@@ -90,7 +90,11 @@ NUMBERS = (
     "mocap_quat",
     "qacc_warmstart",
 )
-FIELDS = (*NUMBERS, "eq_active", "tree_asleep", "pose_asleep")
+FIELDS = (
+    *NUMBERS,
+    *("eq_active", "tree_asleep", "pose_asleep"),
+    *("dynamic_kind", "dynamic_serial", "dynamic_body1", "dynamic_body2", "dynamic_anchor1", "dynamic_anchor2", "dynamic_quat"),
+)
 
 
 def same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:

@@ -203,7 +203,7 @@ def foreign() -> dict[str, bytes]:
         "a pickle": pickle.dumps([1, 2, 3]),
         "an archive": archive.getvalue(),
         "an array larger than memory": huge.getvalue(),
-        "later": repacked(data, version=np.int64(4)),
+        "later": repacked(data, version=np.int64(5)),
         "much later": repacked(data, version=np.float64(1e300)),
         "never": repacked(data, version=np.float64(np.nan)),
         "without version": repacked(data, version=None),
@@ -232,7 +232,7 @@ def test_bytes_of_something_else(name: str) -> None:
 
 
 def test_later_versions_say_so() -> None:
-    with pytest.raises(ValueError, match="version 4"):
+    with pytest.raises(ValueError, match="version 5"):
         clench.State.from_bytes(foreign()["later"])
 
 
@@ -248,6 +248,18 @@ def test_nothing_was_delayed_and_nothing_slept_before_the_third_version() -> Non
     old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(2), **added))
     for array, kind in ((old.history, state.qpos.dtype), (old.tree_asleep, np.int32), (old.pose_asleep, state.qpos.dtype)):
         assert array.shape == (len(state.qpos), 0) and array.dtype == kind
+
+
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_nothing_was_tied_together_before_the_fourth_version(kind: str) -> None:
+    own = moving(kind)
+    state = own.state
+    added = {name: None for name in FIELDS if name.startswith("dynamic_")}
+    old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(3), **added))
+    assert old.dynamic_quat.shape == (*state.qpos.shape[:-1], 0, 4) and old.dynamic_kind.dtype == np.int32
+    own.add_weld(0, own.model.nbody - 1)
+    own.state = old
+    assert own.state == state
 
 
 @pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])
@@ -291,7 +303,7 @@ def test_states_have_no_hash() -> None:
 def test_bytes_take_no_more_memory_than_they_are() -> None:
     """Few bytes that unpack to many, of whatever version."""
     zeros = np.zeros(10**8)
-    for version in (1, 2, 3):
+    for version in (1, 2, 3, 4):
         bomb = io.BytesIO()
         np.savez_compressed(bomb, version=np.int64(version), qpos=zeros)
         tracemalloc.start()

@@ -94,6 +94,27 @@ pub enum SimError {
         "the threads of this batch are of the process that it was made in, which forked: make a batch in each process"
     )]
     Forked,
+    /// A constraint at run time that there is no slot for.
+    #[error(
+        "all {most} slots for constraints at run time are taken: remove one, or give the model a larger max_dynamic_constraints"
+    )]
+    NoFreeSlot {
+        /// How many there are.
+        most: usize,
+    },
+    /// The handle of a constraint that was removed, or that this state does not have.
+    #[error(
+        "this constraint is not there: it was removed, or the state is one that does not have it"
+    )]
+    StaleConstraint,
+    /// Bodies or an equality that cannot be held so.
+    #[error("{what} cannot be held so: {reason}")]
+    CannotHold {
+        /// What was to be held.
+        what: String,
+        /// Why it cannot.
+        reason: &'static str,
+    },
     /// A given contact that makes no sense.
     #[error("given contact {index}: {reason}")]
     Contact {

@@ -38,6 +38,6 @@ pub use model::{Model, Params};
 pub use output::Output;
 pub use query::{RayFilter, RayHit};
 pub use settings::StepSettings;
-pub use sim::Sim;
+pub use sim::{DynamicConstraint, Sim};
 pub use state::State;
 pub use workspace::Workspace;

@@ -165,10 +165,11 @@ pub fn contact_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ContactRow> 
 }
 
 impl ConstraintSource {
-    /// Kind of constraint, as MuJoCo groups them.
+    /// Kind of constraint, as MuJoCo groups them; "dynamic" are those that were added at run time.
     pub fn kind(self) -> &'static str {
         match self {
             ConstraintSource::Equality(_) => "equality",
+            ConstraintSource::Dynamic { .. } => "dynamic",
             ConstraintSource::DofFriction(_) => "friction_dof",
             ConstraintSource::TendonFriction(_) => "friction_tendon",
             ConstraintSource::JointLimit(_) => "limit_joint",
@@ -181,6 +182,7 @@ impl ConstraintSource {
     pub fn index(self) -> usize {
         match self {
             ConstraintSource::Equality(i)
+            | ConstraintSource::Dynamic { slot: i, .. }
             | ConstraintSource::DofFriction(i)
             | ConstraintSource::TendonFriction(i)
             | ConstraintSource::JointLimit(i)
@@ -189,7 +191,7 @@ impl ConstraintSource {
         }
     }
 
-    /// Name of the source, of the joint for a dof; empty where it has none and for contacts.
+    /// Name of the source, of the joint for a dof; empty where it has none and for contacts and what was added at run time.
     pub fn name(self, model: &Model) -> &str {
         match self {
             ConstraintSource::Equality(i) => &model.equalities[i].name,
@@ -198,7 +200,7 @@ impl ConstraintSource {
                 &model.tendons[i].name
             }
             ConstraintSource::JointLimit(i) => &model.joints[i].name,
-            ConstraintSource::Contact(_) => "",
+            ConstraintSource::Dynamic { .. } | ConstraintSource::Contact(_) => "",
         }
     }
 }

@@ -1,6 +1,9 @@
 //! A simulation of one environment.
 
+mod dynamic;
 mod parameters;
+
+pub use dynamic::DynamicConstraint;
 
 use crate::Precision;
 use crate::check::{self, check_contact, check_values};
@@ -36,6 +39,8 @@ pub struct Sim<T: Precision = f64> {
     last_good: State<T>,
     known: Known<T>,
     resets: u64,
+    /// The number that the last constraint got which was added at run time.
+    pub(crate) last_serial: u32,
 }
 
 impl<T: Precision> Sim<T> {
@@ -67,6 +72,7 @@ impl<T: Precision> Sim<T> {
             last_good: initial.clone(),
             known: Known::new(),
             resets: 0,
+            last_serial: 0,
             initial,
             model,
         })

@@ -184,8 +184,8 @@ pub use clench_formats::{
 };
 pub use clench_rigid::batch::Controls;
 pub use clench_rigid::{
-    Batch, BatchOptions, Budget, EnvStatus, Fault, Model, Output, Precision, RayFilter, RayHit,
-    Sim, SimError, State,
+    Batch, BatchOptions, Budget, DynamicConstraint, EnvStatus, Fault, Model, Output, Precision,
+    RayFilter, RayHit, Sim, SimError, State,
 };
 pub use clench_solver::RigidOptions;
 

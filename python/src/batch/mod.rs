@@ -34,6 +34,7 @@ macro_rules! each {
     };
 }
 
+mod dynamic;
 mod outputs;
 mod parameters;
 mod queries;

@@ -71,6 +71,11 @@ impl Model {
     fn neq(&self) -> usize {
         self.0.equalities.len()
     }
+    /// int : How many constraints can be added at run time beside each other.
+    #[getter]
+    fn max_dynamic_constraints(&self) -> usize {
+        self.0.max_dynamic_constraints
+    }
     /// int : Number of sensors.
     #[getter]
     fn nsensor(&self) -> usize {

@@ -3,6 +3,7 @@
 mod counts;
 mod elements;
 
+use crate::count::Count;
 use crate::error::{load_error, sim_error};
 use crate::fields;
 use crate::names::no_attribute;
@@ -69,6 +70,8 @@ impl Model {
     /// package_path : sequence of str or os.PathLike
     ///     Folders that hold packages, by which URDF files name meshes (``package://NAME/...``). After them, the folder of the file and
     ///     those around it are searched.
+    /// max_dynamic_constraints : int
+    ///     How many constraints can be added at run time beside each other (`Sim.add_weld`).
     /// ignore_unsupported : bool
     ///     Leave out of an MJCF model what is not supported yet, where the rest still means the same: plugins, deformable bodies,
     ///     sensors, forces and flags, but no joint, tendon or actuator. A warning and :attr:`left_out` say what.
@@ -82,20 +85,22 @@ impl Model {
     /// LoadError
     ///     A file that cannot be read, is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new(), ignore_unsupported = false),
-           text_signature = "(path, *, budget=1.0, package_path=(), ignore_unsupported=False)")]
+    #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new(), ignore_unsupported = false, max_dynamic_constraints = Count(8)),
+           text_signature = "(path, *, budget=1.0, package_path=(), ignore_unsupported=False, max_dynamic_constraints=8)")]
     fn from_file(
         py: Python<'_>,
         path: PathBuf,
         budget: f64,
         package_path: Vec<PathBuf>,
         ignore_unsupported: bool,
+        max_dynamic_constraints: Count,
     ) -> PyResult<Self> {
         let loader = clench::Loader::new()
             .budget(clench::Budget::default().times(budget))
             .package_path(package_path)
             .ignore_unsupported(ignore_unsupported);
-        let model = py.detach(|| loader.load(&path)).map_err(load_error)?;
+        let mut model = py.detach(|| loader.load(&path)).map_err(load_error)?;
+        model.max_dynamic_constraints = max_dynamic_constraints.0;
         Model::told(py, model)
     }
 
@@ -106,6 +111,8 @@ impl Model {
     /// text : str
     ///     What the file would contain. What it includes is found from the working directory.
     /// budget : float
+    ///     As of :meth:`from_file`.
+    /// max_dynamic_constraints : int
     ///     As of :meth:`from_file`.
     /// ignore_unsupported : bool
     ///     As of :meth:`from_file`.
@@ -122,20 +129,22 @@ impl Model {
     /// LoadError
     ///     A text that is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    #[pyo3(signature = (text, *, budget = 1.0, ignore_unsupported = false, assets = HashMap::new()),
-           text_signature = "(text, *, budget=1.0, ignore_unsupported=False, assets={})")]
+    #[pyo3(signature = (text, *, budget = 1.0, ignore_unsupported = false, assets = HashMap::new(), max_dynamic_constraints = Count(8)),
+           text_signature = "(text, *, budget=1.0, ignore_unsupported=False, assets={}, max_dynamic_constraints=8)")]
     fn from_xml(
         py: Python<'_>,
         text: &str,
         budget: f64,
         ignore_unsupported: bool,
         assets: HashMap<String, Vec<u8>>,
+        max_dynamic_constraints: Count,
     ) -> PyResult<Self> {
         let loader = clench::Loader::new()
             .budget(clench::Budget::default().times(budget))
             .ignore_unsupported(ignore_unsupported)
             .assets(assets);
-        let model = py.detach(|| loader.load_str(text)).map_err(load_error)?;
+        let mut model = py.detach(|| loader.load_str(text)).map_err(load_error)?;
+        model.max_dynamic_constraints = max_dynamic_constraints.0;
         Model::told(py, model)
     }
 

@@ -1,5 +1,6 @@
 //! `clench.Sim`.
 
+mod dynamic;
 mod parameters;
 mod queries;
 

@@ -97,6 +97,7 @@ fn source(model: &Model, source: ConstraintSource) -> String {
     let kind = match source {
         ConstraintSource::JointLimit(_) => "the limit of joint",
         ConstraintSource::TendonLimit(_) => "the limit of tendon",
+        ConstraintSource::Dynamic { .. } => "constraint at run time",
         _ => "equality",
     };
     element(kind, source.name(model), source.index())

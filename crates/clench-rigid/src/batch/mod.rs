@@ -6,6 +6,7 @@
 
 mod cells;
 mod divergence;
+mod dynamic;
 mod group;
 mod options;
 mod parameters;
@@ -46,9 +47,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use stepper::Stepper;
 
-/// Bytes that an environment takes besides its rows: whether it runs, how often it was reset, and its place in groups.
+/// Bytes that an environment takes besides its rows: whether it runs, how often it was reset, the number of its last constraint at run
+/// time, and its place in groups.
 const BESIDES: usize =
-    size_of::<EnvStatus>() + size_of::<u64>() + size_of::<AtomicU64>() + size_of::<u32>();
+    size_of::<EnvStatus>() + size_of::<u64>() + size_of::<AtomicU64>() + 2 * size_of::<u32>();
 
 /// Whether an environment takes part in steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,6 +74,8 @@ pub struct Batch<S: Precision = f64> {
     settings: StepSettings,
     status: Vec<EnvStatus>,
     resets: Vec<u64>,
+    /// The number that the last constraint of each environment got which was added at run time.
+    serials: Vec<u32>,
     params: Vec<ParamRows<S>>,
     outputs: Vec<OutputRows<S>>,
     seen: Option<Seen<S>>,
@@ -147,6 +151,7 @@ impl<S: Precision> Batch<S> {
             settings,
             status: per_env(count, || EnvStatus::Running)?,
             resets: per_env(count, || 0)?,
+            serials: per_env(count, || 0)?,
             params: Vec::new(),
             outputs: Vec::new(),
             seen: None,

@@ -12,6 +12,7 @@
 //! (`refsafe`), and what comes of it is not what the model asks for.
 
 use super::Precision;
+use crate::constraint::dynamic::softness;
 use crate::constraint::{BlockRecord, ConstraintSource, Softness};
 use crate::contact::Contact;
 use crate::model::{Model, Params};
@@ -199,7 +200,7 @@ fn held<T: Real>(ws: &Workspace<T>) -> impl Iterator<Item = (usize, &BlockRecord
 #[inline(always)]
 fn violation<T: Real>(record: &BlockRecord<T>, pos: T) -> T {
     match record.source {
-        ConstraintSource::Equality(_) => pos.abs(),
+        ConstraintSource::Equality(_) | ConstraintSource::Dynamic { .. } => pos.abs(),
         _ => record.margin - pos,
     }
 }
@@ -237,6 +238,7 @@ fn worst_violation<T: Real>(place: Place<T>, lane: usize) -> Option<Violation> {
         let source = record.source;
         let softness = match source {
             ConstraintSource::Equality(i) => (p.eq_solref[i], p.eq_solimp[i]),
+            ConstraintSource::Dynamic { .. } => softness(),
             ConstraintSource::JointLimit(i) => (p.jnt_solref[i], p.jnt_solimp[i]),
             ConstraintSource::TendonLimit(i) => (p.tendon_solref_lim[i], p.tendon_solimp_lim[i]),
             _ => continue,

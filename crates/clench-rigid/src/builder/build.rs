@@ -3,8 +3,9 @@
 use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
-    BuildError, ModelBuilder, actuators, bodies, budget, cameras, check, contacts, equalities,
-    fuse, invweight0, keyframes, length_range, sensors, sleep, tendons,
+    BuildError, DEFAULT_DYNAMIC_CONSTRAINTS, ModelBuilder, actuators, bodies, budget, cameras,
+    check, contacts, equalities, fuse, invweight0, keyframes, length_range, sensors, sleep,
+    tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -100,6 +101,7 @@ impl ModelBuilder {
             actuator_dofs: RowPattern::default(),
             sensors: Vec::new(),
             equalities: Vec::new(),
+            max_dynamic_constraints: DEFAULT_DYNAMIC_CONSTRAINTS,
             pairs: Vec::new(),
             excludes: HashSet::new(),
             keyframes: Vec::new(),

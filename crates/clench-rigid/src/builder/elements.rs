@@ -10,6 +10,8 @@ use std::sync::Arc;
 pub const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
 /// MuJoCo's default impedance.
 pub const DEFAULT_SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
+/// How many constraints can be added at run time, unless the model says otherwise.
+pub const DEFAULT_DYNAMIC_CONSTRAINTS: usize = 8;
 
 /// A body: a frame that moves by its joints relative to its parent.
 #[derive(Clone, Debug, Default)]

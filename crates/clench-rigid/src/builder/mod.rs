@@ -66,8 +66,8 @@ mod visuals;
 pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};
 pub use cameras::{CameraLens, CameraSpec, CameraTracking};
 pub use elements::{
-    BodySpec, DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomMass, GeomSpec, InertiaSpec, InertialSpec,
-    JointSpec, SiteSpec,
+    BodySpec, DEFAULT_DYNAMIC_CONSTRAINTS, DEFAULT_SOLIMP, DEFAULT_SOLREF, GeomMass, GeomSpec,
+    InertiaSpec, InertialSpec, JointSpec, SiteSpec,
 };
 pub use error::{BuildError, Origin, shorten};
 pub use histories::HistorySpec;

@@ -13,6 +13,15 @@ const MAX_DIM: usize = 6;
 pub enum ConstraintSource {
     /// An equality of the model.
     Equality(usize),
+    /// A constraint that was added at run time.
+    Dynamic {
+        /// The slot that holds it.
+        slot: usize,
+        /// The bodies that it ties.
+        bodies: [usize; 2],
+        /// Whether it is a weld, else a connect.
+        weld: bool,
+    },
     /// Dry friction of a dof.
     DofFriction(usize),
     /// Dry friction of a tendon.

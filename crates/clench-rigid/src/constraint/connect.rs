@@ -10,26 +10,23 @@
 
 use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
+use super::held::{Frames, Held};
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use clench_math::{Motion, Real, Vec3, kernel};
 use clench_solver::Cost;
 
 #[kernel]
-pub(super) fn push<T: Real>(
-    context: &ConstraintContext<T>,
-    out: &mut Assembly<T>,
-    equality: usize,
-    bodies: [usize; 2],
-) {
+pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>, held: &Held<T>) {
+    let bodies = held.frames.bodies;
     let chains = Chains::new(context.model, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
     }
-    let anchors = Anchors::new(context, equality, bodies);
+    let anchors = Anchors::new(context, &held.frames);
     let violation = anchors.separation;
     let bias = anchors.bias[0].linear - anchors.bias[1].linear;
-    let (soft, block) = context.equality(equality, violation.norm());
+    let (soft, block) = held.soften(context, violation.norm());
     let a0 = bodies.map(|b| context.params.body_invweight0[b][0]);
     let mut rows = [Row::default(); 3];
     for (i, row) in rows.iter_mut().enumerate() {
@@ -53,11 +50,9 @@ pub(super) struct Anchors<T> {
 
 impl<T: Real> Anchors<T> {
     #[inline(always)]
-    pub fn new(context: &ConstraintContext<T>, equality: usize, bodies: [usize; 2]) -> Self {
-        let (pos, params) = (context.position, context.params);
-        let [body1, body2] = bodies;
-        let world1 = pos.xpos[body1] + pos.xmat[body1] * params.eq_anchor1[equality];
-        let world2 = pos.xpos[body2] + pos.xmat[body2] * params.eq_anchor2[equality];
+    pub fn new(context: &ConstraintContext<T>, frames: &Frames<T>) -> Self {
+        let [body1, body2] = frames.bodies;
+        let [world1, world2] = frames.points(context.position);
         let first = BodyPoint::new(context.model, context.position, body1, world1);
         let second = BodyPoint::new(context.model, context.position, body2, world2);
         Anchors {

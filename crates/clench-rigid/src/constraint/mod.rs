@@ -1,20 +1,23 @@
 //! The constraint stage: every active constraint becomes a block of the convex problem, which is solved once.
 //!
 //! One file a kind of constraint, each with its derivation; `softness` turns their parameters into R and aref. Blocks
-//! stand in MuJoCo's order: equalities, dry friction, limits, contacts.
+//! stand in MuJoCo's order: equalities, dry friction, limits, contacts. What was added at run time comes after the equalities.
 
 mod assembly;
 mod connect;
 mod contact;
 mod coordinate;
+pub(crate) mod dynamic;
 mod exact;
 mod friction;
+mod held;
 mod joint_equality;
 mod limit;
 pub mod softness;
 mod weld;
 
 pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
+pub(crate) use held::Frames;
 pub(crate) use joint_equality::equality_slope;
 pub use softness::Softness;
 pub(crate) use weld::weld_torque;
@@ -30,6 +33,7 @@ use assembly::Assembly;
 use clench_math::{Mask, Real};
 use coordinate::Coordinate;
 use exact::ExactDiagonal;
+use held::Held;
 
 /// All that constraints read.
 struct ConstraintContext<'a, T: Real> {
@@ -85,15 +89,27 @@ impl<T: Real> ConstraintContext<'_, T> {
     /// How soft an equality is at a violation of this size, and the record of its block.
     #[inline(always)]
     fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
-        let soft = Softness::new(
+        let source = ConstraintSource::Equality(equality);
+        let solver = (
             self.params.eq_solref[equality],
             self.params.eq_solimp[equality],
-            violation,
-            self.least_timeconst,
         );
+        self.soften(source, self.active_equality(equality), solver, violation)
+    }
+
+    /// How soft a constraint without a margin is at a violation of this size, and the record of its block.
+    #[inline(always)]
+    fn soften(
+        &self,
+        source: ConstraintSource,
+        active: T::Mask,
+        (solref, solimp): ([T; 2], [T; 5]),
+        violation: T,
+    ) -> (Softness<T>, BlockRecord<T>) {
+        let soft = Softness::new(solref, solimp, violation, self.least_timeconst);
         let record = BlockRecord {
-            source: ConstraintSource::Equality(equality),
-            active: self.active_equality(equality),
+            source,
+            active,
             margin: T::ZERO,
             impedance: soft.impedance,
         };
@@ -165,6 +181,7 @@ pub fn assemble<T: Real>(
     };
     if settings.flags.equality {
         push_equalities(&context, &mut out);
+        dynamic::push_all(&context, &mut out);
     }
     if settings.flags.frictionloss {
         friction::push_all(&context, &mut out);
@@ -198,9 +215,11 @@ fn push_equalities<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
         }
         match equality.target {
             EqualityTarget::Connect { body1, body2 } => {
-                connect::push(context, out, i, [body1, body2])
+                connect::push(context, out, &Held::by_equality(context, i, [body1, body2]));
             }
-            EqualityTarget::Weld { body1, body2 } => weld::push(context, out, i, [body1, body2]),
+            EqualityTarget::Weld { body1, body2 } => {
+                weld::push(context, out, &Held::by_equality(context, i, [body1, body2]));
+            }
             EqualityTarget::Joint { joint1, joint2 } => {
                 let leader = joint2.map(Coordinate::Joint);
                 joint_equality::push(context, out, i, Coordinate::Joint(joint1), leader);

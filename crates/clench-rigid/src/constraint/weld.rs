@@ -15,33 +15,29 @@
 use super::ConstraintContext;
 use super::assembly::{Assembly, Row};
 use super::connect::Anchors;
+use super::held::{Frames, Held};
 use crate::dynamics::chains::{Chains, Side};
-use crate::model::Params;
 use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Cost;
 
 #[kernel]
-pub(super) fn push<T: Real>(
-    context: &ConstraintContext<T>,
-    out: &mut Assembly<T>,
-    equality: usize,
-    bodies: [usize; 2],
-) {
+pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>, held: &Held<T>) {
+    let bodies = held.frames.bodies;
     let chains = Chains::new(context.model, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
     }
-    let anchors = Anchors::new(context, equality, bodies);
+    let anchors = Anchors::new(context, &held.frames);
     let [bias1, bias2] = anchors.bias;
     let translation = anchors.separation;
     let bias_translation = bias1.linear - bias2.linear;
-    let relative = Relative::new(context.params, context.position, equality, bodies);
+    let relative = Relative::new(context.position, &held.frames);
     let rotation = relative.rho.imaginary() * relative.scale;
     let bias_rotation = relative.bias(context, bodies, [bias1.angular, bias2.angular]);
     let length = (translation.norm_squared() + rotation.norm_squared()).sqrt();
-    let (soft, block) = context.equality(equality, length);
+    let (soft, block) = held.soften(context, length);
     let mut rows = [Row::default(); 6];
     for (i, row) in rows.iter_mut().enumerate() {
         let (pos, bias, part) = match i {
@@ -62,13 +58,11 @@ pub(super) fn push<T: Real>(
 /// The torque on the first body that forces f of the last three rows mean, in world axes: Jᵀ f = R₂ s Bᵀ f, with
 /// Bᵀ f = ½ (w f + Im ρ × f). The second body takes its negative.
 pub(crate) fn weld_torque<T: Real>(
-    params: &Params<T>,
     position: &Positions<T>,
-    equality: usize,
-    bodies: [usize; 2],
+    frames: &Frames<T>,
     f: Vec3<T>,
 ) -> Vec3<T> {
-    let relative = Relative::new(params, position, equality, bodies);
+    let relative = Relative::new(position, frames);
     let half = T::new(0.5) * relative.scale;
     let turned = f * relative.rho.w + relative.rho.imaginary().cross(f);
     relative.to_second.conjugate().rotate(turned * half)
@@ -84,19 +78,15 @@ struct Relative<T> {
 
 impl<T: Real> Relative<T> {
     #[inline(always)]
-    fn new(
-        params: &Params<T>,
-        position: &Positions<T>,
-        equality: usize,
-        [body1, body2]: [usize; 2],
-    ) -> Self {
+    fn new(position: &Positions<T>, frames: &Frames<T>) -> Self {
         let xquat = &position.xquat;
-        let first = xquat[body1] * params.eq_quat1[equality];
-        let to_second = (xquat[body2] * params.eq_quat2[equality]).conjugate();
+        let [body1, body2] = frames.bodies;
+        let first = xquat[body1] * frames.quats[0];
+        let to_second = (xquat[body2] * frames.quats[1]).conjugate();
         Relative {
             rho: to_second * first,
             to_second,
-            scale: params.eq_torquescale[equality],
+            scale: frames.torquescale,
         }
     }
 

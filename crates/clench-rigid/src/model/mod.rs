@@ -66,6 +66,8 @@ pub struct Model {
     pub sensors: Vec<Sensor>,
     /// Equality constraints.
     pub equalities: Vec<Equality>,
+    /// How many constraints can be added at run time, beside each other: slots that every state has.
+    pub max_dynamic_constraints: usize,
     /// Explicit geom pairs.
     pub pairs: Vec<Pair>,
     /// Body pairs (smaller index first) that never collide.

@@ -5,7 +5,7 @@
 
 use super::Source;
 use super::tendon_forces::each_pull;
-use crate::constraint::{ConstraintSource, weld_torque};
+use crate::constraint::{ConstraintSource, Frames, weld_torque};
 use crate::contact::Contact;
 use crate::model::EqualityTarget;
 use crate::workspace::Workspace;
@@ -130,31 +130,42 @@ fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<
 
 /// Shows every connect and weld: its bodies, and the force on the first at the anchor of each.
 fn each_joint_of_bodies<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], [Wrench<T>; 2])) {
-    let (pos, params) = (&s.ws.position, s.params);
+    let pos = &s.ws.position;
     for (block, record) in s.ws.record.blocks.iter().enumerate() {
-        let ConstraintSource::Equality(e) = record.source else {
-            continue;
-        };
-        let (EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 }) =
-            s.model.equalities[e].target
-        else {
+        let Some((frames, weld)) = frames(s, record.source) else {
             continue;
         };
         let [x, y, z, turn_x, turn_y, turn_z] = rows(s.ws, block);
         let turn = Vec3::new(turn_x, turn_y, turn_z);
-        let couple = match s.model.equalities[e].target {
-            EqualityTarget::Weld { .. } => weld_torque(params, pos, e, [body1, body2], turn),
-            _ => Vec3::ZERO,
+        let couple = match weld {
+            true => weld_torque(pos, &frames, turn),
+            false => Vec3::ZERO,
         };
-        let at = |body: usize, anchor: Vec3<T>| Wrench {
+        let wrenches = frames.points(pos).map(|at| Wrench {
             force: Vec3::new(x, y, z),
             couple,
-            at: pos.xpos[body] + pos.xmat[body] * anchor,
-        };
-        let wrenches = [
-            at(body1, params.eq_anchor1[e]),
-            at(body2, params.eq_anchor2[e]),
-        ];
-        show([body1, body2], wrenches);
+            at,
+        });
+        show(frames.bodies, wrenches);
+    }
+}
+
+/// The frames that a connect or weld holds together, and whether it is a weld.
+fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(Frames<T>, bool)> {
+    match source {
+        ConstraintSource::Dynamic { slot, bodies, weld } => {
+            Some((Frames::of_slot(s.state, slot, bodies), weld))
+        }
+        ConstraintSource::Equality(e) => {
+            let target = s.model.equalities[e].target;
+            let (EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 }) =
+                target
+            else {
+                return None;
+            };
+            let weld = matches!(target, EqualityTarget::Weld { .. });
+            Some((Frames::of_equality(s.params, e, [body1, body2]), weld))
+        }
+        _ => None,
     }
 }

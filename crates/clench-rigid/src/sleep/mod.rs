@@ -14,7 +14,7 @@ mod wake;
 
 pub(crate) use fall::{fall_asleep, hold};
 pub(crate) use idle::{idle, is_idle};
-pub(crate) use wake::{wake_coupled, wake_pulled, wake_touched, wake_touching};
+pub(crate) use wake::{wake_coupled, wake_in_state, wake_pulled, wake_touched, wake_touching};
 
 use crate::model::Model;
 use crate::state::State;

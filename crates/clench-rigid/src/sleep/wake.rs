@@ -4,11 +4,12 @@
 //! touched or pulled takes over the count of the tree that does it, for both must rest to sleep again.
 
 use super::{AWAKE, Sleep, is_blank, mocap_pose};
+use crate::constraint::dynamic::each_tie;
 use crate::model::{EqualityTarget, KinematicTree, Model, Params, SleepPolicy};
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 impl<T: Real> Sleep<T> {
     /// Wakes the island of a tree in some lanes; each of its trees counts from `counter`. Where it is awake, it counts from there
@@ -177,7 +178,7 @@ fn wake_by_body<T: Real>(sleep: &mut Sleep<T>, tree: usize, body: usize, lanes: 
     wakes.any()
 }
 
-/// Wakes trees that an active equality couples to a tree that is awake, to a mocap body, or to a tree that sleeps in another
+/// Wakes trees that an active equality, or a constraint that was added at run time, couples to a tree that is awake, to a mocap body, or to a tree that sleeps in another
 /// island: the equality was off when they fell asleep. Whether there were any.
 #[kernel]
 pub(crate) fn wake_coupled<T: Real>(
@@ -194,10 +195,7 @@ pub(crate) fn wake_coupled<T: Real>(
         let of_joint = |joint: usize| Some(model.tree.tree_of(model.joints[joint].dof));
         match equality.target {
             EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 } => {
-                match [body1, body2].map(|body| model.tree_of_body(body)) {
-                    [Some(one), Some(other)] => woke |= wake_couple(sleep, [one, other], active),
-                    _ => woke |= wake_pair(model, sleep, [body1, body2], active),
-                }
+                woke |= wake_bodies(model, sleep, [body1, body2], active);
             }
             EqualityTarget::Joint { joint1, joint2 } => {
                 if let [Some(one), Some(other)] = [of_joint(joint1), joint2.and_then(of_joint)] {
@@ -216,10 +214,29 @@ pub(crate) fn wake_coupled<T: Real>(
             }
         }
     }
+    for slot in 0..state.dynamic_kind.len() {
+        each_tie(model, state, slot, |tie| {
+            woke |= wake_bodies(model, sleep, tie.bodies, tie.lanes);
+        });
+    }
     if woke {
         sleep.update(model);
     }
     woke
+}
+
+/// Wakes what a connect or weld holds together. Whether any slept.
+#[inline(always)]
+fn wake_bodies<T: Real>(
+    model: &Model,
+    sleep: &mut Sleep<T>,
+    bodies: [usize; 2],
+    lanes: T::Mask,
+) -> bool {
+    match bodies.map(|body| model.tree_of_body(body)) {
+        [Some(one), Some(other)] => wake_couple(sleep, [one, other], lanes),
+        _ => wake_pair(model, sleep, bodies, lanes),
+    }
 }
 
 /// Wakes both of two trees in the lanes in which they do not sleep together. Whether any slept.
@@ -246,4 +263,24 @@ fn wake_couple<T: Real>(sleep: &mut Sleep<T>, trees: [usize; 2], lanes: T::Mask)
         woke = true;
     }
     woke
+}
+
+/// Wakes, in a state itself, the islands of two bodies that are tied together from now on, or no longer.
+pub(crate) fn wake_in_state<T: Scalar>(model: &Model, state: &mut State<T>, bodies: [usize; 2]) {
+    for tree in bodies
+        .into_iter()
+        .filter_map(|body| model.tree_of_body(body))
+    {
+        let mut at = tree;
+        // Sleeping trees name the next of their island, in a circle; in a state that was written by hand it may not close.
+        for _ in 0..state.tree_asleep.len() {
+            let next = state.tree_asleep[at];
+            state.tree_asleep[at] = T::new(AWAKE);
+            let next = next.to_f64();
+            if next < 0.0 || next >= state.tree_asleep.len() as f64 {
+                break;
+            }
+            at = next as usize;
+        }
+    }
 }

@@ -27,6 +27,8 @@ pub(crate) enum Size {
     MocapBodies,
     /// neq.
     Equalities,
+    /// max_dynamic_constraints.
+    DynamicConstraints,
     /// ntree where trees may sleep, else none.
     Trees,
     /// nq + 7 nmocap where trees may sleep, else none.
@@ -44,6 +46,7 @@ impl Size {
             Size::Bodies => model.nbody(),
             Size::MocapBodies => model.nmocap,
             Size::Equalities => model.equalities.len(),
+            Size::DynamicConstraints => model.max_dynamic_constraints,
             Size::Trees => model.tree_asleep0.len(),
             Size::AsleepPose if model.may_sleep() => model.nq + 7 * model.nmocap,
             Size::AsleepPose => 0,

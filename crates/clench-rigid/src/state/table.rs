@@ -50,6 +50,21 @@ macro_rules! state_fields {
             occasional {
                 /// Forces and torques that the user applies to bodies at their centres of mass, world axes (nbody): the force first.
                 xfrc_applied set_xfrc_applied: Wrench, Bodies, Finite;
+                /// What each slot for constraints at run time holds (max_dynamic_constraints): 1 a connect, 2 a weld, all else nothing.
+                /// See the module `constraint::dynamic`.
+                dynamic_kind set_dynamic_kind: Integer, DynamicConstraints, Finite;
+                /// The number that the constraint of each slot got when it was added, by which handles know it.
+                dynamic_serial set_dynamic_serial: Integer, DynamicConstraints, Finite;
+                /// The first body that each slot ties; one that the model does not have ties nothing.
+                dynamic_body1 set_dynamic_body1: Integer, DynamicConstraints, Finite;
+                /// The second body, likewise.
+                dynamic_body2 set_dynamic_body2: Integer, DynamicConstraints, Finite;
+                /// Anchor in the frame of the first body, m.
+                dynamic_anchor1 set_dynamic_anchor1: Vector, DynamicConstraints, Finite;
+                /// Anchor in the frame of the second body, m.
+                dynamic_anchor2 set_dynamic_anchor2: Vector, DynamicConstraints, Finite;
+                /// Orientation of the second body in the frame of the first that a weld holds, a unit quaternion, w first.
+                dynamic_quat set_dynamic_quat: Quaternion, DynamicConstraints, Finite;
             }
         }
     };

@@ -1,0 +1,216 @@
+//! Constraints that are added and removed while a simulation runs, and equalities of the file that hold the present pose.
+
+use super::{Sim, no_such};
+use crate::Precision;
+use crate::constraint::dynamic::{CONNECT, WELD, tied};
+use crate::error::SimError;
+use crate::model::{EqualityTarget, Model};
+use crate::sleep::wake_in_state;
+use crate::state::State;
+use clench_math::{Quat, Vec3};
+
+/// Serial numbers begin anew after as many: single precision holds them exactly.
+const SERIALS: u32 = 1 << 24;
+
+/// A constraint that was added at run time, as long as it is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct DynamicConstraint {
+    slot: u32,
+    serial: u32,
+}
+
+impl DynamicConstraint {
+    /// As a number, never the same for two constraints of one simulation that are there at once.
+    pub fn to_code(self) -> u64 {
+        u64::from(self.serial) << 32 | u64::from(self.slot)
+    }
+
+    /// The constraint of which [`to_code`](Self::to_code) gave this number.
+    pub fn from_code(code: u64) -> Self {
+        DynamicConstraint {
+            slot: code as u32,
+            serial: (code >> 32) as u32,
+        }
+    }
+
+    /// The one in a slot of a state, if there is any.
+    fn in_slot<T: Precision>(model: &Model, state: &State<T>, slot: usize) -> Option<Self> {
+        tied(model, state, slot, 0)?;
+        Some(DynamicConstraint {
+            slot: slot as u32,
+            serial: state.dynamic_serial[slot].to_f64() as u32,
+        })
+    }
+}
+
+impl<T: Precision> Sim<T> {
+    /// Holds two bodies together as they lie now, as a weld does: what a suction gripper grips. A constraint of the state: it is saved
+    /// and restored with it, and a reset removes it. It is as soft as MuJoCo's welds are by default.
+    ///
+    /// # Errors
+    /// Bodies that the model does not have, twice the same, or two that nothing moves; no free slot (see
+    /// [`Model::max_dynamic_constraints`]); a state as [`step`](Self::step) refuses it.
+    pub fn add_weld(&mut self, body1: usize, body2: usize) -> Result<DynamicConstraint, SimError> {
+        self.refresh_positions()?;
+        let slot = self.free_slot([body1, body2])?;
+        let (anchor1, quat) = self.present_pose([body1, body2], Vec3::ZERO, Quat::IDENTITY);
+        let state = &mut self.state;
+        (state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]) = (anchor1, Vec3::ZERO);
+        state.dynamic_quat[slot] = quat;
+        Ok(self.occupy(slot, WELD, [body1, body2]))
+    }
+
+    /// Holds two points together, `anchor` in the frame of the first body and the point of the second that lies there now, as a connect
+    /// does: a ball joint. Otherwise as [`add_weld`](Self::add_weld).
+    ///
+    /// # Errors
+    /// As [`add_weld`](Self::add_weld), and an anchor that is not finite.
+    pub fn add_connect(
+        &mut self,
+        body1: usize,
+        body2: usize,
+        anchor: Vec3<T>,
+    ) -> Result<DynamicConstraint, SimError> {
+        if !anchor.to_array().iter().all(|x| x.is_finite()) {
+            let what = "a point that is not finite".to_owned();
+            let reason = "an anchor is a point";
+            return Err(SimError::CannotHold { what, reason });
+        }
+        self.refresh_positions()?;
+        let slot = self.free_slot([body1, body2])?;
+        let anchor2 = self.carry([body1, body2], anchor);
+        let state = &mut self.state;
+        (state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]) = (anchor, anchor2);
+        state.dynamic_quat[slot] = Quat::IDENTITY;
+        Ok(self.occupy(slot, CONNECT, [body1, body2]))
+    }
+
+    /// Lets go of what a constraint holds that was added at run time.
+    ///
+    /// # Errors
+    /// One that is not there any more.
+    pub fn remove(&mut self, constraint: DynamicConstraint) -> Result<(), SimError> {
+        let slot = constraint.slot as usize;
+        let there = slot < self.state.dynamic_kind.len()
+            && DynamicConstraint::in_slot(&self.model, &self.state, slot) == Some(constraint);
+        if !there {
+            return Err(SimError::StaleConstraint);
+        }
+        if let Some((_, bodies)) = tied(&self.model, &self.state, slot, 0) {
+            wake_in_state(&self.model, &mut self.state, bodies);
+        }
+        let state = &mut self.state;
+        state.dynamic_kind[slot] = T::ZERO;
+        state.dynamic_serial[slot] = T::ZERO;
+        (state.dynamic_body1[slot], state.dynamic_body2[slot]) = (T::ZERO, T::ZERO);
+        (state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]) = (Vec3::ZERO, Vec3::ZERO);
+        state.dynamic_quat[slot] = Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO);
+        self.forget();
+        Ok(())
+    }
+
+    /// The constraints that were added at run time and are there, in the order of their slots.
+    pub fn dynamic_constraints(&self) -> impl Iterator<Item = DynamicConstraint> {
+        let slots = 0..self.state.dynamic_kind.len();
+        slots.filter_map(|slot| DynamicConstraint::in_slot(&self.model, &self.state, slot))
+    }
+
+    /// Lets a weld or connect of the model hold its bodies as they lie now, and switches it on. The pose goes into the parameters of this
+    /// simulation (`eq_anchor1` and `eq_quat1` of a weld, `eq_anchor2` of a connect), the switch into the state.
+    ///
+    /// # Errors
+    /// An equality that the model does not have, or of another kind; a state as [`step`](Self::step) refuses it.
+    pub fn weld_here(&mut self, equality: usize) -> Result<(), SimError> {
+        let Some(found) = self.model.equalities.get(equality) else {
+            return Err(no_such("equality", equality, self.model.equalities.len()));
+        };
+        let target = found.target;
+        self.refresh_positions()?;
+        let (anchor1, anchor2) = (
+            self.params.eq_anchor1[equality],
+            self.params.eq_anchor2[equality],
+        );
+        match target {
+            EqualityTarget::Weld { body1, body2 } => {
+                let quat2 = self.params.eq_quat2[equality];
+                let (anchor, quat) = self.present_pose([body1, body2], anchor2, quat2);
+                self.params.eq_anchor1[equality] = anchor;
+                self.params.eq_quat1[equality] = quat;
+            }
+            EqualityTarget::Connect { body1, body2 } => {
+                self.params.eq_anchor2[equality] = self.carry([body1, body2], anchor1);
+            }
+            EqualityTarget::Joint { .. } | EqualityTarget::Tendon { .. } => {
+                return Err(SimError::CannotHold {
+                    what: format!("equality \"{}\"", self.model.equalities[equality].name),
+                    reason: "only welds and connects hold a pose",
+                });
+            }
+        }
+        self.state.eq_active[equality] = true;
+        self.forget();
+        Ok(())
+    }
+
+    /// A slot for a constraint between these bodies.
+    fn free_slot(&self, bodies: [usize; 2]) -> Result<usize, SimError> {
+        let count = self.model.nbody();
+        if let Some(&body) = bodies.iter().find(|&&body| body >= count) {
+            return Err(no_such("body", body, count));
+        }
+        let reason = match bodies.map(|body| self.model.bodies[body].last_dof) {
+            _ if bodies[0] == bodies[1] => Some("they are one"),
+            [None, None] => Some("nothing moves either"),
+            _ => None,
+        };
+        if let Some(reason) = reason {
+            let [one, other] = bodies.map(|body| &*self.model.bodies[body].name);
+            let what = format!("body \"{one}\" and body \"{other}\"");
+            return Err(SimError::CannotHold { what, reason });
+        }
+        let mut slots = 0..self.state.dynamic_kind.len();
+        let free = slots.find(|&slot| tied(&self.model, &self.state, slot, 0).is_none());
+        let most = self.state.dynamic_kind.len();
+        free.ok_or(SimError::NoFreeSlot { most })
+    }
+
+    /// Puts a constraint, whose frames are there already, into a slot.
+    fn occupy(&mut self, slot: usize, kind: f64, bodies: [usize; 2]) -> DynamicConstraint {
+        // Numbers in the state can be from another simulation, which counted further.
+        let serials = self.state.dynamic_serial.iter();
+        let last = serials.fold(self.last_serial, |last, serial| {
+            last.max(serial.to_f64() as u32)
+        });
+        self.last_serial = last % (SERIALS - 1) + 1;
+        let state = &mut self.state;
+        state.dynamic_kind[slot] = T::new(kind);
+        state.dynamic_serial[slot] = T::new(f64::from(self.last_serial));
+        state.dynamic_body1[slot] = T::new(bodies[0] as f64);
+        state.dynamic_body2[slot] = T::new(bodies[1] as f64);
+        wake_in_state(&self.model, state, bodies);
+        self.forget();
+        DynamicConstraint {
+            slot: slot as u32,
+            serial: self.last_serial,
+        }
+    }
+
+    /// The point of the first body, and how a frame is turned in it, where a point and a frame of the second lie now.
+    fn present_pose(
+        &self,
+        [body1, body2]: [usize; 2],
+        point: Vec3<T>,
+        turn: Quat<T>,
+    ) -> (Vec3<T>, Quat<T>) {
+        let xquat = &self.ws.position.xquat;
+        let quat = xquat[body1].conjugate() * xquat[body2] * turn;
+        (self.carry([body2, body1], point), quat)
+    }
+
+    /// A point of one body in the frame of another, where they lie now.
+    fn carry(&self, [from, to]: [usize; 2], point: Vec3<T>) -> Vec3<T> {
+        let pos = &self.ws.position;
+        let world = pos.xpos[from] + pos.xmat[from] * point;
+        pos.xmat[to].transpose_mul(world - pos.xpos[to])
+    }
+}
