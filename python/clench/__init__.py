@@ -55,6 +55,7 @@ from clench._named import (
     SiteView,
     TendonView,
 )
+from clench._spec import ModelSpec, SpecElement
 from clench._state import State
 from clench._status import EnvStatus
 from clench.errors import BusyError, ClenchError, LoadError, SimulationError
@@ -80,6 +81,7 @@ __all__ = [
     "JointView",
     "LoadError",
     "Model",
+    "ModelSpec",
     "Parameters",
     "RayHit",
     "RigidOptions",
@@ -89,6 +91,7 @@ __all__ = [
     "SiteView",
     "Solution",
     "SolverStats",
+    "SpecElement",
     "State",
     "StateViews",
     "TendonView",

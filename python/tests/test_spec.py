@@ -1,0 +1,169 @@
+"""`ModelSpec`: models that are built and edited in Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import clench
+import numpy as np
+import pytest
+from scenes import ROOT
+
+EXAMPLES = sorted((ROOT / "models").glob("*.xml"))
+FINGER = """
+<mujoco model="finger">
+  <worldbody>
+    <body name="base"><geom name="base" size="0.05"/>
+      <body name="tip" pos="0 0 0.1">
+        <joint name="bend" axis="0 1 0"/>
+        <geom name="tip" type="capsule" fromto="0 0 0 0 0 0.1" size="0.02"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><position name="bend" joint="bend" kp="5"/></actuator>
+  <sensor><jointpos name="bend" joint="bend"/><framepos objtype="body" objname="tip"/></sensor>
+</mujoco>"""
+
+
+def ends(model: clench.Model, steps: int = 50) -> clench.State:
+    sim = clench.Sim(model)
+    sim.qvel += np.linspace(-0.2, 0.2, model.nv)
+    sim.ctrl += 0.1
+    sim.step(steps)
+    return sim.state
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_what_is_loaded_and_built_steps_as_the_file(path: Path) -> None:
+    built = clench.ModelSpec.from_file(path).build()
+    steps = 3 if path.stem == "pile" else 50
+    assert ends(built, steps) == ends(clench.Model.from_file(path), steps)
+
+
+def test_what_is_built_steps_as_what_is_written() -> None:
+    spec = clench.ModelSpec("built")
+    spec.section("option")["timestep"] = 0.001
+    spec.world.add_geom(type="plane", size=[1, 1, 1])
+    arm = spec.world.add_body(name="arm", pos=[0, 0, 1 / 3])
+    arm.add_joint(name="shoulder", axis=[0, 1, 0], damping=0.1, limited=True, range=[-45, 45])
+    arm.add_geom(name="arm", type="capsule", fromto=[0, 0, 0, 0.3, 0, 0], size=0.03)
+    arm.add_site(name="hand", pos=[0.3, 0, 0])
+    spec.add_actuator("motor", name="lift", joint="shoulder", gear=2)
+    spec.add_sensor("framepos", name="hand", objtype="site", objname="hand")
+    spec.add_tendon("fixed", name="string").add("joint", joint="shoulder", coef=-1.5)
+    written = f"""
+    <mujoco model="built"><option timestep="0.001"/>
+      <worldbody><geom type="plane" size="1 1 1"/>
+        <body name="arm" pos="0 0 {1 / 3!r}"><joint name="shoulder" axis="0 1 0" damping="0.1" limited="true" range="-45 45"/>
+          <geom name="arm" type="capsule" fromto="0 0 0 0.3 0 0" size="0.03"/><site name="hand" pos="0.3 0 0"/></body>
+      </worldbody>
+      <tendon><fixed name="string"><joint joint="shoulder" coef="-1.5"/></fixed></tendon>
+      <actuator><motor name="lift" joint="shoulder" gear="2"/></actuator>
+      <sensor><framepos name="hand" objtype="site" objname="hand"/></sensor></mujoco>"""
+    model = spec.build()
+    assert model.name == "built" and model.body_pos[1, 2] == 1 / 3
+    assert ends(model) == ends(clench.Model.from_xml(written))
+
+
+def test_numbers_of_an_element_can_be_edited() -> None:
+    spec = clench.ModelSpec.from_file(ROOT / "models/humanoid.xml")
+    torso = spec.body("torso")
+    assert "pos" in torso and torso.tag == "body" and torso.name == "torso"
+    torso["pos"] = [0, 0, 2]
+    spec.geom("floor")["friction"] = np.array([0.5, 0.01, 0.001])
+    model = spec.build()
+    np.testing.assert_array_equal(model.body("torso").pos, [0, 0, 2])
+    np.testing.assert_array_equal(model.geom("floor").friction, [0.5, 0.01, 0.001])
+    del torso["pos"]
+    np.testing.assert_array_equal(spec.build().body("torso").pos, [0, 0, 0])
+    with pytest.raises(KeyError, match="does not say"):
+        torso["pos"]
+
+
+def test_a_model_is_attached_with_a_prefix_as_often_as_wanted() -> None:
+    finger = clench.ModelSpec.from_xml(FINGER)
+    hand = clench.ModelSpec("hand")
+    palm = hand.world.add_body(name="palm", pos=[0, 0, 1])
+    palm.add_geom(type="box", size=[0.1, 0.1, 0.02])
+    for side, x in (("left_", -0.08), ("right_", 0.08)):
+        palm.add_frame(pos=[x, 0, 0.02], euler=[0, 0, 90]).attach(finger, prefix=side, body="base")
+    model = hand.build()
+    assert model.names("body") == ["world", "palm", "left_base", "left_tip", "right_base", "right_tip"]
+    assert model.names("actuator") == ["left_bend", "right_bend"] and "right_bend" in model.names("sensor")
+    np.testing.assert_allclose(model.body("right_base").pos, [0.08, 0, 0.02])
+    with pytest.raises(ValueError, match="prefix 'left_' already"):
+        palm.attach(finger, prefix="left_")
+    assert ends(clench.Model.from_xml(model.to_xml())).qpos.shape == (2,)
+
+
+def test_what_refers_to_a_name_follows_it() -> None:
+    spec = clench.ModelSpec.from_xml(FINGER)
+    spec.joint("bend").rename("flex")
+    spec.body("tip").rename("end")
+    assert spec.actuator("bend")["joint"] == spec.sensor("bend")["joint"] == "flex"
+    model = spec.build()
+    assert model.names("joint") == ["flex"] and model.names("body") == ["world", "base", "end"]
+    with pytest.raises(ValueError, match='there is a body "base" already'):
+        spec.body("end").rename("base")
+    with pytest.raises(ValueError, match='there is no joint "bend": there are flex'):
+        spec.joint("bend")
+
+
+def test_what_refers_to_what_is_removed_goes_with_it() -> None:
+    spec = clench.ModelSpec.from_xml(FINGER)
+    spec.add_tendon("fixed", name="string").add("joint", joint="bend", coef=1)
+    spec.add_sensor("tendonpos", name="string", tendon="string")
+    whole = spec.copy()
+    spec.joint("bend").remove()
+    model = spec.build()
+    assert (model.nv, model.nu, model.ntendon, model.nsensor) == (0, 0, 0, 1)
+    whole.body("tip").remove()
+    assert whole.build().nbody == 2 and whole.build().nsensor == 0
+    with pytest.raises(ValueError, match="removed already"):
+        tip = spec.body("tip")
+        tip.remove()
+        tip.remove()
+
+
+def test_files_are_read_once_and_travel_with_the_model(tmp_path: Path) -> None:
+    (tmp_path / "meshes").mkdir()
+    corners = "\n".join(f"v {x} {y} {z}" for x in (0, 0.1) for y in (0, 0.1) for z in (0, 0.1))
+    faces = "f 1 2 3\nf 2 4 3\nf 5 7 6\nf 6 7 8\nf 1 5 2\nf 2 5 6\nf 3 4 7\nf 4 8 7\nf 1 3 5\nf 3 7 5\nf 2 6 4\nf 4 6 8"
+    (tmp_path / "meshes/block.obj").write_text(f"{corners}\n{faces}\n")
+    (tmp_path / "parts.xml").write_text('<mujocoinclude><geom name="part" type="mesh" mesh="block"/></mujocoinclude>')
+    (tmp_path / "main.xml").write_text(
+        '<mujoco><compiler meshdir="meshes"/><asset><mesh name="block" file="block.obj"/></asset>'
+        '<worldbody><body name="b"><freejoint/><include file="parts.xml"/></body></worldbody></mujoco>'
+    )
+    expected = ends(clench.Model.from_file(tmp_path / "main.xml"))
+    spec = clench.ModelSpec.from_file(tmp_path / "main.xml")
+    for file in ("meshes/block.obj", "parts.xml", "main.xml"):
+        (tmp_path / file).unlink()
+    assert spec.geom("part")["mesh"] == "block" and list(spec.assets) == ["block.obj"]
+    assert ends(spec.build()) == expected
+    with pytest.raises(clench.LoadError, match="No such file"):
+        clench.ModelSpec.from_file(tmp_path / "main.xml")
+
+
+def test_urdf_becomes_a_document() -> None:
+    path = ROOT / "models/gripper/gripper.urdf"
+    spec = clench.ModelSpec.from_file(path)
+    assert spec.build().nv == clench.Model.from_file(path).nv
+    spec.add_actuator("motor", joint=spec.names("joint")[0])
+    assert spec.build().nu == clench.Model.from_file(path).nu + 1
+
+
+def test_wrong_values_are_refused() -> None:
+    spec = clench.ModelSpec()
+    with pytest.raises(TypeError, match="not dict"):
+        spec.world.add_body(pos={})  # type: ignore[arg-type]
+    assert spec.names("body") == [] and len(list(spec.world)) == 0
+    with pytest.raises(ValueError, match="no kind of element"):
+        spec.find("bodies", "x")
+    with pytest.raises(clench.LoadError, match="unknown|geom"):
+        spec.world.add_geom(size=0.1, colour="red")
+        spec.build()
+    with pytest.raises(clench.LoadError, match="was expected"):
+        clench.ModelSpec.from_xml("<sdf/>")
+    with pytest.raises(clench.LoadError, match="not well-formed"):
+        clench.ModelSpec.from_xml("<mujoco>\n<a b=></mujoco>")
