@@ -93,6 +93,10 @@ pub trait Real:
     /// functions so.
     fn vectorize<R>(kernel: impl FnOnce() -> R) -> R;
 
+    /// The same for a closure whose loops run over contiguous numbers, so that the registers of this processor can be filled even where a
+    /// number is a scalar. The choice changes no result: nothing is fused or summed in another order.
+    fn vectorize_rows<R>(kernel: impl FnOnce() -> R) -> R;
+
     /// The same constant in every lane, rounded to the lane's precision.
     fn new(value: f64) -> Self;
     /// The same value in every lane.

@@ -40,6 +40,10 @@ macro_rules! scalar {
                     kernel()
                 }
                 #[inline(always)]
+                fn vectorize_rows<R>(kernel: impl FnOnce() -> R) -> R {
+                    lanes::in_widest(kernel)
+                }
+                #[inline(always)]
                 fn as_scalars(values: &[$t]) -> &[$t] {
                     values
                 }

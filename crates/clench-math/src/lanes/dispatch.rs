@@ -6,6 +6,8 @@ use super::Portable;
 #[cfg(target_arch = "aarch64")]
 use super::neon::Neon;
 #[cfg(target_arch = "x86_64")]
+use super::registers::Registers;
+#[cfg(target_arch = "x86_64")]
 use super::{avx2::Avx2, avx512::Avx512};
 use crate::real::{Real, Scalar};
 
@@ -82,6 +84,18 @@ pub trait LaneTask<S: Scalar> {
     type Output;
     /// Does it in lanes of type `T`.
     fn run<T: Real<Scalar = S>>(self) -> Self::Output;
+}
+
+/// Runs a closure compiled for the widest instructions that this processor has.
+#[inline(always)]
+pub(crate) fn in_widest<R>(kernel: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    if Avx512::detected() {
+        return <Avx512 as Registers<f64, 8>>::vectorize(kernel);
+    } else if Avx2::detected() {
+        return <Avx2 as Registers<f64, 4>>::vectorize(kernel);
+    }
+    kernel()
 }
 
 macro_rules! in_lanes {

@@ -149,6 +149,10 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
     fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {
         I::vectorize(kernel)
     }
+    #[inline(always)]
+    fn vectorize_rows<R>(kernel: impl FnOnce() -> R) -> R {
+        I::vectorize(kernel)
+    }
 
     #[inline(always)]
     fn new(value: f64) -> Self {

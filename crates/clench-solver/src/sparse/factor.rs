@@ -4,7 +4,7 @@
 //! in tiles that stay in registers. Every entry is changed by the rows below in the same order as over a [`Tree`](crate::Tree), from the last
 //! to the first, and by each alone, **so that both give the same bits**.
 
-use super::pattern::{Run, SparsePattern, Supernode};
+use super::pattern::{MAX_DOFS, Run, SparsePattern, Supernode};
 use crate::jacobian::Pattern;
 use crate::{Tree, TreeMatrix};
 use clench_math::{Mask, Real, Scalar, array, kernel};
@@ -52,8 +52,16 @@ impl<T: Real> SparseFactor<T> {
     }
 
     /// Factors the matrix; a pivot that rounding has consumed is replaced by the diagonal it came from.
-    #[kernel]
     pub fn factor_safely(&mut self, pattern: &SparsePattern) {
+        // Its tiles have columns enough to fill registers with, even of a single environment.
+        T::vectorize_rows(
+            #[inline(always)]
+            || self.factor_rows(pattern),
+        );
+    }
+
+    #[inline(always)]
+    fn factor_rows(&mut self, pattern: &SparsePattern) {
         for s in pattern.supernodes() {
             for m in 0..s.len {
                 self.diagonal[s.first + m] = self.values[s.start + m * s.width() + s.shared() + m];
@@ -71,22 +79,33 @@ impl<T: Real> SparseFactor<T> {
         let (width, shared) = (s.width(), s.shared());
         let floor = T::splat(T::Scalar::EPSILON);
         let block = &mut self.values[s.block()];
+        // What row k takes off row m is this times row k. First in the columns of the supernode itself, which give the pivots.
+        let mut multipliers = [[T::ZERO; MAX_DOFS]; MAX_DOFS];
         for m in (0..s.len).rev() {
             let (above, below) = block.split_at_mut((m + 1) * width);
-            let row = &mut above[m * width..][..shared + m + 1];
+            let row = &mut above[m * width + shared..][..=m];
             for k in (m + 1..s.len).rev() {
-                let other = &below[(k - m - 1) * width..][..shared + m + 1];
-                let multiplier =
-                    below[(k - m - 1) * width + shared + m] * self.inverse[s.first + k];
+                let other = &below[(k - m - 1) * width + shared..][..=m];
+                let multiplier = other[m] * self.inverse[s.first + k];
+                multipliers[m][k] = multiplier;
                 for (x, &u) in row.iter_mut().zip(other) {
                     *x -= multiplier * u;
                 }
             }
             let dof = s.first + m;
-            let (pivot, diagonal) = (row[shared + m], self.diagonal[dof]);
+            let (pivot, diagonal) = (row[m], self.diagonal[dof]);
             let pivot = T::select(pivot.gt(floor * diagonal), pivot, diagonal);
             self.diagonal[dof] = pivot;
             self.inverse[dof] = T::ONE / pivot;
+        }
+        // Then in the columns left of them.
+        let mut column = 0;
+        while column < shared {
+            column += match shared - column {
+                NARROW.. => subtract_multiples::<T, NARROW>(block, width, column, &multipliers),
+                2.. => subtract_multiples::<T, 2>(block, width, column, &multipliers),
+                _ => subtract_multiples::<T, 1>(block, width, column, &multipliers),
+            };
         }
         self.upper.clear();
         self.upper.extend_from_slice(block);
@@ -104,6 +123,7 @@ impl<T: Real> SparseFactor<T> {
         let mut tiles = Tiles {
             lower: &done[s.start..],
             upper: &self.upper,
+            len: s.len,
             width: s.width(),
             above,
             offset: s.block().end,
@@ -257,6 +277,29 @@ impl<T: Real> SparseFactor<T> {
     }
 }
 
+/// Subtracts from each row of a block, the last first, multiples of the rows after it, in N columns; returns their number.
+#[inline(always)]
+fn subtract_multiples<T: Real, const N: usize>(
+    block: &mut [T],
+    width: usize,
+    column: usize,
+    multipliers: &[[T; MAX_DOFS]; MAX_DOFS],
+) -> usize {
+    let len = block.len() / width;
+    for m in (0..len).rev() {
+        let start = m * width + column;
+        let mut left: [T; N] = array(|c| block[start + c]);
+        for k in (m + 1..len).rev() {
+            let other = &block[k * width + column..][..N];
+            for c in 0..N {
+                left[c] -= multipliers[m][k] * other[c];
+            }
+        }
+        block[start..start + N].copy_from_slice(&left);
+    }
+    N
+}
+
 /// Sums that run side by side in a solve.
 const SUMS: usize = 6;
 
@@ -273,11 +316,16 @@ fn subtract_products<T: Real, const N: usize>(own: &mut [T], rows: &[T], width: 
     own.copy_from_slice(&sums);
 }
 
+/// Columns of a tile: those of a free body, and of two.
+const NARROW: usize = 6;
+const WIDE: usize = 12;
+
 /// A supernode that is done, and the values of those above.
 struct Tiles<'a, T> {
-    /// L and U of it, and the length of their rows.
+    /// L and U of it, how many rows they have, and the length of these.
     lower: &'a [T],
     upper: &'a [T],
+    len: usize,
     width: usize,
     /// The values from `offset` on.
     above: &'a mut [T],
@@ -324,23 +372,20 @@ impl<T: Real> Tiles<'_, T> {
     fn subtract_run(&mut self, rows: &Rows, place: usize, len: usize, to: usize) {
         let mut column = 0;
         while column < len {
-            let count = match len - column {
-                6.. => 6,
-                2..=5 => 2,
-                _ => 1,
-            };
             let (from, to) = (place + column, to + column);
-            match count {
-                6 => self.subtract_columns::<6>(rows, from, to),
-                2 => self.subtract_columns::<2>(rows, from, to),
+            column += match len - column {
+                // As many as fit into registers: of scalars more than of lanes.
+                WIDE.. if T::LANES == 1 => self.subtract_columns::<WIDE>(rows, from, to),
+                NARROW.. => self.subtract_columns::<NARROW>(rows, from, to),
+                2.. => self.subtract_columns::<2>(rows, from, to),
                 _ => self.subtract_columns::<1>(rows, from, to),
-            }
-            column += count;
+            };
         }
     }
 
+    /// The same for N columns; returns their number.
     #[inline(always)]
-    fn subtract_columns<const N: usize>(&mut self, rows: &Rows, from: usize, to: usize) {
+    fn subtract_columns<const N: usize>(&mut self, rows: &Rows, from: usize, to: usize) -> usize {
         let mut row = 0;
         while row + 3 <= rows.dofs.len() {
             self.subtract_tile::<3, N>(rows, row, from, to);
@@ -350,6 +395,7 @@ impl<T: Real> Tiles<'_, T> {
             self.subtract_tile::<1, N>(rows, row, from, to);
             row += 1;
         }
+        N
     }
 
     /// R rows by N columns.
@@ -371,12 +417,10 @@ impl<T: Real> Tiles<'_, T> {
             sums[r].copy_from_slice(&self.above[starts[r]..starts[r] + N]);
         }
         let multipliers = rows.place + row;
-        let below = self
-            .lower
-            .chunks_exact(self.width)
-            .zip(self.upper.chunks_exact(self.width));
-        for (lower, upper) in below.rev() {
-            let (lower, upper) = (&lower[multipliers..][..R], &upper[from..][..N]);
+        for k in (0..self.len).rev() {
+            let start = k * self.width;
+            let lower = &self.lower[start + multipliers..][..R];
+            let upper = &self.upper[start + from..][..N];
             for r in 0..R {
                 for c in 0..N {
                     sums[r][c] -= lower[r] * upper[c];

@@ -67,7 +67,7 @@ pub(crate) struct Run {
 }
 
 /// Longer supernodes are cut: a factor of more rows gains little from being one block.
-const MAX_DOFS: usize = 12;
+pub(super) const MAX_DOFS: usize = 12;
 
 /// Memory of an analysis.
 #[derive(Clone, Debug, Default)]
@@ -268,15 +268,16 @@ impl Pattern for SparsePattern {
         let Some(&dof) = dofs.last() else { return };
         let s = self.supernode_of(dof as usize);
         let start = s.start + (dof as usize - s.first) * s.width();
-        let mut c = 0;
-        while c < dofs.len() {
-            let place = start + self.place(s, dofs[c] as usize);
+        let mut first = 0;
+        while first < dofs.len() {
             // Columns that follow each other are neighbours.
-            let first = c;
-            while c < dofs.len() && dofs[c] as usize - dofs[first] as usize == c - first {
-                values[place + c - first] += entry(c);
-                c += 1;
+            let follows = |pair: &&[u32]| pair[1] == pair[0] + 1;
+            let len = 1 + dofs[first..].windows(2).take_while(follows).count();
+            let place = start + self.place(s, dofs[first] as usize);
+            for (c, value) in values[place..place + len].iter_mut().enumerate() {
+                *value += entry(first + c);
             }
+            first += len;
         }
     }
 }
