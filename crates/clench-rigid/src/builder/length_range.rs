@@ -90,12 +90,26 @@ pub(super) fn find_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), 
             None => wanted.push(u),
         }
     }
-    if let Some(&last) = wanted.last() {
-        let mut search = Search::new(settings, model, &builder.actuators[last])?;
-        search.require_budget(builder, wanted.len(), &builder.actuators[last])?;
-        for u in wanted {
-            model.params.actuator_lengthrange[u] = search.range(u, &builder.actuators[u])?;
-        }
+    match wanted.last() {
+        Some(&last) => search_all(builder, &wanted, last, model),
+        None => Ok(()),
+    }
+}
+
+/// Searches the ranges of some actuators, of which `last` is the last. A function of its own, because a simulation takes
+/// 100 kB of stack, which models without such actuators need not have.
+#[inline(never)]
+fn search_all(
+    builder: &ModelBuilder,
+    wanted: &[usize],
+    last: usize,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let settings = &builder.compiler.lengthrange;
+    let mut search = Search::new(settings, model, &builder.actuators[last])?;
+    search.require_budget(builder, wanted.len(), &builder.actuators[last])?;
+    for &u in wanted {
+        model.params.actuator_lengthrange[u] = search.range(u, &builder.actuators[u])?;
     }
     Ok(())
 }
