@@ -62,6 +62,8 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         of the start of the last step of the simulator (with RK4 its last stage), or of the reset.
     fresh : ndarray
         Booleans (n,): environments that no step followed yet since their reset.
+    action_shape : tuple of int
+        Shape of an action of one environment.
     timestep, dt : float
         Seconds that a step of the simulator, and one of the environment, takes.
     init_qpos, init_qvel : ndarray
@@ -142,7 +144,10 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         self.dt = self.timestep * self.frame_skip
         self.init_qpos = self.batch.qpos[0].copy()
         self.init_qvel = self.batch.qvel[0].copy()
-        self.single_action_space = action_space(self.batch.model)
+        own = getattr(type(self), "single_action_space", None)
+        space = own if isinstance(own, Box) else action_space(self.batch.model)
+        self.action_shape = space.shape
+        self.single_action_space = space
         self.action_space = batch_space(self.single_action_space, num_envs)
 
         self.fresh = np.zeros(num_envs, dtype=np.bool_)
@@ -167,9 +172,21 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         Parameters
         ----------
         action : ndarray
-            The actions as float64, (n, nu). Not to be written to.
+            The actions as float64, (n, ...). Not to be written to.
         """
         raise NotImplementedError(f"{type(self).__name__} must define reward(action)")
+
+    def control(self, action: Array) -> Array:
+        """The controls that actions mean, (n, nu). The actions themselves unless defined.
+
+        A task whose actions have another shape also has the attribute ``single_action_space``, a ``Box`` of that shape.
+
+        Parameters
+        ----------
+        action : ndarray
+            The actions as float64, (n, ...). Not to be written to.
+        """
+        return action
 
     def terminated(self) -> Array:
         """Whose episode is over, (n,) booleans. Nobody's unless defined."""
@@ -200,6 +217,19 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
             Positions (nq,) and velocities (nv,).
         """
         return self.init_qpos, self.init_qvel
+
+    def on_reset(self, mask: Array) -> None:
+        """Called when environments start an episode, with their states set and before anything is observed.
+
+        The place for goals, parameters of environments (``batch.randomize``), welds (``batch.add_weld``), poses of mocap bodies, or
+        states of many environments at once: what it writes to the arrays of :attr:`batch` is where they start.
+
+        Parameters
+        ----------
+        mask : ndarray
+            Booleans (n,): which environments; ``numpy.flatnonzero(mask)`` are their indices. Random numbers of environment ``i`` come
+            from ``np_random[i]``.
+        """
 
     # What gymnasium asks.
 
@@ -295,7 +325,7 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         Parameters
         ----------
         actions : array_like
-            Controls (n, nu). They are clamped as the model says, and not otherwise.
+            Actions (n, ...), controls (n, nu) unless the task says otherwise (:meth:`control`). Controls are clamped as the model says, and not otherwise.
 
         Returns
         -------
@@ -316,7 +346,7 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
             Before the first reset; without autoreset, also when an environment is over.
         """
         self._check_ready()
-        action = checked_action(actions, (self.num_envs, self.batch.model.nu), self._name)
+        action = checked_action(actions, (self.num_envs, *self.action_shape), self._name)
         over = self._done
         if self._mode is AutoresetMode.DISABLED and over.any():
             first = int(np.flatnonzero(over)[0])
@@ -376,6 +406,7 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         batch.reset(mask)
         for env in np.flatnonzero(mask).tolist():
             qpos[env], qvel[env] = self.initial_state(self._generator(env))
+        self.on_reset(mask)
         if batch.outputs and batch.forward(mask):
             env = int(np.flatnonzero(mask & ~batch.running)[0])
             raise SimulationError(f"{self._name}: environment {env} cannot start: {batch.fault(env)}")
@@ -387,7 +418,7 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
     def advance(self, action: Array) -> tuple[Array, Array, Array, list[vector_infos.Group]]:
         """A step of every environment, without resets: rewards, terminations, truncations, and infos."""
         batch, n = self.batch, self.num_envs
-        batch.ctrl[...] = action
+        batch.ctrl[...] = self.control(action)
         self.before_step()
         batch.step(self.frame_skip)
         self._elapsed += 1

@@ -73,7 +73,7 @@ class SingleEnv(gymnasium.Env[Array, Array]):
         Parameters
         ----------
         action : array_like
-            Controls (nu,). They are clamped as the model says, and not otherwise.
+            An action, controls (nu,) unless the task says otherwise. Controls are clamped as the model says, and not otherwise.
 
         Returns
         -------
@@ -94,7 +94,7 @@ class SingleEnv(gymnasium.Env[Array, Array]):
             raise ClosedEnvironmentError(f"{self} is closed")
         if not self.vector.started:
             raise ResetNeeded(f"{self}: call reset() before step()")
-        row = checked_action(action, (self.vector.batch.model.nu,), str(self))
+        row = checked_action(action, self.vector.action_shape, str(self))
         rewards, terminations, truncations, about = self.vector.advance(row[np.newaxis])
         info = {key: value.copy()[0] for values, mask in about if mask[0] for key, value in values.items()}
         return self.vector.observation()[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), info

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.error import ResetNeeded
 from gymnasium.spaces import Box
+from numpy.typing import NDArray
 from tasks_of_tests import CART, Cart
 
 from clench import Model
@@ -177,3 +178,52 @@ def test_what_is_missing() -> None:
         missing = type("Missing", (Short,), {method: getattr(BatchEnv, method)})
         with pytest.raises(NotImplementedError, match=f"Missing must define {method}"):
             call(missing(1, model=CART))
+
+
+class Carrier(BatchEnv):
+    """A grid of two numbers drives the gantry; each episode has a goal, a mass and a weld of its own."""
+
+    model = Path(__file__).resolve().parents[3] / "models/suction_gripper.xml"
+    frame_skip = 5
+    outputs = ("xpos",)
+    single_action_space = Box(-1, 1, (2, 1))
+
+    def __init__(self, num_envs: int, **options: Any) -> None:
+        super().__init__(num_envs, **options)
+        self.goal = np.zeros(num_envs)
+        self.resets: list[list[int]] = []
+
+    def observe(self) -> NDArray[Any]:
+        return np.column_stack([self.batch.qpos, self.goal])
+
+    def control(self, action: NDArray[Any]) -> NDArray[Any]:
+        return action[:, :, 0] * [0.8, 0.6]
+
+    def reward(self, action: NDArray[Any]) -> NDArray[Any]:
+        assert action.shape == (self.num_envs, 2, 1)
+        return np.asarray(-np.abs(self.batch.body("box").xpos[:, 0] - self.goal))
+
+    def on_reset(self, mask: NDArray[Any]) -> None:
+        envs = np.flatnonzero(mask)
+        self.resets.append(envs.tolist())
+        for env in envs:
+            self.goal[env] = self.np_random[env].uniform(-0.5, 0.5)
+        self.batch.joint("box").qpos[mask, 2] = 0.6
+        self.batch.add_weld("cup", "box", envs)
+
+
+def test_resets_can_set_goals_and_welds_and_actions_have_any_shape() -> None:
+    envs = Carrier(3)
+    observations, _ = envs.reset(seed=1)
+    assert envs.resets == [[0, 1, 2]] and len(set(envs.goal)) == 3
+    np.testing.assert_array_equal(observations[:, -1], envs.goal)
+    assert (envs.batch.dynamic_kind[:, 0] == 2).all()
+    action = np.broadcast_to([[0.5], [0.0]], (3, 2, 1))
+    for _ in range(20):
+        envs.step(action)
+    np.testing.assert_allclose(envs.batch.ctrl, [[0.4, 0]] * 3)
+    assert (envs.batch.qpos[:, 4] > 0.5).all()
+    envs.reset(options={"reset_mask": np.array([False, True, False])})
+    assert envs.resets == [[0, 1, 2], [1]] and (envs.batch.dynamic_kind[:, 0] == 2).all()
+    with pytest.raises(ValueError, match=r"an action of shape \(3, 2\), expected \(3, 2, 1\)"):
+        envs.step(np.zeros((3, 2)))
