@@ -28,12 +28,17 @@ from clench._core import (
     PARAMETERS,
     Batch,
     Block,
+    ComTarget,
     Constraints,
     Contact,
     Contacts,
     Element,
+    FrameTarget,
+    IkResult,
     Model,
+    PostureTarget,
     RayHit,
+    RayHits,
     RigidOptions,
     Separation,
     Sim,
@@ -57,7 +62,7 @@ from clench._named import (
 )
 from clench._spec import ModelSpec, SpecElement
 from clench._state import State
-from clench._status import EnvStatus
+from clench._status import EnvStatus, IkStatus
 from clench.errors import BusyError, ClenchError, LoadError, SimulationError
 
 __all__ = [
@@ -70,6 +75,7 @@ __all__ = [
     "BusyError",
     "CameraView",
     "ClenchError",
+    "ComTarget",
     "Constraints",
     "Contact",
     "Contacts",
@@ -77,13 +83,18 @@ __all__ = [
     "ElementView",
     "EnvStatus",
     "EqualityView",
+    "FrameTarget",
     "GeomView",
+    "IkResult",
+    "IkStatus",
     "JointView",
     "LoadError",
     "Model",
     "ModelSpec",
     "Parameters",
+    "PostureTarget",
     "RayHit",
+    "RayHits",
     "RigidOptions",
     "Separation",
     "Sim",

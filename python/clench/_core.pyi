@@ -26,12 +26,17 @@ __all__ = [
     "PARAMETERS",
     "Batch",
     "Block",
+    "ComTarget",
     "Constraints",
     "Contact",
     "Contacts",
     "Element",
+    "FrameTarget",
+    "IkResult",
     "Model",
+    "PostureTarget",
     "RayHit",
+    "RayHits",
     "RigidOptions",
     "Separation",
     "Sim",
@@ -92,6 +97,18 @@ class Model:
         max_dynamic_constraints: SupportsIndex = 8,
     ) -> Model: ...
     def to_xml(self) -> str: ...
+    def integrate_pos(
+        self,
+        qpos: ArrayLike,  # (nq,) or (k, nq)
+        qvel: ArrayLike,  # (nv,) or (k, nv)
+        time: float = 1.0,
+    ) -> _Floats: ...  # in the shape of qpos
+    def differentiate_pos(
+        self,
+        qpos1: ArrayLike,  # (nq,) or (k, nq)
+        qpos2: ArrayLike,  # in the same shape
+        time: float = 1.0,
+    ) -> _Floats: ...  # (nv,) or (k, nv)
     def __copy__(self) -> Model: ...
     def __deepcopy__(self, _memo: Any, /) -> Model: ...
     @property
@@ -687,15 +704,19 @@ class _Outputs(StateViews):
     geom_xmat: Final[NDArray[Any]]  # (ngeom, 9) Orientations of geoms.
     site_xpos: Final[NDArray[Any]]  # (nsite, 3) Positions of sites.
     site_xmat: Final[NDArray[Any]]  # (nsite, 9) Orientations of sites.
+    site_jacp: Final[NDArray[Any]]  # (nsite, 3, nv) Jacobians of the positions of sites.
+    site_jacr: Final[NDArray[Any]]  # (nsite, 3, nv) Jacobians of their orientations.
     cam_xpos: Final[NDArray[Any]]  # (ncam, 3) Positions of cameras.
     cam_xmat: Final[NDArray[Any]]  # (ncam, 9) Orientations of cameras, x to the right, y up, z backwards.
     subtree_com: Final[NDArray[Any]]  # (nbody, 3) Centre of mass of each body and all below it.
     cinert: Final[NDArray[Any]]  # (nbody, 10) Inertias about the centre of mass of the tree.
     cvel: Final[NDArray[Any]]  # (nbody, 6) Velocities there, angular first.
     cdof: Final[NDArray[Any]]  # (nv, 6) Motion of each dof at unit velocity, likewise.
+    ten_J: Final[NDArray[Any]]  # (ntendon, nv) Moment arms of tendons.
     ten_length: Final[NDArray[Any]]  # (ntendon,) Lengths of tendons.
     ten_velocity: Final[NDArray[Any]]  # (ntendon,) Velocities of tendons.
     actuator_length: Final[NDArray[Any]]  # (nactuator,) Lengths of actuators.
+    actuator_moment: Final[NDArray[Any]]  # (nactuator, nv) Moment arms of actuators.
     actuator_velocity: Final[NDArray[Any]]  # (nactuator,) Velocities of actuators.
     actuator_force: Final[NDArray[Any]]  # (nactuator,) Forces of actuators.
     qfrc_actuator: Final[NDArray[Any]]  # (nv,) The same along dofs.
@@ -781,6 +802,100 @@ class Sim(_Outputs):
         geom2: str | SupportsIndex,
         limit: float | None = None,
     ) -> Separation | None: ...
+    def jacobian(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        point: ArrayLike | None = None,  # (3,)
+        out: NDArray[Any] | None = None,  # (2, 3, nv)
+    ) -> NDArray[Any]: ...  # (2, 3, nv): translation, rotation
+    def jacobian_rate(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        point: ArrayLike | None = None,  # (3,)
+        out: NDArray[Any] | None = None,  # (2, 3, nv)
+    ) -> NDArray[Any]: ...  # (2, 3, nv): translation, rotation
+    def subtree_jacobian(
+        self,
+        body: str | SupportsIndex,
+        *,
+        out: NDArray[Any] | None = None,  # (3, nv)
+    ) -> NDArray[Any]: ...  # (3, nv)
+    def velocity(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        local: bool = False,
+    ) -> NDArray[Any]: ...  # (2, 3): linear, angular
+    def acceleration(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        local: bool = False,
+    ) -> NDArray[Any]: ...  # (2, 3): linear, angular
+    def mul_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (nv,) or (k, nv)
+    def solve_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (nv,) or (k, nv)
+    def joint_forces(
+        self,
+        body: str | SupportsIndex,
+        force: ArrayLike | None = None,  # (3,)
+        torque: ArrayLike | None = None,  # (3,)
+        point: ArrayLike | None = None,  # (3,)
+    ) -> NDArray[Any]: ...  # (nv,)
+    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> NDArray[Any]: ...  # (nv,) or (k, nv)
+    def rays(
+        self,
+        origins: ArrayLike,  # (k, 3) or (1, 3)
+        directions: ArrayLike,  # (k, 3) or (1, 3)
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        groups: ArrayLike | None = None,
+        fixed: bool | np.bool_ = True,
+        exclude_body: str | SupportsIndex | None = None,
+    ) -> RayHits: ...
+    def heights(
+        self,
+        hfield: str | SupportsIndex,
+        places: ArrayLike,  # (k, 2)
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+    ) -> NDArray[Any]: ...  # (k,)
+    def ik(
+        self,
+        targets: Iterable[FrameTarget | ComTarget | PostureTarget],
+        *,
+        start: ArrayLike | None = None,  # (nq,)
+        iterations: SupportsIndex = 100,
+        tolerance: float = 1e-6,
+        damping: float = 1e-3,
+        limits: bool = True,
+        dofs: ArrayLike | None = None,  # (nv,)
+    ) -> IkResult: ...
 
     actuator_power: Final[float]  # Power that actuators put in, W; those that brake do not count.
     contact_count: Final[float]
@@ -872,6 +987,53 @@ class Batch(_Outputs):
     def weld_here(self, which: str | SupportsIndex, envs: ArrayLike | None = None) -> None: ...
     def set_equality(self, which: str | SupportsIndex, active: bool | np.bool_ | ArrayLike) -> None: ...
     def sim(self, env: SupportsIndex) -> Sim: ...
+    def jacobian(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+    ) -> NDArray[Any]: ...  # (n, 2, 3, nv): translation, rotation
+    def subtree_jacobian(self, body: str | SupportsIndex) -> NDArray[Any]: ...  # (n, 3, nv)
+    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> NDArray[Any]: ...  # (n, nv)
+    def rays(
+        self,
+        origins: ArrayLike,  # (k, 3) or (n, k, 3)
+        directions: ArrayLike,  # (k, 3) or (n, k, 3)
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        groups: ArrayLike | None = None,
+        fixed: bool | np.bool_ = True,
+        exclude_body: str | SupportsIndex | None = None,
+    ) -> RayHits: ...
+    def heights(
+        self,
+        hfield: str | SupportsIndex,
+        places: ArrayLike,  # (k, 2) or (n, k, 2)
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+    ) -> NDArray[Any]: ...  # (n, k)
+    def ik(
+        self,
+        targets: Iterable[FrameTarget | ComTarget | PostureTarget],
+        *,
+        start: ArrayLike | None = None,  # (nq,) or (n, nq)
+        iterations: SupportsIndex = 100,
+        tolerance: float = 1e-6,
+        damping: float = 1e-3,
+        limits: bool = True,
+        dofs: ArrayLike | None = None,  # (nv,)
+    ) -> IkResult: ...
     def __len__(self) -> int: ...
 
     actuator_power: Final[NDArray[Any]]  # (n,)
@@ -955,6 +1117,93 @@ class RayHit:
     def position(self) -> _Floats: ...  # (3,)
     @property
     def normal(self) -> _Floats: ...  # (3,)
+
+@final
+class RayHits:
+    # In a batch the environments are the first axis.
+    @property
+    def geom(self) -> NDArray[np.int64]: ...  # (k,)
+    @property
+    def distance(self) -> NDArray[Any]: ...  # (k,)
+    @property
+    def normal(self) -> NDArray[Any]: ...  # (k, 3)
+
+@final
+class FrameTarget:
+    def __new__(
+        cls,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        position: ArrayLike | None = None,  # (3,), in a batch also (n, 3)
+        quat: ArrayLike | None = None,  # (4,), in a batch also (n, 4)
+        position_cost: ArrayLike = 1.0,  # a number or (3,)
+        orientation_cost: float = 1.0,
+    ) -> Self: ...
+    @property
+    def body(self) -> str | SupportsIndex | None: ...
+    @property
+    def body_com(self) -> str | SupportsIndex | None: ...
+    @property
+    def geom(self) -> str | SupportsIndex | None: ...
+    @property
+    def site(self) -> str | SupportsIndex | None: ...
+    @property
+    def camera(self) -> str | SupportsIndex | None: ...
+    @property
+    def position(self) -> Any: ...
+    @property
+    def quat(self) -> Any: ...
+    @property
+    def position_cost(self) -> Any: ...
+    @property
+    def orientation_cost(self) -> float: ...
+
+@final
+class ComTarget:
+    def __new__(
+        cls,
+        position: ArrayLike,  # (3,), in a batch also (n, 3)
+        body: str | SupportsIndex = 0,
+        *,
+        cost: ArrayLike = 1.0,  # a number or (3,)
+    ) -> Self: ...
+    @property
+    def position(self) -> Any: ...
+    @property
+    def body(self) -> str | SupportsIndex: ...
+    @property
+    def cost(self) -> Any: ...
+
+@final
+class PostureTarget:
+    def __new__(
+        cls,
+        qpos: ArrayLike,  # (nq,), in a batch also (n, nq)
+        *,
+        cost: ArrayLike = 1.0,  # a number or (nv,)
+    ) -> Self: ...
+    @property
+    def qpos(self) -> Any: ...
+    @property
+    def cost(self) -> Any: ...
+
+@final
+class IkResult:
+    # In a batch the environments are the first axis, also of what is a single number here.
+    @property
+    def qpos(self) -> NDArray[Any]: ...  # (nq,)
+    @property
+    def errors(self) -> NDArray[Any]: ...  # (goals,)
+    @property
+    def iterations(self) -> Any: ...  # int
+    @property
+    def status(self) -> Any: ...  # int, a code of clench.IkStatus
+    @property
+    def reached(self) -> Any: ...  # bool
 
 @final
 class Separation:

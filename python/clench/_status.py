@@ -1,10 +1,10 @@
-"""Whether an environment runs."""
+"""Whether an environment runs, and how inverse kinematics ended."""
 
 from __future__ import annotations
 
 from enum import IntEnum
 
-__all__ = ["EnvStatus"]
+__all__ = ["EnvStatus", "IkStatus"]
 
 
 class EnvStatus(IntEnum):
@@ -22,3 +22,16 @@ class EnvStatus(IntEnum):
     """It had more contacts than `max_contacts` allows."""
     OVER_BUDGET = 5
     """Its step asked for more than the budget that the model was loaded with."""
+
+
+class IkStatus(IntEnum):
+    """How inverse kinematics ended: the codes in `IkResult.status`."""
+
+    REACHED = 0
+    """Every goal but postures is within the tolerance."""
+    STATIONARY = 1
+    """Nothing near brings the targets closer to their goals together."""
+    ITERATION_LIMIT = 2
+    """The iteration limit came first."""
+    NON_FINITE = 3
+    """A number became infinite or none."""

@@ -44,6 +44,8 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         | SimError::NoFreeSlot { .. }
         | SimError::StaleConstraint
         | SimError::CannotHold { .. }
+        | SimError::NoHeightField { .. }
+        | SimError::NoDiscreteInverse
         | SimError::Contact { .. } => PyValueError::new_err(text),
     }
 }

@@ -1,9 +1,11 @@
 //! The compiled part of the Python package `clench`: the classes and functions that `clench/__init__.py` offers. Numbers are
 //! computed in the crates; here they are only shown, checked and handed on.
 
+mod answer;
 mod arrays;
 mod assets;
 mod batch;
+mod batch_queries;
 mod block;
 mod busy;
 mod constraints;
@@ -13,21 +15,29 @@ mod count;
 mod element;
 mod error;
 mod fields;
+mod ik;
+mod ik_targets;
+mod inertia_queries;
 mod kind;
 mod model;
+mod motion_queries;
 mod named;
 mod names;
 mod option_values;
 mod options;
+mod positions;
 mod precision;
 mod queries;
 mod recorded;
 mod rollout;
 mod row_sim;
+mod scan;
 mod sim;
 mod solve;
 mod state_views;
 mod stats;
+mod table;
+mod target;
 mod view;
 
 use pyo3::prelude::*;
@@ -52,11 +62,17 @@ mod _core {
     #[pymodule_export]
     use crate::element::Element;
     #[pymodule_export]
+    use crate::ik::IkResult;
+    #[pymodule_export]
+    use crate::ik_targets::{ComTarget, FrameTarget, PostureTarget};
+    #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
     use crate::options::RigidOptions;
     #[pymodule_export]
     use crate::queries::{RayHit, Separation};
+    #[pymodule_export]
+    use crate::scan::RayHits;
     #[pymodule_export]
     use crate::sim::Sim;
     #[pymodule_export]

@@ -79,6 +79,26 @@ impl Separation {
     }
 }
 
+/// Which geoms rays hit.
+pub(crate) fn ray_filter(
+    model: &Model,
+    groups: Option<&Bound<'_, PyAny>>,
+    fixed: bool,
+    exclude_body: Option<&Bound<'_, PyAny>>,
+) -> PyResult<RayFilter> {
+    let excluded = exclude_body.map(|which| Kind::Body.find(model, which));
+    let mut filter = RayFilter {
+        fixed,
+        excluded_body: excluded.transpose()?,
+        ..RayFilter::default()
+    };
+    if let Some(groups) = groups {
+        let chosen = indices("groups", groups, filter.groups.len())?;
+        filter.groups = std::array::from_fn(|group| chosen.contains(&group));
+    }
+    Ok(filter)
+}
+
 /// A vector (3,) of finite numbers.
 pub(crate) fn vector<S: Precision>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec3<S>> {
     let values = shaped::<f64>(name, value, &[3])?;
@@ -98,25 +118,4 @@ pub(crate) fn direction<S: Precision>(value: &Bound<'_, PyAny>) -> PyResult<Vec3
 
 fn array<S: Precision>(py: Python<'_>, v: Vec3<S>) -> PyResult<Py<PyAny>> {
     column(py, &v.to_array(), [], |x| [x.to_f64()])
-}
-
-/// Which geoms rays can hit, as users say it.
-pub(crate) fn ray_filter(
-    model: &Model,
-    groups: Option<&Bound<'_, PyAny>>,
-    fixed: bool,
-    exclude_body: Option<&Bound<'_, PyAny>>,
-) -> PyResult<RayFilter> {
-    let mut filter = RayFilter {
-        fixed,
-        excluded_body: exclude_body
-            .map(|which| Kind::Body.find(model, which))
-            .transpose()?,
-        ..RayFilter::default()
-    };
-    if let Some(groups) = groups {
-        let chosen = indices("groups", groups, filter.groups.len())?;
-        filter.groups = std::array::from_fn(|group| chosen.contains(&group));
-    }
-    Ok(filter)
 }

@@ -109,6 +109,25 @@ impl HeightField {
             self.elevation * self.heights[row * self.columns + column],
         )
     }
+    /// The height of the surface over a place in its rectangle, m; beyond an edge that over the nearest place on it. A cell's
+    /// diagonal, between its two triangles, leads from its first corner to its last.
+    pub fn height_at(&self, x: f64, y: f64) -> f64 {
+        let cell = |v: f64, half: f64, count: usize| {
+            let along =
+                ((v + half) / (2.0 * half) * (count - 1) as f64).clamp(0.0, (count - 1) as f64);
+            let first = (along as usize).min(count - 2);
+            (first, along - first as f64)
+        };
+        let (column, u) = cell(x, self.half[0], self.columns);
+        let (row, v) = cell(y, self.half[1], self.rows);
+        let z = |r: usize, c: usize| self.heights[(row + r) * self.columns + column + c];
+        let part = if u >= v {
+            z(0, 0) + u * (z(0, 1) - z(0, 0)) + v * (z(1, 1) - z(0, 1))
+        } else {
+            z(0, 0) + u * (z(1, 1) - z(1, 0)) + v * (z(1, 0) - z(0, 0))
+        };
+        self.elevation * part
+    }
     /// The radius of a sphere about the origin that holds it, m (MuJoCo's `geom_rbound`).
     pub fn radius(&self) -> f64 {
         let [x, y] = self.half;

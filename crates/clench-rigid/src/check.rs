@@ -65,6 +65,11 @@ pub(crate) fn check_length(
     })
 }
 
+/// So many numbers as make up whole parts of `each`.
+pub(crate) fn check_count(field: &'static str, found: usize, each: usize) -> Result<(), SimError> {
+    check_length(field, found, found / each * each)
+}
+
 /// The first number of a lane that is beyond a bound, or none at all.
 fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usize, f64)> {
     let value = |i: usize| values[i].lane(lane);

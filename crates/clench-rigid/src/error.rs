@@ -115,6 +115,17 @@ pub enum SimError {
         /// Why it cannot.
         reason: &'static str,
     },
+    /// Heights of a geom that is no height field.
+    #[error("geom {geom} is no height field")]
+    NoHeightField {
+        /// The geom.
+        geom: usize,
+    },
+    /// Discrete inverse dynamics of a model whose steps have no acceleration of their own.
+    #[error(
+        "the integrator RK4 has no discrete acceleration: it mixes those of four states (choose Euler, implicit or implicitfast)"
+    )]
+    NoDiscreteInverse,
     /// A given contact that makes no sense.
     #[error("given contact {index}: {reason}")]
     Contact {

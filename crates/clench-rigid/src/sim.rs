@@ -10,11 +10,13 @@ use crate::check::{self, check_contact, check_values};
 use crate::contact::Contact;
 use crate::dynamics::energy::{Energy, energy};
 use crate::error::SimError;
+use crate::inverse::Acceleration;
 use crate::known::{Extent, Known};
 use crate::model::{Model, Params};
 use crate::output::{Output, Source};
 use crate::profile::{Profile, Stage};
 use crate::readout;
+use crate::sensor::bodies::update as update_body_forces;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -41,6 +43,8 @@ pub struct Sim<T: Precision = f64> {
     resets: u64,
     /// The number that the last constraint got which was added at run time.
     pub(crate) last_serial: u32,
+    /// Where inverse dynamics are computed, once somebody asks for them: [`workspace`](Self::workspace) stays as it is.
+    aside: Option<Box<Workspace<T>>>,
 }
 
 impl<T: Precision> Sim<T> {
@@ -73,6 +77,7 @@ impl<T: Precision> Sim<T> {
             known: Known::new(),
             resets: 0,
             last_serial: 0,
+            aside: None,
             initial,
             model,
         })
@@ -113,7 +118,7 @@ impl<T: Precision> Sim<T> {
 
     fn try_step(&mut self) -> Result<(), SimError> {
         self.ws.clock.start();
-        self.check_state()?;
+        self.check_present()?;
         self.last_good.copy_from(&self.state);
         self.ws.clock.lap(Stage::Rows as usize);
         T::step(
@@ -142,7 +147,7 @@ impl<T: Precision> Sim<T> {
     }
 
     fn try_forward(&mut self) -> Result<(), SimError> {
-        self.check_state()?;
+        self.check_present()?;
         T::forward(
             &self.model,
             &self.params,
@@ -197,7 +202,7 @@ impl<T: Precision> Sim<T> {
         if wanted == Extent::Everything {
             return self.try_forward();
         }
-        self.check_state()?;
+        self.check_present()?;
         self.ws.clock.start();
         self.ws.sleep.forget();
         T::position_stage(&self.model, &self.params, &self.state, &mut self.ws);
@@ -205,7 +210,7 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    fn check_state(&self) -> Result<(), SimError> {
+    pub(crate) fn check_present(&self) -> Result<(), SimError> {
         check::check_lengths(&self.model, &self.state)?;
         if check::good_inputs(&self.state) {
             return Ok(());
@@ -365,7 +370,7 @@ impl<T: Precision> Sim<T> {
             let energy = self.energy()?;
             return Ok(vec![energy.potential, energy.kinetic]);
         }
-        self.check_state()?;
+        self.check_present()?;
         self.know(output.extent())?;
         let mut source = Source {
             model: &self.model,
@@ -376,6 +381,30 @@ impl<T: Precision> Sim<T> {
         let mut values = Vec::new();
         output.read(&mut source, &mut values);
         Ok(values)
+    }
+
+    /// Computes what the joints of bodies carry, once all is known that a forward pass computes.
+    pub(crate) fn update_body_forces(&mut self) {
+        update_body_forces(&self.model, &self.params, &self.state, &mut self.ws);
+    }
+
+    /// Inverse dynamics of the present state, apart from what is known.
+    pub(crate) fn invert(
+        &mut self,
+        qacc: &[T],
+        given: Acceleration,
+        qfrc_inverse: &mut [T],
+    ) -> Result<(), SimError> {
+        self.check_present()?;
+        let (model, state) = (&self.model, &self.state);
+        let ws = (self.aside).get_or_insert_with(|| Box::new(Workspace::new(model)));
+        let given = (qacc, given);
+        let (params, settings) = (&self.params, &self.settings);
+        T::inverse(model, params, settings, state, given, ws, qfrc_inverse);
+        match check::good_results(state, ws) {
+            true => Ok(()),
+            false => Err(check::result_fault(model, state.time, state, ws, 0).into()),
+        }
     }
 
     /// Lets the clocks of a step's stages run, or not.
@@ -392,7 +421,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
-        self.check_state()?;
+        self.check_present()?;
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
         // The positions of the state are worked out where those of the last step stand, which are still to be read.
         let (position, singular) = (ws.position.clone(), ws.singular);

@@ -36,6 +36,16 @@ impl<T: Real> Iterate<T> {
         warmstart: Option<&[T]>,
         ray: &mut Ray<T>,
     ) -> Totals<T> {
+        let totals = self.place(problem, &problem.qacc_smooth);
+        match warmstart {
+            Some(warm) => self.better_of(problem, warm, totals, ray),
+            None => totals,
+        }
+    }
+
+    /// Moves to an acceleration, as if that were the unconstrained one; returns the totals of the constraints there.
+    #[kernel]
+    pub fn place(&mut self, problem: &Problem<T>, qacc: &[T]) -> Totals<T> {
         let (nv, nrow) = (problem.nv(), problem.nrow());
         self.continuation.reset();
         for v in [
@@ -50,14 +60,10 @@ impl<T: Real> Iterate<T> {
         self.force.resize(nrow, T::ZERO);
         self.active_set.resize(problem.nactive, T::ZERO);
         self.qacc.clear();
-        self.qacc.extend_from_slice(&problem.qacc_smooth);
+        self.qacc.extend_from_slice(qacc);
         problem.jacobian.mul(&self.qacc, &mut self.residual);
         subtract(&mut self.residual, &problem.aref);
-        let totals = self.evaluate(problem);
-        match warmstart {
-            Some(warm) => self.better_of(problem, warm, totals, ray),
-            None => totals,
-        }
+        self.evaluate(problem)
     }
 
     /// Moves to `warm` in the lanes where it costs less than here, where `totals` was taken; returns the totals.

@@ -86,6 +86,20 @@ impl<T: Real> Solver<T> {
         Ok(&self.results.stats)
     }
 
+    /// The constraint forces at an acceleration (length nv) that is known, whatever the unconstrained one: what
+    /// [`force`](Self::force), [`qfrc_constraint`](Self::qfrc_constraint) and [`edge_forces`](Self::edge_forces) then give.
+    /// Nothing is minimised, and the statistics are those of no solve.
+    ///
+    /// # Errors
+    /// An acceleration of the wrong length, or arrays or blocks of the problem that have impossible sizes.
+    pub fn evaluate(&mut self, problem: &Problem<T>, qacc: &[T]) -> Result<(), ProblemError> {
+        problem.check_sizes()?;
+        check_length("qacc", qacc.len(), problem.nv())?;
+        self.whole.evaluate(problem, qacc);
+        self.results.set(&self.whole);
+        Ok(())
+    }
+
     /// The minimiser: generalized acceleration, length nv.
     pub fn qacc(&self) -> &[T] {
         &self.results.qacc

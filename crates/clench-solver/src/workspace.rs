@@ -35,17 +35,8 @@ impl<T: Real> Workspace<T> {
             ConstraintSolver::Newton => minimise(problem, settings, warmstart, newton, state),
             ConstraintSolver::Cg => minimise(problem, settings, warmstart, cg, state),
         }
-        let SolverState { iterate, stats, .. } = state;
-        self.edges.resize(problem.nactive, T::ZERO);
-        for b in problem
-            .jacobian
-            .blocks
-            .iter()
-            .filter(|b| b.cost == Cost::Pyramid)
-        {
-            let edges = &mut self.edges[b.active_start..b.active_start + 2 * (b.dim - 1)];
-            Pyramid::edge_forces(problem.rows(b), &iterate.residual[b.rows()], edges);
-        }
+        self.find_edge_forces(problem);
+        let SolverState { iterate, stats, .. } = &mut self.state;
         // It holds a response of all dofs to each row.
         let responses = problem.nrow().saturating_mul(problem.nv());
         if settings.noslip_iterations > 0 && responses > settings.max_matrix {
@@ -54,6 +45,28 @@ impl<T: Real> Workspace<T> {
             let scale = T::ONE / trace(problem);
             self.noslip
                 .run(problem, settings, scale, iterate, &mut self.edges, stats);
+        }
+    }
+
+    /// The constraint forces at an acceleration, and Jᵀ f. No minimum is looked for.
+    #[kernel]
+    pub fn evaluate(&mut self, problem: &Problem<T>, qacc: &[T]) {
+        let SolverState { iterate, stats, .. } = &mut self.state;
+        *stats = SolveStats::default();
+        iterate.place(problem, qacc);
+        iterate.differentiate(problem);
+        self.find_edge_forces(problem);
+    }
+
+    /// The forces along the edges of pyramids, from the residuals.
+    #[inline(always)]
+    fn find_edge_forces(&mut self, problem: &Problem<T>) {
+        self.edges.resize(problem.nactive, T::ZERO);
+        let blocks = problem.jacobian.blocks.iter();
+        for b in blocks.filter(|b| b.cost == Cost::Pyramid) {
+            let edges = &mut self.edges[b.active_start..b.active_start + 2 * (b.dim - 1)];
+            let residual = &self.state.iterate.residual[b.rows()];
+            Pyramid::edge_forces(problem.rows(b), residual, edges);
         }
     }
 }

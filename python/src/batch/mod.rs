@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use std::sync::{Arc, Mutex};
 
 /// A batch in either precision.
-enum AnyBatch {
+pub(crate) enum AnyBatch {
     F64(clench::Batch<f64>),
     F32(clench::Batch<f32>),
 }
@@ -33,6 +33,7 @@ macro_rules! each {
         }
     };
 }
+pub(crate) use each;
 
 mod dynamic;
 mod outputs;
@@ -258,6 +259,21 @@ impl Batch {
 }
 
 impl Batch {
+    /// The batch itself, which other threads may use.
+    pub(crate) fn inner(&self) -> &Mutex<AnyBatch> {
+        &self.inner
+    }
+
+    /// The model, without the numbers that environments have for themselves.
+    pub(crate) fn described(&self) -> &Arc<clench::Model> {
+        self.model.get().inner()
+    }
+
+    /// How many environments there are.
+    pub(crate) fn count(&self) -> usize {
+        self.n_envs
+    }
+
     /// The view of an output, if it is recorded, up to date but while another thread steps this batch.
     fn fresh(&self, py: Python<'_>, output: Output) -> PyResult<Option<Py<PyAny>>> {
         let view = self.recorded.get(py, output)?;

@@ -67,6 +67,16 @@ pub(crate) struct Sim {
 }
 
 impl Sim {
+    /// The simulation itself, which other threads may use.
+    pub(crate) fn inner(&self) -> &Mutex<AnySim> {
+        &self.inner
+    }
+
+    /// The model, without the numbers that this simulation has for itself.
+    pub(crate) fn described(&self) -> &Arc<clench::Model> {
+        self.model.get().inner()
+    }
+
     /// The Python object of a simulation.
     pub(crate) fn wrap(
         py: Python<'_>,

@@ -177,6 +177,7 @@ fn element_flags(element: &Element, flags: &mut Flags) -> Result<(), LoadError> 
         ("diagexact", &mut flags.diagexact),
         ("sensor", &mut flags.sensor),
         ("sleep", &mut flags.sleep),
+        ("invdiscrete", &mut flags.invdiscrete),
     ];
     for (name, target) in targets {
         element.set_keyword(name, &SWITCHES, target)?;

@@ -4,6 +4,7 @@
 //! contacts into groups; each thread has a stepper (`stepper.rs`), scratch in lanes, that claims a group, gathers its rows,
 //! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status.
 
+mod ask;
 mod cells;
 mod divergence;
 mod dynamic;
@@ -21,6 +22,7 @@ mod snapshot;
 mod state_rows;
 mod stepper;
 
+pub use ask::Given;
 pub use divergence::Divergence;
 pub use options::BatchOptions;
 pub use precision::Precision;

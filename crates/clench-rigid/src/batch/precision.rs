@@ -1,6 +1,8 @@
 //! The number types of batches.
 
 use super::stepper::{MakeStepper, Stepper};
+use crate::ik::{Ik, Search};
+use crate::inverse::{self, Acceleration};
 use crate::model::{Model, Params};
 use crate::pipeline;
 use crate::settings::StepSettings;
@@ -82,6 +84,18 @@ pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {
         state: &State<Self>,
         ws: &mut Workspace<Self>,
     );
+    /// A search for positions in one environment.
+    fn ik(model: &Model, params: &Params<Self>, ik: &Ik, search: &mut Search<Self>);
+    /// [`inverse::inverse`] of one environment.
+    fn inverse(
+        model: &Model,
+        params: &Params<Self>,
+        settings: &StepSettings,
+        state: &State<Self>,
+        given: (&[Self], Acceleration),
+        ws: &mut Workspace<Self>,
+        qfrc_inverse: &mut [Self],
+    );
     /// [`pipeline::position_stage`] of one environment.
     fn position_stage(
         model: &Model,
@@ -117,6 +131,20 @@ macro_rules! lanewise {
                 ws: &mut Workspace<$scalar>,
             ) {
                 pipeline::forward(model, params, settings, state, ws);
+            }
+            fn ik(model: &Model, params: &Params<$scalar>, ik: &Ik, search: &mut Search<$scalar>) {
+                search.run(model, params, ik);
+            }
+            fn inverse(
+                model: &Model,
+                params: &Params<$scalar>,
+                settings: &StepSettings,
+                state: &State<$scalar>,
+                given: (&[$scalar], Acceleration),
+                ws: &mut Workspace<$scalar>,
+                qfrc_inverse: &mut [$scalar],
+            ) {
+                inverse::inverse(model, params, settings, state, given, ws, qfrc_inverse);
             }
             fn position_stage(
                 model: &Model,

@@ -2,7 +2,7 @@
 
 use super::record::{OutputRows, targets};
 use super::seen::Seen;
-use super::stepper::{Job, Pass, Stepper};
+use super::stepper::{EnvRows, Job, Pass, Stepper};
 use super::{Batch, Controls, EnvStatus, Precision};
 use crate::check::check_length;
 use crate::error::SimError;
@@ -133,9 +133,11 @@ impl<S: Precision> Batch<S> {
             let job = Job {
                 model: &self.model,
                 settings: &self.settings,
-                motion,
-                inputs,
-                params: &self.params,
+                rows: EnvRows {
+                    motion,
+                    inputs,
+                    params: &self.params,
+                },
                 targets: targets(&mut self.outputs, trace),
                 sort_keys: &self.sort_keys,
                 pass,
@@ -145,7 +147,9 @@ impl<S: Precision> Batch<S> {
                 end: range.end.min(first.saturating_add(STEPS_A_GROUP)),
                 steps,
             };
-            spread(&mut self.steppers, &self.order, &job);
+            spread(&mut self.steppers, &self.order, |stepper, group| {
+                stepper.run(group, &job)
+            });
             self.settle(&mut summary);
         }
         let running = |status: &&EnvStatus| **status == EnvStatus::Running;
@@ -188,12 +192,16 @@ impl<S: Precision> Batch<S> {
 
 /// Does a job for all environments in `order`. Groups are claimed one by one, so that threads end together though groups take
 /// unlike times.
-fn spread<S: Precision>(steppers: &mut [Box<dyn Stepper<S>>], order: &[u32], job: &Job<S>) {
+pub(super) fn spread<S: Precision>(
+    steppers: &mut [Box<dyn Stepper<S>>],
+    order: &[u32],
+    job: impl Fn(&mut dyn Stepper<S>, &[u32]) + Sync,
+) {
     let next = AtomicUsize::new(0);
     let work = |stepper: &mut Box<dyn Stepper<S>>| {
         let lanes = stepper.lanes();
         while let Some(group) = order.chunks(lanes).nth(next.fetch_add(1, Relaxed)) {
-            stepper.run(group, job);
+            job(&mut **stepper, group);
         }
     };
     match steppers {

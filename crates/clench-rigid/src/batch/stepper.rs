@@ -1,5 +1,6 @@
 //! A thread's scratch: environments come in by groups, are stepped side by side, and go out again.
 
+use super::ask::{AskMemory, Asking};
 use super::divergence::Divergence;
 use super::group::{Group, MAX_LANES};
 use super::parameters::ParamRows;
@@ -22,14 +23,19 @@ use clench_math::{Clock, LaneTask, Mask, Real, write_lane};
 use clench_solver::MaxContacts;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// What a call asks of its threads, the same for every group.
-pub struct Job<'a, S: Lanewise> {
-    pub model: &'a Model,
-    pub settings: &'a StepSettings,
+/// What users see of environments.
+pub struct EnvRows<'a, S: Lanewise> {
     pub motion: MovingRows<'a, S>,
     pub inputs: Inputs<'a, S>,
     /// Parameters that environments have for themselves.
     pub params: &'a [ParamRows<S>],
+}
+
+/// What a call asks of its threads, the same for every group.
+pub struct Job<'a, S: Lanewise> {
+    pub model: &'a Model,
+    pub settings: &'a StepSettings,
+    pub rows: EnvRows<'a, S>,
     /// Where each environment stands in an order that puts those of like contacts side by side.
     pub sort_keys: &'a [AtomicU64],
     /// What is done.
@@ -73,6 +79,8 @@ pub trait Stepper<S: Lanewise>: Send {
     fn lanes(&self) -> usize;
     /// Does a job for a group of at most so many environments.
     fn run(&mut self, group: &[u32], job: &Job<S>);
+    /// Answers a question about a group likewise.
+    fn ask(&mut self, group: &[u32], asking: &Asking<S>);
     /// What happened since it was last cleared.
     fn totals(&mut self) -> &mut StepTotals;
     /// Lets its clocks run, or not.
@@ -105,6 +113,8 @@ pub struct LaneStepper<T: Real> {
     output: Vec<T>,
     /// Environments that are to start over from the initial state, with the step in which they do.
     restarts: Vec<(u32, usize)>,
+    /// Room for answers.
+    memory: AskMemory<T>,
     totals: StepTotals,
 }
 
@@ -130,27 +140,28 @@ where
             has_occasional: false,
             output: Vec::new(),
             restarts: Vec::new(),
+            memory: AskMemory::new(),
             totals: StepTotals::default(),
         }
     }
 
     /// Copies the rows of a group into the lanes. Whatever a step uses of the rows is read here, once, and checked afterwards:
     /// who holds pointers to rows and writes them meanwhile gets mixed numbers, and nothing worse.
-    fn gather(&mut self, group: &Group<T>, job: &Job<T::Scalar>) {
+    fn gather(&mut self, group: &Group<T>, rows: &EnvRows<T::Scalar>) {
         for (lane, env) in group.fill() {
-            job.motion.read(env, lane, &mut self.state);
-            job.inputs.read(env, lane, &mut self.state);
-            for own in job.params {
+            rows.motion.read(env, lane, &mut self.state);
+            rows.inputs.read(env, lane, &mut self.state);
+            for own in rows.params {
                 own.read(env, lane, &mut self.params);
             }
         }
-        if !job.params.is_empty() {
+        if !rows.params.is_empty() {
             self.ws.sleep.forget();
         }
-        let has_occasional = (group.iter()).any(|(_, env)| job.inputs.has_occasional(env));
+        let has_occasional = (group.iter()).any(|(_, env)| rows.inputs.has_occasional(env));
         if has_occasional {
             for (lane, env) in group.fill() {
-                job.inputs.read_occasional(env, lane, &mut self.state);
+                rows.inputs.read_occasional(env, lane, &mut self.state);
             }
         } else if self.has_occasional {
             clear_occasional(&mut self.state);
@@ -168,7 +179,7 @@ where
     ) {
         while step < job.end && group.len > 0 {
             self.ws.clock.start();
-            self.gather(&group, job);
+            self.gather(&group, &job.rows);
             if start == Start::Initial {
                 self.state.copy_from(&self.initial);
             }
@@ -291,7 +302,7 @@ where
         let asleep = self.ws.sleep.all_asleep();
         for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
             if job.pass == Pass::Step {
-                job.motion.write(env, lane, &self.state);
+                job.rows.motion.write(env, lane, &self.state);
             }
             let rank = match asleep.lane(lane) {
                 true => ASLEEP_RANK,
@@ -382,6 +393,27 @@ where
         // Each by itself, which changes no bit of what comes out.
         while let Some((env, step)) = self.restarts.pop() {
             self.advance(Group::new(&[env]), Start::Initial, step, job);
+        }
+    }
+
+    fn ask(&mut self, envs: &[u32], asking: &Asking<T::Scalar>) {
+        let mut group = Group::new(envs);
+        let good = loop {
+            if group.len == 0 {
+                return;
+            }
+            self.gather(&group, &asking.rows);
+            let good = check::good_inputs(&self.state);
+            if good.all() {
+                break good;
+            }
+            group.keep(good);
+        };
+        self.output.clear();
+        let lanes = (&self.params, &self.state, &mut self.ws);
+        let good = good & asking.answer(&group, lanes, &mut self.memory, &mut self.output);
+        for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
+            (asking.answers).write::<Number, T>(env, lane, &self.output);
         }
     }
 

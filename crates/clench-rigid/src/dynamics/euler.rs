@@ -20,6 +20,16 @@ pub fn euler<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     ws.integration.qacc.copy_from_slice(&ws.qacc);
+    let damped = damped_lanes(model, params);
+    if damped.any() {
+        damped_acceleration(model, params, &state.qvel, damped, ws);
+    }
+    advance_semi_implicit(model, params, state, ws);
+}
+
+/// Lanes in which some dof is damped, and damping implicit.
+#[inline(always)]
+fn damped_lanes<T: Real>(model: &Model, params: &Params<T>) -> T::Mask {
     let mut damped = T::Mask::splat(false);
     if model.flags.eulerdamp && model.flags.damper {
         for i in 0..model.nv {
@@ -27,10 +37,26 @@ pub fn euler<T: Real>(
             damped |= damper.linear.gt(T::ZERO) | damper.is_curved();
         }
     }
-    if damped.any() {
-        damped_acceleration(model, params, &state.qvel, damped, ws);
+    damped
+}
+
+/// M + h B, in `integration.matrix`, for [`damped_acceleration`] and for inverse dynamics.
+#[kernel]
+pub(crate) fn damped_inertia<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qvel: &[T],
+    ws: &mut Workspace<T>,
+) {
+    let matrix = &mut ws.integration.matrix;
+    matrix.values.copy_from_slice(&ws.problem.mass.values);
+    let damped = damped_lanes(model, params);
+    for (i, &v) in qvel.iter().enumerate() {
+        if let Some(diagonal) = matrix.row_mut(&model.tree, i).last_mut() {
+            let slope = dof_damper(model, params, i).damping_slope(v);
+            *diagonal += T::select(damped, params.timestep * slope, T::ZERO);
+        }
     }
-    advance_semi_implicit(model, params, state, ws);
 }
 
 /// Solves with M + h B in the lanes that are `damped`.
@@ -43,16 +69,12 @@ fn damped_acceleration<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let tree = &model.tree;
-    let Integration { matrix, factor, .. } = &mut ws.integration;
     let positive = if ws.articulated.is_empty() {
-        matrix.values.copy_from_slice(&ws.problem.mass.values);
-        for (i, &v) in qvel.iter().enumerate() {
-            if let Some(diagonal) = matrix.row_mut(tree, i).last_mut() {
-                *diagonal += params.timestep * dof_damper(model, params, i).damping_slope(v);
-            }
-        }
+        damped_inertia(model, params, qvel, ws);
+        let Integration { matrix, factor, .. } = &mut ws.integration;
         factor.factor(tree, matrix)
     } else {
+        let factor = &mut ws.integration.factor;
         let (pos, bodies) = (&ws.position, &mut ws.articulated);
         articulated_factor(
             model,

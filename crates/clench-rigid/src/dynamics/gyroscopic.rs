@@ -48,6 +48,25 @@ pub fn solve_gyroscopic<T: Real>(
     ws.integration.qacc[dof..dof + 6].copy_from_slice(&x);
 }
 
+/// Adds h ∂bias/∂v times the joint's part of `ws.qacc` to that of `integration.qacc`.
+#[inline(always)]
+pub(crate) fn add_gyroscopic_product<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    j: usize,
+    qvel: &[T],
+    ws: &mut Workspace<T>,
+) {
+    let dof = model.joints[j].dof;
+    let mut rows = [[T::ZERO; 7]; 6];
+    add_bias_derivative(model, params, j, qvel, &ws.position, &mut rows);
+    for (r, row) in rows.iter().enumerate() {
+        for (&entry, &x) in row[..6].iter().zip(&ws.qacc[dof..]) {
+            ws.integration.qacc[dof + r] += entry * x;
+        }
+    }
+}
+
 /// Adds h ∂bias/∂v.
 #[inline(always)]
 fn add_bias_derivative<T: Real>(

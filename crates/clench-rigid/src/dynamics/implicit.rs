@@ -8,7 +8,7 @@
 
 use crate::dynamics::coriolis::add_bias_derivatives;
 use crate::dynamics::derivatives::add_velocity_derivatives;
-use crate::dynamics::gyroscopic::{is_free_tree, solve_gyroscopic};
+use crate::dynamics::gyroscopic::{add_gyroscopic_product, is_free_tree, solve_gyroscopic};
 use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit, sum_forces};
 use crate::model::{Model, Params};
 use crate::state::State;
@@ -23,7 +23,7 @@ pub fn implicit_fast<T: Real>(
     state: &mut State<T>,
     ws: &mut Workspace<T>,
 ) {
-    symmetric_part(model, params, state, ws);
+    symmetric_inertia(model, params, state, ws);
     let Integration { matrix, factor, .. } = &mut ws.integration;
     ws.singular |= !factor.factor(&model.tree, matrix);
     solve_implicit(&model.tree, ws);
@@ -43,27 +43,38 @@ pub fn implicit<T: Real>(
     state: &mut State<T>,
     ws: &mut Workspace<T>,
 ) {
-    symmetric_part(model, params, state, ws);
+    full_inertia(model, params, state, ws);
     sum_forces(ws);
+    let Integration { full, qacc, .. } = &mut ws.integration;
+    ws.singular |= !full.factor(&model.tree);
+    full.solve(&model.tree, qacc);
+    advance_semi_implicit(model, params, state, ws);
+}
+
+/// M − h D with Coriolis forces, in `integration.full`.
+#[inline(always)]
+pub(crate) fn full_inertia<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    symmetric_inertia(model, params, state, ws);
     let Integration {
         matrix,
         full,
         coriolis,
-        qacc,
         ..
     } = &mut ws.integration;
     full.lower.copy_from_slice(&matrix.values);
     full.upper.copy_from_slice(&matrix.values);
     let (stages, h) = ((&ws.position, &ws.velocity), params.timestep);
     add_bias_derivatives(model, params, stages, &state.qvel, h, coriolis, full);
-    ws.singular |= !full.factor(&model.tree);
-    full.solve(&model.tree, qacc);
-    advance_semi_implicit(model, params, state, ws);
 }
 
 /// M − h D without Coriolis forces, in `integration.matrix`.
 #[inline(always)]
-fn symmetric_part<T: Real>(
+pub(crate) fn symmetric_inertia<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -79,4 +90,19 @@ fn symmetric_part<T: Real>(
         -params.timestep,
         matrix,
     );
+}
+
+/// Adds to `integration.qacc`, M − h D times `ws.qacc`, what gyroscopic forces of free bodies add to the product.
+#[kernel]
+pub(crate) fn gyroscopic_product<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qvel: &[T],
+    ws: &mut Workspace<T>,
+) {
+    for j in 0..model.joints.len() {
+        if is_free_tree(model, j) {
+            add_gyroscopic_product(model, params, j, qvel, ws);
+        }
+    }
 }

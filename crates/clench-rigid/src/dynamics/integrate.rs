@@ -101,6 +101,34 @@ pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T
     }
 }
 
+/// Writes the constant velocity (nv) that moves `from` to `to` (nq each) in `time` seconds: the inverse of
+/// [`integrate_positions`]. Quaternions need not be of unit length.
+#[kernel]
+pub fn differentiate_positions<T: Real>(
+    model: &Model,
+    from: &[T],
+    to: &[T],
+    time: T,
+    velocity: &mut [T],
+) {
+    let rate = T::ONE / time;
+    for joint in &model.joints {
+        let (mut v, mut q) = (joint.dof, joint.qpos);
+        if let JointKind::Ball | JointKind::Free = joint.kind {
+            if joint.kind == JointKind::Free {
+                for k in 0..3 {
+                    velocity[v + k] = (to[q + k] - from[q + k]) * rate;
+                }
+                (v, q) = (v + 3, q + 3);
+            }
+            let [from, to] = [from, to].map(|all| Quat::from_slice(&all[q..]).normalize());
+            (to.difference(from) * rate).write(&mut velocity[v..v + 3]);
+        } else {
+            velocity[v] = (to[q] - from[q]) * rate;
+        }
+    }
+}
+
 /// Moves activations by `act_dot`; those of disabled actuators stay where they are, but for whole turns on a circle.
 #[kernel]
 pub fn advance_activations<T: Real>(

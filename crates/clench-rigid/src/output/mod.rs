@@ -9,9 +9,11 @@ pub(crate) use forces::{external as external_forces, of_contact};
 
 use crate::dynamics::camera::camera_pose;
 use crate::dynamics::energy::energy;
+use crate::dynamics::frames::Frames;
+use crate::dynamics::jacobian::point_jacobian;
 use crate::error::SimError;
 use crate::known::Extent;
-use crate::model::{Model, Params};
+use crate::model::{FrameObject, Model, Params, RowPattern};
 use crate::pipeline::position_stage;
 use crate::sensor::bodies::{BodyForces, update as update_body_forces};
 use crate::state::State;
@@ -99,6 +101,10 @@ outputs! {
     site_xpos [m.sites.len(), 3] of Positions => vectors(&s.ws.position.site_xpos, out);
     /// Orientations of sites, row by row (nsite, 9).
     site_xmat [m.sites.len(), 9] of Positions => matrices(&s.ws.position.site_xmat, out);
+    /// Jacobians of the positions of sites: velocities, world axes, by those of dofs (nsite, 3, nv).
+    site_jacp [m.sites.len(), 3, m.nv] of Positions => site_jacobians(s, 0, out);
+    /// Jacobians of the orientations of sites: angular velocities likewise (nsite, 3, nv).
+    site_jacr [m.sites.len(), 3, m.nv] of Positions => site_jacobians(s, 3, out);
     /// Positions of cameras, m (ncam, 3).
     cam_xpos [m.cameras.len(), 3] of Positions => cameras(s, |(place, _)| out.extend(place.to_array()));
     /// Orientations of cameras, row by row (ncam, 9).
@@ -114,10 +120,14 @@ outputs! {
     cdof [m.nv, 6] of Positions => motions(&s.ws.position.cdof, out);
     /// Lengths of tendons (ntendon).
     ten_length [m.tendons.len()] of Positions => out.extend_from_slice(&s.ws.position.ten_length);
+    /// Moment arms of tendons, ∂length/∂q (ntendon, nv).
+    ten_J [m.tendons.len(), m.nv] of Positions => dense(s.model, (&s.model.tendon_dofs, s.model.tendons.len()), &s.ws.position.ten_jacobian, out);
     /// Velocities of tendons (ntendon).
     ten_velocity [m.tendons.len()] of Everything => out.extend_from_slice(&s.ws.velocity.ten_velocity);
     /// Lengths of actuators (nactuator).
     actuator_length [m.actuators.len()] of Positions => out.extend_from_slice(&s.ws.position.actuator_length);
+    /// Moment arms of actuators, ∂length/∂q (nactuator, nv); those that act on contacts have theirs from the contacts.
+    actuator_moment [m.actuators.len(), m.nv] of Everything => dense(s.model, (&s.model.actuator_dofs, s.model.actuators.len()), &s.ws.position.actuator_moment, out);
     /// Velocities of actuators (nactuator).
     actuator_velocity [m.actuators.len()] of Everything => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
     /// Forces of actuators (nactuator).
@@ -208,6 +218,41 @@ fn inertias<T: Real>(values: &[Inertia<T>], out: &mut Vec<T>) {
         out.extend_from_slice(&inertia.rotational);
         out.extend_from_slice(&inertia.moment.to_array());
         out.push(inertia.mass);
+    }
+}
+
+/// Rows of sparse numbers, each over all dofs.
+fn dense<T: Real>(
+    model: &Model,
+    (pattern, rows): (&RowPattern, usize),
+    values: &[T],
+    out: &mut Vec<T>,
+) {
+    let start = out.len();
+    out.resize(start + rows * model.nv, T::ZERO);
+    for row in 0..rows {
+        for (dof, value) in pattern.row(values, row) {
+            out[start + row * model.nv + dof] = value;
+        }
+    }
+}
+
+/// Three of the six rows of each site's Jacobian, from row `first` on.
+fn site_jacobians<T: Real>(s: &Source<T>, first: usize, out: &mut Vec<T>) {
+    let (model, pos) = (s.model, &s.ws.position);
+    let frames = Frames {
+        model,
+        params: s.params,
+        pos,
+    };
+    for site in 0..model.sites.len() {
+        let start = out.len();
+        out.resize(start + 6 * model.nv, T::ZERO);
+        let point = frames.point(FrameObject::Site(site));
+        point_jacobian(model, pos, &point, &mut out[start..]);
+        let rows = start + first * model.nv..start + (first + 3) * model.nv;
+        out.copy_within(rows, start);
+        out.truncate(start + 3 * model.nv);
     }
 }
 

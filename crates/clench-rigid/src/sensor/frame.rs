@@ -4,7 +4,6 @@
 //! velocity Rᵀ(ω' − ω) and the linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
 use super::Reading;
-use crate::dynamics::camera::camera_pose;
 use crate::model::{FrameObject, SensorKind};
 use clench_math::{Mat3, Motion, Quat, Real, Vec3};
 
@@ -46,55 +45,19 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// The body that carries an object.
-    pub(super) fn body(&self, object: FrameObject) -> usize {
-        match object {
-            FrameObject::Inertial(body) | FrameObject::Body(body) => body,
-            FrameObject::Geom(geom) => self.model.geoms[geom].body,
-            FrameObject::Site(site) => self.model.sites[site].body,
-            FrameObject::Camera(camera) => self.model.cameras[camera].body,
-        }
-    }
-
     /// Where an object is.
     pub(super) fn position(&self, object: FrameObject) -> Vec3<T> {
-        let pos = &self.ws.position;
-        match object {
-            FrameObject::Inertial(body) => pos.xipos[body],
-            FrameObject::Body(body) => pos.xpos[body],
-            FrameObject::Geom(geom) => pos.geom_xpos[geom],
-            FrameObject::Site(site) => pos.site_xpos[site],
-            FrameObject::Camera(camera) => self.camera(camera).0,
-        }
+        self.frames().position(object)
     }
 
     /// Its axes as columns.
     pub(super) fn rotation(&self, object: FrameObject) -> Mat3<T> {
-        let pos = &self.ws.position;
-        match object {
-            FrameObject::Inertial(body) => pos.ximat[body],
-            FrameObject::Body(body) => pos.xmat[body],
-            FrameObject::Geom(geom) => pos.geom_xmat[geom],
-            FrameObject::Site(site) => pos.site_xmat[site],
-            FrameObject::Camera(camera) => self.camera(camera).1,
-        }
+        self.frames().rotation(object)
     }
 
     /// Its orientation, with the sign that its body's has.
     fn orientation(&self, object: FrameObject) -> Quat<T> {
-        let (body, params) = (self.ws.position.xquat[self.body(object)], self.params);
-        match object {
-            FrameObject::Inertial(b) => body * params.body_iquat[b],
-            FrameObject::Body(_) => body,
-            FrameObject::Geom(geom) => body * params.geom_quat[geom],
-            FrameObject::Site(site) => body * params.site_quat[site],
-            // As if it were fixed to its body, whatever it follows: so it is in MuJoCo.
-            FrameObject::Camera(camera) => body * params.cam_quat[camera],
-        }
-    }
-
-    fn camera(&self, camera: usize) -> (Vec3<T>, Mat3<T>) {
-        camera_pose(self.model, self.params, &self.ws.position, camera)
+        self.frames().orientation(object)
     }
 
     fn relative_position(&self, object: FrameObject, reference: Option<FrameObject>) -> Vec3<T> {
@@ -109,8 +72,7 @@ impl<T: Real> Reading<'_, T> {
 
     /// The velocity of the body point at an object's position, world axes.
     pub(super) fn velocity(&self, object: FrameObject) -> Motion<T> {
-        let cvel = self.ws.velocity.cvel[self.body(object)];
-        Motion::new(cvel.angular, cvel.velocity_at(self.arm(object)))
+        self.frames().velocity(object, &self.ws.velocity)
     }
 
     fn relative_velocity(&self, object: FrameObject, reference: Option<FrameObject>) -> Motion<T> {
@@ -128,18 +90,9 @@ impl<T: Real> Reading<'_, T> {
         )
     }
 
-    /// The acceleration of the body point at an object's position, world axes, with gravity's upward reaction. A spatial
-    /// acceleration holds the velocity field's change at a fixed place; the point also moves, which adds ω × v.
+    /// The acceleration of the body point at an object's position, world axes, with gravity's upward reaction.
     pub(super) fn acceleration(&self, object: FrameObject) -> Motion<T> {
-        let cacc = self.ws.sensors.bodies.cacc[self.body(object)];
-        let velocity = self.velocity(object);
-        let linear = cacc.velocity_at(self.arm(object)) + velocity.angular.cross(velocity.linear);
-        Motion::new(cacc.angular, linear)
-    }
-
-    /// From the reference point of an object's tree to the object.
-    fn arm(&self, object: FrameObject) -> Vec3<T> {
-        let root = self.model.bodies[self.body(object)].root;
-        self.position(object) - self.ws.position.subtree_com[root]
+        let cacc = &self.ws.sensors.bodies.cacc;
+        self.frames().acceleration(object, &self.ws.velocity, cacc)
     }
 }

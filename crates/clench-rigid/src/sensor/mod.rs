@@ -14,6 +14,7 @@ mod volume;
 
 use crate::constraint::ConstraintSource;
 use crate::dynamics::energy::energy;
+use crate::dynamics::frames::Frames;
 use crate::geometry::Geoms;
 use crate::model::{
     FrameObject, Model, Params, Sensor, SensorData, SensorKind, SensorTarget, Transmission,
@@ -148,6 +149,14 @@ impl<'a, T: Real> Reading<'a, T> {
             model: self.model,
             params: self.params,
             position: &self.ws.position,
+        }
+    }
+
+    fn frames(&self) -> Frames<'a, T> {
+        Frames {
+            model: self.model,
+            params: self.params,
+            pos: &self.ws.position,
         }
     }
 

@@ -32,6 +32,22 @@ impl<T: Real> TreeLu<T> {
         (&mut self.lower[range.clone()], &mut self.upper[range])
     }
 
+    /// `out = A x`, of the matrix before it is factored.
+    #[kernel]
+    pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
+        for k in 0..tree.nv() {
+            let (start, chain) = (tree.starts[k], tree.row(k));
+            let depth = chain.len() - 1;
+            let mut sum = self.lower[start + depth] * x[k];
+            for (p, &i) in chain[..depth].iter().enumerate() {
+                let i = i as usize;
+                sum += self.lower[start + p] * x[i];
+                out[i] += self.upper[start + p] * x[k];
+            }
+            out[k] = sum;
+        }
+    }
+
     /// Replaces the matrix by its factors. False in lanes that met a pivot that is zero or not finite.
     #[kernel]
     pub fn factor(&mut self, tree: &Tree) -> T::Mask {

@@ -39,10 +39,10 @@ pub(super) const RULES: &[Rule] = &[
         element: "flag",
         read: "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart \
             filterparent actuation refsafe island eulerdamp multiccd autoreset sensor sleep override \
-            diagexact",
+            diagexact invdiscrete",
         // `nativeccd` and `midphase` choose between algorithms that look for the same contacts.
-        // The energy is there whenever it is asked for. `fwdinv` and `invdiscrete` concern inverse dynamics alone.
-        ignored: "energy fwdinv invdiscrete midphase nativeccd",
+        // The energy is there whenever it is asked for; so is what `fwdinv` compares.
+        ignored: "energy fwdinv midphase nativeccd",
         // `ipc` is a mode of flexes. `speculative` contacts, which MuJoCo 4.0 calls subject to change, sweep shapes through a step.
         later: "ipc=disable speculative=disable",
         ..NONE

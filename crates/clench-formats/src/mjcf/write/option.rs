@@ -204,6 +204,7 @@ fn flags(model: &Model) -> Vec<(&'static str, bool)> {
         multiccd,
         diagexact,
         sleep,
+        invdiscrete,
     } = model.flags;
     let options = &model.options;
     let on = [
@@ -232,6 +233,7 @@ fn flags(model: &Model) -> Vec<(&'static str, bool)> {
     flags.extend(options.autoreset.map(|autoreset| ("autoreset", autoreset)));
     flags.extend(diagexact.then_some(("diagexact", true)));
     flags.extend(sleep.then_some(("sleep", true)));
+    flags.extend(invdiscrete.then_some(("invdiscrete", true)));
     flags.extend(model.override_contacts.then_some(("override", true)));
     flags
 }

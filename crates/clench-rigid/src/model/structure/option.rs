@@ -14,7 +14,8 @@ pub enum Integrator {
     Rk4,
 }
 
-/// Feature switches: MuJoCo's disable flags, said positively and on by default, and of its enable flags those that act on motion.
+/// Feature switches: MuJoCo's disable flags, said positively and on by default, and of its enable flags those that act on motion
+/// or on inverse dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flags {
     /// Any constraint at all.
@@ -56,6 +57,9 @@ pub struct Flags {
     pub diagexact: bool,
     /// Trees that rest sleep.
     pub sleep: bool,
+    /// Inverse dynamics are given the acceleration by which a step changes the velocity, see
+    /// [`Acceleration`](crate::Acceleration). Off by default.
+    pub invdiscrete: bool,
 }
 
 impl Default for Flags {
@@ -80,6 +84,7 @@ impl Default for Flags {
             multiccd: true,
             diagexact: false,
             sleep: false,
+            invdiscrete: false,
         }
     }
 }

@@ -87,7 +87,7 @@ impl<T: Precision> Sim<T> {
         Ok(distance(&a.0, &a.1, &b.0, &b.1, limit))
     }
 
-    fn geoms(&self) -> Geoms<'_, T> {
+    pub(super) fn geoms(&self) -> Geoms<'_, T> {
         Geoms {
             model: self.model(),
             params: self.params(),

@@ -1,0 +1,284 @@
+//! The iterations, of all lanes side by side: a lane that is done stands still.
+//!
+//! With E the cost, A and g as in `equations`, an iteration tries δ from
+//!
+//! ```text
+//! (A + μ I) δ = g       μ = λ (2 E + ε)
+//! ```
+//!
+//! Damping in proportion to the cost (Sugihara 2011) keeps steps short far from a goal, and fades as it is reached, so that the
+//! last iterations converge as Newton's do. λ is raised where a step does not lower the cost, and lowered where the cost falls as
+//! the linear model says. Dofs at a limit against which g presses are held; a step that passes a limit ends there.
+
+use super::equations::{Equations, Scratch};
+use super::{Ik, IkSolution, IkStatus, IkTarget};
+use crate::dynamics::com::com_positions;
+use crate::dynamics::frames::Frames;
+use crate::dynamics::integrate::integrate_positions;
+use crate::dynamics::kinematics::kinematics;
+use crate::model::{JointKind, Model, Params};
+use crate::state::State;
+use crate::workspace::Positions;
+use clench_math::{Mask, Quat, Real, Scalar, kernel};
+use std::ops::Range;
+
+/// ε: damping never fades altogether, for at singular postures A alone is no matrix to solve with.
+const LEAST_DAMPING: f64 = 1e-9;
+/// By what λ is multiplied where a step fails, and divided where one goes well.
+const RAISE: f64 = 8.0;
+const LOWER: f64 = 4.0;
+/// λ stays above this, or it would take many failures to raise it again.
+const LEAST_LAMBDA: f64 = 1e-6;
+/// A step that brings at least this part of what the linear model promised went well.
+const GOOD_RATIO: f64 = 0.5;
+/// Where the linear model promises no more than this part of the cost, nothing is to be gained.
+const NEGLIGIBLE: f64 = 1e-10;
+/// A lane that failed so often in a row is stuck in rounding.
+const FAILURES: f64 = 12.0;
+
+/// Memory of a search.
+#[derive(Debug)]
+pub struct Search<T: Real> {
+    /// Where it stands; mocap poses are read as well.
+    pub state: State<T>,
+    /// Goals, task after task.
+    pub goals: Vec<T>,
+    /// Iterations of each lane.
+    iterations: T,
+    /// [`IkStatus`] by its place in the list.
+    status: T,
+    position: Positions<T>,
+    all: Range<usize>,
+    here: Equations<T>,
+    there: Equations<T>,
+    scratch: Scratch<T>,
+    factor: Vec<T>,
+    step: Vec<T>,
+    held: Vec<T::Mask>,
+    /// The step over all dofs (nv).
+    velocity: Vec<T>,
+    /// Where the search stands, while `state` is where it tries (nq).
+    qpos: Vec<T>,
+}
+
+impl<T: Real> Search<T> {
+    pub fn new(model: &Model, ik: &Ik) -> Self {
+        let n = ik.dofs.len();
+        let here = Equations::new(ik);
+        Search {
+            state: State::new(model),
+            goals: vec![T::ZERO; ik.goal_len(model)],
+            iterations: T::ZERO,
+            status: T::ZERO,
+            position: Positions::new(model),
+            all: 0..model.nbody(),
+            there: here.clone(),
+            scratch: Scratch::new(model),
+            factor: here.matrix.clone(),
+            step: vec![T::ZERO; n],
+            held: vec![T::Mask::splat(false); n],
+            velocity: vec![T::ZERO; model.nv],
+            qpos: vec![T::ZERO; model.nq],
+            here,
+        }
+    }
+
+    /// Whether it has the room that these tasks take: all that it keeps of earlier ones.
+    pub fn fits(&self, model: &Model, ik: &Ik) -> bool {
+        self.goals.len() == ik.goal_len(model)
+            && self.step.len() == ik.dofs.len()
+            && self.here.errors.len() == ik.tasks.len()
+    }
+
+    /// Searches from the positions of `state` and leaves what it found there.
+    #[kernel]
+    pub fn run(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
+        let tolerance = T::new(ik.options.tolerance);
+        let negligible = T::new(NEGLIGIBLE).max(T::splat(T::Scalar::EPSILON));
+        if ik.options.limits {
+            project(model, params, ik, &mut self.state.qpos);
+        }
+        self.evaluate(model, params, ik);
+        std::mem::swap(&mut self.here, &mut self.there);
+        self.qpos.copy_from_slice(&self.state.qpos);
+        self.held.fill(T::Mask::splat(false));
+        self.iterations = T::ZERO;
+        self.status = IkStatus::IterationLimit.code();
+        let mut lambda = T::new(ik.options.damping);
+        let mut failures = T::ZERO;
+        let mut live = T::Mask::splat(true);
+        let finite = self.here.cost.is_finite();
+        self.end(&mut live, !finite, IkStatus::NonFinite);
+        let reached = self.is_reached(ik, tolerance);
+        self.end(&mut live, reached, IkStatus::Reached);
+        for _ in 0..ik.options.iterations {
+            if !live.any() {
+                break;
+            }
+            self.iterations = T::select(live, self.iterations + T::ONE, self.iterations);
+            let damping = lambda * (self.here.cost + self.here.cost + T::new(LEAST_DAMPING));
+            let promised = self.try_step(model, params, ik, damping);
+            let gained = self.here.cost - self.there.cost;
+            let better = live & self.there.cost.lt(self.here.cost);
+            let good = gained.gt(promised * T::new(GOOD_RATIO));
+            self.here.blend(better, &self.there);
+            for (own, &tried) in self.qpos.iter_mut().zip(&self.state.qpos) {
+                *own = T::select(better, tried, *own);
+            }
+            let lowered = (lambda / T::new(LOWER)).max(T::new(LEAST_LAMBDA));
+            let raised = lambda * T::new(RAISE);
+            lambda = T::select(better, T::select(good, lowered, lambda), raised);
+            failures = T::select(better, T::ZERO, failures + T::ONE);
+            let reached = self.is_reached(ik, tolerance);
+            self.end(&mut live, reached, IkStatus::Reached);
+            let idle = promised.le(self.here.cost * negligible) | failures.gt(T::new(FAILURES));
+            self.end(&mut live, idle, IkStatus::Stationary);
+        }
+        self.state.qpos.copy_from_slice(&self.qpos);
+    }
+
+    /// Ends the live lanes of `mask`.
+    #[inline(always)]
+    fn end(&mut self, live: &mut T::Mask, mask: T::Mask, status: IkStatus) {
+        self.status = T::select(*live & mask, status.code(), self.status);
+        *live &= !mask;
+    }
+
+    /// Goes a step from where the search stands and evaluates there; returns by how much the linear model says that the cost
+    /// falls.
+    #[inline(always)]
+    fn try_step(&mut self, model: &Model, params: &Params<T>, ik: &Ik, damping: T) -> T {
+        if ik.options.limits {
+            hold(
+                model,
+                params,
+                ik,
+                &self.qpos,
+                &self.here.right,
+                &mut self.held,
+            );
+        }
+        let positive = (self.here).solve(damping, &self.held, &mut self.factor, &mut self.step);
+        self.velocity.fill(T::ZERO);
+        let mut promised = T::ZERO;
+        for ((&dof, &step), &right) in ik.dofs.iter().zip(&self.step).zip(&self.here.right) {
+            let step = T::select(positive, step, T::ZERO);
+            self.velocity[dof as usize] = step;
+            promised += T::new(0.5) * step * (right + damping * step);
+        }
+        self.state.qpos.copy_from_slice(&self.qpos);
+        integrate_positions(model, &mut self.state.qpos, &self.velocity, T::ONE);
+        if ik.options.limits {
+            project(model, params, ik, &mut self.state.qpos);
+        }
+        self.evaluate(model, params, ik);
+        T::select(positive, promised, T::splat(T::Scalar::INFINITY))
+    }
+
+    /// Sets up `there` at the positions of the state.
+    #[inline(always)]
+    fn evaluate(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
+        let pos = &mut self.position;
+        let all = std::slice::from_ref(&self.all);
+        kinematics(model, params, &self.state, all, pos);
+        com_positions(model, params, all, pos);
+        let frames = Frames { model, params, pos };
+        let goals = (ik, &self.goals[..]);
+        (self.there).build(frames, &self.state.qpos, goals, &mut self.scratch);
+    }
+
+    /// Lanes in which every task that counts is done: all but postures, or these where there is nothing else.
+    #[inline(always)]
+    fn is_reached(&self, ik: &Ik, tolerance: T) -> T::Mask {
+        let is_posture = |target: IkTarget| target == IkTarget::Posture;
+        let only_postures = ik.tasks.iter().all(|task| is_posture(task.target));
+        let mut reached = T::Mask::splat(true);
+        for (task, &squared) in ik.tasks.iter().zip(&self.here.errors) {
+            if only_postures || !is_posture(task.target) {
+                reached &= squared.le(tolerance * tolerance);
+            }
+        }
+        reached
+    }
+
+    /// Appends what the search found, as [`IkSolution::read`] reads it.
+    pub fn write(&self, out: &mut Vec<T>) {
+        out.extend_from_slice(&self.state.qpos);
+        out.extend([self.iterations, self.status]);
+        out.extend(self.here.errors.iter().map(|squared| squared.sqrt()));
+    }
+}
+
+impl<S: Scalar> IkSolution<S> {
+    /// How many numbers it is written as.
+    pub(crate) fn width(model: &Model, ik: &Ik) -> usize {
+        model.nq + 2 + ik.tasks.len()
+    }
+
+    /// From the numbers that a search wrote, of which `nq` are positions.
+    pub(crate) fn read(row: &[S], nq: usize) -> Self {
+        let (qpos, rest) = row.split_at(nq);
+        let status = rest[1].to_f64();
+        // An environment whose state is not finite was not searched.
+        let known = IkStatus::ALL.get(status as usize);
+        let status = known.filter(|_| status.is_finite());
+        IkSolution {
+            qpos: qpos.to_vec(),
+            iterations: rest[0].to_f64() as usize,
+            status: status.copied().unwrap_or(IkStatus::NonFinite),
+            errors: rest[2..].to_vec(),
+        }
+    }
+}
+
+impl IkStatus {
+    #[inline(always)]
+    fn code<T: Real>(self) -> T {
+        T::new(f64::from(self as u8))
+    }
+}
+
+/// Moves positions of joints that are solved for into their ranges. A ball joint turns back about the axis that it is turned about.
+#[inline(always)]
+fn project<T: Real>(model: &Model, params: &Params<T>, ik: &Ik, qpos: &mut [T]) {
+    let mut last = usize::MAX;
+    for &dof in &ik.dofs {
+        let j = model.dofs[dof as usize].joint;
+        let joint = &model.joints[j];
+        if !joint.limited || joint.kind == JointKind::Free || last == j {
+            continue;
+        }
+        last = j;
+        let [low, high] = params.jnt_range[j];
+        let q = &mut qpos[joint.qpos..];
+        if joint.kind == JointKind::Ball {
+            let turn = Quat::from_slice(q).to_rotation_vector();
+            let (axis, angle) = turn.normalize();
+            let back = Quat::from_axis_angle(axis, high);
+            Quat::select(angle.gt(high), back, Quat::from_slice(q)).write(q);
+        } else {
+            q[0] = q[0].max(low).min(high);
+        }
+    }
+}
+
+/// Marks the dofs at a limit against which `right` presses.
+#[inline(always)]
+fn hold<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    ik: &Ik,
+    qpos: &[T],
+    right: &[T],
+    held: &mut [T::Mask],
+) {
+    for ((&dof, &right), held) in ik.dofs.iter().zip(right).zip(held) {
+        let j = model.dofs[dof as usize].joint;
+        let joint = &model.joints[j];
+        if !joint.limited || !matches!(joint.kind, JointKind::Slide | JointKind::Hinge) {
+            continue;
+        }
+        let (q, [low, high]) = (qpos[joint.qpos], params.jnt_range[j]);
+        *held = (q.le(low) & right.lt(T::ZERO)) | (q.ge(high) & right.gt(T::ZERO));
+    }
+}

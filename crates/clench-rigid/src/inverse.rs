@@ -1,0 +1,112 @@
+//! Inverse dynamics: from the acceleration of a state to the forces that cause it.
+//!
+//! The constraint forces follow from the acceleration without any search: f = −∇s(J a − aref), block by block (Todorov 2014,
+//! "Convex and analytically-invertible dynamics with contacts and constraints"). What is left of the equation of motion
+//!
+//! ```text
+//! M a + bias = passive + Jᵀ f + τ
+//! ```
+//!
+//! is τ, what actuators and applied forces must give. Forward dynamics with that τ find the same acceleration.
+//!
+//! A step does not advance the velocity by the acceleration a that forward dynamics find, where forces are taken at its end: by
+//! a′ with M′ a′ = M a, M′ = M − h ∂τ/∂v as its integrator has it. From (v₁ − v₀)/h = a′ the acceleration a is found first.
+
+use crate::constraint::assemble;
+use crate::contact::detect;
+use crate::dynamics::actuation::actuation;
+use crate::dynamics::adhesion::adhesion;
+use crate::dynamics::euler::damped_inertia;
+use crate::dynamics::implicit::{full_inertia, gyroscopic_product, symmetric_inertia};
+use crate::model::{Integrator, Model, Params};
+use crate::pipeline::{position_stage, velocity_stage};
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Real, kernel};
+
+/// Which acceleration is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acceleration {
+    /// That which forward dynamics find.
+    Continuous,
+    /// That by which a step changes the velocity, (v₁ − v₀) / h.
+    Discrete,
+}
+
+impl Acceleration {
+    /// Which one a model says is given (MuJoCo's flag `invdiscrete`).
+    pub fn of(model: &Model) -> Self {
+        match model.flags.invdiscrete {
+            true => Acceleration::Discrete,
+            false => Acceleration::Continuous,
+        }
+    }
+}
+
+/// Leaves the acceleration that forward dynamics would find in `ws.qacc`, the constraint forces in `ws.qfrc_constraint` and in
+/// the solver, and in `qfrc_inverse` (nv) the forces along dofs that actuators and users must give for it. The state is that of
+/// `state`; whatever sleeps takes part.
+pub fn inverse<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    (qacc, given): (&[T], Acceleration),
+    ws: &mut Workspace<T>,
+    qfrc_inverse: &mut [T],
+) {
+    position_stage(model, params, state, ws);
+    detect(model, params, settings, ws);
+    adhesion(model, &ws.contacts, &mut ws.position);
+    velocity_stage(model, params, state, ws);
+    ws.qacc.copy_from_slice(qacc);
+    if given == Acceleration::Discrete {
+        continuous(model, params, state, ws);
+    }
+    assemble(model, params, settings, state, ws);
+    (ws.solver.evaluate(&ws.problem, &ws.qacc))
+        .expect("the arrays of a workspace have the model's lengths");
+    let constraint = ws.solver.qfrc_constraint();
+    ws.qfrc_constraint.copy_from_slice(constraint);
+    sum(model, ws, qfrc_inverse);
+}
+
+/// M a + bias − passive − Jᵀ f.
+#[kernel]
+fn sum<T: Real>(model: &Model, ws: &Workspace<T>, qfrc_inverse: &mut [T]) {
+    ws.problem.mass.mul(&model.tree, &ws.qacc, qfrc_inverse);
+    for (i, force) in qfrc_inverse.iter_mut().enumerate() {
+        *force += ws.force.qfrc_bias[i] - ws.force.qfrc_passive[i] - ws.qfrc_constraint[i];
+    }
+}
+
+/// Replaces `ws.qacc`, by which a step changes the velocity, by M⁻¹ M′ times it. A step of Runge and Kutta has no such M′: its
+/// acceleration is taken as it is.
+fn continuous<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
+    // The slopes of actuators depend on their forces.
+    actuation(model, params, state, pos, vel, T::ZERO, force);
+    let tree = &model.tree;
+    match model.integrator {
+        Integrator::Euler => {
+            damped_inertia(model, params, &state.qvel, ws);
+            let matrix = &ws.integration.matrix;
+            matrix.mul(tree, &ws.qacc, &mut ws.integration.qacc);
+        }
+        Integrator::ImplicitFast => {
+            symmetric_inertia(model, params, state, ws);
+            let matrix = &ws.integration.matrix;
+            matrix.mul(tree, &ws.qacc, &mut ws.integration.qacc);
+            gyroscopic_product(model, params, &state.qvel, ws);
+        }
+        Integrator::Implicit => {
+            full_inertia(model, params, state, ws);
+            let matrix = &ws.integration.full;
+            matrix.mul(tree, &ws.qacc, &mut ws.integration.qacc);
+        }
+        Integrator::Rk4 => return,
+    }
+    ws.qacc.copy_from_slice(&ws.integration.qacc);
+    ws.problem.mass_factor.solve(tree, &mut ws.qacc);
+}

@@ -1,0 +1,149 @@
+//! How objects and points of bodies move: Jacobians, how these change, velocities, accelerations.
+//!
+//! Of six numbers or rows three are linear, m/s, and then three angular, rad/s, so that a Jacobian times the velocities of the dofs
+//! is a velocity as it is given here.
+
+use super::{check_body, check_object};
+use crate::Precision;
+use crate::check::check_length;
+use crate::dynamics::chains::BodyPoint;
+use crate::dynamics::frames::Frames;
+use crate::dynamics::jacobian::{point_jacobian, point_jacobian_rate, subtree_jacobian};
+use crate::error::SimError;
+use crate::known::Extent;
+use crate::model::FrameObject;
+use crate::sim::Sim;
+use clench_math::{Motion, Vec3};
+
+/// A point that moves with a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Anchor<T> {
+    /// Where an object is.
+    Object(FrameObject),
+    /// The point of a body that is at a place in the world now, m.
+    Point {
+        /// The body.
+        body: usize,
+        /// The place.
+        place: Vec3<T>,
+    },
+}
+
+/// Axes in which vectors are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the world.
+    #[default]
+    World,
+    /// Those of the object.
+    Local,
+}
+
+impl<T: Precision> Sim<T> {
+    /// Writes the Jacobian of an object or point to `jacobian` (6, nv), row by row: three rows of its velocity, three of its body's
+    /// angular velocity, world axes, where bodies are as in [`refresh`](Self::refresh). As MuJoCo's `mj_jac` and its kin.
+    ///
+    /// # Errors
+    /// An object that the model does not have, a wrong length; else as [`refresh`](Self::refresh).
+    pub fn jacobian(&mut self, anchor: Anchor<T>, jacobian: &mut [T]) -> Result<(), SimError> {
+        self.check_jacobian(anchor, jacobian.len())?;
+        self.know(Extent::Positions)?;
+        let point = self.body_point(anchor);
+        point_jacobian(self.model(), &self.workspace().position, &point, jacobian);
+        Ok(())
+    }
+
+    /// Writes how fast that Jacobian changes (6, nv), as MuJoCo's `mj_jacDot`: 1/s times the units of the Jacobian.
+    ///
+    /// # Errors
+    /// As [`jacobian`](Self::jacobian).
+    pub fn jacobian_rate(&mut self, anchor: Anchor<T>, rate: &mut [T]) -> Result<(), SimError> {
+        self.check_jacobian(anchor, rate.len())?;
+        self.know(Extent::Everything)?;
+        let (point, ws) = (self.body_point(anchor), self.workspace());
+        point_jacobian_rate(self.model(), (&ws.position, &ws.velocity), &point, rate);
+        Ok(())
+    }
+
+    /// Writes the Jacobian of the centre of mass of a body and all below it to `jacobian` (3, nv), as MuJoCo's
+    /// `mj_jacSubtreeCom`.
+    ///
+    /// # Errors
+    /// As [`jacobian`](Self::jacobian).
+    pub fn subtree_jacobian(&mut self, body: usize, jacobian: &mut [T]) -> Result<(), SimError> {
+        check_body(self.model(), body)?;
+        check_length("jacobian", jacobian.len(), 3 * self.model().nv)?;
+        self.know(Extent::Positions)?;
+        let pos = &self.workspace().position;
+        subtree_jacobian(self.model(), self.params(), pos, body, jacobian);
+        Ok(())
+    }
+
+    /// The velocity of an object, linear at its position and angular, as MuJoCo's `mj_objectVelocity` (which has them in the other
+    /// order), where bodies are and move as in [`refresh`](Self::refresh).
+    ///
+    /// # Errors
+    /// As [`jacobian`](Self::jacobian).
+    pub fn velocity(&mut self, object: FrameObject, axes: Axes) -> Result<[Vec3<T>; 2], SimError> {
+        check_object(self.model(), object)?;
+        self.know(Extent::Everything)?;
+        let velocity = self.frames().velocity(object, &self.workspace().velocity);
+        Ok(self.along(axes, object, velocity))
+    }
+
+    /// The acceleration of an object, likewise, as MuJoCo's `mj_objectAcceleration`: what an accelerometer there feels, gravity's
+    /// upward reaction included, m/s² and rad/s².
+    ///
+    /// # Errors
+    /// As [`jacobian`](Self::jacobian).
+    pub fn acceleration(
+        &mut self,
+        object: FrameObject,
+        axes: Axes,
+    ) -> Result<[Vec3<T>; 2], SimError> {
+        check_object(self.model(), object)?;
+        self.know(Extent::Everything)?;
+        self.update_body_forces();
+        let ws = self.workspace();
+        let cacc = &ws.sensors.bodies.cacc;
+        let acceleration = self.frames().acceleration(object, &ws.velocity, cacc);
+        Ok(self.along(axes, object, acceleration))
+    }
+
+    fn frames(&self) -> Frames<'_, T> {
+        Frames {
+            model: self.model(),
+            params: self.params(),
+            pos: &self.workspace().position,
+        }
+    }
+
+    /// Linear, then angular, in the axes asked for.
+    fn along(&self, axes: Axes, object: FrameObject, motion: Motion<T>) -> [Vec3<T>; 2] {
+        let world = [motion.linear, motion.angular];
+        match axes {
+            Axes::World => world,
+            Axes::Local => {
+                let rotation = self.frames().rotation(object);
+                world.map(|v| rotation.transpose_mul(v))
+            }
+        }
+    }
+
+    fn check_jacobian(&self, anchor: Anchor<T>, length: usize) -> Result<(), SimError> {
+        match anchor {
+            Anchor::Object(object) => check_object(self.model(), object)?,
+            Anchor::Point { body, .. } => check_body(self.model(), body)?,
+        }
+        check_length("jacobian", length, 6 * self.model().nv)
+    }
+
+    pub(super) fn body_point(&self, anchor: Anchor<T>) -> BodyPoint<T> {
+        match anchor {
+            Anchor::Object(object) => self.frames().point(object),
+            Anchor::Point { body, place } => {
+                BodyPoint::new(self.model(), &self.workspace().position, body, place)
+            }
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! What the mass matrix and forces on bodies mean for the dofs.
+
+use super::check_body;
+use super::frames::Anchor;
+use crate::Precision;
+use crate::check::{check_length, check_values};
+use crate::dynamics::jacobian::add_point_forces;
+use crate::error::{Fault, SimError};
+use crate::known::Extent;
+use crate::place::massless;
+use crate::sim::Sim;
+use clench_math::Vec3;
+
+impl<T: Precision> Sim<T> {
+    /// Writes M x to `product` (nv), where bodies are as in [`refresh`](Self::refresh): with accelerations x, the forces along dofs
+    /// that they take (MuJoCo's `mj_mulM`).
+    ///
+    /// # Errors
+    /// A wrong length, numbers that are not finite; else as [`refresh`](Self::refresh).
+    pub fn mul_mass(&mut self, x: &[T], product: &mut [T]) -> Result<(), SimError> {
+        check_values("x", x, self.model().nv)?;
+        check_length("product", product.len(), x.len())?;
+        self.know(Extent::Positions)?;
+        let mass = &self.workspace().problem.mass;
+        mass.mul(&self.model().tree, x, product);
+        Ok(())
+    }
+
+    /// Replaces x (nv) by M⁻¹ x, likewise: with forces along dofs, the accelerations that they cause (MuJoCo's `mj_solveM`).
+    ///
+    /// # Errors
+    /// As [`mul_mass`](Self::mul_mass), and a mass matrix that is singular; x is then as before.
+    pub fn solve_mass(&mut self, x: &mut [T]) -> Result<(), SimError> {
+        check_values("x", x, self.model().nv)?;
+        self.know(Extent::Positions)?;
+        let (model, ws) = (self.model(), self.workspace());
+        if ws.singular {
+            let (time, place) = (self.state.time, massless(model, ws, 0));
+            return Err(Fault::Singular { time, place }.into());
+        }
+        ws.problem.mass_factor.solve(&model.tree, x);
+        Ok(())
+    }
+
+    /// Adds to `qfrc` (nv) the forces along dofs of a force, N, and a torque, N m, on a body at a place in the world, all in world
+    /// axes, where bodies are as in [`refresh`](Self::refresh) (MuJoCo's `mj_applyFT`).
+    ///
+    /// # Errors
+    /// A body that the model does not have, a wrong length; else as [`refresh`](Self::refresh).
+    pub fn add_joint_forces(
+        &mut self,
+        body: usize,
+        place: Vec3<T>,
+        (force, torque): (Vec3<T>, Vec3<T>),
+        qfrc: &mut [T],
+    ) -> Result<(), SimError> {
+        check_body(self.model(), body)?;
+        check_length("qfrc", qfrc.len(), self.model().nv)?;
+        self.know(Extent::Positions)?;
+        let point = self.body_point(Anchor::Point { body, place });
+        let pos = &self.workspace().position;
+        add_point_forces(self.model(), pos, &point, (force, torque), qfrc);
+        Ok(())
+    }
+}

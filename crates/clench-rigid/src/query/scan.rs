@@ -1,0 +1,160 @@
+//! Many rays at once, and heights of terrain at many places: what a lidar or a walking policy looks at.
+
+use super::check_object;
+use crate::check::{check_count, check_values};
+use crate::dynamics::frames::Frames;
+use crate::error::SimError;
+use crate::geometry::Geoms;
+use crate::known::Extent;
+use crate::model::FrameObject;
+use crate::query::{RayFilter, RayHit};
+use crate::sim::{Sim, no_such};
+use crate::{Model, Precision};
+use clench_collide::{Asset, Ray};
+use clench_math::{Real, Scalar, Vec3, kernel};
+
+/// Numbers of a ray: its origin, its direction.
+pub(crate) const RAY: usize = 6;
+/// Numbers of what a ray hits: the geom, or −1; how far, or infinity; the normal.
+pub(crate) const HIT: usize = 5;
+
+/// Appends what each of some rays hits, [`HIT`] numbers a ray. With a frame they are in its coordinates.
+#[kernel]
+pub(crate) fn cast<T: Real>(
+    geoms: Geoms<'_, T>,
+    frame: Option<FrameObject>,
+    rays: &[T],
+    filter: &RayFilter,
+    out: &mut Vec<T>,
+) {
+    let frames = Frames::of(geoms);
+    for numbers in rays.chunks_exact(RAY) {
+        let mut line = Ray {
+            origin: Vec3::from_slice(numbers),
+            direction: Vec3::from_slice(&numbers[3..]),
+        };
+        if let Some(frame) = frame {
+            let rotation = frames.rotation(frame);
+            line.origin = frames.position(frame) + rotation * line.origin;
+            line.direction = rotation * line.direction;
+        }
+        let (geom, hit) = geoms.first_hit(&line, filter);
+        let found = hit.distance.lt(T::splat(T::Scalar::INFINITY));
+        out.push(T::select(found, geom, -T::ONE));
+        out.push(hit.distance);
+        out.extend(hit.normal.to_array());
+    }
+}
+
+/// Appends the height of a height field's surface, in the world, over each of some places (x, y). With a frame these are from its
+/// position, along its x axis as seen from above.
+#[kernel]
+pub(crate) fn sample<T: Real>(
+    geoms: Geoms<'_, T>,
+    geom: usize,
+    frame: Option<FrameObject>,
+    places: &[T],
+    out: &mut Vec<T>,
+) {
+    let frames = Frames::of(geoms);
+    let (mut origin, mut ahead) = (Vec3::ZERO, Vec3::new(T::ONE, T::ZERO, T::ZERO));
+    if let Some(frame) = frame {
+        origin = frames.position(frame);
+        let x = frames.rotation(frame).column(0);
+        ahead = Vec3::new(x.x, x.y, T::ZERO).normalize().0;
+    }
+    let pose = geoms.pose(geom);
+    for place in places.chunks_exact(2) {
+        let (along, across) = (place[0], place[1]);
+        let world = Vec3::new(
+            origin.x + ahead.x * along - ahead.y * across,
+            origin.y + ahead.y * along + ahead.x * across,
+            pose.position.z,
+        );
+        let mut local = pose.rotation.transpose_mul(world - pose.position);
+        if let Asset::HeightField(field) = geoms.model.asset(geom) {
+            for lane in 0..T::LANES {
+                let (x, y) = (local.x.lane(lane).to_f64(), local.y.lane(lane).to_f64());
+                local
+                    .z
+                    .set_lane(lane, T::Scalar::new(field.height_at(x, y)));
+            }
+        }
+        out.push((pose.position + pose.rotation * local).z);
+    }
+}
+
+/// Rays that can be cast: whole ones, finite, in the frame of an object that the model has.
+pub(crate) fn check_rays<S: Scalar>(
+    model: &Model,
+    frame: Option<FrameObject>,
+    rays: &[S],
+) -> Result<(), SimError> {
+    frame.map_or(Ok(()), |frame| check_object(model, frame))?;
+    check_count("rays", rays.len(), RAY)?;
+    check_values("rays", rays, rays.len())
+}
+
+/// Places where heights can be asked for, of a geom that is a height field.
+pub(crate) fn check_places<S: Scalar>(
+    model: &Model,
+    geom: usize,
+    frame: Option<FrameObject>,
+    places: &[S],
+) -> Result<(), SimError> {
+    if geom >= model.geoms.len() {
+        return Err(no_such("geom", geom, model.geoms.len()));
+    }
+    if !matches!(model.asset(geom), Asset::HeightField(_)) {
+        return Err(SimError::NoHeightField { geom });
+    }
+    frame.map_or(Ok(()), |frame| check_object(model, frame))?;
+    check_count("places", places.len(), 2)?;
+    check_values("places", places, places.len())
+}
+
+impl<T: Precision> Sim<T> {
+    /// What each of some rays (k, 6: origin, direction) hits first, as [`ray`](Self::ray) says. With a `frame` they are in its
+    /// coordinates, so that they move with it.
+    ///
+    /// # Errors
+    /// A wrong length, numbers that are not finite, an object that the model does not have; else as [`refresh`](Self::refresh).
+    pub fn rays(
+        &mut self,
+        rays: &[T],
+        frame: Option<FrameObject>,
+        filter: &RayFilter,
+    ) -> Result<Vec<Option<RayHit<T>>>, SimError> {
+        check_rays(self.model(), frame, rays)?;
+        self.know(Extent::Positions)?;
+        let mut hits = Vec::new();
+        cast(self.geoms(), frame, rays, filter, &mut hits);
+        let hit = |numbers: &[T]| {
+            (numbers[0] >= T::ZERO).then(|| RayHit {
+                geom: numbers[0].to_f64() as usize,
+                distance: numbers[1],
+                normal: Vec3::from_slice(&numbers[2..]),
+            })
+        };
+        Ok(hits.chunks_exact(HIT).map(hit).collect())
+    }
+
+    /// The height, in the world, of the surface of a height field over each of some places (k, 2: x, y), m; beyond its edges that
+    /// over the nearest place on them. With a `frame` places are from its position, along its x axis as seen from above. Exact
+    /// where the field's z axis points upwards, as terrain's does.
+    ///
+    /// # Errors
+    /// A geom that is no height field; else as [`rays`](Self::rays).
+    pub fn heights(
+        &mut self,
+        geom: usize,
+        places: &[T],
+        frame: Option<FrameObject>,
+    ) -> Result<Vec<T>, SimError> {
+        check_places(self.model(), geom, frame, places)?;
+        self.know(Extent::Positions)?;
+        let mut heights = Vec::new();
+        sample(self.geoms(), geom, frame, places, &mut heights);
+        Ok(heights)
+    }
+}

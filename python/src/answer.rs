@@ -1,0 +1,54 @@
+//! Answers as arrays: new ones, or in the place that a caller gave, and rows that are each answered by themselves.
+
+use crate::arrays::{numbers, require_shape, shape_text};
+use crate::error::sim_error;
+use clench::{Precision, SimError};
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// Numbers in a new array of this shape, or in the one that was given.
+pub(crate) fn answer<'py, S: Element + Copy>(
+    py: Python<'py>,
+    values: Vec<S>,
+    shape: &[usize],
+    out: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Some(out) = out else {
+        return Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any());
+    };
+    let Ok(array) = out.cast::<PyArrayDyn<S>>() else {
+        return Err(PyTypeError::new_err(format!(
+            "out must be an array of {}",
+            numpy::dtype::<S>(py)
+        )));
+    };
+    require_shape("out", array.shape(), shape)?;
+    let mut room = array.try_readwrite()?;
+    for (to, value) in room.as_array_mut().iter_mut().zip(values) {
+        *to = value;
+    }
+    Ok(out.clone())
+}
+
+/// Rows of `width` numbers, of any count or a single one, each of which `change` replaces.
+pub(crate) fn each_row<'py, S: Precision + Element>(
+    name: &str,
+    values: &Bound<'py, PyAny>,
+    width: usize,
+    mut change: impl FnMut(&mut [S]) -> Result<(), SimError>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = numbers::<S>(name, values)?;
+    let shape = array.shape().to_vec();
+    if !matches!(shape[..], [own] | [_, own] if own == width) {
+        return Err(PyValueError::new_err(format!(
+            "{name} has shape {}, but must have ({width},) or (k, {width})",
+            shape_text(&shape)
+        )));
+    }
+    let mut all = array.as_slice()?.to_vec();
+    for row in all.chunks_exact_mut(width.max(1)) {
+        change(row).map_err(sim_error)?;
+    }
+    answer(values.py(), all, &shape, None)
+}

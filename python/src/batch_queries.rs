@@ -1,0 +1,222 @@
+//! What `Batch` answers about all environments at once.
+
+use crate::batch::{AnyBatch, Batch, each};
+use crate::busy::lock;
+use crate::error::sim_error;
+use crate::inertia_queries::given;
+use crate::kind::Kind;
+use crate::queries::ray_filter;
+use crate::scan::{RayHits, rays};
+use crate::table::Table;
+use crate::target::{Choice, Choices};
+use clench::rigid::batch::Rows;
+use numpy::{Element, PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+
+/// The rows of a table as an array of this shape.
+fn rows_array<'py, S: Element + Copy>(
+    py: Python<'py>,
+    rows: &Rows<S>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = PyArray1::from_slice(py, rows.as_slice());
+    Ok(array.reshape(shape)?.into_any())
+}
+
+#[pymethods]
+impl Batch {
+    /// The Jacobian of an object in every environment, in the present states, see `Sim.jacobian`. Those of all sites can be
+    /// recorded: outputs ``site_jacp`` and ``site_jacr``.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera : str or int
+    ///     The object: the frame of a body, its centre of mass, a geom, a site or a camera.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (n, 2, 3, nv): translation, then rotation, world axes; NaN where a state is not finite.
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None))]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let model = self.described();
+        let object = Choices {
+            body,
+            body_com,
+            geom,
+            site,
+            camera,
+        }
+        .one(model)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let found = py.detach(|| batch.jacobian(object)).map_err(sim_error)?;
+            rows_array(py, &found, &[self.count(), 2, 3, model.nv])
+        })
+    }
+
+    /// The Jacobian of the centre of mass of a body and all below it in every environment, likewise.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : str or int
+    ///     The body; 0, the world, for that of everything.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (n, 3, nv), world axes; NaN where a state is not finite.
+    fn subtree_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let model = self.described();
+        let body = Kind::Body.find(model, body)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let found = py.detach(|| batch.subtree_jacobian(body)).map_err(sim_error)?;
+            rows_array(py, &found, &[self.count(), 3, model.nv])
+        })
+    }
+
+    /// What many rays hit in every environment, in the present states: a lidar.
+    ///
+    /// Parameters
+    /// ----------
+    /// origins, directions : array_like
+    ///     As in `Sim.rays`: (k, 3) for all environments, or (n, k, 3) for each its own.
+    /// body, body_com, geom, site, camera : str or int, optional
+    ///     An object in whose frame rays are told, so that they move with it; else they are in the world.
+    /// groups : array_like of int, optional
+    ///     The groups of geoms, 0 to 5, that can be hit; all of them if not given.
+    /// fixed : bool
+    ///     Whether geoms can be hit that are fixed to the world.
+    /// exclude_body : str or int, optional
+    ///     A body, by name or index, whose geoms are not hit.
+    ///
+    /// Returns
+    /// -------
+    /// RayHits
+    ///     One a ray, with the environments as first axis. Where a state is not finite distances are NaN.
+    #[pyo3(signature = (origins, directions, *, body = None, body_com = None, geom = None, site = None, camera = None,
+                        groups = None, fixed = true, exclude_body = None))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn rays<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        groups: Choice<'_, 'py>,
+        fixed: bool,
+        exclude_body: Choice<'_, 'py>,
+    ) -> PyResult<RayHits> {
+        let model = self.described();
+        let frame = Choices {
+            body,
+            body_com,
+            geom,
+            site,
+            camera,
+        }
+        .optional(model)?;
+        let filter = ray_filter(model, groups, fixed, exclude_body)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let rays = rays(origins, directions, Some(self.count()))?;
+            let found = py.detach(|| batch.rays(rays.given(), frame, &filter));
+            let shape = [self.count(), rays.rows];
+            RayHits::new(py, found.map_err(sim_error)?.as_slice(), &shape)
+        })
+    }
+
+    /// Heights of terrain in every environment, in the present states, see `Sim.heights`.
+    ///
+    /// Parameters
+    /// ----------
+    /// hfield : str or int
+    ///     The geom that is the height field. Exact where its z axis points upwards.
+    /// places : array_like
+    ///     x and y, m: (k, 2) for all environments, or (n, k, 2) for each its own.
+    /// body, body_com, geom, site, camera : str or int, optional
+    ///     An object from whose position, along whose x axis as seen from above, places are told; else they are in the world.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Heights in the world (n, k), m; NaN where a state is not finite.
+    #[pyo3(signature = (hfield, places, *, body = None, body_com = None, geom = None, site = None, camera = None))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn heights<'py>(
+        &self,
+        py: Python<'py>,
+        hfield: &Bound<'py, PyAny>,
+        places: &Bound<'py, PyAny>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let model = self.described();
+        let frame = Choices {
+            body,
+            body_com,
+            geom,
+            site,
+            camera,
+        }
+        .optional(model)?;
+        let hfield = Kind::Geom.find(model, hfield)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let places = Table::rows_of("places", places, 2, Some(self.count()))?;
+            let found = py.detach(|| batch.heights(hfield, places.given(), frame));
+            rows_array(py, &found.map_err(sim_error)?, &[self.count(), places.rows])
+        })
+    }
+
+    /// Inverse dynamics of every environment, in the present states, see `Sim.inverse`.
+    ///
+    /// Parameters
+    /// ----------
+    /// qacc : array_like
+    ///     Accelerations, (nv,) for all environments, or (n, nv) for each its own.
+    /// discrete : bool, optional
+    ///     Whether they are those by which a step changes the velocity, ``(v1 - v0) / timestep``; else those that `forward` finds.
+    ///     By default as the model says (flag ``invdiscrete``).
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Forces along dofs (n, nv), N and N m; NaN where a simulation alone would raise SimulationError.
+    #[pyo3(signature = (qacc, *, discrete = None))]
+    fn inverse<'py>(
+        &self,
+        py: Python<'py>,
+        qacc: &Bound<'py, PyAny>,
+        discrete: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let model = self.described();
+        let kind = given(model, discrete);
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let qacc = Table::row_of("qacc", qacc, model.nv, Some(self.count()))?;
+            let found = py.detach(|| batch.inverse(qacc.given(), kind)).map_err(sim_error)?;
+            rows_array(py, &found, &[self.count(), model.nv])
+        })
+    }
+}

@@ -1,0 +1,337 @@
+//! Inverse kinematics of `Sim` and `Batch`.
+
+use crate::answer::answer;
+use crate::arrays::{mask, numbers};
+use crate::batch::{AnyBatch, Batch, each};
+use crate::busy::lock;
+use crate::count::Count;
+use crate::error::sim_error;
+use crate::ik_targets::{ComTarget, FrameTarget, PostureTarget};
+use crate::kind::Kind;
+use crate::row_sim::{AnySim, each_sim};
+use crate::sim::Sim;
+use crate::table::Table;
+use crate::target::{Choice, Choices};
+use clench::{Given, Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Precision};
+use numpy::{Element, PyUntypedArrayMethods};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+/// What inverse kinematics found. In a batch the environments are the first axis.
+#[pyclass(frozen, get_all, module = "clench")]
+pub(crate) struct IkResult {
+    /// numpy.ndarray : Positions of the joints (nq,).
+    qpos: Py<PyAny>,
+    /// numpy.ndarray : How far each goal is missed, without its cost (goals,), m or rad: in the order of the targets, of a frame its
+    /// position before its orientation. Of a posture it is the length of the velocity that leads there in a second.
+    errors: Py<PyAny>,
+    /// int or numpy.ndarray : Iterations; int64 in a batch.
+    iterations: Py<PyAny>,
+    /// int or numpy.ndarray : How it ended, a code of `IkStatus`; int8 in a batch.
+    status: Py<PyAny>,
+    /// bool or numpy.ndarray : Whether all goals but postures are reached within the tolerance.
+    reached: Py<PyAny>,
+}
+
+/// A goal's number in an error message, and its values in a precision.
+struct Goals<S> {
+    tasks: Vec<IkTask>,
+    tables: Vec<(Table<S>, usize)>,
+}
+
+impl<S: Precision + Element> Goals<S> {
+    fn of(model: &Model, targets: &Bound<'_, PyAny>, n: Option<usize>) -> PyResult<Self> {
+        let mut goals = Goals {
+            tasks: Vec::new(),
+            tables: Vec::new(),
+        };
+        for target in targets.try_iter()? {
+            goals.add(model, &target?, n)?;
+        }
+        Ok(goals)
+    }
+
+    fn add(&mut self, model: &Model, given: &Bound<'_, PyAny>, n: Option<usize>) -> PyResult<()> {
+        let py = given.py();
+        if let Ok(frame) = given.cast::<FrameTarget>() {
+            let frame = frame.get();
+            let choice =
+                |which: &Option<Py<PyAny>>| which.as_ref().map(|which| which.bind(py).clone());
+            let parts = [
+                &frame.body,
+                &frame.body_com,
+                &frame.geom,
+                &frame.site,
+                &frame.camera,
+            ];
+            let [body, body_com, geom, site, camera] = parts.map(choice);
+            let choices = Choices {
+                body: body.as_ref(),
+                body_com: body_com.as_ref(),
+                geom: geom.as_ref(),
+                site: site.as_ref(),
+                camera: camera.as_ref(),
+            };
+            let object = choices.one(model)?;
+            if let Some(position) = &frame.position {
+                let cost = frame.position_cost.bind(py);
+                let target = IkTarget::Position(object);
+                self.push(model, target, ("position", position.bind(py)), cost, n)?;
+            }
+            if let Some(quat) = &frame.quat {
+                let cost = frame.orientation_cost.into_pyobject(py)?.into_any();
+                let target = IkTarget::Orientation(object);
+                self.push(model, target, ("quat", quat.bind(py)), &cost, n)?;
+            }
+            return Ok(());
+        }
+        if let Ok(com) = given.cast::<ComTarget>() {
+            let com = com.get();
+            let body = Kind::Body.find(model, com.body.bind(py))?;
+            let goal = ("position", com.position.bind(py));
+            return self.push(
+                model,
+                IkTarget::CentreOfMass(body),
+                goal,
+                com.cost.bind(py),
+                n,
+            );
+        }
+        if let Ok(posture) = given.cast::<PostureTarget>() {
+            let posture = posture.get();
+            let goal = ("qpos", posture.qpos.bind(py));
+            return self.push(model, IkTarget::Posture, goal, posture.cost.bind(py), n);
+        }
+        let found = given.get_type().name()?;
+        Err(PyTypeError::new_err(format!(
+            "targets are FrameTarget, ComTarget and PostureTarget, not {found}"
+        )))
+    }
+
+    fn push(
+        &mut self,
+        model: &Model,
+        target: IkTarget,
+        (name, goal): (&str, &Bound<'_, PyAny>),
+        cost: &Bound<'_, PyAny>,
+        n: Option<usize>,
+    ) -> PyResult<()> {
+        let cost = numbers::<f64>("cost", cost)?;
+        let weights = match (cost.shape(), cost.as_slice()?) {
+            ([], &[one]) => vec![one; target.weight_len(model)],
+            (_, all) => all.to_vec(),
+        };
+        let width = target.goal_len(model);
+        self.tasks.push(IkTask { target, weights });
+        (self.tables).push((Table::row_of(name, goal, width, n)?, width));
+        Ok(())
+    }
+
+    /// All goals of an environment.
+    fn row(&self, env: usize) -> Vec<S> {
+        let rows = self
+            .tables
+            .iter()
+            .map(|(table, width)| table.row(env, *width));
+        rows.flatten().copied().collect()
+    }
+
+    /// The goals of all of `n` environments, and whether these differ.
+    fn all(&self, n: usize) -> (Vec<S>, bool) {
+        match self.tables.iter().any(|(table, _)| table.is_each()) {
+            true => ((0..n).flat_map(|env| self.row(env)).collect(), true),
+            false => (self.row(0), false),
+        }
+    }
+}
+
+/// How the search goes on.
+struct Search<'a, 'py> {
+    iterations: Count,
+    tolerance: f64,
+    damping: f64,
+    limits: bool,
+    dofs: Choice<'a, 'py>,
+}
+
+impl Search<'_, '_> {
+    fn options(&self, model: &Model) -> PyResult<IkOptions> {
+        let dofs = self
+            .dofs
+            .map(|dofs| mask("dofs", dofs, model.nv))
+            .transpose()?;
+        Ok(IkOptions {
+            iterations: self.iterations.0,
+            tolerance: self.tolerance,
+            damping: self.damping,
+            limits: self.limits,
+            dofs: dofs.unwrap_or_default(),
+        })
+    }
+}
+
+#[pymethods]
+impl Sim {
+    /// Inverse kinematics: positions of the joints that bring targets to their goals, by damped least squares within the limits of
+    /// joints.
+    ///
+    /// Minimises half the sum of the squared errors times their costs, downhill from the start: other starts may end elsewhere. Equality
+    /// constraints, tendon limits and collisions are not looked at. The state stays as it is: assign ``sim.qpos[:] = result.qpos``.
+    ///
+    /// Parameters
+    /// ----------
+    /// targets : iterable of FrameTarget, ComTarget and PostureTarget
+    ///     What is to be where.
+    /// start : array_like, optional
+    ///     Positions to begin with (nq,); by default those of the present state.
+    /// iterations : int
+    ///     The most iterations.
+    /// tolerance : float
+    ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
+    /// damping : float
+    ///     Damping at the start, in parts of the present cost; it adapts.
+    /// limits : bool
+    ///     Whether joints are kept in their ranges; a start outside is moved in.
+    /// dofs : array_like of bool, optional
+    ///     Which dofs may move (nv,); by default all.
+    ///
+    /// Returns
+    /// -------
+    /// IkResult
+    ///     The positions, and how far they are from the goals.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Objects that the model does not have, wrong shapes, numbers that are not finite.
+    #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3, limits = true, dofs = None),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, limits=True, dofs=None)")]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn ik<'py>(
+        &self,
+        py: Python<'py>,
+        targets: &Bound<'py, PyAny>,
+        start: Choice<'_, 'py>,
+        iterations: Count,
+        tolerance: f64,
+        damping: f64,
+        limits: bool,
+        dofs: Choice<'_, 'py>,
+    ) -> PyResult<IkResult> {
+        let model = self.described();
+        let options = Search {
+            iterations,
+            tolerance,
+            damping,
+            limits,
+            dofs,
+        }
+        .options(model)?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let goals = Goals::of(model, targets, None)?;
+            let start = start.map(|start| Table::row_of("start", start, model.nq, None)).transpose()?;
+            let values = goals.row(0);
+            let ik = Ik::new(model, goals.tasks, options).map_err(sim_error)?;
+            let sim = own.current().map_err(sim_error)?;
+            let found = py.detach(|| {
+                sim.ik(&ik, &values, start.as_ref().map(|start| start.row(0, model.nq)))
+            });
+            let found = found.map_err(sim_error)?;
+            Ok(IkResult {
+                iterations: found.iterations.into_pyobject(py)?.into_any().unbind(),
+                status: (found.status as i64).into_pyobject(py)?.into_any().unbind(),
+                reached: is_reached(found.status).into_pyobject(py)?.to_owned().into_any().unbind(),
+                errors: answer(py, found.errors, &[ik.tasks().len()], None)?.unbind(),
+                qpos: answer(py, found.qpos, &[model.nq], None)?.unbind(),
+            })
+        })
+    }
+}
+
+#[pymethods]
+impl Batch {
+    /// Inverse kinematics of every environment, from the present states, see `Sim.ik`.
+    ///
+    /// Parameters
+    /// ----------
+    /// targets : iterable of FrameTarget, ComTarget and PostureTarget
+    ///     What is to be where; goals may be the same for all environments, or have the environments as first axis.
+    /// start : array_like, optional
+    ///     Positions to begin with, (nq,) or (n, nq); by default those of the present states.
+    /// iterations : int
+    ///     The most iterations.
+    /// tolerance : float
+    ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
+    /// damping : float
+    ///     Damping at the start, in parts of the present cost; it adapts.
+    /// limits : bool
+    ///     Whether joints are kept in their ranges; a start outside is moved in.
+    /// dofs : array_like of bool, optional
+    ///     Which dofs may move (nv,); by default all.
+    ///
+    /// Returns
+    /// -------
+    /// IkResult
+    ///     With the environments as first axis.
+    #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3, limits = true, dofs = None),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, limits=True, dofs=None)")]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn ik<'py>(
+        &self,
+        py: Python<'py>,
+        targets: &Bound<'py, PyAny>,
+        start: Choice<'_, 'py>,
+        iterations: Count,
+        tolerance: f64,
+        damping: f64,
+        limits: bool,
+        dofs: Choice<'_, 'py>,
+    ) -> PyResult<IkResult> {
+        let (model, n) = (self.described(), self.count());
+        let options = Search {
+            iterations,
+            tolerance,
+            damping,
+            limits,
+            dofs,
+        }
+        .options(model)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let goals = Goals::of(model, targets, Some(n))?;
+            let start = start.map(|start| Table::row_of("start", start, model.nq, Some(n))).transpose()?;
+            let (values, each) = goals.all(n);
+            let values = if each { Given::Each(&values) } else { Given::Shared(&values) };
+            let ik = Ik::new(model, goals.tasks, options).map_err(sim_error)?;
+            let found = py.detach(|| batch.ik(&ik, values, start.as_ref().map(Table::given)));
+            many(py, &found.map_err(sim_error)?, model.nq, ik.tasks().len())
+        })
+    }
+}
+
+fn is_reached(status: IkStatus) -> bool {
+    status == IkStatus::Reached
+}
+
+/// The results of all environments.
+fn many<S: Precision + Element>(
+    py: Python<'_>,
+    found: &[IkSolution<S>],
+    nq: usize,
+    goals: usize,
+) -> PyResult<IkResult> {
+    let n = found.len();
+    let qpos = found.iter().flat_map(|found| found.qpos.iter().copied());
+    let errors = found.iter().flat_map(|found| found.errors.iter().copied());
+    let iterations = found.iter().map(|found| found.iterations as i64);
+    let status = found.iter().map(|found| found.status as i8);
+    let reached = found.iter().map(|found| is_reached(found.status));
+    Ok(IkResult {
+        qpos: answer(py, qpos.collect(), &[n, nq], None)?.unbind(),
+        errors: answer(py, errors.collect(), &[n, goals], None)?.unbind(),
+        iterations: answer(py, iterations.collect(), &[n], None)?.unbind(),
+        status: answer(py, status.collect(), &[n], None)?.unbind(),
+        reached: answer(py, reached.collect(), &[n], None)?.unbind(),
+    })
+}

@@ -1,0 +1,259 @@
+//! What `Sim` answers about how objects move.
+
+use crate::answer::answer;
+use crate::busy::lock;
+use crate::error::sim_error;
+use crate::kind::Kind;
+use crate::queries::vector;
+use crate::row_sim::{AnySim, each_sim};
+use crate::sim::Sim;
+use crate::target::{Choice, Choices};
+use clench::math::{Real, Vec3};
+use clench::rigid::model::FrameObject;
+use clench::{Anchor, Axes, Model, Precision};
+use numpy::Element;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The place that a question is about: an object, or a point of a body.
+fn anchor<S: Precision>(model: &Model, choices: &Choices, point: Choice) -> PyResult<Anchor<S>> {
+    let object = choices.one(model)?;
+    match (object, point) {
+        (object, None) => Ok(Anchor::Object(object)),
+        (FrameObject::Body(body), Some(point)) => Ok(Anchor::Point {
+            body,
+            place: vector("point", point)?,
+        }),
+        _ => Err(PyValueError::new_err("point goes with body alone")),
+    }
+}
+
+#[pymethods]
+impl Sim {
+    /// The Jacobian of an object: its velocity, and its body's angular velocity, by the velocities of the dofs.
+    ///
+    /// Exactly one object is chosen, by name or index. Where bodies are as queries see them (see `Sim`). As MuJoCo's ``mj_jac``,
+    /// ``mj_jacBody``, ``mj_jacBodyCom``, ``mj_jacGeom`` and ``mj_jacSite``.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera : str or int
+    ///     The object: the frame of a body, its centre of mass, a geom, a site or a camera.
+    /// point : array_like, optional
+    ///     With `body`: the point of the body that is at this place in the world now (3,), m.
+    /// out : numpy.ndarray, optional
+    ///     Where to write it: (2, 3, nv), of the precision of the simulation.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (2, 3, nv), world axes: translation, m/s a unit of each dof's velocity, then rotation, rad/s. So
+    ///     ``jacp, jacr = sim.jacobian(site="hand")``.
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None, out = None))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        point: Choice<'_, 'py>,
+        out: Choice<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (model, choices) = (
+            self.described(),
+            Choices {
+                body,
+                body_com,
+                geom,
+                site,
+                camera,
+            },
+        );
+        let mut guard = lock(self.inner(), "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let mut values = vec![Real::ZERO; 6 * model.nv];
+            let anchor = anchor(model, &choices, point)?;
+            let done = own.current().and_then(|sim| sim.jacobian(anchor, &mut values));
+            done.map_err(sim_error)?;
+            answer(py, values, &[2, 3, model.nv], out)
+        })
+    }
+
+    /// How fast the Jacobian of an object changes, as MuJoCo's ``mj_jacDot``.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera : str or int
+    ///     The object, see `jacobian`.
+    /// point : array_like, optional
+    ///     With `body`: the point of the body that is at this place in the world now (3,), m.
+    /// out : numpy.ndarray, optional
+    ///     Where to write it: (2, 3, nv), of the precision of the simulation.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (2, 3, nv): that of the translational part, then of the rotational one, 1/s times the units of `jacobian`.
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None, out = None))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn jacobian_rate<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        point: Choice<'_, 'py>,
+        out: Choice<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (model, choices) = (
+            self.described(),
+            Choices {
+                body,
+                body_com,
+                geom,
+                site,
+                camera,
+            },
+        );
+        let mut guard = lock(self.inner(), "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let mut values = vec![Real::ZERO; 6 * model.nv];
+            let anchor = anchor(model, &choices, point)?;
+            let done = own.current().and_then(|sim| sim.jacobian_rate(anchor, &mut values));
+            done.map_err(sim_error)?;
+            answer(py, values, &[2, 3, model.nv], out)
+        })
+    }
+
+    /// The Jacobian of the centre of mass of a body and all below it, as MuJoCo's ``mj_jacSubtreeCom``.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : str or int
+    ///     The body; 0, the world, for that of everything.
+    /// out : numpy.ndarray, optional
+    ///     Where to write it: (3, nv), of the precision of the simulation.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (3, nv), world axes.
+    #[pyo3(signature = (body, *, out = None))]
+    fn subtree_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyAny>,
+        out: Choice<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let model = self.described();
+        let body = Kind::Body.find(model, body)?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let mut values = vec![Real::ZERO; 3 * model.nv];
+            let done = own.current().and_then(|sim| sim.subtree_jacobian(body, &mut values));
+            done.map_err(sim_error)?;
+            answer(py, values, &[3, model.nv], out)
+        })
+    }
+
+    /// The velocity of an object, as MuJoCo's ``mj_objectVelocity`` (which has the angular part first).
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera : str or int
+    ///     The object, see `jacobian`.
+    /// local : bool
+    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (2, 3): linear, m/s, of its position, then angular, rad/s.
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn velocity<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        local: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let object = Choices {
+            body,
+            body_com,
+            geom,
+            site,
+            camera,
+        }
+        .one(self.described())?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let found = own.current().and_then(|sim| sim.velocity(object, axes(local)));
+            two_vectors(py, found.map_err(sim_error)?)
+        })
+    }
+
+    /// The acceleration of an object, as MuJoCo's ``mj_objectAcceleration`` (which has the angular part first): what an
+    /// accelerometer there feels, gravity's upward reaction included.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera : str or int
+    ///     The object, see `jacobian`.
+    /// local : bool
+    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (2, 3): linear, m/s², of its position, then angular, rad/s².
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn acceleration<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        local: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let object = Choices {
+            body,
+            body_com,
+            geom,
+            site,
+            camera,
+        }
+        .one(self.described())?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let found = own.current().and_then(|sim| sim.acceleration(object, axes(local)));
+            two_vectors(py, found.map_err(sim_error)?)
+        })
+    }
+}
+
+fn axes(local: bool) -> Axes {
+    match local {
+        true => Axes::Local,
+        false => Axes::World,
+    }
+}
+
+fn two_vectors<'py, S: Precision + Element>(
+    py: Python<'py>,
+    vectors: [Vec3<S>; 2],
+) -> PyResult<Bound<'py, PyAny>> {
+    let values = vectors.iter().flat_map(|v| v.to_array()).collect();
+    answer(py, values, &[2, 3], None)
+}

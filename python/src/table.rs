@@ -1,0 +1,80 @@
+//! Numbers that a question gives: the same for all environments, or each environment's own.
+
+use crate::arrays::{numbers, require_shape, shape_text};
+use clench::{Given, Precision};
+use numpy::{Element, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// Numbers that are the same for all environments, or each environment's own.
+pub(crate) struct Table<S> {
+    pub(crate) values: Vec<S>,
+    pub(crate) each: bool,
+    /// Rows that an environment has.
+    pub(crate) rows: usize,
+}
+
+impl<S: Precision + Element> Table<S> {
+    /// Rows of `width` numbers, (k, width) or, for `n` environments, (n, k, width).
+    pub(crate) fn rows_of(
+        name: &str,
+        values: &Bound<'_, PyAny>,
+        width: usize,
+        n: Option<usize>,
+    ) -> PyResult<Self> {
+        let array = numbers::<S>(name, values)?;
+        let (each, rows) = match (array.shape(), n) {
+            (&[rows, own], _) if own == width => (false, rows),
+            (&[envs, rows, own], Some(n)) if own == width && envs == n => (true, rows),
+            (other, _) => {
+                let all = n.map_or_else(String::new, |n| format!(" or ({n}, k, {width})"));
+                let found = shape_text(other);
+                return Err(PyValueError::new_err(format!(
+                    "{name} has shape {found}, but must have (k, {width}){all}"
+                )));
+            }
+        };
+        let values = array.as_slice()?.to_vec();
+        Ok(Table { values, each, rows })
+    }
+
+    /// One row of `width` numbers, (width,) or, for `n` environments, (n, width).
+    pub(crate) fn row_of(
+        name: &str,
+        values: &Bound<'_, PyAny>,
+        width: usize,
+        n: Option<usize>,
+    ) -> PyResult<Self> {
+        let array = numbers::<S>(name, values)?;
+        let each = array.shape().len() == 2 && n.is_some();
+        let needed = match n.filter(|_| each) {
+            Some(n) => vec![n, width],
+            None => vec![width],
+        };
+        require_shape(name, array.shape(), &needed)?;
+        let values = array.as_slice()?.to_vec();
+        let rows = 1;
+        Ok(Table { values, each, rows })
+    }
+
+    /// The numbers, as a batch takes them.
+    pub(crate) fn given(&self) -> Given<'_, S> {
+        match self.each {
+            true => Given::Each(&self.values),
+            false => Given::Shared(&self.values),
+        }
+    }
+
+    /// The row of an environment, of `width` numbers.
+    pub(crate) fn row(&self, env: usize, width: usize) -> &[S] {
+        match self.each {
+            true => &self.values[env * width..][..width],
+            false => &self.values,
+        }
+    }
+
+    /// Whether each environment has its own.
+    pub(crate) fn is_each(&self) -> bool {
+        self.each
+    }
+}

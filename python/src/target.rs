@@ -1,0 +1,56 @@
+//! Which object a question is about: exactly one of several keyword arguments.
+
+use crate::kind::Kind;
+use clench::Model;
+use clench::rigid::model::FrameObject;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// A name or index of an object, as given or not.
+pub(crate) type Choice<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+/// The objects that a caller may choose from: body, its inertial frame, geom, site, camera.
+#[derive(Clone, Copy)]
+pub(crate) struct Choices<'a, 'py> {
+    pub(crate) body: Choice<'a, 'py>,
+    pub(crate) body_com: Choice<'a, 'py>,
+    pub(crate) geom: Choice<'a, 'py>,
+    pub(crate) site: Choice<'a, 'py>,
+    pub(crate) camera: Choice<'a, 'py>,
+}
+
+impl Choices<'_, '_> {
+    /// The object, if any was chosen.
+    ///
+    /// # Errors
+    /// ValueError where several were; as [`Kind::find`].
+    pub(crate) fn optional(&self, model: &Model) -> PyResult<Option<FrameObject>> {
+        type Make = fn(usize) -> FrameObject;
+        let all: [(Choice, Kind, Make); 5] = [
+            (self.body, Kind::Body, FrameObject::Body),
+            (self.body_com, Kind::Body, FrameObject::Inertial),
+            (self.geom, Kind::Geom, FrameObject::Geom),
+            (self.site, Kind::Site, FrameObject::Site),
+            (self.camera, Kind::Camera, FrameObject::Camera),
+        ];
+        let mut given =
+            (all.into_iter()).filter_map(|(which, kind, make)| Some((which?, kind, make)));
+        match (given.next(), given.next()) {
+            (None, _) => Ok(None),
+            (Some((which, kind, make)), None) => Ok(Some(make(kind.find(model, which)?))),
+            (Some(_), Some(_)) => Err(PyValueError::new_err(
+                "give one of body, body_com, geom, site and camera, not several",
+            )),
+        }
+    }
+
+    /// The object.
+    ///
+    /// # Errors
+    /// ValueError where none was chosen; as [`optional`](Self::optional).
+    pub(crate) fn one(&self, model: &Model) -> PyResult<FrameObject> {
+        let none = "give one of body, body_com, geom, site and camera, by keyword";
+        self.optional(model)?
+            .ok_or_else(|| PyValueError::new_err(none))
+    }
+}
