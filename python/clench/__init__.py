@@ -23,6 +23,7 @@ Load a model, move one environment of it with `Sim` or many with `Batch`:
 Names, units, layouts and defaults are MuJoCo's. `clench.gymnasium` has vector environments.
 """
 
+from clench import _pickle as _pickle
 from clench._core import (
     OUTPUTS,
     PARAMETERS,

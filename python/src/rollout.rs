@@ -1,6 +1,6 @@
 //! `Batch.rollout` in one precision: shapes are checked before anything moves, and what was recorded is shown without a copy.
 
-use crate::arrays::{numbers, require_shape, shape_text, shaped};
+use crate::arrays::{numbers, require_shape, shape_text};
 use crate::error::sim_error;
 use crate::view::{Keeper, view};
 use clench::{Batch, Controls, Precision};
@@ -23,6 +23,23 @@ impl<S: Element + Copy> Copied<S> {
             numbers: array.as_slice()?.to_vec(),
         })
     }
+}
+
+/// The states that environments start from: a row each, or one for all.
+fn initial_rows<S: Precision + Element>(
+    values: &Bound<'_, PyAny>,
+    n: usize,
+    width: usize,
+) -> PyResult<Copied<S>> {
+    let given = Copied::of(numbers::<S>("initial", values)?)?;
+    if given.shape != [width] {
+        require_shape("initial", &given.shape, &[n, width])?;
+        return Ok(given);
+    }
+    Ok(Copied {
+        shape: vec![n, width],
+        numbers: given.numbers.repeat(n),
+    })
 }
 
 /// See `Batch.rollout`.
@@ -63,9 +80,9 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
             Controls::Each(&values.numbers)
         }
     };
-    let needed = [n, 1 + model.nq + model.nv + model.na];
+    let width = 1 + model.nq + model.nv + model.na;
     let initial = initial
-        .map(|values| Copied::of(shaped::<S>("initial", values, &needed)?))
+        .map(|values| initial_rows(values, n, width))
         .transpose()?;
     let start = initial.as_ref().map(|values| &values.numbers[..]);
     let names = Vec::from_iter(record.iter().map(String::as_str));

@@ -38,6 +38,13 @@ impl<S: Precision> RowSim<S> {
         done
     }
 
+    /// The second half of a step.
+    pub(crate) fn step2(&mut self) -> Result<(), SimError> {
+        let done = self.current()?.step2();
+        self.rows.write(0, &self.sim.state)?;
+        done
+    }
+
     pub(crate) fn reset(&mut self, keyframe: Option<usize>) -> Result<(), SimError> {
         match keyframe {
             None => self.sim.reset(),

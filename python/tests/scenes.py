@@ -109,3 +109,18 @@ def same_state(a: clench.State, b: clench.State) -> bool:
 
 def address(array: NDArray[Any]) -> int:
     return int(array.__array_interface__["data"][0])
+
+
+def moving(kind: str, precision: Any = "64", model: Any = None) -> Any:
+    """In the middle of things: every field has something of its own."""
+    model = model or puppet()
+    own = clench.Sim(model, precision=precision) if kind == "sim" else clench.Batch(model, 3, precision)
+    own.reset(keyframe="bent")
+    own.eq_active[..., 1] = True
+    own.qfrc_applied[..., 2] = 0.3
+    own.xfrc_applied[..., 1, 4] = 0.2
+    own.mocap_quat[..., 0, :] = [0.8, 0, 0.6, 0]
+    if kind == "batch":
+        own.qvel += np.arange(3)[:, None]
+    own.step(50)
+    return own

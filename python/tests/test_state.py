@@ -17,7 +17,7 @@ from typing import Any
 import clench
 import numpy as np
 import pytest
-from scenes import FIELDS, PUPPET, example, puppet, same_bits, same_state
+from scenes import FIELDS, PUPPET, example, moving, puppet, same_bits, same_state
 
 CONTINUE = """
 import pathlib, sys
@@ -33,21 +33,6 @@ own.state = state
 own.step(100)
 (folder / "after").write_bytes(own.state.to_bytes())
 """
-
-
-def moving(kind: str, precision: Any = "64", model: Any = None) -> Any:
-    """In the middle of things: every field has something of its own."""
-    model = model or puppet()
-    own = clench.Sim(model, precision=precision) if kind == "sim" else clench.Batch(model, 3, precision)
-    own.reset(keyframe="bent")
-    own.eq_active[..., 1] = True
-    own.qfrc_applied[..., 2] = 0.3
-    own.xfrc_applied[..., 1, 4] = 0.2
-    own.mocap_quat[..., 0, :] = [0.8, 0, 0.6, 0]
-    if kind == "batch":
-        own.qvel += np.arange(3)[:, None]
-    own.step(50)
-    return own
 
 
 @pytest.mark.parametrize("precision", ["64", "32"])

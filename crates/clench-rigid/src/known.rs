@@ -64,4 +64,9 @@ impl<T: Scalar> Known<T> {
             extent => extent,
         }
     }
+
+    /// Whether the velocities are those for which anything was last noted.
+    pub fn same_velocities(&self, state: &State<T>) -> bool {
+        self.qvel == state.qvel
+    }
 }

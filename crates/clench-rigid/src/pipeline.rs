@@ -111,6 +111,18 @@ fn forward_dynamics<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
+    before_forces(model, params, settings, state, ws);
+    from_forces(model, params, settings, state, ws);
+}
+
+/// The first half of forward dynamics: all that depends on positions and velocities alone, contacts included.
+pub fn before_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
     ws.clock.start();
     let sleep = settings.flags.sleep;
     if sleep {
@@ -130,9 +142,19 @@ fn forward_dynamics<T: Real>(
     }
     adhesion(model, &ws.contacts, &mut ws.position);
     velocity_stage(model, params, state, ws);
+}
+
+/// The second half: forces, which controls change too, and constraints.
+fn from_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
     force_stage(model, params, state, ws);
     constraint_stage(model, params, settings, state, ws);
-    if sleep {
+    if settings.flags.sleep {
         ws.sleep.still(model, &mut ws.qacc);
         ws.sleep.note(model, state);
     }
@@ -150,7 +172,21 @@ pub fn step<T: Real>(
         sleep::idle(model, params, settings, state, ws);
         return;
     }
-    forward(model, params, settings, state, ws);
+    before_forces(model, params, settings, state, ws);
+    step_from_forces(model, params, settings, state, ws);
+}
+
+/// The rest of a step after [`before_forces`], for the same positions and velocities.
+pub fn step_from_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    from_forces(model, params, settings, state, ws);
+    sensor::evaluate(model, params, state, ws);
+    ws.clock.lap(Stage::Sensors as usize);
     if settings.flags.sleep {
         sleep::fall_asleep(model, params, settings, state, ws);
     }

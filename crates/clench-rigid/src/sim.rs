@@ -1,6 +1,7 @@
 //! A simulation of one environment.
 
 mod dynamic;
+mod halves;
 mod parameters;
 
 pub use dynamic::DynamicConstraint;
@@ -40,6 +41,8 @@ pub struct Sim<T: Precision = f64> {
     initial: State<T>,
     last_good: State<T>,
     known: Known<T>,
+    /// Whether the workspace holds the first half of a step, and nothing after it.
+    halfway: bool,
     resets: u64,
     /// The number that the last constraint got which was added at run time.
     pub(crate) last_serial: u32,
@@ -75,6 +78,7 @@ impl<T: Precision> Sim<T> {
             },
             last_good: initial.clone(),
             known: Known::new(),
+            halfway: false,
             resets: 0,
             last_serial: 0,
             aside: None,
@@ -162,6 +166,7 @@ impl<T: Precision> Sim<T> {
 
     /// Notes what is known after a step or forward pass.
     fn note(&mut self, result: &Result<(), SimError>) {
+        self.halfway = false;
         match result {
             Ok(()) => self.known.note(Extent::Everything, &self.state),
             Err(_) => self.known.forget(),
@@ -190,6 +195,7 @@ impl<T: Precision> Sim<T> {
 
     /// What is known holds no longer: it followed from other parameters.
     fn forget(&mut self) {
+        self.halfway = false;
         self.known.forget();
         self.ws.sleep.forget();
     }
@@ -203,6 +209,7 @@ impl<T: Precision> Sim<T> {
             return self.try_forward();
         }
         self.check_present()?;
+        self.halfway = false;
         self.ws.clock.start();
         self.ws.sleep.forget();
         T::position_stage(&self.model, &self.params, &self.state, &mut self.ws);

@@ -118,7 +118,7 @@ impl Batch {
     /// Parameters
     /// ----------
     /// initial : array_like, optional
-    ///     States to start from (n, 1 + nq + nv + na): time, positions, velocities, activations. All environments then run, and
+    ///     States to start from, one for all (1 + nq + nv + na) or a row each (n, ...): time, positions, velocities, activations. All environments then run, and
     ///     the solver starts anew, so that what comes out depends on no earlier step. By default they go on from where they are.
     /// ctrl : array_like, optional
     ///     Controls of each step, for all (steps, nu) or each (n, steps, nu) environment. By default those in `ctrl`, which

@@ -13,6 +13,7 @@ use clench::rigid::model::{Integrator, ParamField};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
 use std::collections::HashMap;
 use std::ffi::CString;
 use std::path::PathBuf;
@@ -30,18 +31,26 @@ use std::sync::Arc;
 /// >>> model.nv, model.body("torso").mass, model.geom_size.shape
 /// (27, 14.357497305925833, (19, 3))
 #[pyclass(frozen, module = "clench")]
-pub(crate) struct Model(Arc<clench::Model>);
+pub(crate) struct Model(Arc<clench::Model>, Source);
+
+/// What a model was loaded from, and how: what pickles hold of it.
+struct Source {
+    /// Which of the static methods loaded it.
+    method: &'static str,
+    /// What it was given.
+    arguments: Py<PyDict>,
+}
 
 impl Model {
     /// A model, after a warning about what was left out of it.
-    fn told(py: Python<'_>, model: clench::Model) -> PyResult<Self> {
+    fn told(py: Python<'_>, model: clench::Model, source: Source) -> PyResult<Self> {
         if !model.left_out.is_empty() {
             let category = py.get_type::<PyUserWarning>();
             let message = format!("left out of the model:\n{}", model.left_out.join("\n"));
             let message = CString::new(message.replace('\0', " "))?;
             PyErr::warn(py, &category, &message, 1)?;
         }
-        Ok(Model(Arc::new(model)))
+        Ok(Model(Arc::new(model), source))
     }
 
     /// The model itself.
@@ -95,13 +104,23 @@ impl Model {
         ignore_unsupported: bool,
         max_dynamic_constraints: Count,
     ) -> PyResult<Self> {
+        let arguments = PyDict::new(py);
+        arguments.set_item("path", std::path::absolute(&path)?)?;
+        arguments.set_item("budget", budget)?;
+        arguments.set_item("package_path", &package_path)?;
+        arguments.set_item("ignore_unsupported", ignore_unsupported)?;
+        arguments.set_item("max_dynamic_constraints", max_dynamic_constraints.0)?;
+        let source = Source {
+            method: "from_file",
+            arguments: arguments.unbind(),
+        };
         let loader = clench::Loader::new()
             .budget(clench::Budget::default().times(budget))
             .package_path(package_path)
             .ignore_unsupported(ignore_unsupported);
         let mut model = py.detach(|| loader.load(&path)).map_err(load_error)?;
         model.max_dynamic_constraints = max_dynamic_constraints.0;
-        Model::told(py, model)
+        Model::told(py, model, source)
     }
 
     /// Load a model from the text of an MJCF or URDF file.
@@ -139,13 +158,27 @@ impl Model {
         assets: HashMap<String, Vec<u8>>,
         max_dynamic_constraints: Count,
     ) -> PyResult<Self> {
+        let arguments = PyDict::new(py);
+        arguments.set_item("text", text)?;
+        arguments.set_item("budget", budget)?;
+        arguments.set_item("ignore_unsupported", ignore_unsupported)?;
+        let files = PyDict::new(py);
+        for (name, data) in &assets {
+            files.set_item(name, PyBytes::new(py, data))?;
+        }
+        arguments.set_item("assets", files)?;
+        arguments.set_item("max_dynamic_constraints", max_dynamic_constraints.0)?;
+        let source = Source {
+            method: "from_xml",
+            arguments: arguments.unbind(),
+        };
         let loader = clench::Loader::new()
             .budget(clench::Budget::default().times(budget))
             .ignore_unsupported(ignore_unsupported)
             .assets(assets);
         let mut model = py.detach(|| loader.load_str(text)).map_err(load_error)?;
         model.max_dynamic_constraints = max_dynamic_constraints.0;
-        Model::told(py, model)
+        Model::told(py, model, source)
     }
 
     /// The model as an MJCF file that stands alone.
@@ -170,6 +203,16 @@ impl Model {
     fn to_xml(&self) -> PyResult<String> {
         let text = self.0.to_mjcf();
         text.map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// What pickles hold: how the model was loaded, and a checksum of what came out.
+    fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let py = this.py();
+        let Source { method, arguments } = &this.get().1;
+        let module = py.import("clench._pickle")?;
+        module
+            .getattr("reduce_model")?
+            .call1((this, method, arguments))
     }
 
     /// Itself: a model never changes.

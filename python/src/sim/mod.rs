@@ -125,7 +125,10 @@ impl Sim {
     /// Parameters
     /// ----------
     /// n : int
-    ///     How many time steps, with the same controls and applied forces.
+    ///     How many time steps, with the same controls and applied forces but for what `control` writes.
+    /// control : callable, optional
+    ///     Called in each step with this simulation, when what depends on its positions and velocities is known, and before forces are
+    ///     computed: it writes `ctrl` or applied forces. What it returns does not count; what it raises ends the call.
     ///
     /// Raises
     /// ------
@@ -135,13 +138,51 @@ impl Sim {
     ///     is done from the initial state instead, controls and applied forces included, and counts in `resets`.
     /// BusyError
     ///     While another thread is in a call of this simulation.
-    #[pyo3(signature = (n = Count(1)), text_signature = "($self, n=1)")]
-    fn step(&self, py: Python<'_>, n: Count) -> PyResult<()> {
-        let mut guard = lock(&self.inner, "simulation")?;
+    #[pyo3(signature = (n = Count(1), control = None), text_signature = "($self, n=1, control=None)")]
+    fn step(this: &Bound<'_, Self>, n: Count, control: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let (own, py) = (this.get(), this.py());
+        if let Some(control) = control {
+            return (0..n.0).try_for_each(|_| {
+                own.step1(py)?;
+                control.call1((this,))?;
+                py.check_signals()?;
+                own.step2(py)
+            });
+        }
+        let mut guard = lock(&own.inner, "simulation")?;
         let any = &mut *guard;
         in_portions(py, n.0, |steps| {
             each_sim!(any, own => own.step(steps)).map_err(sim_error)
         })
+    }
+
+    /// The first half of a step: all that depends on positions and velocities alone, which can then be read; ``mj_step1``.
+    ///
+    /// Raises
+    /// ------
+    /// SimulationError
+    ///     As `step`.
+    fn step1(&self, py: Python<'_>) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        let any = &mut *guard;
+        py.detach(|| each_sim!(any, own => own.current()?.step1()))
+            .map_err(sim_error)
+    }
+
+    /// The second half of a step, with the controls and applied forces that are set by now; ``mj_step2``, with any integrator.
+    ///
+    /// After `step1` both are a `step`, to the bit. Where something else was written in between, or nothing was begun, the whole step
+    /// is done here.
+    ///
+    /// Raises
+    /// ------
+    /// SimulationError
+    ///     As `step`.
+    fn step2(&self, py: Python<'_>) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        let any = &mut *guard;
+        py.detach(|| each_sim!(any, own => own.step2()))
+            .map_err(sim_error)
     }
 
     /// Computes everything that follows from the state, and leaves the state alone.

@@ -96,6 +96,22 @@ pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {
         ws: &mut Workspace<Self>,
         qfrc_inverse: &mut [Self],
     );
+    /// [`pipeline::before_forces`] of one environment.
+    fn before_forces(
+        model: &Model,
+        params: &Params<Self>,
+        settings: &StepSettings,
+        state: &State<Self>,
+        ws: &mut Workspace<Self>,
+    );
+    /// [`pipeline::step_from_forces`] of one environment.
+    fn step_from_forces(
+        model: &Model,
+        params: &Params<Self>,
+        settings: &StepSettings,
+        state: &mut State<Self>,
+        ws: &mut Workspace<Self>,
+    );
     /// [`pipeline::position_stage`] of one environment.
     fn position_stage(
         model: &Model,
@@ -145,6 +161,24 @@ macro_rules! lanewise {
                 qfrc_inverse: &mut [$scalar],
             ) {
                 inverse::inverse(model, params, settings, state, given, ws, qfrc_inverse);
+            }
+            fn before_forces(
+                model: &Model,
+                params: &Params<$scalar>,
+                settings: &StepSettings,
+                state: &State<$scalar>,
+                ws: &mut Workspace<$scalar>,
+            ) {
+                pipeline::before_forces(model, params, settings, state, ws);
+            }
+            fn step_from_forces(
+                model: &Model,
+                params: &Params<$scalar>,
+                settings: &StepSettings,
+                state: &mut State<$scalar>,
+                ws: &mut Workspace<$scalar>,
+            ) {
+                pipeline::step_from_forces(model, params, settings, state, ws);
             }
             fn position_stage(
                 model: &Model,

@@ -1,0 +1,82 @@
+"""Models, simulations and batches as pickles: so they are copied, and sent to other processes.
+
+A pickle of a model holds how it was loaded: the text and the files in memory, or the path of its file, which must then be there; a
+checksum tells where it has changed. A pickle of a simulation or batch holds its model, its options, the parameters that it changed, and
+its state: what comes out moves on to the bit. Environments of a batch that could not go on are tried again.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import zlib
+from typing import Any
+
+import numpy as np
+
+from clench._core import PARAMETERS, Batch, Model, RigidOptions, Sim
+from clench._state import State
+
+# What is computed from others and cannot be set.
+_FOLLOWING = ("body_subtreemass", "geom_rbound")
+
+
+def _checksum(model: Model) -> int:
+    """Of all parameters."""
+    checksum = 0
+    for name in PARAMETERS:
+        checksum = zlib.crc32(np.asarray(getattr(model, name)).tobytes(), checksum)
+    return checksum
+
+
+def reduce_model(model: Model, method: str, arguments: dict[str, Any]) -> tuple[Any, ...]:
+    """What `Model.__reduce__` returns."""
+    return _model, (method, arguments, _checksum(model))
+
+
+def _model(method: str, arguments: dict[str, Any], checksum: int) -> Model:
+    rest = dict(arguments)
+    source = rest.pop("path" if method == "from_file" else "text")
+    model: Model = getattr(Model, method)(source, **rest)
+    if _checksum(model) != checksum:
+        raise ValueError(f"{source if method == 'from_file' else 'the text'} is not that of the model that was pickled: it has changed")
+    return model
+
+
+def _changed(own: Sim | Batch) -> dict[str, Any]:
+    """The parameters that are not the model's."""
+    changed = {}
+    for name in PARAMETERS:
+        values = own.param(name)
+        if name not in _FOLLOWING and not (values == np.asarray(getattr(own.model, name)).astype(values.dtype)).all():
+            changed[name] = values
+    return changed
+
+
+def _reduce_sim(sim: Sim) -> tuple[Any, ...]:
+    return _sim, (sim.model, sim.options, sim.precision, _changed(sim), sim.state)
+
+
+def _sim(model: Model, options: RigidOptions, precision: Any, changed: dict[str, Any], state: State) -> Sim:
+    sim = Sim(model, options, precision=precision)
+    for name, values in changed.items():
+        sim.set_param(name, values)
+    sim.state = state
+    return sim
+
+
+def _reduce_batch(batch: Batch) -> tuple[Any, ...]:
+    how = (batch.n_envs, batch.precision, batch.threads, batch.options, batch.outputs)
+    return _batch, (batch.model, how, _changed(batch), batch.state)
+
+
+def _batch(model: Model, how: tuple[Any, ...], changed: dict[str, Any], state: State) -> Batch:
+    n_envs, precision, threads, options, outputs = how
+    batch = Batch(model, n_envs, precision, threads, options=options, record=outputs)
+    for name, values in changed.items():
+        batch.randomize(name, values)
+    batch.state = state
+    return batch
+
+
+copyreg.pickle(Sim, _reduce_sim)
+copyreg.pickle(Batch, _reduce_batch)
