@@ -78,7 +78,7 @@ impl Default for ContactQuerySpec {
     }
 }
 
-/// What a sensor is attached to, by name; it must be what its kind's [`Attachment`] says.
+/// What a sensor is attached to, by name; it must be what its kind's [`Attachment`](crate::model::Attachment) says.
 #[derive(Clone, Debug, Default)]
 pub enum SensorSubject {
     /// Nothing.
