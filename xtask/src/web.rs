@@ -36,13 +36,38 @@ pub fn no_node() -> Option<String> {
     }
 }
 
-/// Why the page cannot be driven here, if it cannot.
+/// Why the page cannot be driven here, if it cannot. Where the tests may, they install Debian's Chromium.
 pub fn no_browser() -> Option<String> {
     no_node().or_else(|| {
         let path = chromium();
+        if !path.is_file() && may_install() {
+            println!("installing Chromium");
+            install_chromium();
+        }
         let missing = !path.is_file();
-        missing.then(|| format!("there is no Chromium at {}", path.display()))
+        missing.then(|| {
+            format!(
+                "there is no Chromium at {}; install Debian's package chromium, or say where it is by CHROMIUM",
+                path.display()
+            )
+        })
     })
+}
+
+/// Whether this is a machine where nobody is asked: the superuser's, as in a container.
+fn may_install() -> bool {
+    let user = Command::new("id").arg("-u").output();
+    user.is_ok_and(|user| user.stdout.trim_ascii() == b"0")
+}
+
+/// Whether it worked shows in what is there afterwards.
+fn install_chromium() {
+    let install = ["install", "-qq", "--no-install-recommends", "chromium"];
+    for arguments in [&["update", "-qq"][..], &install] {
+        let mut apt = Command::new("apt-get");
+        apt.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
+        let _ = apt.stdout(Stdio::null()).stderr(Stdio::null()).status();
+    }
 }
 
 /// Debian's Chromium, or that of the environment variable `CHROMIUM`.

@@ -149,8 +149,8 @@ fn pairs_mix_what_they_do_not_say() {
     builder.pairs = vec![pair(None), pair(Some(1))];
     let model = builder.build().unwrap();
     let p = &model.params;
-    // Spheres come before boxes, whatever was said first.
-    assert_eq!(model.pairs[0].geoms, [1, 0]);
+    // The geom of the earlier body comes first, whatever was said first.
+    assert_eq!(model.pairs[0].geoms, [0, 1]);
     assert_eq!((model.pairs[0].condim, model.pairs[1].condim), (4, 1));
     assert_eq!(p.pair_friction[0], [1.0, 1.0, 0.1, 0.2, 0.2]);
     assert_eq!(

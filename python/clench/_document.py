@@ -1,0 +1,239 @@
+"""MJCF documents: which elements have names, what refers to them, and the files that a document names.
+
+What can be named and what refers to names is told by tables of MJCF's tags and attributes. What a user sees of a document is in
+`_spec.py`.
+"""
+
+from __future__ import annotations
+
+import copy
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from clench.errors import LoadError
+
+Value: TypeAlias = str | bool | ArrayLike
+
+# Attributes that name an element of a kind.
+_REFERENCES = {
+    "body": ("body", "body1", "body2", "subtree1", "subtree2", "target"),
+    "joint": ("joint", "joint1", "joint2", "jointinparent"),
+    "geom": ("geom", "geom1", "geom2"),
+    "site": ("site", "site1", "site2", "refsite", "sidesite", "cranksite", "slidersite"),
+    "tendon": ("tendon", "tendon1", "tendon2"),
+    "actuator": ("actuator",),
+    "camera": ("camera",),
+    "mesh": ("mesh",),
+    "hfield": ("hfield",),
+    "material": ("material",),
+    "texture": ("texture",),
+    "model": ("model",),
+}
+# Attributes that name an element whose kind stands in another attribute.
+_TYPED = {"objname": "objtype", "refname": "reftype"}
+# Elements of each kind where the tag is not the kind: whatever stands in these sections.
+_SECTIONS = {"tendon": "tendon", "actuator": "actuator", "sensor": "sensor", "equality": "equality"}
+_TAGS = {
+    "joint": ("joint", "freejoint"),
+    "keyframe": ("key",),
+    "frame": ("frame",),
+    "pair": ("pair",),
+    **{kind: (kind,) for kind in ("body", "geom", "site", "camera", "mesh", "hfield", "material", "texture", "model")},
+}
+# Where names refer to nothing that can be renamed or removed.
+_NO_REFERENCES = ("default", "custom", "compiler", "option", "size", "statistic", "visual")
+
+
+def written(value: Value) -> str:
+    """An attribute as MJCF writes it."""
+    if isinstance(value, str):
+        return value
+    array = np.asarray(value)
+    if array.dtype.kind == "b":
+        if array.ndim > 0:
+            raise TypeError("MJCF has no lists of truth values")
+        return "true" if array else "false"
+    if array.dtype.kind == "U":
+        return " ".join(array.ravel().tolist())
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"an attribute is a str, a bool or numbers, not {type(value).__name__}")
+    # The shortest text that reads as the same number.
+    return " ".join(repr(number) for number in array.ravel().tolist())
+
+
+class Document:
+    """A document, with the files that it names."""
+
+    def __init__(self, root: ET.Element) -> None:
+        self.root = root
+        self.assets: dict[str, bytes] = {}
+
+    @staticmethod
+    def from_text(text: str, assets: Mapping[str, bytes]) -> Document:
+        """A document of its text and of files that this includes or names."""
+        document = Document(_parsed(text, ""))
+        document.add_files(assets)
+        document._expand(Path(), "")
+        return document
+
+    @staticmethod
+    def from_file(path: Path) -> Document:
+        """A document that is read from a file, with all that it includes and names."""
+        document = Document(_parsed(_read(path, str(path)).decode("utf-8", "replace"), str(path)))
+        document._expand(path.parent, str(path))
+        document._read_assets(path.parent)
+        return document
+
+    def to_xml(self) -> str:
+        """Its text."""
+        root = copy.deepcopy(self.root)
+        ET.indent(root)
+        return ET.tostring(root, encoding="unicode")
+
+    # Names, and what refers to them.
+
+    def nodes(self) -> Iterator[tuple[ET.Element, str]]:
+        """Every element with the section that it stands in."""
+        for section in self.root:
+            for node in section.iter():
+                yield node, section.tag
+
+    def elements(self, kind: str) -> list[ET.Element]:
+        return [node for node, _ in self.nodes() if self.kind_of(node) == kind]
+
+    def kind_of(self, node: ET.Element) -> str | None:
+        """What kind of element a node is that can have a name; None for references, defaults and the like."""
+        section = next((tag for other, tag in self.nodes() if other is node), None)
+        return _kind(node, section)
+
+    def find(self, kind: str, name: str) -> ET.Element | None:
+        if kind not in _TAGS and kind not in _SECTIONS:
+            raise ValueError(f'there is no kind of element "{kind}": there are {", ".join([*_TAGS, *_SECTIONS])}')
+        found = (node for node, section in self.nodes() if node.get("name") == name and _kind(node, section) == kind)
+        return next(found, None)
+
+    def check_name(self, node: ET.Element, attribute: str, value: Value) -> None:
+        if attribute != "name":
+            return
+        kind = self.kind_of(node)
+        taken = self.find(kind, written(value)) if kind else None
+        if taken is not None and taken is not node:
+            raise ValueError(f'there is a {kind} "{written(value)}" already')
+
+    def parents(self) -> dict[ET.Element, ET.Element]:
+        return {child: parent for parent in self.root.iter() for child in parent}
+
+    def references(self, kind: str, name: str) -> list[tuple[ET.Element, str]]:
+        """Attributes that name an element of a kind."""
+        found = []
+        for node, section in self.nodes():
+            if section in _NO_REFERENCES and node.tag != "element":
+                continue
+            found += [(node, attribute) for attribute in _REFERENCES.get(kind, ()) if node.get(attribute) == name]
+            for attribute, typed in _TYPED.items():
+                of_kind = node.get(typed) in ((kind, "xbody") if kind == "body" else (kind,))
+                if of_kind and node.get(attribute) == name:
+                    found.append((node, attribute))
+        return found
+
+    def remove(self, node: ET.Element) -> None:
+        """Remove a node, all below it, and what refers to any of them."""
+        parent = self.parents()[node]
+        gone = [(kind, part.get("name", "")) for part in node.iter() for kind in [self.kind_of(part)] if kind]
+        parent.remove(node)
+        for kind, name in gone:
+            if name:
+                self._remove_references(kind, name)
+
+    def _remove_references(self, kind: str, name: str) -> None:
+        for node, _ in self.references(kind, name):
+            parents = self.parents()
+            if node in parents:
+                # Where only a part of a tendon is named, the tendon is no longer what it was.
+                while parents[node].tag in ("spatial", "fixed"):
+                    node = parents[node]
+                self.remove(node)
+
+    # Files.
+
+    def add_files(self, files: Mapping[str, bytes]) -> None:
+        for file, data in files.items():
+            name = Path(file.replace("\\", "/")).name
+            if self.assets.get(name, data) != data:
+                raise ValueError(f"there are two files {name!r} of different contents")
+        self.assets.update({Path(file.replace("\\", "/")).name: bytes(data) for file, data in files.items()})
+
+    def _expand(self, folder: Path, source: str) -> None:
+        """Puts in what the document includes."""
+        for _ in range(100):
+            parents = self.parents()
+            include = next(self.root.iter("include"), None)
+            if include is None:
+                return
+            file = include.get("file", "")
+            data = self.assets.get(Path(file).name)
+            included = _parsed((_read(folder / file, source) if data is None else data).decode("utf-8", "replace"), file)
+            parent = parents[include]
+            place = list(parent).index(include)
+            parent[place : place + 1] = list(included)
+        raise LoadError("files include each other without end", source)
+
+    def _read_assets(self, folder: Path) -> None:
+        compiler: dict[str, str] = {}
+        for node in self.root.findall("compiler"):
+            compiler.update(node.attrib)
+        assets = compiler.get("assetdir", "")
+        places = {tag: compiler.get("meshdir", assets) for tag in ("mesh", "hfield", "skin", "model")}
+        for node, section in self.nodes():
+            file = node.get("file")
+            if section != "asset" or file is None or node.tag not in places:
+                continue
+            place = Path(file) if node.tag == "model" else Path(places[node.tag]) / file
+            self.add_files({file: _read(folder / place, str(folder / place))})
+            if node.tag == "model":
+                other = Document.from_file(folder / place)
+                self.add_files(other.assets)
+                self.assets[Path(file).name] = other.to_xml().encode()
+
+
+def _kind(node: ET.Element, section: str | None) -> str | None:
+    """The kind of an element in a section of the document."""
+    if section is None or section in _NO_REFERENCES:
+        return None
+    for kind, of in _SECTIONS.items():
+        if section == of:
+            # Deeper in a section stand references, as of a tendon to its sites.
+            return kind if "name" in node.attrib or node.tag not in ("site", "geom", "joint", "pulley", of) else None
+    if section in ("worldbody", "asset", "keyframe", "contact"):
+        return next((kind for kind, tags in _TAGS.items() if node.tag in tags), None)
+    return None
+
+
+def _read(path: Path, source: str) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise LoadError(f"{path}: {error.strerror}", source) from None
+
+
+def _parsed(text: str, source: str) -> ET.Element:
+    try:
+        root = ET.fromstring(text)
+    except ET.ParseError as error:
+        raise LoadError(str(error), source, error.position[0]) from None
+    if root.tag not in ("mujoco", "mujocoinclude"):
+        raise LoadError(f"the root element is <{root.tag}>, and <mujoco> was expected", source, 1, root.tag)
+    return root
+
+
+def is_urdf(path: Path) -> bool:
+    """Whether a file describes a robot in URDF."""
+    try:
+        return ET.fromstring(_read(path, str(path)).decode("utf-8", "replace")).tag == "robot"
+    except ET.ParseError:
+        return False

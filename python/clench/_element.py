@@ -1,0 +1,231 @@
+"""One element of a model that is built in Python."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from clench._document import Value, written
+
+if TYPE_CHECKING:
+    from clench._spec import ModelSpec
+
+
+class SpecElement:
+    """An element of a `ModelSpec`: its attributes by name, as MJCF calls them, and what can be added below it.
+
+    Attributes are read as text, ``element["pos"]``, and set from text, truth values, numbers or arrays of them; ``del`` leaves one at its
+    default. Keywords of Python take an underscore: ``class_="visual"``.
+
+    Parameters
+    ----------
+    spec : ModelSpec
+        What it is an element of.
+    node : xml.etree.ElementTree.Element
+        The element in the document.
+    """
+
+    def __init__(self, spec: ModelSpec, node: ET.Element) -> None:
+        self._spec = spec
+        self._node = node
+
+    @property
+    def tag(self) -> str:
+        """What MJCF calls it, such as "geom" or "motor"."""
+        return self._node.tag
+
+    @property
+    def name(self) -> str:
+        """Its name, possibly empty."""
+        return self._node.get("name", "")
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """A copy of its attributes."""
+        return dict(self._node.attrib)
+
+    def __getitem__(self, attribute: str) -> str:
+        try:
+            return self._node.attrib[attribute]
+        except KeyError:
+            raise KeyError(f"{self._described()} does not say {attribute!r}") from None
+
+    def __setitem__(self, attribute: str, value: Value) -> None:
+        self._spec._document.check_name(self._node, attribute, value)
+        self._node.set(attribute, written(value))
+
+    def __delitem__(self, attribute: str) -> None:
+        self[attribute]
+        del self._node.attrib[attribute]
+
+    def __contains__(self, attribute: str) -> bool:
+        return attribute in self._node.attrib
+
+    def __iter__(self) -> Iterator[SpecElement]:
+        """The elements directly below it."""
+        return (SpecElement(self._spec, node) for node in list(self._node))
+
+    def add(self, tag: str, /, **attributes: Value) -> SpecElement:
+        """Add an element below this one.
+
+        Parameters
+        ----------
+        tag : str
+            What MJCF calls it.
+        **attributes : str, bool or array_like
+            Its attributes; an underscore at the end of a name does not count.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            A name that another element of its kind has.
+        """
+        node = ET.Element(tag)
+        self._node.append(node)
+        element = SpecElement(self._spec, node)
+        try:
+            for name, value in attributes.items():
+                element[name.removesuffix("_")] = value
+        except (TypeError, ValueError):
+            self._node.remove(node)
+            raise
+        return element
+
+    def add_body(self, **attributes: Value) -> SpecElement:
+        """Add a body below this body or frame.
+
+        Parameters
+        ----------
+        **attributes : str, bool or array_like
+            Its attributes, as MJCF calls them.
+        """
+        return self.add("body", **attributes)
+
+    def add_joint(self, **attributes: Value) -> SpecElement:
+        """Add a joint to this body.
+
+        Parameters
+        ----------
+        **attributes : str, bool or array_like
+            Its attributes, as MJCF calls them.
+        """
+        return self.add("joint", **attributes)
+
+    def add_freejoint(self, **attributes: Value) -> SpecElement:
+        """Add a free joint to this body, below the world.
+
+        Parameters
+        ----------
+        **attributes : str, bool or array_like
+            Its attributes, as MJCF calls them.
+        """
+        return self.add("freejoint", **attributes)
+
+    def add_geom(self, **attributes: Value) -> SpecElement:
+        """Add a geom to this body or frame.
+
+        Parameters
+        ----------
+        **attributes : str, bool or array_like
+            Its attributes, as MJCF calls them.
+        """
+        return self.add("geom", **attributes)
+
+    def add_site(self, **attributes: Value) -> SpecElement:
+        """Add a site to this body or frame.
+
+        Parameters
+        ----------
+        **attributes : str, bool or array_like
+            Its attributes, as MJCF calls them.
+        """
+        return self.add("site", **attributes)
+
+    def add_camera(self, **attributes: Value) -> SpecElement:
+        """Add a camera to this body or frame.
+
+        Parameters
+        ----------
+        **attributes : str, bool or array_like
+            Its attributes, as MJCF calls them.
+        """
+        return self.add("camera", **attributes)
+
+    def add_frame(self, **attributes: Value) -> SpecElement:
+        """Add a frame to this body or frame: what is added to it is placed in its coordinates.
+
+        Parameters
+        ----------
+        **attributes : str, bool or array_like
+            Its attributes, as MJCF calls them.
+        """
+        return self.add("frame", **attributes)
+
+    def attach(self, other: ModelSpec, *, prefix: str, body: str | None = None) -> SpecElement:
+        """Attach another model below this body or frame, as MJCF's ``attach``.
+
+        Parameters
+        ----------
+        other : ModelSpec
+            The model; as it is now, later changes do not count.
+        prefix : str
+            What the names of its elements begin with here; no other attached model may have it.
+        body : str, optional
+            The body of it that is attached, with all below; if not given, all that its world holds.
+
+        Returns
+        -------
+        SpecElement
+            The ``attach`` element.
+
+        Raises
+        ------
+        ValueError
+            A prefix that is taken; files of the same name and other contents.
+        """
+        spec = self._spec
+        name = f"{prefix}model"
+        if spec._document.find("model", name) is not None:
+            raise ValueError(f"a model is attached with the prefix {prefix!r} already")
+        file = f"{name}.xml"
+        spec._document.add_files({**other.assets, file: other.to_xml().encode()})
+        spec.add_asset("model", name=name, file=file)
+        return self.add("attach", model=name, prefix=prefix, **({} if body is None else {"body": body}))
+
+    def remove(self) -> None:
+        """Remove this element, all below it, and what refers to any of them: sensors of a joint go with the joint."""
+        spec = self._spec
+        if self._node not in spec._document.parents():
+            raise ValueError(f"{self._described()} is removed already, or is the document itself")
+        spec._document.remove(self._node)
+
+    def rename(self, name: str) -> None:
+        """Give it another name, here and wherever it is referred to.
+
+        Parameters
+        ----------
+        name : str
+            The name.
+
+        Raises
+        ------
+        ValueError
+            A name that another element of its kind has.
+        """
+        old = self.name
+        kind = self._spec._document.kind_of(self._node)
+        self["name"] = name
+        if kind and old:
+            for node, attribute in self._spec._document.references(kind, old):
+                node.set(attribute, name)
+
+    def _described(self) -> str:
+        return f'{self.tag} "{self.name}"' if self.name else f"a {self.tag}"
+
+    def __repr__(self) -> str:
+        return f"<clench.SpecElement: {self._described()}>"
