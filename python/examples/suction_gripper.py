@@ -4,23 +4,35 @@ What it grips is decided while it runs: a weld is added between the cup and the 
 simulation; `Batch.add_weld` does the same in chosen environments.
 
     python python/examples/suction_gripper.py
+    python python/examples/suction_gripper.py --plot suction_gripper.png
 """
 
 from __future__ import annotations
 
-import argparse
-import pathlib
+from typing import TYPE_CHECKING
+
+import plots
 
 import clench
 
-MODELS = pathlib.Path(__file__).resolve().parents[2] / "models"
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
-def go(sim: clench.Sim, x: float, z: float, seconds: float) -> None:
-    """Drive the gantry to a place, and give it time."""
+def go(sim: clench.Sim, x: float, z: float, seconds: float) -> list[tuple[float, float]]:
+    """Drive the gantry to a place and give it time; where the box was meanwhile."""
     sim.actuator("x").ctrl = x
     sim.actuator("z").ctrl = z
-    sim.step(round(seconds / sim.model.timestep))
+    return rest(sim, seconds)
+
+
+def rest(sim: clench.Sim, seconds: float) -> list[tuple[float, float]]:
+    """Let time pass; where the box was meanwhile."""
+    path = []
+    for _ in range(round(seconds / (10 * sim.model.timestep))):
+        sim.step(10)
+        path.append((sim.time, float(sim.body("box").xpos[2])))
+    return path
 
 
 def touched(sim: clench.Sim) -> int | None:
@@ -32,24 +44,30 @@ def touched(sim: clench.Sim) -> int | None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--model", type=pathlib.Path, default=MODELS / "suction_gripper.xml")
-    sim = clench.Sim(clench.Model.from_file(parser.parse_args().model))
+    """Run the example."""
+    options = plots.parser(__doc__).parse_args()
+    sim = clench.Sim(clench.Model.from_file(plots.MODELS / "suction_gripper.xml"))
     box = sim.body("box")
 
-    go(sim, 0.3, -0.475, 1.5)
+    path = go(sim, 0.3, -0.475, 1.5)
     found = touched(sim)
     if found is None:
         raise SystemExit("the cup touches nothing")
     grip = sim.add_weld("cup", found)
     print(f"gripped {sim.body(found).name} at z = {box.xpos[2]:.3f} m")
-    go(sim, 0.3, 0.0, 1.5)
+    path += go(sim, 0.3, 0.0, 1.5)
     print(f"lifted it to z = {box.xpos[2]:.3f} m")
-    go(sim, -0.3, 0.0, 2.0)
+    path += go(sim, -0.3, 0.0, 2.0)
     print(f"carried it to x = {box.xpos[0]:.3f} m")
     sim.remove(grip)
-    sim.step(1000)
+    path += rest(sim, 1.0 if options.quick else 2.0)
     print(f"let go: it lies at x = {box.xpos[0]:.3f} m, z = {box.xpos[2]:.3f} m")
+
+    def draw(axes: Axes) -> None:
+        axes.plot(*zip(*path))
+        axes.set(xlabel="time, s", ylabel="height of the box, m", title="A box is picked up and let go")
+
+    plots.finish(options, draw)
 
 
 if __name__ == "__main__":

@@ -55,6 +55,7 @@ OPTIONS = {
 }
 COSTS = ("quadratic", "one_sided", "huber", "pyramid", "elliptic")
 KINDS = ("body", "joint", "geom", "site", "camera", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield")
+OBJECTS = ("body", "body_com", "geom", "site", "camera", "nothing")
 KEYS = ("bent", "dropped", "struck", "raised", 0, 1, -1, None)
 PATHS = (ROOT / "models/pendulum.xml", str(ROOT / "models/pinch.xml"), ROOT, ROOT / "README.md", "", "none.xml", "\0")
 
@@ -285,6 +286,38 @@ class Fuzz:
             return batch.rollout(initial, ctrl, self.names(), self.maybe(lambda: self.choose((None, steps))))
         return batch.status, batch.running, batch.outputs, batch.bytes_per_env
 
+    def call_question(self) -> Any:
+        """What simulations and batches can be asked of their state, and bodies that are tied together."""
+        owner = self.choose(self.owners)
+        model, lead = owner.model, np.shape(owner.time)
+        name = self.maybe(lambda: self.choose((0, 1, "ball", "torso", -1)))
+        thing = {self.choose(OBJECTS): name} if self.junk.chance(0.8) else {}
+        x, point = self.numbers(*lead, model.nv), self.numbers(3)
+        qpos = [self.numbers(*lead, model.nq) for _ in range(2)]
+        asked: dict[str, Callable[[], Any]] = {
+            "velocity": lambda: owner.velocity(**thing, local=self.maybe(lambda: True)),
+            "acceleration": lambda: owner.acceleration(**thing),
+            "jacobian": lambda: owner.jacobian(**thing, point=self.maybe(lambda: None)),
+            "jacobian_rate": lambda: owner.jacobian_rate(**thing, out=self.maybe(lambda: None)),
+            "subtree_jacobian": lambda: owner.subtree_jacobian(name),
+            "joint_forces": lambda: owner.joint_forces(name, point, self.numbers(3), self.numbers(3)),
+            "mul_mass": lambda: owner.mul_mass(x),
+            "solve_mass": lambda: owner.solve_mass(x),
+            "inverse": lambda: owner.inverse(x, discrete=self.maybe(lambda: None)),
+            "integrate_pos": lambda: model.integrate_pos(qpos[0], x, self.maybe(lambda: 0.1)),
+            "differentiate_pos": lambda: model.differentiate_pos(*qpos, self.maybe(lambda: 0.1)),
+            "rays": lambda: owner.rays(self.numbers(2, 3), self.numbers(2, 3), **thing, groups=self.maybe(lambda: [0])),
+            "heights": lambda: owner.heights(name, self.numbers(2, 2), **thing),
+            "ik": lambda: owner.ik(self.maybe(lambda: [clench.FrameTarget(**thing, position=point), clench.ComTarget(point)])),
+            "step1": lambda: owner.step1(),
+            "step2": lambda: owner.step2(),
+            "add_weld": lambda: owner.add_weld(name, self.maybe(lambda: 0)),
+            "add_connect": lambda: owner.add_connect(name, self.maybe(lambda: 0), point),
+            "weld_here": lambda: owner.weld_here(self.maybe(lambda: self.choose((0, "held", "grip")))),
+            "remove": lambda: owner.remove(self.choose([*self.results, 0])),
+        }
+        return self.touch(self.choose(list(asked.values()))())
+
     def call_class(self) -> Any:
         """Classes by hand: without arguments, with those of others, methods of others."""
         offered = [getattr(clench, name) for name in clench.__all__ if name != "EnvStatus"]  # an enumeration of Python's
@@ -316,6 +349,7 @@ class Fuzz:
         calls = [
             *(self.call_model, self.call_options, self.call_solve, self.call_new, self.call_views, self.call_state),
             *(self.call_owner, self.call_owner, self.call_sim, self.call_batch, self.call_batch, self.call_class),
+            *(self.call_question, self.call_question),
         ]
         call, start = self.choose(calls), time.perf_counter()
         try:

@@ -380,6 +380,7 @@ def test_everything_says_what_it_is_for() -> None:
         "budget",
         "package_path",
         "ignore_unsupported",
+        "max_dynamic_constraints",
     ]
     assert list(inspect.signature(clench.solve).parameters) == ["M", "a_unc", "blocks", "options"]
 

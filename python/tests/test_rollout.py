@@ -147,7 +147,7 @@ def test_nothing_to_do() -> None:
         ({"ctrl": "left"}, TypeError),
         ({"ctrl": np.zeros((4, 12), complex)}, TypeError),
         ({"initial": np.zeros((2, 37)), "steps": 2}, ValueError),
-        ({"initial": np.zeros(38), "steps": 2}, ValueError),
+        ({"initial": np.zeros(37), "steps": 2}, ValueError),
         ({"initial": [[None] * 38] * 2, "steps": 2}, TypeError),
         ({"record": ["qpso"], "steps": 2}, ValueError),
         ({"record": "qpos", "steps": 2}, TypeError),

@@ -105,7 +105,9 @@ impl Model {
         max_dynamic_constraints: Count,
     ) -> PyResult<Self> {
         let arguments = PyDict::new(py);
-        arguments.set_item("path", std::path::absolute(&path)?)?;
+        // A path that has no absolute form cannot be read either, which the loader says.
+        let absolute = std::path::absolute(&path);
+        arguments.set_item("path", absolute.as_ref().unwrap_or(&path))?;
         arguments.set_item("budget", budget)?;
         arguments.set_item("package_path", &package_path)?;
         arguments.set_item("ignore_unsupported", ignore_unsupported)?;
