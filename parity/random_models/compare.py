@@ -257,7 +257,7 @@ def drop_idle_rows(ours, theirs):
     kept = acted_on(sources, ours["jacobian"], [kind == "contact" for kind, _ in sources])
     for name in ("constraints", "jacobian"):
         ours[name] = [ours[name][k] for k in kept]
-    contact = theirs.efc_type >= mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS
+    contact = theirs.efc_type >= int(mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS)
     kept = acted_on(list(zip(theirs.efc_type, theirs.efc_id)), theirs.jacobian, contact)
     for name in ("jacobian", *(name for name in vars(theirs) if name.startswith("efc_"))):
         setattr(theirs, name, getattr(theirs, name)[kept])
