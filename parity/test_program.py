@@ -27,6 +27,21 @@ def test_examples_inspect(path):
     assert "nv" in done.stdout
 
 
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_a_model_is_described_as_json(path):
+    described = json.loads(program.run("inspect", path, "--json").stdout)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    for size in ("nq", "nv", "nu", "na", "nsensordata"):
+        assert described[size] == getattr(model, size), size
+    for kind, count in (("bodies", model.nbody), ("joints", model.njnt), ("geoms", model.ngeom), ("actuators", model.nu)):
+        one = {"bodies": model.body, "joints": model.joint, "geoms": model.geom, "actuators": model.actuator}[kind]
+        assert [element["name"] for element in described[kind]] == [one(k).name for k in range(count)]
+    assert [joint["qposadr"] for joint in described["joints"]] == model.jnt_qposadr.tolist()
+    ranges = [joint["range"] for joint in described["joints"]]
+    assert [found is not None for found in ranges] == model.jnt_limited.astype(bool).tolist()
+    assert all(np.allclose(found, model.jnt_range[k]) for k, found in enumerate(ranges) if found is not None)
+
+
 def test_contacts_are_listed():
     """The same contacts with the same numbers as `forward` gives for that state."""
     path = program.ROOT / "models/box_stack.xml"

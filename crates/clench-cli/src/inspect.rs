@@ -1,5 +1,6 @@
 //! `clench inspect`: sizes, tree, options, the constraints that act, and contacts.
 
+use crate::description::describe;
 use crate::options::ModelArguments;
 use crate::table::Table;
 use anyhow::{Context, Result};
@@ -20,6 +21,9 @@ pub struct Arguments {
     /// List the contacts too: geoms, distance, position, frame and forces
     #[arg(long)]
     contacts: bool,
+    /// Print sizes and elements as one JSON object, and nothing else
+    #[arg(long, conflicts_with_all = ["steps", "contacts"])]
+    json: bool,
 
     // Last, because its heading in the help holds for all that follows.
     #[command(flatten)]
@@ -30,6 +34,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let mut sim = arguments.model.sim()?;
     let mut out = io::stdout().lock();
+    if arguments.json {
+        return Ok(writeln!(out, "{:#}", describe(&sim))?);
+    }
     print_sizes(&mut out, sim.model())?;
     print_tree(&mut out, sim.model())?;
     print_options(&mut out, &sim)?;

@@ -5,6 +5,7 @@
 //! beside this file reads and writes. Physics lives in the library `clench`.
 
 mod convert;
+mod description;
 mod forward;
 mod inspect;
 mod interrupt;

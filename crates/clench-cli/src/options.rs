@@ -56,9 +56,15 @@ struct Overrides {
     /// Most sweeps that remove creep from friction after the solve
     #[arg(long, value_name = "N")]
     noslip_iterations: Option<usize>,
+    /// Sweeps stop where their improvement, scaled by inertia, is below this
+    #[arg(long, value_name = "X")]
+    noslip_tolerance: Option<f64>,
     /// Friction cone
     #[arg(long, ignore_case = true)]
     cone: Option<ConeName>,
+    /// Ratio of friction to normal impedance of elliptic contacts
+    #[arg(long, value_name = "X")]
+    impratio: Option<f64>,
     /// Sparse or dense Hessian
     #[arg(long, ignore_case = true)]
     sparse: Option<SwitchName>,
@@ -172,6 +178,8 @@ impl Overrides {
             ls_iterations: self.ls_iterations,
             ls_tolerance: self.ls_tolerance,
             noslip_iterations: self.noslip_iterations,
+            noslip_tolerance: self.noslip_tolerance,
+            impratio: self.impratio,
             sparse_solve: self.sparse.map(Switch::from),
             islands: self.islands.map(Switch::from),
             constraint_timeconst: self.constraint_timeconst,
@@ -180,7 +188,6 @@ impl Overrides {
             disable_constraint: self.no_constraint.then_some(true),
             warmstart: self.no_warmstart.then_some(false),
             autoreset: self.autoreset.then_some(true),
-            ..RigidOptions::default()
         }
     }
 }
