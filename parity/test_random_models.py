@@ -3,15 +3,13 @@
 `soak_models.py` does the same with as many seeds as one has time for; its models and these differ in seeds alone.
 """
 
-import collections
-
 import pytest
 
 from random_models import rules, search
 
 # On these the engines differ, and why is open (docs/testing.md).
-OPEN = {140, 153, 218, 301, 410, 436, 557, 758, 761, 848, 873, 950, 1011, 1031, 1053, 1080, 1137, 1240, 1332}
-SEEDS = [seed for seed in range(1, 1421) if seed not in OPEN]  # of these MuJoCo compiles a thousand
+OPEN = {140, 301, 436, 873, 950, 1011, 1137, 1240}
+SEEDS = [seed for seed in range(1, 1461) if seed not in OPEN]  # of these MuJoCo compiles a thousand
 FEWEST = 1000
 
 

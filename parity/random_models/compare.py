@@ -222,14 +222,18 @@ def judge(model, question, ours):
     agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
     if not question.own:
         forces(what, ours, theirs)
-        agreement.sensors(model, what, ours, theirs, is_undecided=lambda sensor: is_undecided(model, sensor))
+        agreement.sensors(model, what, ours, theirs, is_undecided=lambda sensor: is_undecided(model, sensor, theirs))
     if question.after is not None:
         next_state(model, what, question, ours["next"])
 
 
-def is_undecided(model, sensor):
-    """Whether both engines may be right: many points of parallel faces are nearest, and equal moments have no principal axes."""
-    if model.sensor_type[sensor] in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
+def is_undecided(model, sensor, theirs):
+    """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, and
+    how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths)."""
+    kind = mujoco.mjtSensor(model.sensor_type[sensor])
+    if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
+        return True
+    if kind == mujoco.mjtSensor.mjSENS_GEOMDIST and theirs.sensordata[model.sensor_adr[sensor]] < 0:
         return True
     ends = ((model.sensor_objtype, model.sensor_objid), (model.sensor_reftype, model.sensor_refid))
     for kind, index in ends:
@@ -299,8 +303,10 @@ def same_contacts(model, what, ours, theirs):
             bound = min(0, contact["includemargin"]) - CLEARLY
             assert not closed or contact["dist"] > bound, f"{what}no contact of {names(model, pair)}"
             continue
-        # Of several pairs of the same two geoms, any.
-        fields = ("dim", "includemargin", "friction")
+        # Of several pairs of the same two geoms, any. Whether one that adheres has friction follows from its distance, see above.
+        within = lambda c: c["dist"] < c["includemargin"]
+        known = any(within(c) == within(contact) for c in found)
+        fields = ("dim", "includemargin", "friction") if known else ("includemargin", "friction")
         mixed = min(found, key=lambda c: sum(np.abs(np.subtract(c[field], contact[field])).sum() for field in fields))
         for field in fields:
             assert_close(f"{what}contact {field}", np.ravel(mixed[field]), np.ravel(contact[field]), 1e-9, 1.0)

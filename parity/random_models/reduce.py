@@ -1,6 +1,7 @@
 """Cuts a model down to what a difference needs: elements go, what holds others is unwrapped, attributes go, until nothing more can."""
 
 import copy
+import time
 
 from random_models.compare import Refused, examine
 from random_models.generate import written
@@ -9,9 +10,10 @@ MOST_TRIALS = 600
 UNWRAPPED = ("frame", "replicate", "body", "default")
 
 
-def reduced(root, seed, difference):
-    """A smaller model that differs in the same way, and how."""
+def reduced(root, seed, difference, seconds):
+    """A smaller model that differs in the same way, and how; after so many seconds, the smallest one found."""
     root, trials = copy.deepcopy(root), 0
+    deadline = time.monotonic() + seconds
 
     def still(candidate):
         nonlocal trials, difference
@@ -25,11 +27,12 @@ def reduced(root, seed, difference):
         difference = found
         return True
 
+    spent = lambda: trials >= MOST_TRIALS or time.monotonic() > deadline
     progress = True
-    while progress and trials < MOST_TRIALS:
+    while progress and not spent():
         progress = False
         for change in changes(root):
-            if trials >= MOST_TRIALS:
+            if spent():
                 break
             undo = change()
             if undo is None:

@@ -4,6 +4,9 @@ from random_models import harmless
 from random_models.maker import Maker
 from random_models.values import text
 
+# Few models have a tendon whose range counts, which these measure.
+RARE = ("tendonlimitpos", "tendonlimitvel", "tendonlimitfrc") * 3
+
 
 class Sensing(Maker):
     """What measures."""
@@ -14,8 +17,8 @@ class Sensing(Maker):
             return
         section = self.add(self.root, "sensor")
         copies = any(element.tag in ("replicate", "attach") for element in self.root.iter())
-        for _ in range(draw.randint(1, 15)):
-            kind = draw.choice((*harmless.SENSORS, "contact", "contact", "rangefinder", "user"))
+        for _ in range(draw.randint(1, 30)):
+            kind = draw.choice((*harmless.SENSORS, *RARE, "contact", "contact", "rangefinder", "user"))
             attached = self.attached(kind)
             if attached is None:
                 continue

@@ -410,7 +410,7 @@ VALUES = {
     **{f"sensor/{kind}": {**SENSOR, "data": words(RAY_DATA)} for kind in ("rangefinder",)},
     "sensor/contact": {**SENSOR, "num": one_of(1, 2, 5), "data": words(CONTACT_DATA), "reduce": one_of("none", "mindist", "maxforce", "netforce")},
     "sensor/user": {"noise": scale(0.01, 1), "cutoff": scale(0.02, 5), "datatype": one_of("real", "positive")},
-    **{f"sensor/{kind}": {"noise": scale(0.01, 1), **PAST} for kind in TURNS},
+    **{f"sensor/{kind}": {"noise": scale(0.01, 1), "cutoff": one_of(0), **PAST} for kind in TURNS},
 }
 
 # Ranges with the attribute that says whether they count.

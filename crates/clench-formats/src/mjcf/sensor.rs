@@ -15,13 +15,10 @@ use clench_rigid::model::{
 /// What all sensors have, before what they are attached to.
 macro_rules! rule {
     ($attributes:literal) => {
-        rule!($attributes, "")
-    };
-    ($attributes:literal, $ignored:literal) => {
         Rule {
             element: "sensor",
             read: concat!("name cutoff noise nsample interp delay ", $attributes),
-            ignored: concat!("user ", $ignored),
+            ignored: "user",
             later: "interval=0",
             ..NONE
         }
@@ -42,7 +39,12 @@ const INSIDE: Rule = Rule {
 };
 const GEOMS: Rule = rule!("geom1 geom2 body1 body2");
 /// What the user's numbers belong to and when they are computed matters to the user's program alone.
-const USER: Rule = rule!("dim datatype", "objtype objname needstage");
+const USER: Rule = Rule {
+    element: "sensor",
+    read: "name cutoff noise dim datatype",
+    ignored: "user objtype objname needstage",
+    ..NONE
+};
 const PROJECTION: Rule = rule!("site camera");
 const CONTACTS: Rule = rule!("geom1 geom2 body1 body2 subtree1 subtree2 site num data reduce");
 const RAYS: Rule = rule!("site camera data");
