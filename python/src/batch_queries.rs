@@ -48,14 +48,7 @@ impl Batch {
         camera: Choice<'_, 'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = self.described();
-        let object = Choices {
-            body,
-            body_com,
-            geom,
-            site,
-            camera,
-        }
-        .one(model)?;
+        let object = Choices([body, body_com, geom, site, camera]).one(model)?;
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let found = py.detach(|| batch.jacobian(object)).map_err(sim_error)?;
@@ -125,14 +118,7 @@ impl Batch {
         exclude_body: Choice<'_, 'py>,
     ) -> PyResult<RayHits> {
         let model = self.described();
-        let frame = Choices {
-            body,
-            body_com,
-            geom,
-            site,
-            camera,
-        }
-        .optional(model)?;
+        let frame = Choices([body, body_com, geom, site, camera]).optional(model)?;
         let filter = ray_filter(model, groups, fixed, exclude_body)?;
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
@@ -172,14 +158,7 @@ impl Batch {
         camera: Choice<'_, 'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = self.described();
-        let frame = Choices {
-            body,
-            body_com,
-            geom,
-            site,
-            camera,
-        }
-        .optional(model)?;
+        let frame = Choices([body, body_com, geom, site, camera]).optional(model)?;
         let hfield = Kind::Geom.find(model, hfield)?;
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {

@@ -55,24 +55,15 @@ impl<S: Precision + Element> Goals<S> {
         let py = given.py();
         if let Ok(frame) = given.cast::<FrameTarget>() {
             let frame = frame.get();
-            let choice =
-                |which: &Option<Py<PyAny>>| which.as_ref().map(|which| which.bind(py).clone());
-            let parts = [
+            let chosen = [
                 &frame.body,
                 &frame.body_com,
                 &frame.geom,
                 &frame.site,
                 &frame.camera,
             ];
-            let [body, body_com, geom, site, camera] = parts.map(choice);
-            let choices = Choices {
-                body: body.as_ref(),
-                body_com: body_com.as_ref(),
-                geom: geom.as_ref(),
-                site: site.as_ref(),
-                camera: camera.as_ref(),
-            };
-            let object = choices.one(model)?;
+            let chosen = chosen.map(|which| which.as_ref().map(|which| which.bind(py)));
+            let object = Choices(chosen).one(model)?;
             if let Some(position) = &frame.position {
                 let cost = frame.position_cost.bind(py);
                 let target = IkTarget::Position(object);
@@ -146,28 +137,22 @@ impl<S: Precision + Element> Goals<S> {
 }
 
 /// How the search goes on.
-struct Search<'a, 'py> {
+fn search(
+    model: &Model,
     iterations: Count,
     tolerance: f64,
     damping: f64,
     limits: bool,
-    dofs: Choice<'a, 'py>,
-}
-
-impl Search<'_, '_> {
-    fn options(&self, model: &Model) -> PyResult<IkOptions> {
-        let dofs = self
-            .dofs
-            .map(|dofs| mask("dofs", dofs, model.nv))
-            .transpose()?;
-        Ok(IkOptions {
-            iterations: self.iterations.0,
-            tolerance: self.tolerance,
-            damping: self.damping,
-            limits: self.limits,
-            dofs: dofs.unwrap_or_default(),
-        })
-    }
+    dofs: Choice,
+) -> PyResult<IkOptions> {
+    let dofs = dofs.map(|dofs| mask("dofs", dofs, model.nv)).transpose()?;
+    Ok(IkOptions {
+        iterations: iterations.0,
+        tolerance,
+        damping,
+        limits,
+        dofs: dofs.unwrap_or_default(),
+    })
 }
 
 #[pymethods]
@@ -219,14 +204,7 @@ impl Sim {
         dofs: Choice<'_, 'py>,
     ) -> PyResult<IkResult> {
         let model = self.described();
-        let options = Search {
-            iterations,
-            tolerance,
-            damping,
-            limits,
-            dofs,
-        }
-        .options(model)?;
+        let options = search(model, iterations, tolerance, damping, limits, dofs)?;
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let goals = Goals::of(model, targets, None)?;
@@ -289,14 +267,7 @@ impl Batch {
         dofs: Choice<'_, 'py>,
     ) -> PyResult<IkResult> {
         let (model, n) = (self.described(), self.count());
-        let options = Search {
-            iterations,
-            tolerance,
-            damping,
-            limits,
-            dofs,
-        }
-        .options(model)?;
+        let options = search(model, iterations, tolerance, damping, limits, dofs)?;
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let goals = Goals::of(model, targets, Some(n))?;

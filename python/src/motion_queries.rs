@@ -64,13 +64,7 @@ impl Sim {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (model, choices) = (
             self.described(),
-            Choices {
-                body,
-                body_com,
-                geom,
-                site,
-                camera,
-            },
+            Choices([body, body_com, geom, site, camera]),
         );
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
@@ -112,13 +106,7 @@ impl Sim {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (model, choices) = (
             self.described(),
-            Choices {
-                body,
-                body_com,
-                geom,
-                site,
-                camera,
-            },
+            Choices([body, body_com, geom, site, camera]),
         );
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
@@ -186,14 +174,7 @@ impl Sim {
         camera: Choice<'_, 'py>,
         local: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let object = Choices {
-            body,
-            body_com,
-            geom,
-            site,
-            camera,
-        }
-        .one(self.described())?;
+        let object = Choices([body, body_com, geom, site, camera]).one(self.described())?;
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let found = own.current().and_then(|sim| sim.velocity(object, axes(local)));
@@ -227,14 +208,7 @@ impl Sim {
         camera: Choice<'_, 'py>,
         local: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let object = Choices {
-            body,
-            body_com,
-            geom,
-            site,
-            camera,
-        }
-        .one(self.described())?;
+        let object = Choices([body, body_com, geom, site, camera]).one(self.described())?;
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let found = own.current().and_then(|sim| sim.acceleration(object, axes(local)));

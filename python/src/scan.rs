@@ -142,14 +142,7 @@ impl Sim {
         exclude_body: Choice<'_, 'py>,
     ) -> PyResult<RayHits> {
         let model = self.described();
-        let frame = Choices {
-            body,
-            body_com,
-            geom,
-            site,
-            camera,
-        }
-        .optional(model)?;
+        let frame = Choices([body, body_com, geom, site, camera]).optional(model)?;
         let filter = ray_filter(model, groups, fixed, exclude_body)?;
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
@@ -189,14 +182,7 @@ impl Sim {
         camera: Choice<'_, 'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = self.described();
-        let frame = Choices {
-            body,
-            body_com,
-            geom,
-            site,
-            camera,
-        }
-        .optional(model)?;
+        let frame = Choices([body, body_com, geom, site, camera]).optional(model)?;
         let hfield = Kind::Geom.find(model, hfield)?;
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {

@@ -9,15 +9,9 @@ use pyo3::prelude::*;
 /// A name or index of an object, as given or not.
 pub(crate) type Choice<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-/// The objects that a caller may choose from: body, its inertial frame, geom, site, camera.
+/// What a caller may choose from, in the order of the keywords: body, body_com, geom, site, camera.
 #[derive(Clone, Copy)]
-pub(crate) struct Choices<'a, 'py> {
-    pub(crate) body: Choice<'a, 'py>,
-    pub(crate) body_com: Choice<'a, 'py>,
-    pub(crate) geom: Choice<'a, 'py>,
-    pub(crate) site: Choice<'a, 'py>,
-    pub(crate) camera: Choice<'a, 'py>,
-}
+pub(crate) struct Choices<'a, 'py>(pub(crate) [Choice<'a, 'py>; 5]);
 
 impl Choices<'_, '_> {
     /// The object, if any was chosen.
@@ -26,15 +20,15 @@ impl Choices<'_, '_> {
     /// ValueError where several were; as [`Kind::find`].
     pub(crate) fn optional(&self, model: &Model) -> PyResult<Option<FrameObject>> {
         type Make = fn(usize) -> FrameObject;
-        let all: [(Choice, Kind, Make); 5] = [
-            (self.body, Kind::Body, FrameObject::Body),
-            (self.body_com, Kind::Body, FrameObject::Inertial),
-            (self.geom, Kind::Geom, FrameObject::Geom),
-            (self.site, Kind::Site, FrameObject::Site),
-            (self.camera, Kind::Camera, FrameObject::Camera),
+        const OBJECTS: [(Kind, Make); 5] = [
+            (Kind::Body, FrameObject::Body),
+            (Kind::Body, FrameObject::Inertial),
+            (Kind::Geom, FrameObject::Geom),
+            (Kind::Site, FrameObject::Site),
+            (Kind::Camera, FrameObject::Camera),
         ];
-        let mut given =
-            (all.into_iter()).filter_map(|(which, kind, make)| Some((which?, kind, make)));
+        let mut given = (self.0.iter().zip(OBJECTS))
+            .filter_map(|(which, (kind, make))| Some(((*which)?, kind, make)));
         match (given.next(), given.next()) {
             (None, _) => Ok(None),
             (Some((which, kind, make)), None) => Ok(Some(make(kind.find(model, which)?))),

@@ -124,3 +124,12 @@ def moving(kind: str, precision: Any = "64", model: Any = None) -> Any:
         own.qvel += np.arange(3)[:, None]
     own.step(50)
     return own
+
+
+def poisoned(n: int = 5, failing: tuple[int, ...] = (1, 3)) -> clench.Batch:
+    """A batch of which some environments have failed."""
+    batch = clench.Batch(example("quadruped"), n, record=["xpos"])
+    batch.step(3)
+    batch.qvel[list(failing), 2] = np.nan
+    assert batch.step() == len(failing)
+    return batch

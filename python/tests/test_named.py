@@ -8,6 +8,7 @@ import clench
 import numpy as np
 import pytest
 from clench import _named
+from clench._lines import Line
 from scenes import example
 
 SCENE = """
@@ -45,8 +46,8 @@ def sim() -> clench.Sim:
     return clench.Sim(clench.Model.from_xml(SCENE))
 
 
-def lines(view: type[clench.ElementView]) -> dict[str, _named._Line]:
-    return {name: line for name, line in vars(view).items() if isinstance(line, _named._Line)}
+def lines(view: type[clench.ElementView]) -> dict[str, Line]:
+    return {name: line for name, line in vars(view).items() if isinstance(line, Line)}
 
 
 @pytest.mark.parametrize("view", VIEWS)

@@ -88,3 +88,30 @@ pub fn troubled() -> &'static [&'static Hull] {
         hulls
     })
 }
+
+/// A crumpled ball.
+pub fn bumpy(random: &mut Random) -> (Vec<V>, Vec<[u32; 3]>) {
+    let (rings, around) = (9, 14);
+    let mut vertices = Vec::new();
+    for ring in 0..=rings {
+        for k in 0..around {
+            let polar = std::f64::consts::PI * f64::from(ring) / f64::from(rings);
+            let azimuth = std::f64::consts::TAU * f64::from(k) / f64::from(around);
+            let pole = ring == 0 || ring == rings;
+            let radius = if pole { 0.3 } else { random.range(0.2, 0.5) };
+            let (sine, cosine) = polar.sin_cos();
+            // The corners around a pole leave no gap.
+            let sine = if pole { 0.0 } else { sine };
+            vertices.push(Vec3::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine) * radius);
+        }
+    }
+    let at = |ring: i32, k: i32| (ring * around + k % around) as u32;
+    let mut faces = Vec::new();
+    for ring in 0..rings {
+        for k in 0..around {
+            faces.push([at(ring, k), at(ring + 1, k), at(ring + 1, k + 1)]);
+            faces.push([at(ring, k), at(ring + 1, k + 1), at(ring, k + 1)]);
+        }
+    }
+    (vertices, faces)
+}

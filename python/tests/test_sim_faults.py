@@ -1,0 +1,64 @@
+"""`clench.Sim` where its state is no number or its motion diverges."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import clench
+import numpy as np
+import pytest
+from scenes import ball, example, same_state
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("qpos", np.nan), ("qvel", np.inf), ("ctrl", np.nan), ("qfrc_applied", -np.inf), ("xfrc_applied", np.nan)],
+)
+def test_numbers_that_are_not_finite(name: str, value: Any) -> None:
+    sim = clench.Sim(example("quadruped"))
+    sim.step(3)
+    good = sim.state
+    getattr(sim, name)[0] = value
+    bad = sim.state
+    for call in (sim.step, sim.forward, lambda: sim.step(100)):
+        with pytest.raises(clench.SimulationError, match=name):
+            call()
+        assert same_state(sim.state, bad)
+    sim.state = good
+    sim.step()
+
+
+def test_motion_that_diverges() -> None:
+    sim = clench.Sim(ball())
+    sim.qvel[0] = 1e308
+    sim.qvel[4] = 1e308
+    with pytest.raises(clench.SimulationError) as raised:
+        sim.step(1000)
+    assert isinstance(raised.value, clench.ClenchError) and isinstance(raised.value, RuntimeError)
+    assert np.isfinite(sim.qpos).all() and np.isfinite(sim.qvel).all()
+    sim.reset()
+    sim.step()
+
+
+def test_steps_before_a_fault_are_done() -> None:
+    sim = clench.Sim(example("pendulum"), clench.RigidOptions(disable_constraint=True))
+    sim.ctrl[0] = 5
+    sim.set_param("actuator_ctrlrange", [[-1e308, 1e308]])
+    sim.ctrl[0] = 1e9
+    with pytest.raises(clench.SimulationError, match=r'\[0\] became .* at joint "bearing" of body'):
+        sim.step(10_000)
+    assert 0 < sim.time < 20
+    assert np.isfinite(sim.qpos).all()
+
+
+def test_autoreset() -> None:
+    sim = clench.Sim(ball(), clench.RigidOptions(autoreset=True))
+    assert sim.resets == 0
+    sim.qvel[0] = 1e11
+    sim.xfrc_applied[1, 0] = 1
+    sim.step(3)
+    assert sim.resets == 1 and sim.time == pytest.approx(3 * sim.model.timestep)
+    assert (sim.xfrc_applied == 0).all()
+    fresh = clench.Sim(ball())
+    fresh.step(3)
+    assert same_state(sim.state, fresh.state)
