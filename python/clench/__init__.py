@@ -40,12 +40,14 @@ from clench._core import (
     PostureTarget,
     RayHit,
     RayHits,
+    Recording,
     RigidOptions,
     Separation,
     Sim,
     Solution,
     SolverStats,
     StateViews,
+    Viewer,
     __version__,
     solve,
 )
@@ -64,6 +66,7 @@ from clench._named import (
 from clench._spec import ModelSpec, SpecElement
 from clench._state import State
 from clench._status import EnvStatus, IkStatus
+from clench._view import view
 from clench.errors import BusyError, ClenchError, LoadError, SimulationError
 
 __all__ = [
@@ -96,6 +99,7 @@ __all__ = [
     "PostureTarget",
     "RayHit",
     "RayHits",
+    "Recording",
     "RigidOptions",
     "Separation",
     "Sim",
@@ -107,6 +111,8 @@ __all__ = [
     "State",
     "StateViews",
     "TendonView",
+    "Viewer",
     "__version__",
     "solve",
+    "view",
 ]

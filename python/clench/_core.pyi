@@ -37,12 +37,14 @@ __all__ = [
     "PostureTarget",
     "RayHit",
     "RayHits",
+    "Recording",
     "RigidOptions",
     "Separation",
     "Sim",
     "Solution",
     "SolverStats",
     "StateViews",
+    "Viewer",
     "__version__",
     "solve",
 ]
@@ -1311,3 +1313,88 @@ class Solution:
 def solve(
     M: ArrayLike, a_unc: ArrayLike, blocks: Iterable[Block], options: RigidOptions | None = None
 ) -> Solution: ...
+
+@final
+class Recording:
+    def __new__(cls, *, limit: SupportsIndex = 1_000_000_000) -> Self: ...
+    @property
+    def times(self) -> _Floats: ...  # (n,)
+    def append(self, target: Sim | Batch, env: SupportsIndex = 0) -> None: ...
+    def save(self, path: str | PathLike[str]) -> None: ...
+    @staticmethod
+    def load(path: str | PathLike[str], *, limit: SupportsIndex = 1_000_000_000) -> Recording: ...
+    def show(self) -> None: ...
+    def _repr_html_(self) -> str | None: ...
+    def __len__(self) -> int: ...
+
+@final
+class Viewer:
+    def __new__(
+        cls,
+        target: Sim | Batch,
+        *,
+        env: SupportsIndex = 0,
+        host: str = "127.0.0.1",
+        port: SupportsIndex = 0,
+        paused: bool = False,
+        speed: float = 1.0,
+    ) -> Self: ...
+    @property
+    def url(self) -> str: ...
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def clients(self) -> int: ...
+    @property
+    def paused(self) -> bool: ...
+    @paused.setter
+    def paused(self, paused: bool) -> None: ...
+    @property
+    def speed(self) -> float: ...
+    @speed.setter
+    def speed(self, speed: float) -> None: ...
+    @property
+    def env(self) -> int: ...
+    @env.setter
+    def env(self, env: SupportsIndex) -> None: ...
+    def sync(self, *, block: bool = True) -> None: ...
+    def show_grid(self, count: SupportsIndex, first: SupportsIndex = 0) -> None: ...
+    def draw_sphere(
+        self,
+        center: ArrayLike,  # (3,)
+        radius: float = 0.02,
+        *,
+        rgba: ArrayLike | None = None,  # (4,)
+        lifetime: float = 0.0,
+    ) -> None: ...
+    def draw_line(
+        self,
+        start: ArrayLike,  # (3,)
+        end: ArrayLike,  # (3,)
+        radius: float = 0.004,
+        *,
+        rgba: ArrayLike | None = None,  # (4,)
+        lifetime: float = 0.0,
+    ) -> None: ...
+    def draw_arrow(
+        self,
+        start: ArrayLike,  # (3,)
+        end: ArrayLike,  # (3,)
+        radius: float = 0.008,
+        *,
+        rgba: ArrayLike | None = None,  # (4,)
+        lifetime: float = 0.0,
+    ) -> None: ...
+    def draw_text(
+        self,
+        at: ArrayLike,  # (3,)
+        text: str,
+        *,
+        rgba: ArrayLike | None = None,  # (4,)
+        lifetime: float = 0.0,
+    ) -> None: ...
+    def clear_draws(self) -> None: ...
+    def close(self) -> None: ...
+    def _repr_html_(self) -> str: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(self, *_raised: object) -> None: ...

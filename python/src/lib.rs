@@ -29,6 +29,7 @@ mod positions;
 mod precision;
 mod queries;
 mod recorded;
+mod recording;
 mod rollout;
 mod row_sim;
 mod scan;
@@ -39,6 +40,8 @@ mod stats;
 mod table;
 mod target;
 mod view;
+mod viewed;
+mod viewer;
 
 use pyo3::prelude::*;
 
@@ -72,6 +75,8 @@ mod _core {
     #[pymodule_export]
     use crate::queries::{RayHit, Separation};
     #[pymodule_export]
+    use crate::recording::Recording;
+    #[pymodule_export]
     use crate::scan::RayHits;
     #[pymodule_export]
     use crate::sim::Sim;
@@ -81,6 +86,8 @@ mod _core {
     use crate::state_views::StateViews;
     #[pymodule_export]
     use crate::stats::SolverStats;
+    #[pymodule_export]
+    use crate::viewer::Viewer;
     #[pymodule_export]
     #[allow(non_upper_case_globals)] // Python's name.
     const __version__: &str = env!("CARGO_PKG_VERSION");

@@ -1,7 +1,6 @@
 // The geoms and sites of a model, drawn by instances: as many of a shape and surface as there are take one call.
 
 import * as THREE from "three";
-import type { Frame } from "./frame.ts";
 import { localPose } from "./poses.ts";
 import type { Geom, Numbers4, Placed, Scene } from "./scene.ts";
 import { materialOf, shapeOf } from "./shapes.ts";
@@ -20,10 +19,32 @@ interface Drawn {
   local: THREE.Matrix4;
   mesh: THREE.InstancedMesh;
   slot: number;
+  /** Which of the environments side by side it belongs to. */
+  place: number;
+}
+
+/** An environment where it is drawn. */
+export interface Copy {
+  poses: THREE.Matrix4[];
+  fails: boolean;
+  /** Which of its trees sleep, where that is known. */
+  asleep: Float32Array;
+  /** The body that is chosen in it. */
+  chosen: number | null;
+}
+
+/** What the pointer is at. */
+export interface Hit {
+  geom: number;
+  body: number;
+  point: THREE.Vector3;
+  /** Which of the environments side by side. */
+  place: number;
 }
 
 const SLEEPING = new THREE.Color(0.45, 0.45, 0.48);
 const CHOSEN = new THREE.Color(1.0, 0.62, 0.12);
+const FAILED = new THREE.Color(0.75, 0.1, 0.1);
 const NOWHERE = new THREE.Matrix4().makeScale(0, 0, 0);
 const THROUGH = 0.35;
 
@@ -36,7 +57,16 @@ export class Bodies {
   constructor(
     private scene: Scene,
     private sight: Sight,
+    /** How many environments there is room for. */
+    private room: number,
   ) {
+    this.rebuild();
+  }
+
+  /** Makes room for so many environments. */
+  resize(room: number): void {
+    if (room === this.room) return;
+    this.room = room;
     this.rebuild();
   }
 
@@ -64,6 +94,9 @@ export class Bodies {
     const drawn: Drawn[] = [];
     for (const indices of alike.values()) {
       const first = all[indices[0]];
+      // A plane of the world is under all of them.
+      const shared = first.kind === "plane" && first.body === 0 && this.room > 1;
+      const copies = shared ? 1 : this.room;
       const surface = materialOf(this.scene, first);
       surface.color.set(0xffffff);
       if (surface.emissiveIntensity === 0) surface.emissive.set(0);
@@ -72,15 +105,17 @@ export class Bodies {
         surface.opacity *= THROUGH;
         surface.depthWrite = false;
       }
-      const shape = shapeOf(this.scene, first, this.sight.hulls);
-      const mesh = new THREE.InstancedMesh(shape, surface, indices.length);
+      const endless: Placed = { ...first, size: [0, 0, first.size[2]] };
+      const shape = shapeOf(this.scene, shared ? endless : first, this.sight.hulls);
+      const mesh = new THREE.InstancedMesh(shape, surface, indices.length * copies);
       mesh.castShadow = geoms && !surface.transparent && first.kind !== "plane";
       mesh.receiveShadow = geoms;
       mesh.frustumCulled = false;
-      const here = indices.map((index, slot) => {
+      const here = Array.from({ length: indices.length * copies }, (_, slot) => {
+        const index = indices[slot % indices.length];
         const placed = all[index];
         mesh.setColorAt(slot, tint(placed.rgba));
-        return { placed, index, local: localPose(placed), mesh, slot };
+        return { placed, index, local: localPose(placed), mesh, slot, place: Math.floor(slot / indices.length) };
       });
       if (geoms) this.shown.set(mesh, here);
       this.group.add(mesh);
@@ -89,24 +124,24 @@ export class Bodies {
     return drawn;
   }
 
-  /** Moves everything to where it is in a frame. */
-  update(frame: Frame, poses: THREE.Matrix4[], chosen: number | null): void {
-    const asleep = frame.rows.asleep;
+  /** Moves everything to where it is; there are as many copies as there is room for. */
+  update(copies: Copy[]): void {
     const place = new THREE.Matrix4();
     for (const drawn of this.geoms) {
       const { body, group, rgba } = drawn.placed as Geom;
+      const { poses, fails, asleep, chosen } = copies[drawn.place];
       const visible = this.sight.groups[group] ?? true;
       place.multiplyMatrices(poses[body], drawn.local);
       drawn.mesh.setMatrixAt(drawn.slot, visible ? place : NOWHERE);
       const tree = this.scene.trees[body];
-      const sleeps = tree !== null && tree < asleep.count && asleep.data[tree] >= 0;
       const colour = tint(rgba);
-      if (sleeps) colour.lerp(SLEEPING, 0.75);
+      if (tree !== null && asleep[tree] >= 0) colour.lerp(SLEEPING, 0.75);
+      if (fails && body !== 0) colour.lerp(FAILED, 0.7);
       if (body === chosen && body !== 0) colour.lerp(CHOSEN, 0.55);
       drawn.mesh.setColorAt(drawn.slot, colour);
     }
     for (const drawn of this.sites) {
-      place.multiplyMatrices(poses[drawn.placed.body], drawn.local);
+      place.multiplyMatrices(copies[drawn.place].poses[drawn.placed.body], drawn.local);
       drawn.mesh.setMatrixAt(drawn.slot, this.sight.sites ? place : NOWHERE);
     }
     for (const mesh of this.group.children as THREE.InstancedMesh[]) {
@@ -117,10 +152,10 @@ export class Bodies {
   }
 
   /** The nearest geom along a ray. */
-  pick(ray: THREE.Raycaster): { geom: number; body: number; point: THREE.Vector3 } | null {
+  pick(ray: THREE.Raycaster): Hit | null {
     for (const hit of ray.intersectObjects([...this.shown.keys()], false)) {
       const drawn = this.shown.get(hit.object)?.[hit.instanceId ?? -1];
-      if (drawn) return { geom: drawn.index, body: drawn.placed.body, point: hit.point };
+      if (drawn) return { geom: drawn.index, body: drawn.placed.body, point: hit.point, place: drawn.place };
     }
     return null;
   }

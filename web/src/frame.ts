@@ -37,6 +37,32 @@ export function decode(scene: Scene, buffer: ArrayBuffer): Frame | null {
   };
 }
 
+/** An environment of a batch that is seen. */
+export interface Env {
+  index: number;
+  /** Why it cannot go on; empty if it can. */
+  fault: string;
+}
+
+/** All texts of a frame: those of its marks, then those of its environments. */
+export function textsOf(frame: Frame): string[] {
+  const { texts, letters } = frame.rows;
+  let at = 0;
+  return Array.from(texts.data, (count) => {
+    const codes = letters.data.subarray(at, at + count);
+    at += count;
+    return String.fromCodePoint(...codes);
+  });
+}
+
+/** The environments that are seen; none where there is only one. */
+export function envsOf(frame: Frame): Env[] {
+  const { envs, marks } = frame.rows;
+  if (envs.count === 0) return [];
+  const texts = textsOf(frame).slice(marks.count);
+  return texts.map((fault, k) => ({ index: envs.data[2 * k], fault }));
+}
+
 /** The plotted numbers, in the order of the section `plots`. */
 export const PLOTS = [
   { name: "solver iterations", unit: "" },

@@ -2,6 +2,8 @@
 
 import * as THREE from "three";
 import type { Frame } from "./frame.ts";
+import { Many, standing, stretched, UP } from "./many.ts";
+import { Marks } from "./marks.ts";
 import { poseOf } from "./poses.ts";
 import type { Scene } from "./scene.ts";
 
@@ -17,68 +19,11 @@ export interface Layers {
   inertia: boolean;
 }
 
-const UP = new THREE.Vector3(0, 1, 0);
 const NORMAL = new THREE.Color(0x2f7de1);
 const FRICTION = new THREE.Color(0xf08a24);
 const PULL = new THREE.Color(0xd5348b);
 const STICKS = new THREE.Color(0x2eb872);
 const SLIPS = new THREE.Color(0xe0342c);
-
-/** As many of one shape as a frame needs. */
-class Many {
-  readonly group = new THREE.Group();
-  private mesh: THREE.InstancedMesh;
-  private count = 0;
-
-  constructor(
-    private shape: THREE.BufferGeometry,
-    private surface: THREE.Material,
-    private order = 0,
-  ) {
-    this.mesh = this.make(64);
-  }
-
-  private make(room: number): THREE.InstancedMesh {
-    const mesh = new THREE.InstancedMesh(this.shape, this.surface, room);
-    mesh.frustumCulled = false;
-    mesh.renderOrder = this.order;
-    mesh.setColorAt(0, new THREE.Color());
-    this.group.clear();
-    this.group.add(mesh);
-    return mesh;
-  }
-
-  begin(most: number): void {
-    this.count = 0;
-    if (most > this.mesh.instanceMatrix.count) {
-      this.mesh.dispose();
-      this.mesh = this.make(2 * most);
-    }
-  }
-
-  add(place: THREE.Matrix4, colour: THREE.Color): void {
-    this.mesh.setMatrixAt(this.count, place);
-    this.mesh.setColorAt(this.count, colour);
-    this.count += 1;
-  }
-
-  end(): void {
-    this.mesh.count = this.count;
-    this.mesh.instanceMatrix.needsUpdate = true;
-    if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
-  }
-
-  /** The length of an instance along its own y, as it is drawn. */
-  lengthOf(index: number): number {
-    const place = new THREE.Matrix4();
-    this.mesh.getMatrixAt(index, place);
-    return new THREE.Vector3().setFromMatrixColumn(place, 1).length();
-  }
-
-  get size(): number {
-    return this.count;
-  }
-}
 
 /** Bright and unshaded, over what is in front of it, so that a force inside a foot is seen. */
 function glow(opacity: number, through = true): THREE.MeshBasicMaterial {
@@ -89,11 +34,6 @@ function glow(opacity: number, through = true): THREE.MeshBasicMaterial {
     depthWrite: false,
     toneMapped: false,
   });
-}
-
-/** From y = 0 to y = 1. */
-function standing(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
-  return geometry.translate(0, 0.5, 0);
 }
 
 export class Overlays {
@@ -120,6 +60,7 @@ export class Overlays {
   );
   private balls = new Many(new THREE.SphereGeometry(1, 20, 14), glow(0.9), 4);
   private boxes = new Many(new THREE.BoxGeometry(2, 2, 2), glow(0.3), 4);
+  private marks: Marks;
 
   constructor(
     private scene: Scene,
@@ -130,6 +71,8 @@ export class Overlays {
     private size: number,
   ) {
     for (const many of this.all()) this.group.add(many.group);
+    this.marks = new Marks();
+    this.group.add(this.marks.group);
     const weight = 9.81 * scene.bodies.reduce((sum, body) => sum + body.mass, 0);
     if (weight > 0) this.forceScale = (1.1 * extent) / weight;
   }
@@ -160,6 +103,7 @@ export class Overlays {
     if (layers.joints) scene.joints.forEach((_, joint) => this.joint(joint, poses));
     scene.bodies.forEach((_, body) => body > 0 && this.mass(body, poses[body]));
     if (drag.count > 0) this.drag(drag.data);
+    this.marks.update(frame);
     for (const many of this.all()) many.end();
   }
 
@@ -253,15 +197,13 @@ export class Overlays {
     this.balls.add(stretched(from, UP, radius, radius), PULL);
   }
 
+  /** How many balls, shafts, heads and words the program draws itself, for tests. */
+  markCounts(): number[] {
+    return this.marks.counts();
+  }
+
   /** Lengths of all arrows as they are drawn, m. */
   arrowLengths(): number[] {
     return Array.from({ length: this.shafts.size }, (_, k) => this.shafts.lengthOf(k));
   }
 }
-
-/** A unit shape along y, so wide, and so long along a direction from a point. */
-function stretched(from: THREE.Vector3, along: THREE.Vector3, wide: number, long: number): THREE.Matrix4 {
-  const turn = new THREE.Quaternion().setFromUnitVectors(UP, along);
-  return new THREE.Matrix4().compose(from, turn, new THREE.Vector3(wide, long, wide));
-}
-

@@ -30,6 +30,9 @@ const LAYERS: [keyof Layers, string][] = [
   ["inertia", "inertia boxes"],
 ];
 
+/** How many environments can be side by side. */
+const GRIDS = [1, 4, 9, 16, 25, 36, 49, 64];
+
 /** Range of a slider for what has none. */
 const OPEN: [number, number] = [-3.1416, 3.1416];
 
@@ -44,6 +47,11 @@ export class Panel {
   private facts = element("div", { id: "facts" });
   private rows = new Map<number, HTMLElement>();
   private paused = false;
+  /** The environment of a batch that is touched. */
+  env = 0;
+  private selection = { env: 0, first: 0, count: 1 };
+  private envFields: HTMLInputElement[] = [];
+  private grid: HTMLSelectElement | null = null;
 
   constructor(
     private scene: Scene,
@@ -94,12 +102,59 @@ export class Panel {
       title,
       this.pause,
       step,
-      button("back", "a second back (←)", () => this.send({ do: "rewind", seconds: 1 })),
+      ...(scene.rewinds ? [button("back", "a second back (←)", () => this.send({ do: "rewind", seconds: 1 }))] : []),
       button("reset", "reset (backspace)", () => this.send({ do: "reset" })),
       ...(keys.length > 0 ? [keyframe] : []),
       choice(SPEEDS, "1", (value) => this.send({ do: "speed", factor: Number(value) })),
+      ...(scene.envs > 1 ? this.envControls() : []),
       this.clock,
     ];
+  }
+
+  /** Chooses environments. */
+  show(chosen: Partial<{ env: number; first: number; count: number }>): void {
+    Object.assign(this.selection, chosen);
+    this.send({ do: "show", ...this.selection });
+  }
+
+  private envControls(): HTMLElement[] {
+    const most = this.scene.envs - 1;
+    const field = (title: string, id: string, changed: (value: number) => void) => {
+      const input = element("input", { type: "number", id, title, min: "0", max: `${most}`, step: "1", value: "0" });
+      input.onchange = () => changed(Math.min(most, Math.max(0, Math.round(input.valueAsNumber || 0))));
+      this.envFields.push(input);
+      return input;
+    };
+    const grids = GRIDS.filter((count) => count === 1 || count <= this.scene.envs);
+    const last = grids[grids.length - 1];
+    if (last < Math.min(this.scene.envs, 64)) grids.push(Math.min(this.scene.envs, 64));
+    const options = grids.map((count): [string, string] => [`${count}`, count === 1 ? "alone" : `of ${count}`]);
+    this.grid = choice(options, "1", (value) => this.show({ count: Number(value) }));
+    this.grid.id = "grid";
+    return [
+      element("label", { className: "check" }, "environment", field("the environment that is touched", "env", (env) => this.show({ env }))),
+      this.grid,
+      element("label", { className: "check" }, "from", field("the first side by side", "first", (first) => this.show({ first }))),
+    ];
+  }
+
+  /** Takes over what users of other pages, or the program, chose. */
+  private readSelection(frame: Frame): void {
+    const { chosen, envs } = frame.rows;
+    if (chosen.count === 0) return;
+    const [env, first] = chosen.data;
+    const count = Math.max(1, envs.count);
+    this.env = env;
+    this.selection = { env, first, count: this.grid?.value === `${count}` ? count : this.wider(count) };
+    const fields = this.envFields.filter((field) => document.activeElement !== field);
+    for (const field of fields) field.value = `${field.id === "env" ? env : first}`;
+    if (this.grid && document.activeElement !== this.grid) this.grid.value = `${this.selection.count}`;
+  }
+
+  /** The choice that shows so many: at the end of a batch there are fewer than were asked for. */
+  private wider(count: number): number {
+    const counts = Array.from(this.grid?.options ?? [], ({ value }) => Number(value));
+    return counts.find((choice) => choice >= count) ?? count;
   }
 
   private sections(): HTMLElement[] {
@@ -218,6 +273,7 @@ export class Panel {
   /** Shows what a frame says. */
   update(frame: Frame): void {
     this.paused = frame.paused;
+    this.readSelection(frame);
     const still = this.replay ? !this.replay.playing : frame.paused;
     paint(this.pause, still ? "play" : "pause");
     const speed = frame.rows.plots.data[8];

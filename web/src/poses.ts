@@ -1,7 +1,7 @@
 // Poses of bodies out of frames.
 
 import * as THREE from "three";
-import type { Frame } from "./frame.ts";
+import type { Frame, Rows } from "./frame.ts";
 import type { Numbers3, Numbers4 } from "./scene.ts";
 
 export const ONE = new THREE.Vector3(1, 1, 1);
@@ -16,11 +16,21 @@ export function localPose(placed: { pos: Numbers3; quat: Numbers4 }): THREE.Matr
   return poseOf(placed.pos, placed.quat);
 }
 
-/** Writes the pose of every body; makes room for them first. */
-export function readPoses(frame: Frame, poses: THREE.Matrix4[]): void {
-  const { data, count } = frame.rows.bodies;
+/** Writes the poses of rows from a first one on; makes room for them first. */
+function read({ data }: Rows, first: number, count: number, poses: THREE.Matrix4[]): void {
   for (let body = 0; body < count; body++) {
-    const at = 7 * body;
+    const at = 7 * (first + body);
     poses[body] = poseOf(data.subarray(at, at + 3), data.subarray(at + 3, at + 7));
   }
+}
+
+/** Writes the pose of every body. */
+export function readPoses(frame: Frame, poses: THREE.Matrix4[]): void {
+  read(frame.rows.bodies, 0, frame.rows.bodies.count, poses);
+}
+
+/** Writes the pose of every body of the k-th environment that is seen. */
+export function readPosesOf(k: number, frame: Frame, poses: THREE.Matrix4[]): void {
+  const { count } = frame.rows.bodies;
+  read(frame.rows.poses, k * count, count, poses);
 }

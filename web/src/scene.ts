@@ -81,6 +81,9 @@ export interface Scene {
   }[];
   trees: (number | null)[];
   active: boolean;
+  /** Whether the simulation keeps where it has been. */
+  rewinds: boolean;
+  envs: number;
 }
 
 export function bytesOf(text: string): ArrayBuffer {

@@ -3,10 +3,11 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
-import { Bodies, type Sight } from "./bodies.ts";
-import type { Frame } from "./frame.ts";
+import { Bodies, type Copy, type Hit, type Sight } from "./bodies.ts";
+import { envsOf, type Env, type Frame } from "./frame.ts";
+import { Labels } from "./labels.ts";
 import { Overlays, type Layers } from "./overlays.ts";
-import { localPose, readPoses } from "./poses.ts";
+import { localPose, readPoses, readPosesOf } from "./poses.ts";
 import type { Scene } from "./scene.ts";
 
 const SKY = 0xdfe6ee;
@@ -24,6 +25,14 @@ export class Stage {
   private sun = new THREE.DirectionalLight(0xffffff, 2.8);
   private centre = new THREE.Vector3();
   private followedAt: THREE.Vector3 | null = null;
+  /** The environments that are seen, in the order of their places. */
+  private envs: Env[] = [];
+  /** How much wider they are than one alone. */
+  private reach = 1;
+  private copies: Copy[] = [];
+  private faults = new Labels();
+  /** Where the origin of the chosen environment is. */
+  readonly offset = new THREE.Vector3();
   /** A length that suits the whole, m. */
   readonly extent: number;
 
@@ -50,9 +59,9 @@ export class Stage {
     this.world.environment = surroundings.fromScene(new RoomEnvironment(), 0.04).texture;
     this.world.environmentIntensity = 0.42;
     this.light();
-    this.bodies = new Bodies(scene, sight);
+    this.bodies = new Bodies(scene, sight, 1);
     this.overlays = new Overlays(scene, layers, this.extent, Math.min(this.extent, usualSize(scene)));
-    this.world.add(this.bodies.group, this.overlays.group, this.ground(scene));
+    this.world.add(this.bodies.group, this.overlays.group, this.faults.group, this.ground(scene));
 
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -109,13 +118,18 @@ export class Stage {
     this.sun.shadow.bias = -0.0002;
     this.sun.shadow.normalBias = 0.004 * this.extent;
     this.sun.shadow.radius = 3;
+    this.world.add(this.sun, this.sun.target);
+  }
+
+  /** Lets the sun reach all environments side by side. */
+  private shade(reach: number): void {
     const camera = this.sun.shadow.camera;
-    const half = 2.4 * this.extent;
+    const half = 2.4 * reach * this.extent;
     camera.left = camera.bottom = -half;
     camera.right = camera.top = half;
     camera.near = 0.1 * this.extent;
-    camera.far = 14 * this.extent;
-    this.world.add(this.sun, this.sun.target);
+    camera.far = 14 * reach * this.extent;
+    camera.updateProjectionMatrix();
   }
 
   /** Lines on the lowest plane, a metre or a tenth of the model apart. */
@@ -134,14 +148,18 @@ export class Stage {
     return grid;
   }
 
-  /** Looks at the whole model from the side and above. */
+  /** Looks at the whole model, or all environments side by side, from the side and above. */
   home(): void {
-    const away = new THREE.Vector3(1.35, -1.55, 0.62).multiplyScalar(1.4 * this.extent);
+    const side = this.side();
+    const reach = 1 + 0.66 * (side - 1);
+    this.reach = reach;
+    this.shade(reach);
+    const away = new THREE.Vector3(1.35, -1.55, side > 1 ? 1.1 : 0.62).multiplyScalar(1.4 * reach * this.extent);
     // The plots cover the lower edge: what matters stands a little higher.
     this.controls.target.copy(this.centre).addScaledVector(this.camera.up, -0.14 * this.extent);
-    this.camera.position.copy(this.centre).add(away);
+    this.camera.position.copy(this.controls.target).add(away);
     this.camera.near = 0.01 * this.extent;
-    this.camera.far = 120 * this.extent;
+    this.camera.far = 120 * reach * this.extent;
     this.camera.updateProjectionMatrix();
     this.controls.update();
   }
@@ -154,15 +172,64 @@ export class Stage {
     this.camera.updateProjectionMatrix();
   }
 
+  /** How many environments are in a row. */
+  private side(): number {
+    return Math.ceil(Math.sqrt(Math.max(1, this.envs.length)));
+  }
+
+  /** Where the origin of an environment is drawn: they stand in a square around that of the world. */
+  private placeOf(k: number): THREE.Vector3 {
+    const side = this.side();
+    const at = (index: number) => 1.5 * this.extent * (index - (side - 1) / 2);
+    return this.envs.length > 1 ? new THREE.Vector3(at(k % side), -at(Math.floor(k / side)), 0) : new THREE.Vector3();
+  }
+
+  /** Which environment stands at a place, if several do. */
+  envAt(hit: Hit): number | null {
+    return this.envs.length > 1 ? this.envs[hit.place].index : null;
+  }
+
+  /** Finds out which environments a frame shows, and where each stands. */
+  private spread(frame: Frame, chosen: number | null): void {
+    const envs = envsOf(frame);
+    const others = envs.length !== this.envs.length;
+    this.envs = envs;
+    const room = Math.max(1, envs.length);
+    this.bodies.resize(room);
+    this.copies = Array.from({ length: room }, (_, k) => this.copies[k] ?? newCopy());
+    // Of several, the one whose contacts are told is where its bodies are.
+    const own = Math.max(0, envs.findIndex(({ index }) => index === frame.rows.chosen.data[0]));
+    this.copies.forEach((copy, k) => {
+      if (envs.length > 1) readPosesOf(k, frame, copy.poses);
+      else readPoses(frame, copy.poses);
+      const at = this.placeOf(k);
+      for (const pose of copy.poses) pose.setPosition(new THREE.Vector3().setFromMatrixPosition(pose).add(at));
+      copy.fails = (envs[k]?.fault ?? "") !== "";
+      copy.asleep = k === own ? frame.rows.asleep.data : NOTHING;
+      copy.chosen = k === own ? chosen : null;
+    });
+    this.offset.copy(this.placeOf(own));
+    if (others) this.home();
+    this.faults.begin();
+    envs.forEach(({ index, fault }, k) => {
+      if (fault === "") return;
+      const at = this.placeOf(k).add(this.centre);
+      this.faults.add(`${index}: ${fault}`, at, new THREE.Color(0x8c1616));
+    });
+    this.faults.end();
+  }
+
   draw(frame: Frame, chosen: number | null): void {
     readPoses(frame, this.poses);
-    this.bodies.update(frame, this.poses, chosen);
+    this.spread(frame, chosen);
+    this.bodies.update(this.copies);
+    this.overlays.group.position.copy(this.offset);
     this.overlays.update(frame, this.poses);
     this.follow();
     this.controls.update();
     const target = this.controls.target;
     this.sun.target.position.copy(target);
-    this.sun.position.copy(target).add(new THREE.Vector3(2.2, -1.6, 4.6).multiplyScalar(this.extent));
+    this.sun.position.copy(target).add(new THREE.Vector3(2.2, -1.6, 4.6).multiplyScalar(this.reach * this.extent));
     this.renderer.render(this.world, this.camera);
   }
 
@@ -171,7 +238,7 @@ export class Stage {
       this.followedAt = null;
       return;
     }
-    const now = new THREE.Vector3().setFromMatrixPosition(this.poses[this.followed]);
+    const now = new THREE.Vector3().setFromMatrixPosition(this.poses[this.followed]).add(this.offset);
     if (this.followedAt) {
       const moved = now.clone().sub(this.followedAt);
       this.controls.target.add(moved);
@@ -191,6 +258,12 @@ export class Stage {
     ray.setFromCamera(at, this.camera);
     return ray;
   }
+}
+
+const NOTHING = new Float32Array();
+
+function newCopy(): Copy {
+  return { poses: [], fails: false, asleep: NOTHING, chosen: null };
 }
 
 /** A length that marks on bodies are measured by: several times the half size of a usual geom, m. */

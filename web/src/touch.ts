@@ -17,7 +17,7 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
 
   const pull = (event: PointerEvent) => {
     const target = stage.rayAt(event.clientX, event.clientY).ray.intersectPlane(pulled!.plane, new THREE.Vector3());
-    if (target) send({ do: "drag", body: pulled!.body, point: pulled!.point, target: target.toArray() });
+    if (target) send({ do: "drag", body: pulled!.body, point: pulled!.point, target: target.sub(stage.offset).toArray() });
   };
 
   canvas.addEventListener(
@@ -27,8 +27,14 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
       if (!(event.ctrlKey || event.shiftKey || event.metaKey) || !scene.active) return;
       const hit = stage.bodies.pick(stage.rayAt(event.clientX, event.clientY));
       if (!hit || !scene.bodies[hit.body].free) return;
+      // The one that is touched is the one whose contacts are told.
+      const env = stage.envAt(hit);
+      if (env !== null && env !== panel.env) {
+        panel.show({ env });
+        return;
+      }
       const facing = stage.camera.getWorldDirection(new THREE.Vector3());
-      const local = hit.point.clone().applyMatrix4(stage.poses[hit.body].clone().invert());
+      const local = hit.point.clone().sub(stage.offset).applyMatrix4(stage.poses[hit.body].clone().invert());
       pulled = {
         body: hit.body,
         point: local.toArray(),
@@ -63,7 +69,10 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
       pulled = null;
       stage.controls.enabled = true;
     } else if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) < CLICK) {
-      panel.choose(stage.bodies.pick(stage.rayAt(event.clientX, event.clientY))?.body ?? null);
+      const hit = stage.bodies.pick(stage.rayAt(event.clientX, event.clientY));
+      const env = hit && stage.envAt(hit);
+      if (env !== null && env !== panel.env) panel.show({ env });
+      panel.choose(hit?.body ?? null);
     }
     pressed = null;
   });
@@ -75,7 +84,7 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
     else if (event.key === "h") stage.home();
     else if (!scene.active) return;
     else if (event.key === "ArrowRight") send({ do: "step", count: 1 });
-    else if (event.key === "ArrowLeft") send({ do: "rewind", seconds: 1 });
+    else if (event.key === "ArrowLeft" && scene.rewinds) send({ do: "rewind", seconds: 1 });
     else if (event.key === "Backspace") send({ do: "reset" });
     else return;
     event.preventDefault();

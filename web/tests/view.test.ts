@@ -179,6 +179,25 @@ test("an equality that is switched off lets go", { skip }, async () => {
   }
 });
 
+test("environments stand side by side, and one of them is chosen", { skip }, async () => {
+  const program = await view("models/pendulum.xml", "--envs", "5", "--noise", "0.5", "--paused");
+  try {
+    const page = await open(browser, program.url);
+    await until(page, () => window.clench.frame.rows.envs.count === 5);
+    assert.ok((await page.evaluate(() => window.clench.frame.rows.poses.count)) > 5);
+    await page.locator("#grid").selectOption("1");
+    await until(page, () => window.clench.frame.rows.envs.count === 1);
+    const first = await page.evaluate(() => window.clench.frame.rows.qpos.data[0]);
+    await page.locator("#env").fill("3");
+    await page.locator("#env").press("Enter");
+    await until(page, () => window.clench.frame.rows.chosen.data[0] === 3);
+    assert.notEqual(await page.evaluate(() => window.clench.frame.rows.qpos.data[0]), first);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
 test("a page whose program has ended says so", { skip }, async () => {
   const program = await view("models/pendulum.xml");
   const page = await open(browser, program.url);

@@ -1,19 +1,23 @@
 //! `clench view`: a model in the browser.
 
 use crate::interrupt::Interrupt;
+use crate::limits::MemoryArguments;
 use crate::message::tell;
 use crate::options::ModelArguments;
-use crate::simulate::find_keyframe;
+use crate::simulate::StartArguments;
 use anyhow::Result;
 use clap::Args;
-use clench::Sim;
-use clench_view::{Page, Player, Scene, Server, ServerOptions};
+use clench::{Batch, BatchOptions, Sim};
+use clench_view::{Page, Player, Scene, Server, ServerOptions, Stepped};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Frames a second.
 const RATE: f64 = 60.0;
+/// Environments that are side by side at first, if there are as many.
+const AT_FIRST: usize = 16;
 /// The share of the time between frames that may go into steps.
 const STEPPING: f64 = 0.8;
 
@@ -39,10 +43,17 @@ pub struct Arguments {
     /// Stand still at first
     #[arg(long)]
     paused: bool,
-    /// Start from this keyframe (name or index)
-    #[arg(long, value_name = "K")]
-    keyframe: Option<String>,
+    /// Show so many environments: one of them, or up to 64 side by side; they differ by --noise or --states
+    #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
+    envs: Option<u32>,
 
+    #[command(flatten)]
+    start: StartArguments,
+
+    #[command(flatten)]
+    memory: MemoryArguments,
+
+    // Last, because its heading in the help holds for all that follows.
     #[command(flatten)]
     model: ModelArguments,
 }
@@ -54,19 +65,37 @@ printed address here. Ctrl-C ends it.";
 /// Shows the model until a signal comes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
-    let mut sim = Sim::<f64>::with_options(model.clone(), options)?;
-    if let Some(key) = &arguments.keyframe {
-        sim.reset_to_keyframe(find_keyframe(&model, key)?)?;
+    let limit = arguments.memory.limit();
+    let envs = arguments.envs.unwrap_or(1) as usize;
+    let starts = arguments.start.starts(&model, envs, limit)?;
+    if arguments.envs.is_none() {
+        let mut sim = Sim::<f64>::with_options(Arc::clone(&model), options)?;
+        starts.start(&mut sim)?;
+        return show(arguments, sim);
     }
+    let options = BatchOptions {
+        options,
+        ..BatchOptions::default()
+    };
+    let mut batch = Batch::<f64>::with_options(Arc::clone(&model), envs, options)?;
+    starts.start_all(&mut batch)?;
+    show(arguments, batch)
+}
+
+/// Steps and shows a simulation or a batch until a signal comes.
+fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
     let page = Page::find(|text| tell(text))?;
     let place = ServerOptions {
         host: arguments.host.clone(),
         port: arguments.port,
     };
+    let scene = Scene::new(viewed.model()).of_envs(viewed.envs());
     let interrupt = Interrupt::listen()?;
-    let server = Server::start(&place, page, &Scene::new(&model))?;
+    let server = Server::start(&place, page, &scene)?;
     announce(arguments, &server);
-    play(Player::new(sim, arguments.paused), &server, &interrupt);
+    let mut player = Player::new(viewed, arguments.paused);
+    player.interaction().selection.count = player.viewed().envs().min(AT_FIRST);
+    play(player, &server, &interrupt);
     Ok(ExitCode::SUCCESS)
 }
 
@@ -82,7 +111,7 @@ fn announce(arguments: &Arguments, server: &Server) {
 }
 
 /// Steps and shows, frame by frame, and does what users do.
-fn play(mut player: Player, server: &Server, interrupt: &Interrupt) {
+fn play<V: Stepped>(mut player: Player<V>, server: &Server, interrupt: &Interrupt) {
     let period = Duration::from_secs_f64(1.0 / RATE);
     let mut last = Instant::now();
     while interrupt.signal().is_none() {

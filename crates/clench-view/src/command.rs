@@ -73,6 +73,15 @@ pub enum Command {
         /// Most sweeps of noslip.
         noslip_iterations: Option<usize>,
     },
+    /// Choose environments of a batch.
+    Show {
+        /// The one whose numbers are shown, and that is touched.
+        env: usize,
+        /// The first of those side by side.
+        first: usize,
+        /// How many are side by side, at most [`MAX_SIDE_BY_SIDE`]; 1 for `env` alone.
+        count: usize,
+    },
     /// Back to a moment of the last ten seconds.
     Rewind {
         /// How long ago, s of simulated time.
@@ -82,6 +91,8 @@ pub enum Command {
 
 /// The most steps of one command.
 pub const MAX_STEPS: u32 = 1000;
+/// The most environments that are seen at once.
+pub const MAX_SIDE_BY_SIDE: usize = 64;
 /// The least and the most that a speed can be.
 pub const SPEEDS: [f64; 2] = [0.01, 100.0];
 /// The most iterations that an option can be.
@@ -90,11 +101,11 @@ const MAX_ITERATIONS: usize = 10_000;
 const FAR: f64 = 1e6;
 
 impl Command {
-    /// Refuses what a model does not have and numbers that make no sense.
+    /// Refuses what a model, or so many environments of it, does not have and numbers that make no sense.
     ///
     /// # Errors
     /// What is wrong.
-    pub fn check(&self, model: &Model) -> Result<(), String> {
+    pub fn check(&self, model: &Model, envs: usize) -> Result<(), String> {
         let below = |kind: &str, index: usize, count: usize| match index < count {
             true => Ok(()),
             false => Err(format!("there is no {kind} {index}, only {count}")),
@@ -140,6 +151,11 @@ impl Command {
                     below("number of iterations", count, MAX_ITERATIONS + 1)?;
                 }
                 within("tolerance", tolerance.unwrap_or(0.0), [0.0, 1.0])
+            }
+            Command::Show { env, first, count } => {
+                below("environment", env, envs)?;
+                below("environment", first, envs)?;
+                within("count", count as f64, [1.0, MAX_SIDE_BY_SIDE as f64])
             }
             Command::Rewind { seconds } => within("seconds", seconds, [0.0, FAR]),
             Command::Pause { .. } | Command::Reset {} | Command::Release {} => Ok(()),

@@ -4,6 +4,7 @@
 //! (u32), how many rows each has (u32 each), then the rows of all sections in order, in f32. [`SECTIONS`] says what they are.
 
 use crate::drag::Drag;
+use crate::marks::Mark;
 use clench::math::{Mask, Scalar, Vec3};
 use clench::rigid::dynamics::tendon_path::each_span;
 use clench::rigid::readout::{ContactRow, contact_rows};
@@ -34,12 +35,47 @@ pub struct Timing {
     pub speed: f64,
 }
 
+/// What a frame tells besides the simulation.
+#[derive(Default)]
+pub struct Besides<'a> {
+    /// Bits, see [`PAUSED`].
+    pub flags: u32,
+    /// How the last step went.
+    pub timing: Timing,
+    /// The spring that drags a body.
+    pub drag: Option<&'a Drag>,
+    /// What users draw.
+    pub marks: Vec<&'a Mark>,
+    /// The environment of a batch whose contacts are shown, and the first of those side by side.
+    pub chosen: Option<[usize; 2]>,
+    /// The environments of a batch that are seen, and why each cannot go on, if it cannot.
+    pub envs: Vec<(usize, Option<String>)>,
+    /// Poses of the bodies of all of these, where more than one is seen.
+    pub poses: Vec<f32>,
+}
+
+impl Besides<'_> {
+    /// Adds the poses of one more environment. Where they cannot be computed its last ones are told.
+    pub fn add_poses<T: Precision>(&mut self, sim: &mut Sim<T>) {
+        let _ = sim.refresh();
+        bodies(sim.workspace(), &mut self.poses);
+    }
+
+    /// All texts, in order: those of marks, then those of environments.
+    fn texts(&self) -> impl Iterator<Item = &str> {
+        let faults = self
+            .envs
+            .iter()
+            .map(|(_, why)| why.as_deref().unwrap_or(""));
+        self.marks.iter().map(|mark| mark.text()).chain(faults)
+    }
+}
+
 /// What a frame shows.
 struct Shown<'a, T: Precision> {
     sim: &'a Sim<T>,
     energy: [f64; 2],
-    timing: Timing,
-    drag: Option<&'a Drag>,
+    besides: &'a Besides<'a>,
 }
 
 macro_rules! sections {
@@ -86,35 +122,41 @@ sections! {
     /// What sensors measure.
     sensors: 1 => narrow(&s.sim.workspace().sensors.data, out);
     /// The spring that drags a body: the body, the point, where it is drawn to, the force.
-    drag: 10 => out.extend(s.drag.into_iter().flat_map(|drag| drag.row(s.sim.workspace())));
+    drag: 10 => out.extend(s.besides.drag.into_iter().flat_map(|drag| drag.row(s.sim.workspace())));
     /// Plotted: iterations, log10 of the duality gap and of the gradient, deepest penetration (m), contacts, potential
     /// and kinetic energy (J), time of a step (µs), simulated over real time.
     plots: 9 => plots(s, out);
+    /// What users draw: kind (0 sphere, 1 line, 2 arrow, 3 text), both ends, radius, colour and opacity.
+    marks: 12 => s.besides.marks.iter().for_each(|mark| out.extend(mark.row()));
+    /// The environment of a batch whose contacts these are, and the first of those that are seen.
+    chosen: 1 => out.extend(s.besides.chosen.iter().flatten().map(|&env| env as f32));
+    /// The environments of a batch that are seen: number, and whether it cannot go on.
+    envs: 2 => out.extend(s.besides.envs.iter().flat_map(|(env, why)| [*env as f32, f32::from(u8::from(why.is_some()))]));
+    /// Position and orientation of each body of each of these, where more than one is seen.
+    poses: 7 => out.extend(&s.besides.poses);
+    /// How many letters the text of each mark and of each environment has, which says why it cannot go on.
+    texts: 1 => out.extend(s.besides.texts().map(|text| text.chars().count() as f32));
+    /// The letters of all of these, as code points.
+    letters: 1 => out.extend(s.besides.texts().flat_map(str::chars).map(|letter| u32::from(letter) as f32));
 }
 
 /// The bytes of the frame of a simulation as it is now.
 ///
 /// # Errors
 /// A state that cannot be evaluated.
-pub fn encode<T: Precision>(
-    sim: &mut Sim<T>,
-    flags: u32,
-    timing: Timing,
-    drag: Option<&Drag>,
-) -> Result<Vec<u8>, SimError> {
+pub fn encode<T: Precision>(sim: &mut Sim<T>, besides: &Besides) -> Result<Vec<u8>, SimError> {
     sim.refresh()?;
     let energy = sim.energy()?;
     let shown = Shown {
         sim,
         energy: [energy.potential.to_f64(), energy.kinetic.to_f64()],
-        timing,
-        drag,
+        besides,
     };
     let mut numbers = Vec::new();
     let counts = write_sections(&shown, &mut numbers);
     let mut bytes = Vec::with_capacity(20 + 4 * (counts.len() + numbers.len()));
     bytes.extend(MAGIC);
-    bytes.extend(flags.to_le_bytes());
+    bytes.extend(besides.flags.to_le_bytes());
     bytes.extend(shown.sim.state.time.to_le_bytes());
     bytes.extend((counts.len() as u32).to_le_bytes());
     counts.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
@@ -214,8 +256,8 @@ fn plots<T: Precision>(s: &Shown<T>, out: &mut Vec<f32>) {
         contacts.len() as f64,
         s.energy[0],
         s.energy[1],
-        1e6 * s.timing.step.as_secs_f64(),
-        s.timing.speed,
+        1e6 * s.besides.timing.step.as_secs_f64(),
+        s.besides.timing.speed,
     ];
     out.extend(numbers.map(|x| x as f32));
 }

@@ -2,7 +2,8 @@
 //!
 //! [`scene`] says what there is to draw, [`frame`] where it is now and what pushes on what; viewers, recordings and films share
 //! both. [`Server`] hands a page, a scene and frames to browsers, and their [`Command`]s to whoever steps the simulation:
-//! [`Player`], which steps it itself in real time, or a loop of the user's. The page itself stands in `web/`.
+//! [`Player`], which steps it itself in real time, or a loop of the user's with a [`PassiveViewer`]. What commands do is the same
+//! in both, in [`interaction`]. The page itself stands in `web/`.
 //!
 //! No physics here, and nothing of the page's looks.
 
@@ -10,17 +11,24 @@ pub mod command;
 mod drag;
 pub mod frame;
 mod http;
+pub mod interaction;
+pub mod marks;
 pub mod page;
+mod passive;
 mod player;
 mod recording;
 pub mod scene;
 mod server;
 mod socket;
+pub mod viewed;
 
 pub use command::Command;
 pub use drag::Drag;
+pub use marks::{Mark, MarkShape, Marks};
 pub use page::Page;
+pub use passive::PassiveViewer;
 pub use player::Player;
-pub use recording::Recording;
+pub use recording::{RecordError, Recording};
 pub use scene::Scene;
 pub use server::{ServeError, Server, ServerOptions};
+pub use viewed::{Stepped, Viewed};

@@ -12,6 +12,9 @@ const EMBEDDED: &str = include_str!(concat!(env!("OUT_DIR"), "/page.html"));
 /// The folder of its source.
 const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web");
 
+/// What data in a page begins with.
+const DATA: &str = "<script id=\"recording\" type=\"application/json\">";
+
 /// The page.
 #[derive(Clone, Debug)]
 pub struct Page(String);
@@ -78,8 +81,15 @@ impl Page {
     pub(crate) fn with_data(&self, json: &str) -> String {
         // A script ends at `</`, wherever that stands.
         let data = json.replace("</", "<\\/");
-        let script = format!("<script id=\"recording\" type=\"application/json\">{data}</script>");
+        let script = format!("{DATA}{data}</script>");
         self.0.replacen("<body>", &format!("<body>{script}"), 1)
+    }
+
+    /// The data that such a page has.
+    pub(crate) fn data(html: &str) -> Option<&str> {
+        let (_, rest) = html.split_once(&format!("<body>{DATA}"))?;
+        // JSON may hold `<\/` wherever it holds `</`.
+        rest.split_once("</script>").map(|(data, _)| data)
     }
 }
 

@@ -33,8 +33,12 @@ pub struct Scene {
     textures: Vec<Value>,
     /// The tree of each body, where one moves it.
     trees: Vec<Option<usize>>,
-    /// Whether commands reach a simulation that the viewer itself steps.
+    /// Whether commands reach a simulation.
     active: bool,
+    /// Whether one can go back in time.
+    rewinds: bool,
+    /// How many environments there are.
+    envs: usize,
 }
 
 impl Scene {
@@ -77,6 +81,25 @@ impl Scene {
             textures: textures(&model.visuals),
             trees: (0..model.nbody()).map(|b| model.tree_of_body(b)).collect(),
             active: true,
+            rewinds: true,
+            envs: 1,
+        }
+    }
+
+    /// The scene of so many environments, each of which moves by itself.
+    pub fn of_envs(self, envs: usize) -> Self {
+        Scene {
+            envs,
+            rewinds: envs == 1,
+            ..self
+        }
+    }
+
+    /// The same for a simulation that does not keep where it has been.
+    pub fn without_past(self) -> Self {
+        Scene {
+            rewinds: false,
+            ..self
         }
     }
 

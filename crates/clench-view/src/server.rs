@@ -7,6 +7,7 @@ use data_encoding::HEXLOWER;
 use serde_json::json;
 use std::io::{self, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -100,6 +101,8 @@ pub struct Server {
     commands: Mutex<Receiver<Command>>,
     address: SocketAddr,
     listener: Option<JoinHandle<()>>,
+    /// The process that the threads are of.
+    process: u32,
 }
 
 impl Server {
@@ -144,6 +147,7 @@ impl Server {
             commands: Mutex::new(commands),
             address,
             listener: Some(listener),
+            process: process::id(),
         })
     }
 
@@ -194,6 +198,10 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
+        // After a fork the child has no thread to wait for, and the server is its parent's.
+        if process::id() != self.process {
+            return;
+        }
         self.shared.closing.store(true, Relaxed);
         self.shared.changed.notify_all();
         // A connection wakes the thread that waits for one.

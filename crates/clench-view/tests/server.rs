@@ -12,17 +12,17 @@ use tungstenite::{Message, WebSocket};
 const BALL: &str = "<mujoco><worldbody><geom type='plane' size='1 1 1'/>
     <body name='ball' pos='0 0 0.099'><freejoint/><geom size='0.1' mass='2'/></body></worldbody></mujoco>";
 
-fn player() -> Player {
+fn player() -> Player<Sim<f64>> {
     let model = Arc::new(load_str(BALL).unwrap());
     Player::new(Sim::new(model).unwrap(), true)
 }
 
-fn server(player: &Player) -> Server {
+fn server(player: &Player<Sim<f64>>) -> Server {
     let page = Page::of("<html><body>the page</body></html>");
     Server::start(
         &ServerOptions::default(),
         page,
-        &Scene::new(player.sim().model()),
+        &Scene::new(player.viewed().model()),
     )
     .unwrap()
 }
@@ -203,7 +203,7 @@ fn commands_that_the_model_cannot_follow_are_refused() {
     ] {
         assert!(player.apply(command.clone()).is_err(), "{command:?}");
     }
-    assert_eq!(player.sim().state.time, 0.0);
+    assert_eq!(player.viewed().state.time, 0.0);
 }
 
 #[test]
@@ -221,28 +221,31 @@ fn a_spring_pulls_the_body_to_where_the_user_points() {
         player.apply(Command::Step { count: 1000 }).unwrap();
     }
     // It hangs below the target by g over the spring's rate of 100 a second squared.
-    let height = player.sim().state.qpos[2];
+    let height = player.viewed().state.qpos[2];
     assert!((height - (1.0 - 9.81 / 100.0)).abs() < 1e-6, "{height}");
     player.apply(Command::Release {}).unwrap();
-    assert!(player.sim().state.xfrc_applied[1].linear.to_array() == [0.0; 3]);
+    assert!(player.viewed().state.xfrc_applied[1].linear.to_array() == [0.0; 3]);
     player.apply(Command::Step { count: 100 }).unwrap();
-    assert!(player.sim().state.qvel[2] < -1.0);
+    assert!(player.viewed().state.qvel[2] < -1.0);
 }
 
 #[test]
 fn a_user_can_go_back_and_the_motion_repeats() {
     let mut player = player();
     player.apply(Command::Step { count: 300 }).unwrap();
-    let (time, qpos) = (player.sim().state.time, player.sim().state.qpos.clone());
+    let (time, qpos) = (
+        player.viewed().state.time,
+        player.viewed().state.qpos.clone(),
+    );
     player.apply(Command::Step { count: 200 }).unwrap();
     player.apply(Command::Rewind { seconds: 0.4 }).unwrap();
-    let back = player.sim().state.time;
+    let back = player.viewed().state.time;
     assert!(back <= time + 1e-9 && time - back < 0.02, "{back}");
     let steps = ((time - back) / 0.002).round() as u32;
     if steps > 0 {
         player.apply(Command::Step { count: steps }).unwrap();
     }
-    assert_eq!(player.sim().state.qpos, qpos);
+    assert_eq!(player.viewed().state.qpos, qpos);
 }
 
 #[test]
@@ -254,13 +257,13 @@ fn simulated_time_follows_real_time() {
     for _ in 0..100 {
         player.advance(Duration::from_millis(20), long).unwrap();
     }
-    assert!((player.sim().state.time - 1.0).abs() < 0.003);
+    assert!((player.viewed().state.time - 1.0).abs() < 0.003);
     // What does not fit into the budget is left out, so that the page stays alive.
-    let before = player.sim().state.time;
+    let before = player.viewed().state.time;
     player
         .advance(Duration::from_secs(3600), Duration::ZERO)
         .unwrap();
-    assert_eq!(player.sim().state.time, before);
+    assert_eq!(player.viewed().state.time, before);
 }
 
 #[test]
@@ -315,7 +318,7 @@ fn a_port_in_use_is_named() {
         port,
         ..ServerOptions::default()
     };
-    let scene = Scene::new(player().sim().model());
+    let scene = Scene::new(player().viewed().model());
     let error = Server::start(&options, Page::of(""), &scene).err().unwrap();
     assert!(matches!(error, ServeError::Listen { .. }));
     assert!(

@@ -264,6 +264,11 @@ impl Batch {
         &self.inner
     }
 
+    /// The same, to be kept.
+    pub(crate) fn shared(&self) -> &Arc<Mutex<AnyBatch>> {
+        &self.inner
+    }
+
     /// The model, without the numbers that environments have for themselves.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
         self.model.get().inner()

@@ -72,6 +72,11 @@ impl Sim {
         &self.inner
     }
 
+    /// The same, to be kept.
+    pub(crate) fn shared(&self) -> &Arc<Mutex<AnySim>> {
+        &self.inner
+    }
+
     /// The model, without the numbers that this simulation has for itself.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
         self.model.get().inner()

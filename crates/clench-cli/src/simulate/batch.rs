@@ -4,6 +4,7 @@ use super::energy::{EnergyAccount, STEPS_A_LOOK, next_steps};
 use super::quality::{Verdict, verdict};
 use super::record::{BATCH_OUTPUTS, BatchRecorder};
 use super::report::{BatchReport, DivergenceReport, Failure, Report, stages};
+use super::start::{narrow, widen};
 use super::summary::{is_conservative, status};
 use super::{Arguments, Run};
 use crate::ALLOCATOR;
@@ -88,7 +89,7 @@ pub fn run<S: Precision>(
     let options = arguments.batch.options(options);
     let model = Arc::clone(&run.model);
     let mut batch = heap.taken_by(|| Batch::<S>::with_options(model, envs as usize, options))?;
-    start(&mut batch, run)?;
+    run.starts.start_all(&mut batch)?;
     let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;
     let mut account = EnergyAccount::open(&run.model, energies.iter().copied());
@@ -198,31 +199,6 @@ impl Heap {
         self.given_back += before.saturating_sub(after);
         result
     }
-}
-
-fn narrow<S: Scalar>(values: &[f64]) -> Vec<S> {
-    values.iter().map(|&x| S::new(x)).collect()
-}
-
-fn widen<S: Scalar>(values: &[S]) -> Vec<f64> {
-    values.iter().map(|x| x.to_f64()).collect()
-}
-
-fn start<S: Precision>(batch: &mut Batch<S>, run: &Run) -> Result<()> {
-    for env in 0..batch.count() {
-        if let Some(key) = run.starts.keyframe() {
-            batch.reset_to_keyframe(env, key)?;
-        }
-        if run.starts.moved() {
-            let state = &mut batch.state;
-            let (qpos, qvel) = (state.qpos.row_mut(env), state.qvel.row_mut(env));
-            let (mut positions, mut velocities) = (widen(qpos), widen(qvel));
-            run.starts.place(env, &mut positions, &mut velocities);
-            qpos.copy_from_slice(&narrow(&positions));
-            qvel.copy_from_slice(&narrow(&velocities));
-        }
-    }
-    Ok(())
 }
 
 /// The potential and the kinetic energy of each environment, J.

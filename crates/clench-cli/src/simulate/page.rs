@@ -6,7 +6,7 @@ use crate::replacement::Replacement;
 use anyhow::{Context, Result};
 use clench::rigid::Precision;
 use clench::{Model, Sim};
-use clench_view::{Page, Recording, Scene};
+use clench_view::{Marks, Page, Recording, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -80,7 +80,7 @@ impl PageRecorder {
         if !steps.is_multiple_of(self.every) {
             return Ok(());
         }
-        (self.recording.append(sim))
+        (self.recording.append(sim, &mut Marks::default()))
             .with_context(|| format!("{} (see --every and --max-memory)", context(&self.path)))
     }
 

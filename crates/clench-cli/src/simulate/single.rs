@@ -19,7 +19,7 @@ pub fn run<T: Precision>(
     options: RigidOptions,
 ) -> Result<Report> {
     let mut sim = Sim::<T>::with_options(Arc::clone(&run.model), options)?;
-    start(&mut sim, run)?;
+    run.starts.start(&mut sim)?;
     let mut recorder = (run.record.as_ref())
         .map(|options| RunRecorder::create(options, &run.model))
         .transpose()?;
@@ -84,17 +84,5 @@ fn watch<T: Precision>(
         account.look(0, energy(sim)?);
         sim.run_clocks(profile);
     }
-    Ok(())
-}
-
-fn start<T: Precision>(sim: &mut Sim<T>, run: &Run) -> Result<()> {
-    if let Some(key) = run.starts.keyframe() {
-        sim.reset_to_keyframe(key)?;
-    }
-    let widen = |values: &[T]| -> Vec<f64> { values.iter().map(|x| x.to_f64()).collect() };
-    let (mut qpos, mut qvel) = (widen(&sim.state.qpos), widen(&sim.state.qvel));
-    run.starts.place(0, &mut qpos, &mut qvel);
-    let narrow = |values: Vec<f64>| -> Vec<T> { values.into_iter().map(T::new).collect() };
-    sim.set_configuration(&narrow(qpos), &narrow(qvel))?;
     Ok(())
 }

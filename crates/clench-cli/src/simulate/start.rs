@@ -4,8 +4,10 @@ use crate::limits::MemoryLimit;
 use crate::npy::{Rows, read_rows};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use clench::Model;
+use clench::math::Scalar;
+use clench::rigid::Precision;
 use clench::rigid::dynamics::integrate::integrate_positions;
+use clench::{Batch, Model, Sim};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::path::{Path, PathBuf};
@@ -78,18 +80,37 @@ impl StartArguments {
 }
 
 impl Starts<'_> {
-    /// The keyframe to start from, where one is asked for.
-    pub fn keyframe(&self) -> Option<usize> {
-        self.keyframe
+    /// Brings a simulation to where environment 0 starts.
+    pub fn start<T: Precision>(&self, sim: &mut Sim<T>) -> Result<()> {
+        if let Some(key) = self.keyframe {
+            sim.reset_to_keyframe(key)?;
+        }
+        let (mut qpos, mut qvel) = (widen(&sim.state.qpos), widen(&sim.state.qvel));
+        self.place(0, &mut qpos, &mut qvel);
+        sim.set_configuration(&narrow::<T>(&qpos), &narrow::<T>(&qvel))?;
+        Ok(())
     }
 
-    /// Whether environments start elsewhere than in the model's initial state or a keyframe.
-    pub fn moved(&self) -> bool {
-        self.states.is_some() || self.noise > 0.0
+    /// Brings all environments of a batch to where they start.
+    pub fn start_all<S: Precision>(&self, batch: &mut Batch<S>) -> Result<()> {
+        for env in 0..batch.count() {
+            if let Some(key) = self.keyframe {
+                batch.reset_to_keyframe(env, key)?;
+            }
+            if self.states.is_some() || self.noise > 0.0 {
+                let state = &mut batch.state;
+                let (qpos, qvel) = (state.qpos.row_mut(env), state.qvel.row_mut(env));
+                let (mut positions, mut velocities) = (widen(qpos), widen(qvel));
+                self.place(env, &mut positions, &mut velocities);
+                qpos.copy_from_slice(&narrow(&positions));
+                qvel.copy_from_slice(&narrow(&velocities));
+            }
+        }
+        Ok(())
     }
 
     /// Positions and velocities of environment `env`, whose state is that of the model or the keyframe.
-    pub fn place(&self, env: usize, qpos: &mut [f64], qvel: &mut [f64]) {
+    fn place(&self, env: usize, qpos: &mut [f64], qvel: &mut [f64]) {
         if let Some(rows) = &self.states {
             let (positions, velocities) = rows.row(env).split_at(self.model.nq);
             qpos.copy_from_slice(positions);
@@ -104,6 +125,16 @@ impl Starts<'_> {
             qvel.iter_mut().for_each(|v| *v += draw());
         }
     }
+}
+
+/// The same numbers in the precision of a simulation.
+pub(super) fn narrow<S: Scalar>(values: &[f64]) -> Vec<S> {
+    values.iter().map(|&x| S::new(x)).collect()
+}
+
+/// The same numbers in double precision.
+pub(super) fn widen<S: Scalar>(values: &[S]) -> Vec<f64> {
+    values.iter().map(|x| x.to_f64()).collect()
 }
 
 /// Numbers drawn uniformly from -1 to 1, by PCG-XSL-RR 128/64.
@@ -127,7 +158,7 @@ impl Noise {
 ///
 /// # Errors
 /// That the model has none such, and which it has.
-pub fn find_keyframe(model: &Model, key: &str) -> Result<usize> {
+fn find_keyframe(model: &Model, key: &str) -> Result<usize> {
     let keyframes = &model.keyframes;
     if let Some(k) = keyframes.iter().position(|k| k.name == key) {
         return Ok(k);

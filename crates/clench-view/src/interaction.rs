@@ -1,0 +1,187 @@
+//! What users of the page have chosen, and what they do to a simulation, whoever steps it.
+
+use crate::command::{Command, cone};
+use crate::drag::Drag;
+use crate::frame::{Besides, PAUSED, Timing, encode};
+use crate::marks::Marks;
+use crate::viewed::Viewed;
+use clench::math::Real;
+use clench::{RigidOptions, SimError};
+
+/// Which environments of a batch are seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Selection {
+    /// The one whose contacts and numbers are shown, and that is touched.
+    pub env: usize,
+    /// The first of those side by side.
+    pub first: usize,
+    /// How many are side by side; 1 for the chosen one alone.
+    pub count: usize,
+}
+
+/// What users of the page have chosen.
+pub struct Interaction {
+    /// Whether the simulation stands still.
+    pub paused: bool,
+    /// Simulated over real time; 0 for as fast as can be.
+    pub factor: f64,
+    /// Which environments are seen.
+    pub selection: Selection,
+    /// The spring that pulls, and the environment that it pulls in.
+    drag: Option<(usize, Drag)>,
+}
+
+impl Interaction {
+    /// Nothing touched yet.
+    pub fn new(paused: bool) -> Self {
+        Interaction {
+            paused,
+            factor: 1.0,
+            selection: Selection {
+                env: 0,
+                first: 0,
+                count: 1,
+            },
+            drag: None,
+        }
+    }
+
+    /// Lets the spring pull with the force that it has now, if there is one. To be called before each step.
+    ///
+    /// # Errors
+    /// A state that cannot be evaluated.
+    pub fn pull<V: Viewed>(&mut self, viewed: &mut V) -> Result<(), SimError> {
+        match &mut self.drag {
+            None => Ok(()),
+            Some((env, drag)) => viewed.change(*env, |sim| {
+                sim.refresh()?;
+                drag.apply(sim);
+                Ok(())
+            }),
+        }
+    }
+
+    /// Lets go of what is pulled.
+    ///
+    /// # Errors
+    /// An environment that is no longer there.
+    pub fn release<V: Viewed>(&mut self, viewed: &mut V) -> Result<(), SimError> {
+        match self.drag.take() {
+            None => Ok(()),
+            Some((env, drag)) => viewed.change(env, |sim| {
+                drag.release(sim);
+                Ok(())
+            }),
+        }
+    }
+
+    /// Does what a user did. Steps and the way back are the business of whoever steps.
+    ///
+    /// # Errors
+    /// Why it cannot be done; nothing has changed then.
+    pub fn apply<V: Viewed>(&mut self, viewed: &mut V, command: Command) -> Result<(), String> {
+        command.check(viewed.model(), viewed.envs())?;
+        self.carry_out(viewed, command)
+            .map_err(|error| error.to_string())
+    }
+
+    fn carry_out<V: Viewed>(&mut self, viewed: &mut V, command: Command) -> Result<(), SimError> {
+        let env = self.selection.env;
+        match command {
+            Command::Pause { on } => self.paused = on,
+            Command::Speed { factor } => self.factor = factor,
+            Command::Show { env, first, count } => {
+                self.release(viewed)?;
+                self.selection = Selection { env, first, count };
+            }
+            Command::Reset {} => {
+                self.release(viewed)?;
+                viewed.reset(env, None)?;
+            }
+            Command::Keyframe { index } => {
+                self.release(viewed)?;
+                viewed.reset(env, Some(index))?;
+            }
+            Command::Control { index, value } => viewed.change(env, |sim| {
+                sim.state.ctrl[index] = V::Scalar::new(value);
+                Ok(())
+            })?,
+            Command::Position { index, value } => viewed.change(env, |sim| {
+                sim.state.qpos[index] = V::Scalar::new(value);
+                sim.state.qvel.fill(V::Scalar::new(0.0));
+                sim.forward()
+            })?,
+            Command::Equality { index, on } => viewed.change(env, |sim| {
+                sim.set_equality_active(index, on)?;
+                sim.forward()
+            })?,
+            Command::Drag {
+                body,
+                point,
+                target,
+            } => match &mut self.drag {
+                Some((_, drag)) if drag.body == body => drag.target = target,
+                _ => {
+                    self.release(viewed)?;
+                    self.drag = Some((env, Drag::new(body, point, target)));
+                }
+            },
+            Command::Release {} => self.release(viewed)?,
+            Command::Options {
+                elliptic,
+                iterations,
+                tolerance,
+                noslip_iterations,
+            } => {
+                let mut options: RigidOptions = viewed.options();
+                if let Some(elliptic) = elliptic {
+                    options = options.friction_cone(cone(elliptic));
+                }
+                if let Some(iterations) = iterations {
+                    options = options.iterations(iterations);
+                }
+                if let Some(tolerance) = tolerance {
+                    options = options.tolerance(tolerance);
+                }
+                if let Some(sweeps) = noslip_iterations {
+                    options = options.noslip_iterations(sweeps);
+                }
+                viewed.set_options(options)?;
+            }
+            Command::Step { .. } | Command::Rewind { .. } => {}
+        }
+        Ok(())
+    }
+
+    /// The bytes of a frame of what is now.
+    ///
+    /// # Errors
+    /// A state that cannot be evaluated.
+    pub fn frame<V: Viewed>(
+        &self,
+        viewed: &mut V,
+        timing: Timing,
+        marks: &mut Marks,
+    ) -> Result<Vec<u8>, SimError> {
+        let Selection { env, first, count } = self.selection;
+        let mut besides = Besides {
+            flags: if self.paused { PAUSED } else { 0 },
+            timing,
+            drag: self.drag.as_ref().map(|(_, drag)| drag),
+            marks: marks.at(viewed.time(env)).collect(),
+            ..Besides::default()
+        };
+        if viewed.envs() > 1 {
+            let seen = match count {
+                1 => env..env + 1,
+                count => first..(first + count).min(viewed.envs()),
+            };
+            besides.chosen = Some([env, first]);
+            besides.envs = seen.clone().map(|env| (env, viewed.fault(env))).collect();
+            if count > 1 {
+                viewed.ask_each(seen, |_, sim| besides.add_poses(sim))?;
+            }
+        }
+        viewed.ask(env, |sim| encode(sim, &besides))?
+    }
+}

@@ -1,0 +1,116 @@
+//! What a viewer looks at: a simulation, or one environment of a batch at a time.
+
+use crate::batch::{AnyBatch, Batch};
+use crate::busy::lock;
+use crate::row_sim::{AnySim, RowSim};
+use crate::sim::Sim;
+use clench::{Model, Precision, RigidOptions, SimError};
+use clench_view::Viewed;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use std::sync::{Arc, Mutex};
+
+impl<S: Precision> Viewed for RowSim<S> {
+    type Scalar = S;
+
+    fn model(&self) -> &Arc<Model> {
+        self.sim.model()
+    }
+
+    fn envs(&self) -> usize {
+        1
+    }
+
+    fn time(&self, _: usize) -> f64 {
+        self.rows.time.row(0)[0]
+    }
+
+    fn ask<R>(
+        &mut self,
+        _: usize,
+        ask: impl FnOnce(&mut clench::Sim<S>) -> R,
+    ) -> Result<R, SimError> {
+        self.current().map(ask)
+    }
+
+    fn change(
+        &mut self,
+        _: usize,
+        change: impl FnOnce(&mut clench::Sim<S>) -> Result<(), SimError>,
+    ) -> Result<(), SimError> {
+        change(self.current()?)?;
+        self.rows.write(0, &self.sim.state)
+    }
+
+    fn reset(&mut self, _: usize, keyframe: Option<usize>) -> Result<(), SimError> {
+        self.reset(keyframe)
+    }
+
+    fn options(&self) -> RigidOptions {
+        self.sim.options()
+    }
+
+    fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
+        self.sim.set_options(options)
+    }
+
+    fn fault(&self, _: usize) -> Option<String> {
+        None
+    }
+}
+
+/// A simulation or a batch, shared with the Python object that it belongs to.
+pub(crate) enum Target {
+    Sim(Arc<Mutex<AnySim>>),
+    Batch(Arc<Mutex<AnyBatch>>),
+}
+
+/// Evaluates an expression about what a target has, whichever it is and in whichever precision.
+macro_rules! each_viewed {
+    ($target:expr, $viewed:ident => $value:expr) => {
+        match $target {
+            Target::Sim(sim) => match &mut *lock(sim, "simulation")? {
+                AnySim::F64(own) => {
+                    let $viewed = &mut **own;
+                    $value
+                }
+                AnySim::F32(own) => {
+                    let $viewed = &mut **own;
+                    $value
+                }
+            },
+            Target::Batch(batch) => match &mut *lock(batch, "batch")? {
+                AnyBatch::F64($viewed) => $value,
+                AnyBatch::F32($viewed) => $value,
+            },
+        }
+    };
+}
+pub(crate) use each_viewed;
+
+impl Target {
+    /// What an object of Python's stands for.
+    ///
+    /// # Errors
+    /// An object that is neither.
+    pub(crate) fn of(object: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(sim) = object.cast::<Sim>() {
+            return Ok(Target::Sim(Arc::clone(sim.get().shared())));
+        }
+        if let Ok(batch) = object.cast::<Batch>() {
+            return Ok(Target::Batch(Arc::clone(batch.get().shared())));
+        }
+        let found = object.get_type().name()?;
+        Err(PyTypeError::new_err(format!(
+            "a Sim or a Batch can be looked at, not {found}"
+        )))
+    }
+
+    /// How many environments it has.
+    ///
+    /// # Errors
+    /// Another thread that has it.
+    pub(crate) fn envs(&self) -> PyResult<usize> {
+        Ok(each_viewed!(self, viewed => viewed.envs()))
+    }
+}

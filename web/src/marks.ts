@@ -1,0 +1,89 @@
+// What the program draws itself: spheres, lines, arrows, words.
+
+import * as THREE from "three";
+import { textsOf, type Frame } from "./frame.ts";
+import { Labels } from "./labels.ts";
+import { Many, standing, stretched, UP } from "./many.ts";
+
+/** Steps of opacity: marks of one step share a call. */
+const STEPS = 10;
+
+class Solids {
+  readonly balls: Many;
+  readonly shafts: Many;
+  readonly heads: Many;
+
+  constructor(opacity: number) {
+    const transparent = opacity < 1;
+    const surface = new THREE.MeshStandardMaterial({ roughness: 0.6, transparent, opacity, depthWrite: !transparent });
+    this.balls = new Many(new THREE.SphereGeometry(1, 24, 16), surface);
+    this.shafts = new Many(standing(new THREE.CylinderGeometry(1, 1, 1, 14)), surface);
+    this.heads = new Many(standing(new THREE.ConeGeometry(1, 1, 20)), surface);
+  }
+
+  all(): Many[] {
+    return [this.balls, this.shafts, this.heads];
+  }
+}
+
+export class Marks {
+  readonly group = new THREE.Group();
+  private solids = new Map<number, Solids>();
+  private labels = new Labels();
+
+  constructor() {
+    this.group.add(this.labels.group);
+  }
+
+  update(frame: Frame): void {
+    const { data, count } = frame.rows.marks;
+    this.solids.forEach((solids) => solids.all().forEach((many) => many.begin(count)));
+    this.labels.begin();
+    const texts = count > 0 ? textsOf(frame) : [];
+    for (let row = 0; row < count; row++) this.add(data.subarray(12 * row, 12 * row + 12), texts[row], count);
+    this.solids.forEach((solids) => solids.all().forEach((many) => many.end()));
+    this.labels.end();
+  }
+
+  private of(opacity: number, most: number): Solids {
+    const step = Math.round(opacity * STEPS);
+    let solids = this.solids.get(step);
+    if (!solids) {
+      solids = new Solids(step / STEPS);
+      solids.all().forEach((many) => {
+        many.begin(most);
+        this.group.add(many.group);
+      });
+      this.solids.set(step, solids);
+    }
+    return solids;
+  }
+
+  private add(mark: Float32Array, text: string, most: number): void {
+    const kind = mark[0];
+    const from = new THREE.Vector3(mark[1], mark[2], mark[3]);
+    const along = new THREE.Vector3(mark[4], mark[5], mark[6]).sub(from);
+    const radius = mark[7];
+    const colour = new THREE.Color().setRGB(mark[8], mark[9], mark[10], THREE.SRGBColorSpace);
+    if (kind === 3) {
+      this.labels.add(text, from, colour);
+      return;
+    }
+    const { balls, shafts, heads } = this.of(mark[11], most);
+    const length = along.length();
+    const direction = length > 0 ? along.divideScalar(length) : UP;
+    const head = kind === 2 ? Math.min(5 * radius, 0.5 * length) : 0;
+    if (kind === 0) balls.add(stretched(from, UP, radius, radius), colour);
+    else shafts.add(stretched(from, direction, radius, length - head), colour);
+    if (kind === 2) {
+      heads.add(stretched(from.addScaledVector(direction, length - head), direction, 2.4 * radius, head), colour);
+    }
+  }
+
+  /** How many balls, shafts, heads and words there are. */
+  counts(): number[] {
+    const counts = [0, 0, 0, this.labels.count];
+    this.solids.forEach((solids) => solids.all().forEach((many, k) => (counts[k] += many.size)));
+    return counts;
+  }
+}
