@@ -4,7 +4,8 @@
 //! in tiles that stay in registers. Every entry is changed by the rows below in the same order as over a [`Tree`](crate::Tree), from the last
 //! to the first, and by each alone, **so that both give the same bits**.
 
-use super::pattern::{MAX_DOFS, Run, SparsePattern, Supernode};
+use super::pattern::{MAX_DOFS, SparsePattern, Supernode};
+use super::tiles::{NARROW, Rows, Tiles};
 use crate::jacobian::Pattern;
 use crate::{Tree, TreeMatrix};
 use clench_math::{Mask, Real, Scalar, array, kernel};
@@ -13,13 +14,13 @@ use clench_math::{Mask, Real, Scalar, array, kernel};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SparseFactor<T> {
     /// The blocks of the supernodes, row by row: of the matrix, then of L.
-    values: Vec<T>,
+    pub(super) values: Vec<T>,
     /// The diagonal of the matrix, then D; 1 / D.
     diagonal: Vec<T>,
-    inverse: Vec<T>,
+    pub(super) inverse: Vec<T>,
     /// U of the supernode at hand; of a solve, the numbers in its columns.
     upper: Vec<T>,
-    gathered: Vec<T>,
+    pub(super) gathered: Vec<T>,
 }
 
 impl<T: Real> SparseFactor<T> {
@@ -205,76 +206,6 @@ impl<T: Real> SparseFactor<T> {
             }
         }
     }
-
-    /// `x ← A⁻¹ x`.
-    #[kernel]
-    pub fn solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
-        for s in pattern.supernodes() {
-            self.solve_transposed(pattern, s, x);
-        }
-        for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
-            *x *= inverse;
-        }
-        for s in pattern.supernodes().iter().rev() {
-            self.solve_rows(pattern, s, x);
-        }
-    }
-
-    /// What the rows of a supernode, of which the rows below are taken off, do to the rows above.
-    #[inline(always)]
-    fn solve_transposed(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
-        let (width, shared) = (s.width(), s.shared());
-        self.gather(pattern.columns(s), x);
-        let gathered = &mut self.gathered[..];
-        let block = &self.values[s.block()];
-        for (m, row) in block.chunks_exact(width).enumerate().rev() {
-            let (row, own_row) = row.split_at(shared);
-            let (before, own) = x[s.first..].split_at_mut(m);
-            for (x, &l) in before.iter_mut().zip(own_row) {
-                *x -= l * own[0];
-            }
-            for (x, &l) in gathered.iter_mut().zip(row) {
-                *x -= l * own[0];
-            }
-        }
-        for (&x_of, &dof) in gathered.iter().zip(pattern.columns(s)) {
-            x[dof as usize] = x_of;
-        }
-    }
-
-    /// `x ← L⁻¹ x` in the rows of a supernode, of which the rows above are done.
-    #[inline(always)]
-    fn solve_rows(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
-        let (width, shared) = (s.width(), s.shared());
-        self.gather(pattern.columns(s), x);
-        let block = &self.values[s.block()];
-        // Several sums run side by side: each waits for itself.
-        let mut m = 0;
-        while m < s.len {
-            let count = if s.len - m >= SUMS { SUMS } else { 1 };
-            let own = &mut x[s.first + m..][..count];
-            let rows = &block[m * width..];
-            match count {
-                SUMS => subtract_products::<T, SUMS>(own, rows, width, &self.gathered),
-                _ => subtract_products::<T, 1>(own, rows, width, &self.gathered),
-            }
-            m += count;
-        }
-        for m in 1..s.len {
-            let row = &block[m * width + shared..][..m];
-            let (before, own) = x[s.first..].split_at_mut(m);
-            for (&x, &l) in before.iter().zip(row) {
-                own[0] -= l * x;
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn gather(&mut self, columns: &[u32], x: &[T]) {
-        self.gathered.clear();
-        self.gathered
-            .extend(columns.iter().map(|&dof| x[dof as usize]));
-    }
 }
 
 /// Subtracts from each row of a block, the last first, multiples of the rows after it, in N columns; returns their number.
@@ -298,137 +229,4 @@ fn subtract_multiples<T: Real, const N: usize>(
         block[start..start + N].copy_from_slice(&left);
     }
     N
-}
-
-/// Sums that run side by side in a solve.
-const SUMS: usize = 6;
-
-/// `own −= rows · x` for N rows.
-#[inline(always)]
-fn subtract_products<T: Real, const N: usize>(own: &mut [T], rows: &[T], width: usize, x: &[T]) {
-    let mut sums: [T; N] = array(|m| own[m]);
-    let rows: [&[T]; N] = array(|m| &rows[m * width..][..x.len()]);
-    for (k, &x) in x.iter().enumerate() {
-        for m in 0..N {
-            sums[m] -= rows[m][k] * x;
-        }
-    }
-    own.copy_from_slice(&sums);
-}
-
-/// Columns of a tile: those of a free body, and of two.
-const NARROW: usize = 6;
-const WIDE: usize = 12;
-
-/// A supernode that is done, and the values of those above.
-struct Tiles<'a, T> {
-    /// L and U of it, how many rows they have, and the length of these.
-    lower: &'a [T],
-    upper: &'a [T],
-    len: usize,
-    width: usize,
-    /// The values from `offset` on.
-    above: &'a mut [T],
-    offset: usize,
-}
-
-/// Rows above that lie in one supernode.
-struct Rows<'a> {
-    dofs: &'a [u32],
-    /// The place of the first among the columns of the supernode that is done.
-    place: usize,
-    target: &'a Supernode,
-}
-
-impl<T: Real> Tiles<'_, T> {
-    /// Subtracts from some rows, up to their diagonal, what the supernode takes off. Right of the diagonal, where nothing is stored, the block
-    /// of `rows.target` takes numbers that nobody reads.
-    #[inline(always)]
-    fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
-        let last = rows.place + rows.dofs.len();
-        let mut candidates = target_runs.iter();
-        let mut candidate = candidates.next();
-        for run in runs {
-            let (place, dof) = (run.place as usize, run.dof as usize);
-            if place >= last {
-                break;
-            }
-            let to = if dof >= rows.target.first {
-                rows.target.shared() + dof - rows.target.first
-            } else {
-                while candidate.is_some_and(|c| ((c.dof + c.len) as usize) <= dof) {
-                    candidate = candidates.next();
-                }
-                let Some(found) = candidate else { break };
-                found.place as usize + dof - found.dof as usize
-            };
-            let len = (run.len as usize).min(last - place);
-            self.subtract_run(rows, place, len, to);
-        }
-    }
-
-    /// The same for `len` columns from `place` on, which are those from `to` on in the rows of the target.
-    #[inline(always)]
-    fn subtract_run(&mut self, rows: &Rows, place: usize, len: usize, to: usize) {
-        let mut column = 0;
-        while column < len {
-            let (from, to) = (place + column, to + column);
-            column += match len - column {
-                // As many as fit into registers: of scalars more than of lanes.
-                WIDE.. if T::LANES == 1 => self.subtract_columns::<WIDE>(rows, from, to),
-                NARROW.. => self.subtract_columns::<NARROW>(rows, from, to),
-                2.. => self.subtract_columns::<2>(rows, from, to),
-                _ => self.subtract_columns::<1>(rows, from, to),
-            };
-        }
-    }
-
-    /// The same for N columns; returns their number.
-    #[inline(always)]
-    fn subtract_columns<const N: usize>(&mut self, rows: &Rows, from: usize, to: usize) -> usize {
-        let mut row = 0;
-        while row + 3 <= rows.dofs.len() {
-            self.subtract_tile::<3, N>(rows, row, from, to);
-            row += 3;
-        }
-        while row < rows.dofs.len() {
-            self.subtract_tile::<1, N>(rows, row, from, to);
-            row += 1;
-        }
-        N
-    }
-
-    /// R rows by N columns.
-    #[inline(always)]
-    fn subtract_tile<const R: usize, const N: usize>(
-        &mut self,
-        rows: &Rows,
-        row: usize,
-        from: usize,
-        to: usize,
-    ) {
-        let target = rows.target;
-        let starts: [usize; R] = array(|r| {
-            let m = rows.dofs[row + r] as usize - target.first;
-            target.start - self.offset + m * target.width() + to
-        });
-        let mut sums = [[T::ZERO; N]; R];
-        for r in 0..R {
-            sums[r].copy_from_slice(&self.above[starts[r]..starts[r] + N]);
-        }
-        let multipliers = rows.place + row;
-        for k in (0..self.len).rev() {
-            let start = k * self.width;
-            let lower = &self.lower[start + multipliers..][..R];
-            let upper = &self.upper[start + from..][..N];
-            for r in 0..R {
-                for c in 0..N {
-                    sums[r][c] -= lower[r] * upper[c];
-                }
-            }
-        }
-        for r in 0..R {
-            self.above[starts[r]..starts[r] + N].copy_from_slice(&sums[r]);
-        }
-    }
 }

@@ -8,8 +8,10 @@
 
 mod factor;
 mod pattern;
+mod solve;
 #[cfg(test)]
 mod tests;
+mod tiles;
 
 pub(crate) use factor::SparseFactor;
 pub(crate) use pattern::SparsePattern;

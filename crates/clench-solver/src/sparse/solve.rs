@@ -1,0 +1,93 @@
+//! Solving with the factor, supernode by supernode.
+
+use super::factor::SparseFactor;
+use super::pattern::{SparsePattern, Supernode};
+use clench_math::{Real, array, kernel};
+
+impl<T: Real> SparseFactor<T> {
+    /// `x ← A⁻¹ x`.
+    #[kernel]
+    pub fn solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
+        for s in pattern.supernodes() {
+            self.solve_transposed(pattern, s, x);
+        }
+        for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
+            *x *= inverse;
+        }
+        for s in pattern.supernodes().iter().rev() {
+            self.solve_rows(pattern, s, x);
+        }
+    }
+
+    /// What the rows of a supernode, of which the rows below are taken off, do to the rows above.
+    #[inline(always)]
+    fn solve_transposed(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
+        let (width, shared) = (s.width(), s.shared());
+        self.gather(pattern.columns(s), x);
+        let gathered = &mut self.gathered[..];
+        let block = &self.values[s.block()];
+        for (m, row) in block.chunks_exact(width).enumerate().rev() {
+            let (row, own_row) = row.split_at(shared);
+            let (before, own) = x[s.first..].split_at_mut(m);
+            for (x, &l) in before.iter_mut().zip(own_row) {
+                *x -= l * own[0];
+            }
+            for (x, &l) in gathered.iter_mut().zip(row) {
+                *x -= l * own[0];
+            }
+        }
+        for (&x_of, &dof) in gathered.iter().zip(pattern.columns(s)) {
+            x[dof as usize] = x_of;
+        }
+    }
+
+    /// `x ← L⁻¹ x` in the rows of a supernode, of which the rows above are done.
+    #[inline(always)]
+    fn solve_rows(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
+        let (width, shared) = (s.width(), s.shared());
+        self.gather(pattern.columns(s), x);
+        let block = &self.values[s.block()];
+        // Several sums run side by side: each waits for itself.
+        let mut m = 0;
+        while m < s.len {
+            let count = if s.len - m >= SUMS { SUMS } else { 1 };
+            let own = &mut x[s.first + m..][..count];
+            let rows = &block[m * width..];
+            match count {
+                SUMS => subtract_products::<T, SUMS>(own, rows, width, &self.gathered),
+                _ => subtract_products::<T, 1>(own, rows, width, &self.gathered),
+            }
+            m += count;
+        }
+        for m in 1..s.len {
+            let row = &block[m * width + shared..][..m];
+            let (before, own) = x[s.first..].split_at_mut(m);
+            for (&x, &l) in before.iter().zip(row) {
+                own[0] -= l * x;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn gather(&mut self, columns: &[u32], x: &[T]) {
+        self.gathered.clear();
+        self.gathered
+            .extend(columns.iter().map(|&dof| x[dof as usize]));
+    }
+}
+
+/// Sums that run side by side in a solve.
+const SUMS: usize = 6;
+
+/// `own −= rows · x` for N rows.
+#[inline(always)]
+fn subtract_products<T: Real, const N: usize>(own: &mut [T], rows: &[T], width: usize, x: &[T]) {
+    let mut sums: [T; N] = array(|m| own[m]);
+    let rows: [&[T]; N] = array(|m| &rows[m * width..][..x.len()]);
+    for (k, &x) in x.iter().enumerate() {
+        for m in 0..N {
+            sums[m] -= rows[m][k] * x;
+        }
+    }
+    own.copy_from_slice(&sums);
+}

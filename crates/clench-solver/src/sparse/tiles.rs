@@ -1,0 +1,121 @@
+//! What a supernode that is done takes off the rows above it, in tiles that stay in registers.
+
+use super::pattern::{Run, Supernode};
+use clench_math::{Real, array};
+
+/// Columns of a tile: those of a free body, and of two.
+pub(super) const NARROW: usize = 6;
+const WIDE: usize = 12;
+
+/// A supernode that is done, and the values of those above.
+pub(super) struct Tiles<'a, T> {
+    /// L and U of it, how many rows they have, and the length of these.
+    pub lower: &'a [T],
+    pub upper: &'a [T],
+    pub len: usize,
+    pub width: usize,
+    /// The values from `offset` on.
+    pub above: &'a mut [T],
+    pub offset: usize,
+}
+
+/// Rows above that lie in one supernode.
+pub(super) struct Rows<'a> {
+    pub dofs: &'a [u32],
+    /// The place of the first among the columns of the supernode that is done.
+    pub place: usize,
+    pub target: &'a Supernode,
+}
+
+impl<T: Real> Tiles<'_, T> {
+    /// Subtracts from some rows, up to their diagonal, what the supernode takes off. Right of the diagonal, where nothing is stored, the block
+    /// of `rows.target` takes numbers that nobody reads.
+    #[inline(always)]
+    pub fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
+        let last = rows.place + rows.dofs.len();
+        let mut candidates = target_runs.iter();
+        let mut candidate = candidates.next();
+        for run in runs {
+            let (place, dof) = (run.place as usize, run.dof as usize);
+            if place >= last {
+                break;
+            }
+            let to = if dof >= rows.target.first {
+                rows.target.shared() + dof - rows.target.first
+            } else {
+                while candidate.is_some_and(|c| ((c.dof + c.len) as usize) <= dof) {
+                    candidate = candidates.next();
+                }
+                let Some(found) = candidate else { break };
+                found.place as usize + dof - found.dof as usize
+            };
+            let len = (run.len as usize).min(last - place);
+            self.subtract_run(rows, place, len, to);
+        }
+    }
+
+    /// The same for `len` columns from `place` on, which are those from `to` on in the rows of the target.
+    #[inline(always)]
+    fn subtract_run(&mut self, rows: &Rows, place: usize, len: usize, to: usize) {
+        let mut column = 0;
+        while column < len {
+            let (from, to) = (place + column, to + column);
+            column += match len - column {
+                // As many as fit into registers: of scalars more than of lanes.
+                WIDE.. if T::LANES == 1 => self.subtract_columns::<WIDE>(rows, from, to),
+                NARROW.. => self.subtract_columns::<NARROW>(rows, from, to),
+                2.. => self.subtract_columns::<2>(rows, from, to),
+                _ => self.subtract_columns::<1>(rows, from, to),
+            };
+        }
+    }
+
+    /// The same for N columns; returns their number.
+    #[inline(always)]
+    fn subtract_columns<const N: usize>(&mut self, rows: &Rows, from: usize, to: usize) -> usize {
+        let mut row = 0;
+        while row + 3 <= rows.dofs.len() {
+            self.subtract_tile::<3, N>(rows, row, from, to);
+            row += 3;
+        }
+        while row < rows.dofs.len() {
+            self.subtract_tile::<1, N>(rows, row, from, to);
+            row += 1;
+        }
+        N
+    }
+
+    /// R rows by N columns.
+    #[inline(always)]
+    fn subtract_tile<const R: usize, const N: usize>(
+        &mut self,
+        rows: &Rows,
+        row: usize,
+        from: usize,
+        to: usize,
+    ) {
+        let target = rows.target;
+        let starts: [usize; R] = array(|r| {
+            let m = rows.dofs[row + r] as usize - target.first;
+            target.start - self.offset + m * target.width() + to
+        });
+        let mut sums = [[T::ZERO; N]; R];
+        for r in 0..R {
+            sums[r].copy_from_slice(&self.above[starts[r]..starts[r] + N]);
+        }
+        let multipliers = rows.place + row;
+        for k in (0..self.len).rev() {
+            let start = k * self.width;
+            let lower = &self.lower[start + multipliers..][..R];
+            let upper = &self.upper[start + from..][..N];
+            for r in 0..R {
+                for c in 0..N {
+                    sums[r][c] -= lower[r] * upper[c];
+                }
+            }
+        }
+        for r in 0..R {
+            self.above[starts[r]..starts[r] + N].copy_from_slice(&sums[r]);
+        }
+    }
+}
