@@ -1,6 +1,7 @@
 //! The values of options: read from Python, checked, and shown again.
 
-use clench::solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
+use clench::rigid::options::{FrictionCone, MaxContacts, OptionValue, RigidOption};
+use clench::solver::{ConstraintSolver, Switch};
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
@@ -8,73 +9,90 @@ use pyo3::types::{PyBool, PyString};
 /// Most iterations, sweeps or contacts that can be asked for.
 const MOST: usize = i32::MAX as usize;
 
-pub(crate) fn not_negative(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    match number(name, value)? {
-        x if x >= 0.0 && x.is_finite() => Ok(x),
-        _ => Err(out_of_range(name, value, "finite and not negative")),
+/// A type of options, as Python gives it.
+pub(crate) trait OptionType: Sized {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self>;
+}
+
+/// The value of an option that was read from what is `given`.
+pub(crate) fn in_range<T: Copy + Into<OptionValue>>(
+    option: RigidOption,
+    value: T,
+    given: &Bound<'_, PyAny>,
+) -> PyResult<T> {
+    match option.range().holds(value.into()) {
+        true => Ok(value),
+        false => Err(out_of_range(option.name(), given, option.range().text())),
     }
 }
 
-pub(crate) fn positive(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    match number(name, value)? {
-        x if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err(out_of_range(name, value, "finite and positive")),
+impl OptionType for f64 {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if value.is_instance_of::<PyBool>() {
+            return Err(wrong_type(name, value, "a number"));
+        }
+        value
+            .extract()
+            .map_err(|error| explain(error, name, value, "a number", "finite"))
     }
 }
 
-fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    if value.is_instance_of::<PyBool>() {
-        return Err(wrong_type(name, value, "a number"));
-    }
-    value
-        .extract()
-        .map_err(|error| explain(error, name, value, "a number", "finite"))
-}
-
-pub(crate) fn count(name: &str, value: &Bound<'_, PyAny>) -> PyResult<usize> {
-    let range = format!("from 0 to {MOST}");
-    if value.is_instance_of::<PyBool>() {
-        return Err(wrong_type(name, value, "an integer"));
-    }
-    match value.extract::<i64>() {
-        Ok(n) => usize::try_from(n)
-            .ok()
-            .filter(|&n| n <= MOST)
-            .ok_or_else(|| out_of_range(name, value, &range)),
-        Err(error) => Err(explain(error, name, value, "an integer", &range)),
+impl OptionType for usize {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let range = format!("from 0 to {MOST}");
+        if value.is_instance_of::<PyBool>() {
+            return Err(wrong_type(name, value, "an integer"));
+        }
+        match value.extract::<i64>() {
+            Ok(n) => usize::try_from(n)
+                .ok()
+                .filter(|&n| n <= MOST)
+                .ok_or_else(|| out_of_range(name, value, &range)),
+            Err(error) => Err(explain(error, name, value, "an integer", &range)),
+        }
     }
 }
 
-pub(crate) fn boolean(name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
-    value
-        .extract()
-        .map_err(|_| wrong_type(name, value, "a bool"))
-}
-
-pub(crate) fn switch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Switch> {
-    if value.is_instance_of::<PyString>() {
-        return choose(name, value, &[("auto", Switch::Auto)]);
-    }
-    match value.extract() {
-        Ok(true) => Ok(Switch::On),
-        Ok(false) => Ok(Switch::Off),
-        Err(_) => Err(wrong_type(name, value, "a bool or \"auto\"")),
+impl OptionType for bool {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        value
+            .extract()
+            .map_err(|_| wrong_type(name, value, "a bool"))
     }
 }
 
-pub(crate) fn limit(name: &str, value: &Bound<'_, PyAny>) -> PyResult<MaxContacts> {
-    if value.is_instance_of::<PyString>() {
-        return choose(name, value, &[("auto", MaxContacts::Auto)]);
+impl OptionType for Switch {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if value.is_instance_of::<PyString>() {
+            return choose(name, value, &[("auto", Switch::Auto)]);
+        }
+        match value.extract() {
+            Ok(true) => Ok(Switch::On),
+            Ok(false) => Ok(Switch::Off),
+            Err(_) => Err(wrong_type(name, value, "a bool or \"auto\"")),
+        }
     }
-    count(name, value).map(MaxContacts::Limit)
 }
 
-pub(crate) fn algorithm(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ConstraintSolver> {
-    choose(name, value, &ALGORITHMS)
+impl OptionType for MaxContacts {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if value.is_instance_of::<PyString>() {
+            return choose(name, value, &[("auto", MaxContacts::Auto)]);
+        }
+        usize::read(name, value).map(MaxContacts::Limit)
+    }
 }
 
-pub(crate) fn cone(name: &str, value: &Bound<'_, PyAny>) -> PyResult<FrictionCone> {
-    choose(name, value, &CONES)
+impl OptionType for ConstraintSolver {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        choose(name, value, &ALGORITHMS)
+    }
+}
+
+impl OptionType for FrictionCone {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        choose(name, value, &CONES)
+    }
 }
 
 const ALGORITHMS: [(&str, ConstraintSolver); 2] = [

@@ -64,7 +64,9 @@ pub(crate) fn solve<'py>(
     let acceleration = vector("a_unc", a_unc)?;
     let mass = mass_matrix(M, acceleration.len())?;
     let blocks = plain_blocks(blocks, acceleration.len())?;
-    let settings = options.map_or_else(Settings::default, |options| options.0.resolve::<f64>());
+    let settings = options.map_or_else(Settings::default, |options| {
+        options.0.solver().resolve::<f64>()
+    });
     let (problem, solver) = py
         .detach(|| minimise(&mass, &acceleration, &blocks, &settings))
         .map_err(problem_error)?;

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 import inspect
 import pickle
+import re
+from pathlib import Path
 from typing import Any
 
 import clench
@@ -12,30 +15,28 @@ import numpy as np
 import pytest
 from clench import RigidOptions
 
-# A value of each option, in order; none is a default.
-VALUES: dict[str, Any] = {
-    "constraint_solver": "CG",
-    "iterations": 7,
-    "tolerance": 1e-3,
-    "ls_iterations": 3,
-    "ls_tolerance": 0.5,
-    "constraint_timeconst": 0.02,
-    "enable_joint_limit": False,
-    "disable_constraint": True,
-    "sparse_solve": True,
-    "noslip_iterations": 4,
-    "noslip_tolerance": 1e-4,
-    "max_contacts": 12,
-    "friction_cone": "elliptic",
-    "impratio": 10.0,
-    "islands": False,
-    "warmstart": False,
-    "autoreset": True,
+# What the documentation calls the type of an option: a value, and the types in the stub when it is given and when it is asked for.
+TYPES: dict[str, tuple[Any, str, str]] = {
+    "int": (7, "SupportsIndex", "int"),
+    "float": (0.5, "SupportsFloat", "float"),
+    "bool": (True, "bool | np.bool_", "bool"),
+    'bool or "auto"': (False, "bool | np.bool_ | Literal['auto']", "bool | Literal['auto']"),
+    'int or "auto"': (12, "SupportsIndex | Literal['auto']", "int | Literal['auto']"),
+    '{"Newton", "CG"}': ("CG", "Literal['Newton', 'CG']", "Literal['Newton', 'CG']"),
+    '{"pyramidal", "elliptic"}': ("elliptic", "Literal['pyramidal', 'elliptic']", "Literal['pyramidal', 'elliptic']"),
 }
-COUNTS = ["iterations", "ls_iterations", "noslip_iterations", "max_contacts"]
+DOCUMENTED = dict(re.findall(r"^(\w+) : (.*), optional$", RigidOptions.__doc__ or "", re.MULTILINE))
+VALUES = {name: TYPES[kind][0] for name, kind in DOCUMENTED.items()}
+
+
+def of_type(*kinds: str) -> list[str]:
+    return [name for name, kind in DOCUMENTED.items() if kind in kinds]
+
+
+COUNTS = of_type("int", 'int or "auto"')
+BOOLEANS = of_type("bool")
+SWITCHES = of_type('bool or "auto"')
 NOT_NEGATIVE = ["tolerance", "ls_tolerance", "noslip_tolerance", "constraint_timeconst"]
-BOOLEANS = ["enable_joint_limit", "disable_constraint", "warmstart", "autoreset"]
-SWITCHES = ["sparse_solve", "islands"]
 
 
 def test_what_is_set_is_kept_and_nothing_else() -> None:
@@ -45,6 +46,16 @@ def test_what_is_set_is_kept_and_nothing_else() -> None:
             assert getattr(options, other) == (value if other == name else None), (name, other)
         assert type(getattr(options, name)) is type(value)
     assert list(inspect.signature(RigidOptions).parameters) == list(VALUES)
+
+
+def test_the_stub_has_the_options_with_their_types() -> None:
+    tree = ast.parse(Path(clench.__file__).with_name("_core.pyi").read_text())
+    (stub,) = (node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == "RigidOptions")
+    functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
+    given = {argument.arg: ast.unparse(argument.annotation or argument) for argument in functions.pop("__new__").args.kwonlyargs}
+    asked = {name: ast.unparse(node.returns or node) for name, node in functions.items() if not name.startswith("__")}
+    assert list(given.items()) == [(name, f"{TYPES[kind][1]} | None") for name, kind in DOCUMENTED.items()]
+    assert list(asked.items()) == [(name, f"{TYPES[kind][2]} | None") for name, kind in DOCUMENTED.items()]
 
 
 def test_text_says_what_is_set() -> None:

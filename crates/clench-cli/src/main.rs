@@ -12,6 +12,7 @@ mod interrupt;
 mod message;
 mod mjcf;
 mod options;
+mod overrides;
 mod replacement;
 mod simulate;
 mod table;

@@ -178,7 +178,7 @@ fn keywords_that_are_none() {
     expect_section(
         "<option solver='newton'/>",
         "option",
-        "not one of PGS, CG, Newton",
+        "not one of Newton, CG, PGS",
     );
     expect_section(
         "<option><flag contact='false'/></option>",

@@ -2,7 +2,7 @@
 
 use crate::budget::RAISE;
 use crate::contact::UnsupportedPair;
-use crate::settings::OptionError;
+use crate::options::OptionError;
 use clench_math::Instructions;
 use std::sync::Arc;
 

@@ -19,6 +19,7 @@ pub mod ik;
 pub mod inverse;
 mod known;
 pub mod model;
+pub mod options;
 mod output;
 pub mod pipeline;
 mod place;
@@ -38,6 +39,10 @@ pub use budget::Budget;
 pub use error::{Fault, SimError};
 pub use ik::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask};
 pub use inverse::Acceleration;
+pub use options::RigidOptions;
+// The rows of the solver in the table of options.
+#[doc(hidden)]
+pub use clench_solver::solver_options;
 pub use model::{Model, Params};
 pub use output::Output;
 pub use query::{Anchor, Axes, RayFilter, RayHit};

@@ -4,31 +4,44 @@ use crate::Model;
 use crate::contact::check_supported;
 use crate::error::SimError;
 use crate::model::Flags;
+use crate::options::{FrictionCone, MaxContacts, OptionError, RigidOptions};
 use clench_math::Real;
-use clench_solver::{RigidOptions, Settings, Switch};
+use clench_solver::{Settings, Switch};
 
-/// Every choice that a step reads. What the user sets wins over the file, the file over the defaults.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepSettings {
-    /// Solver settings, which also hold cone, impratio and the floor of time constants.
-    pub solver: Settings,
-    /// Feature switches of the model, less what the settings turn off.
-    pub flags: Flags,
-    /// Joint limits act (tendon limits do not depend on this).
-    pub joint_limits: bool,
+macro_rules! declare_settings {
+    (
+        solver $solver:tt
+        step {$(
+            $(#[$doc:meta])*
+            $name:ident: $type:ident = $default:expr $(=> $single:expr)?, $range:ident, $argument:expr, $mjcf:expr;
+        )*}
+    ) => {
+        /// Every choice that a step reads. What the user sets wins over the file, the file over the defaults.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct StepSettings {
+            /// What the solver reads.
+            pub solver: Settings,
+            /// Feature switches of the model, less what the settings turn off.
+            pub flags: Flags,
+            $( $(#[$doc])* pub $name: $type, )*
+        }
+
+        impl StepSettings {
+            /// Options where they are set, else defaults; and the flags of the model.
+            fn resolve<T: Real>(options: RigidOptions, flags: Flags) -> Self {
+                StepSettings {
+                    solver: options.solver().resolve::<T>(),
+                    flags,
+                    $( $name: options.$name.unwrap_or({
+                        $( if size_of::<T::Scalar>() < size_of::<f64>() { $single } else )? { $default }
+                    }), )*
+                }
+            }
+        }
+    };
 }
 
-/// An option outside its range.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("option {name} is {value}, but must be {range}")]
-pub struct OptionError {
-    /// Which option.
-    pub name: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// What it may be.
-    pub range: &'static str,
-}
+crate::rigid_options!(declare_settings);
 
 impl StepSettings {
     /// Decides every option for a simulation of `model` in the number type `T`.
@@ -37,29 +50,25 @@ impl StepSettings {
     /// An option that is not finite or outside its range.
     pub fn new<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, OptionError> {
         let options = user.or(model.options);
-        let mut solver = options.resolve::<T>();
-        solver.max_matrix = usize::try_from(model.budget.matrix).unwrap_or(usize::MAX);
-        check(&solver)?;
+        options.check()?;
+        let mut settings = StepSettings::resolve::<T>(options, model.flags);
+        settings.solver.max_matrix = usize::try_from(model.budget.matrix).unwrap_or(usize::MAX);
         // A switch of the file is a setting of the file: what the user says about the same thing wins.
-        let mut flags = model.flags;
-        flags.constraint = match user.disable_constraint {
-            Some(disable) => !disable,
-            None => flags.constraint && !solver.disable_constraint,
-        };
-        flags.sleep &= model.may_sleep();
-        let file_limits = flags.limit && solver.enable_joint_limit;
-        let joint_limits = user.enable_joint_limit.unwrap_or(file_limits);
+        if user.disable_constraint.is_none() {
+            settings.disable_constraint |= !model.flags.constraint;
+        }
+        settings.flags.constraint = !settings.disable_constraint;
+        settings.flags.sleep &= model.may_sleep();
+        if user.enable_joint_limit.is_none() {
+            settings.enable_joint_limit &= model.flags.limit;
+        }
         if user.warmstart.is_none() {
-            solver.warmstart &= flags.warmstart;
+            settings.solver.warmstart &= model.flags.warmstart;
         }
-        if user.islands.is_none() && !flags.island {
-            solver.islands = Switch::Off;
+        if user.islands.is_none() && !model.flags.island {
+            settings.solver.islands = Switch::Off;
         }
-        Ok(StepSettings {
-            solver,
-            flags,
-            joint_limits,
-        })
+        Ok(settings)
     }
 
     /// The same for a model whose contacts are then sought.
@@ -73,25 +82,4 @@ impl StepSettings {
         }
         Ok(settings)
     }
-}
-
-fn check(s: &Settings) -> Result<(), OptionError> {
-    let at_least_zero = [
-        ("tolerance", s.tolerance),
-        ("ls_tolerance", s.ls_tolerance),
-        ("noslip_tolerance", s.noslip_tolerance),
-        ("constraint_timeconst", s.constraint_timeconst),
-    ];
-    for (name, value) in at_least_zero {
-        if !(value >= 0.0 && value.is_finite()) {
-            let range = "finite and not negative";
-            return Err(OptionError { name, value, range });
-        }
-    }
-    let (name, value) = ("impratio", s.impratio);
-    if !(value > 0.0 && value.is_finite()) {
-        let range = "finite and positive";
-        return Err(OptionError { name, value, range });
-    }
-    Ok(())
 }

@@ -14,6 +14,7 @@ use crate::error::SimError;
 use crate::inverse::Acceleration;
 use crate::known::{Extent, Known};
 use crate::model::{Model, Params};
+use crate::options::RigidOptions;
 use crate::output::{Output, Source};
 use crate::profile::{Profile, Stage};
 use crate::readout;
@@ -21,7 +22,7 @@ use crate::sensor::bodies::update as update_body_forces;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_solver::{LaneStats, RigidOptions};
+use clench_solver::LaneStats;
 use std::sync::Arc;
 
 /// A model in motion: a state, and what follows from it.
@@ -106,7 +107,7 @@ impl<T: Precision> Sim<T> {
         pass: impl Fn(&mut Self) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
         match pass(self) {
-            Err(SimError::Fault(_)) if self.settings.solver.autoreset => {
+            Err(SimError::Fault(_)) if self.settings.autoreset => {
                 let before = self.state.clone();
                 self.reset();
                 let again = pass(self);

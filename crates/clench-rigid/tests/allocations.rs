@@ -4,7 +4,8 @@ mod scenes;
 
 use clench_rigid::Sim;
 use clench_rigid::model::Integrator;
-use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
+use clench_rigid::options::{FrictionCone, RigidOptions};
+use clench_solver::ConstraintSolver;
 use scenes::{add, everything, free, humanoid, model, plane, shake, sphere, world};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -6,8 +6,8 @@ use batches::*;
 use clench_math::Instructions;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::{Integrator, JointKind};
+use clench_rigid::options::{MaxContacts, RigidOptions};
 use clench_rigid::{Batch, EnvStatus, Fault, Precision, Sim, SimError, State};
-use clench_solver::{MaxContacts, RigidOptions};
 
 /// Where poison goes.
 const FIELDS: [&str; 7] = [

@@ -6,8 +6,9 @@ use batches::*;
 use clench_math::Instructions;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::Integrator;
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{EnvStatus, Precision};
-use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
+use clench_solver::ConstraintSolver;
 
 /// Environments: no multiple of any width, and more than one group of the widest.
 const ENVS: usize = 19;

@@ -11,8 +11,8 @@ use clench_math::{Instructions, Vec3};
 use clench_rigid::batch::Divergence;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::Integrator;
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Batch, BatchOptions, EnvStatus, Output, Precision, Sim, SimError};
-use clench_solver::{FrictionCone, RigidOptions};
 
 fn names() -> Vec<&'static str> {
     Output::ALL.iter().map(|output| output.name()).collect()

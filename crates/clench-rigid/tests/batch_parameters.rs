@@ -10,8 +10,8 @@ use batches::*;
 use clench_math::Instructions;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::ParamField;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, Model, Precision, Sim, SimError};
-use clench_solver::RigidOptions;
 use std::sync::Arc;
 
 const ENVS: usize = 11;

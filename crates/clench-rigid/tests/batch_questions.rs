@@ -7,10 +7,10 @@ use clench_math::{Instructions, Vec3};
 use clench_rigid::batch::Given;
 use clench_rigid::builder::{GeomSpec, HeightFieldSpec, ModelBuilder};
 use clench_rigid::model::FrameObject;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{
     Acceleration, Anchor, Batch, Ik, IkOptions, IkTarget, IkTask, Precision, RayFilter, Sim,
 };
-use clench_solver::RigidOptions;
 use std::sync::Arc;
 
 const ENVS: usize = 19;

@@ -9,8 +9,8 @@ mod machines;
 use batches::*;
 use clench_math::Instructions;
 use clench_rigid::batch::Controls;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, EnvStatus, Output, Sim, SimError};
-use clench_solver::RigidOptions;
 
 #[test]
 fn rollouts_are_steps() {

@@ -5,7 +5,7 @@ mod batches;
 use batches::*;
 use clench_rigid::Batch;
 use clench_rigid::builder::ModelBuilder;
-use clench_solver::{FrictionCone, RigidOptions};
+use clench_rigid::options::{FrictionCone, RigidOptions};
 
 /// Largest error of one step in single precision from states of a motion in double precision: of accelerations, over the
 /// largest of the step, and of positions (m, rad).

@@ -6,8 +6,8 @@ use batches::*;
 use clench_math::{Instructions, Real};
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::SleepPolicy;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, Precision, Sim};
-use clench_solver::RigidOptions;
 
 const ENVS: usize = 19;
 

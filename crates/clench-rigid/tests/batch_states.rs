@@ -6,8 +6,8 @@ use batches::*;
 use clench_math::{Instructions, Quat, Vec3};
 use clench_rigid::batch::{Controls, StateRows};
 use clench_rigid::model::JointKind;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, SimError, State};
-use clench_solver::RigidOptions;
 
 const ENVS: usize = 13;
 

@@ -8,8 +8,8 @@ use clench_rigid::builder::{
     DEFAULT_SOLIMP, EqualityKind, EqualitySpec, GeomSpec, JointSpec, ModelBuilder,
 };
 use clench_rigid::model::JointKind;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Sim, readout};
-use clench_solver::RigidOptions;
 use scenes::{
     G, add, bodies, cuboid, free, geom, joint, rest_penetration, run, sim, sphere, world,
 };

@@ -5,8 +5,8 @@ mod scenes;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{DEFAULT_SOLIMP, GeomSpec, MeshSpec, ModelBuilder};
 use clench_rigid::contact::Contact;
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Sim, readout};
-use clench_solver::{FrictionCone, RigidOptions};
 use scenes::{
     G, add, cuboid, free, parts_on_a_mesh, plane, rest_penetration, run, sim, sphere, world,
 };

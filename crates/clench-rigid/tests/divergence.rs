@@ -6,8 +6,8 @@ use batches::*;
 use clench_math::Instructions;
 use clench_rigid::builder::{ModelBuilder, Origin};
 use clench_rigid::model::{Integrator, JointKind};
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, EnvStatus, Fault, Precision, Sim, SimError};
-use clench_solver::RigidOptions;
 use std::sync::Arc;
 
 /// Two masses on sliders, the second on a spring too stiff for the time step.

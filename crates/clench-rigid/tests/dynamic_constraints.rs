@@ -5,8 +5,8 @@ mod batches;
 use batches::*;
 use clench_math::{Instructions, Vec3};
 use clench_rigid::builder::{ConnectAnchor, EqualityKind, EqualitySpec, ModelBuilder};
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, DynamicConstraint, Model, Precision, Sim, SimError, State};
-use clench_solver::RigidOptions;
 use std::sync::Arc;
 
 /// A weld of the file that is off.

@@ -5,8 +5,8 @@ mod scenes;
 use clench_math::Vec3;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::Integrator;
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Acceleration, Sim, SimError};
-use clench_solver::{FrictionCone, RigidOptions};
 use scenes::{Numbers, everything, humanoid, shake};
 use std::sync::Arc;
 

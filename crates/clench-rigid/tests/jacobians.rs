@@ -8,8 +8,8 @@ use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use clench_rigid::constraint::ConstraintSource;
 use clench_rigid::contact::Contact;
 use clench_rigid::dynamics::integrate::integrate_positions;
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Sim, readout};
-use clench_solver::{FrictionCone, RigidOptions};
 use scenes::{everything, model, shake};
 use std::collections::HashSet;
 

@@ -4,8 +4,9 @@ mod scenes;
 
 use clench_math::{Lanes, Mask, Real};
 use clench_rigid::model::Integrator;
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Model, Sim, State, StepSettings, Workspace, pipeline};
-use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions};
+use clench_solver::ConstraintSolver;
 use scenes::{Numbers, loose_parts};
 use std::sync::Arc;
 
@@ -105,7 +106,7 @@ fn cg_and_runge_kutta() {
 
 #[test]
 fn a_bound_on_contacts_holds_for_each_lane() {
-    let options = RigidOptions::new().max_contacts(clench_solver::MaxContacts::Limit(3));
+    let options = RigidOptions::new().max_contacts(clench_rigid::options::MaxContacts::Limit(3));
     assert!(
         compare(options, Integrator::Euler, 300),
         "the bound was reached"

@@ -9,8 +9,9 @@ use clench_rigid::builder::{
 };
 use clench_rigid::contact::Contact;
 use clench_rigid::model::JointKind;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Fault, Sim, SimError, readout};
-use clench_solver::{RigidOptions, Switch};
+use clench_solver::Switch;
 use scenes::{add, free, joint, model, plane, run, sim, sphere, world};
 
 fn ball() -> ModelBuilder {
@@ -90,12 +91,9 @@ fn the_user_wins_over_the_file_and_the_file_over_the_defaults() {
             .settings()
     };
     let plain = settings(|_| {}, RigidOptions::new().impratio(2.0));
-    assert_eq!((plain.solver.iterations, plain.solver.impratio), (7, 2.0));
+    assert_eq!((plain.solver.iterations, plain.impratio), (7, 2.0));
     assert_eq!(
-        (
-            plain.solver.ls_iterations,
-            plain.solver.constraint_timeconst
-        ),
+        (plain.solver.ls_iterations, plain.constraint_timeconst),
         (50, 0.01)
     );
     let off: fn(&mut ModelBuilder) = |b| {
@@ -104,7 +102,7 @@ fn the_user_wins_over_the_file_and_the_file_over_the_defaults() {
             (false, false, false, false);
     };
     let file = settings(off, RigidOptions::new());
-    assert!(!file.flags.constraint && !file.joint_limits && !file.solver.warmstart);
+    assert!(!file.flags.constraint && !file.enable_joint_limit && !file.solver.warmstart);
     assert_eq!(file.solver.islands, Switch::Off);
     let insistent = RigidOptions::new()
         .disable_constraint(false)
@@ -112,7 +110,7 @@ fn the_user_wins_over_the_file_and_the_file_over_the_defaults() {
         .warmstart(true)
         .islands(Switch::On);
     let user = settings(off, insistent);
-    assert!(user.flags.constraint && user.joint_limits && user.solver.warmstart);
+    assert!(user.flags.constraint && user.enable_joint_limit && user.solver.warmstart);
     assert_eq!(user.solver.islands, Switch::On);
     assert!(!user.flags.limit, "limits of tendons stay off");
 }

@@ -7,8 +7,8 @@ use clench_collide::ShapeKind;
 use clench_math::Vec3;
 use clench_rigid::builder::{EqualityKind, EqualitySpec, GeomMass, GeomSpec, ModelBuilder};
 use clench_rigid::model::JointKind;
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Batch, Precision};
-use clench_solver::{FrictionCone, RigidOptions};
 
 const LINK: f64 = 0.1;
 

@@ -3,7 +3,7 @@
 use clench_math::Vec3;
 use clench_rigid::Sim;
 use clench_rigid::builder::{BodySpec, GeomSpec, HeightFieldSpec, JointSpec, ModelBuilder};
-use clench_solver::{FrictionCone, RigidOptions};
+use clench_rigid::options::{FrictionCone, RigidOptions};
 use std::sync::Arc;
 
 fn field(cells: usize, heights: impl Fn(usize, usize) -> f64) -> HeightFieldSpec {

@@ -3,7 +3,7 @@
 //! Two coupled coordinates are pushed down by gravity. The first may not accelerate below −2, softly; along the second
 //! acts dry friction of at most 3; and their difference is asked to stay zero.
 
-use clench_solver::{Cost, PlainBlock, Problem, RigidOptions, Solver};
+use clench_solver::{Cost, PlainBlock, Problem, Solver, SolverOptions};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mass = [2.0, 0.3, 0.3, 1.0];
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let problem = Problem::from_arrays(&mass, &unconstrained, &blocks)?;
     let mut solver = Solver::new(problem.tree());
     let stats = solver
-        .solve(&problem, &RigidOptions::new().resolve::<f64>(), None)?
+        .solve(&problem, &SolverOptions::new().resolve::<f64>(), None)?
         .lane(0);
 
     println!("acceleration   {:.6?}", solver.qacc());

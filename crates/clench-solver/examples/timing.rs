@@ -6,7 +6,7 @@
 mod common;
 
 use clench_math::{Lanes, Real};
-use clench_solver::{Cost, Problem, RigidOptions, Settings, Solver, Switch};
+use clench_solver::{Cost, Problem, Settings, Solver, SolverOptions, Switch};
 use common::{Rng, Shape, humanoid, random_problem};
 use std::hint::black_box;
 use std::time::Instant;
@@ -86,7 +86,7 @@ fn main() {
     ] {
         for (contacts, cross) in [(4, 0.0), (10, 0.0), (10, 0.2)] {
             let problems = problems(cost, dim, contacts, cross);
-            let settings = |sparse| RigidOptions::new().sparse_solve(sparse).resolve::<f64>();
+            let settings = |sparse| SolverOptions::new().sparse_solve(sparse).resolve::<f64>();
             let (sparse, iterations) = time(&problems, &settings(Switch::On));
             let (dense, _) = time(&problems, &settings(Switch::Off));
             let wide: Vec<_> = problems.iter().map(widen).collect();

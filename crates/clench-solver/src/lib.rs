@@ -38,7 +38,7 @@ mod tree;
 mod workspace;
 
 pub use check::ProblemError;
-pub use options::{ConstraintSolver, FrictionCone, MaxContacts, RigidOptions, Settings, Switch};
+pub use options::{ConstraintSolver, Settings, SolverOptions, Switch};
 pub use partition::{Island, Partition};
 pub use plain::PlainBlock;
 pub use problem::{Block, BlockMut, Cost, Problem};

@@ -2,7 +2,7 @@
 
 mod common;
 
-use clench_solver::{ConstraintSolver, RigidOptions, Solver};
+use clench_solver::{ConstraintSolver, Solver, SolverOptions};
 use common::*;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -48,7 +48,7 @@ fn a_second_pass_allocates_nothing() {
             .map(|k| random_problem(&mut rng, &Shape::new(parents.clone(), k % 12)))
             .collect();
         for algorithm in [ConstraintSolver::Newton, ConstraintSolver::Cg] {
-            let options = RigidOptions::new()
+            let options = SolverOptions::new()
                 .constraint_solver(algorithm)
                 .noslip_iterations(5);
             let settings = options.resolve::<f64>();

@@ -3,13 +3,13 @@
 mod common;
 
 use clench_solver::{
-    Cost, PlainBlock, Problem, ProblemError, RigidOptions, Settings, Solver, Status, Tree,
+    Cost, PlainBlock, Problem, ProblemError, Settings, Solver, SolverOptions, Status, Tree,
 };
 use common::*;
 use std::sync::Arc;
 
 fn settings() -> Settings {
-    RigidOptions::new().resolve::<f64>()
+    SolverOptions::new().resolve::<f64>()
 }
 
 fn stop(aref: f64, r: f64) -> PlainBlock<f64> {
@@ -164,7 +164,7 @@ fn a_warm_start_is_taken_only_where_it_is_better() {
             .lane(0);
         assert_eq!((stats, solver.qacc()), (cold, &best[..]));
     }
-    let off = RigidOptions::new().warmstart(false).resolve::<f64>();
+    let off = SolverOptions::new().warmstart(false).resolve::<f64>();
     assert_eq!(
         solver
             .solve(&problem, &off, Some(&best))
@@ -191,21 +191,21 @@ fn limits_are_kept_and_reported() {
     let problem = random_problem(&mut rng, &shape);
     let mut solver = Solver::new(problem.tree());
     for iterations in 0..3 {
-        let settings = RigidOptions::new().iterations(iterations).resolve::<f64>();
+        let settings = SolverOptions::new().iterations(iterations).resolve::<f64>();
         let stats = solver.solve(&problem, &settings, None).unwrap().lane(0);
         assert_eq!(
             (stats.status, stats.iterations),
             (Status::IterationLimit, iterations)
         );
     }
-    let settings = RigidOptions::new()
+    let settings = SolverOptions::new()
         .iterations(3)
         .ls_iterations(2)
         .resolve::<f64>();
     let stats = solver.solve(&problem, &settings, None).unwrap().lane(0);
     assert!(stats.ls_evaluations <= 6);
     // No iteration, no evaluation: not even one step.
-    let settings = RigidOptions::new().ls_iterations(0).resolve::<f64>();
+    let settings = SolverOptions::new().ls_iterations(0).resolve::<f64>();
     assert_eq!(
         solver.solve(&problem, &settings, None).unwrap().status(0),
         Status::IterationLimit

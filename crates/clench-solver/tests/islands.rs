@@ -3,7 +3,7 @@
 mod common;
 
 use clench_math::{Lanes, Real};
-use clench_solver::{Cost, Problem, RigidOptions, Solver, Status, Switch};
+use clench_solver::{Cost, Problem, Solver, SolverOptions, Status, Switch};
 use common::*;
 use std::collections::BTreeSet;
 
@@ -26,14 +26,14 @@ fn scenes(count: usize) -> impl Iterator<Item = Problem<f64>> {
     })
 }
 
-fn options(islands: Switch) -> RigidOptions {
-    RigidOptions::new()
+fn options(islands: Switch) -> SolverOptions {
+    SolverOptions::new()
         .tolerance(0.0)
         .iterations(200)
         .islands(islands)
 }
 
-fn solve(problem: &Problem<f64>, options: RigidOptions) -> Solver<f64> {
+fn solve(problem: &Problem<f64>, options: SolverOptions) -> Solver<f64> {
     let mut solver = Solver::new(problem.tree());
     solver
         .solve(problem, &options.resolve::<f64>(), None)
@@ -156,7 +156,7 @@ fn each_island_is_as_if_alone() {
 
 #[test]
 fn lanes_with_different_islands_equal_scalars() {
-    let settings = RigidOptions::new().resolve::<f64>();
+    let settings = SolverOptions::new().resolve::<f64>();
     for problem in scenes(30) {
         let mut packed: Problem<Lanes<f64, 4>> = Problem::new(problem.tree().clone());
         let mut alone: Vec<Problem<f64>> = (0..4)

@@ -4,7 +4,7 @@ mod common;
 
 use clench_math::{Lanes, Real, Scalar};
 use clench_solver::{
-    Block, ConstraintSolver, Cost, Problem, RigidOptions, Solver, Status, Switch, Tree,
+    Block, ConstraintSolver, Cost, Problem, Solver, SolverOptions, Status, Switch, Tree,
 };
 use common::*;
 
@@ -87,7 +87,7 @@ fn same<S: Scalar>(packed: &[Lanes<S, N>], lane: usize, alone: &[S], what: &str)
 }
 
 /// On humanoids and forests, as wholes.
-fn compare<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
+fn compare<S: Scalar>(options: SolverOptions, costs: &[Cost], rounds: usize) {
     let options = options.islands(Switch::Off);
     compare_on::<S>(options, costs, rounds, ABSENT, |rng, round| {
         let forest = random_forest(rng, 17);
@@ -97,7 +97,7 @@ fn compare<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
 
 /// Solves problems of many shapes side by side and alone; in how many of them lanes had different numbers of islands.
 fn compare_on<S: Scalar>(
-    options: RigidOptions,
+    options: SolverOptions,
     costs: &[Cost],
     rounds: usize,
     absent: f64,
@@ -180,8 +180,8 @@ fn compare_forces<S: Scalar>(
     }
 }
 
-fn options() -> RigidOptions {
-    RigidOptions::new()
+fn options() -> SolverOptions {
+    SolverOptions::new()
 }
 
 #[test]
@@ -295,7 +295,7 @@ fn tangled_trees(rng: &mut Rng, _: usize) -> Shape {
 }
 
 /// With islands, on all shapes: lanes have different ones in many rounds, and where few blocks are absent, the same large ones.
-fn compare_islands<S: Scalar>(options: RigidOptions, costs: &[Cost], rounds: usize) {
+fn compare_islands<S: Scalar>(options: SolverOptions, costs: &[Cost], rounds: usize) {
     assert!(options.islands.is_none());
     for (islands, absent) in [(Switch::Auto, ABSENT), (Switch::On, 0.02)] {
         let options = options.islands(islands);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use clench_solver::{ConstraintSolver, Cost, Problem, RigidOptions, Solver, Status, Tree};
+use clench_solver::{ConstraintSolver, Cost, Problem, Solver, SolverOptions, Status, Tree};
 use common::*;
 use std::sync::Arc;
 
@@ -67,7 +67,7 @@ fn iterations(algorithm: ConstraintSolver, tolerance: f64) -> usize {
     let mut sum = 0;
     for k in 0..1000 {
         let problem = chain(&mut rng, 2 + k % 19);
-        let options = RigidOptions::new().constraint_solver(algorithm);
+        let options = SolverOptions::new().constraint_solver(algorithm);
         let settings = options.iterations(1000).tolerance(tolerance);
         let mut solver = Solver::new(problem.tree());
         let stats = solver.solve(&problem, &settings.resolve::<f64>(), None);

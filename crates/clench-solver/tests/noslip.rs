@@ -2,7 +2,7 @@
 
 mod common;
 
-use clench_solver::{Block, Cost, Problem, RigidOptions, Solver};
+use clench_solver::{Block, Cost, Problem, Solver, SolverOptions};
 use common::*;
 
 fn scenes(costs: &'static [Cost]) -> impl Iterator<Item = Problem<f64>> {
@@ -14,8 +14,8 @@ fn scenes(costs: &'static [Cost]) -> impl Iterator<Item = Problem<f64>> {
     })
 }
 
-fn options(sweeps: usize) -> RigidOptions {
-    RigidOptions::new()
+fn options(sweeps: usize) -> SolverOptions {
+    SolverOptions::new()
         .tolerance(0.0)
         .iterations(100)
         .noslip_iterations(sweeps)

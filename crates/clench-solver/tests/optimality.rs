@@ -2,11 +2,11 @@
 
 mod common;
 
-use clench_solver::{ConstraintSolver, Problem, RigidOptions, Settings, Solver, Status, Switch};
+use clench_solver::{ConstraintSolver, Problem, Settings, Solver, SolverOptions, Status, Switch};
 use common::*;
 
-fn exact() -> RigidOptions {
-    RigidOptions::new().tolerance(0.0).iterations(200)
+fn exact() -> SolverOptions {
+    SolverOptions::new().tolerance(0.0).iterations(200)
 }
 
 fn solve(problem: &Problem<f64>, settings: &Settings) -> Solver<f64> {
@@ -106,7 +106,7 @@ fn what_is_reported_of_a_stiff_solve_cut_short_is_true() {
     for (k, problem) in problems_with_stiffness(100, (1e6, 1e9)).enumerate() {
         let solver = solve(
             &problem,
-            &RigidOptions::new().iterations(4).resolve::<f64>(),
+            &SolverOptions::new().iterations(4).resolve::<f64>(),
         );
         for block in problem.blocks() {
             let (_, force) = cost_and_force(&block, &residual(&block, solver.qacc()));
@@ -157,7 +157,7 @@ fn sparse_and_dense_agree() {
 #[test]
 fn default_tolerance_is_met_and_reported() {
     for (k, problem) in problems(300).enumerate() {
-        let settings = RigidOptions::new().resolve::<f64>();
+        let settings = SolverOptions::new().resolve::<f64>();
         let solver = solve(&problem, &settings);
         let stats = solver.stats().lane(0);
         assert!(
@@ -179,7 +179,7 @@ fn the_gap_bounds_the_true_error() {
         for iterations in 1..4 {
             let early = solve(
                 &problem,
-                &RigidOptions::new().iterations(iterations).resolve::<f64>(),
+                &SolverOptions::new().iterations(iterations).resolve::<f64>(),
             );
             let (cost, _) = cost_and_gradient(&problem, early.qacc());
             let gap = early.stats().lane(0).gap;
@@ -195,7 +195,7 @@ fn the_gap_bounds_the_true_error() {
 #[test]
 fn a_good_warm_start_is_proven_at_once() {
     for (k, problem) in problems(200).enumerate() {
-        let settings = RigidOptions::new().resolve::<f64>();
+        let settings = SolverOptions::new().resolve::<f64>();
         let first = solve(&problem, &exact().resolve::<f64>());
         let mut again = Solver::new(problem.tree());
         let stats = again
@@ -216,7 +216,7 @@ fn forces_lie_in_their_cones() {
     for problem in problems(300) {
         let solver = solve(
             &problem,
-            &RigidOptions::new().iterations(3).resolve::<f64>(),
+            &SolverOptions::new().iterations(3).resolve::<f64>(),
         );
         for block in problem.blocks() {
             assert_in_cone(&block, &solver.force()[block.rows()]);

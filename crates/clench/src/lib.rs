@@ -78,7 +78,7 @@
 //! let options = RigidOptions::new().iterations(7);
 //! let sim = Sim::<f64>::with_options(model, options)?;
 //! assert_eq!(sim.settings().solver.iterations, 7);
-//! assert_eq!(sim.settings().solver.friction_cone, FrictionCone::Elliptic);
+//! assert_eq!(sim.settings().friction_cone, FrictionCone::Elliptic);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -186,9 +186,8 @@ pub use clench_rigid::batch::{Controls, Given};
 pub use clench_rigid::{
     Acceleration, Anchor, Axes, Batch, BatchOptions, Budget, DynamicConstraint, EnvStatus, Fault,
     Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Output, Precision, RayFilter,
-    RayHit, Sim, SimError, State,
+    RayHit, RigidOptions, Sim, SimError, State,
 };
-pub use clench_solver::RigidOptions;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
@@ -201,5 +200,6 @@ pub mod prelude {
         Sim, SimError, State, load, load_str,
     };
     pub use clench_math::{Quat, Vec3};
-    pub use clench_solver::{ConstraintSolver, FrictionCone, MaxContacts, Switch};
+    pub use clench_rigid::options::{FrictionCone, MaxContacts};
+    pub use clench_solver::{ConstraintSolver, Switch};
 }

@@ -1,4 +1,4 @@
-//! `<option>`: time step, medium, integrator, solver and feature flags.
+//! `<option>`: time step, medium, integrator, solver and feature flags. Which attributes are options says the table of options.
 //!
 //! Solver options that a file leaves out keep the values of its format, not this library's: a MuJoCo user gets MuJoCo's
 //! numbers.
@@ -7,7 +7,7 @@ use super::document::Element;
 use crate::LoadError;
 use clench_rigid::builder::{ContactOverride, DEFAULT_SOLIMP, DEFAULT_SOLREF, ModelBuilder};
 use clench_rigid::model::{Flags, Integrator};
-use clench_solver::{ConstraintSolver, FrictionCone, RigidOptions, Switch};
+use clench_rigid::options::{Mjcf, OptionValue, RigidOption, RigidOptions};
 
 /// What MJCF means where it is silent: 100 iterations and time constants as they are written.
 ///
@@ -47,14 +47,17 @@ impl OptionReader {
     /// Reads one `<option>`.
     pub fn read(&mut self, element: &Element, builder: &mut ModelBuilder) -> Result<(), LoadError> {
         read_physics(element, builder)?;
-        self.read_solver(element, &mut builder.options)?;
+        read_options(element, &mut builder.options, attribute)?;
+        if let Some(solver) = element.text("solver") {
+            self.replaced_solver = solver == "PGS";
+        }
         element.set_number("o_margin", &mut self.contact.margin)?;
         element.overlay("o_solref", &mut self.contact.solref)?;
         element.overlay("o_solimp", &mut self.contact.solimp)?;
         element.overlay("o_friction", &mut self.contact.friction)?;
         for flag in &element.children {
             element_flags(flag, &mut builder.physics.flags)?;
-            solver_flags(flag, &mut builder.options)?;
+            read_options(flag, &mut builder.options, flag_value)?;
             flag.set_keyword("override", &SWITCHES, &mut self.contact_override)?;
         }
         if builder.physics.flags.sleep && builder.physics.integrator == Integrator::Rk4 {
@@ -72,49 +75,44 @@ impl OptionReader {
             builder.notes.push(note.to_owned());
         }
     }
+}
 
-    fn read_solver(
-        &mut self,
-        element: &Element,
-        options: &mut RigidOptions,
-    ) -> Result<(), LoadError> {
-        let solvers = [
-            ("PGS", None),
-            ("CG", Some(ConstraintSolver::Cg)),
-            ("Newton", Some(ConstraintSolver::Newton)),
-        ];
-        if let Some(solver) = element.keyword("solver", &solvers)? {
-            self.replaced_solver = solver.is_none();
-            options.constraint_solver = Some(solver.unwrap_or(ConstraintSolver::Newton));
+/// Reads what the table of options says of an element, by `read`.
+fn read_options(
+    element: &Element,
+    options: &mut RigidOptions,
+    read: fn(&Element, RigidOption) -> Result<Option<OptionValue>, LoadError>,
+) -> Result<(), LoadError> {
+    for &option in RigidOption::ALL {
+        if let Some(value) = read(element, option)? {
+            (options.set(option, value)).map_err(|wrong| element.error(wrong.to_string()))?;
         }
-        let cones = [
-            ("pyramidal", FrictionCone::Pyramidal),
-            ("elliptic", FrictionCone::Elliptic),
-        ];
-        options.friction_cone = element.keyword("cone", &cones)?.or(options.friction_cone);
-        let jacobians = [
-            ("dense", Switch::Off),
-            ("sparse", Switch::On),
-            ("auto", Switch::Auto),
-        ];
-        options.sparse_solve = element
-            .keyword("jacobian", &jacobians)?
-            .or(options.sparse_solve);
-        let number = |name| Ok::<_, LoadError>(element.numbers(name)?.map(|[n]| n));
-        element.refuse_negative(&["impratio", "tolerance", "ls_tolerance", "noslip_tolerance"])?;
-        options.impratio = number("impratio")?.or(options.impratio);
-        if options.impratio == Some(0.0) {
-            return Err(element.error("impratio must be positive"));
+    }
+    Ok(())
+}
+
+/// The value of an option that is an attribute of `<option>`.
+fn attribute(element: &Element, option: RigidOption) -> Result<Option<OptionValue>, LoadError> {
+    match (option.mjcf(), option.default(false)) {
+        (Mjcf::Attribute(name), OptionValue::Count(_)) => {
+            Ok(element.count(name)?.map(OptionValue::Count))
         }
-        options.tolerance = number("tolerance")?.or(options.tolerance);
-        options.ls_tolerance = number("ls_tolerance")?.or(options.ls_tolerance);
-        options.noslip_tolerance = number("noslip_tolerance")?.or(options.noslip_tolerance);
-        options.iterations = element.count("iterations")?.or(options.iterations);
-        options.ls_iterations = element.count("ls_iterations")?.or(options.ls_iterations);
-        options.noslip_iterations = element
-            .count("noslip_iterations")?
-            .or(options.noslip_iterations);
-        Ok(())
+        (Mjcf::Attribute(name), OptionValue::Number(_)) => {
+            Ok(element.numbers(name)?.map(|[x]| OptionValue::Number(x)))
+        }
+        (Mjcf::Attribute(name), default) => element.keyword(name, default.words()),
+        (Mjcf::Words(name, words), _) => element.keyword(name, words),
+        (Mjcf::Flag(..) | Mjcf::Nowhere, _) => Ok(None),
+    }
+}
+
+/// The value of an option that is an attribute of `<flag>`.
+fn flag_value(element: &Element, option: RigidOption) -> Result<Option<OptionValue>, LoadError> {
+    match option.mjcf() {
+        Mjcf::Flag(name, [disabled, enabled]) => {
+            element.keyword(name, &[("disable", disabled), ("enable", enabled)])
+        }
+        Mjcf::Attribute(_) | Mjcf::Words(..) | Mjcf::Nowhere => Ok(None),
     }
 }
 
@@ -181,24 +179,6 @@ fn element_flags(element: &Element, flags: &mut Flags) -> Result<(), LoadError> 
     ];
     for (name, target) in targets {
         element.set_keyword(name, &SWITCHES, target)?;
-    }
-    Ok(())
-}
-
-/// Flags that are options here, so that a user's own options win over the file.
-fn solver_flags(element: &Element, options: &mut RigidOptions) -> Result<(), LoadError> {
-    if let Some(constraint) = element.keyword("constraint", &SWITCHES)? {
-        options.disable_constraint = Some(!constraint);
-    }
-    options.warmstart = element
-        .keyword("warmstart", &SWITCHES)?
-        .or(options.warmstart);
-    // Only what a file says: where it says nothing, a simulation that diverges stops.
-    options.autoreset = element
-        .keyword("autoreset", &SWITCHES)?
-        .or(options.autoreset);
-    if let Some(island) = element.keyword("island", &SWITCHES)? {
-        options.islands = Some(if island { Switch::Auto } else { Switch::Off });
     }
     Ok(())
 }

@@ -1,8 +1,8 @@
 //! How a batch is stepped.
 
 use crate::error::SimError;
+use crate::options::RigidOptions;
 use clench_math::{Instructions, Scalar};
-use clench_solver::RigidOptions;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::thread::available_parallelism;
 

@@ -5,9 +5,9 @@ use super::{Batch, Precision, Rows};
 use crate::check::check_length;
 use crate::error::SimError;
 use crate::model::{Model, ParamField, Params};
+use crate::options::RigidOptions;
 use crate::settings::StepSettings;
 use clench_math::Real;
-use clench_solver::RigidOptions;
 
 /// A field of the parameters, a row an environment.
 pub struct ParamRows<S> {

@@ -265,7 +265,7 @@ fn explained<T: Real>(
     (solref, solimp): ([T; 2], [T; 5]),
 ) -> f64 {
     let number = |x: T| x.lane(lane).to_f64();
-    let least_timeconst = place.settings.solver.constraint_timeconst;
+    let least_timeconst = place.settings.constraint_timeconst;
     let soft = Softness::new(
         solref.map(number),
         solimp.map(number),

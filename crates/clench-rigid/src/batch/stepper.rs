@@ -12,6 +12,7 @@ use super::state_rows::{Inputs, MovingRows, clear_occasional};
 use crate::check;
 use crate::error::Fault;
 use crate::model::{Model, Params};
+use crate::options::MaxContacts;
 use crate::output::{Output, Source};
 use crate::pipeline;
 use crate::profile::{Profile, Stage};
@@ -20,7 +21,6 @@ use crate::state::State;
 use crate::state::kind::Number;
 use crate::workspace::Workspace;
 use clench_math::{Clock, LaneTask, Mask, Real, write_lane};
-use clench_solver::MaxContacts;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// What users see of environments.
@@ -242,7 +242,7 @@ where
             fault,
             Fault::ContactOverflow { .. } | Fault::OverBudget { .. }
         );
-        if job.settings.solver.autoreset && start == Start::Rows && !bounded {
+        if job.settings.autoreset && start == Start::Rows && !bounded {
             self.restarts.push((env as u32, step));
         } else {
             self.totals.faults.push((env as u32, fault));
@@ -270,7 +270,7 @@ where
         let good = within & !overflow;
         for (lane, env) in group.iter().filter(|&(lane, _)| !good.lane(lane)) {
             let time = time.lane(lane);
-            let fault = match settings.solver.max_contacts {
+            let fault = match settings.max_contacts {
                 MaxContacts::Limit(limit) if within.lane(lane) => {
                     Fault::ContactOverflow { time, limit }
                 }

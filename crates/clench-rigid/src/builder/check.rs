@@ -93,22 +93,7 @@ fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
     if let Some(total) = compiler.settotalmass {
         require(total.is_finite() && total > 0.0, "settotalmass", "positive")?;
     }
-    let options = &builder.options;
-    let tolerances = [
-        ("tolerance", options.tolerance),
-        ("ls_tolerance", options.ls_tolerance),
-        ("noslip_tolerance", options.noslip_tolerance),
-        ("constraint_timeconst", options.constraint_timeconst),
-    ];
-    for (field, value) in tolerances {
-        require(value.is_none_or(not_negative), field, "zero or more")?;
-    }
-    let impratio = options.impratio.unwrap_or(1.0);
-    require(
-        impratio.is_finite() && impratio > 0.0,
-        "impratio",
-        "a positive number",
-    )?;
+    (builder.options.check()).map_err(|wrong| BuildError::new("model", wrong.to_string()))?;
     if let Some(o) = &physics.contact_override {
         let numbers = [&[o.margin][..], &o.solref, &o.solimp, &o.friction].concat();
         require(finite(&numbers), "every contact override", "finite")?;

@@ -7,8 +7,8 @@ use super::{ActuatorSpec, BuildError, ModelBuilder};
 use crate::budget::RAISE;
 use crate::dynamics::transmission;
 use crate::model::{Actuator, BiasKind, Flags, GainKind, Integrator, Model, Transmission};
+use crate::options::RigidOptions;
 use crate::{Sim, SimError};
-use clench_solver::RigidOptions;
 use std::sync::Arc;
 
 /// Velocities fade with a time constant of at least so much, s.

@@ -87,7 +87,7 @@ pub use sensor_specs::{
 
 pub use visuals::{AppearanceSpec, MaterialSpec};
 
-use clench_solver::RigidOptions;
+use crate::options::RigidOptions;
 
 /// A model as its author wrote it.
 #[derive(Clone, Debug)]

@@ -5,12 +5,12 @@ use super::element::Element;
 use super::{BodySpec, BuildError, ModelBuilder};
 use crate::contact::check_supported;
 use crate::model::{JointKind, KinematicTree, Model, SleepPolicy, Transmission};
+use crate::options::RigidOptions;
 use crate::settings::StepSettings;
 use crate::sleep::{AWAKE, READY};
 use crate::state::State;
 use crate::workspace::{Positions, Workspace};
 use crate::{pipeline, sleep};
-use clench_solver::RigidOptions;
 
 /// The least size of a body, m (as in MuJoCo).
 const MIN_SIZE: f64 = 1e-5;

@@ -25,8 +25,9 @@ use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
 use super::{ConstraintContext, Softness};
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
+use crate::options::FrictionCone;
 use clench_math::{Mask, Real, kernel};
-use clench_solver::{Cost, FrictionCone};
+use clench_solver::Cost;
 
 /// The most rows of a contact.
 const MAX_DIM: usize = 6;
@@ -96,7 +97,7 @@ fn rows<T: Real>(
     }
     let impratio = context.impratio;
     let mu = contact.friction;
-    match context.settings.solver.friction_cone {
+    match context.settings.friction_cone {
         FrictionCone::Pyramidal => {
             let mu2 = mu[0] * mu[0];
             let r = soft.regularization(a0 + mu2 * a0);

@@ -162,7 +162,7 @@ pub fn assemble<T: Real>(
         velocity: &ws.velocity,
         sleep: &ws.sleep,
         least_timeconst: least_timeconst(params, settings),
-        impratio: T::new(settings.solver.impratio),
+        impratio: T::new(settings.impratio),
     };
     // Rows are appended to the problem while the factor of its mass is read.
     let factor = std::mem::take(&mut ws.problem.mass_factor);
@@ -186,7 +186,7 @@ pub fn assemble<T: Real>(
     if settings.flags.frictionloss {
         friction::push_all(&context, &mut out);
     }
-    if settings.joint_limits {
+    if settings.enable_joint_limit {
         limit::push_joints(&context, &mut out);
     }
     if settings.flags.limit {
@@ -200,7 +200,7 @@ pub fn assemble<T: Real>(
 
 #[inline(always)]
 fn least_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
-    let floor = T::new(settings.solver.constraint_timeconst);
+    let floor = T::new(settings.constraint_timeconst);
     if settings.flags.refsafe {
         floor.max(params.timestep * T::new(2.0))
     } else {

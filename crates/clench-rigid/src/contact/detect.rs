@@ -5,13 +5,13 @@ use super::dynamic_broad_phase::DynamicBroadPhase;
 use super::{Candidate, Contact, candidates, contact_params, contact_range, surface};
 use crate::Budget;
 use crate::model::{Model, Params};
+use crate::options::MaxContacts;
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::sleep::Sleep;
 use crate::workspace::{Positions, Workspace};
 use clench_collide::{Contacts, Pose, Shape, collide, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
-use clench_solver::MaxContacts;
 
 /// What a step can find more of than the model's budget allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -253,7 +253,7 @@ fn list<T: Real>(
         for (lanes, dim) in [(!apart, mixed.dim), (apart, 1)] {
             let active = collision.count_within_limit(
                 point.active & awake & lanes,
-                settings.solver.max_contacts,
+                settings.max_contacts,
                 dim * dofs,
                 &model.budget,
             );

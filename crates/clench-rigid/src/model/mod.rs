@@ -29,8 +29,9 @@ pub use structure::{
 };
 
 use crate::Budget;
+use crate::options::RigidOptions;
 use clench_collide::Asset;
-use clench_solver::{RigidOptions, Tree};
+use clench_solver::Tree;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;

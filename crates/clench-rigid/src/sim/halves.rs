@@ -54,7 +54,7 @@ impl<T: Precision> Sim<T> {
             return result;
         }
         self.state.copy_from(&self.last_good);
-        if self.settings.solver.autoreset {
+        if self.settings.autoreset {
             // It fails once more, and starts over as the options say.
             return self.step();
         }

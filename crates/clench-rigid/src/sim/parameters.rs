@@ -4,8 +4,8 @@ use super::Sim;
 use crate::Precision;
 use crate::error::SimError;
 use crate::model::{Model, ParamField, Params};
+use crate::options::RigidOptions;
 use crate::settings::StepSettings;
-use clench_solver::RigidOptions;
 
 impl<T: Precision> Sim<T> {
     /// Replaces the numbers of a field of [`params`](Self::params), element after element, and computes what follows from

@@ -8,8 +8,8 @@ use clench_collide::ShapeKind;
 use clench_math::{Instructions, Vec3};
 use clench_rigid::builder::{GeomSpec, ModelBuilder};
 use clench_rigid::model::JointKind;
+use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, BatchOptions, Model, Precision, Sim, State};
-use clench_solver::RigidOptions;
 pub use scenes::*;
 use std::sync::Arc;
 

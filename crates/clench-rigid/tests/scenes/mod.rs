@@ -14,7 +14,7 @@ use clench_rigid::builder::{
 };
 use clench_rigid::constraint::softness::impedance;
 use clench_rigid::model::JointKind;
-use clench_solver::RigidOptions;
+use clench_rigid::options::RigidOptions;
 pub use common::*;
 
 /// An empty world that is solved as precisely as numbers allow.

@@ -16,7 +16,7 @@ mod reference;
 mod sample;
 mod wide;
 
-use clench_solver::{ConstraintSolver, Problem, RigidOptions, Settings, Solver, Status, Switch};
+use clench_solver::{ConstraintSolver, Problem, Settings, Solver, SolverOptions, Status, Switch};
 use common::{Rng, assert_in_cone, cost_and_force, difference, norm};
 use number::{Wide, wide};
 use reference::{CLASSES, Reference, draw, references};
@@ -24,7 +24,7 @@ use wide::WideProblem;
 
 /// As far as the working precision goes.
 fn exact() -> Settings {
-    RigidOptions::new()
+    SolverOptions::new()
         .tolerance(0.0)
         .iterations(1000)
         .resolve::<f64>()
@@ -105,7 +105,7 @@ fn minima_agree_and_the_gap_certifies_them() {
 
 /// The gap bounds the true error wherever a solve stops.
 fn check_early_stops(k: usize, reference: &Reference) {
-    let newton = RigidOptions::new();
+    let newton = SolverOptions::new();
     let cg = newton.constraint_solver(ConstraintSolver::Cg);
     for options in [newton.iterations(1), newton.iterations(4), newton, cg] {
         let solver = solve(&reference.problem, &options.resolve::<f64>(), None);
@@ -168,10 +168,10 @@ fn force_difference(reference: &Reference, solver: &Solver<f64>) -> f64 {
 #[test]
 fn dense_sparse_islands_and_conjugate_gradients_reach_the_same_minimiser() {
     let mut worst = Worst::new(["dense", "sparse", "islands", "CG", "CG's cost"]);
-    let exact = RigidOptions::new().tolerance(0.0).iterations(10_000);
+    let exact = SolverOptions::new().tolerance(0.0).iterations(10_000);
     for (k, reference) in references(4, 120, 1e7, 1e5).enumerate() {
         let minimiser = reference.qacc();
-        let found = |options: RigidOptions| {
+        let found = |options: SolverOptions| {
             let solver = solve(&reference.problem, &options.resolve::<f64>(), None);
             solver.qacc().to_vec()
         };

@@ -11,8 +11,8 @@ mod resume;
 mod watch;
 
 use cap::Cap;
+use clench::rigid::options::MaxContacts;
 use clench::rigid::{EnvStatus, Precision};
-use clench::solver::MaxContacts;
 use clench::{Batch, BatchOptions, RigidOptions};
 use dice::Dice;
 use ledger::{Expectation, Ledger};

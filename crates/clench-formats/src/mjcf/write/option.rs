@@ -1,10 +1,11 @@
 //! `<compiler>` and `<option>`: nothing is left to derive, and the physics of the world.
 
 use super::SaveError;
-use super::xml::Xml;
+use super::xml::{Tag, Xml};
+use crate::mjcf::option::format_defaults;
 use clench_rigid::Model;
 use clench_rigid::model::{Flags, Integrator};
-use clench_solver::{ConstraintSolver, FrictionCone, MaxContacts, RigidOptions, Switch};
+use clench_rigid::options::{Mjcf, OptionValue, RigidOption};
 use std::collections::BTreeSet;
 
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
@@ -56,37 +57,6 @@ fn check_time_constants(model: &Model) -> Result<(), SaveError> {
 }
 
 fn write_option(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
-    let RigidOptions {
-        constraint_solver,
-        iterations,
-        tolerance,
-        ls_iterations,
-        ls_tolerance,
-        constraint_timeconst: _,
-        enable_joint_limit,
-        disable_constraint: _,
-        sparse_solve,
-        noslip_iterations,
-        noslip_tolerance,
-        max_contacts,
-        friction_cone,
-        impratio,
-        islands,
-        warmstart: _,
-        autoreset: _,
-    } = model.options;
-    if enable_joint_limit == Some(false) {
-        return Err(unwritable("enable_joint_limit", "MJCF has none"));
-    }
-    if let Some(MaxContacts::Limit(_)) = max_contacts {
-        return Err(unwritable("max_contacts", "MJCF has none"));
-    }
-    if islands == Some(Switch::On) {
-        return Err(unwritable(
-            "islands",
-            "MJCF can turn islands off, but not force them",
-        ));
-    }
     let p = &model.params;
     let integrator = match model.integrator {
         Integrator::Euler => "Euler",
@@ -102,55 +72,9 @@ fn write_option(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
         .numbers_unless("magnetic", &p.magnetic.to_array(), &[0.0, -0.5, 0.0])
         .number_unless("density", p.density, 0.0)
         .number_unless("viscosity", p.viscosity, 0.0)
-        .text("integrator", integrator)
-        .integer("iterations", iterations.unwrap_or(50) as i64);
-    if let Some(solver) = constraint_solver {
-        tag = tag.text(
-            "solver",
-            match solver {
-                ConstraintSolver::Newton => "Newton",
-                ConstraintSolver::Cg => "CG",
-            },
-        );
-    }
-    if let Some(cone) = friction_cone {
-        tag = tag.text(
-            "cone",
-            match cone {
-                FrictionCone::Pyramidal => "pyramidal",
-                FrictionCone::Elliptic => "elliptic",
-            },
-        );
-    }
-    if let Some(sparse) = sparse_solve {
-        tag = tag.text(
-            "jacobian",
-            match sparse {
-                Switch::Auto => "auto",
-                Switch::On => "sparse",
-                Switch::Off => "dense",
-            },
-        );
-    }
-    let numbers = [
-        ("impratio", impratio),
-        ("tolerance", tolerance),
-        ("ls_tolerance", ls_tolerance),
-        ("noslip_tolerance", noslip_tolerance),
-    ];
-    for (name, value) in numbers {
-        if let Some(value) = value {
-            tag = tag.numbers(name, &[value]);
-        }
-    }
-    let counts = [
-        ("ls_iterations", ls_iterations),
-        ("noslip_iterations", noslip_iterations),
-    ];
-    for (name, value) in counts {
-        if let Some(value) = value {
-            tag = tag.integer(name, value as i64);
-        }
+        .text("integrator", integrator);
+    for &option in RigidOption::ALL {
+        tag = write_attribute(model, option, tag)?;
     }
     if model.flags.sleep {
         tag = tag.numbers("sleep_tolerance", &[p.sleep_tolerance]);
@@ -167,7 +91,7 @@ fn write_option(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     if !groups.is_empty() {
         tag = tag.integers("actuatorgroupdisable", groups.into_iter().map(i64::from));
     }
-    let flags = flags(model);
+    let flags = flags(model)?;
     if flags.is_empty() {
         tag.end();
         return Ok(());
@@ -182,8 +106,54 @@ fn write_option(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     Ok(())
 }
 
+/// The value of an option where a reader would take another if it were not written.
+fn value_to_write(model: &Model, option: RigidOption) -> Option<OptionValue> {
+    let differs = format_defaults().get(option).is_some();
+    (model.options.get(option)).or_else(|| differs.then(|| option.default(false)))
+}
+
+/// Writes an option that is an attribute of `<option>`.
+fn write_attribute<'x>(
+    model: &Model,
+    option: RigidOption,
+    tag: Tag<'x>,
+) -> Result<Tag<'x>, SaveError> {
+    let Some(value) = value_to_write(model, option) else {
+        return Ok(tag);
+    };
+    Ok(match (option.mjcf(), value) {
+        (Mjcf::Attribute(name), OptionValue::Count(n)) => tag.integer(name, n as i64),
+        (Mjcf::Attribute(name), OptionValue::Number(x)) => tag.numbers(name, &[x]),
+        (Mjcf::Attribute(name), value) => tag.text(name, word(option, value, value.words())?),
+        (Mjcf::Words(name, words), value) => tag.text(name, word(option, value, words)?),
+        (Mjcf::Flag(..), _) => tag,
+        // Where it acts was looked at.
+        (Mjcf::Nowhere, _) if option == RigidOption::constraint_timeconst => tag,
+        (Mjcf::Nowhere, value) if value == option.default(false) => tag,
+        (Mjcf::Nowhere, _) => return Err(unwritable(option.name(), "MJCF has none")),
+    })
+}
+
+fn word(
+    option: RigidOption,
+    value: OptionValue,
+    words: &[(&'static str, OptionValue)],
+) -> Result<&'static str, SaveError> {
+    let missing = || unwritable(option.name(), &format!("MJCF has no word for {value}"));
+    value.word(words).ok_or_else(missing)
+}
+
 /// Flags that are not as MJCF has them where nothing is said.
-fn flags(model: &Model) -> Vec<(&'static str, bool)> {
+fn flags(model: &Model) -> Result<Vec<(&'static str, bool)>, SaveError> {
+    let mut flags = Vec::new();
+    for &option in RigidOption::ALL {
+        if let (Mjcf::Flag(name, [disabled, enabled]), Some(value)) =
+            (option.mjcf(), model.options.get(option))
+        {
+            let words = [("disable", disabled), ("enable", enabled)];
+            flags.push((name, word(option, value, &words)? == "enable"));
+        }
+    }
     let Flags {
         constraint,
         equality,
@@ -206,12 +176,8 @@ fn flags(model: &Model) -> Vec<(&'static str, bool)> {
         sleep,
         invdiscrete,
     } = model.flags;
-    let options = &model.options;
     let on = [
-        (
-            "constraint",
-            constraint && options.disable_constraint != Some(true),
-        ),
+        ("constraint", constraint),
         ("equality", equality),
         ("frictionloss", frictionloss),
         ("limit", limit),
@@ -220,20 +186,22 @@ fn flags(model: &Model) -> Vec<(&'static str, bool)> {
         ("damper", damper),
         ("gravity", gravity),
         ("clampctrl", clampctrl),
-        ("warmstart", warmstart && options.warmstart != Some(false)),
+        ("warmstart", warmstart),
         ("filterparent", filterparent),
         ("actuation", actuation),
         ("refsafe", refsafe),
-        ("island", island && options.islands != Some(Switch::Off)),
+        ("island", island),
         ("eulerdamp", eulerdamp),
         ("sensor", sensor),
         ("multiccd", multiccd),
     ];
-    let mut flags: Vec<_> = on.into_iter().filter(|(_, on)| !on).collect();
-    flags.extend(options.autoreset.map(|autoreset| ("autoreset", autoreset)));
+    for (off, _) in on.into_iter().filter(|(_, on)| !on) {
+        flags.retain(|(name, _)| *name != off);
+        flags.push((off, false));
+    }
     flags.extend(diagexact.then_some(("diagexact", true)));
     flags.extend(sleep.then_some(("sleep", true)));
     flags.extend(invdiscrete.then_some(("invdiscrete", true)));
     flags.extend(model.override_contacts.then_some(("override", true)));
-    flags
+    Ok(flags)
 }

@@ -1,0 +1,98 @@
+//! Flags for the options of the constraint model: each row of their table has one.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
+use clench::RigidOptions;
+use clench::rigid::options::{Argument, MaxContacts, OptionValue, RigidOption};
+
+/// Under which these flags stand in a help text.
+pub const HEADING: &str = "Options that override the file";
+
+/// Options that override the file's `<option>`; what is not given stays as the file says.
+pub struct Overrides(pub RigidOptions);
+
+impl Args for Overrides {
+    fn augment_args(command: Command) -> Command {
+        command.args(RigidOption::ALL.iter().map(|&option| flag(option)))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Overrides {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut options = RigidOptions::new();
+        for &option in RigidOption::ALL {
+            let given = match option.argument() {
+                Argument::Given(_) => matches.get_one(option.name()).copied(),
+                Argument::Sets(_, value) => matches.get_flag(option.name()).then_some(value),
+            };
+            if let Some(value) = given {
+                (options.set(option, value)).map_err(|wrong| {
+                    Error::raw(ErrorKind::ValueValidation, format!("{wrong}\n"))
+                })?;
+            }
+        }
+        Ok(Overrides(options))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        self.0 = Overrides::from_arg_matches(matches)?.0.or(self.0);
+        Ok(())
+    }
+}
+
+fn flag(option: RigidOption) -> Arg {
+    let arg = Arg::new(option.name()).help_heading(HEADING);
+    let sentence = option.sentence().trim_end_matches('.');
+    match option.argument() {
+        Argument::Given(flag) => {
+            let default = option.default(false);
+            arg.long(flag)
+                .value_parser(parser(default))
+                .value_name(value_name(default))
+                .ignore_case(true)
+                .help(sentence)
+        }
+        Argument::Sets(flag, value) => {
+            let question = sentence
+                .split_once("; ")
+                .map_or(sentence, |(question, _)| question);
+            arg.long(flag)
+                .action(ArgAction::SetTrue)
+                .help(format!("{question}: {value}"))
+        }
+    }
+}
+
+fn value_name(default: OptionValue) -> &'static str {
+    match default {
+        OptionValue::Count(_) | OptionValue::Limit(_) => "N",
+        OptionValue::Number(_) => "X",
+        _ => "WORD",
+    }
+}
+
+/// Reads values of the same type as a default.
+fn parser(default: OptionValue) -> ValueParser {
+    match default {
+        OptionValue::Count(_) => (|text: &str| text.parse().map(OptionValue::Count)).into(),
+        OptionValue::Number(_) => (|text: &str| text.parse().map(OptionValue::Number)).into(),
+        OptionValue::Limit(_) => {
+            let limit = |n| OptionValue::Limit(MaxContacts::Limit(n));
+            (move |text: &str| text.parse().map(limit)).into()
+        }
+        words => {
+            let spellings = words.words().iter().map(|(word, _)| *word);
+            let meaning = move |text: String| {
+                let meant = |(word, _): &&(&str, OptionValue)| word.eq_ignore_ascii_case(&text);
+                let found = words.words().iter().find(meant);
+                found.map(|&(_, value)| value).ok_or(words.what())
+            };
+            (PossibleValuesParser::new(spellings).try_map(meaning)).into()
+        }
+    }
+}
