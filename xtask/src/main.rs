@@ -3,6 +3,8 @@
 
 mod audit;
 mod fuzz;
+mod gpu;
+mod install;
 mod package;
 mod python;
 mod run;
@@ -23,11 +25,12 @@ Commands:
                       fmt      rustfmt finds nothing to change
                       page     the viewer's page, built by Node; without npm skipped
                       clippy   no warnings in any crate, test or example
-                      unit     all Rust tests
+                      unit     all Rust tests but those on a graphics device
                       doc      rustdoc without warnings
                       build    the release `clench` program
                       browser  the page driven in Chromium; without one skipped (CHROMIUM names another than /usr/bin/chromium)
                       python   .venv with MuJoCo and gymnasium
+                      gpu      steps on a graphics device, or on Mesa's software device; without a driver skipped
                       package  the Python package, built and installed in .venv by pip; its types
                       pytest   its tests, every example in a short form among them
                       parity   `clench` against MuJoCo, with pytest

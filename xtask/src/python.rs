@@ -33,6 +33,21 @@ pub fn interpreter() -> PathBuf {
     })
 }
 
+/// The folder of the robots of Gymnasium's MuJoCo tasks.
+///
+/// # Errors
+/// That `.venv` does not have Gymnasium.
+pub fn gymnasium_assets() -> Result<PathBuf, String> {
+    let where_is = "import gymnasium, pathlib; print(pathlib.Path(gymnasium.__file__).parent)";
+    let found = command(interpreter(), &["-c", where_is]).output();
+    let found = found.map_err(|e| format!("{}: {e}", interpreter().display()))?;
+    if !found.status.success() {
+        return Err("Gymnasium is not in .venv; run `cargo xtask test python`".to_owned());
+    }
+    let package = String::from_utf8_lossy(&found.stdout).trim().to_owned();
+    Ok(PathBuf::from(package).join("envs/mujoco/assets"))
+}
+
 /// `.venv` with pip in it. One left half made by an interrupted run is made again.
 fn make_environment() -> Result<(), String> {
     let has_pip = |mut c: std::process::Command| c.output().is_ok_and(|o| o.status.success());

@@ -1,5 +1,6 @@
 //! The stages of `cargo xtask test`, in order, and `cargo xtask bench`.
 
+use crate::gpu;
 use crate::package;
 use crate::python;
 use crate::run::{Profile, cargo, command, run};
@@ -64,6 +65,12 @@ const STAGES: &[Stage] = &[
         remedy: "see the message above",
         check: python::prepare,
         missing: nothing,
+    },
+    Stage {
+        name: "gpu",
+        remedy: "run one test alone with `cargo test -p clench-gpu NAME`",
+        check: gpu::test,
+        missing: gpu::no_device,
     },
     Stage {
         name: "package",
@@ -157,6 +164,8 @@ fn clippy() -> Result<(), String> {
         "clippy",
         "--quiet",
         "--workspace",
+        "--features",
+        "clench-cli/gpu",
         "--all-targets",
         "--",
         "-D",
@@ -165,7 +174,9 @@ fn clippy() -> Result<(), String> {
 }
 
 fn unit() -> Result<(), String> {
-    run(cargo(&["test", "--quiet", "--workspace"]))
+    let mut tests = cargo(&["test", "--quiet", "--workspace"]);
+    tests.env("CLENCH_GPU", "skip");
+    run(tests)
 }
 
 fn doc() -> Result<(), String> {

@@ -1,5 +1,6 @@
 //! The viewer's page: built by Node, and driven in a browser by its tests.
 
+use crate::install::try_to_install;
 use crate::run::{Profile, command, root, run};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -40,9 +41,8 @@ pub fn no_node() -> Option<String> {
 pub fn no_browser() -> Option<String> {
     no_node().or_else(|| {
         let path = chromium();
-        if !path.is_file() && may_install() {
-            println!("installing Chromium");
-            install_chromium();
+        if !path.is_file() {
+            try_to_install("chromium");
         }
         let missing = !path.is_file();
         missing.then(|| {
@@ -52,22 +52,6 @@ pub fn no_browser() -> Option<String> {
             )
         })
     })
-}
-
-/// Whether this is a machine where nobody is asked: the superuser's, as in a container.
-fn may_install() -> bool {
-    let user = Command::new("id").arg("-u").output();
-    user.is_ok_and(|user| user.stdout.trim_ascii() == b"0")
-}
-
-/// Whether it worked shows in what is there afterwards.
-fn install_chromium() {
-    let install = ["install", "-qq", "--no-install-recommends", "chromium"];
-    for arguments in [&["update", "-qq"][..], &install] {
-        let mut apt = Command::new("apt-get");
-        apt.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
-        let _ = apt.stdout(Stdio::null()).stderr(Stdio::null()).status();
-    }
 }
 
 /// Debian's Chromium, or that of the environment variable `CHROMIUM`.

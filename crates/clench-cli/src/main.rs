@@ -69,6 +69,9 @@ enum Command {
     Inspect(inspect::Arguments),
     /// Write a model as MJCF, with every number resolved
     Convert(convert::Arguments),
+    /// List the graphics devices that `simulate --device gpu` can step on
+    #[cfg(feature = "gpu")]
+    Devices,
     /// Say what of MJCF is read, what is ignored, and what is refused
     Mjcf(mjcf::Arguments),
 }
@@ -80,6 +83,8 @@ fn main() -> ExitCode {
         Command::Forward(arguments) => forward::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Convert(arguments) => convert::run(&arguments).map(|()| ExitCode::SUCCESS),
+        #[cfg(feature = "gpu")]
+        Command::Devices => simulate::gpu::list().map(|()| ExitCode::SUCCESS),
         Command::Mjcf(arguments) => mjcf::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {

@@ -37,9 +37,19 @@ pub struct BatchArguments {
     /// How the environments of a batch lie side by side [default: what is fastest here]
     #[arg(long, ignore_case = true, requires = "envs")]
     instructions: Option<InstructionsName>,
+    /// What steps a batch: the processor, or (of programs with the feature `gpu`) a graphics device in single precision
+    #[arg(long, value_name = "DEVICE", default_value = "cpu", requires = "envs")]
+    pub device: DeviceName,
     /// Leave the environments of a batch in order, where those of like contacts would be put side by side
     #[arg(long, requires = "envs")]
     no_grouping: bool,
+}
+
+/// What steps environments.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DeviceName {
+    Cpu,
+    Gpu,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -62,6 +72,18 @@ fn name(instructions: Instructions) -> &'static str {
 }
 
 impl BatchArguments {
+    /// The first flag that says how a processor steps, if any was given.
+    #[cfg(feature = "gpu")]
+    pub fn of_processor(&self) -> Option<&'static str> {
+        let flags = [
+            ("--threads", self.threads.is_some()),
+            ("--instructions", self.instructions.is_some()),
+            ("--no-grouping", self.no_grouping),
+        ];
+        let given = flags.into_iter().find(|&(_, given)| given);
+        given.map(|(flag, _)| flag)
+    }
+
     fn options(&self, options: RigidOptions) -> BatchOptions {
         BatchOptions {
             options,

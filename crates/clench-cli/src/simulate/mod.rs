@@ -5,6 +5,8 @@
 mod batch;
 mod display;
 mod energy;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod page;
 mod quality;
 mod record;
@@ -20,12 +22,12 @@ use crate::npy::{Rows, read_rows};
 use crate::options::ModelArguments;
 use crate::replacement::require_other;
 use anyhow::{Context, Result, bail, ensure};
-use batch::BatchArguments;
+use batch::{BatchArguments, DeviceName};
 use clap::{Args, ValueEnum};
 use clench::Model;
 use indicatif::{ProgressBar, ProgressStyle};
 use record::RecordOptions;
-use report::Report;
+use serde::Serialize;
 pub use start::StartArguments;
 use start::Starts;
 use std::io::{self, Write};
@@ -174,6 +176,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         }),
         interrupt: Interrupt::listen()?,
     };
+    if let (DeviceName::Gpu, Some(envs)) = (arguments.batch.device, envs) {
+        return on_device(arguments, &run, envs as usize, options);
+    }
     let mut report = match (envs, arguments.precision) {
         (None, Bits::Double) => single::run::<f64>(arguments, &run, options)?,
         (None, Bits::Single) => single::run::<f32>(arguments, &run, options)?,
@@ -208,7 +213,32 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn print(arguments: &Arguments, report: &Report) -> Result<()> {
+/// Runs on a graphics device.
+#[cfg(feature = "gpu")]
+fn on_device(
+    arguments: &Arguments,
+    run: &Run,
+    envs: usize,
+    options: clench::RigidOptions,
+) -> Result<ExitCode> {
+    let report = gpu::run(arguments, run, envs, options)?;
+    print(arguments, &report)?;
+    if report.failed() {
+        return Ok(ExitCode::from(crate::BAD_INPUT));
+    }
+    let code = run.interrupt.signal().map(|signal| signal.exit_code());
+    Ok(code.map_or(ExitCode::SUCCESS, ExitCode::from))
+}
+
+/// Says how to get a program that can.
+#[cfg(not(feature = "gpu"))]
+fn on_device(_: &Arguments, _: &Run, _: usize, _: clench::RigidOptions) -> Result<ExitCode> {
+    bail!(
+        "--device gpu: this program was built without it; build with `cargo run --release --features gpu --`"
+    )
+}
+
+fn print(arguments: &Arguments, report: &(impl Serialize + ToString)) -> Result<()> {
     let mut out = io::stdout().lock();
     let text = if arguments.json {
         format!("{}\n", serde_json::to_string(report)?)

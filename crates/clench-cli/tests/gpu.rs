@@ -1,0 +1,43 @@
+//! Runs on a graphics device, of programs that were built for them; the others say how to get one.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn clench(arguments: &[&str]) -> Output {
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/rolling_sphere.xml");
+    let mut program = Command::new(env!("CARGO_BIN_EXE_clench"));
+    program.args(["simulate"]).arg(model).args(arguments);
+    program.output().expect("the program starts")
+}
+
+#[test]
+#[cfg(not(feature = "gpu"))]
+fn a_program_without_the_feature_says_how_to_get_one_with_it() {
+    let output = clench(&["--envs", "2", "--device", "gpu"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("--features gpu"), "{said}");
+}
+
+#[test]
+#[cfg(feature = "gpu")]
+fn a_run_on_a_device_is_told_as_one_on_the_processor_is() {
+    if std::env::var("CLENCH_GPU").as_deref() != Ok("require") {
+        return;
+    }
+    let run = |more: &[&str]| -> serde_json::Value {
+        let output = clench(&[&["--envs", "3", "--steps", "20", "--json"], more].concat());
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let text = String::from_utf8_lossy(&output.stdout);
+        serde_json::from_str(text.lines().last().expect("a line")).expect("JSON")
+    };
+    let (device, processor) = (run(&["--device", "gpu"]), run(&["--precision", "32"]));
+    assert_eq!(device["status"], "ok");
+    for same in ["steps", "envs", "nv", "precision", "simulated_time"] {
+        assert_eq!(device[same], processor[same], "{same}");
+    }
+}

@@ -1,0 +1,69 @@
+//! How far the device is from the processor on random states of a model, field by field: `compare MODEL [STATES] [SPREAD]`.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use std::sync::Arc;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let number = |i: usize, default: f64| {
+        arguments
+            .get(i)
+            .map_or(default, |a| a.parse().expect("a number"))
+    };
+    let model = Arc::new(clench_formats::load(&arguments[1]).expect("a model"));
+    let count = number(2, 32.0) as usize;
+    let mut random = common::Random::new(7);
+    let states: Vec<_> = (0..count)
+        .map(|_| common::random_state(&model, &mut random, number(3, 1.0)))
+        .collect();
+    let mut batch = match clench_gpu::GpuBatch::new(model, count, Default::default()) {
+        Ok(batch) => batch,
+        Err(e) => return println!("{e}"),
+    };
+    common::upload(&mut batch, &states);
+    println!(
+        "{}: {} bytes an environment",
+        batch.device(),
+        batch.bytes_per_env()
+    );
+    for pass in ["first, with compilation", "second"] {
+        println!("{pass}:");
+        for (name, seconds) in batch.time_stages().expect("a device") {
+            println!("  {name:12} {:9.1} ms", seconds * 1e3);
+        }
+    }
+    let worst = |d: &[common::Distance], of: fn(&common::Distance) -> f64| {
+        d.iter().map(of).fold(0.0f64, f64::max)
+    };
+    for (name, found) in common::distances(&batch, &states) {
+        println!(
+            "{name:18} from single precision {:8.1e}, from double {:8.1e}; these from each other {:8.1e}",
+            worst(&found, |d| d.single),
+            worst(&found, |d| d.double),
+            worst(&found, |d| d.noise),
+        );
+    }
+    let solves = batch.solves().expect("a device");
+    let mean = |f: fn(&clench_gpu::GpuSolve) -> usize| {
+        solves.iter().map(f).sum::<usize>() as f64 / count as f64
+    };
+    println!(
+        "contacts {:.1}, rows {:.1}, iterations {:.1}",
+        mean(|s| s.contacts),
+        mean(|s| s.rows),
+        mean(|s| s.iterations)
+    );
+    for status in [
+        clench_solver::Status::NonFinite,
+        clench_solver::Status::IterationLimit,
+        clench_solver::Status::NoProgress,
+    ] {
+        println!(
+            "{}: {}",
+            status.name(),
+            solves.iter().filter(|s| s.status == status).count()
+        );
+    }
+}

@@ -1,0 +1,383 @@
+//! Many environments of one model on a graphics device.
+
+use crate::check::{Subject, check};
+use crate::device::{Device, DeviceInfo};
+use crate::error::{GpuError, GpuFault};
+use crate::fields::{self, Fields};
+use crate::kernels::{Memory, constants};
+use crate::pipelines::{Arrays, Pipelines, layout};
+use crate::tables::{Capacity, Tables};
+use clench_rigid::contact::candidates;
+use clench_rigid::model::Model;
+use clench_rigid::options::RigidOptions;
+use clench_rigid::settings::StepSettings;
+use clench_solver::Status;
+use std::fmt;
+use std::sync::Arc;
+use std::time::Instant;
+use zerocopy::IntoBytes;
+
+/// Steps that are handed to the device at a time: enough that it never waits, few enough that no watchdog thinks it hangs.
+const STEPS_AT_A_TIME: usize = 16;
+
+/// How environments are stepped on a device.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GpuOptions {
+    /// Options that go before those of the model. `max_contacts` is the size of the contact pool of an environment; by default as
+    /// many as its pairs can have, but no more than 48.
+    pub options: RigidOptions,
+    /// A part of the name of the device to use; by default the first of [`devices`](crate::devices).
+    pub device: Option<String>,
+}
+
+/// How the last solve of an environment went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GpuSolve {
+    /// How it ended.
+    pub status: Status,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Contacts.
+    pub contacts: usize,
+    /// Rows of the convex problem.
+    pub rows: usize,
+}
+
+/// Many environments of one model on a graphics device, in single precision.
+///
+/// An environment's results depend on its state alone, and repeat to the bit on the same device and driver. One that cannot go on
+/// keeps its last good state and says why in [`statuses`](Self::statuses); its neighbours do not notice.
+pub struct GpuBatch {
+    pub(crate) device: Device,
+    pub(crate) arrays: Arrays,
+    pub(crate) state: Fields,
+    pub(crate) work: Fields,
+    pub(crate) rows: Fields,
+    pub(crate) reports: Fields,
+    pub(crate) count: usize,
+    bindings: wgpu::BindGroup,
+    pipelines: Pipelines,
+    capacity: Capacity,
+    settings: StepSettings,
+    model: Arc<Model>,
+}
+
+impl fmt::Debug for GpuBatch {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("GpuBatch")
+            .field("model", &self.model.name)
+            .field("count", &self.count)
+            .field("device", &self.device.info.name)
+            .finish_non_exhaustive()
+    }
+}
+
+impl GpuBatch {
+    /// `count` environments in the model's initial state.
+    ///
+    /// # Errors
+    /// No device; a model that cannot be stepped on one yet; options out of range; more environments than the device holds.
+    pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
+        let settings = StepSettings::new::<f32>(&model, options.options)?;
+        let collide = settings.flags.constraint && settings.flags.contact;
+        let pairs = if collide {
+            candidates(&model)
+        } else {
+            Vec::new()
+        };
+        check(&Subject {
+            model: &model,
+            settings: &settings,
+            candidates: &pairs,
+        })?;
+        let device = Device::open(options.device.as_deref())?;
+        let (mut tables, capacity) = Tables::new(&model, &settings, &pairs);
+        let state = fields::state_fields(&model, capacity);
+        let work = fields::work_fields(&model, capacity);
+        let rows = fields::row_fields(&model, capacity);
+        let reports = fields::report_fields(&model, capacity);
+        tables.initial_state(&model, &state);
+        let sizes = [&state, &work, &rows, &reports].map(|fields| fields.size);
+        check_room(&device, count, sizes)?;
+        check_workgroup(&device, model.nv)?;
+
+        let scope = device
+            .device
+            .push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let array = |label, size: usize| device.array(label, 4 * (size * count) as u64);
+        let arrays = Arrays {
+            words: device.array("words", 4 * tables.words.len() as u64),
+            numbers: device.array("numbers", 4 * tables.numbers.len() as u64),
+            state: array("state", state.size),
+            work: array("work", work.size),
+            rows: array("rows", rows.size),
+            reports: array("reports", reports.size),
+        };
+        if pollster::block_on(scope.pop()).is_some() {
+            return Err(GpuError::OutOfMemory {
+                device: device.info.name,
+                count,
+                bytes: 4 * sizes.iter().sum::<usize>() as u64,
+                most: None,
+            });
+        }
+        let memory = Memory {
+            count,
+            state: &state,
+            work: &work,
+            rows: &rows,
+            reports: &reports,
+        };
+        let layout = layout(&device);
+        let text = constants(&tables, &memory);
+        let pipelines = Pipelines::new(&device, &layout, &text, count, model.integrator)?;
+        let queue = &device.queue;
+        queue.write_buffer(&arrays.words, 0, tables.words.as_bytes());
+        queue.write_buffer(&arrays.numbers, 0, tables.numbers.as_bytes());
+        let mut batch = GpuBatch {
+            bindings: arrays.bind(&device, &layout),
+            device,
+            arrays,
+            state,
+            work,
+            rows,
+            reports,
+            count,
+            pipelines,
+            capacity,
+            settings,
+            model,
+        };
+        batch.reset()?;
+        Ok(batch)
+    }
+
+    /// Advances all environments that run by so many time steps. What a fault is of one environment shows in
+    /// [`statuses`](Self::statuses).
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn step(&mut self, steps: usize) -> Result<(), GpuError> {
+        let mut left = steps;
+        while left > 0 {
+            let now = left.min(STEPS_AT_A_TIME);
+            self.submit(|batch, encoder| (0..now).for_each(|_| batch.encode_step(encoder)))?;
+            left -= now;
+        }
+        Ok(())
+    }
+
+    /// Computes everything that follows from the states, and leaves these alone.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn forward(&mut self) -> Result<(), GpuError> {
+        self.submit(|batch, encoder| {
+            batch.clear_trouble(encoder);
+            batch.encode(encoder, batch.pipelines.forward.iter());
+        })
+    }
+
+    /// Computes as [`forward`](Self::forward) does, one kernel after the other: how long the host waited for each, s. That is more
+    /// than the kernel alone took, by the time of a call to the device.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn time_stages(&mut self) -> Result<Vec<(&'static str, f64)>, GpuError> {
+        let mut times = Vec::new();
+        for stage in 0..self.pipelines.forward.len() {
+            let start = Instant::now();
+            self.submit(|batch, encoder| {
+                batch.encode(encoder, batch.pipelines.forward[stage..=stage].iter());
+            })?;
+            let name = self.pipelines.forward[stage].name;
+            times.push((name, start.elapsed().as_secs_f64()));
+        }
+        Ok(times)
+    }
+
+    /// All environments back to the model's initial state; all run.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn reset(&mut self) -> Result<(), GpuError> {
+        let all: Vec<usize> = (0..self.count).collect();
+        self.reset_envs(&all)
+    }
+
+    /// Some environments back to the model's initial state; they run.
+    ///
+    /// # Errors
+    /// An environment that is not there; that the device was lost.
+    pub fn reset_envs(&mut self, envs: &[usize]) -> Result<(), GpuError> {
+        let mut asked = vec![0u32; self.count];
+        for &env in envs {
+            self.check_env(env)?;
+            asked[env] = 1;
+        }
+        let Some(field) = self.reports.find("restart") else {
+            return Ok(());
+        };
+        let start = 4 * (field.place * self.count) as u64;
+        (self.device.queue).write_buffer(&self.arrays.reports, start, asked.as_bytes());
+        self.submit(|batch, encoder| batch.encode(encoder, [&batch.pipelines.restart].into_iter()))
+    }
+
+    fn submit(
+        &mut self,
+        encode: impl FnOnce(&Self, &mut wgpu::CommandEncoder),
+    ) -> Result<(), GpuError> {
+        let mut encoder = self
+            .device
+            .device
+            .create_command_encoder(&Default::default());
+        encode(self, &mut encoder);
+        self.device.queue.submit([encoder.finish()]);
+        self.device.wait()
+    }
+
+    fn encode<'a>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        kernels: impl Iterator<Item = &'a crate::pipelines::Pipeline>,
+    ) {
+        if self.count == 0 {
+            return;
+        }
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_bind_group(0, &self.bindings, &[]);
+        kernels.for_each(|kernel| kernel.dispatch(&mut pass));
+    }
+
+    fn encode_step(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.clear_trouble(encoder);
+        for advance in &self.pipelines.advance {
+            self.encode(encoder, self.pipelines.forward.iter().chain([advance]));
+        }
+    }
+
+    /// Forgets what went wrong in a forward pass that was no step.
+    fn clear_trouble(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(field) = self.reports.find("trouble").filter(|_| self.count > 0) {
+            let bytes = 4 * self.count as u64;
+            encoder.clear_buffer(
+                &self.arrays.reports,
+                field.place as u64 * bytes,
+                Some(bytes),
+            );
+        }
+    }
+
+    pub(crate) fn check_env(&self, env: usize) -> Result<(), GpuError> {
+        let count = self.count;
+        if env < count {
+            return Ok(());
+        }
+        Err(GpuError::NoSuchEnvironment { env, count })
+    }
+
+    /// Why each environment stands still, if it does.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn statuses(&self) -> Result<Vec<Option<GpuFault>>, GpuError> {
+        let limit = self.capacity.contacts;
+        let fault = |&code: &u32| match code {
+            0 => None,
+            1 => Some(GpuFault::Singular),
+            3 => Some(GpuFault::ContactOverflow { limit }),
+            _ => Some(GpuFault::Diverged),
+        };
+        Ok(self.report("status")?.iter().map(fault).collect())
+    }
+
+    /// How many steps each environment has made since its last reset.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn steps(&self) -> Result<Vec<u32>, GpuError> {
+        self.report("steps")
+    }
+
+    /// How the last solve of each environment went; of a step by Runge–Kutta, that of its last stage.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn solves(&self) -> Result<Vec<GpuSolve>, GpuError> {
+        let status = |code: u32| match code {
+            0 => Status::Unconstrained,
+            2 => Status::Converged,
+            3 => Status::NoProgress,
+            4 => Status::IterationLimit,
+            _ => Status::NonFinite,
+        };
+        let [ended, niter, ncon, nrow] =
+            ["solve_status", "niter", "ncon", "nrow"].map(|name| self.report(name));
+        let (ended, niter, ncon, nrow) = (ended?, niter?, ncon?, nrow?);
+        let solve = |env: usize| GpuSolve {
+            status: status(ended[env]),
+            iterations: niter[env] as usize,
+            contacts: ncon[env] as usize,
+            rows: nrow[env] as usize,
+        };
+        Ok((0..self.count).map(solve).collect())
+    }
+
+    /// How many environments there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+    /// All options, decided.
+    pub fn settings(&self) -> &StepSettings {
+        &self.settings
+    }
+    /// The device that steps.
+    pub fn device(&self) -> &DeviceInfo {
+        &self.device.info
+    }
+    /// Bytes that an environment takes on the device.
+    pub fn bytes_per_env(&self) -> usize {
+        let all = [&self.state, &self.work, &self.rows, &self.reports];
+        4 * all.iter().map(|fields| fields.size).sum::<usize>()
+    }
+}
+
+/// Whether the largest array of `count` environments is one that kernels can see, and number.
+fn check_room(device: &Device, count: usize, sizes: [usize; 4]) -> Result<(), GpuError> {
+    let largest = sizes.into_iter().max().unwrap_or(0).max(1) as u64;
+    let numbers = (device.max_buffer() / 4).min(u64::from(u32::MAX));
+    let most = numbers / largest;
+    if count as u64 <= most {
+        return Ok(());
+    }
+    Err(GpuError::OutOfMemory {
+        device: device.info.name.clone(),
+        count,
+        bytes: 4 * sizes.iter().sum::<usize>() as u64,
+        most: usize::try_from(most).ok(),
+    })
+}
+
+/// Whether the Hessian fits the memory that a workgroup shares.
+fn check_workgroup(device: &Device, nv: usize) -> Result<(), GpuError> {
+    // The packed Hessian, seven vectors over the dofs, and what threads add up.
+    let needed = |nv: usize| 4 * (nv * (nv + 1) / 2 + 7 * nv) + 1024;
+    let room = device.limits.max_compute_workgroup_storage_size as usize;
+    if needed(nv) <= room {
+        return Ok(());
+    }
+    let most = (1..nv)
+        .take_while(|&n| needed(n) <= room)
+        .last()
+        .unwrap_or(0);
+    Err(GpuError::Unusable {
+        device: device.info.name.clone(),
+        reason: format!(
+            "its workgroups share {room} bytes, in which the Hessian of {most} dofs fits, but the model has {nv}"
+        ),
+    })
+}

@@ -1,0 +1,156 @@
+//! What lies in the memory of the device for each environment, a line a field. Places, sizes, the constants of the kernels, and
+//! the names under which fields are read and written follow from these tables.
+
+use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity};
+use clench_rigid::model::Model;
+
+/// A field: so many numbers for each environment, from a place on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Field {
+    /// Its name; in capitals, its place in the kernels.
+    pub name: &'static str,
+    /// What lies before it.
+    pub place: usize,
+    /// How many numbers.
+    pub width: usize,
+}
+
+/// The fields of one buffer.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Fields {
+    /// All of them, in order.
+    pub list: Vec<Field>,
+    /// Numbers of an environment.
+    pub size: usize,
+}
+
+impl Fields {
+    fn push(&mut self, name: &'static str, width: usize) {
+        let place = self.size;
+        self.list.push(Field { name, place, width });
+        self.size += width;
+    }
+
+    /// The field of a name.
+    pub fn find(&self, name: &str) -> Option<Field> {
+        self.list.iter().copied().find(|field| field.name == name)
+    }
+}
+
+macro_rules! fields {
+    ($(#[$doc:meta])* $maker:ident($m:ident, $c:ident); $($(#[$field_doc:meta])* $name:ident: $width:expr;)*) => {
+        $(#[$doc])*
+        pub(crate) fn $maker($m: &Model, $c: Capacity) -> Fields {
+            let _ = ($m, $c);
+            let mut fields = Fields::default();
+            $(fields.push(stringify!($name), $width);)*
+            fields
+        }
+    };
+}
+
+fields! {
+    /// What users set and read: the state, and its inputs. Environment next to environment.
+    state_fields(m, c);
+    qpos: m.nq;
+    qvel: m.nv;
+    qacc_warmstart: m.nv;
+    ctrl: m.nu();
+    qfrc_applied: m.nv;
+    /// The force first, then the torque, of each body.
+    xfrc_applied: 6 * m.nbody();
+    mocap_pos: 3 * m.nmocap;
+    mocap_quat: 4 * m.nmocap;
+}
+
+fields! {
+    /// What follows from the state. Environment next to environment.
+    work_fields(m, c);
+    xpos: 3 * m.nbody();
+    xquat: 4 * m.nbody();
+    xmat: 9 * m.nbody();
+    xipos: 3 * m.nbody();
+    ximat: 9 * m.nbody();
+    xanchor: 3 * m.joints.len();
+    xaxis: 3 * m.joints.len();
+    geom_xpos: 3 * m.geoms.len();
+    geom_xmat: 9 * m.geoms.len();
+    subtree_com: 3 * m.nbody();
+    cinert: 10 * m.nbody();
+    crb: 10 * m.nbody();
+    cdof: 6 * m.nv;
+    cdof_dot: 6 * m.nv;
+    cvel: 6 * m.nbody();
+    cacc: 6 * m.nbody();
+    /// Spatial forces of bodies, used up when they are projected.
+    cfrc: 6 * m.nbody();
+    /// The mass matrix, in the pattern of the tree.
+    qm: m.tree.nnz();
+    /// Its LᵀDL, or that of an implicit step.
+    qld: m.tree.nnz();
+    qld_inverse: m.nv;
+    qfrc_passive: m.nv;
+    qfrc_bias: m.nv;
+    actuator_length: m.actuators.len();
+    actuator_velocity: m.actuators.len();
+    actuator_force: m.actuators.len();
+    qfrc_actuator: m.nv;
+    qfrc_smooth: m.nv;
+    qacc_smooth: m.nv;
+    contacts: CONTACT_SIZE * c.contacts;
+    qacc: m.nv;
+    qfrc_constraint: m.nv;
+    /// The velocity that positions advance by.
+    rate: m.nv;
+    mean_rate: m.nv;
+    mean_qacc: m.nv;
+    start_qpos: m.nq;
+    start_qvel: m.nv;
+    start_warmstart: m.nv;
+}
+
+fields! {
+    /// The convex problem of an environment: its numbers side by side, as one workgroup solves it.
+    row_fields(m, c);
+    blocks: BLOCK_SIZE * c.blocks;
+    /// The active set of each block.
+    pieces: c.blocks;
+    row_block: c.rows;
+    position: c.rows;
+    velocity: c.rows;
+    aref: c.rows;
+    damping: c.rows;
+    r: c.rows;
+    d: c.rows;
+    shape: c.rows;
+    /// J a − aref; while the rows are assembled, the inverse inertia of each.
+    residual: c.rows;
+    force: c.rows;
+    /// J p, of the search direction.
+    ray: c.rows;
+    jacobian: c.rows * m.nv;
+    /// W J.
+    weighed: c.rows * m.nv;
+    /// The mass matrix, a dense lower triangle.
+    mass: m.nv * (m.nv + 1) / 2;
+}
+
+fields! {
+    /// Words that report how an environment fares. Environment next to environment.
+    report_fields(m, c);
+    /// Whether it runs, or why not.
+    status: 1;
+    /// What went wrong in the present step.
+    trouble: 1;
+    /// Whether to start over.
+    restart: 1;
+    /// Steps since the last reset.
+    steps: 1;
+    ncon: 1;
+    nblock: 1;
+    nrow: 1;
+    /// Newton iterations of the last solve.
+    niter: 1;
+    /// How it ended, as the codes of `clench_solver::Status`.
+    solve_status: 1;
+}

@@ -1,0 +1,134 @@
+//! The kernels: which texts each is made of, and the constants that stand before them.
+//!
+//! A kernel is a file in `kernels/` with an entry point, and the files that hold what it calls. WGSL has no modules: the texts
+//! are put one after the other, behind the constants of the model. Loops run over tables; nothing is unrolled for a model.
+
+use crate::fields::Fields;
+use crate::tables::{NONE, Tables};
+use std::fmt::Write;
+
+/// Threads of a workgroup: a subgroup on most cards, and few enough for a processor that plays one.
+pub(crate) const GROUP: u32 = 32;
+/// Workgroups in a row, where each has an environment: a dispatch has no more than 65,535 along an axis.
+pub(crate) const GRID: u32 = 32_768;
+
+/// Who works on an environment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Spread {
+    /// One thread.
+    Thread,
+    /// One workgroup.
+    Workgroup,
+}
+
+/// A kernel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kernel {
+    /// Its entry point.
+    pub entry: &'static str,
+    /// Who works on an environment.
+    pub spread: Spread,
+    /// What it is made of, besides what all have.
+    texts: &'static [&'static str],
+}
+
+macro_rules! texts {
+    ($($name:literal),*) => { &[$(include_str!(concat!("kernels/", $name, ".wgsl"))),*] };
+}
+
+/// What all kernels have.
+const COMMON: &[&str] = texts!["memory", "math"];
+
+macro_rules! kernels {
+    ($($(#[$doc:meta])* $constant:ident = $entry:literal, $spread:ident: $($name:literal),*;)*) => {
+        $($(#[$doc])* pub(crate) const $constant: Kernel = Kernel {
+            entry: $entry,
+            spread: Spread::$spread,
+            texts: texts![$($name),*],
+        };)*
+    };
+}
+
+kernels! {
+    /// Puts environments into the initial state.
+    RESTART = "restart", Thread: "restart";
+    /// Poses, spatial inertias, the mass matrix and its factor.
+    POSITIONS = "positions", Thread: "kinematics", "com", "tree", "inertia";
+    /// Contacts.
+    CONTACTS = "contacts", Thread: "contact_pool", "plane", "round", "detect";
+    /// Smooth forces and the acceleration they cause.
+    FORCES = "forces", Thread: "tree", "velocity", "passive", "forces";
+    /// Which constraints act, and how soft they are.
+    CONSTRAINTS = "constraints", Thread: "softness", "constraints";
+    /// Their Jacobians.
+    ASSEMBLE = "assemble", Workgroup: "group", "assembly";
+    /// The convex problem.
+    SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "newton";
+    /// The next state, by semi-implicit Euler.
+    EULER = "euler", Thread: "tree", "integrate";
+    /// The same by Runge–Kutta, stage by stage.
+    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "integrate", "rk4";
+}
+
+/// What the constants before every kernel say, besides the tables.
+pub(crate) struct Memory<'a> {
+    pub count: usize,
+    pub state: &'a Fields,
+    pub work: &'a Fields,
+    pub rows: &'a Fields,
+    pub reports: &'a Fields,
+}
+
+/// The codes of `reports`, in the order of [`GpuFault`](crate::GpuFault).
+const FAULTS: [&str; 4] = ["RUNNING", "SINGULAR", "DIVERGED", "CONTACT_OVERFLOW"];
+/// The codes of `clench_solver::Status`, in its order.
+const SOLVE_STATUS: [&str; 6] = [
+    "SOLVE_UNCONSTRAINED",
+    "SOLVE_PROVEN",
+    "SOLVE_CONVERGED",
+    "SOLVE_NO_PROGRESS",
+    "SOLVE_ITERATION_LIMIT",
+    "SOLVE_NON_FINITE",
+];
+
+/// The constants of a model and a number of environments, in WGSL.
+pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
+    let mut text = tables.constants.clone();
+    let mut declare = |name: &str, value: usize| {
+        let _ = writeln!(text, "const {name}: u32 = {value}u;");
+    };
+    declare("N", memory.count);
+    declare("GROUP", GROUP as usize);
+    declare("GRID", GRID as usize);
+    declare("NONE", NONE as usize);
+    declare("STATE", memory.state.size);
+    declare("ROWS", memory.rows.size);
+    for names in [&FAULTS[..], &SOLVE_STATUS] {
+        for (code, name) in names.iter().enumerate() {
+            declare(name, code);
+        }
+    }
+    for fields in [memory.state, memory.work, memory.rows, memory.reports] {
+        for field in &fields.list {
+            declare(&field.name.to_uppercase(), field.place);
+        }
+    }
+    text
+}
+
+impl Kernel {
+    /// Its whole text.
+    pub fn source(&self, constants: &str) -> String {
+        let texts = COMMON.iter().chain(self.texts);
+        texts.fold(constants.to_owned(), |source, text| source + "\n" + text)
+    }
+
+    /// How many workgroups `count` environments take, along each axis.
+    pub fn workgroups(&self, count: usize) -> [u32; 3] {
+        let count = count as u32;
+        match self.spread {
+            Spread::Thread => [count.div_ceil(GROUP), 1, 1],
+            Spread::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
+        }
+    }
+}

@@ -1,0 +1,123 @@
+// Jacobians of all rows, their velocities, and with these aref, R and D. One workgroup an environment. Sister of
+// `constraint/assembly.rs`.
+
+// Half of the single slope_limit's rounding at 1 is 2⁻²⁴; R is at least this many of them of the inverse inertia.
+const LEAST_REGULARIZATION: f32 = 4.5 * 1.1920929e-7;
+
+fn moves(body: u32, dof: u32) -> bool {
+    return ((words[DOF_MASK + MASK_WORDS * body + (dof >> 5u)] >> (dof & 31u)) & 1u) == 1u;
+}
+
+// How dof `i` moves the point of body `b` that is at `point`, and turns the body.
+fn motion_at(b: u32, i: u32, point: vec3f) -> Spatial {
+    let motion = fetch_spatial(CDOF + 6u * i);
+    let offset = point - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
+    return Spatial(motion.angular, motion.linear + cross(motion.angular, offset));
+}
+
+// Row `k` of a contact: along the normal and the tangents, then about them; the second body against the first.
+fn contact_entry(contact: u32, k: u32, i: u32) -> f32 {
+    let place = CONTACTS + CONTACT_SIZE * contact;
+    let pair = u32(fetch(place));
+    let first = words[PAIR_BODY + 2u * pair];
+    let second = words[PAIR_BODY + 2u * pair + 1u];
+    let by_first = moves(first, i);
+    let by_second = moves(second, i);
+    if (by_first == by_second) {
+        return 0.0;
+    }
+    let axis = fetch3(place + 5u + 3u * (k % 3u));
+    let motion = motion_at(select(first, second, by_second), i, fetch3(place + 2u));
+    let along = dot(axis, select(motion.angular, motion.linear, k < 3u));
+    return select(-along, along, by_second);
+}
+
+fn limit_entry(source: u32, i: u32) -> f32 {
+    let j = source >> 1u;
+    let dof = words[JNT_DOF + j];
+    if (words[JNT_KIND + j] != BALL) {
+        let sign = select(1.0, -1.0, (source & 1u) == 1u);
+        return select(0.0, sign, i == dof);
+    }
+    if (i < dof || i >= dof + 3u) {
+        return 0.0;
+    }
+    let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + j]));
+    return -direction(quat_rotation_vector(turn))[i - dof];
+}
+
+fn entry(a: u32, i: u32) -> f32 {
+    let b = u32(row(ROW_BLOCK + a));
+    let source = block(b, BLOCK_SOURCE);
+    switch block(b, BLOCK_KIND) {
+        case DRY_FRICTION: {
+            return select(0.0, 1.0, i == source);
+        }
+        case LIMIT: {
+            return limit_entry(source, i);
+        }
+        default: {
+            return contact_entry(source, a - block(b, BLOCK_ROW), i);
+        }
+    }
+}
+
+// The velocity along a row, and the inverse inertia that it would see if dofs were independent.
+fn finish_row(a: u32) {
+    var velocity = 0.0;
+    var inertia = 0.0;
+    for (var i = 0u; i < bound(NV); i++) {
+        let j = row(JACOBIAN + a * NV + i);
+        velocity += j * given(QVEL + i);
+        inertia += j * j * numbers[DOF_INVWEIGHT0 + i];
+    }
+    put_row(VELOCITY + a, velocity);
+    put_row(AREF + a, row(AREF + a) - row(DAMPING + a) * velocity);
+    put_row(RESIDUAL + a, inertia);
+    // A step of length 0 along any ray is nothing, if the ray is finite.
+    put_row(RAY + a, 0.0);
+}
+
+// Raises R to what rounding leaves of it, the rows of a cone together. RESIDUAL holds the inverse inertia of each row.
+fn finish_block(b: u32) {
+    let kind = block(b, BLOCK_KIND);
+    let first = block(b, BLOCK_ROW);
+    let dim = block(b, BLOCK_DIM);
+    let normal = row(RESIDUAL + first);
+    var factor = 1.0;
+    for (var a = first; a < first + dim; a++) {
+        var inertia = row(RESIDUAL + a);
+        if (kind == CONTACT_PYRAMID) {
+            let mu = row(SHAPE + a);
+            inertia = normal + mu * mu * inertia;
+        }
+        factor = max(factor, LEAST_REGULARIZATION * inertia / row(R + a));
+    }
+    for (var a = first; a < first + dim; a++) {
+        let r = row(R + a) * factor;
+        put_row(R + a, r);
+        put_row(D + a, 1.0 / r);
+    }
+}
+
+@compute @workgroup_size(GROUP)
+fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
+    env = environment_of(workgroup);
+    lane = index;
+    if (env >= N) {
+        return;
+    }
+    let nrow = reports[NROW * N + env];
+    let nblock = reports[NBLOCK * N + env];
+    for (var k = lane; k < nrow * NV; k += GROUP) {
+        put_row(JACOBIAN + k, entry(k / NV, k % NV));
+    }
+    join();
+    for (var a = lane; a < nrow; a += GROUP) {
+        finish_row(a);
+    }
+    join();
+    for (var b = lane; b < nblock; b += GROUP) {
+        finish_block(b);
+    }
+}

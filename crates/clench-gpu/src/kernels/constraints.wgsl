@@ -1,0 +1,133 @@
+// Every active constraint becomes a block of rows: dry friction, joint limits, contacts, in this order. Sisters of
+// `constraint/friction.rs`, `limit.rs` and `contact.rs`. Jacobians and velocities are added by `assembly.wgsl`.
+
+var<private> nblock: u32;
+var<private> nrow: u32;
+
+// Begins a block of a kind, from a source that its Jacobian is made of.
+fn begin_block(kind: u32, dim: u32, source: u32) {
+    let place = BLOCKS + BLOCK_SIZE * nblock;
+    put_row(place + BLOCK_KIND, f32(kind));
+    put_row(place + BLOCK_DIM, f32(dim));
+    put_row(place + BLOCK_ROW, f32(nrow));
+    put_row(place + BLOCK_SOURCE, f32(source));
+    nblock++;
+}
+
+// Adds a row to the block. The part of aref that its velocity has comes later: −damping · velocity.
+fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
+    put_row(ROW_BLOCK + nrow, f32(nblock - 1u));
+    put_row(POSITION + nrow, position);
+    put_row(AREF + nrow, aref);
+    put_row(DAMPING + nrow, damping);
+    put_row(R + nrow, r);
+    put_row(SHAPE + nrow, shape);
+    nrow++;
+}
+
+fn push_friction() {
+    for (var k = 0u; k < NFRICTION; k++) {
+        let prm = FRICTION_PRM + 9u * k;
+        let soft = soften(prm + 2u, 0.0);
+        begin_block(DRY_FRICTION, 1u, words[FRICTION_DOF + k]);
+        add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, numbers[prm + 1u]), numbers[prm]);
+    }
+}
+
+// One end of the range of a joint. `source` is twice the joint, one more at the upper end.
+fn push_limit(prm: u32, distance: f32, source: u32) {
+    let margin = numbers[prm + 2u];
+    if (distance >= margin) {
+        return;
+    }
+    let soft = soften(prm + 4u, distance - margin);
+    begin_block(LIMIT, 1u, source);
+    let aref = -soft.stiffness * (distance - margin);
+    add_row(distance, aref, soft.damping, regularization(soft.impedance, numbers[prm + 3u]), 0.0);
+}
+
+fn push_limits() {
+    for (var k = 0u; k < NLIMIT; k++) {
+        let j = words[LIMIT_JNT + k];
+        let prm = LIMIT_PRM + 11u * k;
+        let q = QPOS + words[JNT_QPOS + j];
+        if (words[JNT_KIND + j] == BALL) {
+            let turn = direction(quat_rotation_vector(quat_normalize(given4(q))));
+            push_limit(prm, max(numbers[prm], numbers[prm + 1u]) - turn.w, 2u * j);
+            continue;
+        }
+        push_limit(prm, given(q) - numbers[prm], 2u * j);
+        push_limit(prm, numbers[prm + 1u] - given(q), 2u * j + 1u);
+    }
+}
+
+// The rows of a contact with friction, after the normal's.
+fn push_tangents(dim: u32, friction: u32, normal_r: f32, damping: f32, friction_damping: f32) {
+    let mu1 = numbers[friction];
+    for (var k = 1u; k < dim; k++) {
+        let mu = numbers[friction + k - 1u];
+        if (ELLIPTIC_CONES) {
+            let r = normal_r / IMPRATIO * mu1 * mu1 / (mu * mu);
+            add_row(0.0, 0.0, friction_damping, r, mu);
+        } else {
+            add_row(0.0, 0.0, damping, normal_r, mu);
+        }
+    }
+}
+
+fn push_contact(contact: u32) {
+    let place = CONTACTS + CONTACT_SIZE * contact;
+    let pair = u32(fetch(place));
+    let prm = PAIR_PRM + PAIR_PRM_SIZE * pair;
+    let distance = fetch(place + 1u);
+    let margin = numbers[prm];
+    if (distance >= margin) {
+        return;
+    }
+    let a0 = numbers[prm + 1u];
+    let friction = prm + 2u;
+    let soft = soften(prm + 7u, distance - margin);
+    let aref = -soft.stiffness * (distance - margin);
+    let dim = words[PAIR_DIM + pair];
+    let plain = regularization(soft.impedance, a0);
+    if (dim == 1u) {
+        begin_block(CONTACT_NORMAL, 1u, contact);
+        add_row(distance, aref, soft.damping, plain, 0.0);
+        return;
+    }
+    let mu = numbers[friction];
+    if (ELLIPTIC_CONES) {
+        begin_block(CONTACT_ELLIPTIC, dim, contact);
+        add_row(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO));
+        var damping = soft.damping;
+        let solref = vec2f(numbers[prm + 14u], numbers[prm + 15u]);
+        if (any(solref != vec2f()) && !is_mixed(solref)) {
+            damping = spring_damper(solref, numbers[prm + 10u]).y;
+        }
+        push_tangents(dim, friction, plain, soft.damping, damping);
+        return;
+    }
+    let edge = regularization(soft.impedance, a0 + mu * mu * a0);
+    let r = 2.0 * (mu * mu / IMPRATIO) * edge;
+    begin_block(CONTACT_PYRAMID, dim, contact);
+    add_row(distance, aref, soft.damping, r, 0.0);
+    push_tangents(dim, friction, r, soft.damping, soft.damping);
+}
+
+// One thread an environment.
+@compute @workgroup_size(GROUP)
+fn constraints(@builtin(global_invocation_id) id: vec3u) {
+    if (!begin(id.x)) {
+        return;
+    }
+    nblock = 0u;
+    nrow = 0u;
+    push_friction();
+    push_limits();
+    let ncon = reports[NCON * N + env];
+    for (var contact = 0u; contact < ncon; contact++) {
+        push_contact(contact);
+    }
+    reports[NBLOCK * N + env] = nblock;
+    reports[NROW * N + env] = nrow;
+}

@@ -1,0 +1,40 @@
+// The contacts of an environment: a pool of MAX_CONTACTS, in canonical order. Frames are those of `clench-collide/src/frame.rs`.
+
+// How many there are so far.
+var<private> found: u32;
+
+// Adds a contact of a pair; `tangent` is the first of the two.
+fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent: vec3f) {
+    if (found == MAX_CONTACTS) {
+        trouble(CONTACT_OVERFLOW);
+        return;
+    }
+    let place = CONTACTS + CONTACT_SIZE * found;
+    put(place, f32(pair));
+    put(place + 1u, distance);
+    put3(place + 2u, position);
+    put3(place + 5u, normal);
+    put3(place + 8u, tangent);
+    put3(place + 11u, cross(normal, tangent));
+    found++;
+}
+
+// The y axis made orthogonal to the normal, or the z axis where the normal is within 60° of y.
+fn tangent_from_normal(n: vec3f) -> vec3f {
+    let use_y = abs(n.y) < 0.5;
+    let start = select(vec3f(0.0, 0.0, 1.0), vec3f(0.0, 1.0, 0.0), use_y);
+    let tangent = start - n * select(n.z, n.y, use_y);
+    return tangent * (1.0 / length(tangent));
+}
+
+// A direction made orthogonal to the normal; the x axis, or y near it, where the two are parallel.
+fn tangent_along(n: vec3f, along: vec3f) -> vec3f {
+    var tangent = along - n * dot(n, along);
+    // Below this length what is left of the direction is mostly rounding error.
+    let least = 1.1920929e-3;
+    if (dot(tangent, tangent) < least * least) {
+        let other = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.9);
+        tangent = other - n * dot(n, other);
+    }
+    return tangent * (1.0 / length(tangent));
+}

@@ -1,0 +1,80 @@
+// Forward kinematics: poses of bodies, inertial frames, joints and geoms. Sister of `dynamics/kinematics.rs`.
+
+// The rotation by a joint from its position at qpos0; the whole orientation of a ball or free joint.
+fn joint_turn(joint: u32, kind: u32, q: u32) -> vec4f {
+    if (kind == HINGE) {
+        let angle = given(QPOS + q) - numbers[QPOS0 + q];
+        return quat_from_axis_angle(number3(JNT_AXIS + 3u * joint), angle);
+    }
+    if (kind == BALL) {
+        return quat_normalize(given4(QPOS + q));
+    }
+    return quat_normalize(given4(QPOS + q + 3u));
+}
+
+fn body_pose(b: u32) {
+    var xpos = number3(BODY_POS + 3u * b);
+    var xquat = number4(BODY_QUAT + 4u * b);
+    let mocap = words[BODY_MOCAP + b];
+    if (mocap != NONE) {
+        xpos = given3(MOCAP_POS + 3u * mocap);
+        xquat = quat_normalize(given4(MOCAP_QUAT + 4u * mocap));
+    }
+    let parent = words[BODY_PARENT + b];
+    if (parent != 0u) {
+        xpos = fetch3(XPOS + 3u * parent) + fetch_matrix(XMAT + 9u * parent) * xpos;
+        xquat = quat_product(fetch4(XQUAT + 4u * parent), xquat);
+    }
+    let last = words[BODY_JNT + b + 1u];
+    for (var j = words[BODY_JNT + b]; j < last; j++) {
+        let kind = words[JNT_KIND + j];
+        let q = words[JNT_QPOS + j];
+        let anchor = number3(JNT_POS + 3u * j);
+        let axis = number3(JNT_AXIS + 3u * j);
+        if (kind == FREE) {
+            xpos = given3(QPOS + q);
+            xquat = joint_turn(j, kind, q);
+            put3(XANCHOR + 3u * j, xpos);
+            put3(XAXIS + 3u * j, axis);
+            continue;
+        }
+        let xanchor = xpos + quat_rotate(xquat, anchor);
+        let xaxis = quat_rotate(xquat, axis);
+        if (kind == SLIDE) {
+            xpos += xaxis * (given(QPOS + q) - numbers[QPOS0 + q]);
+        } else {
+            xquat = quat_product(xquat, joint_turn(j, kind, q));
+            xpos = xanchor - quat_rotate(xquat, anchor);
+        }
+        put3(XANCHOR + 3u * j, xanchor);
+        put3(XAXIS + 3u * j, xaxis);
+    }
+    put3(XPOS + 3u * b, xpos);
+    put4(XQUAT + 4u * b, xquat);
+    put_matrix(XMAT + 9u * b, quat_matrix(xquat));
+}
+
+// What is fixed to a body: its inertial frame and its geoms.
+fn attached_poses(b: u32) {
+    let xpos = fetch3(XPOS + 3u * b);
+    let xquat = fetch4(XQUAT + 4u * b);
+    let xmat = quat_matrix(xquat);
+    put3(XIPOS + 3u * b, xpos + xmat * number3(BODY_IPOS + 3u * b));
+    put_matrix(XIMAT + 9u * b, quat_matrix(quat_product(xquat, number4(BODY_IQUAT + 4u * b))));
+    let last = words[BODY_GEOM + b + 1u];
+    for (var g = words[BODY_GEOM + b]; g < last; g++) {
+        put3(GEOM_XPOS + 3u * g, xpos + xmat * number3(GEOM_POS + 3u * g));
+        put_matrix(GEOM_XMAT + 9u * g, quat_matrix(quat_product(xquat, number4(GEOM_QUAT + 4u * g))));
+    }
+}
+
+fn kinematics() {
+    put3(XPOS, vec3f());
+    put4(XQUAT, vec4f(1.0, 0.0, 0.0, 0.0));
+    put_matrix(XMAT, mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
+    attached_poses(0u);
+    for (var b = 1u; b < bound(NBODY); b++) {
+        body_pose(b);
+        attached_poses(b);
+    }
+}

@@ -1,0 +1,118 @@
+// The exact line search: the root of the slope by Newton's method inside a bracket. Sister of
+// `clench-solver/src/line_search.rs`, whose names and reasons are the same.
+
+const EPSILON: f32 = 1.1920929e-7;
+// 0.01 √ε: a root is not worth finding more precisely.
+const RESOLUTION: f32 = 3.4526698e-6;
+const UNBOUNDED: f32 = 3.0e38;
+
+struct Step {
+    alpha: f32,
+    improvement: f32,
+    // The evaluations ran out before the search had closed in on a point.
+    cut: bool,
+}
+
+struct Bracket {
+    low: f32,
+    high: f32,
+    alpha: f32,
+    step: f32,
+    last_step: f32,
+    change_at_low: f32,
+}
+
+// M p and J p of the direction at RAY_AT.
+fn prepare_ray(nrow: u32) {
+    multiply_mass(RAY_AT, MASS_RAY_AT);
+    for (var a = lane; a < nrow; a += GROUP) {
+        put_row(RAY + a, jacobian_times(a, RAY_AT));
+    }
+    join();
+}
+
+// Derivatives and change of the cost at α; `first` and `second` are the derivatives of its inertial part at 0.
+fn along(nblock: u32, alpha: f32, first: f32, second: f32) -> Along {
+    var sum = Along(0.0, 0.0, 0.0);
+    for (var b = lane; b < nblock; b += GROUP) {
+        sum = join_along(sum, block_along(b, alpha));
+    }
+    let all = total(vec4f(sum.first, sum.second, sum.change, 0.0));
+    let inertial = Along(first + alpha * second, second, alpha * (first + 0.5 * alpha * second));
+    return join_along(inertial, Along(all.x, all.y, all.z));
+}
+
+// Takes in what was found at α and moves α; false where it does not move noticeably.
+fn narrow(bracket: ptr<function, Bracket>, at: Along) -> bool {
+    let alpha = (*bracket).alpha;
+    if (at.first < 0.0) {
+        (*bracket).low = alpha;
+        (*bracket).change_at_low = at.change;
+    } else {
+        (*bracket).high = alpha;
+    }
+    let low = (*bracket).low;
+    let high = (*bracket).high;
+    let newton = alpha - at.first / at.second;
+    let inside = newton > low && newton < high;
+    let headway = abs(newton - alpha) < 0.5 * (*bracket).last_step;
+    var next = newton;
+    if (high < UNBOUNDED && !(inside && headway)) {
+        next = 0.5 * (low + high);
+    }
+    let step = abs(next - alpha);
+    (*bracket).last_step = (*bracket).step;
+    (*bracket).step = step;
+    if (is_wild(next) || step <= RESOLUTION * abs(next)) {
+        return false;
+    }
+    (*bracket).alpha = next;
+    return true;
+}
+
+// g·p, p·p, and the derivatives of the inertial part.
+fn ray_products() -> vec4f {
+    var sum = vec4f();
+    for (var i = lane; i < bound(NV); i += GROUP) {
+        let p = vectors[RAY_AT + i];
+        sum += p * vec4f(vectors[GRADIENT_AT + i], p, vectors[INERTIAL_AT + i], vectors[MASS_RAY_AT + i]);
+    }
+    return total(sum);
+}
+
+// Goes to the minimiser along the ray; `slope_limit` is the slope that counts as zero, over the length of p.
+fn search(nblock: u32, slope_limit: f32) -> Step {
+    let products = ray_products();
+    let start = products.x;
+    let descends = start < 0.0;
+    let exact = max(4.0 * EPSILON * abs(products.z), -(RESOLUTION * start));
+    let loose = min(slope_limit * sqrt(products.y), -(0.1 * start));
+    var bracket = Bracket(0.0, UNBOUNDED, select(0.0, 1.0, descends), UNBOUNDED, UNBOUNDED, 0.0);
+    var open = descends;
+    var change = 0.0;
+    for (var k = 0u; k <= LS_ITERATIONS; k++) {
+        let at = along(nblock, bracket.alpha, products.z, products.w);
+        change = at.change;
+        if (!open || k == LS_ITERATIONS) {
+            break;
+        }
+        let steepness = abs(at.first);
+        // However loose the tolerance, the cost has to fall.
+        let enough = steepness <= loose && change <= 1e-4 * bracket.alpha * start;
+        open = steepness > exact && !enough;
+        if (open) {
+            open = narrow(&bracket, at);
+        }
+        if (!open) {
+            break;
+        }
+    }
+    var alpha = bracket.alpha;
+    if (open && change > 0.0) {
+        alpha = bracket.low;
+        change = bracket.change_at_low;
+    }
+    // A convex function falls by no more than its slope at 0 promises.
+    let improvement = max(min(-change, -(alpha * start)), 0.0);
+    return Step(alpha, improvement, open && bracket.high - bracket.low > RESOLUTION);
+}

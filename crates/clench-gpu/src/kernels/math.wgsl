@@ -1,0 +1,171 @@
+// Quaternions (w, x, y, z in the components x, y, z, w), sine and cosine, and spatial vectors: sisters of `clench-math`.
+//
+// The built-in sine and cosine of a device may be off by 5e-4 and differ from one to the next; these are good to a rounding.
+
+// Below this length a vector or quaternion has no direction.
+const TINY: f32 = 1e-15;
+
+// Sine and cosine: Cody and Waite's reduction to a quarter turn, and the minimax polynomials of `clench-math`.
+fn sin_cos(x: f32) -> vec2f {
+    let quarters = round(x * 0.63661977);
+    var y = x - quarters * 1.5703125;
+    y = y - quarters * 0.0004825592041015625;
+    y = y - quarters * 1.2665987014770508e-06;
+    y = y - quarters * 9.89530235528946e-10;
+    let z = y * y;
+    let sine = y + z * y * (-0.16666655 + z * (0.008332178 - z * 0.00019517296));
+    let cosine = 1.0 - 0.5 * z + z * z * (0.041666646 + z * (-0.0013887367 + z * 2.4438449e-05));
+    let turn = i32(quarters) & 3;
+    if (turn == 0) {
+        return vec2f(sine, cosine);
+    }
+    if (turn == 1) {
+        return vec2f(cosine, -sine);
+    }
+    if (turn == 2) {
+        return vec2f(-sine, -cosine);
+    }
+    return vec2f(-cosine, sine);
+}
+
+// The angle of the point (x, y) with y not negative, in [0, π].
+fn angle_of(y: f32, x: f32) -> f32 {
+    let steep = y > abs(x);
+    let small = select(y, abs(x), steep);
+    let large = max(select(abs(x), y, steep), 1e-37);
+    let folded = small > large * 0.41421356;
+    let t = select(small, small - large, folded) / select(large, small + large, folded);
+    let z = t * t;
+    let arc = t + t * z * (-0.33333316 + z * (0.19998489 + z * (-0.14243848 + z * (0.10595998 - z * 0.06083443))));
+    var angle = select(arc, arc + 0.78539816, folded);
+    angle = select(angle, 1.5707963 - angle, steep);
+    return select(angle, 3.1415927 - angle, x < 0.0);
+}
+
+// The direction of a vector, x where it has none; then its length.
+fn direction(v: vec3f) -> vec4f {
+    let norm = length(v);
+    if (norm < TINY) {
+        return vec4f(1.0, 0.0, 0.0, norm);
+    }
+    return vec4f(v * (1.0 / norm), norm);
+}
+
+fn quat_from_axis_angle(axis: vec3f, angle: f32) -> vec4f {
+    let t = sin_cos(angle * 0.5);
+    return vec4f(t.y, axis * t.x);
+}
+
+fn quat_normalize(q: vec4f) -> vec4f {
+    let norm = length(q);
+    if (norm < TINY) {
+        return vec4f(1.0, 0.0, 0.0, 0.0);
+    }
+    return q * (1.0 / norm);
+}
+
+fn quat_product(a: vec4f, b: vec4f) -> vec4f {
+    return vec4f(
+        a.x * b.x - dot(a.yzw, b.yzw),
+        a.x * b.yzw + b.x * a.yzw + cross(a.yzw, b.yzw),
+    );
+}
+
+fn quat_rotate(q: vec4f, v: vec3f) -> vec3f {
+    let t = cross(q.yzw, v) * 2.0;
+    return v + t * q.x + cross(q.yzw, t);
+}
+
+fn quat_matrix(q: vec4f) -> mat3x3f {
+    let w = q.x;
+    let x = q.y;
+    let y = q.z;
+    let z = q.w;
+    return mat3x3f(
+        vec3f(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
+        vec3f(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)),
+        vec3f(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
+    );
+}
+
+// Axis times angle, the angle in (−π, π].
+fn quat_rotation_vector(q: vec4f) -> vec3f {
+    let axis = direction(q.yzw);
+    var angle = 2.0 * angle_of(axis.w, q.x);
+    if (angle > 3.1415927) {
+        angle -= 6.2831855;
+    }
+    return axis.xyz * angle;
+}
+
+// The rotation vector in the child's axes that takes `other` to `q`.
+fn quat_difference(q: vec4f, other: vec4f) -> vec3f {
+    return quat_rotation_vector(quat_product(vec4f(other.x, -other.yzw), q));
+}
+
+// The orientation after turning at the local angular velocity `omega` for `time` seconds.
+fn quat_integrate(q: vec4f, omega: vec3f, time: f32) -> vec4f {
+    let axis = direction(omega);
+    return quat_normalize(quat_product(q, quat_from_axis_angle(axis.xyz, axis.w * time)));
+}
+
+// A spatial motion or force: about the centre of mass of the tree, along world axes.
+struct Spatial {
+    angular: vec3f,
+    linear: vec3f,
+}
+
+fn fetch_spatial(place: u32) -> Spatial {
+    return Spatial(fetch3(place), fetch3(place + 3u));
+}
+
+fn put_spatial(place: u32, s: Spatial) {
+    put3(place, s.angular);
+    put3(place + 3u, s.linear);
+}
+
+fn plus(a: Spatial, b: Spatial) -> Spatial {
+    return Spatial(a.angular + b.angular, a.linear + b.linear);
+}
+
+fn times(a: Spatial, s: f32) -> Spatial {
+    return Spatial(a.angular * s, a.linear * s);
+}
+
+// Power of a force along a motion.
+fn spatial_dot(a: Spatial, b: Spatial) -> f32 {
+    return dot(a.angular, b.angular) + dot(a.linear, b.linear);
+}
+
+// a × m, both motions.
+fn cross_motion(a: Spatial, m: Spatial) -> Spatial {
+    return Spatial(
+        cross(a.angular, m.angular),
+        cross(a.angular, m.linear) + cross(a.linear, m.angular),
+    );
+}
+
+// a ×* f, a motion and a force.
+fn cross_force(a: Spatial, f: Spatial) -> Spatial {
+    return Spatial(
+        cross(a.angular, f.angular) + cross(a.linear, f.linear),
+        cross(a.angular, f.linear),
+    );
+}
+
+// The momentum of the inertia at `place` (xx, yy, zz, xy, xz, yz; mass times offset; mass) that moves at `m`.
+fn momentum(place: u32, m: Spatial) -> Spatial {
+    let diagonal = fetch3(place);
+    let off = fetch3(place + 3u);
+    let moment = fetch3(place + 6u);
+    let mass = fetch(place + 9u);
+    let turned = vec3f(
+        diagonal.x * m.angular.x + off.x * m.angular.y + off.y * m.angular.z,
+        off.x * m.angular.x + diagonal.y * m.angular.y + off.z * m.angular.z,
+        off.y * m.angular.x + off.z * m.angular.y + diagonal.z * m.angular.z,
+    );
+    return Spatial(
+        turned + cross(moment, m.linear),
+        m.linear * mass - cross(moment, m.angular),
+    );
+}

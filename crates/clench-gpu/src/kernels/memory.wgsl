@@ -1,0 +1,115 @@
+// Where everything lies. The sizes (N, NV, ...) and the offsets in capitals are constants written before this text, from
+// the model. State and work are arrays of fields, environment next to environment (`place * N + env`), so that neighbouring
+// threads touch neighbouring numbers; `rows` holds what one workgroup solves, a block of ROWS numbers for each environment.
+
+@group(0) @binding(0) var<storage, read> words: array<u32>;
+@group(0) @binding(1) var<storage, read> numbers: array<f32>;
+@group(0) @binding(2) var<storage, read_write> state: array<f32>;
+@group(0) @binding(3) var<storage, read_write> work: array<f32>;
+@group(0) @binding(4) var<storage, read_write> rows: array<f32>;
+@group(0) @binding(5) var<storage, read_write> reports: array<u32>;
+
+// The environment of this thread.
+var<private> env: u32;
+
+// Takes up an environment; false where there is none, or where it has failed and stands still.
+fn begin(index: u32) -> bool {
+    env = index;
+    if (index >= N) {
+        return false;
+    }
+    return reports[STATUS * N + env] == RUNNING;
+}
+
+// Notes that this step cannot be; what was noted first stays.
+fn trouble(fault: u32) {
+    if (reports[TROUBLE * N + env] == RUNNING) {
+        reports[TROUBLE * N + env] = fault;
+    }
+}
+
+// Whether a number is infinite or undefined. Told by its bits: a compiler for shaders may assume that there are none such.
+fn is_wild(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) == 0x7f800000u;
+}
+
+fn fetch(place: u32) -> f32 {
+    return work[place * N + env];
+}
+
+fn put(place: u32, x: f32) {
+    work[place * N + env] = x;
+}
+
+fn add(place: u32, x: f32) {
+    work[place * N + env] += x;
+}
+
+fn fetch3(place: u32) -> vec3f {
+    return vec3f(fetch(place), fetch(place + 1u), fetch(place + 2u));
+}
+
+fn put3(place: u32, v: vec3f) {
+    put(place, v.x);
+    put(place + 1u, v.y);
+    put(place + 2u, v.z);
+}
+
+fn fetch4(place: u32) -> vec4f {
+    return vec4f(fetch3(place), fetch(place + 3u));
+}
+
+fn put4(place: u32, v: vec4f) {
+    put3(place, v.xyz);
+    put(place + 3u, v.w);
+}
+
+// Matrices lie row by row, as users read them.
+fn fetch_matrix(place: u32) -> mat3x3f {
+    return transpose(mat3x3f(fetch3(place), fetch3(place + 3u), fetch3(place + 6u)));
+}
+
+fn put_matrix(place: u32, m: mat3x3f) {
+    let t = transpose(m);
+    put3(place, t[0]);
+    put3(place + 3u, t[1]);
+    put3(place + 6u, t[2]);
+}
+
+fn given(place: u32) -> f32 {
+    return state[place * N + env];
+}
+
+fn given3(place: u32) -> vec3f {
+    return vec3f(given(place), given(place + 1u), given(place + 2u));
+}
+
+fn given4(place: u32) -> vec4f {
+    return vec4f(given3(place), given(place + 3u));
+}
+
+fn keep(place: u32, x: f32) {
+    state[place * N + env] = x;
+}
+
+fn number3(place: u32) -> vec3f {
+    return vec3f(numbers[place], numbers[place + 1u], numbers[place + 2u]);
+}
+
+fn number4(place: u32) -> vec4f {
+    return vec4f(number3(place), numbers[place + 3u]);
+}
+
+// A row of the block of this environment.
+fn row(place: u32) -> f32 {
+    return rows[env * ROWS + place];
+}
+
+fn put_row(place: u32, x: f32) {
+    rows[env * ROWS + place] = x;
+}
+
+// The end of a loop, told in a way that no compiler knows before: it would write the loop out, and take ten times as long.
+fn bound(n: u32) -> u32 {
+    return n + words[ZERO];
+}

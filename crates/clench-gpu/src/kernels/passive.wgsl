@@ -1,0 +1,75 @@
+// Springs, dampers and the medium. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
+//
+// A spring pulls with −(a x + b x² + c x³), a damper with −(a v + b v |v| + c v³).
+
+// a + b x + c x².
+fn stiffness(coefficients: vec3f, x: f32) -> f32 {
+    return coefficients.x + x * (coefficients.y + x * coefficients.z);
+}
+
+// Adds the force of a spring that is stretched along `stretch` to three dofs.
+fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
+    let k = stiffness(law, length(stretch));
+    put3(qfrc, fetch3(qfrc) - stretch * k);
+}
+
+fn springs() {
+    for (var s = 0u; s < NSPRING; s++) {
+        let j = words[SPRING_JNT + s];
+        let law = number3(SPRING_LAW + 3u * s);
+        let q = words[JNT_QPOS + j];
+        let kind = words[JNT_KIND + j];
+        var qfrc = QFRC_PASSIVE + words[JNT_DOF + j];
+        if (kind == SLIDE || kind == HINGE) {
+            let x = given(QPOS + q) - numbers[QPOS_SPRING + q];
+            add(qfrc, -x * stiffness(law, x));
+            continue;
+        }
+        var turn = q;
+        if (kind == FREE) {
+            pull_back(law, given3(QPOS + q) - number3(QPOS_SPRING + q), qfrc);
+            turn += 3u;
+            qfrc += 3u;
+        }
+        let rest = number4(QPOS_SPRING + turn);
+        pull_back(law, quat_difference(quat_normalize(given4(QPOS + turn)), rest), qfrc);
+    }
+}
+
+fn dampers() {
+    for (var i = 0u; i < bound(NV); i++) {
+        let v = given(QVEL + i);
+        add(QFRC_PASSIVE + i, -v * stiffness(number3(DOF_DAMPER + 3u * i), abs(v)));
+    }
+}
+
+// −(c₁ v + c₂ |v| v), axis by axis.
+fn resistance(viscous: vec3f, quadratic: vec3f, v: vec3f) -> vec3f {
+    return -(viscous * v + quadratic * abs(v) * v);
+}
+
+// The medium resists the box that has a body's mass and inertia; its coefficients are numbers of the model.
+fn fluid_forces() {
+    for (var b = 0u; b < bound(NBODY); b++) {
+        let axes = fetch_matrix(XIMAT + 9u * b);
+        let back = transpose(axes);
+        let arm = fetch3(XIPOS + 3u * b) - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
+        let cvel = fetch_spatial(CVEL + 6u * b);
+        let angular = back * cvel.angular;
+        let linear = back * (cvel.linear + cross(cvel.angular, arm) - number3(WIND));
+        let drag = BODY_DRAG + 12u * b;
+        let torque = resistance(number3(drag), number3(drag + 6u), angular);
+        let force = resistance(number3(drag + 3u), number3(drag + 9u), linear);
+        put_spatial(CFRC + 6u * b, force_at_com(b, axes * force, axes * torque));
+    }
+    project_forces(QFRC_PASSIVE);
+}
+
+fn passive_forces() {
+    clear_dofs(QFRC_PASSIVE);
+    springs();
+    dampers();
+    if (HAS_FLUID) {
+        fluid_forces();
+    }
+}

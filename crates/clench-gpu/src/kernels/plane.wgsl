@@ -1,0 +1,46 @@
+// Shapes on a plane, whose normal is its z axis. Sisters of `clench-collide/src/narrow/plane.rs`.
+
+// Adds the point of a surface that is `distance` above the plane.
+fn add_on_plane(pair: u32, surface: vec3f, distance: f32, normal: vec3f, tangent: vec3f, range: f32) {
+    if (distance <= range) {
+        add_contact(pair, distance, surface - normal * (distance * 0.5), normal, tangent);
+    }
+}
+
+fn plane_sphere(pair: u32, normal: vec3f, above: f32, center: vec3f, size: vec3f, range: f32) {
+    let surface = center - normal * size.x;
+    add_on_plane(pair, surface, above - size.x, normal, tangent_from_normal(normal), range);
+}
+
+// The two ends of a capsule, the first tangent along its axis.
+fn plane_capsule(pair: u32, normal: vec3f, above: f32, center: vec3f, axis: vec3f, size: vec3f, range: f32) {
+    let rise = dot(normal, axis) * size.y;
+    let tangent = tangent_along(normal, axis);
+    let middle = center - normal * size.x;
+    add_on_plane(pair, middle + axis * size.y, above + rise - size.x, normal, tangent, range);
+    add_on_plane(pair, middle - axis * size.y, above - rise - size.x, normal, tangent, range);
+}
+
+// The lowest point of an ellipsoid: its support against the normal.
+fn plane_ellipsoid(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
+    let scaled = (transpose(axes) * normal) * size;
+    let depth = length(scaled);
+    let support = scaled * size * (1.0 / max(depth, 1.1754944e-38));
+    add_on_plane(pair, center - axes * support, above - depth, normal, tangent_from_normal(normal), range);
+}
+
+// The corners of a box on its lower side, at most four.
+fn plane_box(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
+    let local = (transpose(axes) * normal) * size;
+    let tangent = tangent_from_normal(normal);
+    var count = 0u;
+    for (var corner = 0u; corner < 8u; corner++) {
+        let bits = vec3u(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
+        let signs = vec3f(bits) * 2.0 - 1.0;
+        let rise = dot(local, signs);
+        if (above + rise <= range && rise <= 0.0 && count < 4u) {
+            count++;
+            add_on_plane(pair, center + axes * (size * signs), above + rise, normal, tangent, range);
+        }
+    }
+}

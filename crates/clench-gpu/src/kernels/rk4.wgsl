@@ -1,0 +1,85 @@
+// Fourth-order Runge–Kutta. Sister of `dynamics/rk4.rs`, where rotations are explained. A step is four times all stages before,
+// each followed by this one with the next `stage`.
+
+override stage: u32 = 0u;
+
+// The weight of a stage in the mean.
+fn weight() -> f32 {
+    return select(1.0 / 3.0, 1.0 / 6.0, stage == 0u || stage == 3u);
+}
+
+// How far along the rates of stage `s` the next one lies.
+fn reach(s: u32) -> f32 {
+    return select(0.5, 1.0, s == 2u) * TIMESTEP;
+}
+
+// u̇ of the rotation vector u while its end turns at ω.
+fn increment_rate(u: vec3f, omega: vec3f) -> vec3f {
+    let squared = dot(u, u);
+    var c = 0.083333336 + squared * (0.0013888889 + squared * (3.3068783e-5 + squared * 8.2671958e-7));
+    if (squared >= 0.01) {
+        let half = sqrt(squared) * 0.5;
+        let t = sin_cos(half);
+        c = (1.0 - half * t.y / t.x) / squared;
+    }
+    let turned = cross(u, omega);
+    return omega + turned * 0.5 + cross(u, turned) * c;
+}
+
+// The rates of this stage: of positions in RATE, which holds those of the stage before.
+fn collect_rates() {
+    for (var j = 0u; j < bound(NJNT); j++) {
+        let kind = words[JNT_KIND + j];
+        let first = words[JNT_DOF + j];
+        let end = words[JNT_DOF + j + 1u];
+        var increment = vec3f();
+        if (kind == BALL || kind == FREE) {
+            increment = fetch3(RATE + end - 3u) * reach(max(stage, 1u) - 1u);
+        }
+        for (var i = first; i < end; i++) {
+            put(RATE + i, given(QVEL + i));
+        }
+        if ((kind == BALL || kind == FREE) && stage > 0u) {
+            put3(RATE + end - 3u, increment_rate(increment, given3(QVEL + end - 3u)));
+        }
+    }
+}
+
+fn add_to_mean() {
+    for (var i = 0u; i < bound(NV); i++) {
+        let before = stage > 0u;
+        put(MEAN_RATE + i, select(0.0, fetch(MEAN_RATE + i), before) + weight() * fetch(RATE + i));
+        put(MEAN_QACC + i, select(0.0, fetch(MEAN_QACC + i), before) + weight() * fetch(QACC + i));
+    }
+}
+
+// Goes from the start for `time` seconds, at the rates in `rate` (in work) and accelerations in `qacc`.
+fn go(rate: u32, qacc: u32, time: f32) {
+    restore_start();
+    for (var i = 0u; i < bound(NV); i++) {
+        keep(QVEL + i, given(QVEL + i) + fetch(qacc + i) * time);
+    }
+    integrate_positions(rate, time);
+}
+
+@compute @workgroup_size(GROUP)
+fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
+    if (!begin(id.x)) {
+        return;
+    }
+    if (stage == 0u) {
+        save_start();
+    }
+    collect_rates();
+    add_to_mean();
+    if (stage < 3u) {
+        go(RATE, QACC, reach(stage));
+        // The stage before is nearer than the last step.
+        for (var i = 0u; i < bound(NV); i++) {
+            keep(QACC_WARMSTART + i, fetch(QACC + i));
+        }
+        return;
+    }
+    go(MEAN_RATE, MEAN_QACC, TIMESTEP);
+    finish_step();
+}

@@ -1,0 +1,88 @@
+// How soft a constraint is. Sister of `constraint/softness.rs`, where the formulas are derived.
+
+const LEAST: f32 = 1e-15;
+
+// What solref and solimp (five numbers) ask for at a violation: impedance d, stiffness k d, damping b.
+struct Softness {
+    impedance: f32,
+    stiffness: f32,
+    damping: f32,
+}
+
+fn clamp_impedance(d: f32) -> f32 {
+    return clamp(d, 0.0001, 0.9999);
+}
+
+fn is_mixed(solref: vec2f) -> bool {
+    return (solref.x > 0.0) != (solref.y > 0.0);
+}
+
+// k, without the factor d, and b.
+fn spring_damper(solref: vec2f, dmax_given: f32) -> vec2f {
+    let dmax = clamp_impedance(dmax_given);
+    if (solref.x > 0.0) {
+        let timeconst = max(solref.x, LEAST_TIMECONST);
+        let squares = dmax * dmax * timeconst * timeconst * solref.y * solref.y;
+        return vec2f(1.0 / max(squares, LEAST), 2.0 / max(dmax * timeconst, LEAST));
+    }
+    return vec2f(-solref.x / (dmax * dmax), -solref.y / dmax);
+}
+
+// base^exponent for exponents from 1 on, exact for small whole ones: a device's own power is not.
+fn raise(base: f32, exponent: f32) -> f32 {
+    if (exponent != round(exponent) || exponent > 8.0) {
+        return pow(base, exponent);
+    }
+    var power = base;
+    for (var k = 1u; k < u32(exponent); k++) {
+        power *= base;
+    }
+    return power;
+}
+
+// Between 0 and 1 for x between 0 and 1.
+fn spline(x: f32, midpoint: f32, power: f32) -> f32 {
+    if (power == 1.0) {
+        return x;
+    }
+    let below = x <= midpoint;
+    let base = select(1.0 - x, x, below);
+    let edge = select(1.0 - midpoint, midpoint, below);
+    let y = raise(base, power) / raise(edge, power - 1.0);
+    return select(1.0 - y, y, below);
+}
+
+// The impedance at the violation `r`; solimp stands at `place`.
+fn impedance(place: u32, r: f32) -> f32 {
+    let dmin = clamp_impedance(numbers[place]);
+    let dmax = clamp_impedance(numbers[place + 1u]);
+    let width = numbers[place + 2u];
+    if (dmin == dmax || width <= LEAST) {
+        return 0.5 * (dmin + dmax);
+    }
+    let x = abs(r) / width;
+    if (x >= 1.0) {
+        return dmax;
+    }
+    if (x <= 0.0) {
+        return dmin;
+    }
+    let midpoint = clamp_impedance(numbers[place + 3u]);
+    return dmin + spline(x, midpoint, max(numbers[place + 4u], 1.0)) * (dmax - dmin);
+}
+
+// solref stands at `place`, then solimp.
+fn soften(place: u32, r: f32) -> Softness {
+    var solref = vec2f(numbers[place], numbers[place + 1u]);
+    if (is_mixed(solref)) {
+        solref = vec2f(0.02, 1.0);
+    }
+    let law = spring_damper(solref, numbers[place + 3u]);
+    let d = impedance(place + 2u, r);
+    return Softness(d, law.x * d, law.y);
+}
+
+// R of a row that sees the inverse inertia `a`.
+fn regularization(d: f32, a: f32) -> f32 {
+    return max((1.0 - d) * a / d, LEAST);
+}

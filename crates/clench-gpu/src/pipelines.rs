@@ -1,0 +1,183 @@
+//! The kernels of a batch as the device runs them, and the arrays they share.
+
+use crate::device::Device;
+use crate::error::GpuError;
+use crate::kernels::{self, Kernel};
+use clench_rigid::model::Integrator;
+
+/// A kernel, compiled.
+pub(crate) struct Pipeline {
+    /// Its entry point.
+    pub name: &'static str,
+    pipeline: wgpu::ComputePipeline,
+    workgroups: [u32; 3],
+}
+
+/// All that a step runs.
+pub(crate) struct Pipelines {
+    pub restart: Pipeline,
+    /// Everything that follows from the state.
+    pub forward: Vec<Pipeline>,
+    /// The integrator: one for each forward pass of a step.
+    pub advance: Vec<Pipeline>,
+}
+
+/// The six arrays, in the order of the kernels' bindings.
+pub(crate) struct Arrays {
+    pub words: wgpu::Buffer,
+    pub numbers: wgpu::Buffer,
+    pub state: wgpu::Buffer,
+    pub work: wgpu::Buffer,
+    pub rows: wgpu::Buffer,
+    pub reports: wgpu::Buffer,
+}
+
+impl Arrays {
+    fn all(&self) -> [&wgpu::Buffer; 6] {
+        let Arrays {
+            words,
+            numbers,
+            state,
+            work,
+            rows,
+            reports,
+        } = self;
+        [words, numbers, state, work, rows, reports]
+    }
+
+    /// What the kernels are given.
+    pub fn bind(&self, device: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
+        let entries: Vec<_> = (0..)
+            .zip(self.all())
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("arrays"),
+            layout,
+            entries: &entries,
+        })
+    }
+}
+
+/// What all kernels are given: the first two arrays to read, the others to write as well.
+pub(crate) fn layout(device: &Device) -> wgpu::BindGroupLayout {
+    let entry = |binding| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage {
+                read_only: binding < 2,
+            },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    device
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("arrays"),
+            entries: &[0, 1, 2, 3, 4, 5].map(entry),
+        })
+}
+
+impl Pipelines {
+    /// Compiles the kernels for `count` environments, behind the constants that belong to them.
+    ///
+    /// # Errors
+    /// That the device or its driver refuses a kernel.
+    pub fn new(
+        device: &Device,
+        layout: &wgpu::BindGroupLayout,
+        constants: &str,
+        count: usize,
+        integrator: Integrator,
+    ) -> Result<Self, GpuError> {
+        let layout = device
+            .device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("arrays"),
+                bind_group_layouts: &[Some(layout)],
+                immediate_size: 0,
+            });
+        let compile = |kernel: &Kernel, overrides: &[(&str, f64)]| {
+            compile(device, &layout, constants, count, kernel, overrides)
+        };
+        let forward = [
+            kernels::POSITIONS,
+            kernels::CONTACTS,
+            kernels::FORCES,
+            kernels::CONSTRAINTS,
+            kernels::ASSEMBLE,
+            kernels::SOLVE,
+        ];
+        let advance = match integrator {
+            Integrator::Rk4 => {
+                let stage = |k: u8| compile(&kernels::RUNGE_KUTTA, &[("stage", f64::from(k))]);
+                (0..4).map(stage).collect::<Result<_, _>>()?
+            }
+            _ => vec![compile(&kernels::EULER, &[])?],
+        };
+        let forward = forward.iter().map(|kernel| compile(kernel, &[]));
+        Ok(Pipelines {
+            restart: compile(&kernels::RESTART, &[])?,
+            forward: forward.collect::<Result<_, _>>()?,
+            advance,
+        })
+    }
+}
+
+fn compile(
+    device: &Device,
+    layout: &wgpu::PipelineLayout,
+    constants: &str,
+    count: usize,
+    kernel: &Kernel,
+    overrides: &[(&str, f64)],
+) -> Result<Pipeline, GpuError> {
+    let scope = device
+        .device
+        .push_error_scope(wgpu::ErrorFilter::Validation);
+    let module = device
+        .device
+        .create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(kernel.entry),
+            source: wgpu::ShaderSource::Wgsl(kernel.source(constants).into()),
+        });
+    let pipeline = device
+        .device
+        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(kernel.entry),
+            layout: Some(layout),
+            module: &module,
+            entry_point: Some(kernel.entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: overrides,
+                ..Default::default()
+            },
+            cache: None,
+        });
+    if let Some(error) = pollster::block_on(scope.pop()) {
+        return Err(GpuError::Unusable {
+            device: device.info.name.clone(),
+            reason: format!("it refuses the kernel `{}`: {error}", kernel.entry),
+        });
+    }
+    Ok(Pipeline {
+        name: kernel.entry,
+        pipeline,
+        workgroups: kernel.workgroups(count),
+    })
+}
+
+impl Pipeline {
+    /// Appends it to a pass.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass) {
+        let [x, y, z] = self.workgroups;
+        pass.set_pipeline(&self.pipeline);
+        pass.dispatch_workgroups(x, y, z);
+    }
+}

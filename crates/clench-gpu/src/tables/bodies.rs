@@ -1,0 +1,77 @@
+//! The tree: bodies, joints, dofs, and the geoms on them.
+
+use super::{NONE, Tables, starts};
+use clench_rigid::model::Model;
+
+impl Tables {
+    pub(super) fn bodies(&mut self, m: &Model) {
+        let (p, bodies) = (&m.params, &m.bodies);
+        self.count("NBODY", bodies.len());
+        self.words("BODY_PARENT", bodies.iter().map(|b| b.parent));
+        self.words("BODY_ROOT", bodies.iter().map(|b| b.root));
+        let mocap = |b: Option<usize>| b.unwrap_or(NONE as usize);
+        self.words("BODY_MOCAP", bodies.iter().map(|b| mocap(b.mocap)));
+        self.words("BODY_JNT", starts(bodies.iter().map(|b| b.joints.len())));
+        self.words("BODY_DOF", starts(bodies.iter().map(|b| b.dofs.len())));
+        self.words("BODY_GEOM", starts(bodies.iter().map(|b| b.geoms.len())));
+        let vectors =
+            |v: &[clench_math::Vec3<f64>]| Vec::from_iter(v.iter().flat_map(|v| v.to_array()));
+        let quats =
+            |q: &[clench_math::Quat<f64>]| Vec::from_iter(q.iter().flat_map(|q| q.to_array()));
+        self.numbers("BODY_POS", vectors(&p.body_pos));
+        self.numbers("BODY_QUAT", quats(&p.body_quat));
+        self.numbers("BODY_IPOS", vectors(&p.body_ipos));
+        self.numbers("BODY_IQUAT", quats(&p.body_iquat));
+        self.numbers("BODY_MASS", p.body_mass.iter().copied());
+        self.numbers("BODY_SUBTREEMASS", p.body_subtreemass.iter().copied());
+        self.numbers("BODY_INERTIA", vectors(&p.body_inertia));
+        self.numbers("GEOM_POS", vectors(&p.geom_pos));
+        self.numbers("GEOM_QUAT", quats(&p.geom_quat));
+        self.numbers("GEOM_SIZE", vectors(&p.geom_size));
+        self.numbers("JNT_POS", vectors(&p.jnt_pos));
+        self.numbers("JNT_AXIS", vectors(&p.jnt_axis));
+    }
+
+    pub(super) fn joints(&mut self, m: &Model) {
+        let joints = &m.joints;
+        self.count("NJNT", joints.len());
+        self.count("NQ", m.nq);
+        self.words("JNT_KIND", joints.iter().map(|j| j.kind as usize));
+        self.words("JNT_BODY", joints.iter().map(|j| j.body));
+        self.words("JNT_QPOS", joints.iter().map(|j| j.qpos));
+        self.words("JNT_DOF", joints.iter().map(|j| j.dof).chain([m.nv]));
+        self.numbers("QPOS0", m.params.qpos0.iter().copied());
+        self.numbers("QPOS_SPRING", m.params.qpos_spring.iter().copied());
+    }
+
+    /// Dofs, the pattern of the mass matrix, and which bodies each dof moves.
+    pub(super) fn dofs(&mut self, m: &Model) {
+        let (tree, nv) = (&m.tree, m.nv);
+        self.count("NV", nv);
+        self.count("NNZ", tree.nnz());
+        self.count("PACKED", nv * (nv + 1) / 2);
+        self.words("DOF_BODY", m.dofs.iter().map(|d| d.body));
+        self.words("TREE_START", (0..=nv).map(|i| tree.row_start(i)));
+        let columns = (0..nv).flat_map(|i| tree.row(i));
+        self.words("TREE_DOF", columns.map(|&j| j as usize));
+        let triangle = (0..nv).flat_map(|i| (0..=i).map(move |j| i << 16 | j));
+        self.words("PACKED_ENTRY", triangle);
+        let words = nv.div_ceil(32);
+        let mut masks = vec![0; m.nbody() * words];
+        for (mask, body) in masks.chunks_exact_mut(words.max(1)).zip(&m.bodies) {
+            let moving = body.last_dof.map_or(&[][..], |last| tree.row(last));
+            for &dof in moving {
+                mask[dof as usize / 32] |= 1 << (dof % 32);
+            }
+        }
+        self.count("MASK_WORDS", words);
+        self.words("DOF_MASK", masks);
+        let invweight0 = &m.params.dof_invweight0;
+        self.numbers("DOF_INVWEIGHT0", invweight0.iter().copied());
+    }
+
+    pub(super) fn geoms(&mut self, m: &Model) {
+        self.count("NGEOM", m.geoms.len());
+        self.words("GEOM_KIND", m.geoms.iter().map(|g| g.kind as usize));
+    }
+}

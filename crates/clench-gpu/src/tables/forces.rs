@@ -1,0 +1,201 @@
+//! Springs, dampers, the medium and actuators, each reduced to the coefficients of its law; and the numbers of the step itself.
+
+use super::{ENDLESS, Tables};
+use clench_rigid::model::{
+    Actuator, BiasKind, GainKind, Integrator, JointKind, Model, Transmission,
+};
+use clench_rigid::options::FrictionCone;
+use clench_rigid::settings::StepSettings;
+
+use std::f64::consts::PI;
+
+/// Below this mass (kg) a body feels no medium; also the least (kg m²) of a box's squared sides (MuJoCo's `mjMINVAL`).
+const TINY: f64 = 1e-15;
+
+impl Tables {
+    pub(super) fn forces(&mut self, m: &Model) {
+        let p = &m.params;
+        let gravity = if m.flags.gravity {
+            p.gravity.to_array()
+        } else {
+            [0.0; 3]
+        };
+        self.numbers("GRAVITY", gravity);
+        let law = |j: usize| {
+            let [b, c] = p.jnt_stiffnesspoly[j];
+            [p.jnt_stiffness[j], b, c]
+        };
+        let pulls = |&j: &usize| m.flags.spring && law(j) != [0.0; 3];
+        let springs = Vec::from_iter((0..m.joints.len()).filter(pulls));
+        self.count("NSPRING", springs.len());
+        self.words("SPRING_JNT", springs.iter().copied());
+        self.numbers("SPRING_LAW", springs.iter().flat_map(|&j| law(j)));
+        let dampers = Vec::from_iter((0..m.nv).map(|i| damper(m, i)));
+        self.numbers("DOF_DAMPER", dampers.iter().copied().flatten());
+        let damped = dampers
+            .iter()
+            .any(|&[a, b, c]| a > 0.0 || b != 0.0 || c != 0.0);
+        let euler = m.integrator == Integrator::Euler && m.flags.eulerdamp;
+        self.flag("IMPLICIT_DAMPING", damped && euler);
+        self.numbers("DOF_ARMATURE", (0..m.nv).map(|i| armature(m, i)));
+        self.medium(m);
+    }
+
+    /// The coefficients of the resistance to the box that has a body's mass and inertia, see `dynamics/fluid.rs`.
+    fn medium(&mut self, m: &Model) {
+        let p = &m.params;
+        let any = p.density != 0.0 || p.viscosity != 0.0;
+        self.flag("HAS_FLUID", any && (m.flags.spring || m.flags.damper));
+        self.numbers("WIND", p.wind.to_array());
+        self.numbers("BODY_DRAG", (0..m.nbody()).flat_map(|b| drag(m, b)));
+    }
+
+    pub(super) fn actuators(&mut self, m: &Model) {
+        let p = &m.params;
+        let acting = if m.flags.actuation {
+            &m.actuators[..]
+        } else {
+            &[]
+        };
+        let range =
+            |limited: bool, range: [f64; 2]| if limited { range } else { [-ENDLESS, ENDLESS] };
+        let each = || acting.iter().enumerate();
+        self.count("NU", acting.len());
+        self.words(
+            "ACTUATOR_JNT",
+            acting.iter().map(|a| joint_of(a).unwrap_or(0)),
+        );
+        self.numbers("ACTUATOR_GEAR", each().map(|(u, _)| p.actuator_gear[u][0]));
+        self.numbers(
+            "ACTUATOR_GAIN",
+            each().flat_map(|(u, a)| gain(a, &p.actuator_gainprm[u])),
+        );
+        self.numbers(
+            "ACTUATOR_BIAS",
+            each().flat_map(|(u, a)| bias(a, &p.actuator_biasprm[u])),
+        );
+        let limited = |a: &Actuator| m.flags.clampctrl && a.ctrllimited.first() == Some(&true);
+        let ctrl = each().flat_map(|(u, a)| range(limited(a), p.actuator_ctrlrange[u]));
+        self.numbers("CTRL_RANGE", ctrl);
+        let force = each().flat_map(|(u, a)| range(a.forcelimited, p.actuator_forcerange[u]));
+        self.numbers("FORCE_RANGE", force);
+        let dofs = m.dofs.iter().enumerate().flat_map(|(i, dof)| {
+            let joint = &m.joints[dof.joint];
+            let limited = joint.actfrclimited && joint.dof == i && !acting.is_empty();
+            range(limited, p.jnt_actfrcrange[dof.joint])
+        });
+        self.numbers("DOF_FORCE_RANGE", dofs);
+    }
+
+    pub(super) fn settings(&mut self, m: &Model, s: &StepSettings) {
+        let h = m.params.timestep;
+        let floor = s.constraint_timeconst;
+        let least = if s.flags.refsafe {
+            floor.max(2.0 * h)
+        } else {
+            floor
+        };
+        self.real("TIMESTEP", h);
+        self.real("LEAST_TIMECONST", least);
+        self.real("IMPRATIO", s.impratio);
+        self.flag("ELLIPTIC_CONES", s.friction_cone == FrictionCone::Elliptic);
+        self.flag("WARMSTART", s.solver.warmstart);
+        self.count("ITERATIONS", s.solver.iterations);
+        self.count("LS_ITERATIONS", s.solver.ls_iterations);
+        self.real("TOLERANCE", s.solver.tolerance);
+        self.real("LS_TOLERANCE", s.solver.ls_tolerance);
+        for (name, kind) in [
+            ("FREE", JointKind::Free),
+            ("BALL", JointKind::Ball),
+            ("SLIDE", JointKind::Slide),
+            ("HINGE", JointKind::Hinge),
+        ] {
+            self.count(name, kind as usize);
+        }
+    }
+}
+
+/// The damper of dof `i` with that of its joint's actuators; none where dampers are off.
+fn damper(m: &Model, i: usize) -> [f64; 3] {
+    let p = &m.params;
+    if !m.flags.damper {
+        return [0.0; 3];
+    }
+    let [b, c] = p.dof_dampingpoly[i];
+    let mut law = [p.dof_damping[i], b, c];
+    for &u in &m.joints[m.dofs[i].joint].reflecting {
+        let ratio = p.actuator_gear[u][0].powi(2);
+        let [b, c] = p.actuator_dampingpoly[u];
+        for (to, from) in law.iter_mut().zip([p.actuator_damping[u], b, c]) {
+            *to += ratio * from;
+        }
+    }
+    law
+}
+
+/// The inertia that is added to dof `i`: its own and that of its joint's actuators.
+fn armature(m: &Model, i: usize) -> f64 {
+    let p = &m.params;
+    let actuators = &m.joints[m.dofs[i].joint].reflecting;
+    let reflected = |&u: &usize| p.actuator_gear[u][0].powi(2) * p.actuator_armature[u];
+    p.dof_armature[i] + actuators.iter().map(reflected).sum::<f64>()
+}
+
+/// Viscous, then quadratic coefficients of body `b`, of rotations before translations.
+fn drag(m: &Model, b: usize) -> [f64; 12] {
+    let p = &m.params;
+    let mass = p.body_mass[b];
+    if mass < TINY {
+        return [0.0; 12];
+    }
+    let i = p.body_inertia[b];
+    let side = |opposite: f64| (opposite.max(TINY) / mass * 6.0).sqrt();
+    let (x, y, z) = (
+        side(i.y + i.z - i.x),
+        side(i.x + i.z - i.y),
+        side(i.x + i.y - i.z),
+    );
+    let d = (x + y + z) / 3.0;
+    let (density, viscosity) = (p.density.max(0.0), p.viscosity.max(0.0));
+    let (turning, moving) = (PI * d.powi(3) * viscosity, 3.0 * PI * d * viscosity);
+    let turn = |s: f64, a: f64, b: f64| s * (a.powi(4) + b.powi(4)) * density / 64.0;
+    let face = |a: f64, b: f64| a * b * density / 2.0;
+    let viscous = [turning, turning, turning, moving, moving, moving];
+    let quadratic = [
+        turn(x, y, z),
+        turn(y, x, z),
+        turn(z, x, y),
+        face(y, z),
+        face(x, z),
+        face(x, y),
+    ];
+    let mut all = [0.0; 12];
+    all[..6].copy_from_slice(&viscous);
+    all[6..].copy_from_slice(&quadratic);
+    all
+}
+
+/// The joint that an actuator acts on.
+fn joint_of(actuator: &Actuator) -> Option<usize> {
+    match actuator.transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => Some(j),
+        _ => None,
+    }
+}
+
+/// Gain = a + b length + c velocity.
+fn gain(actuator: &Actuator, prm: &[f64; 10]) -> [f64; 3] {
+    match actuator.gain {
+        _ if actuator.disabled => [0.0; 3],
+        GainKind::Affine => [prm[0], prm[1], prm[2]],
+        _ => [prm[0], 0.0, 0.0],
+    }
+}
+
+/// Bias, likewise.
+fn bias(actuator: &Actuator, prm: &[f64; 10]) -> [f64; 3] {
+    match actuator.bias {
+        BiasKind::Affine if !actuator.disabled => [prm[0], prm[1], prm[2]],
+        _ => [0.0; 3],
+    }
+}

@@ -1,0 +1,106 @@
+//! The model as the device reads it: one array of words, one of numbers, and the constants by which the kernels find what they
+//! want in them. A table is one line of one of the files here; its name in capitals is its place.
+
+mod bodies;
+mod constraints;
+mod contacts;
+mod forces;
+
+pub(crate) use constraints::BLOCK_SIZE;
+pub(crate) use contacts::CONTACT_SIZE;
+
+use clench_rigid::contact::Candidate;
+use clench_rigid::model::Model;
+use clench_rigid::settings::StepSettings;
+use std::fmt::Write;
+
+/// No element.
+pub(crate) const NONE: u32 = u32::MAX;
+/// What stands for a range without an end: a device may have no infinity.
+const ENDLESS: f64 = 3e38;
+
+/// The arrays under construction, and the source text of the constants.
+pub(crate) struct Tables {
+    /// Structure: indices and kinds.
+    pub words: Vec<u32>,
+    /// Numbers of the model.
+    pub numbers: Vec<f32>,
+    /// Declarations in WGSL.
+    pub constants: String,
+}
+
+/// How large the constraints of an environment can become.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Capacity {
+    /// Contacts in the pool.
+    pub contacts: usize,
+    /// Blocks of the convex problem.
+    pub blocks: usize,
+    /// Rows of the convex problem.
+    pub rows: usize,
+}
+
+impl Tables {
+    /// The tables of a model, and how large its constraints can become.
+    pub fn new(
+        model: &Model,
+        settings: &StepSettings,
+        candidates: &[Candidate],
+    ) -> (Tables, Capacity) {
+        let mut tables = Tables {
+            words: Vec::new(),
+            numbers: Vec::new(),
+            constants: String::new(),
+        };
+        tables.words("ZERO", [0]);
+        tables.bodies(model);
+        tables.joints(model);
+        tables.dofs(model);
+        tables.geoms(model);
+        tables.forces(model);
+        tables.actuators(model);
+        tables.settings(model, settings);
+        let mut capacity = Capacity::default();
+        tables.friction(model, settings, &mut capacity);
+        tables.limits(model, settings, &mut capacity);
+        tables.pairs(model, settings, candidates, &mut capacity);
+        (tables, capacity)
+    }
+
+    /// Adds a table of words.
+    fn words(&mut self, name: &str, values: impl IntoIterator<Item = usize>) {
+        self.count(name, self.words.len());
+        self.words.extend(values.into_iter().map(|v| v as u32));
+    }
+
+    /// Adds a table of numbers.
+    pub fn numbers(&mut self, name: &str, values: impl IntoIterator<Item = f64>) {
+        self.count(name, self.numbers.len());
+        self.numbers.extend(values.into_iter().map(|v| v as f32));
+    }
+
+    /// Declares a count, a place or a code.
+    pub fn count(&mut self, name: &str, value: usize) {
+        let _ = writeln!(self.constants, "const {name}: u32 = {value}u;");
+    }
+
+    fn flag(&mut self, name: &str, value: bool) {
+        let _ = writeln!(self.constants, "const {name}: bool = {value};");
+    }
+
+    /// Declares a number, with all its digits.
+    fn real(&mut self, name: &str, value: f64) {
+        let _ = writeln!(self.constants, "const {name}: f32 = {:e}f;", value as f32);
+    }
+}
+
+/// Where the parts of consecutive owners begin, and where the last ends.
+fn starts(lengths: impl IntoIterator<Item = usize>) -> Vec<usize> {
+    let mut starts = vec![0];
+    let mut end = 0;
+    for length in lengths {
+        end += length;
+        starts.push(end);
+    }
+    starts
+}

@@ -1,0 +1,195 @@
+//! Rows of environments across the bus: named fields, written and read environment by environment.
+//!
+//! On the device a field lies environment next to environment, in rows on this side: what crosses is turned on the way.
+
+use crate::batch::GpuBatch;
+use crate::error::GpuError;
+use crate::fields::{Field, Fields};
+use crate::tables::Tables;
+use clench_rigid::{Model, State};
+use zerocopy::{FromBytes, IntoBytes};
+
+/// Positions and velocities beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
+const MAX_VALUE: f32 = 1e10;
+
+impl Tables {
+    /// Adds the initial state of a model, field after field.
+    pub(crate) fn initial_state(&mut self, model: &Model, fields: &Fields) {
+        let state = State::<f64>::new(model);
+        let mut row = Vec::new();
+        for field in &fields.list {
+            match field.name {
+                "qpos" => row.extend(&state.qpos),
+                "mocap_pos" => row.extend(state.mocap_pos.iter().flat_map(|v| v.to_array())),
+                "mocap_quat" => row.extend(state.mocap_quat.iter().flat_map(|q| q.to_array())),
+                _ => row.resize(row.len() + field.width, 0.0),
+            }
+        }
+        self.numbers("INITIAL_STATE", row);
+    }
+}
+
+impl GpuBatch {
+    /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `qacc_warmstart`, `ctrl`, `qfrc_applied`,
+    /// `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`, `mocap_quat`.
+    ///
+    /// # Errors
+    /// A name that no such field has; a wrong count; a number that is not finite, or a position or velocity beyond 1e10.
+    pub fn write(&mut self, name: &str, values: &[f32]) -> Result<(), GpuError> {
+        let field = self.writable(name)?;
+        let expected = field.width * self.count;
+        check_length(name, values.len(), expected)?;
+        if expected == 0 {
+            return Ok(());
+        }
+        for (env, row) in values.chunks_exact(field.width).enumerate() {
+            check_row(name, env, row)?;
+        }
+        let turned = transpose(values, self.count, field.width);
+        let start = 4 * (field.place * self.count) as u64;
+        (self.device.queue).write_buffer(&self.arrays.state, start, turned.as_bytes());
+        Ok(())
+    }
+
+    /// Writes a field of the state of one environment.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write), and an environment that is not there.
+    pub fn write_env(&mut self, env: usize, name: &str, row: &[f32]) -> Result<(), GpuError> {
+        self.check_env(env)?;
+        let field = self.writable(name)?;
+        check_length(name, row.len(), field.width)?;
+        check_row(name, env, row)?;
+        for (k, value) in row.iter().enumerate() {
+            let start = 4 * ((field.place + k) * self.count + env) as u64;
+            (self.device.queue).write_buffer(&self.arrays.state, start, value.as_bytes());
+        }
+        Ok(())
+    }
+
+    /// A field of all environments, row after row: of the state (see [`write`](Self::write)) as it is; else as the last step or
+    /// [`forward`](Self::forward) left it, which after a step is what followed from the state at its start (by Runge–Kutta: at its
+    /// last stage). The names are those of [`names`](Self::names).
+    ///
+    /// # Errors
+    /// A name that no field has; that the device was lost.
+    pub fn read(&self, name: &str) -> Result<Vec<f32>, GpuError> {
+        let found = [
+            (&self.state, &self.arrays.state),
+            (&self.work, &self.arrays.work),
+        ]
+        .into_iter()
+        .find_map(|(fields, array)| Some((fields.find(name)?, array)));
+        let Some((field, array)) = found else {
+            return self.read_rows(name);
+        };
+        let numbers = self.download::<f32>(array, field)?;
+        Ok(transpose(&numbers, field.width, self.count))
+    }
+
+    /// A field of the convex problems. Of its rows only as many mean something as [`solves`](Self::solves) says.
+    fn read_rows(&self, name: &str) -> Result<Vec<f32>, GpuError> {
+        let Some(field) = self.rows.find(name) else {
+            return Err(GpuError::Unknown {
+                name: name.to_owned(),
+                known: self.names().join(", "),
+            });
+        };
+        let bytes = 4 * (self.rows.size * self.count) as u64;
+        let all = self.device.download(&self.arrays.rows, 0, bytes)?;
+        let all = decode::<f32>(&all);
+        let rows = all.chunks_exact(self.rows.size.max(1));
+        let part = field.place..field.place + field.width;
+        Ok(rows.flat_map(|row| row[part.clone()].to_vec()).collect())
+    }
+
+    /// The names of all fields that can be read.
+    pub fn names(&self) -> Vec<&'static str> {
+        let fields = [&self.state, &self.work, &self.rows];
+        let all = fields.into_iter().flat_map(|fields| &fields.list);
+        all.map(|field| field.name).collect()
+    }
+
+    /// How many numbers a field has in each environment.
+    pub fn width(&self, name: &str) -> Option<usize> {
+        let fields = [&self.state, &self.work, &self.rows];
+        let found = fields.into_iter().find_map(|fields| fields.find(name));
+        found.map(|field| field.width)
+    }
+
+    pub(crate) fn report(&self, name: &str) -> Result<Vec<u32>, GpuError> {
+        match self.reports.find(name) {
+            Some(field) => self.download(&self.arrays.reports, field),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn writable(&self, name: &str) -> Result<Field, GpuError> {
+        if let Some(field) = self.state.find(name) {
+            return Ok(field);
+        }
+        if self.width(name).is_some() {
+            let field = name.to_owned();
+            return Err(GpuError::ReadOnly { field });
+        }
+        let known = self.state.list.iter().map(|field| field.name);
+        Err(GpuError::Unknown {
+            name: name.to_owned(),
+            known: Vec::from_iter(known).join(", "),
+        })
+    }
+
+    fn download<E: FromBytes + Copy>(
+        &self,
+        array: &wgpu::Buffer,
+        field: Field,
+    ) -> Result<Vec<E>, GpuError> {
+        let each = 4 * self.count as u64;
+        let start = field.place as u64 * each;
+        let bytes = self
+            .device
+            .download(array, start, field.width as u64 * each)?;
+        Ok(decode(&bytes))
+    }
+}
+
+/// The numbers in some bytes.
+fn decode<E: FromBytes + Copy>(bytes: &[u8]) -> Vec<E> {
+    let chunks = bytes.chunks_exact(size_of::<E>());
+    chunks
+        .filter_map(|chunk| E::read_from_bytes(chunk).ok())
+        .collect()
+}
+
+/// Turns `height` rows of `width` numbers into `width` rows of `height`.
+fn transpose(values: &[f32], height: usize, width: usize) -> Vec<f32> {
+    let entry = |i: usize| values[(i % height) * width + i / height];
+    (0..height * width).map(entry).collect()
+}
+
+fn check_length(field: &str, found: usize, expected: usize) -> Result<(), GpuError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(GpuError::WrongLength {
+        field: field.to_owned(),
+        found,
+        expected,
+    })
+}
+
+fn check_row(field: &str, env: usize, row: &[f32]) -> Result<(), GpuError> {
+    let most = match field {
+        "qpos" | "qvel" => MAX_VALUE,
+        _ => f32::MAX,
+    };
+    match row.iter().position(|x| x.is_nan() || x.abs() > most) {
+        None => Ok(()),
+        Some(index) => Err(GpuError::NotFinite {
+            field: field.to_owned(),
+            env,
+            index,
+            value: row[index],
+        }),
+    }
+}

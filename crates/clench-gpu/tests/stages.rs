@@ -1,0 +1,99 @@
+//! Each stage on the device equals its sister on the processor, on random states.
+
+mod common;
+
+use clench_rigid::Batch;
+use clench_rigid::model::Model;
+use common::{batch, own, text};
+use std::sync::Arc;
+
+/// Agrees, and has seen something.
+fn agree(model: &Arc<Model>, count: usize, spread: f64) {
+    let Some(batch) = common::agree(model, count, spread) else {
+        return;
+    };
+    let solves = batch.solves().expect("a device");
+    assert!(
+        solves.iter().any(|s| s.contacts > 0),
+        "{}: nothing touches",
+        model.name
+    );
+    assert!(
+        solves.iter().any(|s| s.iterations > 1),
+        "{}: nothing is hard",
+        model.name
+    );
+}
+
+#[test]
+fn a_humanoid() {
+    agree(&common::model("humanoid"), 100, 1.0);
+}
+
+#[test]
+fn a_planar_runner() {
+    agree(&text(&own("runner")), 100, 1.0);
+}
+
+#[test]
+fn one_of_each_joint_shape_actuator_and_constraint() {
+    agree(&text(&own("medley")), 100, 0.7);
+}
+
+#[test]
+fn elliptic_cones() {
+    let medley = own("medley");
+    let elliptic = medley.replace(
+        "<option ",
+        "<option cone=\"elliptic\" impratio=\"2\" integrator=\"RK4\" ",
+    );
+    agree(&text(&elliptic), 100, 0.7);
+}
+
+#[test]
+fn applied_forces_and_mocap_bodies_count() {
+    let model = text(
+        "<mujoco>
+           <worldbody>
+             <body name='hand' mocap='true' pos='0 0 0.3'><geom type='capsule' size='0.1 0.2'/></body>
+             <body pos='0 0 0.05'><freejoint/><geom size='0.1'/></body>
+           </worldbody>
+         </mujoco>",
+    );
+    let Some(mut batch) = batch(&model, 1) else {
+        return;
+    };
+    let mut cpu = Batch::<f32>::new(model, 1).expect("a good model");
+    let (place, turn) = ([0.02, 0.01, 0.31], [0.9, 0.1, 0.4, 0.0]);
+    let (force, wrench) = (
+        [1.0, 2.0, 3.0, 0.1, 0.2, 0.3],
+        [0.0, 1.0, -2.0, 0.3, 0.2, 0.1],
+    );
+    let mut wrenches = [0.0; 18];
+    wrenches[12..].copy_from_slice(&wrench);
+    for (name, row) in [
+        ("mocap_pos", &place[..]),
+        ("mocap_quat", &turn),
+        ("qfrc_applied", &force),
+        ("xfrc_applied", &wrenches),
+    ] {
+        batch.write(name, row).expect("a good row");
+    }
+    cpu.state.mocap_pos.row_mut(0).copy_from_slice(&place);
+    cpu.state.mocap_quat.row_mut(0).copy_from_slice(&turn);
+    cpu.state.qfrc_applied.row_mut(0).copy_from_slice(&force);
+    cpu.state.xfrc_applied.row_mut(0).copy_from_slice(&wrenches);
+    batch.step(3).expect("a device");
+    cpu.step().expect("a good state");
+    cpu.step().expect("a good state");
+    cpu.step().expect("a good state");
+    for (a, b) in batch
+        .read("qvel")
+        .expect("a device")
+        .iter()
+        .zip(cpu.state.qvel.row(0))
+    {
+        assert!((a - b).abs() < 1e-4, "{a} {b}");
+    }
+    assert_eq!(batch.solves().expect("a device")[0].contacts, 1);
+}

@@ -1,0 +1,240 @@
+//! Steps: trajectories, and what one environment may know of another.
+
+mod common;
+
+use clench_gpu::{GpuBatch, GpuFault, GpuOptions};
+use clench_rigid::batch::Precision;
+use clench_rigid::model::Model;
+use clench_rigid::options::{MaxContacts, RigidOptions};
+use clench_rigid::{Sim, State};
+use common::{Random, batch, convert, own, random_state, text, upload};
+use std::sync::Arc;
+
+fn runner() -> Arc<Model> {
+    text(&own("runner"))
+}
+
+fn some_states(model: &Model, count: usize) -> Vec<State<f32>> {
+    let mut random = Random::new(11);
+    (0..count)
+        .map(|_| random_state(model, &mut random, 0.3))
+        .collect()
+}
+
+/// Where the processor gets from a state in so many steps.
+fn arrival<S: Precision>(model: &Arc<Model>, from: &State<f32>, steps: usize) -> Vec<f64> {
+    let mut sim = Sim::<S>::new(model.clone()).expect("a good model");
+    sim.state = convert(model, from);
+    for _ in 0..steps {
+        sim.step().expect("a good state");
+    }
+    sim.state.qpos.iter().map(|q| q.to_f64()).collect()
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+/// After `steps` steps the device is not further from double precision than the processor's single precision is, by the medians.
+fn drift_alike(model: &Arc<Model>, steps: usize) {
+    let count = 24;
+    let starts = some_states(model, count);
+    let Some(mut batch) = batch(model, count) else {
+        return;
+    };
+    upload(&mut batch, &starts);
+    batch.step(steps).expect("a device");
+    assert!(
+        batch
+            .statuses()
+            .expect("a device")
+            .iter()
+            .all(Option::is_none)
+    );
+    assert_eq!(batch.steps().expect("a device"), vec![steps as u32; count]);
+    let qpos = batch.read("qpos").expect("a device");
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    for (env, start) in starts.iter().enumerate() {
+        let exact = arrival::<f64>(model, start, steps);
+        let found: Vec<f64> = qpos[env * model.nq..][..model.nq]
+            .iter()
+            .map(|&q| f64::from(q))
+            .collect();
+        ours.push(distance(&found, &exact));
+        theirs.push(distance(&arrival::<f32>(model, start, steps), &exact));
+    }
+    let median = |d: &mut Vec<f64>| {
+        d.sort_by(f64::total_cmp);
+        d[d.len() / 2]
+    };
+    let (ours, theirs) = (median(&mut ours), median(&mut theirs));
+    assert!(
+        ours <= 3.0 * theirs + 1e-6,
+        "{ours:.1e} against {theirs:.1e}"
+    );
+}
+
+#[test]
+fn a_runner_drifts_as_on_the_processor() {
+    drift_alike(&runner(), 200);
+}
+
+#[test]
+fn so_does_one_by_runge_kutta() {
+    let rk4 = own("runner").replace("<option ", "<option integrator=\"RK4\" ");
+    drift_alike(&text(&rk4), 200);
+}
+
+/// The positions after some steps.
+fn after(batch: &mut GpuBatch, states: &[State<f32>], steps: usize) -> Vec<u32> {
+    batch.reset().expect("a device");
+    upload(batch, states);
+    batch.step(steps).expect("a device");
+    let bits = |name: &str| {
+        batch
+            .read(name)
+            .expect("a device")
+            .into_iter()
+            .map(f32::to_bits)
+    };
+    bits("qpos").chain(bits("qvel")).collect()
+}
+
+#[test]
+fn results_depend_on_nothing_but_the_state() {
+    let model = runner();
+    let states = some_states(&model, 40);
+    let (Some(mut many), Some(mut few)) = (batch(&model, 40), batch(&model, 3)) else {
+        return;
+    };
+    let first = after(&mut many, &states, 20);
+    assert_eq!(first, after(&mut many, &states, 20), "a run repeats itself");
+    let chosen = [37, 5, 12];
+    let alone: Vec<_> = chosen.iter().map(|&env| states[env].clone()).collect();
+    let found = after(&mut few, &alone, 20);
+    let nq = model.nq;
+    for (k, &env) in chosen.iter().enumerate() {
+        assert_eq!(found[k * nq..(k + 1) * nq], first[env * nq..(env + 1) * nq]);
+    }
+}
+
+#[test]
+fn a_fault_stays_where_it_is() {
+    let model = runner();
+    let mut states = some_states(&model, 40);
+    let Some(mut batch) = batch(&model, 40) else {
+        return;
+    };
+    let well = after(&mut batch, &states, 8);
+    states[17].qvel[0] = 9e9;
+    states[17].qfrc_applied[0] = 1e30;
+    let ill = after(&mut batch, &states, 8);
+    let statuses = batch.statuses().expect("a device");
+    assert_eq!(statuses[17], Some(GpuFault::Diverged));
+    assert_eq!(statuses.iter().flatten().count(), 1);
+    assert_eq!(batch.steps().expect("a device")[17], 0);
+    let (nq, nv) = (model.nq, model.nv);
+    for env in (0..40).filter(|&env| env != 17) {
+        assert_eq!(
+            well[env * nq..(env + 1) * nq],
+            ill[env * nq..(env + 1) * nq]
+        );
+    }
+    let start: Vec<u32> = states[17].qpos.iter().map(|q| q.to_bits()).collect();
+    assert_eq!(ill[17 * nq..18 * nq], start, "it keeps its last good state");
+    assert_eq!(ill[40 * nq + 17 * nv], 9e9f32.to_bits());
+
+    batch.reset_envs(&[17]).expect("a device");
+    batch.step(2).expect("a device");
+    assert!(
+        batch
+            .statuses()
+            .expect("a device")
+            .iter()
+            .all(Option::is_none)
+    );
+    assert_eq!(batch.steps().expect("a device")[16..19], [10, 2, 10]);
+}
+
+#[test]
+fn too_many_contacts_are_a_fault() {
+    let model = runner();
+    if batch(&model, 1).is_none() {
+        return;
+    }
+    let options = RigidOptions::new().max_contacts(MaxContacts::Limit(1));
+    let options = GpuOptions {
+        options,
+        device: None,
+    };
+    let mut batch = GpuBatch::new(model.clone(), 2, options).expect("a device");
+    let mut low = vec![0.0; model.nq];
+    low[1] = -0.55;
+    batch.write_env(1, "qpos", &low).expect("a good row");
+    batch.step(1).expect("a device");
+    let full = GpuFault::ContactOverflow { limit: 1 };
+    assert_eq!(batch.statuses().expect("a device"), [None, Some(full)]);
+}
+
+#[test]
+fn thousands_run_side_by_side() {
+    let model = runner();
+    let count = 4096;
+    let states = some_states(&model, 64);
+    let Some(mut batch) = batch(&model, count) else {
+        return;
+    };
+    let all: Vec<_> = (0..count).map(|env| states[env % 64].clone()).collect();
+    let found = after(&mut batch, &all, 5);
+    assert!(
+        batch
+            .statuses()
+            .expect("a device")
+            .iter()
+            .all(Option::is_none)
+    );
+    let width = 64 * model.nq;
+    for part in found[..count * model.nq].chunks(width) {
+        assert!(
+            part == &found[..width],
+            "equal states move alike wherever they lie"
+        );
+    }
+}
+
+#[test]
+fn bad_input_is_told_by_name_and_place() {
+    let model = runner();
+    let Some(mut batch) = batch(&model, 2) else {
+        return;
+    };
+    let error =
+        |result: Result<(), clench_gpu::GpuError>| result.expect_err("bad input").to_string();
+    let nv = model.nv;
+    assert_eq!(
+        error(batch.write("qvel", &[0.0])),
+        format!("qvel has 1 numbers where {} are needed", 2 * nv)
+    );
+    let mut row = vec![0.0; nv];
+    row[3] = f32::NAN;
+    assert_eq!(
+        error(batch.write_env(1, "qvel", &row)),
+        "qvel[3] of environment 1 is NaN"
+    );
+    assert_eq!(
+        error(batch.write_env(2, "qvel", &row)),
+        "there is no environment 2: there are 2"
+    );
+    assert_eq!(
+        error(batch.write("xpos", &[])),
+        "xpos follows from the state: it can be read only"
+    );
+    assert!(
+        error(batch.write("speed", &[]))
+            .starts_with("there is no field \"speed\" on a graphics device; there are: qpos")
+    );
+    assert!(batch.read("speed").is_err());
+}

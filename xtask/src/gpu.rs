@@ -1,0 +1,39 @@
+//! The tests of `clench-gpu`, on a graphics device or on Mesa's software device.
+
+use crate::install::try_to_install;
+use crate::python;
+use crate::run::{cargo, run};
+use std::path::Path;
+
+/// Where drivers for Vulkan register on Linux.
+const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+
+/// Runs them. All packages are named, so that nothing is compiled anew for other features.
+///
+/// # Errors
+/// That a test failed.
+pub fn test() -> Result<(), String> {
+    let mut tests = cargo(&["test", "--quiet", "--workspace"]);
+    tests.args(["--features", "clench-cli/gpu"]);
+    for test in ["stages", "steps", "refusals", "gymnasium", "gpu"] {
+        tests.args(["--test", test]);
+    }
+    tests.env("CLENCH_GPU", "require");
+    tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
+    run(tests)
+}
+
+/// Why they cannot run here, if they cannot. Where the tests may, they install Mesa's drivers.
+pub fn no_device() -> Option<String> {
+    if !cfg!(target_os = "linux") || has_driver() {
+        return None;
+    }
+    try_to_install("mesa-vulkan-drivers");
+    let missing = "there is no driver for Vulkan; install that of your card, or Debian's package mesa-vulkan-drivers";
+    (!has_driver()).then(|| missing.to_owned())
+}
+
+fn has_driver() -> bool {
+    let files = |folder: &&str| Path::new(folder).read_dir().into_iter().flatten().count();
+    DRIVERS.iter().any(|folder| files(folder) > 0)
+}
