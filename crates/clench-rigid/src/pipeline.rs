@@ -7,6 +7,7 @@ use crate::dynamics::adhesion::adhesion;
 use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::bias::bias_forces;
 use crate::dynamics::com::com_positions;
+use crate::dynamics::energy::{Energy, EnergyScratch, energy};
 use crate::dynamics::euler::euler;
 use crate::dynamics::implicit::{implicit, implicit_fast};
 use crate::dynamics::inertia::composite_inertia;
@@ -24,8 +25,11 @@ use crate::sensor;
 use crate::settings::StepSettings;
 use crate::sleep;
 use crate::state::State;
-use crate::workspace::Workspace;
+use crate::workspace::{Positions, Workspace};
 use clench_math::Real;
+use clench_solver::TreeMatrix;
+use std::ops::Range;
+use std::slice::from_ref;
 
 /// What depends on positions: poses, spatial inertias and dof axes, tendons and transmissions, and the mass matrix with
 /// its factor.
@@ -43,13 +47,9 @@ pub fn position_stage<T: Real>(
 /// [`Sleep`](sleep::Sleep).
 fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
     let (pos, parts) = (&mut ws.position, ws.sleep.parts());
-    kinematics(model, params, state, parts, pos);
-    com_positions(model, params, parts, pos);
-    tendons(model, params, &state.qpos, pos);
-    transmissions(model, params, &state.qpos, pos);
+    poses(model, params, state, parts, pos);
     ws.clock.lap(Stage::Kinematics as usize);
-    composite_inertia(model, params, pos, &mut ws.problem.mass);
-    add_tendon_inertia(model, params, pos, &mut ws.problem.mass);
+    mass_matrix(model, params, pos, &mut ws.problem.mass);
     ws.clock.lap(Stage::Inertia as usize);
     ws.singular = !if ws.articulated.is_empty() {
         ws.problem.factor_mass()
@@ -58,6 +58,45 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
         articulated_factor(model, params, &ws.position, |_| T::ZERO, bodies, factor)
     };
     ws.clock.lap(Stage::MassFactorization as usize);
+}
+
+/// Poses of bodies in `parts`, tendons and transmissions.
+fn poses<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    parts: &[Range<usize>],
+    pos: &mut Positions<T>,
+) {
+    kinematics(model, params, state, parts, pos);
+    com_positions(model, params, parts, pos);
+    tendons(model, params, &state.qpos, pos);
+    transmissions(model, params, &state.qpos, pos);
+}
+
+/// The mass matrix at poses, with the inertia of tendons.
+fn mass_matrix<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &mut Positions<T>,
+    mass: &mut TreeMatrix<T>,
+) {
+    composite_inertia(model, params, pos, mass);
+    add_tendon_inertia(model, params, pos, mass);
+}
+
+/// The energy of a state, whatever the workspace holds, which stays what it is.
+pub fn state_energy<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    scratch: &mut EnergyScratch<T>,
+) -> Energy<T> {
+    let EnergyScratch { position, mass } = scratch;
+    let bodies = 0..model.nbody();
+    poses(model, params, state, from_ref(&bodies), position);
+    mass_matrix(model, params, position, mass);
+    energy(model, params, position, mass, &state.qpos, &state.qvel)
 }
 
 /// What depends on velocities besides: velocities of bodies, tendons and actuators, passive and bias forces.

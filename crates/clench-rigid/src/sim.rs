@@ -9,7 +9,7 @@ pub use dynamic::DynamicConstraint;
 use crate::Precision;
 use crate::check::{self, check_contact, check_values};
 use crate::contact::Contact;
-use crate::dynamics::energy::{Energy, energy};
+use crate::dynamics::energy::Energy;
 use crate::error::SimError;
 use crate::inverse::Acceleration;
 use crate::known::{Extent, Known};
@@ -430,16 +430,13 @@ impl<T: Precision> Sim<T> {
     /// As [`step`](Self::step).
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
         self.check_present()?;
-        let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
-        // The positions of the state are worked out where those of the last step stand, which are still to be read.
-        let (position, singular) = (ws.position.clone(), ws.singular);
-        let (mass, factor) = (ws.problem.mass.clone(), ws.problem.mass_factor.clone());
-        T::position_stage(model, params, &self.state, ws);
-        let (qpos, qvel) = (&self.state.qpos, &self.state.qvel);
-        let energy = energy(model, params, &ws.position, &ws.problem.mass, qpos, qvel);
-        (ws.position, ws.singular) = (position, singular);
-        (ws.problem.mass, ws.problem.mass_factor) = (mass, factor);
-        Ok(energy)
+        let scratch = self.ws.energy_scratch(&self.model);
+        Ok(T::state_energy(
+            &self.model,
+            &self.params,
+            &self.state,
+            scratch,
+        ))
     }
 }
 

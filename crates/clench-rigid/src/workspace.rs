@@ -4,6 +4,7 @@ use crate::Model;
 use crate::constraint::ConstraintRecord;
 use crate::contact::{Collision, Contact};
 use crate::dynamics::articulated::{ArticulatedInertia, articulated_bodies};
+use crate::dynamics::energy::EnergyScratch;
 use crate::dynamics::integrate::Integration;
 use crate::profile::{Profile, StepClock};
 use crate::sensor::SensorReadings;
@@ -172,6 +173,8 @@ pub struct Workspace<T: Real> {
     pub sensors: SensorReadings<T>,
     /// Where the mass matrix is factored by articulated bodies: scratch of that (nbody); else empty.
     pub articulated: Vec<ArticulatedInertia<T>>,
+    /// Where energies of states are worked out, once one is asked for.
+    pub energy: Option<Box<EnergyScratch<T>>>,
     /// What integrators need besides.
     pub integration: Integration<T>,
     /// Where the time goes, once it runs; see also the solver's.
@@ -222,10 +225,16 @@ impl<T: Real> Workspace<T> {
             sleep: Sleep::new(model),
             sensors: SensorReadings::new(model),
             articulated: articulated_bodies(model),
+            energy: None,
             integration: Integration::new(model),
             clock: StepClock::default(),
             singular: T::Mask::splat(false),
         }
+    }
+
+    /// Room for the energy of a state.
+    pub fn energy_scratch(&mut self, model: &Model) -> &mut EnergyScratch<T> {
+        (self.energy).get_or_insert_with(|| Box::new(EnergyScratch::new(model)))
     }
 
     /// Lets the clocks of stages and of solves run, or not.

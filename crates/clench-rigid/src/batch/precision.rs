@@ -1,6 +1,7 @@
 //! The number types of batches.
 
 use super::stepper::{MakeStepper, Stepper};
+use crate::dynamics::energy::{Energy, EnergyScratch};
 use crate::ik::{Ik, Search};
 use crate::inverse::{self, Acceleration};
 use crate::model::{Model, Params};
@@ -112,6 +113,13 @@ pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {
         state: &mut State<Self>,
         ws: &mut Workspace<Self>,
     );
+    /// [`pipeline::state_energy`] of one environment.
+    fn state_energy(
+        model: &Model,
+        params: &Params<Self>,
+        state: &State<Self>,
+        scratch: &mut EnergyScratch<Self>,
+    ) -> Energy<Self>;
     /// [`pipeline::position_stage`] of one environment.
     fn position_stage(
         model: &Model,
@@ -179,6 +187,14 @@ macro_rules! lanewise {
                 ws: &mut Workspace<$scalar>,
             ) {
                 pipeline::step_from_forces(model, params, settings, state, ws);
+            }
+            fn state_energy(
+                model: &Model,
+                params: &Params<$scalar>,
+                state: &State<$scalar>,
+                scratch: &mut EnergyScratch<$scalar>,
+            ) -> Energy<$scalar> {
+                pipeline::state_energy(model, params, state, scratch)
             }
             fn position_stage(
                 model: &Model,

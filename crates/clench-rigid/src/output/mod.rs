@@ -8,13 +8,12 @@ mod tendon_forces;
 pub(crate) use forces::{external as external_forces, of_contact};
 
 use crate::dynamics::camera::camera_pose;
-use crate::dynamics::energy::energy;
 use crate::dynamics::frames::Frames;
 use crate::dynamics::jacobian::point_jacobian;
 use crate::error::SimError;
 use crate::known::Extent;
 use crate::model::{FrameObject, Model, Params, RowPattern};
-use crate::pipeline::position_stage;
+use crate::pipeline::state_energy;
 use crate::sensor::bodies::{BodyForces, update as update_body_forces};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -57,8 +56,7 @@ macro_rules! outputs {
                 match self { $(Output::$name => Extent::$extent,)* }
             }
 
-            /// Appends its numbers to `out`. [`energy`](Self::energy) replaces the positions in the workspace by those of the
-            /// state: it comes last.
+            /// Appends its numbers to `out`.
             pub(crate) fn read<T: Real>(self, $s: &mut Source<T>, $out: &mut Vec<T>) {
                 match self { $(Output::$name => $read,)* }
             }
@@ -268,8 +266,7 @@ fn count_contacts<T: Real>(ws: &Workspace<T>) -> T {
 }
 
 fn read_energy<T: Real>(s: &mut Source<T>, out: &mut Vec<T>) {
-    position_stage(s.model, s.params, s.state, s.ws);
-    let (pos, mass) = (&s.ws.position, &s.ws.problem.mass);
-    let energy = energy(s.model, s.params, pos, mass, &s.state.qpos, &s.state.qvel);
+    let scratch = s.ws.energy_scratch(s.model);
+    let energy = state_energy(s.model, s.params, s.state, scratch);
     out.extend([energy.potential, energy.kinetic]);
 }
