@@ -3,7 +3,7 @@
 
 use clench::Sim;
 use clench::collide::ShapeKind;
-use clench::rigid::model::{Actuator, EqualityTarget, JointKind, Model, Transmission};
+use clench::rigid::model::{Actuator, JointKind, Model, Transmission};
 use serde_json::{Value, json};
 
 /// Sizes, elements, ranges and the options in force.
@@ -33,7 +33,7 @@ pub fn describe(sim: &Sim) -> Value {
         })),
         "equalities": list(&model.equalities, |equality| json!({
             "name": equality.name,
-            "type": equality_type(equality.target),
+            "type": equality.target.kind(),
             "active": equality.active0,
         })),
         "keyframes": names(model.keyframes.iter().map(|key| &key.name).collect()),
@@ -103,13 +103,4 @@ fn actuator(model: &Model, actuator: &Actuator) -> Value {
         "ctrladr": actuator.controls.start,
         "ctrlranges": ranges,
     })
-}
-
-fn equality_type(target: EqualityTarget) -> &'static str {
-    match target {
-        EqualityTarget::Connect { .. } => "connect",
-        EqualityTarget::Weld { .. } => "weld",
-        EqualityTarget::Joint { .. } => "joint",
-        EqualityTarget::Tendon { .. } => "tendon",
-    }
 }

@@ -5,7 +5,7 @@ use clench::Model;
 use clench::collide::ShapeKind;
 use clench::math::{Quat, Vec3};
 use clench::rigid::model::{
-    Appearance, EqualityTarget, Joint, JointKind, Mesh, TextureMark, TexturePattern, Visuals,
+    Appearance, Joint, JointKind, Mesh, TextureMark, TexturePattern, Visuals,
 };
 use data_encoding::BASE64;
 use serde::Serialize;
@@ -57,7 +57,7 @@ impl Scene {
             controls: controls(model),
             tendons: (0..model.tendons.len()).map(|t| tendon(model, t)).collect(),
             equalities: (model.equalities.iter())
-                .map(|equality| json!({"name": equality.name, "kind": kind_of(equality.target)}))
+                .map(|equality| json!({"name": equality.name, "kind": equality.target.kind()}))
                 .collect(),
             sensors: (model.sensors.iter())
                 .map(
@@ -255,15 +255,6 @@ fn tendon(model: &Model, t: usize) -> Value {
         "rgba": visuals.rgba(visuals.tendons[t]),
         "width": visuals.tendon_width[t],
     })
-}
-
-fn kind_of(target: EqualityTarget) -> &'static str {
-    match target {
-        EqualityTarget::Connect { .. } => "connect",
-        EqualityTarget::Weld { .. } => "weld",
-        EqualityTarget::Joint { .. } => "joint",
-        EqualityTarget::Tendon { .. } => "tendon",
-    }
 }
 
 /// Vertices and triangles of a mesh, and the triangles of its hull where it has one.

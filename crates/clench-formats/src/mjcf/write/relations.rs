@@ -62,13 +62,7 @@ fn write_equality(
         active0,
     } = equality;
     let p = &model.params;
-    let kind = match target {
-        EqualityTarget::Connect { .. } => "connect",
-        EqualityTarget::Weld { .. } => "weld",
-        EqualityTarget::Joint { .. } => "joint",
-        EqualityTarget::Tendon { .. } => "tendon",
-    };
-    let mut tag = xml.tag(kind).name(name);
+    let mut tag = xml.tag(target.kind()).name(name);
     tag = match (*target, sites) {
         (EqualityTarget::Connect { .. } | EqualityTarget::Weld { .. }, Some([site1, site2])) => {
             let site = |s: usize| named("site", &model.sites[s].name, s);

@@ -34,6 +34,18 @@ pub enum EqualityTarget {
     },
 }
 
+impl EqualityTarget {
+    /// The kind in a word, as MJCF has it.
+    pub fn kind(self) -> &'static str {
+        match self {
+            EqualityTarget::Connect { .. } => "connect",
+            EqualityTarget::Weld { .. } => "weld",
+            EqualityTarget::Joint { .. } => "joint",
+            EqualityTarget::Tendon { .. } => "tendon",
+        }
+    }
+}
+
 /// An equality constraint.
 #[derive(Clone, Debug)]
 pub struct Equality {
