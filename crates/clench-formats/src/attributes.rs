@@ -27,6 +27,8 @@ impl Element {
 
     /// The text of an attribute.
     pub fn text(&self, name: &str) -> Option<&str> {
+        #[cfg(test)]
+        asked::note(&self.tag, name);
         let found = self.attributes.iter().find(|(key, _)| key == name);
         found.map(|(_, value)| value.as_str())
     }
@@ -286,5 +288,25 @@ impl Element {
             }
             _ => Ok(()),
         }
+    }
+}
+
+/// Which attributes were asked for, of elements of which name: what readers read.
+#[cfg(test)]
+pub(crate) mod asked {
+    use std::cell::RefCell;
+    use std::collections::HashSet;
+
+    thread_local! {
+        static ASKED: RefCell<HashSet<(String, String)>> = RefCell::default();
+    }
+
+    pub(super) fn note(tag: &str, name: &str) {
+        ASKED.with_borrow_mut(|asked| asked.insert((tag.to_owned(), name.to_owned())));
+    }
+
+    /// Whether this thread has asked an element of this name for the attribute.
+    pub(crate) fn was(tag: &str, name: &str) -> bool {
+        ASKED.with_borrow(|asked| asked.contains(&(tag.to_owned(), name.to_owned())))
     }
 }

@@ -220,6 +220,8 @@ pub(crate) fn suggestion<'a>(mistaken: &str, known: impl Iterator<Item = &'a str
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::attributes::asked;
+    use std::path::{Path, PathBuf};
 
     #[test]
     fn every_child_that_a_rule_allows_has_a_rule() {
@@ -244,5 +246,64 @@ mod tests {
             all.dedup();
             assert_eq!(all.len(), count, "<{}>", rule.element);
         }
+    }
+
+    /// The files of a folder of models.
+    fn models(folder: &str) -> impl Iterator<Item = PathBuf> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let files = std::fs::read_dir(folder).expect("the folder is there");
+        let paths = files.map(|file| file.expect("it can be listed").path());
+        paths.filter(|path| path.extension().is_some_and(|end| end == "xml"))
+    }
+
+    /// Elements that no model of the folders has.
+    const RARE: &str = "<mujoco>
+      <option><flag/></option>
+      <default><equality/></default>
+      <asset>
+        <material name='red'/>
+        <mesh name='made' builtin='sphere' params='1'/>
+        <mesh file='corner.obj'/>
+        <hfield file='hills.bin' size='1 1 1 1'/>
+        <hfield name='written' nrow='2' ncol='2' elevation='0 0 0 1' size='1 1 1 1'/>
+        <model name='part' file='part.xml'/>
+      </asset>
+      <worldbody><attach model='part' body='b' prefix='p'/></worldbody>
+    </mujoco>";
+
+    fn read_rare() {
+        let part = "<mujoco><worldbody><body name='b'><geom size='1'/></body></worldbody></mujoco>";
+        let corner = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n";
+        let numbers = [0.0_f32, 0.0, 0.0, 1.0].map(f32::to_le_bytes);
+        let hills = [2_i32.to_le_bytes(), 2_i32.to_le_bytes()];
+        let hills = [hills.as_flattened(), numbers.as_flattened()].concat();
+        let files = [
+            ("part.xml", part.as_bytes()),
+            ("corner.obj", corner.as_bytes()),
+            ("hills.bin", &hills[..]),
+        ];
+        let read = crate::Loader::new().assets(files).read_str(RARE);
+        read.unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// Attributes of replicas that are handed to a frame, which is then asked.
+    const HANDED_ON: [&str; 2] = ["replicate class", "replicate childclass"];
+
+    /// An attribute that a rule accepts as read and that no reader asks for would be without effect.
+    #[test]
+    fn what_is_said_to_be_read_is_asked_for() {
+        read_rare();
+        let folders = ["../../models", "../../parity/models"];
+        for path in folders.into_iter().flat_map(models) {
+            crate::read(&path).unwrap_or_else(|error| panic!("{error}"));
+        }
+        let mut missing = Vec::new();
+        for rule in rules() {
+            let tag = rule.element.rsplit('/').next().unwrap_or_default();
+            let unread = words(rule.read).filter(|name| !asked::was(tag, name));
+            missing.extend(unread.map(|name| format!("{} {name}", rule.element)));
+        }
+        missing.retain(|name| !HANDED_ON.contains(&name.as_str()));
+        assert!(missing.is_empty(), "{missing:#?}");
     }
 }
