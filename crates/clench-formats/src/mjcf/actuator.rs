@@ -6,6 +6,7 @@
 
 use super::controller::{self, Saturation};
 use super::document::Element;
+use super::inputs;
 use super::shortcut::{self, ActuatorParams, Shortcut};
 use super::transmission;
 use crate::LoadError;
@@ -258,7 +259,7 @@ fn read_general(
     if parameters.gain != inherited {
         parameters.inputs = None;
     }
-    controller::read_inputs(element, parameters.gain, &mut parameters.inputs)?;
+    inputs::read_inputs(element, parameters.gain, &mut parameters.inputs)?;
     supported(element, "biastype", &["so3"])?;
     let biases = [
         ("none", BiasKind::None),

@@ -1,12 +1,12 @@
 //! `<worldbody>` and what is in it: bodies, frames and the elements that bodies carry.
 
+use super::appearance::Palette;
 use super::compiler::CompilerOptions;
 use super::defaults::{Classes, MAIN};
 use super::document::Element;
 use super::joint;
 use super::orientation::{Orientation, Pose};
 use super::source::Sources;
-use super::visual::Palette;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_math::{Mat3, Quat, Vec3};

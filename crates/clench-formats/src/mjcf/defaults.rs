@@ -4,6 +4,7 @@
 //! class. Copies, not a search for the nearest value, because an attribute with several numbers may give only some.
 
 use super::actuator::ActuatorDraft;
+use super::appearance;
 use super::camera::CameraDraft;
 use super::contact;
 use super::document::Element;
@@ -14,7 +15,6 @@ use super::mesh::MeshDraft;
 use super::shortcut::{ActuatorParams, Shortcut};
 use super::site::SiteDraft;
 use super::tendon;
-use super::visual;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_rigid::builder::{JointSpec, MaterialSpec, PairSpec, TendonSpec};
@@ -148,7 +148,7 @@ impl Classes {
         let class = &mut self.list[class];
         match element.tag.as_str() {
             "mesh" => class.mesh.read(element),
-            "material" => visual::read_material(element, &mut class.material),
+            "material" => appearance::read_material(element, &mut class.material),
             "joint" => joint::read(element, &mut class.joint),
             "geom" => class.geom.read(element),
             "site" => class.site.read(element),

@@ -1,9 +1,9 @@
 //! `<geom>`.
 
+use super::appearance::{Palette, read_appearance};
 use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::{Orientation, Pose, segment};
-use super::visual::{Palette, read_appearance};
 use crate::LoadError;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;

@@ -4,6 +4,7 @@
 //! and attribute, and only then do the sections read their values; so a section never meets what it does not know.
 
 mod actuator;
+mod appearance;
 mod assets;
 mod body;
 mod camera;
@@ -18,6 +19,7 @@ pub(crate) mod files;
 mod geom;
 mod hfield;
 mod include;
+mod inputs;
 mod joint;
 mod kept;
 pub(crate) mod keyframe;
@@ -100,7 +102,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
     builder.options = builder.options.or(option::format_defaults());
     assets::read(root, sources, &mut builder, spending)?;
     visual::read(root, sources, &mut builder, spending)?;
-    let palette = visual::Palette::new(root, &builder.materials);
+    let palette = appearance::Palette::new(root, &builder.materials);
     let mut bodies = BodyReader::new(sources, &palette, &mut builder.bodies, spending);
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;

@@ -1,8 +1,8 @@
 //! The shortcuts of `<actuator>`: actuators whose dynamics, gain and bias follow from parameters of their own, such as `kp`, `kv`,
 //! `area`.
 
-use super::controller::Inputs;
 use super::document::Element;
+use super::inputs::Inputs;
 use crate::LoadError;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
 

@@ -1,10 +1,10 @@
 //! `<site>`: a frame, and the volume in which sensors feel.
 
+use super::appearance::read_appearance;
 use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::geom::{place_segment, read_kind};
 use super::orientation::{Orientation, Pose};
-use super::visual::read_appearance;
 use crate::LoadError;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;

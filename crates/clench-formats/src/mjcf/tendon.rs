@@ -1,7 +1,7 @@
 //! `<tendon>`: sums of joint positions, and strings through sites and around geoms.
 
+use super::appearance::read_appearance;
 use super::document::Element;
-use super::visual::read_appearance;
 use crate::LoadError;
 use clench_rigid::builder::{TendonSpec, WrapSpec};
 

@@ -1,0 +1,135 @@
+//! How elements look: colours, materials, and which of them geoms have.
+
+use super::document::Element;
+use super::entries;
+use crate::LoadError;
+use clench_rigid::builder::{AppearanceSpec, MaterialSpec};
+use clench_rigid::model::Material;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// MuJoCo takes this colour of an element for none.
+const NO_COLOUR: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
+
+/// Overwrites what the element gives of its appearance.
+pub(crate) fn read_appearance(
+    element: &Element,
+    appearance: &mut AppearanceSpec,
+) -> Result<(), LoadError> {
+    if let Some(rgba) = element.numbers("rgba")? {
+        let rgba = rgba.map(|x: f64| x as f32);
+        appearance.rgba = (rgba != NO_COLOUR).then_some(rgba);
+    }
+    if let Some(material) = element.text("material") {
+        appearance.material = material.into();
+    }
+    Ok(())
+}
+
+/// Overwrites what the element gives of a material.
+pub(crate) fn read_material(
+    element: &Element,
+    material: &mut MaterialSpec,
+) -> Result<(), LoadError> {
+    let surface = &mut material.surface;
+    set(element, "rgba", &mut surface.rgba)?;
+    set_some(element, "texrepeat", &mut surface.texrepeat)?;
+    element.set_boolean("texuniform", &mut surface.texuniform)?;
+    for (name, value) in [
+        ("emission", &mut surface.emission),
+        ("specular", &mut surface.specular),
+        ("shininess", &mut surface.shininess),
+        ("reflectance", &mut surface.reflectance),
+    ] {
+        if let Some([number]) = element.numbers(name)? {
+            *value = number as f32;
+        }
+    }
+    if let Some(texture) = element.text("texture") {
+        material.texture = texture.into();
+    }
+    // A material of several layers shows that of its colours.
+    let layers = element.children.iter().filter(|child| child.tag == "layer");
+    for layer in layers.filter(|layer| matches!(layer.text("role"), Some("rgb" | "rgba"))) {
+        material.texture = layer.string("texture").into();
+    }
+    Ok(())
+}
+
+/// Overwrites all numbers of an attribute.
+pub(super) fn set<const N: usize>(
+    element: &Element,
+    name: &str,
+    target: &mut [f32; N],
+) -> Result<(), LoadError> {
+    if let Some(numbers) = element.numbers::<N>(name)? {
+        *target = numbers.map(|x| x as f32);
+    }
+    Ok(())
+}
+
+/// Overwrites as many numbers of an attribute as it gives.
+fn set_some<const N: usize>(
+    element: &Element,
+    name: &str,
+    target: &mut [f32; N],
+) -> Result<(), LoadError> {
+    let mut numbers = target.map(f64::from);
+    element.overlay(name, &mut numbers)?;
+    *target = numbers.map(|x| x as f32);
+    Ok(())
+}
+
+/// The materials that geoms have, and with them what can be seen.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Palette {
+    /// Whether each material can be seen.
+    visible: BTreeMap<String, bool>,
+    /// The materials that meshes lend to geoms without one.
+    meshes: BTreeMap<String, Arc<str>>,
+}
+
+impl Palette {
+    /// That of a model's materials, and of the meshes that have one.
+    pub fn new(root: &Element, materials: &[MaterialSpec]) -> Self {
+        let visible = materials.iter().map(|material| {
+            let Material { name, rgba, .. } = &material.surface;
+            (name.clone(), rgba[3] != 0.0)
+        });
+        let mut palette = Palette {
+            visible: visible.collect(),
+            meshes: BTreeMap::new(),
+        };
+        for mesh in entries(root, "asset").filter(|asset| asset.tag == "mesh") {
+            let Some(material) = mesh.text("material") else {
+                continue;
+            };
+            let file = (mesh.text("file")).and_then(|file| Path::new(file).file_stem());
+            let stem = file.map(|stem| stem.to_string_lossy().into_owned());
+            let name = mesh.text("name").map(str::to_owned).or(stem);
+            palette
+                .meshes
+                .insert(name.unwrap_or_default(), material.into());
+        }
+        palette
+    }
+
+    /// The appearance of a geom of a mesh, which lends its material to a geom without one.
+    pub fn of_geom(&self, appearance: AppearanceSpec, mesh: &str) -> AppearanceSpec {
+        let material = match self.meshes.get(mesh) {
+            Some(lent) if appearance.material.is_empty() => Arc::clone(lent),
+            _ => appearance.material,
+        };
+        AppearanceSpec {
+            material,
+            ..appearance
+        }
+    }
+
+    /// Whether a geom can be seen: by its material, or without one by its own colour.
+    pub fn shows(&self, appearance: &AppearanceSpec) -> bool {
+        let own = || appearance.rgba.is_none_or(|rgba| rgba[3] != 0.0);
+        (self.visible.get(&*appearance.material).copied()).unwrap_or_else(own)
+    }
+}
