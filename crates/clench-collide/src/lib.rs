@@ -21,6 +21,8 @@
 //! assert_eq!(point.frame.rows[0], Vec3::new(0.0, 0.0, 1.0));
 //! ```
 
+#![deny(unreachable_pub)]
+
 mod broad;
 mod contact;
 mod distance;

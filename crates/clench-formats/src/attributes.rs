@@ -13,12 +13,12 @@ const TRISTATES: Keywords<Option<bool>> =
 
 impl Element {
     /// An error about this element.
-    pub fn error(&self, message: impl Into<String>) -> LoadError {
+    pub(crate) fn error(&self, message: impl Into<String>) -> LoadError {
         LoadError::element(&self.origin, self.label(), message)
     }
 
     /// The element as errors name it: `joint "knee"`.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         match self.text("name") {
             Some(name) if !name.is_empty() => format!("{} \"{name}\"", self.tag),
             _ => self.tag.clone(),
@@ -26,7 +26,7 @@ impl Element {
     }
 
     /// The text of an attribute.
-    pub fn text(&self, name: &str) -> Option<&str> {
+    pub(crate) fn text(&self, name: &str) -> Option<&str> {
         #[cfg(test)]
         asked::note(&self.tag, name);
         let found = self.attributes.iter().find(|(key, _)| key == name);
@@ -34,17 +34,17 @@ impl Element {
     }
 
     /// The text of an attribute, or nothing.
-    pub fn string(&self, name: &str) -> String {
+    pub(crate) fn string(&self, name: &str) -> String {
         self.text(name).unwrap_or_default().to_owned()
     }
 
     /// The text of an attribute that must be there.
-    pub fn required_text(&self, name: &str) -> Result<&str, LoadError> {
+    pub(crate) fn required_text(&self, name: &str) -> Result<&str, LoadError> {
         self.text(name).ok_or_else(|| self.missing(name))
     }
 
     /// The error of an attribute that must be there.
-    pub fn missing(&self, name: &str) -> LoadError {
+    pub(crate) fn missing(&self, name: &str) -> LoadError {
         self.error(format!("the attribute \"{name}\" is required"))
     }
 
@@ -84,7 +84,10 @@ impl Element {
     }
 
     /// Exactly `N` finite numbers.
-    pub fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, LoadError> {
+    pub(crate) fn numbers<const N: usize>(
+        &self,
+        name: &str,
+    ) -> Result<Option<[f64; N]>, LoadError> {
         let numbers = self.parse_numbers(name, N, false)?;
         numbers
             .map(|numbers| self.exactly(name, numbers))
@@ -92,17 +95,20 @@ impl Element {
     }
 
     /// Exactly `N` finite numbers that must be there.
-    pub fn required_numbers<const N: usize>(&self, name: &str) -> Result<[f64; N], LoadError> {
+    pub(crate) fn required_numbers<const N: usize>(
+        &self,
+        name: &str,
+    ) -> Result<[f64; N], LoadError> {
         self.numbers(name)?.ok_or_else(|| self.missing(name))
     }
 
     /// Any number of finite numbers.
-    pub fn list(&self, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
+    pub(crate) fn list(&self, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
         self.parse_numbers(name, usize::MAX, false)
     }
 
     /// Any numbers at all, also those that are not finite, as a user's own data may be.
-    pub fn any_numbers(&self, name: &str) -> Result<Vec<f64>, LoadError> {
+    pub(crate) fn any_numbers(&self, name: &str) -> Result<Vec<f64>, LoadError> {
         let words = self.text(name).unwrap_or_default().split_ascii_whitespace();
         let number = |word: &str| {
             let wrong = |_| self.error(format!("\"{word}\" in {name} is not a number"));
@@ -112,7 +118,7 @@ impl Element {
     }
 
     /// Overwrites a number if the attribute is there.
-    pub fn set_number(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
+    pub(crate) fn set_number(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
         if let Some([number]) = self.numbers(name)? {
             *target = number;
         }
@@ -120,7 +126,7 @@ impl Element {
     }
 
     /// Refuses single numbers below zero.
-    pub fn refuse_negative(&self, names: &[&str]) -> Result<(), LoadError> {
+    pub(crate) fn refuse_negative(&self, names: &[&str]) -> Result<(), LoadError> {
         for name in names {
             if self.numbers(name)?.is_some_and(|[number]| number < 0.0) {
                 return Err(self.error(format!("{name} cannot be negative")));
@@ -130,7 +136,7 @@ impl Element {
     }
 
     /// Overwrites all of an array if the attribute is there.
-    pub fn set_numbers<const N: usize>(
+    pub(crate) fn set_numbers<const N: usize>(
         &self,
         name: &str,
         target: &mut [f64; N],
@@ -142,7 +148,7 @@ impl Element {
     }
 
     /// Overwrites a vector if the attribute is there.
-    pub fn set_vector(&self, name: &str, target: &mut Vec3<f64>) -> Result<(), LoadError> {
+    pub(crate) fn set_vector(&self, name: &str, target: &mut Vec3<f64>) -> Result<(), LoadError> {
         if let Some(numbers) = self.numbers(name)? {
             *target = Vec3::from_array(numbers);
         }
@@ -150,7 +156,7 @@ impl Element {
     }
 
     /// Overwrites a range, whose ends may be infinite, if the attribute is there.
-    pub fn set_range(&self, name: &str, target: &mut [f64; 2]) -> Result<(), LoadError> {
+    pub(crate) fn set_range(&self, name: &str, target: &mut [f64; 2]) -> Result<(), LoadError> {
         if let Some(numbers) = self.parse_numbers(name, 2, true)? {
             *target = self.exactly(name, numbers)?;
         }
@@ -158,13 +164,13 @@ impl Element {
     }
 
     /// One end of a range, which may be infinite.
-    pub fn range_end(&self, name: &str) -> Result<Option<f64>, LoadError> {
+    pub(crate) fn range_end(&self, name: &str) -> Result<Option<f64>, LoadError> {
         let numbers = self.parse_numbers(name, 1, true)?;
         Ok(numbers.map(|numbers| numbers[0]))
     }
 
     /// Overwrites as many leading entries as the attribute gives, 1 to `N`, and says how many.
-    pub fn overlay<const N: usize>(
+    pub(crate) fn overlay<const N: usize>(
         &self,
         name: &str,
         target: &mut [f64; N],
@@ -175,7 +181,7 @@ impl Element {
     }
 
     /// As `overlay`, for a value that may be undefined; defining it starts from zeros.
-    pub fn overlay_option<const N: usize>(
+    pub(crate) fn overlay_option<const N: usize>(
         &self,
         name: &str,
         target: &mut Option<[f64; N]>,
@@ -188,7 +194,7 @@ impl Element {
     }
 
     /// An integer.
-    pub fn integer(&self, name: &str) -> Result<Option<i32>, LoadError> {
+    pub(crate) fn integer(&self, name: &str) -> Result<Option<i32>, LoadError> {
         let words: Vec<&str> = self
             .text(name)
             .unwrap_or_default()
@@ -205,7 +211,7 @@ impl Element {
     }
 
     /// Overwrites an integer if the attribute is there.
-    pub fn set_integer(&self, name: &str, target: &mut i32) -> Result<(), LoadError> {
+    pub(crate) fn set_integer(&self, name: &str, target: &mut i32) -> Result<(), LoadError> {
         if let Some(number) = self.integer(name)? {
             *target = number;
         }
@@ -213,7 +219,7 @@ impl Element {
     }
 
     /// An integer that cannot be negative.
-    pub fn count(&self, name: &str) -> Result<Option<usize>, LoadError> {
+    pub(crate) fn count(&self, name: &str) -> Result<Option<usize>, LoadError> {
         let negative = |n: i32| {
             usize::try_from(n).map_err(|_| self.error(format!("{name} cannot be negative")))
         };
@@ -221,7 +227,7 @@ impl Element {
     }
 
     /// Any number of integers.
-    pub fn integers(&self, name: &str) -> Result<Vec<i32>, LoadError> {
+    pub(crate) fn integers(&self, name: &str) -> Result<Vec<i32>, LoadError> {
         let words = self.text(name).unwrap_or_default().split_ascii_whitespace();
         words
             .map(|word| {
@@ -232,7 +238,7 @@ impl Element {
     }
 
     /// What a keyword stands for.
-    pub fn keyword<T: Clone>(
+    pub(crate) fn keyword<T: Clone>(
         &self,
         name: &str,
         keywords: Keywords<T>,
@@ -253,7 +259,7 @@ impl Element {
     }
 
     /// Overwrites by what a keyword stands for if the attribute is there.
-    pub fn set_keyword<T: Clone>(
+    pub(crate) fn set_keyword<T: Clone>(
         &self,
         name: &str,
         keywords: Keywords<T>,
@@ -266,17 +272,21 @@ impl Element {
     }
 
     /// Overwrites a truth value if the attribute is there.
-    pub fn set_boolean(&self, name: &str, target: &mut bool) -> Result<(), LoadError> {
+    pub(crate) fn set_boolean(&self, name: &str, target: &mut bool) -> Result<(), LoadError> {
         self.set_keyword(name, BOOLEANS, target)
     }
 
     /// Overwrites a "true", "false" or "auto" (`None`) if the attribute is there.
-    pub fn set_tristate(&self, name: &str, target: &mut Option<bool>) -> Result<(), LoadError> {
+    pub(crate) fn set_tristate(
+        &self,
+        name: &str,
+        target: &mut Option<bool>,
+    ) -> Result<(), LoadError> {
         self.set_keyword(name, TRISTATES, target)
     }
 
     /// At most one of these attributes may be there.
-    pub fn at_most_one(&self, names: &[&str]) -> Result<(), LoadError> {
+    pub(crate) fn at_most_one(&self, names: &[&str]) -> Result<(), LoadError> {
         let given: Vec<&str> = names
             .iter()
             .copied()

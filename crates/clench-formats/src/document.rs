@@ -32,7 +32,7 @@ pub(crate) struct Element {
 
 impl Element {
     /// An element without children that stands for another, where that one is written.
-    pub fn in_place_of(other: &Element, tag: &str) -> Element {
+    pub(crate) fn in_place_of(other: &Element, tag: &str) -> Element {
         Element {
             tag: tag.to_owned(),
             attributes: Vec::new(),
@@ -43,7 +43,7 @@ impl Element {
     }
 
     /// Marks it and all in it as read with a source.
-    pub fn set_source(&mut self, source: usize) {
+    pub(crate) fn set_source(&mut self, source: usize) {
         self.source = source;
         let mut pending: Vec<&mut Element> = self.children.iter_mut().collect();
         while let Some(element) = pending.pop() {

@@ -7,6 +7,8 @@
 //! What an MJCF file can say and this library cannot simulate yet is an error that names file, line and element, never
 //! a silent skip; what has no effect on motion (textures, lights, colours, ...) is accepted by an explicit list.
 
+#![deny(unreachable_pub)]
+
 mod attributes;
 mod document;
 mod elevation;

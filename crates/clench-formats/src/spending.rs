@@ -29,7 +29,7 @@ pub(crate) struct Spending {
 
 impl Spending {
     /// Nothing taken yet.
-    pub fn new(budget: Budget, memory: Arc<Memory>) -> Self {
+    pub(crate) fn new(budget: Budget, memory: Arc<Memory>) -> Self {
         Spending {
             budget,
             memory,
@@ -42,7 +42,7 @@ impl Spending {
     ///
     /// # Errors
     /// What to say where it is more than is left.
-    pub fn bytes(&mut self, count: u64) -> Result<(), String> {
+    pub(crate) fn bytes(&mut self, count: u64) -> Result<(), String> {
         self.bytes = self.bytes.saturating_add(count);
         let most = self.budget.bytes;
         match self.bytes > most {
@@ -57,7 +57,7 @@ impl Spending {
     ///
     /// # Errors
     /// What to say where they are more than are left.
-    pub fn elements(&mut self, count: u64) -> Result<(), String> {
+    pub(crate) fn elements(&mut self, count: u64) -> Result<(), String> {
         self.elements = self.elements.saturating_add(count);
         let most = self.budget.elements;
         match self.elements > most {
@@ -69,7 +69,7 @@ impl Spending {
     }
 
     /// Whether there is a file.
-    pub fn has_file(&self, path: &Path) -> bool {
+    pub(crate) fn has_file(&self, path: &Path) -> bool {
         self.memory.contains_key(&memory_name(path)) || path.is_file()
     }
 
@@ -77,7 +77,7 @@ impl Spending {
     ///
     /// # Errors
     /// What to say where there is no such file.
-    pub fn identity(&self, path: &Path) -> Result<PathBuf, String> {
+    pub(crate) fn identity(&self, path: &Path) -> Result<PathBuf, String> {
         let name = memory_name(path);
         match self.memory.contains_key(&name) {
             true => Ok(PathBuf::from(name)),
@@ -89,7 +89,7 @@ impl Spending {
     ///
     /// # Errors
     /// What to say where it cannot be read or is too long.
-    pub fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
+    pub(crate) fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
         if let Some(bytes) = self.memory.clone().get(&memory_name(path)) {
             self.bytes(bytes.len() as u64)?;
             return Ok(bytes.clone());

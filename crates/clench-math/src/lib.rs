@@ -38,6 +38,7 @@
 
 // Only lanes need it: their instructions are there when they are there.
 #![deny(unsafe_code)]
+#![deny(unreachable_pub)]
 
 // `#[kernel]` names this crate; inside it too.
 extern crate self as clench_math;

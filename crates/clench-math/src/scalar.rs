@@ -9,20 +9,20 @@ macro_rules! scalar {
         /// How the bits of a number are used.
         pub(crate) mod $layout {
             /// Bits of the fraction.
-            pub const FRACTION: u32 = $t::MANTISSA_DIGITS - 1;
+            pub(crate) const FRACTION: u32 = $t::MANTISSA_DIGITS - 1;
             /// Ones where the fraction is.
-            pub const FRACTION_MASK: $bits = (1 << FRACTION) - 1;
+            pub(crate) const FRACTION_MASK: $bits = (1 << FRACTION) - 1;
             /// What is added to an exponent before it is stored.
-            pub const BIAS: $bits = $t::MAX_EXP as $bits - 1;
+            pub(crate) const BIAS: $bits = $t::MAX_EXP as $bits - 1;
             /// 1.5 × 2^FRACTION: added to a small integer, it leaves that integer in the low bits of the fraction.
-            pub const INTEGERS: $t = ((3 as $bits) << (FRACTION - 1)) as $t;
+            pub(crate) const INTEGERS: $t = ((3 as $bits) << (FRACTION - 1)) as $t;
             /// The same, and the bias of an exponent that was added as stored.
-            pub const BIASED_INTEGERS: $t = INTEGERS + BIAS as $t;
+            pub(crate) const BIASED_INTEGERS: $t = INTEGERS + BIAS as $t;
             /// √½.
-            pub const ROOT_HALF: $bits = (std::f64::consts::FRAC_1_SQRT_2 as $t).to_bits();
+            pub(crate) const ROOT_HALF: $bits = (std::f64::consts::FRAC_1_SQRT_2 as $t).to_bits();
             /// Added to the bits of a number it multiplies it by √2, so to speak: the exponent then steps at √½ · 2ᵏ, and the
             /// fraction is 0 there.
-            pub const TO_ROOT_HALF: $bits = (1 as $t).to_bits() - ROOT_HALF;
+            pub(crate) const TO_ROOT_HALF: $bits = (1 as $t).to_bits() - ROOT_HALF;
         }
         const _: () = {
             use $layout::*;

@@ -17,7 +17,7 @@ pub(crate) struct Geoms<'a, T: Real> {
 
 impl<'a, T: Real> Geoms<'a, T> {
     /// Where a geom is.
-    pub fn pose(&self, geom: usize) -> Pose<T> {
+    pub(crate) fn pose(&self, geom: usize) -> Pose<T> {
         Pose {
             position: self.position.geom_xpos[geom],
             rotation: self.position.geom_xmat[geom],
@@ -25,7 +25,7 @@ impl<'a, T: Real> Geoms<'a, T> {
     }
 
     /// The shape of a geom, with a hull even if it does not collide.
-    pub fn solid(&self, geom: usize) -> Shape<'a, T> {
+    pub(crate) fn solid(&self, geom: usize) -> Shape<'a, T> {
         let shape = shape(self.model, self.params, geom);
         match self.model.geoms[geom].mesh {
             Some(mesh) => Shape {
@@ -39,7 +39,7 @@ impl<'a, T: Real> Geoms<'a, T> {
     }
 
     /// The geom that a ray hits first, by its number, and where; the distance is infinite where it hits none.
-    pub fn first_hit(&self, line: &Ray<T>, filter: &RayFilter) -> (T, Hit<T>) {
+    pub(crate) fn first_hit(&self, line: &Ray<T>, filter: &RayFilter) -> (T, Hit<T>) {
         let mut best = (
             T::ZERO,
             Hit {

@@ -29,7 +29,7 @@ pub(crate) struct Known<T> {
 
 impl<T: Scalar> Known<T> {
     /// Nothing is known.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Known {
             extent: Extent::Nothing,
             qpos: Vec::new(),
@@ -40,12 +40,12 @@ impl<T: Scalar> Known<T> {
     }
 
     /// What is known holds no longer.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.extent = Extent::Nothing;
     }
 
     /// So much is known as long as nobody writes this state.
-    pub fn note(&mut self, extent: Extent, state: &State<T>) {
+    pub(crate) fn note(&mut self, extent: Extent, state: &State<T>) {
         self.extent = extent;
         self.qpos.clone_from(&state.qpos);
         self.qvel.clone_from(&state.qvel);
@@ -54,7 +54,7 @@ impl<T: Scalar> Known<T> {
     }
 
     /// How much holds for this state.
-    pub fn extent(&self, state: &State<T>) -> Extent {
+    pub(crate) fn extent(&self, state: &State<T>) -> Extent {
         let placed = self.qpos == state.qpos
             && self.mocap_pos == state.mocap_pos
             && self.mocap_quat == state.mocap_quat;
@@ -66,7 +66,7 @@ impl<T: Scalar> Known<T> {
     }
 
     /// Whether the velocities are those for which anything was last noted.
-    pub fn same_velocities(&self, state: &State<T>) -> bool {
+    pub(crate) fn same_velocities(&self, state: &State<T>) -> bool {
         self.qvel == state.qvel
     }
 }

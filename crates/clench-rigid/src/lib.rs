@@ -5,6 +5,8 @@
 //! Data lives in three kinds of struct: [`Model`] never changes while stepping, [`State`] is what a user saves and
 //! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.
 
+#![deny(unreachable_pub)]
+
 pub mod batch;
 pub mod budget;
 pub mod builder;

@@ -42,7 +42,7 @@ impl<T: Real> Default for Continuation<T> {
 impl<T: Real> Continuation<T> {
     /// Solves the problem itself.
     #[inline(always)]
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.level = T::ZERO;
     }
 
@@ -77,13 +77,13 @@ impl<T: Real> Continuation<T> {
 
     /// The lanes that do not solve the problem itself yet.
     #[inline(always)]
-    pub fn active(&self) -> T::Mask {
+    pub(crate) fn active(&self) -> T::Mask {
         self.level.gt(T::ZERO)
     }
 
     /// Moves to the next stage where this one is over; returns those lanes.
     #[inline(always)]
-    pub fn advance(&mut self, improvement: T, cost: T) -> T::Mask {
+    pub(crate) fn advance(&mut self, improvement: T, cost: T) -> T::Mask {
         let over = self.active() & !improvement.gt(T::new(SETTLED) * cost);
         let next = self.level * T::new(1.0 / STAGE);
         let last = (next * self.stiffest).lt(T::ONE);
@@ -93,7 +93,7 @@ impl<T: Real> Continuation<T> {
 
     /// What is added to R of block `b`.
     #[inline(always)]
-    pub fn of(&self, b: &BlockIndex) -> T {
+    pub(crate) fn of(&self, b: &BlockIndex) -> T {
         if b.cost == Cost::Elliptic && self.active().any() {
             self.level * self.inverse_inertia[b.active_start]
         } else {

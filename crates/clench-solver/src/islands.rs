@@ -83,13 +83,13 @@ fn worth_lanes<T: Real>(lanes: usize, dofs: usize) -> bool {
 
 impl<T: Real> Islands<T> {
     /// Finds the islands of `problem`; true if they are worth solving by parts.
-    pub fn find(&mut self, problem: &Problem<T>) -> bool {
+    pub(crate) fn find(&mut self, problem: &Problem<T>) -> bool {
         self.partition.find(problem);
         !self.partition.is_whole()
     }
 
     /// Solves each island and adds it to the results.
-    pub fn solve(
+    pub(crate) fn solve(
         &mut self,
         problem: &Problem<T>,
         settings: &Settings,

@@ -118,7 +118,7 @@ impl<T: Real> Iterate<T> {
 
     /// The cost parameters of a block, as soft as they are at present.
     #[inline(always)]
-    pub fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
+    pub(crate) fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
         Rows {
             softer: self.continuation.of(b),
             ..problem.rows(b)
@@ -167,13 +167,13 @@ impl<T: Real> Iterate<T> {
 
     /// The lanes in which acceleration and residuals are finite. (A one-sided cost of NaN is zero, so costs do not show it.)
     #[inline(always)]
-    pub fn is_finite(&self) -> T::Mask {
+    pub(crate) fn is_finite(&self) -> T::Mask {
         all_finite(&self.qacc) & all_finite(&self.residual)
     }
 
     /// ½ (a − a_unc)ᵀ M (a − a_unc).
     #[inline(always)]
-    pub fn inertial_cost(&self, problem: &Problem<T>) -> T {
+    pub(crate) fn inertial_cost(&self, problem: &Problem<T>) -> T {
         let mut sum = T::ZERO;
         for ((&a, &b), &m) in self
             .qacc

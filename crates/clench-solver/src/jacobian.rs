@@ -22,12 +22,12 @@ pub(crate) struct BlockIndex {
 
 impl BlockIndex {
     #[inline(always)]
-    pub fn rows(&self) -> Range<usize> {
+    pub(crate) fn rows(&self) -> Range<usize> {
         self.row..self.row + self.dim
     }
     /// Its pieces among all pieces.
     #[inline(always)]
-    pub fn active_range(&self) -> Range<usize> {
+    pub(crate) fn active_range(&self) -> Range<usize> {
         self.active_start..self.active_start + crate::costs::active_len(self.cost, self.dim)
     }
 }
@@ -92,7 +92,7 @@ impl<T> Default for StoredRows<T> {
 
 impl<T: Real> StoredRows<T> {
     #[inline(always)]
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.blocks.clear();
         self.dofs.clear();
         self.values.clear();
@@ -100,7 +100,7 @@ impl<T: Real> StoredRows<T> {
 
     /// Appends a block of zeros.
     #[inline(always)]
-    pub fn push(&mut self, block: BlockIndex, dofs: &[u32]) -> &mut [T] {
+    pub(crate) fn push(&mut self, block: BlockIndex, dofs: &[u32]) -> &mut [T] {
         self.blocks.push(block);
         self.dofs.extend_from_slice(dofs);
         self.values
@@ -110,7 +110,7 @@ impl<T: Real> StoredRows<T> {
 
     /// Appends a copy of another problem's block, at the row and piece given; its dofs may be numbered in another order.
     #[inline(always)]
-    pub fn push_copy(
+    pub(crate) fn push_copy(
         &mut self,
         block: &BlockIndex,
         row: usize,
@@ -148,12 +148,12 @@ impl<T: Real> StoredRows<T> {
     }
 
     #[inline(always)]
-    pub fn dofs(&self, b: &BlockIndex) -> &[u32] {
+    pub(crate) fn dofs(&self, b: &BlockIndex) -> &[u32] {
         &self.dofs[b.dof..b.dof + b.ndof]
     }
 
     #[inline(always)]
-    pub fn values(&self, b: &BlockIndex) -> &[T] {
+    pub(crate) fn values(&self, b: &BlockIndex) -> &[T] {
         &self.values[b.value..b.value + b.dim * b.ndof]
     }
 

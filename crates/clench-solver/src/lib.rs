@@ -8,6 +8,7 @@
 //! blocks; a [`Solver`] finds the acceleration and the constraint forces. Nothing here knows of bodies, joints or
 //! contacts: what a constraint asks for arrives as J, aref, D and one of five [`Cost`]s.
 
+#![deny(unreachable_pub)]
 // Kernels walk several arrays by the same row or column; an index says so better than a chain of zips.
 #![allow(clippy::needless_range_loop)]
 

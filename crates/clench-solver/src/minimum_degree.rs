@@ -24,14 +24,14 @@ const LEFT: u32 = u32::MAX;
 
 impl MinimumDegree {
     /// `count` trees, of which none is coupled.
-    pub fn clear(&mut self, count: usize) {
+    pub(crate) fn clear(&mut self, count: usize) {
         self.neighbors.truncate(count);
         self.neighbors.iter_mut().for_each(Vec::clear);
         self.neighbors.resize_with(count, Vec::new);
     }
 
     /// Couples two trees.
-    pub fn couple(&mut self, a: usize, b: usize) {
+    pub(crate) fn couple(&mut self, a: usize, b: usize) {
         for (one, other) in [(a, b as u32), (b, a as u32)] {
             if let (true, Err(place)) = (a != b, self.neighbors[one].binary_search(&other)) {
                 self.neighbors[one].insert(place, other);
@@ -40,7 +40,7 @@ impl MinimumDegree {
     }
 
     /// The rank of each tree: the first to be eliminated has rank 0.
-    pub fn ranks(&mut self) -> &[u32] {
+    pub(crate) fn ranks(&mut self) -> &[u32] {
         let count = self.neighbors.len();
         self.rank.clear();
         self.rank.resize(count, LEFT);

@@ -254,13 +254,13 @@ const END: u32 = u32::MAX;
 
 impl Lists {
     /// An empty list for each of `keys` keys.
-    pub fn clear(&mut self, keys: usize) {
+    pub(crate) fn clear(&mut self, keys: usize) {
         self.head.clear();
         self.head.resize(keys, END);
     }
 
     /// Puts `item`, which is in no list yet, before those of `key`.
-    pub fn push_front(&mut self, key: u32, item: u32) {
+    pub(crate) fn push_front(&mut self, key: u32, item: u32) {
         if self.next.len() <= item as usize {
             self.next.resize(item as usize + 1, END);
         }
@@ -269,7 +269,7 @@ impl Lists {
     }
 
     /// The list of `key`.
-    pub fn iter(&self, key: u32) -> impl Iterator<Item = u32> {
+    pub(crate) fn iter(&self, key: u32) -> impl Iterator<Item = u32> {
         let some = |item: u32| (item != END).then_some(item);
         std::iter::successors(some(self.head[key as usize]), move |&item| {
             some(self.next[item as usize])

@@ -44,7 +44,7 @@ impl<T: Real> Results<T> {
     }
 
     /// Those of a problem solved as a whole.
-    pub fn set(&mut self, work: &Workspace<T>) {
+    pub(crate) fn set(&mut self, work: &Workspace<T>) {
         let iterate = &work.state.iterate;
         self.stats = work.state.stats;
         copy(&mut self.qacc, &iterate.qacc);

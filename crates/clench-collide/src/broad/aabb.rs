@@ -12,13 +12,13 @@ pub(super) struct Aabb {
 
 impl Aabb {
     /// Holds nothing.
-    pub const EMPTY: Aabb = Aabb {
+    pub(super) const EMPTY: Aabb = Aabb {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
     };
 
     /// What a bound covers in any environment.
-    pub fn new<T: Real>(bound: &Bound<T>, margin: T) -> Self {
+    pub(super) fn new<T: Real>(bound: &Bound<T>, margin: T) -> Self {
         let Aabb { mut low, mut high } = Aabb::EMPTY;
         for lane in 0..T::LANES {
             let number = |x: T| x.lane(lane).to_f64();
@@ -33,17 +33,17 @@ impl Aabb {
     }
 
     /// The longest side.
-    pub fn side(&self) -> f64 {
+    pub(super) fn side(&self) -> f64 {
         let side = |axis: usize| self.high[axis] - self.low[axis];
         side(0).max(side(1)).max(side(2))
     }
 
-    pub fn overlaps(&self, other: &Aabb) -> bool {
+    pub(super) fn overlaps(&self, other: &Aabb) -> bool {
         (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
     }
 
     /// The smallest box that holds both.
-    pub fn union(&self, other: &Aabb) -> Aabb {
+    pub(super) fn union(&self, other: &Aabb) -> Aabb {
         Aabb {
             low: [0, 1, 2].map(|axis| self.low[axis].min(other.low[axis])),
             high: [0, 1, 2].map(|axis| self.high[axis].max(other.high[axis])),
@@ -51,7 +51,7 @@ impl Aabb {
     }
 
     /// Whether all of its corners are finite.
-    pub fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         self.low.iter().chain(&self.high).all(|x| x.is_finite())
     }
 }

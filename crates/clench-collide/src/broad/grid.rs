@@ -57,7 +57,7 @@ fn cube(point: [f64; 3], per_metre: f64) -> Cube {
 
 impl Grid {
     /// Hands every pair of boxes that overlap to `check`, once.
-    pub fn pairs(&mut self, boxes: Boxes, check: &mut impl FnMut(u32, u32)) {
+    pub(super) fn pairs(&mut self, boxes: Boxes, check: &mut impl FnMut(u32, u32)) {
         let per_metre = self.part_by_size(boxes.all);
         self.list(boxes, per_metre);
         self.in_cubes(boxes, per_metre, check);

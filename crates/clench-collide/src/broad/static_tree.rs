@@ -39,7 +39,7 @@ enum NodeKind {
 
 impl StaticTree {
     /// Builds the tree anew over these shapes.
-    pub fn build(&mut self, shapes: impl Iterator<Item = (u32, Aabb)>) {
+    pub(super) fn build(&mut self, shapes: impl Iterator<Item = (u32, Aabb)>) {
         self.nodes.clear();
         self.leaves.clear();
         self.unbounded.clear();
@@ -91,7 +91,7 @@ impl StaticTree {
     }
 
     /// Hands every shape to `found` whose box meets this one.
-    pub fn overlapping(&self, bounds: &Aabb, mut found: impl FnMut(u32)) {
+    pub(super) fn overlapping(&self, bounds: &Aabb, mut found: impl FnMut(u32)) {
         self.unbounded.iter().for_each(|&shape| found(shape));
         if self.nodes.is_empty() {
             return;

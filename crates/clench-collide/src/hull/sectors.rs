@@ -31,7 +31,7 @@ pub(super) struct Sectors {
 
 impl Sectors {
     /// `farthest` finds the vertex that is farthest along a direction, from a vertex that may be near it.
-    pub fn new(
+    pub(super) fn new(
         vertices: &[Vec3<f64>],
         neighbors: &Lists,
         farthest: impl Fn(Vec3<f64>, usize) -> usize,
@@ -54,7 +54,7 @@ impl Sectors {
     /// Vertices among which the one is that is farthest along a direction, in fours (some twice); if there is but one, it may be
     /// only near; none for a direction that is zero or no number.
     #[inline]
-    pub fn candidates(&self, direction: Vec3<f64>) -> &[u32] {
+    pub(super) fn candidates(&self, direction: Vec3<f64>) -> &[u32] {
         self.candidates.get(code(direction, self.fine))
     }
 }

@@ -47,7 +47,7 @@ pub(super) struct Outline<S> {
 impl<S: Scalar> Outline<S> {
     /// The convex hull of points that go round it counter-clockwise, seen along z; those nearer than `same` to the one
     /// before are left out.
-    pub fn around(points: &[Vec3<S>], same: S) -> Self {
+    pub(super) fn around(points: &[Vec3<S>], same: S) -> Self {
         let corners = hull(points, same);
         let (middle, round) = moments(&corners);
         Outline {
@@ -58,16 +58,16 @@ impl<S: Scalar> Outline<S> {
         }
     }
 
-    pub fn corners(&self) -> &[Vec3<S>] {
+    pub(super) fn corners(&self) -> &[Vec3<S>] {
         &self.corners
     }
 
-    pub fn middle(&self) -> Vec3<S> {
+    pub(super) fn middle(&self) -> Vec3<S> {
         self.middle
     }
 
     /// One point for each sector, the first about the direction `first`; of those that coincide one.
-    pub fn sample(&self, first: Vec3<S>) -> ArrayVec<Vec3<S>, PATCH_POINTS> {
+    pub(super) fn sample(&self, first: Vec3<S>) -> ArrayVec<Vec3<S>, PATCH_POINTS> {
         let first = self.rounded((first.x, first.y));
         let length = (first.0 * first.0 + first.1 * first.1).sqrt();
         let (x, y) = if length > S::ZERO {

@@ -16,24 +16,24 @@ pub(super) struct Polygon<S> {
 }
 
 impl<S: Scalar> Polygon<S> {
-    pub fn empty() -> Self {
+    pub(super) fn empty() -> Self {
         Polygon {
             corners: ArrayVec::new(),
         }
     }
-    pub fn corners(&self) -> &[Vec3<S>] {
+    pub(super) fn corners(&self) -> &[Vec3<S>] {
         &self.corners
     }
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.corners.clear();
     }
-    pub fn push(&mut self, corner: Vec3<S>) {
+    pub(super) fn push(&mut self, corner: Vec3<S>) {
         // Only rounding could make more corners than there is room for, and then they coincide with others.
         let _ = self.corners.try_push(corner);
     }
 
     /// Leaves the part where x·`x` + y·`y` is at most `limit` (Sutherland–Hodgman).
-    pub fn clip(&mut self, (x, y): (S, S), limit: S) {
+    pub(super) fn clip(&mut self, (x, y): (S, S), limit: S) {
         let beyond = |p: Vec3<S>| x * p.x + y * p.y - limit;
         if self.corners.iter().all(|p| beyond(*p) <= S::ZERO) {
             return;
@@ -56,7 +56,7 @@ impl<S: Scalar> Polygon<S> {
     }
 
     /// Puts the corners in order around their middle, beginning with the first. Their heights are lost.
-    pub fn sort_around(&mut self) {
+    pub(super) fn sort_around(&mut self) {
         let Some(&first) = self.corners.first() else {
             return;
         };

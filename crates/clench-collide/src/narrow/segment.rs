@@ -15,7 +15,7 @@ pub(super) struct Segment<T> {
 impl<T: Real> Segment<T> {
     /// The middle line of a capsule, in the world.
     #[inline(always)]
-    pub fn of(capsule: Placed<T>) -> Self {
+    pub(super) fn of(capsule: Placed<T>) -> Self {
         Segment {
             center: capsule.pose.position,
             axis: capsule.pose.axis(),
@@ -24,12 +24,12 @@ impl<T: Real> Segment<T> {
     }
     /// The point at a signed length from the middle.
     #[inline(always)]
-    pub fn at(&self, t: T) -> Vec3<T> {
+    pub(super) fn at(&self, t: T) -> Vec3<T> {
         self.center + self.axis * t
     }
     /// The nearest parameter on the segment.
     #[inline(always)]
-    pub fn clamp(&self, t: T) -> T {
+    pub(super) fn clamp(&self, t: T) -> T {
         t.clamp(-self.half_length, self.half_length)
     }
 }

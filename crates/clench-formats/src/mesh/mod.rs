@@ -34,7 +34,7 @@ pub(crate) enum Format {
 
 impl Format {
     /// The format that a file name ends with, in small letters or capitals.
-    pub fn from_extension(extension: &str) -> Option<Self> {
+    pub(crate) fn from_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
             "stl" => Some(Format::Stl),
             "obj" => Some(Format::Obj),
@@ -43,7 +43,7 @@ impl Format {
         }
     }
     /// The format of a media type, MJCF's `content_type`.
-    pub fn from_media_type(media_type: &str) -> Option<Self> {
+    pub(crate) fn from_media_type(media_type: &str) -> Option<Self> {
         match media_type {
             "model/stl" => Some(Format::Stl),
             "model/obj" => Some(Format::Obj),

@@ -74,13 +74,13 @@ impl Default for ActuatorDraft {
 
 impl ActuatorDraft {
     /// Whether a shortcut may read its parameters from this default.
-    pub fn lends_parameters_to(&self, shortcut: Shortcut) -> bool {
+    pub(super) fn lends_parameters_to(&self, shortcut: Shortcut) -> bool {
         self.shortcut == shortcut
             || (self.shortcut == Shortcut::General && self.parameters.gain == shortcut.gain())
     }
 
     /// Overwrites what the element gives; `inherited` are the parameters that its class lends to `shortcut`.
-    pub fn read(
+    pub(super) fn read(
         &mut self,
         element: &Element,
         shortcut: Shortcut,
@@ -181,7 +181,7 @@ impl ActuatorDraft {
     }
 
     /// The actuator of the model.
-    pub fn finish(self, element: &Element) -> Result<ActuatorSpec, LoadError> {
+    pub(super) fn finish(self, element: &Element) -> Result<ActuatorSpec, LoadError> {
         let mut parameters = self.parameters;
         let mut lengthrange = [0.0; 2];
         element.set_range("lengthrange", &mut lengthrange)?;

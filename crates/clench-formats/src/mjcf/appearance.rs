@@ -92,7 +92,7 @@ pub(crate) struct Palette {
 
 impl Palette {
     /// That of a model's materials, and of the meshes that have one.
-    pub fn new(root: &Element, materials: &[MaterialSpec]) -> Self {
+    pub(super) fn new(root: &Element, materials: &[MaterialSpec]) -> Self {
         let visible = materials.iter().map(|material| {
             let Material { name, rgba, .. } = &material.surface;
             (name.clone(), rgba[3] != 0.0)
@@ -116,7 +116,7 @@ impl Palette {
     }
 
     /// The appearance of a geom of a mesh, which lends its material to a geom without one.
-    pub fn of_geom(&self, appearance: AppearanceSpec, mesh: &str) -> AppearanceSpec {
+    pub(super) fn of_geom(&self, appearance: AppearanceSpec, mesh: &str) -> AppearanceSpec {
         let material = match self.meshes.get(mesh) {
             Some(lent) if appearance.material.is_empty() => Arc::clone(lent),
             _ => appearance.material,
@@ -128,7 +128,7 @@ impl Palette {
     }
 
     /// Whether a geom can be seen: by its material, or without one by its own colour.
-    pub fn shows(&self, appearance: &AppearanceSpec) -> bool {
+    pub(super) fn shows(&self, appearance: &AppearanceSpec) -> bool {
         let own = || appearance.rgba.is_none_or(|rgba| rgba[3] != 0.0);
         (self.visible.get(&*appearance.material).copied()).unwrap_or_else(own)
     }

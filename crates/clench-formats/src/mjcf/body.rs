@@ -64,7 +64,7 @@ pub(crate) fn world() -> BodySpec {
 
 impl<'a> BodyReader<'a> {
     /// A reader that adds to a list of bodies which begins with the world.
-    pub fn new(
+    pub(super) fn new(
         sources: &'a Sources,
         palette: &'a Palette,
         bodies: &'a mut Vec<BodySpec>,
@@ -79,7 +79,7 @@ impl<'a> BodyReader<'a> {
     }
 
     /// Reads one `<worldbody>`.
-    pub fn read_world(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub(super) fn read_world(&mut self, element: &Element) -> Result<(), LoadError> {
         let world = Place {
             body: 0,
             class: MAIN,

@@ -55,7 +55,7 @@ impl Default for CameraDraft {
 
 impl CameraDraft {
     /// Overwrites what the element gives.
-    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         let modes = [
             ("fixed", Mode::Fixed),
             ("track", Mode::Track),
@@ -83,7 +83,7 @@ impl CameraDraft {
     }
 
     /// The camera in its body, carried along with the frame that it is written in.
-    pub fn finish(
+    pub(super) fn finish(
         self,
         element: &Element,
         compiler: &CompilerOptions,

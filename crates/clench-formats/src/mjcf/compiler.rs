@@ -33,7 +33,7 @@ impl Default for CompilerOptions {
 
 impl CompilerOptions {
     /// An angle of the file in radians.
-    pub fn radians(&self, angle: f64) -> f64 {
+    pub(crate) fn radians(&self, angle: f64) -> f64 {
         if self.degrees {
             angle.to_radians()
         } else {
@@ -42,7 +42,7 @@ impl CompilerOptions {
     }
 
     /// The rotation by three angles of the file.
-    pub fn euler(&self, angles: [f64; 3]) -> Quat<f64> {
+    pub(crate) fn euler(&self, angles: [f64; 3]) -> Quat<f64> {
         let mut total = Quat::IDENTITY;
         for (angle, name) in angles.into_iter().zip(self.eulerseq) {
             let axis = match name.to_ascii_lowercase() {

@@ -79,7 +79,11 @@ impl std::ops::Index<usize> for Classes {
 
 impl Classes {
     /// Reads one top-level `<default>`, which is (more of) the class `main`.
-    pub fn read(&mut self, element: &Element, spending: &mut Spending) -> Result<(), LoadError> {
+    pub(super) fn read(
+        &mut self,
+        element: &Element,
+        spending: &mut Spending,
+    ) -> Result<(), LoadError> {
         match element.text("class") {
             None | Some("" | "main") => {}
             Some(_) => return Err(element.error("the top-level default class is called \"main\"")),
@@ -162,7 +166,7 @@ impl Classes {
     }
 
     /// The parameters that a class lends to an actuator written with `shortcut`.
-    pub fn parameters(&self, class: usize, shortcut: Shortcut) -> ActuatorParams {
+    pub(super) fn parameters(&self, class: usize, shortcut: Shortcut) -> ActuatorParams {
         let ancestors = std::iter::successors(Some(class), |&class| self.list[class].parent);
         ancestors
             .map(|class| &self.list[class].actuator)
@@ -174,7 +178,11 @@ impl Classes {
     ///
     /// # Errors
     /// Where they take more memory than is left.
-    pub fn prefixed(&self, prefix: &str, spending: &mut Spending) -> Result<Vec<Class>, String> {
+    pub(super) fn prefixed(
+        &self,
+        prefix: &str,
+        spending: &mut Spending,
+    ) -> Result<Vec<Class>, String> {
         for class in &self.list {
             let texts = prefix.len() + class.name.len() + class.geom.text_length();
             spending.bytes((size_of::<Class>() + 2 * texts) as u64)?;
@@ -187,7 +195,7 @@ impl Classes {
     }
 
     /// Adds classes of another model; of two with the same name the first counts.
-    pub fn borrow(&mut self, lent: Vec<Class>) {
+    pub(super) fn borrow(&mut self, lent: Vec<Class>) {
         let first = self.list.len();
         for class in lent {
             let index = self.list.len();
@@ -204,7 +212,7 @@ impl Classes {
     }
 
     /// The class that an attribute of the element names, or `otherwise`.
-    pub fn named_by(
+    pub(super) fn named_by(
         &self,
         element: &Element,
         attribute: &str,
@@ -221,7 +229,7 @@ impl Classes {
     }
 
     /// The class of an element outside the body tree.
-    pub fn of(&self, element: &Element) -> Result<&Class, LoadError> {
+    pub(super) fn of(&self, element: &Element) -> Result<&Class, LoadError> {
         Ok(&self.list[self.named_by(element, "class", MAIN)?])
     }
 }

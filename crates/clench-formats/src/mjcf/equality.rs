@@ -27,7 +27,7 @@ impl Default for EqualityDraft {
 
 impl EqualityDraft {
     /// Overwrites what the element gives.
-    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         element.set_boolean("active", &mut self.active)?;
         element.overlay("solref", &mut self.solref)?;
         element.overlay("solimp", &mut self.solimp)?;

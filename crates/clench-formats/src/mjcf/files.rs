@@ -29,7 +29,7 @@ pub(crate) struct Content {
 
 impl Files {
     /// For a model in a directory.
-    pub fn new(model_directory: &Path, compiler: &CompilerOptions) -> Self {
+    pub(crate) fn new(model_directory: &Path, compiler: &CompilerOptions) -> Self {
         Files {
             model_directory: model_directory.to_owned(),
             meshes: model_directory.join(slashes(&compiler.meshdir)),
@@ -38,7 +38,7 @@ impl Files {
     }
 
     /// Reads the file that an element names, if it names one.
-    pub fn read(
+    pub(crate) fn read(
         &self,
         element: &Element,
         spending: &mut Spending,
@@ -65,7 +65,7 @@ impl Files {
 
 impl Content {
     /// Reads the file at a path, for an element that names it.
-    pub fn open(
+    pub(crate) fn open(
         path: PathBuf,
         element: &Element,
         spending: &mut Spending,
@@ -86,7 +86,7 @@ impl Content {
     }
 
     /// Takes the bytes out, for a reader whose errors shall name the file and who asked for it.
-    pub fn parse<T>(
+    pub(crate) fn parse<T>(
         &mut self,
         element: &Element,
         reader: impl FnOnce(Vec<u8>) -> Result<T, String>,

@@ -61,7 +61,7 @@ impl Default for GeomDraft {
 
 impl GeomDraft {
     /// Overwrites what the element gives.
-    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         let geom = &mut self.spec;
         if let Some(kind) = read_kind(element)? {
             geom.kind = kind;
@@ -102,12 +102,12 @@ impl GeomDraft {
     }
 
     /// Length of the texts in it, bytes.
-    pub fn text_length(&self) -> usize {
+    pub(super) fn text_length(&self) -> usize {
         self.spec.mesh.len() + self.spec.hfield.len()
     }
 
     /// The geom in its body: shorthand resolved, carried along with the frame that it is written in.
-    pub fn finish(
+    pub(super) fn finish(
         mut self,
         element: &Element,
         compiler: &CompilerOptions,

@@ -19,7 +19,7 @@ pub(crate) struct Includes {
 
 impl Includes {
     /// For a model in a file, or from text (`None`), whose includes are found from the working directory.
-    pub fn new(model: Option<&Path>, spending: &Spending) -> Self {
+    pub(super) fn new(model: Option<&Path>, spending: &Spending) -> Self {
         Includes {
             model_directory: model
                 .and_then(Path::parent)
@@ -36,7 +36,7 @@ impl Includes {
     ///
     /// # Errors
     /// Where an included file is missing, unreadable, empty, broken, or included already.
-    pub fn expand(
+    pub(super) fn expand(
         &mut self,
         root: &mut Element,
         directory: &Path,

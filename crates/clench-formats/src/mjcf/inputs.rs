@@ -19,7 +19,7 @@ pub(crate) struct Inputs(u8);
 
 impl Inputs {
     /// What controls they are.
-    pub fn controls(self) -> Vec<ControlInput> {
+    pub(super) fn controls(self) -> Vec<ControlInput> {
         let named = |k: &usize| self.0 & (1 << k) != 0;
         (0..INPUTS.len())
             .filter(named)

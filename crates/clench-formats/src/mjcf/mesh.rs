@@ -14,7 +14,7 @@ pub(crate) struct MeshDraft(MeshSpec);
 
 impl MeshDraft {
     /// Overwrites what the element gives, of what a default class may have.
-    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         let mesh = &mut self.0;
         element.set_vector("scale", &mut mesh.scale)?;
         let kinds = [
@@ -35,7 +35,7 @@ impl MeshDraft {
     }
 
     /// The mesh, with what only an element itself can say.
-    pub fn finish(
+    pub(super) fn finish(
         mut self,
         element: &Element,
         files: &Files,

@@ -45,7 +45,11 @@ impl Default for OptionReader {
 
 impl OptionReader {
     /// Reads one `<option>`.
-    pub fn read(&mut self, element: &Element, builder: &mut ModelBuilder) -> Result<(), LoadError> {
+    pub(crate) fn read(
+        &mut self,
+        element: &Element,
+        builder: &mut ModelBuilder,
+    ) -> Result<(), LoadError> {
         read_physics(element, builder)?;
         read_options(element, &mut builder.options, attribute)?;
         if let Some(solver) = element.text("solver") {
@@ -68,7 +72,7 @@ impl OptionReader {
     }
 
     /// What only the last word of all `<option>`s decides.
-    pub fn finish(self, builder: &mut ModelBuilder) {
+    pub(crate) fn finish(self, builder: &mut ModelBuilder) {
         builder.physics.contact_override = self.contact_override.then_some(self.contact);
         if self.replaced_solver {
             let note = "the file asks for the solver PGS; Newton finds the same minimum and is used instead";

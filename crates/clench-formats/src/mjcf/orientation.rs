@@ -30,7 +30,7 @@ impl Default for Orientation {
 
 impl Orientation {
     /// Overwrites the orientation if the element gives one.
-    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub(crate) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         element.at_most_one(&["quat", "axisangle", "euler", "xyaxes", "zaxis"])?;
         if let Some(quat) = element.numbers("quat")? {
             if quat == [0.0; 4] {
@@ -54,7 +54,7 @@ impl Orientation {
     }
 
     /// The unit quaternion; `element` is where to report an axis without direction.
-    pub fn resolve(
+    pub(crate) fn resolve(
         &self,
         compiler: &CompilerOptions,
         element: &Element,
@@ -105,13 +105,13 @@ pub(crate) struct Pose {
 }
 
 impl Pose {
-    pub const IDENTITY: Pose = Pose {
+    pub(crate) const IDENTITY: Pose = Pose {
         pos: Vec3::ZERO,
         quat: Quat::IDENTITY,
     };
 
     /// The pose that an element writes in `pos` and one of the orientation attributes.
-    pub fn read(element: &Element, compiler: &CompilerOptions) -> Result<Pose, LoadError> {
+    pub(crate) fn read(element: &Element, compiler: &CompilerOptions) -> Result<Pose, LoadError> {
         let mut orientation = Orientation::default();
         orientation.read(element)?;
         Ok(Pose {
@@ -121,7 +121,7 @@ impl Pose {
     }
 
     /// The pose in the frame's parent of something whose pose in the frame is `inner`.
-    pub fn then(&self, inner: Pose) -> Pose {
+    pub(crate) fn then(&self, inner: Pose) -> Pose {
         Pose {
             pos: self.point(inner.pos),
             quat: (self.quat * inner.quat).normalize(),
@@ -129,7 +129,7 @@ impl Pose {
     }
 
     /// A point of the frame in its parent.
-    pub fn point(&self, local: Vec3<f64>) -> Vec3<f64> {
+    pub(crate) fn point(&self, local: Vec3<f64>) -> Vec3<f64> {
         self.pos + self.quat.rotate(local)
     }
 }

@@ -25,7 +25,7 @@ pub(crate) enum Shortcut {
 
 impl Shortcut {
     /// The shortcut of an element name.
-    pub fn from_tag(tag: &str) -> Option<Shortcut> {
+    pub(super) fn from_tag(tag: &str) -> Option<Shortcut> {
         Some(match tag {
             "general" => Shortcut::General,
             "motor" => Shortcut::Motor,
@@ -43,7 +43,7 @@ impl Shortcut {
     }
 
     /// The kind of its gain.
-    pub fn gain(self) -> GainKind {
+    pub(super) fn gain(self) -> GainKind {
         match self {
             Shortcut::Damper => GainKind::Affine,
             Shortcut::Muscle => GainKind::Muscle,

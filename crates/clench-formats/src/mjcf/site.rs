@@ -38,7 +38,7 @@ impl Default for SiteDraft {
 
 impl SiteDraft {
     /// Overwrites what the element gives.
-    pub fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+    pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         self.kind = read_kind(element)?.unwrap_or(self.kind);
         match self.kind {
             ShapeKind::Plane => return Err(element.error("a site cannot be a plane")),
@@ -59,7 +59,7 @@ impl SiteDraft {
     }
 
     /// The site in its body, carried along with the frame that it is written in.
-    pub fn finish(
+    pub(super) fn finish(
         mut self,
         element: &Element,
         compiler: &CompilerOptions,

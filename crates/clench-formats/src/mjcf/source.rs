@@ -28,7 +28,7 @@ pub(crate) struct Sources(Vec<Source>);
 
 impl Sources {
     /// Reads a model's settings, and marks its elements as read with them. Says which they are.
-    pub fn add(
+    pub(super) fn add(
         &mut self,
         root: &mut Element,
         directory: &Path,
@@ -54,12 +54,12 @@ impl Sources {
     }
 
     /// The settings of the main model.
-    pub fn main(&self) -> &Source {
+    pub(super) fn main(&self) -> &Source {
         &self.0[0]
     }
 
     /// The settings that an element is read with.
-    pub fn of(&self, element: &Element) -> &Source {
+    pub(super) fn of(&self, element: &Element) -> &Source {
         &self.0[element.source]
     }
 
@@ -67,7 +67,7 @@ impl Sources {
     ///
     /// # Errors
     /// Where the names take more memory than is left.
-    pub fn lend_classes(
+    pub(super) fn lend_classes(
         &mut self,
         from: usize,
         to: usize,
@@ -86,7 +86,7 @@ impl Sources {
     ///
     /// # Errors
     /// A range without a word on its use where `autolimits` is off.
-    pub fn settle_limit(
+    pub(super) fn settle_limit(
         &self,
         element: &Element,
         what: &str,

@@ -19,7 +19,7 @@ pub(super) struct Materials(HashMap<String, [f32; 4]>);
 
 impl Materials {
     /// Collects the coloured materials of a whole file; the first of a name counts.
-    pub fn read(root: &Element) -> Result<Self, LoadError> {
+    pub(super) fn read(root: &Element) -> Result<Self, LoadError> {
         let mut found = HashMap::new();
         let mut pending = vec![root];
         while let Some(element) = pending.pop() {
@@ -55,7 +55,7 @@ impl GeomReader<'_> {
     ///
     /// # Errors
     /// A shape that is none, or that has not the sizes it needs; meshes that are not there.
-    pub fn read(
+    pub(super) fn read(
         &mut self,
         link: &Element,
         notes: &mut Vec<String>,

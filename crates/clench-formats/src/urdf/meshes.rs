@@ -28,7 +28,11 @@ pub(super) struct Meshes<'a> {
 
 impl<'a> Meshes<'a> {
     /// For a robot in a directory.
-    pub fn new(directory: &'a Path, packages: &'a [PathBuf], compiler: &CompilerOptions) -> Self {
+    pub(super) fn new(
+        directory: &'a Path,
+        packages: &'a [PathBuf],
+        compiler: &CompilerOptions,
+    ) -> Self {
         Meshes {
             directory,
             packages,
@@ -44,7 +48,7 @@ impl<'a> Meshes<'a> {
     ///
     /// # Errors
     /// A file that is not there or no mesh.
-    pub fn read(
+    pub(super) fn read(
         &mut self,
         element: &Element,
         spending: &mut Spending,

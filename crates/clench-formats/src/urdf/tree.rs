@@ -40,7 +40,7 @@ impl<'a> Tree<'a> {
     ///
     /// # Errors
     /// Links of one name; joints of links that are not there; a link below two joints, or below itself.
-    pub fn read(root: &'a Element) -> Result<Self, LoadError> {
+    pub(super) fn read(root: &'a Element) -> Result<Self, LoadError> {
         let links: Vec<&Element> = children(root, "link").collect();
         let mut names = HashMap::new();
         for (index, link) in links.iter().enumerate() {
@@ -81,7 +81,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The links, each after the one that it stands on.
-    pub fn links(&self) -> impl Iterator<Item = Link<'a>> {
+    pub(super) fn links(&self) -> impl Iterator<Item = Link<'a>> {
         self.order.iter().map(|&link| Link {
             element: self.links[link],
             body: self.body[link],
@@ -90,7 +90,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The body that a joint moves.
-    pub fn child(&self, joint: &Joint) -> usize {
+    pub(super) fn child(&self, joint: &Joint) -> usize {
         self.body[joint.child]
     }
 }

@@ -6,11 +6,11 @@ use std::mem::transmute;
 
 /// AVX and AVX2.
 #[derive(Clone, Copy)]
-pub struct Avx2;
+pub(crate) struct Avx2;
 
 impl Avx2 {
     /// Whether the processor has all that these lanes use.
-    pub fn detected() -> bool {
+    pub(crate) fn detected() -> bool {
         is_x86_feature_detected!("avx2")
     }
 }

@@ -6,11 +6,11 @@ use std::mem::transmute;
 
 /// AVX-512 with its doubleword, byte and vector-length extensions: every processor that has it but Knights Landing.
 #[derive(Clone, Copy)]
-pub struct Avx512;
+pub(crate) struct Avx512;
 
 impl Avx512 {
     /// Whether the processor has all that these lanes use.
-    pub fn detected() -> bool {
+    pub(crate) fn detected() -> bool {
         is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512dq")
             && is_x86_feature_detected!("avx512bw")

@@ -8,7 +8,7 @@ use std::mem::transmute;
 
 /// Advanced SIMD.
 #[derive(Clone, Copy)]
-pub struct Neon;
+pub(crate) struct Neon;
 
 macro_rules! registers {
     (

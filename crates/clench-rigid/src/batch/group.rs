@@ -4,7 +4,7 @@ use clench_math::{Mask, Real};
 use std::marker::PhantomData;
 
 /// The most lanes that any instruction set has.
-pub const MAX_LANES: usize = 16;
+pub(super) const MAX_LANES: usize = 16;
 
 /// The environments in the lanes, the first `len` of them.
 pub struct Group<T> {

@@ -17,7 +17,7 @@ const ENV_STEPS_A_PORTION: usize = 1 << 16;
 
 /// An output of every environment.
 #[derive(Debug)]
-pub struct OutputRows<S> {
+pub(super) struct OutputRows<S> {
     output: Output,
     rows: Rows<S>,
 }
@@ -31,10 +31,10 @@ pub struct Target<'a, S: Lanewise> {
 }
 
 /// Where each output goes, in the order of [`Output::ALL`].
-pub type Targets<'a, S> = [Target<'a, S>; Output::COUNT];
+pub(super) type Targets<'a, S> = [Target<'a, S>; Output::COUNT];
 
 /// Shares the tables of outputs with threads.
-pub fn targets<'a, S: Lanewise>(
+pub(super) fn targets<'a, S: Lanewise>(
     last: &'a mut [OutputRows<S>],
     trace: &'a mut [OutputRows<S>],
 ) -> Targets<'a, S> {

@@ -11,7 +11,7 @@ use clench_math::Real;
 
 /// What each environment's state was when its outputs were last recorded, as far as they depend on it. Kept only while
 /// outputs are.
-pub struct Seen<S> {
+pub(super) struct Seen<S> {
     qpos: Rows<S>,
     qvel: Rows<S>,
     mocap_pos: Rows<S>,
@@ -20,7 +20,7 @@ pub struct Seen<S> {
 
 impl<S: Precision> Seen<S> {
     /// Nothing seen yet.
-    pub fn new(model: &Model, count: usize) -> Result<Self, SimError> {
+    pub(super) fn new(model: &Model, count: usize) -> Result<Self, SimError> {
         // Not equal to itself, nor to any other number.
         let rows = |width| Rows::new(count, width, S::new(f64::NAN));
         Ok(Seen {
@@ -32,13 +32,13 @@ impl<S: Precision> Seen<S> {
     }
 
     /// Bytes that an environment takes.
-    pub fn row_bytes(&self) -> usize {
+    pub(super) fn row_bytes(&self) -> usize {
         let tables = [&self.qpos, &self.qvel, &self.mocap_pos, &self.mocap_quat];
         tables.iter().map(|rows| rows.row_bytes()).sum()
     }
 
     /// Whether what was recorded of environment `env` holds for its state.
-    pub fn holds(&self, env: usize, state: &StateRows<S>) -> bool {
+    pub(super) fn holds(&self, env: usize, state: &StateRows<S>) -> bool {
         self.qpos.row(env) == state.qpos.row(env)
             && self.qvel.row(env) == state.qvel.row(env)
             && self.mocap_pos.row(env) == state.mocap_pos.row(env)
@@ -46,12 +46,12 @@ impl<S: Precision> Seen<S> {
     }
 
     /// What was recorded of environment `env` holds no longer.
-    pub fn forget(&mut self, env: usize) {
+    pub(super) fn forget(&mut self, env: usize) {
         self.qpos.row_mut(env).fill(S::new(f64::NAN));
         self.qvel.row_mut(env).fill(S::new(f64::NAN));
     }
 
-    pub fn share(&mut self) -> SeenCells<'_, S> {
+    pub(super) fn share(&mut self) -> SeenCells<'_, S> {
         SeenCells {
             qpos: Cells::new(&mut self.qpos),
             qvel: Cells::new(&mut self.qvel),

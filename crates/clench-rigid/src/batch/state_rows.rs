@@ -156,7 +156,7 @@ macro_rules! declare_rows {
         }
 
         /// Sets the occasional inputs of all lanes to zero.
-        pub fn clear_occasional<T: Real>(state: &mut State<T>) {
+        pub(super) fn clear_occasional<T: Real>(state: &mut State<T>) {
             $(state.$occasional.fill(kind::$occasional_kind::zero::<T>());)*
         }
     };

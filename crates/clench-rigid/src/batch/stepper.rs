@@ -90,7 +90,7 @@ pub trait Stepper<S: Lanewise>: Send {
 }
 
 /// Makes a stepper in lanes picked at run time.
-pub struct MakeStepper<'a> {
+pub(super) struct MakeStepper<'a> {
     pub model: &'a Model,
 }
 
@@ -101,7 +101,7 @@ impl<S: Lanewise> LaneTask<S> for MakeStepper<'_> {
     }
 }
 
-pub struct LaneStepper<T: Real> {
+pub(super) struct LaneStepper<T: Real> {
     state: State<T>,
     /// The model's initial state.
     initial: State<T>,

@@ -37,7 +37,7 @@ pub(super) struct AddedMass {
 
 impl AddedMass {
     /// Of an ellipsoid of these semi-axes.
-    pub fn of_ellipsoid(r: Vec3<f64>) -> Self {
+    pub(super) fn of_ellipsoid(r: Vec3<f64>) -> Self {
         let r = r.to_array();
         let volume = 4.0 / 3.0 * PI * r[0] * r[1] * r[2];
         let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);

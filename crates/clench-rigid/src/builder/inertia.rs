@@ -26,7 +26,7 @@ pub(super) struct MassProperties {
 
 impl MassProperties {
     /// Those of the world.
-    pub const NONE: Self = MassProperties {
+    pub(super) const NONE: Self = MassProperties {
         mass: 0.0,
         pos: Vec3::ZERO,
         quat: Quat::IDENTITY,

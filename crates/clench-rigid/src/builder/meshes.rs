@@ -31,7 +31,7 @@ pub(super) struct Processed {
 
 impl Processed {
     /// How far the mesh reaches from its origin along each axis, m.
-    pub fn reach(&self) -> Vec3<f64> {
+    pub(super) fn reach(&self) -> Vec3<f64> {
         let (low, high) = (self.low.to_array(), self.high.to_array());
         Vec3::from_array(std::array::from_fn(|i| low[i].abs().max(high[i].abs())))
     }

@@ -47,7 +47,7 @@ impl<'a> Assets<'a> {
     ///
     /// # Errors
     /// Names that are taken; meshes and height fields that cannot be.
-    pub fn new(builder: &'a ModelBuilder) -> Result<Self, BuildError> {
+    pub(super) fn new(builder: &'a ModelBuilder) -> Result<Self, BuildError> {
         let names = Names::new(&builder.meshes)?;
         let uses = GeomUses::of(builder);
         let mut collides = vec![false; builder.meshes.len()];
@@ -84,7 +84,7 @@ impl<'a> Assets<'a> {
     }
 
     /// Moves them to a model that has all its geoms, without those that no geom has where the visual is discarded.
-    pub fn keep(self, builder: &ModelBuilder, model: &mut Model) {
+    pub(super) fn keep(self, builder: &ModelBuilder, model: &mut Model) {
         let mut used = vec![!builder.compiler.discardvisual; self.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
             // A primitive that was fitted to a mesh keeps it too, as in MuJoCo.
@@ -111,7 +111,7 @@ impl<'a> Assets<'a> {
     ///
     /// # Errors
     /// A name that nothing has; references that its shape has no use for; sizes that are not positive.
-    pub fn place(&'a self, spec: &'a GeomSpec) -> Result<PlacedGeom<'a>, BuildError> {
+    pub(super) fn place(&'a self, spec: &'a GeomSpec) -> Result<PlacedGeom<'a>, BuildError> {
         if !spec.hfield.is_empty() && spec.kind != ShapeKind::HeightField {
             return Err(spec.error("only a geom of type hfield can refer to a height field"));
         }

@@ -16,7 +16,7 @@ impl<'a> Names<'a> {
     ///
     /// # Errors
     /// A name that is taken already.
-    pub fn new<E: Element + 'a>(
+    pub(super) fn new<E: Element + 'a>(
         elements: impl IntoIterator<Item = &'a E>,
     ) -> Result<Self, BuildError> {
         let mut indices = HashMap::new();
@@ -36,7 +36,7 @@ impl<'a> Names<'a> {
     ///
     /// # Errors
     /// No element of this kind has that name.
-    pub fn find(&self, name: &str, user: &impl Element) -> Result<usize, BuildError> {
+    pub(super) fn find(&self, name: &str, user: &impl Element) -> Result<usize, BuildError> {
         self.indices.get(name).copied().ok_or_else(|| {
             user.error(match name {
                 "" => format!("names no {}", self.kind),
@@ -62,7 +62,7 @@ impl<'a> AllNames<'a> {
     ///
     /// # Errors
     /// A name that two elements of one kind share, those included that nothing refers to.
-    pub fn new(builder: &'a ModelBuilder, order: &[usize]) -> Result<Self, BuildError> {
+    pub(super) fn new(builder: &'a ModelBuilder, order: &[usize]) -> Result<Self, BuildError> {
         let in_order = || order.iter().map(|&b| &builder.bodies[b]);
         let uses = GeomUses::of(builder);
         let kept = |geom: &&GeomSpec| !uses.is_discarded(geom);

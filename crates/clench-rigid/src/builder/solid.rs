@@ -53,7 +53,7 @@ impl Solid<'_> {
     }
 
     /// The centroid of the surface, and its area.
-    pub fn surface(&self) -> (Vec3<f64>, f64) {
+    pub(super) fn surface(&self) -> (Vec3<f64>, f64) {
         let mut sum = Vec3::ZERO;
         let mut total = 0.0;
         for triangle in self.corners().map(Triangle::of) {
@@ -64,7 +64,7 @@ impl Solid<'_> {
     }
 
     /// The centre of mass, and the volume (area of a shell), by pyramids with this apex.
-    pub fn center(&self, apex: Vec3<f64>) -> (Vec3<f64>, f64) {
+    pub(super) fn center(&self, apex: Vec3<f64>) -> (Vec3<f64>, f64) {
         let mut sum = Vec3::ZERO;
         let mut total = 0.0;
         for triangle in self.corners().map(Triangle::of) {
@@ -76,7 +76,7 @@ impl Solid<'_> {
     }
 
     /// The inertia of density one about a point, m⁵ (m⁴ of a shell), and the volume (area), by pyramids with their apex there.
-    pub fn inertia(&self, about: Vec3<f64>) -> (Mat3<f64>, f64) {
+    pub(super) fn inertia(&self, about: Vec3<f64>) -> (Mat3<f64>, f64) {
         let share = match self.spread {
             MeshInertia::Shell => 1.0 / 12.0,
             _ => 1.0 / 20.0,

@@ -14,7 +14,7 @@ pub(super) struct GeomUses<'a> {
 }
 
 impl<'a> GeomUses<'a> {
-    pub fn of(builder: &'a ModelBuilder) -> Self {
+    pub(super) fn of(builder: &'a ModelBuilder) -> Self {
         let pairs = builder.pairs.iter();
         let paths = builder.tendons.iter().flat_map(|tendon| &tendon.path);
         let tuples = builder
@@ -43,12 +43,12 @@ impl<'a> GeomUses<'a> {
     }
 
     /// Whether it can collide, by its masks or by explicit pairs.
-    pub fn collides(&self, geom: &GeomSpec) -> bool {
+    pub(super) fn collides(&self, geom: &GeomSpec) -> bool {
         geom.contype != 0 || geom.conaffinity != 0 || has(&self.paired, geom)
     }
 
     /// Whether it is left out of the model.
-    pub fn is_discarded(&self, geom: &GeomSpec) -> bool {
+    pub(super) fn is_discarded(&self, geom: &GeomSpec) -> bool {
         self.discardvisual && !self.collides(geom) && !has(&self.named, geom)
     }
 }

@@ -51,7 +51,7 @@ pub(super) struct Palette {
 
 impl Palette {
     /// That of a description.
-    pub fn new(builder: &ModelBuilder) -> Self {
+    pub(super) fn new(builder: &ModelBuilder) -> Self {
         let textures = places(builder.textures.iter().map(|texture| &texture.name));
         let material = |spec: &MaterialSpec| Material {
             texture: textures.get(&*spec.texture).copied(),
@@ -69,12 +69,12 @@ impl Palette {
     }
 
     /// What a model has before any element has its appearance.
-    pub fn visuals(&self) -> Visuals {
+    pub(super) fn visuals(&self) -> Visuals {
         self.visuals.clone()
     }
 
     /// How an element looks, its material found.
-    pub fn resolve(&self, spec: &AppearanceSpec) -> Appearance {
+    pub(super) fn resolve(&self, spec: &AppearanceSpec) -> Appearance {
         Appearance {
             rgba: spec.rgba,
             material: self.place.get(&*spec.material).copied(),

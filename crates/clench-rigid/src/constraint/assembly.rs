@@ -82,7 +82,7 @@ pub(super) struct Row<T> {
 impl<T: Real> Row<T> {
     /// A row at `pos` that is violated by `r = pos − margin` and sees the inverse inertia `a0`.
     #[inline(always)]
-    pub fn new(soft: &Softness<T>, pos: T, margin: T, a0: T) -> Self {
+    pub(super) fn new(soft: &Softness<T>, pos: T, margin: T, a0: T) -> Self {
         Row {
             pos,
             aref: -soft.stiffness * (pos - margin),
@@ -109,7 +109,7 @@ pub(super) struct Assembly<'a, T: Real> {
 impl<T: Real> Assembly<'_, T> {
     /// The dofs of the next block, to be filled in ascending order.
     #[inline(always)]
-    pub fn dofs(&mut self) -> &mut Vec<u32> {
+    pub(super) fn dofs(&mut self) -> &mut Vec<u32> {
         &mut self.record.dofs
     }
 
@@ -117,7 +117,7 @@ impl<T: Real> Assembly<'_, T> {
     /// writes its Jacobian (rows × dofs, row-major, zeros before). A single row that nothing can change is no constraint, as in
     /// MuJoCo, but for contacts: so a string that misses the only geom that moves is neither limited nor held.
     #[inline(always)]
-    pub fn push(
+    pub(super) fn push(
         &mut self,
         cost: Cost,
         mut block: BlockRecord<T>,

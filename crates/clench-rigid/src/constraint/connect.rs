@@ -50,7 +50,7 @@ pub(super) struct Anchors<T> {
 
 impl<T: Real> Anchors<T> {
     #[inline(always)]
-    pub fn new(context: &ConstraintContext<T>, frames: &Frames<T>) -> Self {
+    pub(super) fn new(context: &ConstraintContext<T>, frames: &Frames<T>) -> Self {
         let [body1, body2] = frames.bodies;
         let [world1, world2] = frames.points(context.position);
         let first = BodyPoint::new(context.model, context.position, body1, world1);
@@ -67,7 +67,7 @@ impl<T: Real> Anchors<T> {
 
     /// Rows 0 to 2 of a Jacobian: velocity of the first point less that of the second.
     #[inline(always)]
-    pub fn fill_translation(
+    pub(super) fn fill_translation(
         &self,
         context: &ConstraintContext<T>,
         chains: &Chains,

@@ -16,7 +16,7 @@ pub(super) enum Coordinate {
 impl Coordinate {
     /// Its value.
     #[inline(always)]
-    pub fn value<T: Real>(self, context: &ConstraintContext<T>) -> T {
+    pub(super) fn value<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
             Coordinate::Joint(joint) => context.state.qpos[context.model.joints[joint].qpos],
             Coordinate::Tendon(tendon) => context.position.ten_length[tendon],
@@ -25,7 +25,7 @@ impl Coordinate {
 
     /// Its value in the initial configuration.
     #[inline(always)]
-    pub fn initial<T: Real>(self, context: &ConstraintContext<T>) -> T {
+    pub(super) fn initial<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
             Coordinate::Joint(joint) => context.params.qpos0[context.model.joints[joint].qpos],
             Coordinate::Tendon(tendon) => context.params.tendon_length0[tendon],
@@ -34,7 +34,7 @@ impl Coordinate {
 
     /// The inverse inertia that it sees in the initial configuration.
     #[inline(always)]
-    pub fn inverse_weight<T: Real>(self, context: &ConstraintContext<T>) -> T {
+    pub(super) fn inverse_weight<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
             Coordinate::Joint(joint) => {
                 context.params.dof_invweight0[context.model.joints[joint].dof]
@@ -45,7 +45,7 @@ impl Coordinate {
 
     /// Adds its dofs to `dofs`, keeping them ascending and each once.
     #[inline(always)]
-    pub fn insert_dofs<T: Real>(self, context: &ConstraintContext<T>, dofs: &mut Vec<u32>) {
+    pub(super) fn insert_dofs<T: Real>(self, context: &ConstraintContext<T>, dofs: &mut Vec<u32>) {
         self.each(context, |dof, _| {
             if let Err(place) = dofs.binary_search(&dof) {
                 dofs.insert(place, dof);
@@ -55,7 +55,7 @@ impl Coordinate {
 
     /// Adds `scale` times its gradient to a Jacobian row over the dofs that [`insert_dofs`](Self::insert_dofs) left.
     #[inline(always)]
-    pub fn add_gradient<T: Real>(
+    pub(super) fn add_gradient<T: Real>(
         self,
         context: &ConstraintContext<T>,
         dofs: &[u32],
@@ -71,7 +71,11 @@ impl Coordinate {
 
     /// Shows its dofs to `visit`, each with its derivative by it.
     #[inline(always)]
-    pub fn each<T: Real>(self, context: &ConstraintContext<T>, mut visit: impl FnMut(u32, T)) {
+    pub(super) fn each<T: Real>(
+        self,
+        context: &ConstraintContext<T>,
+        mut visit: impl FnMut(u32, T),
+    ) {
         match self {
             Coordinate::Joint(joint) => visit(context.model.joints[joint].dof as u32, T::ONE),
             Coordinate::Tendon(tendon) => {

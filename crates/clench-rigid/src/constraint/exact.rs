@@ -23,7 +23,7 @@ pub(super) struct ExactDiagonal<'a, T> {
 impl<T: Real> ExactDiagonal<'_, T> {
     /// Replaces R of the rows of a block, whose impedance is `d`.
     #[inline(always)]
-    pub fn regularize(
+    pub(super) fn regularize(
         &mut self,
         cost: Cost,
         rows: &[Row<T>],

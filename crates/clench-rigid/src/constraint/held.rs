@@ -22,7 +22,7 @@ pub(crate) struct Frames<T> {
 impl<T: Real> Frames<T> {
     /// Those of an equality of the model.
     #[inline(always)]
-    pub fn of_equality(params: &Params<T>, equality: usize, bodies: [usize; 2]) -> Self {
+    pub(crate) fn of_equality(params: &Params<T>, equality: usize, bodies: [usize; 2]) -> Self {
         Frames {
             bodies,
             anchors: [params.eq_anchor1[equality], params.eq_anchor2[equality]],
@@ -33,7 +33,7 @@ impl<T: Real> Frames<T> {
 
     /// Those of a constraint that was added at run time.
     #[inline(always)]
-    pub fn of_slot(state: &State<T>, slot: usize, bodies: [usize; 2]) -> Self {
+    pub(crate) fn of_slot(state: &State<T>, slot: usize, bodies: [usize; 2]) -> Self {
         Frames {
             bodies,
             anchors: [state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]],
@@ -44,7 +44,7 @@ impl<T: Real> Frames<T> {
 
     /// The origins in world coordinates.
     #[inline(always)]
-    pub fn points(&self, pos: &Positions<T>) -> [Vec3<T>; 2] {
+    pub(crate) fn points(&self, pos: &Positions<T>) -> [Vec3<T>; 2] {
         let [body1, body2] = self.bodies;
         [
             pos.xpos[body1] + pos.xmat[body1] * self.anchors[0],
@@ -65,7 +65,7 @@ pub(super) struct Held<T: Real> {
 impl<T: Real> Held<T> {
     /// What an equality of the model holds.
     #[inline(always)]
-    pub fn by_equality(
+    pub(super) fn by_equality(
         context: &ConstraintContext<T>,
         equality: usize,
         bodies: [usize; 2],
@@ -81,7 +81,7 @@ impl<T: Real> Held<T> {
 
     /// How soft it is at a violation of this size, and the record of its block.
     #[inline(always)]
-    pub fn soften(
+    pub(super) fn soften(
         &self,
         context: &ConstraintContext<T>,
         violation: T,

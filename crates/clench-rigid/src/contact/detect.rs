@@ -282,7 +282,11 @@ fn list<T: Real>(
 
 /// The shape of a geom.
 #[inline(always)]
-pub fn shape<'a, T: Real>(model: &'a Model, params: &Params<T>, geom: usize) -> Shape<'a, T> {
+pub(crate) fn shape<'a, T: Real>(
+    model: &'a Model,
+    params: &Params<T>,
+    geom: usize,
+) -> Shape<'a, T> {
     Shape {
         kind: model.geoms[geom].kind,
         size: params.geom_size[geom],

@@ -66,7 +66,7 @@ fn mobility(model: &Model, geom: &Geom) -> Mobility {
 }
 
 impl<T: Real> DynamicBroadPhase<T> {
-    pub fn new(model: &Model) -> Self {
+    pub(super) fn new(model: &Model) -> Self {
         let mobility = Vec::from_iter(model.geoms.iter().map(|geom| mobility(model, geom)));
         let is_static = |&geom: &usize| mobility[geom] == Mobility::Static;
         DynamicBroadPhase {

@@ -18,7 +18,7 @@ pub(crate) struct Frames<'a, T: Real> {
 impl<'a, T: Real> Frames<'a, T> {
     /// Those of the configuration that geoms are in.
     #[inline(always)]
-    pub fn of(geoms: Geoms<'a, T>) -> Self {
+    pub(crate) fn of(geoms: Geoms<'a, T>) -> Self {
         Frames {
             model: geoms.model,
             params: geoms.params,
@@ -28,7 +28,7 @@ impl<'a, T: Real> Frames<'a, T> {
 
     /// Where an object is.
     #[inline(always)]
-    pub fn position(&self, object: FrameObject) -> Vec3<T> {
+    pub(crate) fn position(&self, object: FrameObject) -> Vec3<T> {
         match object {
             FrameObject::Inertial(body) => self.pos.xipos[body],
             FrameObject::Body(body) => self.pos.xpos[body],
@@ -40,7 +40,7 @@ impl<'a, T: Real> Frames<'a, T> {
 
     /// Its axes as columns.
     #[inline(always)]
-    pub fn rotation(&self, object: FrameObject) -> Mat3<T> {
+    pub(crate) fn rotation(&self, object: FrameObject) -> Mat3<T> {
         match object {
             FrameObject::Inertial(body) => self.pos.ximat[body],
             FrameObject::Body(body) => self.pos.xmat[body],
@@ -52,7 +52,7 @@ impl<'a, T: Real> Frames<'a, T> {
 
     /// Its orientation, with the sign that its body's has.
     #[inline(always)]
-    pub fn orientation(&self, object: FrameObject) -> Quat<T> {
+    pub(crate) fn orientation(&self, object: FrameObject) -> Quat<T> {
         let (body, params) = (self.pos.xquat[object.body(self.model)], self.params);
         match object {
             FrameObject::Inertial(b) => body * params.body_iquat[b],
@@ -70,14 +70,14 @@ impl<'a, T: Real> Frames<'a, T> {
 
     /// The body point at an object's position.
     #[inline(always)]
-    pub fn point(&self, object: FrameObject) -> BodyPoint<T> {
+    pub(crate) fn point(&self, object: FrameObject) -> BodyPoint<T> {
         let body = object.body(self.model);
         BodyPoint::new(self.model, self.pos, body, self.position(object))
     }
 
     /// The velocity of the body point at an object's position, world axes.
     #[inline(always)]
-    pub fn velocity(&self, object: FrameObject, vel: &Velocities<T>) -> Motion<T> {
+    pub(crate) fn velocity(&self, object: FrameObject, vel: &Velocities<T>) -> Motion<T> {
         let point = self.point(object);
         let cvel = vel.cvel[point.body];
         Motion::new(cvel.angular, cvel.velocity_at(point.offset))
@@ -87,7 +87,7 @@ impl<'a, T: Real> Frames<'a, T> {
     /// accelerations of bodies. A spatial acceleration holds the velocity field's change at a fixed place; the point also moves,
     /// which adds ω × v.
     #[inline(always)]
-    pub fn acceleration(
+    pub(crate) fn acceleration(
         &self,
         object: FrameObject,
         vel: &Velocities<T>,

@@ -9,7 +9,7 @@ use clench_math::{Quat, Real, Vec3, kernel};
 
 /// A, g, and what they say of the present place. `n` is the number of dofs that are solved for.
 #[derive(Clone, Debug, Default)]
-pub struct Equations<T> {
+pub(super) struct Equations<T> {
     /// Lower triangle, row after row (n (n + 1) / 2).
     pub matrix: Vec<T>,
     /// g (n).
@@ -22,13 +22,13 @@ pub struct Equations<T> {
 
 /// Room that building takes (6 × nv, nv).
 #[derive(Clone, Debug)]
-pub struct Scratch<T> {
+pub(super) struct Scratch<T> {
     jacobian: Vec<T>,
     velocity: Vec<T>,
 }
 
 impl<T: Real> Scratch<T> {
-    pub fn new(model: &Model) -> Self {
+    pub(super) fn new(model: &Model) -> Self {
         Scratch {
             jacobian: vec![T::ZERO; 6 * model.nv],
             velocity: vec![T::ZERO; model.nv],
@@ -38,12 +38,12 @@ impl<T: Real> Scratch<T> {
 
 /// Where row `i` of a lower triangle begins.
 #[inline(always)]
-pub fn row_start(i: usize) -> usize {
+pub(super) fn row_start(i: usize) -> usize {
     i * (i + 1) / 2
 }
 
 impl<T: Real> Equations<T> {
-    pub fn new(ik: &Ik) -> Self {
+    pub(super) fn new(ik: &Ik) -> Self {
         let n = ik.dofs.len();
         Equations {
             matrix: vec![T::ZERO; row_start(n)],

@@ -54,7 +54,7 @@ pub(super) enum FlatMut<'a, T> {
 }
 
 impl<T: Real> Flat<'_, T> {
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         match self {
             Flat::Numbers(x) => x.len(),
             Flat::Vectors(v) => 3 * v.len(),
@@ -63,7 +63,7 @@ impl<T: Real> Flat<'_, T> {
     }
 
     /// The numbers of lane `lane`.
-    pub fn read_lane(&self, lane: usize) -> Vec<T::Scalar> {
+    pub(super) fn read_lane(&self, lane: usize) -> Vec<T::Scalar> {
         let read = |x: T| x.lane(lane);
         match self {
             Flat::Numbers(x) => x.iter().map(|&x| read(x)).collect(),
@@ -75,7 +75,7 @@ impl<T: Real> Flat<'_, T> {
 
 impl<T: Real> FlatMut<'_, T> {
     /// Replaces the numbers of lane `lane`; `row` has as many.
-    pub fn write_lane(self, lane: usize, row: &[T::Scalar]) {
+    pub(super) fn write_lane(self, lane: usize, row: &[T::Scalar]) {
         match self {
             FlatMut::Numbers(x) => write_lane(row, lane, x),
             FlatMut::Vectors(v) => write_vectors(row, lane, v),

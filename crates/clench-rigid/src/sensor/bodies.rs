@@ -22,7 +22,7 @@ pub(crate) struct BodyForces<T> {
 }
 
 impl<T: Real> BodyForces<T> {
-    pub fn new(model: &Model) -> Self {
+    pub(crate) fn new(model: &Model) -> Self {
         let mut bodies = BodyForces::default();
         if model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {
             bodies.make_room(model.nbody());

@@ -42,7 +42,7 @@ pub(crate) struct Totals<T: Real> {
 
 impl<T: Real> Totals<T> {
     #[inline(always)]
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Totals {
             cost: T::ZERO,
             changes: T::ZERO,
@@ -52,7 +52,7 @@ impl<T: Real> Totals<T> {
 
     /// Records the piece that a row or edge is on now.
     #[inline(always)]
-    pub fn mark(&mut self, piece: &mut T, now: T) {
+    pub(crate) fn mark(&mut self, piece: &mut T, now: T) {
         self.changes += T::select(piece.eq(now), T::ZERO, T::ONE);
         *piece = now;
     }

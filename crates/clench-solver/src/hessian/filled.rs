@@ -20,7 +20,7 @@ pub(super) struct FilledForm<T> {
 
 impl<T: Real> FilledForm<T> {
     /// Fits the pattern to that of M with couplings. False where it would have more than `most` entries.
-    pub fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
+    pub(super) fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
         if !self.pattern.analyse(tree, couplings, most) {
             return false;
         }
@@ -31,18 +31,18 @@ impl<T: Real> FilledForm<T> {
     }
 
     /// How much more arithmetic whole paths would take.
-    pub fn saves(&mut self) -> f64 {
+    pub(super) fn saves(&mut self) -> f64 {
         self.pattern.cost_of_paths() / self.pattern.cost()
     }
 
     /// Number of entries.
-    pub fn nnz(&self) -> usize {
+    pub(super) fn nnz(&self) -> usize {
         self.pattern.nnz()
     }
 
     /// See [`Hessian::factor`](super::Hessian::factor).
     #[inline(always)]
-    pub fn factor(
+    pub(super) fn factor(
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
@@ -85,7 +85,7 @@ impl<T: Real> FilledForm<T> {
 
     /// `x ← H⁻¹ x`.
     #[inline(always)]
-    pub fn solve(&mut self, x: &mut [T]) {
+    pub(super) fn solve(&mut self, x: &mut [T]) {
         self.factor.solve(&self.pattern, x);
     }
 }

@@ -37,7 +37,7 @@ const WORTH_FILLED: f64 = 2.0;
 
 impl<T: Real> Hessian<T> {
     /// Fits the pattern to a problem. False where it would have more than `most` entries.
-    pub fn prepare(&mut self, problem: &Problem<T>, dense: bool, most: usize) -> bool {
+    pub(crate) fn prepare(&mut self, problem: &Problem<T>, dense: bool, most: usize) -> bool {
         let tree = problem.tree();
         self.found.clear();
         if !dense {
@@ -85,7 +85,7 @@ impl<T: Real> Hessian<T> {
 
     /// Factors H = M + Jᵀ W J in the lanes of `mask`. `weigh` writes the Hessian block of a constraint.
     #[inline(always)]
-    pub fn factor(
+    pub(crate) fn factor(
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
@@ -100,7 +100,12 @@ impl<T: Real> Hessian<T> {
     }
 
     /// Applies a rank-one change of a block's Hessian. False in lanes whose factor it spoils.
-    pub fn update(&mut self, problem: &Problem<T>, b: &BlockIndex, change: RankOne<T>) -> T::Mask {
+    pub(crate) fn update(
+        &mut self,
+        problem: &Problem<T>,
+        b: &BlockIndex,
+        change: RankOne<T>,
+    ) -> T::Mask {
         if self.is_filled {
             self.filled.update(problem, b, change)
         } else {
@@ -110,7 +115,7 @@ impl<T: Real> Hessian<T> {
 
     /// `x ← H⁻¹ x`.
     #[inline(always)]
-    pub fn solve(&mut self, x: &mut [T]) {
+    pub(crate) fn solve(&mut self, x: &mut [T]) {
         if self.is_filled {
             self.filled.solve(x);
         } else {

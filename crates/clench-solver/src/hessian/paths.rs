@@ -22,7 +22,7 @@ pub(super) struct PathForm<T> {
 
 impl<T: Real> PathForm<T> {
     /// Fits the tree to that of M with couplings. False where it would have more than `most` entries.
-    pub fn rebuild(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
+    pub(super) fn rebuild(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
         if !(self.tree).rebuild_coupled(tree, couplings, most, &mut self.scratch) {
             return false;
         }
@@ -33,13 +33,13 @@ impl<T: Real> PathForm<T> {
     }
 
     /// Number of entries.
-    pub fn nnz(&self) -> usize {
+    pub(super) fn nnz(&self) -> usize {
         self.tree.nnz()
     }
 
     /// See [`Hessian::factor`](super::Hessian::factor).
     #[inline(always)]
-    pub fn factor(
+    pub(super) fn factor(
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
@@ -98,7 +98,7 @@ impl<T: Real> PathForm<T> {
 
     /// `x ← H⁻¹ x`.
     #[inline(always)]
-    pub fn solve(&self, x: &mut [T]) {
+    pub(super) fn solve(&self, x: &mut [T]) {
         self.factor.solve(&self.tree, x);
     }
 }

@@ -25,7 +25,7 @@ pub(crate) struct SparseFactor<T> {
 
 impl<T: Real> SparseFactor<T> {
     /// Becomes the zero matrix over `pattern`.
-    pub fn clear(&mut self, pattern: &SparsePattern) {
+    pub(crate) fn clear(&mut self, pattern: &SparsePattern) {
         self.values.clear();
         self.values.resize(pattern.nnz(), T::ZERO);
         for v in [&mut self.diagonal, &mut self.inverse] {
@@ -34,7 +34,7 @@ impl<T: Real> SparseFactor<T> {
     }
 
     /// The matrix, to be written before it is factored.
-    pub fn values_mut(&mut self) -> &mut [T] {
+    pub(crate) fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
 
@@ -53,7 +53,7 @@ impl<T: Real> SparseFactor<T> {
     }
 
     /// Factors the matrix; a pivot that rounding has consumed is replaced by the diagonal it came from.
-    pub fn factor_safely(&mut self, pattern: &SparsePattern) {
+    pub(crate) fn factor_safely(&mut self, pattern: &SparsePattern) {
         // Its tiles have columns enough to fill registers with, even of a single environment.
         T::vectorize_rows(
             #[inline(always)]

@@ -42,17 +42,17 @@ pub(crate) struct Supernode {
 impl Supernode {
     /// How many columns are left of its own.
     #[inline(always)]
-    pub fn shared(&self) -> usize {
+    pub(crate) fn shared(&self) -> usize {
         self.columns.len()
     }
     /// The stored length of its rows.
     #[inline(always)]
-    pub fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.shared() + self.len
     }
     /// Where its block lies among the values.
     #[inline(always)]
-    pub fn block(&self) -> Range<usize> {
+    pub(crate) fn block(&self) -> Range<usize> {
         self.start..self.start + self.len * self.width()
     }
 }
@@ -85,7 +85,7 @@ struct Scratch {
 impl SparsePattern {
     /// Analyses the pattern of M over `tree` with `couplings` (each a count, then ascending dofs) coupled as well. False where it
     /// would have more than `most` entries.
-    pub fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
+    pub(crate) fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
         let nv = tree.nv();
         self.supernodes.clear();
         self.supernode_of.clear();
@@ -201,31 +201,31 @@ impl SparsePattern {
     }
 
     /// Number of stored values.
-    pub fn nnz(&self) -> usize {
+    pub(crate) fn nnz(&self) -> usize {
         self.nnz
     }
     /// Number of dofs.
-    pub fn nv(&self) -> usize {
+    pub(crate) fn nv(&self) -> usize {
         self.supernode_of.len()
     }
     /// In the order of elimination.
     #[inline(always)]
-    pub fn supernodes(&self) -> &[Supernode] {
+    pub(crate) fn supernodes(&self) -> &[Supernode] {
         &self.supernodes
     }
     /// The supernode of a dof.
     #[inline(always)]
-    pub fn supernode_of(&self, dof: usize) -> &Supernode {
+    pub(crate) fn supernode_of(&self, dof: usize) -> &Supernode {
         &self.supernodes[self.supernode_of[dof] as usize]
     }
     /// The columns left of a supernode's own, ascending.
     #[inline(always)]
-    pub fn columns(&self, supernode: &Supernode) -> &[u32] {
+    pub(crate) fn columns(&self, supernode: &Supernode) -> &[u32] {
         &self.columns[supernode.columns.clone()]
     }
     /// The same in runs.
     #[inline(always)]
-    pub fn runs(&self, supernode: &Supernode) -> &[Run] {
+    pub(crate) fn runs(&self, supernode: &Supernode) -> &[Run] {
         &self.runs[supernode.runs.clone()]
     }
 
@@ -241,13 +241,13 @@ impl SparsePattern {
     }
 
     /// Multiplications of a factorization, about.
-    pub fn cost(&self) -> f64 {
+    pub(crate) fn cost(&self) -> f64 {
         let of = |s: &Supernode| s.len as f64 * (s.width() as f64).powi(2) / 2.0;
         self.supernodes.iter().map(of).sum()
     }
 
     /// Those of a factorization that stores the paths of the elimination tree whole.
-    pub fn cost_of_paths(&mut self) -> f64 {
+    pub(crate) fn cost_of_paths(&mut self) -> f64 {
         let depths = &mut self.scratch.found;
         let mut cost = 0.0;
         for s in self.supernodes.iter().rev() {

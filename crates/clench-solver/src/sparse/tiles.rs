@@ -31,7 +31,7 @@ impl<T: Real> Tiles<'_, T> {
     /// Subtracts from some rows, up to their diagonal, what the supernode takes off. Right of the diagonal, where nothing is stored, the block
     /// of `rows.target` takes numbers that nobody reads.
     #[inline(always)]
-    pub fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
+    pub(super) fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
         let last = rows.place + rows.dofs.len();
         let mut candidates = target_runs.iter();
         let mut candidate = candidates.next();

@@ -35,7 +35,7 @@ pub(super) struct Body<'a, S> {
 
 impl<'a, S: Scalar> Body<'a, S> {
     /// The body of a bounded convex shape; a point for any other.
-    pub fn new(shape: &Shape<'a, S>) -> Self {
+    pub(super) fn new(shape: &Shape<'a, S>) -> Self {
         let size = shape.size;
         let radius = match shape.kind {
             ShapeKind::Sphere | ShapeKind::Capsule => size.x,
@@ -60,7 +60,7 @@ impl<'a, S: Scalar> Body<'a, S> {
     }
 
     /// One triangle of a height field.
-    pub fn of_prism(prism: &'a Prism<S>) -> Self {
+    pub(super) fn of_prism(prism: &'a Prism<S>) -> Self {
         Body {
             kind: ShapeKind::HeightField,
             size: Vec3::ZERO,
@@ -72,12 +72,12 @@ impl<'a, S: Scalar> Body<'a, S> {
     }
 
     /// Whether the core is but the origin.
-    pub fn is_point(&self) -> bool {
+    pub(super) fn is_point(&self) -> bool {
         self.kind == ShapeKind::Sphere
     }
 
     /// The point of the core that is nearest to a point, for the kinds whose size gives it in closed form.
-    pub fn nearest(&self, point: impl FnOnce() -> Vec3<S>) -> Option<Vec3<S>> {
+    pub(super) fn nearest(&self, point: impl FnOnce() -> Vec3<S>) -> Option<Vec3<S>> {
         let s = self.size;
         let within = |x: S, half: S| x.clamp(-half, half);
         match self.kind {
@@ -101,14 +101,14 @@ impl<'a, S: Scalar> Body<'a, S> {
     }
 
     /// Whether the core has curved parts.
-    pub fn curved(&self) -> bool {
+    pub(super) fn curved(&self) -> bool {
         matches!(self.kind, ShapeKind::Ellipsoid | ShapeKind::Cylinder)
     }
 
     /// The point of the core that is furthest along `d`, a direction of any length. Of several corners or ends that are, the one further
     /// along `side`, which is `d` or next to it.
     #[inline]
-    pub fn support(&self, d: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
+    pub(super) fn support(&self, d: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
         let s = self.size;
         match self.kind {
             ShapeKind::Capsule => Vec3::new(S::ZERO, S::ZERO, s.y.copysign(side.z)),
@@ -135,7 +135,7 @@ impl<'a, S: Scalar> Body<'a, S> {
 
     /// The vertex of the hull that is furthest along `d`, with its number.
     #[inline]
-    pub fn vertex(&self, d: Vec3<S>) -> Option<(usize, Vec3<S>)> {
+    pub(super) fn vertex(&self, d: Vec3<S>) -> Option<(usize, Vec3<S>)> {
         let hull = self.hull?;
         let vertex = hull.support(Vec3::from_array(d.to_array().map(S::to_f64)));
         Some((vertex, Vec3::from_f64(hull.vertices()[vertex].to_array())))
@@ -143,7 +143,7 @@ impl<'a, S: Scalar> Body<'a, S> {
 
     /// The Hessian of the core's support function at the unit direction `d`.
     #[inline]
-    pub fn curvature(&self, d: Vec3<S>) -> Curvature<S> {
+    pub(super) fn curvature(&self, d: Vec3<S>) -> Curvature<S> {
         let s = self.size;
         match self.kind {
             ShapeKind::Ellipsoid => {
@@ -172,7 +172,7 @@ impl<'a, S: Scalar> Body<'a, S> {
     /// Of a point of the core, the part that jumps where the support function has a crease: the corner of a box, the end of
     /// a segment or of a cylinder's axis. Edges and faces are spanned by differences of these.
     #[inline]
-    pub fn corner(&self, point: Vec3<S>) -> Vec3<S> {
+    pub(super) fn corner(&self, point: Vec3<S>) -> Vec3<S> {
         match self.kind {
             ShapeKind::Ellipsoid => Vec3::ZERO,
             ShapeKind::Cylinder => Vec3::new(S::ZERO, S::ZERO, point.z),
@@ -181,12 +181,12 @@ impl<'a, S: Scalar> Body<'a, S> {
     }
 
     /// The radius of the flat round cap across the z axis, if the body has one.
-    pub fn cap(&self) -> Option<S> {
+    pub(super) fn cap(&self) -> Option<S> {
         (self.kind == ShapeKind::Cylinder).then_some(self.size.x)
     }
 
     /// The axes along which it has straight edges. None are told of a hull.
-    pub fn edge_axes(&self) -> &'static [usize] {
+    pub(super) fn edge_axes(&self) -> &'static [usize] {
         match self.kind {
             ShapeKind::Box => &[0, 1, 2],
             ShapeKind::Cylinder | ShapeKind::Capsule => &[2],
@@ -194,7 +194,7 @@ impl<'a, S: Scalar> Body<'a, S> {
         }
     }
     /// The axes across which it has flat faces. None are told of a hull.
-    pub fn face_axes(&self) -> &'static [usize] {
+    pub(super) fn face_axes(&self) -> &'static [usize] {
         match self.kind {
             ShapeKind::Box => &[0, 1, 2],
             ShapeKind::Cylinder => &[2],
@@ -202,13 +202,13 @@ impl<'a, S: Scalar> Body<'a, S> {
         }
     }
 
-    pub fn kind(&self) -> ShapeKind {
+    pub(super) fn kind(&self) -> ShapeKind {
         self.kind
     }
-    pub fn size(&self) -> Vec3<S> {
+    pub(super) fn size(&self) -> Vec3<S> {
         self.size
     }
-    pub fn prism(&self) -> Option<&'a Prism<S>> {
+    pub(super) fn prism(&self) -> Option<&'a Prism<S>> {
         self.prism
     }
 }
@@ -235,7 +235,7 @@ impl<S: Scalar> Curvature<S> {
 
     /// The matrix between two vectors, uᵀ H v.
     #[inline]
-    pub fn between(&self, u: Vec3<S>, v: Vec3<S>) -> S {
+    pub(super) fn between(&self, u: Vec3<S>, v: Vec3<S>) -> S {
         let bend = u.scale_by(self.diagonal).dot(v) - self.flat.dot(u) * self.flat.dot(v);
         self.share * bend - self.radius * u.dot(v)
     }

@@ -34,7 +34,7 @@ struct Disc<S> {
 impl<S: Scalar> ProjectedFeature<S> {
     /// A feature whose body has this origin and these axes in the projection; `below` if the normal points out of its body, which
     /// turns the order of corners round.
-    pub fn new(feature: &Feature<S>, origin: Vec3<S>, axes: &Mat3<S>, below: bool) -> Self {
+    pub(super) fn new(feature: &Feature<S>, origin: Vec3<S>, axes: &Mat3<S>, below: bool) -> Self {
         let mut corners = ArrayVec::new();
         let place = |corner: &Vec3<S>| origin + *axes * *corner;
         if below {
@@ -72,30 +72,30 @@ impl<S: Scalar> ProjectedFeature<S> {
     }
 
     /// Whether it is a round cap.
-    pub fn is_cap(&self) -> bool {
+    pub(super) fn is_cap(&self) -> bool {
         self.disc.is_some()
     }
 
     /// From the middle of a round cap to its first corner.
-    pub fn cap_direction(&self) -> Option<Vec3<S>> {
+    pub(super) fn cap_direction(&self) -> Option<Vec3<S>> {
         self.disc.as_ref().map(|disc| disc.first)
     }
 
     /// A direction that turns with the body: to the first corner of a round cap, along the first edge of any other face.
-    pub fn direction(&self) -> Vec3<S> {
+    pub(super) fn direction(&self) -> Vec3<S> {
         let along_edge = || self.corners[1] - self.corners[0];
         self.cap_direction().unwrap_or_else(along_edge)
     }
 
     /// The height of the feature's plane at a point of the projection.
-    pub fn height(&self, p: Vec3<S>) -> S {
+    pub(super) fn height(&self, p: Vec3<S>) -> S {
         let origin = self.corners[0];
         origin.z + self.slope.0 * (p.x - origin.x) + self.slope.1 * (p.y - origin.y)
     }
 
     /// Fills `over` with where this and another overlap in the projection, or are at most `slack` m from it: the corners of a polygon,
     /// the ends of a segment, or a point. The heights of these are open.
-    pub fn overlap(&self, other: &ProjectedFeature<S>, slack: S, over: &mut Polygon<S>) {
+    pub(super) fn overlap(&self, other: &ProjectedFeature<S>, slack: S, over: &mut Polygon<S>) {
         over.clear();
         if let (&[p, p_end], &[q, q_end]) = (&self.corners[..], &other.corners[..])
             && !parallel(p_end - p, q_end - q)

@@ -24,7 +24,7 @@ pub(super) struct Ellipse<S> {
 
 impl<S: Scalar> Ellipse<S> {
     /// Of a circle across an axis at an angle to the line of sight that has this cosine and this sine.
-    pub fn new(cosine: S, sine: S) -> Self {
+    pub(super) fn new(cosine: S, sine: S) -> Self {
         Ellipse {
             minor: cosine,
             square: sine * sine,
@@ -34,7 +34,7 @@ impl<S: Scalar> Ellipse<S> {
     /// The unit normal in the first quarter that goes through a point with x ≥ 0 and along which the gap between ellipse and point
     /// is the largest around, if there is one.
     #[inline]
-    pub fn normal_through(&self, (x, y): (S, S)) -> Option<(S, S)> {
+    pub(super) fn normal_through(&self, (x, y): (S, S)) -> Option<(S, S)> {
         let (square, height) = (self.square, self.minor * y);
         // The first step, from the y axis.
         let (mut cos, mut sin) = (x, square + height);

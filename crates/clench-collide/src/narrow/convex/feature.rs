@@ -28,7 +28,7 @@ pub(super) struct Feature<S> {
 impl<S: Scalar> Feature<S> {
     /// The feature of a body that is furthest along the unit direction `d`, in the body's frame. Its corners come in an order that
     /// depends on the feature alone.
-    pub fn new(body: &Body<S>, d: Vec3<S>) -> Self {
+    pub(super) fn new(body: &Body<S>, d: Vec3<S>) -> Self {
         let mut feature = Feature {
             corners: ArrayVec::new(),
             normal: d,

@@ -13,7 +13,7 @@ pub(super) struct LargestGap<S> {
 
 impl<S: Scalar> LargestGap<S> {
     /// No gap as yet, and any direction.
-    pub fn new(tolerance: S) -> Self {
+    pub(super) fn new(tolerance: S) -> Self {
         LargestGap {
             gap: -S::INFINITY,
             normal: Vec3::new(S::ZERO, S::ZERO, S::ONE),
@@ -24,7 +24,7 @@ impl<S: Scalar> LargestGap<S> {
 
     /// Takes a better direction.
     #[inline]
-    pub fn offer(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
+    pub(super) fn offer(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
         if gap > self.bar {
             (self.gap, self.normal) = (gap, normal());
             self.bar = gap + self.tolerance;
@@ -33,7 +33,7 @@ impl<S: Scalar> LargestGap<S> {
 
     /// The penetration depth that another direction must undercut to be taken.
     #[inline]
-    pub fn depth(&self) -> S {
+    pub(super) fn depth(&self) -> S {
         (-self.bar).max(S::ZERO)
     }
 }

@@ -48,7 +48,7 @@ pub(super) struct Gap<S> {
 
 impl<S: Scalar> Gap<S> {
     /// Takes the other if its gap is larger; between equals, to the tolerance, a settled one. Whether it did.
-    pub fn improve(&mut self, other: Gap<S>, tolerance: S) -> bool {
+    pub(super) fn improve(&mut self, other: Gap<S>, tolerance: S) -> bool {
         let handicap = match (self.settled, other.settled) {
             (true, false) => tolerance,
             (false, true) => -tolerance,
@@ -64,7 +64,7 @@ impl<S: Scalar> Gap<S> {
 
 impl<'a, S: Scalar> Pair<'a, S> {
     /// In the frame of the first; that of a sphere is upright, however it is turned.
-    pub fn new(a: Placed<'a, S>, b: Placed<'a, S>) -> Self {
+    pub(super) fn new(a: Placed<'a, S>, b: Placed<'a, S>) -> Self {
         let (body_a, body_b) = (Body::new(a.shape), Body::new(b.shape));
         let (rotation, offset) = if body_a.is_point() {
             (b.pose.rotation, b.pose.position - a.pose.position)
@@ -76,7 +76,12 @@ impl<'a, S: Scalar> Pair<'a, S> {
     }
 
     /// Two bodies, the second where its axes and its origin are in the frame of the first.
-    pub fn between(a: Body<'a, S>, b: Body<'a, S>, rotation: Mat3<S>, offset: Vec3<S>) -> Self {
+    pub(super) fn between(
+        a: Body<'a, S>,
+        b: Body<'a, S>,
+        rotation: Mat3<S>,
+        offset: Vec3<S>,
+    ) -> Self {
         let smallest = Real::min(a.bounding_radius, b.bounding_radius);
         let [x, y, z] = offset.to_array().map(S::abs);
         let largest = a.bounding_radius + b.bounding_radius + x + y + z;
@@ -94,7 +99,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
     }
 
     /// The direction between points of the cores that are near to each other.
-    pub fn start(&self) -> Vec3<S> {
+    pub(super) fn start(&self) -> Vec3<S> {
         let from = self.a.nearest(|| self.offset).unwrap_or(Vec3::ZERO);
         let beside = || self.rotation.transpose_mul(from - self.offset);
         let to = match self.b.nearest(beside) {
@@ -111,14 +116,14 @@ impl<'a, S: Scalar> Pair<'a, S> {
 
     /// The vertex w(n), n being of any length.
     #[inline]
-    pub fn vertex(&self, normal: Vec3<S>) -> Vertex<S> {
+    pub(super) fn vertex(&self, normal: Vec3<S>) -> Vertex<S> {
         let local = -self.rotation.transpose_mul(normal);
         self.difference(self.a.support(normal, normal), self.b.support(local, local))
     }
 
     /// Of the vertices w(n) where there are several, the one furthest against `side`, which is next to n.
     #[inline]
-    pub fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
+    pub(super) fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
         let local = |v| -self.rotation.transpose_mul(v);
         let b = self.b.support(local(normal), local(side));
         self.difference(self.a.support(normal, side), b)
@@ -132,7 +137,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
 
     /// The gap g(n).
     #[inline]
-    pub fn gap(&self, normal: Vec3<S>) -> Gap<S> {
+    pub(super) fn gap(&self, normal: Vec3<S>) -> Gap<S> {
         Gap {
             normal,
             gap: normal.dot(self.vertex(normal).w),
@@ -142,7 +147,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
 
     /// Directions across two creases of the gap, from the first body to the second: the normals of flat faces, and what is
     /// across an edge of each body. Of hulls there would be too many.
-    pub fn crossings(&self) -> ArrayVec<Vec3<S>, 15> {
+    pub(super) fn crossings(&self) -> ArrayVec<Vec3<S>, 15> {
         let (own, other) = (Mat3::IDENTITY, self.rotation);
         let mut found = ArrayVec::new();
         let mut add = |direction: Vec3<S>| {
@@ -168,7 +173,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
 
     /// uᵀ (H_A + H_B) v at a direction, for each of some pairs of vectors u, v across it.
     #[inline]
-    pub fn curvature<const N: usize>(
+    pub(super) fn curvature<const N: usize>(
         &self,
         normal: Vec3<S>,
         vectors: [(Vec3<S>, Vec3<S>); N],

@@ -62,7 +62,7 @@ pub(super) struct Polytope<S> {
 impl<S: Scalar> Polytope<S> {
     /// Nothing yet.
     #[inline(always)]
-    pub fn empty(pair: &Pair<S>) -> Self {
+    pub(super) fn empty(pair: &Pair<S>) -> Self {
         let same = (pair.smallest * S::new(SAME)).max(pair.tolerance);
         Polytope {
             vertices: ArrayVec::new_const(),
@@ -77,7 +77,7 @@ impl<S: Scalar> Polytope<S> {
     }
 
     /// Begins with a tetrahedron that has a volume.
-    pub fn begin(&mut self, [a, b, c, d]: &[Vertex<S>; 4]) {
+    pub(super) fn begin(&mut self, [a, b, c, d]: &[Vertex<S>; 4]) {
         self.middle = (a.w + b.w + c.w + d.w) * S::new(0.25);
         let volume = (b.w - a.w).cross(c.w - a.w).dot(d.w - a.w);
         let (b, c) = if volume > S::ZERO { (c, b) } else { (b, c) };
@@ -130,7 +130,7 @@ impl<S: Scalar> Polytope<S> {
     }
 
     /// The face nearest to the origin of those that may still be moved, and its distance, infinite if there is none.
-    pub fn nearest(&self) -> (usize, S) {
+    pub(super) fn nearest(&self) -> (usize, S) {
         let mut nearest = (0, S::INFINITY);
         for (k, &distance) in self.distances.iter().enumerate() {
             if distance < nearest.1 {
@@ -141,29 +141,29 @@ impl<S: Scalar> Polytope<S> {
     }
 
     /// The outward unit vector of a face.
-    pub fn normal(&self, face: usize) -> Vec3<S> {
+    pub(super) fn normal(&self, face: usize) -> Vec3<S> {
         self.faces[face].normal
     }
     /// Closes a face: it is part of the boundary of the difference and is not expanded again.
-    pub fn close(&mut self, face: usize) {
+    pub(super) fn close(&mut self, face: usize) {
         self.distances[face] = S::INFINITY;
     }
     /// Whether there is no room for another vertex.
-    pub fn is_full(&self) -> bool {
+    pub(super) fn is_full(&self) -> bool {
         self.vertices.is_full()
     }
     /// The corners of a face, as numbers of vertices, which stay.
-    pub fn corners(&self, face: usize) -> [u8; 3] {
+    pub(super) fn corners(&self, face: usize) -> [u8; 3] {
         self.faces[face].corners
     }
     /// Vertices by their numbers.
-    pub fn vertices(&self, numbers: [u8; 3]) -> [Vertex<S>; 3] {
+    pub(super) fn vertices(&self, numbers: [u8; 3]) -> [Vertex<S>; 3] {
         numbers.map(|k| self.vertices[k as usize])
     }
 
     /// Replaces the faces that see a vertex by faces to it; `visible` is one of them. Nothing happens, and the answer is no,
     /// if the vertex is one of theirs or rounding has broken the horizon.
-    pub fn add(&mut self, visible: usize, vertex: &Vertex<S>) -> bool {
+    pub(super) fn add(&mut self, visible: usize, vertex: &Vertex<S>) -> bool {
         let from = |k: u8| (self.vertices[k as usize].w - vertex.w).norm_squared();
         let corners = self.faces[visible].corners;
         if self.is_full() || corners.into_iter().any(|k| from(k) <= self.same) {

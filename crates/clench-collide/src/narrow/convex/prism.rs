@@ -44,7 +44,7 @@ const NEIGHBORS: [[usize; 3]; 6] = [
 
 impl<S: Scalar> Prism<S> {
     /// The prism between a triangle and the horizontal plane at `bottom`.
-    pub fn new(top: [Vec3<S>; 3], bottom: S) -> Self {
+    pub(super) fn new(top: [Vec3<S>; 3], bottom: S) -> Self {
         let [p, q, r] = top;
         let below = |v: Vec3<S>| Vec3::new(v.x, v.y, bottom);
         Prism {
@@ -53,12 +53,12 @@ impl<S: Scalar> Prism<S> {
     }
 
     /// The three on top and those below them.
-    pub fn corners(&self) -> &[Vec3<S>; 6] {
+    pub(super) fn corners(&self) -> &[Vec3<S>; 6] {
         &self.corners
     }
 
     /// The outward unit normals of its faces.
-    pub fn normals(&self) -> [Vec3<S>; 5] {
+    pub(super) fn normals(&self) -> [Vec3<S>; 5] {
         let [p, q, r, ..] = self.corners;
         let wall = |from: Vec3<S>, to: Vec3<S>| {
             let outward = Vec3::new(to.y - from.y, from.x - to.x, S::ZERO);
@@ -74,7 +74,7 @@ impl<S: Scalar> Prism<S> {
     }
 
     /// The radius of a sphere about the origin that holds it, m.
-    pub fn bounding_radius(&self) -> S {
+    pub(super) fn bounding_radius(&self) -> S {
         let most = |along: [S; 4]| along.into_iter().fold(S::ZERO, |most, x| most.max(x.abs()));
         let [p, q, r, below, ..] = self.corners;
         let [x, y] = [[p.x, q.x, r.x, p.x], [p.y, q.y, r.y, p.y]].map(most);
@@ -97,12 +97,12 @@ impl<S: Scalar> Prism<S> {
 
     /// The corner that is furthest along `d`.
     #[inline]
-    pub fn support(&self, d: Vec3<S>) -> Vec3<S> {
+    pub(super) fn support(&self, d: Vec3<S>) -> Vec3<S> {
         self.corners[self.furthest(d)]
     }
 
     /// The face, edge or corner that lies against a plane across `d`.
-    pub fn feature(&self, d: Vec3<S>, feature: &mut Feature<S>) {
+    pub(super) fn feature(&self, d: Vec3<S>, feature: &mut Feature<S>) {
         // A cosine as the squares of two lengths that it is the quotient of.
         let mut best = (S::new(FACE_COSINE).squared(), S::ONE, None);
         // A direction that rises this steeply can be the normal of the top alone.

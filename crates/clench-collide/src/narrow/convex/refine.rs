@@ -32,7 +32,7 @@ pub(super) struct ActiveEdges<S> {
 
 impl<S: Scalar> ActiveEdges<S> {
     /// The span of the edges between the corners that some vertices are made of.
-    pub fn of(pair: &Pair<S>, vertices: &[Vertex<S>]) -> Self {
+    pub(super) fn of(pair: &Pair<S>, vertices: &[Vertex<S>]) -> Self {
         let mut active = ActiveEdges {
             directions: ArrayVec::new(),
         };
@@ -89,7 +89,7 @@ impl<S: Scalar> ActiveEdges<S> {
     }
 
     /// The vertices at the direction `n`: one for each corner of what touches.
-    pub fn vertices(&self, pair: &Pair<S>, n: Vec3<S>) -> ArrayVec<Vertex<S>, 4> {
+    pub(super) fn vertices(&self, pair: &Pair<S>, n: Vec3<S>) -> ArrayVec<Vertex<S>, 4> {
         let tilt = S::EPSILON.sqrt();
         let beside = |side| pair.vertex_beside(n, n + side * tilt);
         let mut vertices = ArrayVec::new();
@@ -104,7 +104,7 @@ impl<S: Scalar> ActiveEdges<S> {
 
 impl<S: Scalar> Gap<S> {
     /// Makes the direction exact, if it is not, where a curved body touches with the feature that some vertices span.
-    pub fn settle(&mut self, pair: &Pair<S>, vertices: &[Vertex<S>]) {
+    pub(super) fn settle(&mut self, pair: &Pair<S>, vertices: &[Vertex<S>]) {
         if pair.curved && !self.settled {
             let active = ActiveEdges::of(pair, vertices);
             self.improve(refine(pair, self.normal, &active), pair.tolerance);

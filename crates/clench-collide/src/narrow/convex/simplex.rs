@@ -13,7 +13,7 @@ pub(super) struct Simplex<S> {
 }
 
 impl<S: Scalar> Simplex<S> {
-    pub fn new(vertex: Vertex<S>) -> Self {
+    pub(super) fn new(vertex: Vertex<S>) -> Self {
         let mut vertices = ArrayVec::new_const();
         vertices.push(vertex);
         Simplex {
@@ -22,16 +22,16 @@ impl<S: Scalar> Simplex<S> {
         }
     }
     /// Some vertices, at most four; which of them the nearest point needs is open.
-    pub fn unsolved(vertices: &[Vertex<S>]) -> Self {
+    pub(super) fn unsolved(vertices: &[Vertex<S>]) -> Self {
         let mut simplex = Simplex::new(vertices[0]);
         simplex.vertices.extend(vertices[1..].iter().copied());
         simplex
     }
-    pub fn vertices(&self) -> &[Vertex<S>] {
+    pub(super) fn vertices(&self) -> &[Vertex<S>] {
         &self.vertices
     }
     /// The nearest point as what it is on the first body and on the second, each in its own frame.
-    pub fn nearest(&self) -> (Vec3<S>, Vec3<S>) {
+    pub(super) fn nearest(&self) -> (Vec3<S>, Vec3<S>) {
         let mut solved = Simplex::new(self.vertices[0]);
         for vertex in &self.vertices()[1..] {
             solved.add(*vertex);
@@ -46,7 +46,7 @@ impl<S: Scalar> Simplex<S> {
 
     /// Adds a vertex and drops those that the nearest point does without. Gives that point, or nothing where the origin is
     /// inside.
-    pub fn add(&mut self, vertex: Vertex<S>) -> Option<Vec3<S>> {
+    pub(super) fn add(&mut self, vertex: Vertex<S>) -> Option<Vec3<S>> {
         self.vertices.push(vertex);
         let nearest = match self.vertices.len() {
             2 => on_segment((1, self.w(1)), (0, self.w(0))),
@@ -176,7 +176,7 @@ pub(super) struct Nearest<S> {
 
 impl<S: Scalar> Nearest<S> {
     /// Whether it is on no side of a triangle.
-    pub fn is_inside(&self) -> bool {
+    pub(super) fn is_inside(&self) -> bool {
         self.of[1] != self.of[2]
     }
     fn vertex(i: usize, p: Vec3<S>) -> Self {

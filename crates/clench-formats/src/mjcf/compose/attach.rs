@@ -23,7 +23,7 @@ impl Models {
     ///
     /// # Errors
     /// Where one cannot be read, is no MJCF, or is one of the models that this one is attached to.
-    pub fn read(root: &Element, shared: &mut Shared) -> Result<Self, LoadError> {
+    pub(super) fn read(root: &Element, shared: &mut Shared) -> Result<Self, LoadError> {
         let mut models = Models::default();
         let assets = sections(root, "asset").flat_map(|section| &section.children);
         for element in assets.filter(|asset| asset.tag == "model") {

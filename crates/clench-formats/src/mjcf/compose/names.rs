@@ -112,12 +112,12 @@ pub(super) struct Namespace<'a> {
 }
 
 impl Namespace<'_> {
-    pub fn apply(&self, name: &str) -> String {
+    pub(super) fn apply(&self, name: &str) -> String {
         format!("{}{name}{}", self.prefix, self.suffix)
     }
 
     /// As [`apply`](Self::apply), for a name that refers to an element.
-    pub fn refer(&self, kind: Kind, name: &str) -> String {
+    pub(super) fn refer(&self, kind: Kind, name: &str) -> String {
         match (kind, name) {
             (Kind::Body, WORLD) => name.to_owned(),
             _ => self.apply(name),
@@ -125,7 +125,7 @@ impl Namespace<'_> {
     }
 
     /// Renames an element, but not what it refers to; one without a name stays so.
-    pub fn rename(&self, element: &mut Element) {
+    pub(super) fn rename(&self, element: &mut Element) {
         self.rename_attribute(element, "name");
     }
 
@@ -137,7 +137,7 @@ impl Namespace<'_> {
     }
 
     /// Renames an element of the body tree and all in it, with what it refers to.
-    pub fn rename_tree(&self, element: &mut Element) {
+    pub(super) fn rename_tree(&self, element: &mut Element) {
         self.rename(element);
         self.rename_attribute(element, "target");
         if self.foreign {
@@ -151,7 +151,7 @@ impl Namespace<'_> {
     }
 
     /// Renames an asset of another model, with the assets that it refers to. What is called after its file gets that name.
-    pub fn rename_asset(&self, element: &mut Element) {
+    pub(super) fn rename_asset(&self, element: &mut Element) {
         if element.text("name").is_none_or(str::is_empty) {
             let file = element.text("file").unwrap_or_default().replace('\\', "/");
             let last = file.rsplit('/').next().unwrap_or_default();
@@ -176,14 +176,14 @@ pub(super) struct Names(HashMap<(Kind, String), usize>);
 
 impl Names {
     /// Adds the name of an element that stands in a section.
-    pub fn add(&mut self, section: &str, element: &Element) {
+    pub(super) fn add(&mut self, section: &str, element: &Element) {
         if let Some(key) = key(section, element) {
             *self.0.entry(key).or_default() += 1;
         }
     }
 
     /// Takes the name of such an element away.
-    pub fn remove(&mut self, section: &str, element: &Element) {
+    pub(super) fn remove(&mut self, section: &str, element: &Element) {
         let Some(key) = key(section, element) else {
             return;
         };
@@ -196,7 +196,7 @@ impl Names {
     }
 
     /// Adds the names of an element of the body tree and of all in it.
-    pub fn add_tree(&mut self, element: &Element) {
+    pub(super) fn add_tree(&mut self, element: &Element) {
         self.add("worldbody", element);
         for child in &element.children {
             self.add_tree(child);
@@ -204,7 +204,7 @@ impl Names {
     }
 
     /// Takes them away.
-    pub fn remove_tree(&mut self, element: &Element) {
+    pub(super) fn remove_tree(&mut self, element: &Element) {
         self.remove("worldbody", element);
         for child in &element.children {
             self.remove_tree(child);
@@ -212,7 +212,7 @@ impl Names {
     }
 
     /// Whether there is such an element.
-    pub fn has(&self, kind: Kind, name: &str) -> bool {
+    pub(super) fn has(&self, kind: Kind, name: &str) -> bool {
         (kind, name) == (Kind::Body, WORLD) || self.0.contains_key(&(kind, name.to_owned()))
     }
 }

@@ -17,7 +17,7 @@ pub(super) struct Tag<'a> {
 
 impl Xml {
     /// Begins an element.
-    pub fn tag(&mut self, name: &'static str) -> Tag<'_> {
+    pub(super) fn tag(&mut self, name: &'static str) -> Tag<'_> {
         self.indent();
         self.text.push('<');
         self.text.push_str(name);
@@ -25,7 +25,7 @@ impl Xml {
     }
 
     /// Ends the innermost element that has children.
-    pub fn close(&mut self) {
+    pub(super) fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.indent();
             self.text.push_str("</");
@@ -35,12 +35,12 @@ impl Xml {
     }
 
     /// How many elements are open.
-    pub fn depth(&self) -> usize {
+    pub(super) fn depth(&self) -> usize {
         self.open.len()
     }
 
     /// The whole text, with every element ended.
-    pub fn finish(mut self) -> String {
+    pub(super) fn finish(mut self) -> String {
         while !self.open.is_empty() {
             self.close();
         }
@@ -48,7 +48,7 @@ impl Xml {
     }
 
     /// Writes a section with what `write` puts into it, or nothing where that is nothing.
-    pub fn section<E>(
+    pub(super) fn section<E>(
         &mut self,
         name: &'static str,
         write: impl FnOnce(&mut Xml) -> Result<(), E>,
@@ -74,18 +74,18 @@ impl Xml {
 
 impl Tag<'_> {
     /// Ends an element without children.
-    pub fn end(self) {
+    pub(super) fn end(self) {
         self.xml.text.push_str("/>\n");
     }
 
     /// Ends the attributes of an element that has children.
-    pub fn open(self) {
+    pub(super) fn open(self) {
         self.xml.text.push_str(">\n");
         self.xml.open.push(self.name);
     }
 
     /// An attribute.
-    pub fn text(self, name: &str, value: &str) -> Self {
+    pub(super) fn text(self, name: &str, value: &str) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
         for c in value.chars() {
@@ -105,7 +105,7 @@ impl Tag<'_> {
     }
 
     /// A name, where there is one.
-    pub fn name(self, name: &str) -> Self {
+    pub(super) fn name(self, name: &str) -> Self {
         match name {
             "" => self,
             name => self.text("name", name),
@@ -113,18 +113,18 @@ impl Tag<'_> {
     }
 
     /// `true` or `false`.
-    pub fn boolean(self, name: &str, value: bool) -> Self {
+    pub(super) fn boolean(self, name: &str, value: bool) -> Self {
         self.text(name, if value { "true" } else { "false" })
     }
 
     /// An integer.
-    pub fn integer(self, name: &str, value: impl Into<i64>) -> Self {
+    pub(super) fn integer(self, name: &str, value: impl Into<i64>) -> Self {
         let value: i64 = value.into();
         self.text(name, &value.to_string())
     }
 
     /// An integer, unless it is what the format means where nothing is said.
-    pub fn integer_unless(self, name: &str, value: i64, default: i64) -> Self {
+    pub(super) fn integer_unless(self, name: &str, value: i64, default: i64) -> Self {
         match value == default {
             true => self,
             false => self.integer(name, value),
@@ -132,7 +132,7 @@ impl Tag<'_> {
     }
 
     /// Numbers, each with as many digits as tell it from all others.
-    pub fn numbers(self, name: &str, values: &[f64]) -> Self {
+    pub(super) fn numbers(self, name: &str, values: &[f64]) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
         for (k, value) in values.iter().enumerate() {
@@ -149,7 +149,7 @@ impl Tag<'_> {
     }
 
     /// Numbers of single precision, likewise.
-    pub fn singles(self, name: &str, values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn singles(self, name: &str, values: impl Iterator<Item = f64>) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
         for (k, value) in values.enumerate() {
@@ -166,7 +166,7 @@ impl Tag<'_> {
     }
 
     /// Numbers, unless they are what the format means where nothing is said.
-    pub fn numbers_unless(self, name: &str, values: &[f64], default: &[f64]) -> Self {
+    pub(super) fn numbers_unless(self, name: &str, values: &[f64], default: &[f64]) -> Self {
         match values == default {
             true => self,
             false => self.numbers(name, values),
@@ -174,18 +174,18 @@ impl Tag<'_> {
     }
 
     /// Coefficients of a polynomial, the linear one first, without those that are zero at the end.
-    pub fn polynomial(self, name: &str, coefficients: [f64; 3]) -> Self {
+    pub(super) fn polynomial(self, name: &str, coefficients: [f64; 3]) -> Self {
         let used = coefficients.iter().rposition(|&c| c != 0.0);
         self.numbers_unless(name, &coefficients[..used.map_or(0, |last| last + 1)], &[])
     }
 
     /// A number, likewise.
-    pub fn number_unless(self, name: &str, value: f64, default: f64) -> Self {
+    pub(super) fn number_unless(self, name: &str, value: f64, default: f64) -> Self {
         self.numbers_unless(name, &[value], &[default])
     }
 
     /// Words, if there are any.
-    pub fn words<'w>(self, name: &str, words: impl Iterator<Item = &'w str>) -> Self {
+    pub(super) fn words<'w>(self, name: &str, words: impl Iterator<Item = &'w str>) -> Self {
         let words: Vec<&str> = words.collect();
         match words.is_empty() {
             true => self,
@@ -194,7 +194,7 @@ impl Tag<'_> {
     }
 
     /// Integers, one after the other.
-    pub fn integers(self, name: &str, values: impl Iterator<Item = i64>) -> Self {
+    pub(super) fn integers(self, name: &str, values: impl Iterator<Item = i64>) -> Self {
         let words: Vec<String> = values.map(|value| value.to_string()).collect();
         self.text(name, &words.join(" "))
     }

@@ -19,7 +19,7 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// Of a body that is finite; `around` are its radius and margin.
-    pub fn new<S: Scalar>(
+    pub(super) fn new<S: Scalar>(
         body: &Body<S>,
         rotation: &Mat3<S>,
         offset: Vec3<S>,
@@ -56,7 +56,7 @@ impl Bounds {
     }
 
     /// Between which x and y the part is that is lower than some height.
-    pub fn below(&self, height: f64) -> ([f64; 2], [f64; 2]) {
+    pub(super) fn below(&self, height: f64) -> ([f64; 2], [f64; 2]) {
         let [minus_x, plus_x, minus_y, plus_y] = self.slopes;
         let (low, high) = (self.low, self.high);
         (
@@ -67,7 +67,7 @@ impl Bounds {
 
     /// Whether they reach the left and the right triangle of a cell. No branches: which it is cannot be predicted.
     #[inline]
-    pub fn reach(&self, cell: Node, grid: &Grid) -> [bool; 2] {
+    pub(super) fn reach(&self, cell: Node, grid: &Grid) -> [bool; 2] {
         let [x, y] = grid.corner(cell);
         let [dx, dy] = grid.step;
         let area = dx * dy;

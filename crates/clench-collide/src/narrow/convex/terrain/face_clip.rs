@@ -32,7 +32,7 @@ impl<S: Scalar> FaceClip<'_, S> {
     /// are any.
     ///
     /// Where the surface goes on in the same plane, the cut has no corner.
-    pub fn touch(&self, margin: S, found: &mut Manifold<S>) -> bool {
+    pub(super) fn touch(&self, margin: S, found: &mut Manifold<S>) -> bool {
         let feature = Feature::new(self.body, -self.rotation.transpose_mul(self.normal));
         let [p, q, r] = self.triangle.corners;
         // Each opposite to the corner of its number.
@@ -100,7 +100,7 @@ impl<S: Scalar> FaceClip<'_, S> {
     }
 
     /// The contact below a point of the body's core.
-    pub fn contact(&self, point: Vec3<S>) -> Point<S> {
+    pub(super) fn contact(&self, point: Vec3<S>) -> Point<S> {
         let height = self.normal.dot(point);
         let distance = height - self.body.radius;
         let down = height - distance * S::new(0.5);

@@ -25,7 +25,7 @@ pub(super) struct Grid<'a> {
 }
 
 impl<'a> Grid<'a> {
-    pub fn new(field: &'a HeightField) -> Self {
+    pub(super) fn new(field: &'a HeightField) -> Self {
         let [x, y, elevation, base] = field.size();
         let step = |half: f64, count: usize| 2.0 * half / (count - 1) as f64;
         Grid {
@@ -45,7 +45,7 @@ impl<'a> Grid<'a> {
     }
 
     /// The rows and columns of cells that bounds reach, no higher than the highest; nothing where they are off the field.
-    pub fn window(&self, bounds: &Bounds) -> Option<[RangeInclusive<i64>; 2]> {
+    pub(super) fn window(&self, bounds: &Bounds) -> Option<[RangeInclusive<i64>; 2]> {
         let (low, high) = bounds.below(self.elevation);
         let over = |axis: usize| low[axis] <= self.half[axis] && high[axis] >= -self.half[axis];
         let cells = |axis| self.cell(axis, low[axis])..=self.cell(axis, high[axis]);
@@ -54,12 +54,12 @@ impl<'a> Grid<'a> {
     }
 
     /// The cell at a point, or the nearest one: row and column.
-    pub fn cell_at(&self, point: Vec3<f64>) -> Node {
+    pub(super) fn cell_at(&self, point: Vec3<f64>) -> Node {
         [self.cell(1, point.y), self.cell(0, point.x)]
     }
 
     /// Where the lowest corner of a cell is along x and y, m.
-    pub fn corner(&self, [row, column]: Node) -> [f64; 2] {
+    pub(super) fn corner(&self, [row, column]: Node) -> [f64; 2] {
         [
             column as f64 * self.step[0] - self.half[0],
             row as f64 * self.step[1] - self.half[1],
@@ -67,7 +67,7 @@ impl<'a> Grid<'a> {
     }
 
     /// How high the left and the right triangle of a cell reach, m.
-    pub fn tops(&self, [row, column]: Node) -> [f64; 2] {
+    pub(super) fn tops(&self, [row, column]: Node) -> [f64; 2] {
         let height = |r, c| self.height([row + r, column + c]);
         let both = height(0, 0).max(height(1, 1));
         [both.max(height(1, 0)), both.max(height(0, 1))]
@@ -90,7 +90,7 @@ pub(super) struct Triangle<'a, S> {
 
 impl<'a, S: Scalar> Triangle<'a, S> {
     /// One of the triangles of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the highest.
-    pub fn of_cell(grid: &'a Grid<'a>, first: Node, half: usize) -> Self {
+    pub(super) fn of_cell(grid: &'a Grid<'a>, first: Node, half: usize) -> Self {
         let [x, y] = grid.corner(first);
         let z = grid.height(first);
         let origin = Vec3::from_f64([x, y, z]);
@@ -116,19 +116,19 @@ impl<'a, S: Scalar> Triangle<'a, S> {
     }
 
     /// Its unit normal.
-    pub fn normal(&self) -> Vec3<S> {
+    pub(super) fn normal(&self) -> Vec3<S> {
         let [_, q, r] = self.corners;
         q.cross(r).normalize().0
     }
 
     /// The mean of its corners.
-    pub fn middle(&self) -> Vec3<S> {
+    pub(super) fn middle(&self) -> Vec3<S> {
         let [p, q, r] = self.corners;
         (p + q + r) * S::new(1.0 / 3.0)
     }
 
     /// Whether a point is within the ground below it, and at least `distance` from walls and bottom, m.
-    pub fn surrounds(&self, point: Vec3<S>, distance: S) -> bool {
+    pub(super) fn surrounds(&self, point: Vec3<S>, distance: S) -> bool {
         let within = |k: usize| {
             let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
             let (x, y) = (to.x - from.x, to.y - from.y);
@@ -140,13 +140,13 @@ impl<'a, S: Scalar> Triangle<'a, S> {
     }
 
     /// The ground below it.
-    pub fn prism(&self) -> Prism<S> {
+    pub(super) fn prism(&self) -> Prism<S> {
         let bottom = -self.origin.z - S::new(self.grid.base);
         Prism::new(self.corners, bottom)
     }
 
     /// A grid point in its frame, if it exists.
-    pub fn node(&self, node: Node) -> Option<Vec3<S>> {
+    pub(super) fn node(&self, node: Node) -> Option<Vec3<S>> {
         let [row, column] = node;
         let field = self.grid.field;
         let inside = (0..field.rows() as i64).contains(&row)
@@ -163,7 +163,7 @@ impl<'a, S: Scalar> Triangle<'a, S> {
     }
 
     /// The grid point across the edge that is opposite to corner `k`.
-    pub fn across(&self, k: usize) -> Option<Vec3<S>> {
+    pub(super) fn across(&self, k: usize) -> Option<Vec3<S>> {
         let [p, q, r] = [
             self.nodes[(k + 1) % 3],
             self.nodes[(k + 2) % 3],
@@ -179,13 +179,13 @@ impl<'a, S: Scalar> Triangle<'a, S> {
     }
 
     /// Whether the surface is flat across the edge opposite to corner `k`.
-    pub fn goes_on_across(&self, k: usize, normal: Vec3<S>) -> bool {
+    pub(super) fn goes_on_across(&self, k: usize, normal: Vec3<S>) -> bool {
         let rise = self.rise_across(k, normal);
         rise.is_some_and(|rise| rise.abs() <= same_direction())
     }
 
     /// Whether the surface bends away from the triangle nowhere, so that nothing but its face can be touched.
-    pub fn is_hollow(&self, normal: Vec3<S>) -> bool {
+    pub(super) fn is_hollow(&self, normal: Vec3<S>) -> bool {
         let bends_up = |k| {
             self.rise_across(k, normal)
                 .is_some_and(|rise| rise >= -same_direction::<S>())

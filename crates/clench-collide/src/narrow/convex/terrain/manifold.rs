@@ -32,7 +32,7 @@ fn ground<S: Scalar>(point: &Point<S>) -> Vec3<S> {
 }
 
 impl<S: Scalar> Manifold<S> {
-    pub fn new(size: S, tolerance: S) -> Self {
+    pub(super) fn new(size: S, tolerance: S) -> Self {
         Manifold {
             points: ArrayVec::new(),
             size,
@@ -41,18 +41,18 @@ impl<S: Scalar> Manifold<S> {
         }
     }
 
-    pub fn points(&self) -> &[Point<S>] {
+    pub(super) fn points(&self) -> &[Point<S>] {
         &self.points
     }
 
     /// The distance of the deepest point; infinite if there is none.
-    pub fn deepest(&self) -> S {
+    pub(super) fn deepest(&self) -> S {
         let distances = self.points.iter().map(|p| p.distance);
         distances.fold(S::INFINITY, |least, d| least.min(d))
     }
 
     /// Adds a point, unless it is redundant.
-    pub fn add(&mut self, point: Point<S>) {
+    pub(super) fn add(&mut self, point: Point<S>) {
         let facet = self.facet(&point);
         if self.is_redundant(&self.points[facet.clone()], &point) {
             return;

@@ -18,7 +18,7 @@ const AROUND: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];
 
 impl<S: Scalar> Triangle<'_, S> {
     /// The feature that reaches furthest along the normal of a gap.
-    pub fn feature(&self, gap: Gap<S>) -> VoronoiFeature<S> {
+    pub(super) fn feature(&self, gap: Gap<S>) -> VoronoiFeature<S> {
         let n = gap.normal;
         let flat = n.z < -same_direction::<S>();
         let corners = self.corners.map(|corner| level(corner, flat));
@@ -34,7 +34,7 @@ impl<S: Scalar> Triangle<'_, S> {
 
     /// Whether a feature's direction is a normal of the whole field there: not where the field goes on beyond the prism's wall, or
     /// rises beyond its edge.
-    pub fn admits_normal(&self, feature: &VoronoiFeature<S>) -> bool {
+    pub(super) fn admits_normal(&self, feature: &VoronoiFeature<S>) -> bool {
         let (n, touches) = (feature.gap.normal, feature.touches);
         let flat = n.z < -same_direction::<S>();
         let corners = self.corners.map(|corner| level(corner, flat));
@@ -56,7 +56,7 @@ impl<S: Scalar> Triangle<'_, S> {
     }
 
     /// Whether it has all corners of a feature.
-    pub fn has(&self, feature: &VoronoiFeature<S>) -> bool {
+    pub(super) fn has(&self, feature: &VoronoiFeature<S>) -> bool {
         let mut corners = feature.nodes.iter().zip(feature.touches);
         corners.all(|(node, touches)| !touches || self.nodes.contains(node))
     }
