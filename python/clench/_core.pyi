@@ -32,6 +32,7 @@ __all__ = [
     "Contacts",
     "Element",
     "FrameTarget",
+    "FreeCamera",
     "IkResult",
     "Model",
     "PostureTarget",
@@ -792,6 +793,15 @@ class Sim(_Outputs):
     @property
     def contact_overflow(self) -> bool: ...
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
+    def render(
+        self,
+        width: SupportsIndex = 640,
+        height: SupportsIndex = 480,
+        *,
+        camera: str | SupportsIndex | FreeCamera | None = None,
+        kind: Literal["rgb", "depth", "geom"] = "rgb",
+        groups: Sequence[int] | None = None,
+    ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3)
     def ray(
         self,
         origin: ArrayLike,  # (3,)
@@ -969,6 +979,16 @@ class Batch(_Outputs):
     ) -> dict[str, NDArray[Any]]: ...  # (n, steps, ...) each
     def contacts(self, env: SupportsIndex) -> Contacts: ...
     def constraints(self, env: SupportsIndex) -> Constraints: ...
+    def render(
+        self,
+        env: SupportsIndex,
+        width: SupportsIndex = 640,
+        height: SupportsIndex = 480,
+        *,
+        camera: str | SupportsIndex | FreeCamera | None = None,
+        kind: Literal["rgb", "depth", "geom"] = "rgb",
+        groups: Sequence[int] | None = None,
+    ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3)
     def mass_matrix(self) -> _Floats: ...  # (n, nv, nv)
     def ray(
         self,
@@ -1313,6 +1333,28 @@ class Solution:
 def solve(
     M: ArrayLike, a_unc: ArrayLike, blocks: Iterable[Block], options: RigidOptions | None = None
 ) -> Solution: ...
+
+@final
+class FreeCamera:
+    def __new__(
+        cls,
+        lookat: ArrayLike,  # (3,)
+        distance: float,
+        azimuth: float = 90.0,
+        elevation: float = -45.0,
+        *,
+        fovy: float = 45.0,
+    ) -> Self: ...
+    @property
+    def lookat(self) -> list[float]: ...
+    @property
+    def distance(self) -> float: ...
+    @property
+    def azimuth(self) -> float: ...
+    @property
+    def elevation(self) -> float: ...
+    @property
+    def fovy(self) -> float: ...
 
 @final
 class Recording:

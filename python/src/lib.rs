@@ -25,6 +25,7 @@ mod named;
 mod names;
 mod option_values;
 mod options;
+mod picture;
 mod positions;
 mod precision;
 mod queries;
@@ -72,6 +73,8 @@ mod _core {
     use crate::model::Model;
     #[pymodule_export]
     use crate::options::RigidOptions;
+    #[pymodule_export]
+    use crate::picture::FreeCamera;
     #[pymodule_export]
     use crate::queries::{RayHit, Separation};
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! The tests of `clench-gpu`, on a graphics device or on Mesa's software device.
+//! The tests of `clench-gpu` and `clench-render`, on a graphics device or on Mesa's software device.
 
 use crate::install::try_to_install;
 use crate::python;
@@ -15,7 +15,14 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 pub fn test() -> Result<(), String> {
     let mut tests = cargo(&["test", "--quiet", "--workspace"]);
     tests.args(["--features", "clench-cli/gpu"]);
-    for test in ["stages", "steps", "refusals", "gymnasium", "gpu"] {
+    for test in [
+        "stages",
+        "steps",
+        "refusals",
+        "gymnasium",
+        "gpu",
+        "silhouettes",
+    ] {
         tests.args(["--test", test]);
     }
     tests.env("CLENCH_GPU", "require");

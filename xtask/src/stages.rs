@@ -165,7 +165,7 @@ fn clippy() -> Result<(), String> {
         "--quiet",
         "--workspace",
         "--features",
-        "clench-cli/gpu",
+        "clench-cli/gpu,clench-cli/render",
         "--all-targets",
         "--",
         "-D",

@@ -13,6 +13,8 @@ mod message;
 mod mjcf;
 mod options;
 mod overrides;
+#[cfg(feature = "render")]
+mod render;
 mod replacement;
 mod simulate;
 mod table;
@@ -61,6 +63,9 @@ Examples:
 enum Command {
     /// See a model move in the browser, and touch it
     View(view::Arguments),
+    /// Draw a picture or a film of a model, without a window
+    #[cfg(feature = "render")]
+    Render(render::Arguments),
     /// Step a model through time and summarise the run
     Simulate(simulate::Arguments),
     /// Compute accelerations and forces of states: one JSON state a line in, one JSON result a line out
@@ -79,6 +84,8 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::View(arguments) => view::run(&arguments),
+        #[cfg(feature = "render")]
+        Command::Render(arguments) => render::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Forward(arguments) => forward::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| ExitCode::SUCCESS),

@@ -5,11 +5,11 @@
 
 use crate::drag::Drag;
 use crate::marks::Mark;
+use clench::SimError;
 use clench::math::{Mask, Scalar, Vec3};
 use clench::rigid::dynamics::tendon_path::each_span;
 use clench::rigid::readout::{ContactRow, contact_rows};
 use clench::rigid::{Precision, Sim, Workspace};
-use clench::{Model, SimError};
 use std::time::Duration;
 
 /// What a frame begins with.
@@ -108,7 +108,7 @@ sections! {
     /// Constraints but contacts: kind (0 equality, 1 joint limit, 2 tendon limit, 3 dry friction), element, size of its force.
     constraints: 3 => constraints(s.sim.workspace(), out);
     /// Straight parts of tendons: the tendon, both ends.
-    spans: 7 => spans(s.sim.model(), s.sim, out);
+    spans: 7 => tendon_spans(s.sim, out);
     /// Position coordinates of the state.
     qpos: 1 => narrow(&s.sim.state.qpos, out);
     /// Velocities of the state.
@@ -209,7 +209,9 @@ fn constraints<T: Precision>(ws: &Workspace<T>, out: &mut Vec<f32>) {
     }
 }
 
-fn spans<T: Precision>(model: &Model, sim: &Sim<T>, out: &mut Vec<f32>) {
+/// Appends the straight parts of all tendons where a simulation computed them last: the tendon, both ends.
+pub fn tendon_spans<T: Precision>(sim: &Sim<T>, out: &mut Vec<f32>) {
+    let model = sim.model();
     for (t, tendon) in model.tendons.iter().enumerate() {
         if !tendon.is_spatial() {
             continue;

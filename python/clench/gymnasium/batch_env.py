@@ -14,15 +14,17 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from clench import Batch, Model, RigidOptions, SimulationError
+from clench import Batch, FreeCamera, Model, RigidOptions, SimulationError
 from clench.gymnasium import infos as vector_infos
 from clench.gymnasium.checks import checked_action, checked_mask, checked_seeds, one_each, rows
+from clench.gymnasium.drawn import Drawn
 from clench.gymnasium.models import action_space, loaded
+from clench.gymnasium.task_methods import TaskMethods
 
 Array = NDArray[Any]
 
 
-class BatchEnv(VectorEnv[Array, Array, Array]):
+class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
     """Many environments of one model, stepped together.
 
     A task derives from this class, names a model, and says over all environments at once what is observed
@@ -52,8 +54,13 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
     autoreset_mode : gymnasium.vector.AutoresetMode or str
         When an environment whose episode ended starts anew: with the next step, in the same step, or only by
         :meth:`reset`.
-    render_mode : None
-        Nothing is drawn: any other value is an error.
+    render_mode : {None, "rgb_array"}
+        What :meth:`render` gives: pictures, drawn without a window.
+    render_size : tuple of int
+        Width and height of pictures, pixels.
+    render_camera : str or int or clench.FreeCamera, optional
+        The camera that takes them; unless given the model's camera ``track``, as in Gymnasium, or where it has none one that sees
+        all that moves.
 
     Attributes
     ----------
@@ -103,10 +110,12 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         threads: int | None = None,
         options: RigidOptions | None = None,
         autoreset_mode: AutoresetMode | str | None = None,
-        render_mode: None = None,
+        render_mode: str | None = None,
+        render_size: tuple[int, int] | None = None,
+        render_camera: str | int | FreeCamera | None = None,
     ) -> None:
-        if render_mode is not None:
-            raise ValueError(f"{self._name}: nothing is drawn, so render_mode must be None, not {render_mode!r}")
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f'{self._name}: render_mode must be "rgb_array" or None, not {render_mode!r}')
         given = {
             "model": model,
             "frame_skip": frame_skip,
@@ -116,6 +125,8 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
             "threads": threads,
             "options": options,
             "autoreset_mode": autoreset_mode,
+            "render_size": render_size,
+            "render_camera": render_camera,
         }
         for name, value in given.items():
             if value is not None:
@@ -129,7 +140,7 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         if self.max_episode_steps is not None and self.max_episode_steps < 1 and self.max_episode_steps != -1:
             raise ValueError(f"max_episode_steps must be at least 1, or -1 for no limit, not {self.max_episode_steps}")
         self._mode = AutoresetMode(self.autoreset_mode)
-        self.metadata = {**self.metadata, "render_modes": [], "autoreset_mode": self._mode}
+        self.render_mode = render_mode
 
         self.num_envs = num_envs
         self.batch = Batch(
@@ -142,6 +153,7 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         )
         self.timestep = float(self.batch.model.timestep)
         self.dt = self.timestep * self.frame_skip
+        self.metadata = {**self.metadata, "render_fps": round(1 / self.dt), "autoreset_mode": self._mode}
         self.init_qpos = self.batch.qpos[0].copy()
         self.init_qvel = self.batch.qvel[0].copy()
         own = getattr(type(self), "single_action_space", None)
@@ -156,80 +168,6 @@ class BatchEnv(VectorEnv[Array, Array, Array]):
         self._elapsed = np.zeros(num_envs, dtype=np.int64)
         self._generators: list[np.random.Generator | None] = [None] * num_envs
         self._seeds: list[int | None] = [None] * num_envs
-
-    # What a task says.
-
-    def observe(self) -> Array:
-        """What is observed, (n, ...), as a function of the arrays of :attr:`batch` alone."""
-        raise NotImplementedError(f"{type(self).__name__} must define observe()")
-
-    def reward(self, action: Array) -> Array:
-        """What the step was worth, (n,).
-
-        Called once a step, when the simulator is done, before :meth:`terminated` and :meth:`info`: they may use what
-        was worked out here.
-
-        Parameters
-        ----------
-        action : ndarray
-            The actions as float64, (n, ...). Not to be written to.
-        """
-        raise NotImplementedError(f"{type(self).__name__} must define reward(action)")
-
-    def control(self, action: Array) -> Array:
-        """The controls that actions mean, (n, nu). The actions themselves unless defined.
-
-        A task whose actions have another shape also has the attribute ``single_action_space``, a ``Box`` of that shape.
-
-        Parameters
-        ----------
-        action : ndarray
-            The actions as float64, (n, ...). Not to be written to.
-        """
-        return action
-
-    def terminated(self) -> Array:
-        """Whose episode is over, (n,) booleans. Nobody's unless defined."""
-        return np.zeros(self.num_envs, dtype=np.bool_)
-
-    def info(self) -> Mapping[str, Array]:
-        """More about the step: arrays (n, ...) by name. Nothing unless defined."""
-        return {}
-
-    def reset_info(self) -> Mapping[str, Array]:
-        """The same about the states that resets lead to."""
-        return {}
-
-    def before_step(self) -> None:
-        """Called with the controls set, before the simulator steps: the place to keep what the step will change."""
-
-    def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Where an episode starts. The initial state of the model unless defined.
-
-        Parameters
-        ----------
-        rng : numpy.random.Generator
-            The generator of the environment that is reset.
-
-        Returns
-        -------
-        qpos, qvel : ndarray
-            Positions (nq,) and velocities (nv,).
-        """
-        return self.init_qpos, self.init_qvel
-
-    def on_reset(self, mask: Array) -> None:
-        """Called when environments start an episode, with their states set and before anything is observed.
-
-        The place for goals, parameters of environments (``batch.randomize``), welds (``batch.add_weld``), poses of mocap bodies, or
-        states of many environments at once: what it writes to the arrays of :attr:`batch` is where they start.
-
-        Parameters
-        ----------
-        mask : ndarray
-            Booleans (n,): which environments; ``numpy.flatnonzero(mask)`` are their indices. Random numbers of environment ``i`` come
-            from ``np_random[i]``.
-        """
 
     # What gymnasium asks.
 

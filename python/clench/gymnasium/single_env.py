@@ -37,7 +37,7 @@ class SingleEnv(gymnasium.Env[Array, Array]):
     """
 
     task: ClassVar[type[BatchEnv]]
-    metadata: dict[str, Any] = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"]}
 
     def __init__(self, **kwargs: Any) -> None:
         kwargs.setdefault("threads", 1)
@@ -45,6 +45,8 @@ class SingleEnv(gymnasium.Env[Array, Array]):
         self.action_space = self.vector.single_action_space
         self.observation_space = self.vector.single_observation_space
         self.dt = self.vector.dt
+        self.render_mode = self.vector.render_mode
+        self.metadata = {**self.metadata, "render_fps": self.vector.metadata["render_fps"]}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
         """Starts an episode.
@@ -98,6 +100,17 @@ class SingleEnv(gymnasium.Env[Array, Array]):
         rewards, terminations, truncations, about = self.vector.advance(row[np.newaxis])
         info = {key: value.copy()[0] for values, mask in about if mask[0] for key, value in values.items()}
         return self.vector.observation()[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), info
+
+    def render(self) -> Array | None:
+        """Draws the environment.
+
+        Returns
+        -------
+        ndarray or None
+            Its picture (height, width, 3), uint8; None where ``render_mode`` is None.
+        """
+        pictures = self.vector.render()
+        return None if pictures is None else pictures[0]
 
     def close(self) -> None:
         """Lets go of the batch."""

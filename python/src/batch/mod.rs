@@ -269,6 +269,11 @@ impl Batch {
         &self.inner
     }
 
+    /// The Python object of the model.
+    pub(crate) fn py_model(&self) -> &Py<Model> {
+        &self.model
+    }
+
     /// The model, without the numbers that environments have for themselves.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
         self.model.get().inner()

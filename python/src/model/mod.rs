@@ -10,6 +10,7 @@ use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use clench::SaveModel;
 use clench::rigid::model::{Integrator, ParamField};
+use clench_render::Renderer;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -17,7 +18,7 @@ use pyo3::types::{PyBytes, PyDict};
 use std::collections::HashMap;
 use std::ffi::CString;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// A model: what never changes while stepping, shared by the simulations of it.
 ///
@@ -31,7 +32,7 @@ use std::sync::Arc;
 /// >>> model.nv, model.body("torso").mass, model.geom_size.shape
 /// (27, 14.357497305925833, (19, 3))
 #[pyclass(frozen, module = "clench")]
-pub(crate) struct Model(Arc<clench::Model>, Source);
+pub(crate) struct Model(Arc<clench::Model>, Source, Mutex<Option<Renderer>>);
 
 /// What a model was loaded from, and how: what pickles hold of it.
 struct Source {
@@ -50,12 +51,17 @@ impl Model {
             let message = CString::new(message.replace('\0', " "))?;
             PyErr::warn(py, &category, &message, 1)?;
         }
-        Ok(Model(Arc::new(model), source))
+        Ok(Model(Arc::new(model), source, Mutex::default()))
     }
 
     /// The model itself.
     pub(crate) fn inner(&self) -> &Arc<clench::Model> {
         &self.0
+    }
+
+    /// What draws pictures of it; none before the first.
+    pub(crate) fn renderer(&self) -> &Mutex<Option<Renderer>> {
+        &self.2
     }
 
     /// The shape of the parameter of that name.

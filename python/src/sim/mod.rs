@@ -77,6 +77,11 @@ impl Sim {
         &self.inner
     }
 
+    /// The Python object of the model.
+    pub(crate) fn py_model(&self) -> &Py<Model> {
+        &self.model
+    }
+
     /// The model, without the numbers that this simulation has for itself.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
         self.model.get().inner()

@@ -164,7 +164,7 @@ def test_out_of_turn(make: Any) -> None:
             call()
 
 
-def test_nothing_is_drawn() -> None:
+def test_no_window_is_opened() -> None:
     makers: list[Any] = [lambda **kwargs: gymnasium.make_vec("clench/Ant-v5", 2, **kwargs), Cart, CartEnv]
     for make in makers:
         with pytest.raises(ValueError, match="render_mode"):

@@ -12,8 +12,8 @@ from clench.gymnasium.models import gymnasium_model
 
 Array = NDArray[Any]
 
-# How gymnasium's tasks are drawn. Taken, so that their arguments can be passed on as they are; nothing is drawn here.
-_DRAWING = ("default_camera_config", "width", "height", "camera_id", "camera_name", "max_geom", "visual_options")
+# How gymnasium's window is set up. Taken, so that its arguments can be passed on as they are; there is no window here.
+_WINDOW = ("default_camera_config", "max_geom", "visual_options")
 
 
 class Task(BatchEnv):
@@ -35,8 +35,11 @@ class Task(BatchEnv):
     """Whether the noise of velocities is normal; else it is uniform, as that of positions."""
 
     def __init__(self, num_envs: int, *, xml_file: str, reset_noise_scale: float = 0.0, **kwargs: Any) -> None:
-        for name in _DRAWING:
+        for name in _WINDOW:
             kwargs.pop(name, None)
+        kwargs.setdefault("render_size", (kwargs.pop("width", 480), kwargs.pop("height", 480)))
+        by_name, by_index = kwargs.pop("camera_name", None), kwargs.pop("camera_id", None)
+        kwargs.setdefault("render_camera", by_index if by_name is None else by_name)
         super().__init__(num_envs, model=gymnasium_model(xml_file), **kwargs)
         self.reset_noise_scale = reset_noise_scale
 

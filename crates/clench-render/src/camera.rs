@@ -1,0 +1,166 @@
+//! From where a picture is taken.
+
+use clench::rigid::{Precision, Sim};
+
+/// A camera that belongs to no model: it looks at a point from a distance and a direction, MuJoCo's free camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeCamera {
+    /// The point in the middle of the picture, m.
+    pub lookat: [f64; 3],
+    /// How far from it, m.
+    pub distance: f64,
+    /// Direction of view about the vertical: 0 looks along x, 90 along y, degrees.
+    pub azimuth: f64,
+    /// Direction of view above the horizon; negative looks down, degrees.
+    pub elevation: f64,
+    /// Vertical field of view, degrees.
+    pub fovy: f64,
+}
+
+impl FreeCamera {
+    /// One that sees all that can move, or all where nothing can.
+    ///
+    /// # Errors
+    /// A state that cannot be evaluated.
+    pub fn of_all<T: Precision>(sim: &mut Sim<T>) -> Result<Self, clench::SimError> {
+        let places = sim.output("geom_xpos")?;
+        let (model, params) = (sim.model(), sim.params());
+        let bounds = |moving: bool| {
+            let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+            for (g, place) in places.chunks_exact(3).enumerate() {
+                let radius = params.geom_rbound[g].to_f64();
+                if moving && (model.geoms[g].body == 0 || radius <= 0.0) {
+                    continue;
+                }
+                for k in 0..3 {
+                    low[k] = low[k].min(place[k].to_f64() - 0.7 * radius);
+                    high[k] = high[k].max(place[k].to_f64() + 0.7 * radius);
+                }
+            }
+            (low[0] <= high[0]).then_some((low, high))
+        };
+        let (low, high) = (bounds(true).or_else(|| bounds(false))).unwrap_or(([-1.0; 3], [1.0; 3]));
+        let middle = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
+        let squares = (0..3).map(|k| (high[k] - low[k]).powi(2));
+        let size = squares.sum::<f64>().sqrt().clamp(0.02, 1e6);
+        Ok(FreeCamera {
+            lookat: middle,
+            distance: 1.75 * size,
+            azimuth: 131.0,
+            elevation: -17.0,
+            fovy: 42.0,
+        })
+    }
+}
+
+/// Which way a picture is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum View {
+    /// By a camera of the model.
+    Camera(usize),
+    /// By one of the user's.
+    Free(FreeCamera),
+}
+
+/// A camera in place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    pub eye: [f32; 3],
+    /// To the right, upwards and backwards: unit vectors.
+    pub axes: [[f32; 3]; 3],
+    /// Half the height of the picture at the distance 1, or, with parallel lines of sight, in metres.
+    pub half: f32,
+    pub parallel: bool,
+}
+
+impl View {
+    /// Where it looks from now.
+    pub(crate) fn place<T: Precision>(
+        &self,
+        sim: &mut Sim<T>,
+    ) -> Result<Placed, crate::RenderError> {
+        match *self {
+            View::Camera(index) => {
+                let count = sim.model().cameras.len();
+                if index >= count {
+                    return Err(crate::RenderError::NoCamera(index, count));
+                }
+                let eye = sim.output("cam_xpos")?;
+                let turn = sim.output("cam_xmat")?;
+                let number = |x: T| x.to_f64() as f32;
+                let turn = turn[9 * index..].iter().map(|&x| number(x));
+                let turn: Vec<f32> = turn.take(9).collect();
+                let parallel = sim.model().cameras[index].orthographic;
+                let fovy = sim.params().cam_fovy[index].to_f64();
+                Ok(Placed {
+                    eye: [0, 1, 2].map(|k| number(eye[3 * index + k])),
+                    axes: [0, 1, 2].map(|k| [turn[k], turn[3 + k], turn[6 + k]]),
+                    half: half(fovy, parallel),
+                    parallel,
+                })
+            }
+            View::Free(free) => Ok(free.place()),
+        }
+    }
+}
+
+/// Half the height of a picture.
+fn half(fovy: f64, parallel: bool) -> f32 {
+    match parallel {
+        true => 0.5 * fovy as f32,
+        false => (0.5 * fovy.to_radians()).tan() as f32,
+    }
+}
+
+impl FreeCamera {
+    fn place(&self) -> Placed {
+        let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
+        let ahead = [
+            elevation.cos() * azimuth.cos(),
+            elevation.cos() * azimuth.sin(),
+            elevation.sin(),
+        ];
+        let right = [azimuth.sin(), -azimuth.cos(), 0.0];
+        let up = [
+            -elevation.sin() * azimuth.cos(),
+            -elevation.sin() * azimuth.sin(),
+            elevation.cos(),
+        ];
+        let narrow = |v: [f64; 3]| v.map(|x| x as f32);
+        Placed {
+            eye: narrow([0, 1, 2].map(|k| self.lookat[k] - self.distance * ahead[k])),
+            axes: [narrow(right), narrow(up), narrow(ahead.map(|x| -x))],
+            half: half(self.fovy, false),
+            parallel: false,
+        }
+    }
+}
+
+impl Placed {
+    /// The matrix that takes points of the world to the picture, column by column. Depth is 1 at the distance `near` and falls to 0
+    /// at infinity (for parallel lines of sight at `far`), which keeps single precision even.
+    pub fn matrix(&self, aspect: f32, near: f32, far: f32) -> [[f32; 4]; 4] {
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let rows: Vec<[f32; 4]> = (self.axes.iter())
+            .map(|&axis| [axis[0], axis[1], axis[2], -dot(axis, self.eye)])
+            .collect();
+        let scaled = |row: [f32; 4], factor: f32| row.map(|x| x * factor);
+        let back = rows[2];
+        let (depth, w) = match self.parallel {
+            // 1 at z = −near, 0 at z = −far.
+            true => {
+                let mut depth = scaled(back, 1.0 / (far - near));
+                depth[3] += far / (far - near);
+                (depth, [0.0, 0.0, 0.0, 1.0])
+            }
+            false => ([0.0, 0.0, 0.0, near], scaled(back, -1.0)),
+        };
+        let all = [
+            scaled(rows[0], 1.0 / (self.half * aspect)),
+            scaled(rows[1], 1.0 / self.half),
+            depth,
+            w,
+        ];
+        [0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| all[row][column]))
+    }
+}

@@ -1,0 +1,67 @@
+//! The device that draws.
+
+use wgpu::{
+    Adapter, Backends, Device, DeviceDescriptor, Instance, InstanceDescriptor, Limits,
+    PowerPreference, Queue, RequestAdapterOptions,
+};
+
+/// Why nothing can be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// No device, and what to do about it.
+    #[error(
+        "there is no device that draws: neither a graphics card with Vulkan, Metal or Direct3D 12, nor Mesa's, which needs no card; \
+         on Debian and Ubuntu install the package mesa-vulkan-drivers ({0})"
+    )]
+    NoDevice(String),
+    /// The device is there and fails.
+    #[error("the device that draws, {0}, failed: {1}")]
+    Failed(String, String),
+    /// A size that no picture can have.
+    #[error("a picture of {0} x {1} pixels cannot be drawn: each side has from 1 to {2} pixels")]
+    Size(u32, u32, u32),
+    /// A camera that the model does not have.
+    #[error("there is no camera {0}, only {1}")]
+    NoCamera(usize, usize),
+    /// The state cannot be evaluated.
+    #[error(transparent)]
+    Sim(#[from] clench::SimError),
+}
+
+/// A device with its queue, and its name for messages.
+pub struct Gpu {
+    pub device: Device,
+    pub queue: Queue,
+    pub name: String,
+}
+
+impl Gpu {
+    /// The fastest device there is, else one that computes on the processor.
+    ///
+    /// # Errors
+    /// That there is none, or that it does not start.
+    pub fn open() -> Result<Self, RenderError> {
+        let instance = Instance::new(InstanceDescriptor {
+            backends: Backends::PRIMARY,
+            ..InstanceDescriptor::new_without_display_handle()
+        });
+        let adapter = pollster::block_on(instance.request_adapter(&RequestAdapterOptions {
+            power_preference: PowerPreference::HighPerformance,
+            ..RequestAdapterOptions::default()
+        }));
+        let adapter: Adapter = adapter.map_err(|error| RenderError::NoDevice(error.to_string()))?;
+        let name = adapter.get_info().name;
+        let opened = pollster::block_on(adapter.request_device(&DeviceDescriptor {
+            label: Some("clench"),
+            required_limits: Limits::default().using_resolution(adapter.limits()),
+            ..DeviceDescriptor::default()
+        }));
+        let (device, queue) =
+            opened.map_err(|error| RenderError::Failed(name.clone(), error.to_string()))?;
+        Ok(Gpu {
+            device,
+            queue,
+            name,
+        })
+    }
+}

@@ -1,0 +1,172 @@
+//! The three ways in which things are drawn: into the sun's shadow, into the picture, and as distances and numbers of geoms.
+
+use crate::triangles::Vertex;
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState,
+    BufferBindingType, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device,
+    FragmentState, MultisampleState, PipelineLayoutDescriptor, PrimitiveState, RenderPipeline,
+    RenderPipelineDescriptor, SamplerBindingType, ShaderModule, ShaderStages, TextureFormat,
+    TextureSampleType, TextureViewDimension, VertexBufferLayout, VertexState, VertexStepMode,
+};
+
+pub const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+pub const GEOMS: TextureFormat = TextureFormat::R32Sint;
+pub const DISTANCES: TextureFormat = TextureFormat::R32Float;
+pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+/// Samples of a pixel.
+pub const SAMPLES: u32 = 4;
+
+/// The pipelines, and what they need.
+pub struct Passes {
+    pub scene: BindGroupLayout,
+    pub light: BindGroupLayout,
+    pub shadow: RenderPipeline,
+    pub opaque: RenderPipeline,
+    pub transparent: RenderPipeline,
+    pub facts: RenderPipeline,
+}
+
+/// What differs between pipelines.
+struct Way<'a> {
+    vertex: &'a str,
+    fragment: Option<&'a str>,
+    targets: &'a [Option<ColorTargetState>],
+    layouts: &'a [Option<&'a BindGroupLayout>],
+    samples: u32,
+    writes_depth: bool,
+}
+
+impl Passes {
+    pub fn new(device: &Device) -> Self {
+        let module = device.create_shader_module(wgpu::include_wgsl!("shader.wgsl"));
+        let scene = scene_layout(device);
+        let light = light_layout(device);
+        let target = |format, blend| {
+            Some(ColorTargetState {
+                format,
+                blend,
+                write_mask: ColorWrites::ALL,
+            })
+        };
+        let both = [Some(&scene), Some(&light)];
+        let picture = |blend, writes_depth| {
+            let way = Way {
+                vertex: "corner",
+                fragment: Some("picture"),
+                targets: &[target(PICTURE, blend)],
+                layouts: &both,
+                samples: SAMPLES,
+                writes_depth,
+            };
+            pipeline(device, &module, &way)
+        };
+        let facts = Way {
+            vertex: "corner",
+            fragment: Some("facts"),
+            targets: &[target(GEOMS, None), target(DISTANCES, None)],
+            layouts: &both[..1],
+            samples: 1,
+            writes_depth: true,
+        };
+        let shadow = Way {
+            vertex: "shadow_corner",
+            fragment: None,
+            targets: &[],
+            layouts: &both[..1],
+            samples: 1,
+            writes_depth: true,
+        };
+        Passes {
+            shadow: pipeline(device, &module, &shadow),
+            opaque: picture(None, true),
+            transparent: picture(Some(BlendState::ALPHA_BLENDING), false),
+            facts: pipeline(device, &module, &facts),
+            scene,
+            light,
+        }
+    }
+}
+
+fn scene_layout(device: &Device) -> BindGroupLayout {
+    let buffer = |binding, ty| BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::VERTEX_FRAGMENT,
+        ty: BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("scene"),
+        entries: &[
+            buffer(0, BufferBindingType::Uniform),
+            buffer(1, BufferBindingType::Storage { read_only: true }),
+        ],
+    })
+}
+
+fn light_layout(device: &Device) -> BindGroupLayout {
+    let entry = |binding, ty| BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    let shadow = BindingType::Texture {
+        sample_type: TextureSampleType::Depth,
+        view_dimension: TextureViewDimension::D2,
+        multisampled: false,
+    };
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("light"),
+        entries: &[
+            entry(0, shadow),
+            entry(1, BindingType::Sampler(SamplerBindingType::Comparison)),
+        ],
+    })
+}
+
+fn pipeline(device: &Device, module: &ShaderModule, way: &Way) -> RenderPipeline {
+    let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: way.layouts,
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&RenderPipelineDescriptor {
+        label: way.fragment,
+        layout: Some(&layout),
+        vertex: VertexState {
+            module,
+            entry_point: Some(way.vertex),
+            compilation_options: Default::default(),
+            buffers: &[Some(VertexBufferLayout {
+                array_stride: size_of::<Vertex>() as u64,
+                step_mode: VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+            })],
+        },
+        // Meshes of files have their corners in any order: both sides are drawn.
+        primitive: PrimitiveState::default(),
+        depth_stencil: Some(DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(way.writes_depth),
+            depth_compare: Some(CompareFunction::Greater),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: MultisampleState {
+            count: way.samples,
+            ..MultisampleState::default()
+        },
+        fragment: way.fragment.map(|entry| FragmentState {
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: way.targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

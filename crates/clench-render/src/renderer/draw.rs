@@ -1,0 +1,128 @@
+//! The passes of a picture.
+
+use super::Renderer;
+use crate::canvas::Canvas;
+use crate::light::SKY;
+use std::ops::Range;
+use wgpu::{
+    BindGroup, Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureView,
+};
+
+/// What is drawn.
+pub struct Draw<'a> {
+    pub scene: &'a BindGroup,
+    pub opaque: &'a [usize],
+    pub transparent: &'a [usize],
+    /// Parts of tendons, among the items.
+    pub strings: Range<usize>,
+}
+
+impl Renderer {
+    /// Draws what the sun sees.
+    pub fn shade(&self, encoder: &mut CommandEncoder, draw: &Draw) {
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("shadow"),
+            depth_stencil_attachment: Some(depth_attachment(&self.shadow)),
+            ..RenderPassDescriptor::default()
+        });
+        self.begin(&mut pass, draw);
+        pass.set_pipeline(&self.passes.shadow);
+        // A plane shades nothing that is seen, and would shade itself.
+        let plane = |g: &usize| self.model.geoms[*g].kind == clench::collide::ShapeKind::Plane;
+        let casting = draw.opaque.iter().filter(|g| !plane(g));
+        casting.for_each(|&g| self.draw_geom(&mut pass, g));
+        self.draw_strings(&mut pass, draw);
+    }
+
+    /// Draws the picture.
+    pub fn paint(&self, encoder: &mut CommandEncoder, draw: &Draw, canvas: &Canvas) {
+        let [r, g, b] = SKY.map(|x| f64::from(x).powf(2.2));
+        let resolved = canvas.picture.create_view(&Default::default());
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(RenderPassColorAttachment {
+                view: &canvas.samples,
+                depth_slice: None,
+                resolve_target: Some(&resolved),
+                ops: Operations {
+                    load: LoadOp::Clear(Color { r, g, b, a: 1.0 }),
+                    store: StoreOp::Discard,
+                },
+            })],
+            depth_stencil_attachment: Some(depth_attachment(&canvas.samples_depth)),
+            ..RenderPassDescriptor::default()
+        });
+        self.begin(&mut pass, draw);
+        pass.set_bind_group(1, &self.light, &[]);
+        pass.set_pipeline(&self.passes.opaque);
+        draw.opaque
+            .iter()
+            .for_each(|&g| self.draw_geom(&mut pass, g));
+        self.draw_strings(&mut pass, draw);
+        pass.set_pipeline(&self.passes.transparent);
+        draw.transparent
+            .iter()
+            .for_each(|&g| self.draw_geom(&mut pass, g));
+    }
+
+    /// Draws distances and numbers of geoms.
+    pub fn measure(&self, encoder: &mut CommandEncoder, draw: &Draw, canvas: &Canvas) {
+        let views = [&canvas.geoms, &canvas.distances].map(|t| t.create_view(&Default::default()));
+        let attachment = |view, nothing| {
+            Some(RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: Operations {
+                    load: LoadOp::Clear(Color {
+                        r: nothing,
+                        ..Color::BLACK
+                    }),
+                    store: StoreOp::Store,
+                },
+            })
+        };
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("facts"),
+            color_attachments: &[
+                attachment(&views[0], -1.0),
+                attachment(&views[1], f64::INFINITY),
+            ],
+            depth_stencil_attachment: Some(depth_attachment(&canvas.depth)),
+            ..RenderPassDescriptor::default()
+        });
+        self.begin(&mut pass, draw);
+        pass.set_pipeline(&self.passes.facts);
+        let geoms = draw.opaque.iter().chain(draw.transparent);
+        geoms.for_each(|&g| self.draw_geom(&mut pass, g));
+        self.draw_strings(&mut pass, draw);
+    }
+
+    fn begin(&self, pass: &mut RenderPass, draw: &Draw) {
+        pass.set_bind_group(0, draw.scene, &[]);
+        pass.set_vertex_buffer(0, self.corners.slice(..));
+    }
+
+    fn draw_geom(&self, pass: &mut RenderPass, geom: usize) {
+        pass.draw(self.shapes[geom].clone(), geom as u32..geom as u32 + 1);
+    }
+
+    fn draw_strings(&self, pass: &mut RenderPass, draw: &Draw) {
+        let strings = draw.strings.start as u32..draw.strings.end as u32;
+        if let Some(shape) = self.shapes.last().filter(|_| !strings.is_empty()) {
+            pass.draw(shape.clone(), strings);
+        }
+    }
+}
+
+fn depth_attachment(view: &TextureView) -> RenderPassDepthStencilAttachment<'_> {
+    RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(Operations {
+            load: LoadOp::Clear(0.0),
+            store: StoreOp::Store,
+        }),
+        stencil_ops: None,
+    }
+}

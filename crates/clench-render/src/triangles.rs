@@ -1,0 +1,234 @@
+//! Triangles of the shapes of geoms, in their frames, wound so that they are seen from outside.
+
+use clench::Model;
+use clench::collide::ShapeKind;
+use clench::rigid::model::{Mesh, Params};
+use std::f32::consts::PI;
+
+/// Parts of a circle.
+const AROUND: usize = 72;
+/// Parts of a quarter of a circle from the equator to a pole.
+const UPWARDS: usize = 18;
+
+/// A corner of a triangle.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
+pub struct Vertex {
+    pub place: [f32; 3],
+    pub normal: [f32; 3],
+}
+
+/// The triangles of a geom; an infinite plane is so large.
+pub fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Vec<Vertex> {
+    let size = params.geom_size[geom].to_array().map(|x| x as f32);
+    let described = &model.geoms[geom];
+    match described.kind {
+        ShapeKind::Plane => plane(size, far),
+        ShapeKind::Sphere => round([size[0]; 3], 0.0),
+        ShapeKind::Ellipsoid => round(size, 0.0),
+        ShapeKind::Capsule => round([size[0]; 3], size[1]),
+        ShapeKind::Cylinder => cylinder(size[0], size[1]),
+        ShapeKind::Box => block(size),
+        ShapeKind::Mesh => (described.mesh.and_then(|m| model.meshes.get(m)))
+            .map(|found| mesh(found))
+            .unwrap_or_default(),
+        ShapeKind::HeightField => (described.height_field)
+            .and_then(|f| model.height_fields.get(f))
+            .map(|field| terrain(&field.shape))
+            .unwrap_or_default(),
+    }
+}
+
+/// A cylinder along z of radius 1 and half the length 1, of which tendons are made.
+pub fn string() -> Vec<Vertex> {
+    cylinder(1.0, 1.0)
+}
+
+/// Four corners, counterclockwise from outside, as two triangles.
+fn quad(out: &mut Vec<Vertex>, corners: [Vertex; 4]) {
+    let [a, b, c, d] = corners;
+    out.extend([a, b, c, a, c, d]);
+}
+
+fn flat_quad(out: &mut Vec<Vertex>, places: [[f32; 3]; 4]) {
+    let normal = normal_of([places[0], places[1], places[2]]);
+    quad(out, places.map(|place| Vertex { place, normal }));
+}
+
+fn normal_of([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
+    let (u, v) = (
+        [0, 1, 2].map(|k| b[k] - a[k]),
+        [0, 1, 2].map(|k| c[k] - a[k]),
+    );
+    unit([
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ])
+}
+
+fn unit(v: [f32; 3]) -> [f32; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f32>().sqrt();
+    match length > 0.0 {
+        true => v.map(|x| x / length),
+        false => [0.0, 0.0, 1.0],
+    }
+}
+
+fn plane(size: [f32; 3], far: f32) -> Vec<Vertex> {
+    let reach = |half: f32| if half > 0.0 { half } else { far };
+    let (x, y) = (reach(size[0]), reach(size[1]));
+    let mut out = Vec::new();
+    flat_quad(
+        &mut out,
+        [[-x, -y, 0.0], [x, -y, 0.0], [x, y, 0.0], [-x, y, 0.0]],
+    );
+    out
+}
+
+/// An ellipsoid of these half axes, whose halves are `half` above and below the middle and joined by a cylinder.
+fn round(axes: [f32; 3], half: f32) -> Vec<Vertex> {
+    // Latitudes from pole to pole; the equator comes twice, at both ends of the cylinder.
+    let rows: Vec<(f32, f32)> = (0..=UPWARDS)
+        .map(|k| (-half, 0.5 * PI * (k as f32 / UPWARDS as f32 - 1.0)))
+        .chain((0..=UPWARDS).map(|k| (half, 0.5 * PI * k as f32 / UPWARDS as f32)))
+        .collect();
+    let corner = |&(shift, latitude): &(f32, f32), k: usize| {
+        let longitude = 2.0 * PI * (k % AROUND) as f32 / AROUND as f32;
+        let on = [
+            latitude.cos() * longitude.cos(),
+            latitude.cos() * longitude.sin(),
+            latitude.sin(),
+        ];
+        let place = [axes[0] * on[0], axes[1] * on[1], axes[2] * on[2] + shift];
+        let normal = unit([on[0] / axes[0], on[1] / axes[1], on[2] / axes[2]]);
+        Vertex { place, normal }
+    };
+    let mut out = Vec::new();
+    for pair in rows.windows(2) {
+        for k in 0..AROUND {
+            let corners = [
+                corner(&pair[0], k),
+                corner(&pair[0], k + 1),
+                corner(&pair[1], k + 1),
+                corner(&pair[1], k),
+            ];
+            quad(&mut out, corners);
+        }
+    }
+    out
+}
+
+fn cylinder(radius: f32, half: f32) -> Vec<Vertex> {
+    let mut out = Vec::new();
+    let on = |k: usize| {
+        let angle = 2.0 * PI * (k % AROUND) as f32 / AROUND as f32;
+        (angle.cos(), angle.sin())
+    };
+    for k in 0..AROUND {
+        let (a, b) = (on(k), on(k + 1));
+        let side = |(x, y): (f32, f32), z: f32| Vertex {
+            place: [radius * x, radius * y, z],
+            normal: [x, y, 0.0],
+        };
+        quad(
+            &mut out,
+            [side(a, -half), side(b, -half), side(b, half), side(a, half)],
+        );
+        for (z, [first, second]) in [(half, [a, b]), (-half, [b, a])] {
+            let normal = [0.0, 0.0, z.signum()];
+            let places = [(0.0, 0.0), first, second];
+            out.extend(places.map(|(x, y)| Vertex {
+                place: [radius * x, radius * y, z],
+                normal,
+            }));
+        }
+    }
+    out
+}
+
+fn block(half: [f32; 3]) -> Vec<Vertex> {
+    let mut out = Vec::new();
+    for axis in 0..3 {
+        let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
+        for side in [-1.0, 1.0] {
+            let corner = |u: f32, v: f32| {
+                let mut place = [0.0; 3];
+                place[axis] = side * half[axis];
+                place[first] = u * side * half[first];
+                place[second] = v * half[second];
+                place
+            };
+            flat_quad(
+                &mut out,
+                [
+                    corner(-1.0, -1.0),
+                    corner(1.0, -1.0),
+                    corner(1.0, 1.0),
+                    corner(-1.0, 1.0),
+                ],
+            );
+        }
+    }
+    out
+}
+
+fn mesh(mesh: &Mesh) -> Vec<Vertex> {
+    let place = |&corner: &u32| mesh.vertices[corner as usize].to_array().map(|x| x as f32);
+    let triangle = |corners: &[u32; 3]| {
+        let places = [0, 1, 2].map(|k| place(&corners[k]));
+        let normal = normal_of(places);
+        places.map(|place| Vertex { place, normal })
+    };
+    mesh.faces.iter().flat_map(triangle).collect()
+}
+
+/// The ground of a height field with the sides and the bottom of its base.
+fn terrain(field: &clench::collide::HeightField) -> Vec<Vertex> {
+    let (rows, columns) = (field.rows(), field.columns());
+    let [x, y, elevation, base] = field.size().map(|x| x as f32);
+    let heights = field.heights();
+    let along = |k: usize, count: usize| 2.0 * k as f32 / (count - 1) as f32 - 1.0;
+    let at = |row: usize, column: usize| {
+        let height = heights[row * columns + column] as f32;
+        [
+            x * along(column, columns),
+            y * along(row, rows),
+            elevation * height,
+        ]
+    };
+    let under = |[x, y, _]: [f32; 3]| [x, y, -base];
+    let mut out = Vec::new();
+    for row in 0..rows - 1 {
+        for column in 0..columns - 1 {
+            let corners = [
+                at(row, column),
+                at(row, column + 1),
+                at(row + 1, column + 1),
+                at(row + 1, column),
+            ];
+            for triangle in [[0, 1, 2], [0, 2, 3]] {
+                let places = triangle.map(|k| corners[k]);
+                let normal = normal_of(places);
+                out.extend(places.map(|place| Vertex { place, normal }));
+            }
+        }
+    }
+    let mut side = |a: [f32; 3], b: [f32; 3]| flat_quad(&mut out, [under(a), under(b), b, a]);
+    for column in 0..columns - 1 {
+        side(at(0, column), at(0, column + 1));
+        side(at(rows - 1, column + 1), at(rows - 1, column));
+    }
+    for row in 0..rows - 1 {
+        side(at(row + 1, 0), at(row, 0));
+        side(at(row, columns - 1), at(row + 1, columns - 1));
+    }
+    let bottom = [
+        [-x, y, -base],
+        [x, y, -base],
+        [x, -y, -base],
+        [-x, -y, -base],
+    ];
+    flat_quad(&mut out, bottom);
+    out
+}

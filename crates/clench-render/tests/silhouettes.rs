@@ -1,0 +1,177 @@
+//! What is drawn is what rays hit. Without a device that draws these tests say so and check nothing else.
+
+use clench::math::Vec3;
+use clench::{RayFilter, Sim, load_str};
+use clench_render::{FreeCamera, Picture, RenderError, Renderer, View};
+use std::sync::Arc;
+
+const SCENE: &str = "<mujoco>
+  <asset>
+    <mesh name='wedge' vertex='0 0 0  0.4 0 0  0 0.3 0  0 0 0.5'/>
+    <hfield name='hills' nrow='4' ncol='5' size='0.5 0.4 0.3 0.1' elevation='0 1 2 1 0  1 3 1 0 2  0 2 4 2 1  1 0 1 2 0'/>
+  </asset>
+  <worldbody>
+    <geom type='plane' size='0 0 1'/>
+    <geom type='hfield' hfield='hills' pos='0.9 0.9 0.2'/>
+    <body pos='-0.8 -0.8 0.3'><freejoint/><geom size='0.25'/></body>
+    <body pos='0 -0.8 0.4' euler='40 20 0'><freejoint/><geom type='capsule' size='0.12 0.25'/></body>
+    <body pos='0.8 -0.8 0.3' euler='10 30 0'><freejoint/><geom type='box' size='0.2 0.15 0.25'/></body>
+    <body pos='-0.8 0 0.3' euler='70 0 20'><freejoint/><geom type='cylinder' size='0.2 0.25'/></body>
+    <body pos='0 0 0.4' euler='0 40 0'><freejoint/><geom type='ellipsoid' size='0.3 0.15 0.2'/></body>
+    <body pos='0.7 0 0.3' euler='0 0 30'><freejoint/><geom type='mesh' mesh='wedge'/></body>
+    <camera name='side' pos='2.5 -2 1.2' xyaxes='0.6 0.8 0 -0.25 0.19 0.95' fovy='50'/>
+    <camera name='above' pos='0 0 3' fovy='3' projection='orthographic'/>
+  </worldbody>
+</mujoco>";
+
+fn sim() -> Sim<f64> {
+    Sim::new(Arc::new(load_str(SCENE).unwrap())).unwrap()
+}
+
+/// A renderer of the scene; none where the machine has no device, or the environment variable `CLENCH_GPU` says to skip. Where that
+/// says to require one, none is a failure.
+fn renderer(sim: &Sim<f64>) -> Option<Renderer> {
+    let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
+    if wish == "skip" {
+        return None;
+    }
+    match Renderer::new(sim.model()) {
+        Ok(renderer) => Some(renderer),
+        Err(RenderError::NoDevice(why)) if wish != "require" => {
+            eprintln!("skipped: no device draws here: {why}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+const WIDTH: usize = 240;
+const HEIGHT: usize = 180;
+
+/// The shares of pixels whose geom, and whose distance to a millimetre and a thousandth, are those of the ray through their middle.
+fn agreement(
+    sim: &mut Sim<f64>,
+    view: View,
+    rays: impl Fn(f64, f64) -> (Vec3<f64>, Vec3<f64>),
+) -> Option<[f64; 2]> {
+    let mut renderer = renderer(sim)?;
+    let picture = Picture {
+        view: Some(view),
+        colors: false,
+        facts: true,
+        ..Picture::new(WIDTH as u32, HEIGHT as u32)
+    };
+    let image = renderer.draw(sim, &picture).unwrap();
+    let mut agreeing = [0, 0];
+    for row in 0..HEIGHT {
+        for column in 0..WIDTH {
+            let x = (2.0 * column as f64 + 1.0 - WIDTH as f64) / HEIGHT as f64;
+            let y = (HEIGHT as f64 - 2.0 * row as f64 - 1.0) / HEIGHT as f64;
+            // Directions have the length 1 along the way the camera looks.
+            let (origin, direction) = rays(x, y);
+            let hit = sim.ray(origin, direction, &RayFilter::default()).unwrap();
+            let pixel = row * WIDTH + column;
+            let geom = hit.as_ref().map_or(-1, |hit| hit.geom as i32);
+            let depth = hit.map_or(f64::INFINITY, |hit| hit.distance);
+            let drawn = f64::from(image.depth[pixel]);
+            let near = drawn == depth || (drawn - depth).abs() < 1e-3 + 1e-3 * depth;
+            agreeing[0] += usize::from(image.geoms[pixel] == geom);
+            agreeing[1] += usize::from(near);
+        }
+    }
+    Some(agreeing.map(|count| count as f64 / (WIDTH * HEIGHT) as f64))
+}
+
+fn camera(sim: &mut Sim<f64>, index: usize) -> (Vec3<f64>, [Vec3<f64>; 3]) {
+    let place = sim.output("cam_xpos").unwrap();
+    let turn = sim.output("cam_xmat").unwrap();
+    let axis = |k: usize| Vec3::from_array([0, 3, 6].map(|row| turn[9 * index + row + k]));
+    let place = Vec3::from_array([0, 1, 2].map(|k| place[3 * index + k]));
+    (place, [axis(0), axis(1), axis(2)])
+}
+
+#[test]
+fn every_kind_of_geom_is_drawn_where_rays_hit_it() {
+    let mut sim = sim();
+    let (place, [right, up, back]) = camera(&mut sim, 0);
+    let half = 25f64.to_radians().tan();
+    let rays = |x: f64, y: f64| (place, right * (half * x) + up * (half * y) - back);
+    let Some([geoms, depth]) = agreement(&mut sim, View::Camera(0), rays) else {
+        return;
+    };
+    assert!(geoms > 0.995, "{geoms}");
+    assert!(depth > 0.99, "{depth}");
+}
+
+#[test]
+fn lines_of_sight_can_be_parallel() {
+    let mut sim = sim();
+    let (place, [right, up, back]) = camera(&mut sim, 1);
+    let rays = |x: f64, y: f64| (place + right * (1.5 * x) + up * (1.5 * y), back * -1.0);
+    let Some([geoms, depth]) = agreement(&mut sim, View::Camera(1), rays) else {
+        return;
+    };
+    assert!(geoms > 0.995, "{geoms}");
+    assert!(depth > 0.99, "{depth}");
+}
+
+#[test]
+fn a_free_camera_looks_at_its_point() {
+    let mut sim = sim();
+    let free = FreeCamera {
+        lookat: [-0.8, -0.8, 0.3],
+        distance: 2.0,
+        azimuth: 30.0,
+        elevation: -20.0,
+        fovy: 45.0,
+    };
+    let Some(mut renderer) = renderer(&sim) else {
+        return;
+    };
+    let picture = Picture {
+        view: Some(View::Free(free)),
+        facts: true,
+        ..Picture::new(101, 101)
+    };
+    let image = renderer.draw(&mut sim, &picture).unwrap();
+    let middle = 50 * 101 + 50;
+    assert_eq!(image.geoms[middle], 2);
+    assert!(
+        (image.depth[middle] - 1.75).abs() < 2e-3,
+        "{}",
+        image.depth[middle]
+    );
+    assert_eq!(image.rgb.len(), 3 * 101 * 101);
+    // The same picture again, to the byte; and one of all, without a camera of its own.
+    assert!(renderer.draw(&mut sim, &picture).unwrap() == image);
+    let all = renderer
+        .draw(
+            &mut sim,
+            &Picture {
+                view: None,
+                ..picture
+            },
+        )
+        .unwrap();
+    let seen = (0..8).filter(|geom| all.geoms.contains(geom)).count();
+    assert!(seen >= 7, "{seen}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_said() {
+    let mut sim = sim();
+    let Some(mut renderer) = renderer(&sim) else {
+        return;
+    };
+    for (width, height, view) in [
+        (0, 5, None),
+        (5, 1 << 20, None),
+        (5, 5, Some(View::Camera(2))),
+    ] {
+        let picture = Picture {
+            view,
+            ..Picture::new(width, height)
+        };
+        assert!(renderer.draw(&mut sim, &picture).is_err());
+    }
+}

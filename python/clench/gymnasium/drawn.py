@@ -1,0 +1,38 @@
+"""Pictures of environments."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import NDArray
+
+from clench import Batch, FreeCamera
+
+Array = NDArray[Any]
+
+
+class Drawn:
+    """What draws the environments of a batch, in the mode ``rgb_array``."""
+
+    num_envs: int
+    batch: Batch
+    render_mode: str | None
+    render_size: tuple[int, int] = (480, 480)
+    render_camera: str | int | FreeCamera | None = None
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"]}
+
+    def render(self) -> tuple[Array, ...] | None:
+        """Draws every environment in its present state.
+
+        Returns
+        -------
+        tuple of ndarray or None
+            Their pictures (height, width, 3), uint8; None where ``render_mode`` is None.
+        """
+        if self.render_mode is None:
+            return None
+        camera = self.render_camera
+        if camera is None and "track" in self.batch.model.names("camera"):
+            camera = "track"
+        width, height = self.render_size
+        return tuple(self.batch.render(env, width, height, camera=camera) for env in range(self.num_envs))
