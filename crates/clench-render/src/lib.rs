@@ -1,7 +1,7 @@
 //! Pictures of simulations, drawn without a window: on any graphics card, or by Mesa on the processor.
 //!
 //! A [`Renderer`] has the shapes of a model on the device and draws an [`Image`] of a simulation from a [`View`]: colours, and
-//! where wanted distances and the geoms that are seen. [`triangles`] makes shapes of geoms, [`camera`] the way of looking.
+//! where wanted distances and the geoms that are seen. The module `triangles` makes shapes of geoms, [`camera`] the way of looking.
 //!
 //! No physics here, and no files: what is done with a picture is its user's business.
 

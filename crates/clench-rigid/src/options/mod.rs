@@ -74,19 +74,20 @@ macro_rules! declare_options {
             /// Sets an option.
             ///
             /// # Errors
-            /// A value of another type, or out of the option's range.
+            /// A value of another type, or out of the option's range; nothing is set then.
             pub fn set(&mut self, option: RigidOption, value: OptionValue) -> Result<(), OptionError> {
                 match option {
                     $($( RigidOption::$name => {
-                        let value = value.try_into().map_err(|value| OptionError {
+                        let own = value.try_into().map_err(|value| OptionError {
                             name: option.name(),
                             value,
                             range: option.default(false).what(),
                         })?;
-                        self.$name = Some(value);
+                        option.check(value)?;
+                        self.$name = Some(own);
                     } )*)*
                 }
-                option.check(value)
+                Ok(())
             }
         }
 
