@@ -294,6 +294,9 @@ class Fuzz:
         thing = {self.choose(OBJECTS): name} if self.junk.chance(0.8) else {}
         x, point = self.numbers(*lead, model.nv), self.numbers(3)
         qpos = [self.numbers(*lead, model.nq) for _ in range(2)]
+        kind, sizes = self.choose(("rgb", "depth", "geom")), [self.maybe(lambda: 16), self.maybe(lambda: 12)]
+        if isinstance(owner, clench.Batch):
+            sizes.insert(0, self.count())
         asked: dict[str, Callable[[], Any]] = {
             "velocity": lambda: owner.velocity(**thing, local=self.maybe(lambda: True)),
             "acceleration": lambda: owner.acceleration(**thing),
@@ -308,6 +311,7 @@ class Fuzz:
             "differentiate_pos": lambda: model.differentiate_pos(*qpos, self.maybe(lambda: 0.1)),
             "rays": lambda: owner.rays(self.numbers(2, 3), self.numbers(2, 3), **thing, groups=self.maybe(lambda: [0])),
             "heights": lambda: owner.heights(name, self.numbers(2, 2), **thing),
+            "render": lambda: owner.render(*sizes, camera=self.maybe(lambda: None), kind=self.maybe(lambda: kind), groups=self.maybe(lambda: [0, 1])),
             "ik": lambda: owner.ik(self.maybe(lambda: [clench.FrameTarget(**thing, position=point), clench.ComTarget(point)])),
             "step1": lambda: owner.step1(),
             "step2": lambda: owner.step2(),
