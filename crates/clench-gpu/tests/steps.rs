@@ -7,7 +7,7 @@ use clench_rigid::batch::Precision;
 use clench_rigid::model::Model;
 use clench_rigid::options::{MaxContacts, RigidOptions};
 use clench_rigid::{Sim, State};
-use common::{Random, batch, convert, own, random_state, text, upload};
+use common::{Random, assert_all_run, batch, convert, own, random_state, text, upload};
 use std::sync::Arc;
 
 fn runner() -> Arc<Model> {
@@ -47,13 +47,7 @@ fn drift_alike(model: &Arc<Model>, steps: usize) {
     };
     upload(&mut batch, &starts);
     batch.step(steps).expect("a device");
-    assert!(
-        batch
-            .statuses()
-            .expect("a device")
-            .iter()
-            .all(Option::is_none)
-    );
+    assert_all_run(&batch);
     assert_eq!(batch.steps().expect("a device"), vec![steps as u32; count]);
     let qpos = batch.read("qpos").expect("a device");
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
@@ -149,13 +143,7 @@ fn a_fault_stays_where_it_is() {
 
     batch.reset_envs(&[17]).expect("a device");
     batch.step(2).expect("a device");
-    assert!(
-        batch
-            .statuses()
-            .expect("a device")
-            .iter()
-            .all(Option::is_none)
-    );
+    assert_all_run(&batch);
     assert_eq!(batch.steps().expect("a device")[16..19], [10, 2, 10]);
 }
 
@@ -189,13 +177,7 @@ fn thousands_run_side_by_side() {
     };
     let all: Vec<_> = (0..count).map(|env| states[env % 64].clone()).collect();
     let found = after(&mut batch, &all, 5);
-    assert!(
-        batch
-            .statuses()
-            .expect("a device")
-            .iter()
-            .all(Option::is_none)
-    );
+    assert_all_run(&batch);
     let width = 64 * model.nq;
     for part in found[..count * model.nq].chunks(width) {
         assert!(

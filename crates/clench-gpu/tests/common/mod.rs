@@ -324,6 +324,12 @@ fn used(name: &str, mut row: Vec<f64>, solve: &GpuSolve, nv: usize) -> Vec<f64> 
 /// Largest difference of a field, over its largest number.
 const TOLERANCE: f64 = 1e-4;
 
+/// Asserts that no environment stands still.
+pub fn assert_all_run(batch: &GpuBatch) {
+    let statuses = batch.statuses().expect("a device");
+    assert!(statuses.iter().all(Option::is_none), "{statuses:?}");
+}
+
 /// Random states of a model on the device, after a forward pass.
 fn states(model: &Arc<Model>, count: usize, spread: f64) -> Option<(GpuBatch, Vec<State<f32>>)> {
     let mut random = Random::new(3);
@@ -333,13 +339,7 @@ fn states(model: &Arc<Model>, count: usize, spread: f64) -> Option<(GpuBatch, Ve
     let mut batch = batch(model, count)?;
     upload(&mut batch, &states);
     batch.forward().expect("a device");
-    assert!(
-        batch
-            .statuses()
-            .expect("a device")
-            .iter()
-            .all(Option::is_none)
-    );
+    assert_all_run(&batch);
     Some((batch, states))
 }
 
