@@ -26,6 +26,8 @@ pub fn test() -> Result<(), String> {
         tests.args(["--test", test]);
     }
     tests.env("CLENCH_GPU", "require");
+    // A part of Mesa that would choose the device complains on stderr where there is no display.
+    tests.env("NODEVICE_SELECT", "1");
     tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
     run(tests)
 }
