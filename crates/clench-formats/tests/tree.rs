@@ -50,21 +50,6 @@ fn a_body_without_mass_in_a_frame_is_bounded_where_it_is_written() {
     assert!(near(model.params.body_pos[1], [5.1, 6.7, 9.2]));
 }
 
-/// MuJoCo's shortcut for bodies that only slide: their mass in every direction, where others take the mean over directions.
-#[test]
-fn a_slider_weighs_in_every_direction_unless_it_is_not_simple() {
-    let weight = |simple: &str| {
-        let text = format!(
-            "<mujoco><worldbody><body simple='{simple}'>
-               <joint type='slide'/><geom type='box' size='1 1 1' mass='2'/>
-             </body></worldbody></mujoco>"
-        );
-        load_str(&text).expect("valid").params.body_invweight0[1][0]
-    };
-    assert_eq!(weight("auto"), 0.5);
-    assert!((weight("false") - 0.5 / 3.0).abs() < 1e-15);
-}
-
 #[test]
 fn what_is_only_seen_is_left_out_of_the_world_whatever_inertia_comes_from() {
     let text = "<mujoco><compiler inertiafromgeom='true' discardvisual='true'/><worldbody>

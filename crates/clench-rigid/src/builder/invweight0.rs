@@ -85,8 +85,11 @@ pub(super) fn derive(
     model: &mut Model,
 ) -> Result<(), BuildError> {
     let mut inverse = InverseInertia::new(model, pose0)?;
+    let with_inertia = bodies_of_tendons_with_inertia(model, pose0);
     let sliders: Vec<bool> = (order.iter().enumerate())
-        .map(|(b, &old)| !builder.bodies[old].never_simple && slides_alone(model, b))
+        .map(|(b, &old)| {
+            !builder.bodies[old].never_simple && !with_inertia[b] && slides_alone(model, b)
+        })
         .collect();
     dof_weights(&mut inverse, &sliders, model);
     body_weights(&mut inverse, &sliders, pose0, model);
@@ -226,6 +229,19 @@ fn tendon_weights(inverse: &mut InverseInertia, pose0: &Positions<f64>, model: &
     let weight = |t| inverse.weight_of(model, tendon::gradient(model, pose0, t));
     let weights = (0..model.tendons.len()).map(weight).collect();
     model.params.tendon_invweight0 = weights;
+}
+
+/// Whether a tendon with armature moves each body: then, as in MuJoCo, its weights are those of the mass matrix.
+fn bodies_of_tendons_with_inertia(model: &Model, pose0: &Positions<f64>) -> Vec<bool> {
+    let mut found = vec![false; model.nbody()];
+    for (t, &armature) in model.params.tendon_armature.iter().enumerate() {
+        if armature > 0.0 {
+            for (dof, _) in tendon::gradient(model, pose0, t) {
+                found[model.joints[model.dofs[dof].joint].body] = true;
+            }
+        }
+    }
+    found
 }
 
 /// Whether the body only slides along coordinate axes of the world or of a body fixed to it, and carries nothing: then
