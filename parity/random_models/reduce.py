@@ -6,7 +6,7 @@ import time
 from random_models.compare import Refused, examine
 from random_models.generate import written
 
-MOST_TRIALS = 600
+MAX_TRIALS = 600
 UNWRAPPED = ("frame", "replicate", "body", "default")
 
 
@@ -27,7 +27,7 @@ def reduced(root, seed, difference, seconds):
         difference = found
         return True
 
-    spent = lambda: trials >= MOST_TRIALS or time.monotonic() > deadline
+    spent = lambda: trials >= MAX_TRIALS or time.monotonic() > deadline
     progress = True
     while progress and not spent():
         progress = False

@@ -20,7 +20,7 @@ pub const SKY: [f32; 3] = [0.875, 0.902, 0.933];
 /// What the shader is told of a picture.
 #[repr(C)]
 #[derive(Clone, Copy, IntoBytes, zerocopy::Immutable)]
-pub struct Told {
+pub struct Uniforms {
     camera: [[f32; 4]; 4],
     sun: [[f32; 4]; 4],
     eye: [f32; 4],
@@ -30,13 +30,13 @@ pub struct Told {
     fog: [f32; 4],
 }
 
-impl Told {
+impl Uniforms {
     /// Of a picture of things of a size around a centre, m.
     pub fn new(camera: &Placed, aspect: f32, extent: f32, centre: [f32; 3]) -> Self {
         let far = FAR * extent;
         let ahead = camera.axes[2].map(|x| -x);
         let reach = 2.2 * extent;
-        Told {
+        Uniforms {
             camera: camera.matrix(aspect, NEAR * extent, far),
             sun: sun_matrix(centre, reach),
             eye: [camera.eye[0], camera.eye[1], camera.eye[2], 1.0],

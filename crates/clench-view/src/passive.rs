@@ -17,9 +17,8 @@ const IDLE_PERIOD: Duration = Duration::from_millis(500);
 const REST: Duration = Duration::from_millis(10);
 /// A loop that is later than this, s, is no longer waited for: it does not make up for it.
 const LATE: f64 = 0.1;
-
 /// A loop that is further ahead than this, s, has jumped to another time or was told another speed.
-const MOST_AHEAD: f64 = 10.0;
+const MAX_AHEAD: f64 = 10.0;
 
 /// A server, what its users do, and what is drawn for them.
 pub struct PassiveViewer {
@@ -156,10 +155,10 @@ impl PassiveViewer {
             return None;
         }
         let ahead = (time - start) / factor - when.elapsed().as_secs_f64();
-        if ahead > 0.0 && time >= start && ahead < MOST_AHEAD {
+        if ahead > 0.0 && time >= start && ahead < MAX_AHEAD {
             return Some(Duration::from_secs_f64(ahead).min(REST));
         }
-        if !(-LATE..MOST_AHEAD).contains(&ahead) || time < start {
+        if !(-LATE..MAX_AHEAD).contains(&ahead) || time < start {
             self.anchor = None;
         }
         None

@@ -41,7 +41,7 @@ const KNOWN: [(&str, &[&str], &[&str]); 21] = [
 /// Most notes; more mistakes are likely to be of one kind.
 const MOST: usize = 20;
 /// Most names that are compared with those that are known.
-const MOST_COMPARED: usize = 10_000;
+const MAX_COMPARED: usize = 10_000;
 
 /// Notes each name below a robot that is probably mistaken for one that is read.
 pub(super) fn collect(root: &Element, notes: &mut Vec<String>) {
@@ -52,7 +52,7 @@ pub(super) fn collect(root: &Element, notes: &mut Vec<String>) {
             continue;
         };
         let mut check = |what: String, name: &str, known: &[&str], line: u32| {
-            if known.contains(&name) || compared >= MOST_COMPARED {
+            if known.contains(&name) || compared >= MAX_COMPARED {
                 return;
             }
             compared += 1;

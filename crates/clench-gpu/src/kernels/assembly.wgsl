@@ -1,8 +1,8 @@
 // Jacobians of all rows, their velocities, and with these aref, R and D. One workgroup an environment. Sister of
 // `constraint/assembly.rs`.
 
-// Half of the single slope_limit's rounding at 1 is 2⁻²⁴; R is at least this many of them of the inverse inertia.
-const LEAST_REGULARIZATION: f32 = 4.5 * 1.1920929e-7;
+// R is at least this share of the inverse inertia: 4.5 ε of single precision, as on the processor.
+const MIN_REGULARIZATION: f32 = 4.5 * 1.1920929e-7;
 
 fn moves(body: u32, dof: u32) -> bool {
     return ((words[DOF_MASK + MASK_WORDS * body + (dof >> 5u)] >> (dof & 31u)) & 1u) == 1u;
@@ -91,7 +91,7 @@ fn finish_block(b: u32) {
             let mu = row(SHAPE + a);
             inertia = normal + mu * mu * inertia;
         }
-        factor = max(factor, LEAST_REGULARIZATION * inertia / row(R + a));
+        factor = max(factor, MIN_REGULARIZATION * inertia / row(R + a));
     }
     for (var a = first; a < first + dim; a++) {
         let r = row(R + a) * factor;

@@ -7,7 +7,7 @@ use crate::canvas::{Canvas, copy, read, texture};
 use crate::device::{Gpu, RenderError};
 use crate::image::Image;
 use crate::items::{self, Item};
-use crate::light::{FAR, SHADOW, Told, light_group};
+use crate::light::{FAR, SHADOW, Uniforms, light_group};
 use crate::passes::{DEPTH, Passes};
 use crate::triangles::{self, Vertex};
 use clench::Model;
@@ -150,7 +150,7 @@ impl Renderer {
         items.extend(items::of_tendons(sim)?);
         let strings = shown.geoms..items.len();
         let aspect = width as f32 / height as f32;
-        let told = Told::new(&camera, aspect, self.extent, self.centre(&items));
+        let told = Uniforms::new(&camera, aspect, self.extent, self.centre(&items));
         let scene = self.scene_group(&told, &items);
         let size = [width, height];
         if self
@@ -207,7 +207,7 @@ impl Renderer {
         sum.map(|x| if count > 0.0 { x / count } else { 0.0 })
     }
 
-    fn scene_group(&self, told: &Told, items: &[Item]) -> BindGroup {
+    fn scene_group(&self, told: &Uniforms, items: &[Item]) -> BindGroup {
         let device = &self.gpu.device;
         let told = device.create_buffer_init(&BufferInitDescriptor {
             label: Some("view"),

@@ -12,7 +12,7 @@ use crate::{Sim, SimError};
 use std::sync::Arc;
 
 /// Velocities fade with a time constant of at least so much, s.
-const SHORTEST_TIMECONST: f64 = 0.01;
+const MIN_TIMECONST: f64 = 0.01;
 /// Accelerations and forces that are divided by are at least so large (MuJoCo's `mjMINVAL`).
 const MIN_NORM: f64 = 1e-15;
 
@@ -236,7 +236,7 @@ impl<'a> Search<'a> {
     /// A step; the length at its start.
     fn pull(&mut self, u: usize, direction: f64) -> Result<f64, SimError> {
         let settings = self.settings;
-        let fading = (-self.timestep / settings.timeconst.max(SHORTEST_TIMECONST)).exp();
+        let fading = (-self.timestep / settings.timeconst.max(MIN_TIMECONST)).exp();
         for velocity in &mut self.sim.state.qvel {
             *velocity *= fading;
         }
