@@ -214,9 +214,82 @@ fn what_cannot_be_attached_says_why() {
         "<attach model='arm' body='Z' prefix='p'/>",
         "no body \"Z\"",
     );
-    let whole = "<attach model='arm' prefix='p'/>";
-    refused("conflict='merge'", whole, "conflict");
     let files = Files::new(&[("main.xml", main_file("", "", "").as_str())]);
     let error = files.read().unwrap_err();
     assert!(error.message.contains("cannot read"), "{error}");
+}
+
+/// The time step, iterations and gravity of a model with these options, and what it notes, where it attaches parts with those.
+fn merged(conflict: &str, own: &str, parts: &[&str]) -> Result<(f64, usize, f64, String), String> {
+    let part = |options: &&str| {
+        format!(
+            "<mujoco>{options}<worldbody><body name='b'><geom size='1'/></body></worldbody></mujoco>"
+        )
+    };
+    let parts: Vec<String> = parts.iter().map(part).collect();
+    let names: Vec<String> = (0..parts.len()).map(|k| format!("{k}.xml")).collect();
+    let models = (0..parts.len()).map(|k| format!("<model name='m{k}' file='{k}.xml'/>"));
+    let attached = (0..parts.len()).map(|k| format!("<attach model='m{k}' prefix='p{k}'/>"));
+    let main = format!(
+        "<mujoco><compiler conflict='{conflict}'/>{own}<asset>{}</asset><worldbody>{}</worldbody></mujoco>",
+        models.collect::<String>(),
+        attached.collect::<String>()
+    );
+    let mut files = vec![("main.xml", main.as_str())];
+    files.extend(
+        names
+            .iter()
+            .map(String::as_str)
+            .zip(parts.iter().map(String::as_str)),
+    );
+    let model = Files::new(&files)
+        .read()
+        .map_err(|error| error.to_string())?;
+    let iterations = model.options.iterations.unwrap_or_default();
+    let physics = &model.physics;
+    Ok((
+        physics.timestep,
+        iterations,
+        physics.gravity[2],
+        model.notes.join("; "),
+    ))
+}
+
+#[test]
+fn options_of_attached_models_are_merged_where_they_can_be() {
+    let (timestep, iterations, gravity, notes) = merged(
+        "merge",
+        "<option timestep='.005' iterations='50'/>",
+        &["<option timestep='.001' iterations='20' gravity='0 0 -10'><flag damper='disable'/></option>"],
+    )
+    .unwrap();
+    assert_eq!((timestep, iterations, gravity), (0.001, 50, -10.0));
+    assert!(notes.contains("timestep, gravity, damper"), "{notes}");
+}
+
+#[test]
+fn what_was_taken_from_a_model_attached_before_counts_as_given() {
+    let parts = ["<option timestep='.004'/>", "<option timestep='.001'/>"];
+    assert_eq!(merged("merge", "", &parts).unwrap().0, 0.001);
+    assert_eq!(merged("merge", "", &parts[..1]).unwrap().0, 0.004);
+    assert_eq!(merged("warning", "", &parts).unwrap().0, 0.002);
+    assert_eq!(merged("error", "", &parts).unwrap().0, 0.002);
+}
+
+#[test]
+fn options_that_cannot_be_merged_are_refused_by_name() {
+    let own = "<option gravity='0 0 -10' timestep='.005'><flag constraint='enable'/></option>";
+    let part = ["<option gravity='0 0 -9' timestep='.001'><flag constraint='disable'/></option>"];
+    let error = merged("merge", own, &part).unwrap_err();
+    assert!(error.contains("main.xml:1: attach"), "{error}");
+    assert!(
+        error.contains("gravity: here 0 0 -10, there 0 0 -9"),
+        "{error}"
+    );
+    assert!(!error.contains("timestep"), "{error}");
+    let error = merged("error", own, &part).unwrap_err();
+    assert!(
+        error.contains("timestep") && error.contains("flag constraint"),
+        "{error}"
+    );
 }

@@ -5,6 +5,17 @@ use crate::LoadError;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{CompilerSpec, InertiaFromGeom, LengthRangeMode, LengthRangeSpec};
 
+/// What becomes of options of attached models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Conflict {
+    /// They are left out, with a note.
+    Warning,
+    /// They are merged, where that is possible.
+    Merge,
+    /// None may say another thing than the model itself.
+    Error,
+}
+
 /// How the file writes angles and rotations.
 #[derive(Clone, Debug)]
 pub(crate) struct CompilerOptions {
@@ -15,8 +26,8 @@ pub(crate) struct CompilerOptions {
     pub meshdir: String,
     /// Only the last part of a file's path counts.
     pub strippath: bool,
-    /// Options of attached models are not just left out.
-    pub merges_options: bool,
+    /// What becomes of options of attached models.
+    pub conflict: Conflict,
 }
 
 impl Default for CompilerOptions {
@@ -26,7 +37,7 @@ impl Default for CompilerOptions {
             eulerseq: ['x', 'y', 'z'],
             meshdir: String::new(),
             strippath: false,
-            merges_options: false,
+            conflict: Conflict::Warning,
         }
     }
 }
@@ -70,8 +81,12 @@ impl CompilerOptions {
             directory.clone_into(&mut self.meshdir);
         }
         element.set_boolean("strippath", &mut self.strippath)?;
-        let conflicts = [("warning", false), ("merge", true), ("error", true)];
-        element.set_keyword("conflict", &conflicts, &mut self.merges_options)?;
+        let conflicts = [
+            ("warning", Conflict::Warning),
+            ("merge", Conflict::Merge),
+            ("error", Conflict::Error),
+        ];
+        element.set_keyword("conflict", &conflicts, &mut self.conflict)?;
         if let Some(text) = element.text("eulerseq") {
             let axes: Vec<char> = text.chars().filter(|c| "xyzXYZ".contains(*c)).collect();
             let axes = <[char; 3]>::try_from(axes).ok().filter(|_| text.len() == 3);

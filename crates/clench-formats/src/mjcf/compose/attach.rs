@@ -3,8 +3,10 @@
 use super::names::Namespace;
 use super::relations::{FOLLOWING, follows};
 use super::replicate::drop_inertia;
+use super::settings::Settings;
 use super::{Composer, Level, Shared, check_depth, compose_model};
 use crate::LoadError;
+use crate::mjcf::compiler::Conflict;
 use crate::mjcf::document::{self, Element};
 use crate::mjcf::include::Includes;
 use crate::mjcf::{schema, sections};
@@ -14,9 +16,15 @@ use std::sync::Arc;
 /// Deepest nesting of models in models.
 const MAX_NESTING: usize = 50;
 
+/// A model that can be attached: all of it, and its options.
+struct Part {
+    root: Element,
+    settings: Settings,
+}
+
 /// The models that a model can attach, by name, in the order in which they are written.
 #[derive(Default)]
-pub(super) struct Models(Vec<(String, Element)>);
+pub(super) struct Models(Vec<(String, Part)>);
 
 impl Models {
     /// Reads the `<model>`s among the assets of a model.
@@ -28,22 +36,21 @@ impl Models {
         let assets = sections(root, "asset").flat_map(|section| &section.children);
         for element in assets.filter(|asset| asset.tag == "model") {
             let model = read_model(element, shared)?;
-            let name = element.text("name").or_else(|| model.text("model"));
-            models
-                .0
-                .push((name.unwrap_or("MuJoCo Model").to_owned(), model));
+            let name = element.text("name").or_else(|| model.root.text("model"));
+            let name = name.unwrap_or("MuJoCo Model").to_owned();
+            models.0.push((name, model));
         }
         Ok(models)
     }
 
-    fn find(&self, name: &str) -> Option<&Element> {
+    fn find(&self, name: &str) -> Option<&Part> {
         let found = self.0.iter().find(|(known, _)| known == name);
         found.map(|(_, model)| model)
     }
 }
 
 /// Reads the model that an element names, with all that it attaches itself.
-fn read_model(element: &Element, shared: &mut Shared) -> Result<Element, LoadError> {
+fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError> {
     let name = element.required_text("file")?;
     check_type(element, name)?;
     let directory = &shared.sources.of(element).files.model_directory;
@@ -70,9 +77,9 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Element, LoadErr
     Includes::new(Some(&path), shared.spending).expand(&mut root, directory, shared.spending)?;
     shared.check(&mut root)?;
     shared.open.push(identity);
-    compose_model(&mut root, directory, shared)?;
+    let settings = compose_model(&mut root, directory, shared)?;
     shared.open.pop();
-    Ok(root)
+    Ok(Part { root, settings })
 }
 
 /// Refuses what is no MJCF by what the element says of it, or by its name.
@@ -129,12 +136,14 @@ impl Composer<'_, '_> {
     fn attach_model(
         &mut self,
         element: &Element,
-        model: &Element,
+        model: &Part,
         wanted: Option<(&str, &str)>,
         namespace: &Namespace,
         depth: usize,
     ) -> Result<Element, LoadError> {
-        self.check_options(element, model)?;
+        self.merge_options(element, &model.settings)?;
+        let model = &model.root;
+        self.note_keyframes(element, model);
         let mut frame = Element::in_place_of(model, "frame");
         let class = match wanted {
             None => {
@@ -206,25 +215,49 @@ impl Composer<'_, '_> {
         Ok(())
     }
 
-    /// A model's own options count, and no other's, and so do its keyframes.
-    fn check_options(&mut self, element: &Element, model: &Element) -> Result<(), LoadError> {
-        let has_options = sections(model, "option").next().is_some();
-        if has_options && self.shared.sources.of(element).compiler.merges_options {
-            let message = "options of attached models can only be left out: another conflict than \
-                           \"warning\" is not supported yet";
-            return Err(element.error(message));
+    /// Takes over what the model's conflict rule lets it take of an attached model's options.
+    fn merge_options(&mut self, element: &Element, options: &Settings) -> Result<(), LoadError> {
+        if options.is_empty() {
+            return Ok(());
         }
-        let has_keyframes = sections(model, "keyframe").any(|section| !section.children.is_empty());
-        for (what, left_out) in [("options", has_options), ("keyframes", has_keyframes)] {
-            let name = element.text("model").unwrap_or_default();
-            let note = format!(
-                "the {what} of the attached model \"{name}\" are left out; those of the model itself count"
-            );
-            if left_out && !self.shared.notes.contains(&note) {
-                self.shared.notes.push(note);
+        let name = element.text("model").unwrap_or_default();
+        let rule = self.shared.sources.of(element).compiler.conflict;
+        let taken = match rule {
+            Conflict::Warning => Ok(Vec::new()),
+            Conflict::Merge | Conflict::Error => self.settings.merge(options, rule),
+        };
+        let taken = taken.map_err(|what| {
+            element.error(format!(
+                "the options of the attached model \"{name}\" are in conflict with this model's: {what}"
+            ))
+        })?;
+        self.note(match (rule, taken.is_empty()) {
+            (Conflict::Merge, true) => return Ok(()),
+            (Conflict::Merge, false) => {
+                let taken = taken.join(", ");
+                format!("options taken from the attached model \"{name}\": {taken}")
             }
-        }
+            _ => format!(
+                "the options of the attached model \"{name}\" are left out; those of the model itself count"
+            ),
+        });
         Ok(())
+    }
+
+    /// A model's own keyframes count, and no other's.
+    fn note_keyframes(&mut self, element: &Element, model: &Element) {
+        let name = element.text("model").unwrap_or_default();
+        if sections(model, "keyframe").any(|section| !section.children.is_empty()) {
+            self.note(format!(
+                "the keyframes of the attached model \"{name}\" are left out; those of the model itself count"
+            ));
+        }
+    }
+
+    fn note(&mut self, note: String) {
+        if !self.shared.notes.contains(&note) {
+            self.shared.notes.push(note);
+        }
     }
 
     /// Attaches a part of the model itself, as far as it is read.

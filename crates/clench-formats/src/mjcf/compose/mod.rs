@@ -8,6 +8,7 @@ mod attach;
 mod names;
 mod relations;
 mod replicate;
+mod settings;
 
 use super::document::{self, Element, MAX_DEPTH};
 use super::leave_out::leave_out;
@@ -17,6 +18,7 @@ use crate::LoadError;
 use crate::spending::Spending;
 use attach::Models;
 use names::Names;
+use settings::Settings;
 use std::path::{Path, PathBuf};
 
 /// A model of several files made into one, and how to read its elements.
@@ -98,18 +100,23 @@ impl Shared<'_> {
     }
 }
 
-/// Replaces every attachment and replication in a model.
+/// Replaces every attachment and replication in a model. Returns its options, with what they took from attached models.
 fn compose_model(
     root: &mut Element,
     directory: &Path,
     shared: &mut Shared,
-) -> Result<(), LoadError> {
+) -> Result<Settings, LoadError> {
     let source = shared.sources.add(root, directory, shared.spending)?;
     let models = Models::read(root, shared)?;
+    let (options, others) = std::mem::take(&mut root.children)
+        .into_iter()
+        .partition(|section| section.tag == "option");
+    root.children = others;
     let mut composer = Composer {
         models,
         source,
         names: Names::default(),
+        settings: Settings(options),
         lists: take_lists(root),
         worlds: Vec::new(),
         shared,
@@ -124,7 +131,9 @@ fn compose_model(
     }
     root.children.append(&mut composer.worlds);
     root.children.append(&mut composer.lists);
-    Ok(())
+    let settings = composer.settings;
+    root.children.extend(settings.0.iter().cloned());
+    Ok(settings)
 }
 
 /// Takes the sections whose elements can be copied out of a model, each kind as one.
@@ -151,6 +160,7 @@ struct Composer<'a, 's> {
     /// The model's own settings.
     source: usize,
     names: Names,
+    settings: Settings,
     /// Its sections outside the tree that can grow.
     lists: Vec<Element>,
     /// Those parts of the world that are expanded.

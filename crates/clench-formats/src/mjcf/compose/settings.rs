@@ -1,0 +1,234 @@
+//! What becomes of the options of a model that is attached to another, as `<compiler conflict="..."/>` says, after MuJoCo's table of
+//! attributes that can be merged.
+//!
+//! A value counts as given where the file says it, or where it was taken over from a model attached before.
+
+use super::super::compiler::Conflict;
+use crate::mjcf::document::Element;
+
+/// What is made of two values that differ.
+#[derive(Clone, Copy)]
+enum Merge {
+    Least,
+    Most,
+    /// They cannot be merged.
+    Never,
+}
+
+/// An attribute of `<option>`, and how two of its values are merged.
+const OPTIONS: &[(&str, Merge)] = &[
+    ("timestep", Merge::Least),
+    ("tolerance", Merge::Least),
+    ("ls_tolerance", Merge::Least),
+    ("noslip_tolerance", Merge::Least),
+    ("ccd_tolerance", Merge::Least),
+    ("sleep_tolerance", Merge::Least),
+    ("iterations", Merge::Most),
+    ("ls_iterations", Merge::Most),
+    ("noslip_iterations", Merge::Most),
+    ("ccd_iterations", Merge::Most),
+    ("sdf_iterations", Merge::Most),
+    ("sdf_initpoints", Merge::Most),
+    ("impratio", Merge::Never),
+    ("density", Merge::Never),
+    ("viscosity", Merge::Never),
+    ("o_margin", Merge::Never),
+    ("integrator", Merge::Never),
+    ("cone", Merge::Never),
+    ("jacobian", Merge::Never),
+    ("solver", Merge::Never),
+    ("gravity", Merge::Never),
+    ("wind", Merge::Never),
+    ("magnetic", Merge::Never),
+    ("o_solref", Merge::Never),
+    ("o_solimp", Merge::Never),
+    ("o_friction", Merge::Never),
+];
+
+/// Flags that are off where nothing is said; all others are on.
+const OFF_BY_DEFAULT: &[&str] = &[
+    "override",
+    "energy",
+    "fwdinv",
+    "invdiscrete",
+    "sleep",
+    "diagexact",
+    "ipc",
+    "speculative",
+];
+
+/// The `<option>`s of a model, as far as others are merged into them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Settings(pub Vec<Element>);
+
+impl Settings {
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Takes over what an attached model says, as far as the rule allows. Returns the names of the attributes that changed.
+    ///
+    /// # Errors
+    /// What stands against each other.
+    pub(super) fn merge(
+        &mut self,
+        other: &Settings,
+        rule: Conflict,
+    ) -> Result<Vec<String>, String> {
+        let (mut option, mut conflicts) = (Vec::new(), Vec::new());
+        for &(name, merge) in OPTIONS {
+            match self.compare(other, name, merge, rule) {
+                Verdict::Same => {}
+                Verdict::Becomes(value) => option.push((name.to_owned(), value)),
+                Verdict::Conflict(what) => conflicts.push(what),
+            }
+        }
+        let mut flags = Vec::new();
+        for (name, value) in other.flags() {
+            match self.compare_flag(name, value, rule) {
+                Verdict::Same => {}
+                Verdict::Becomes(value) => flags.push((name.to_owned(), value)),
+                Verdict::Conflict(what) => conflicts.push(what),
+            }
+        }
+        if !conflicts.is_empty() {
+            return Err(conflicts.join("; "));
+        }
+        if let Some(groups) = other.groups().filter(|_| rule == Conflict::Merge) {
+            option.push(("actuatorgroupdisable".to_owned(), groups)); // Those of the model itself stay disabled.
+        }
+        Ok(self.take(other, option, flags))
+    }
+
+    /// Appends an `<option>` with values of an attached model. Returns their names.
+    fn take(
+        &mut self,
+        other: &Settings,
+        option: Vec<(String, String)>,
+        flags: Vec<(String, String)>,
+    ) -> Vec<String> {
+        let Some(place) = other.0.last() else {
+            return Vec::new();
+        };
+        let names: Vec<String> = (option.iter().chain(&flags))
+            .map(|(name, _)| name.clone())
+            .collect();
+        let mut section = Element::in_place_of(place, "option");
+        section.attributes = option;
+        if !flags.is_empty() {
+            let mut flag = Element::in_place_of(place, "flag");
+            flag.attributes = flags;
+            section.children.push(flag);
+        }
+        if !names.is_empty() {
+            self.0.push(section);
+        }
+        names
+    }
+
+    fn compare(&self, other: &Settings, name: &str, merge: Merge, rule: Conflict) -> Verdict {
+        let Some(its) = other.value(name) else {
+            return Verdict::Same;
+        };
+        let Some(own) = self.value(name) else {
+            return match rule {
+                Conflict::Merge => Verdict::Becomes(its.join(" ")),
+                _ => Verdict::Same,
+            };
+        };
+        if same(&own, &its) {
+            return Verdict::Same;
+        }
+        match (rule, merge) {
+            (Conflict::Merge, Merge::Least | Merge::Most) => {
+                let number = |value: &[String]| value.first()?.parse::<f64>().ok();
+                match (number(&own), number(&its)) {
+                    (Some(own), Some(its)) if (own < its) == matches!(merge, Merge::Least) => {
+                        Verdict::Same
+                    }
+                    _ => Verdict::Becomes(its.join(" ")), // Who reads it says if it is no number.
+                }
+            }
+            _ => Verdict::Conflict(format!(
+                "{name}: here {}, there {}",
+                own.join(" "),
+                its.join(" ")
+            )),
+        }
+    }
+
+    /// Only flags that differ from their defaults are taken over.
+    fn compare_flag(&self, name: &str, value: &str, rule: Conflict) -> Verdict {
+        let own = self.flag(name);
+        match (rule, own) {
+            (Conflict::Merge, _) if is_set(name, value) && own != Some(value) => {
+                Verdict::Becomes(value.to_owned())
+            }
+            (Conflict::Error, Some(own)) if own != value => {
+                Verdict::Conflict(format!("flag {name}: here {own}, there {value}"))
+            }
+            _ => Verdict::Same,
+        }
+    }
+
+    /// The words of an attribute after all sections: later ones replace them from the first on.
+    fn value(&self, name: &str) -> Option<Vec<String>> {
+        let mut texts = self.0.iter().filter_map(|section| section.text(name));
+        let mut value = words(texts.next()?);
+        for text in texts {
+            let new = words(text);
+            let kept = value.split_off(new.len().min(value.len()));
+            value = new;
+            value.extend(kept);
+        }
+        Some(value)
+    }
+
+    /// Flags and what was said of them, the last word of each.
+    fn flags(&self) -> impl Iterator<Item = (&str, &str)> {
+        let elements = self.0.iter().flat_map(|section| &section.children);
+        let all: Vec<&(String, String)> = elements.flat_map(|flags| &flags.attributes).collect();
+        let last = all.clone();
+        (all.into_iter().enumerate())
+            .filter(move |(k, (name, _))| !last[k + 1..].iter().any(|(later, _)| later == name))
+            .map(|(_, (name, value))| (name.as_str(), value.as_str()))
+    }
+
+    fn flag(&self, name: &str) -> Option<&str> {
+        let mut flags = self.flags();
+        flags.find_map(|(known, value)| (known == name).then_some(value))
+    }
+
+    /// The groups of actuators that are disabled.
+    fn groups(&self) -> Option<String> {
+        let texts = (self.0.iter())
+            .filter_map(|section| section.text("actuatorgroupdisable"))
+            .collect::<Vec<_>>();
+        (!texts.is_empty()).then(|| texts.join(" "))
+    }
+}
+
+/// What becomes of an attribute.
+enum Verdict {
+    Same,
+    Becomes(String),
+    Conflict(String),
+}
+
+fn words(text: &str) -> Vec<String> {
+    text.split_ascii_whitespace().map(str::to_owned).collect()
+}
+
+/// Whether two values are the same words or numbers.
+fn same(a: &[String], b: &[String]) -> bool {
+    let equal = |(a, b): (&String, &String)| {
+        let number = |word: &String| word.parse::<f64>().ok();
+        a == b || (number(a).is_some() && number(a) == number(b))
+    };
+    a.len() == b.len() && a.iter().zip(b).all(equal)
+}
+
+/// Whether a flag says something else than its default, which is what MuJoCo's bits say.
+fn is_set(name: &str, value: &str) -> bool {
+    (value == "enable") == OFF_BY_DEFAULT.contains(&name)
+}
