@@ -124,6 +124,7 @@ class Preamble(Maker):
                 "cone": lambda: (draw.randint(3, 8), draw.choice((0, draw.number(0.1, 1), 1))),
                 "supersphere": lambda: (draw.randint(3, 8), draw.scale(0.3, 2), draw.scale(0.3, 2)),
                 "supertorus": lambda: (draw.randint(3, 8), draw.scale(0.1, 0.9), draw.scale(0.4, 2), draw.scale(0.4, 2)),
+                "wedge": lambda: (draw.randint(2, 6), draw.randint(2, 6), draw.number(20, 180), draw.number(10, 90), draw.random()),
             }
             shape = draw.choice(sorted(shapes))
             mesh.set("builtin", shape)

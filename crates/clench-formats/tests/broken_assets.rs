@@ -216,7 +216,18 @@ fn meshes_that_cannot_be_are_refused() {
         ("builtin='supersphere' params='nan 1 1'", "finite"),
         ("builtin='supersphere' params='9 -1 1'", "params"),
         ("builtin='supertorus' params='9 0 1 1'", "params"),
-        ("builtin='plate' params='4 5'", "not supported yet"),
+        ("builtin='wedge' params='4 5 90 45'", "params"),
+        ("builtin='wedge' params='4 5 90 91 0'", "params"),
+        (
+            "builtin='wedge' params='0 5 90 45 0'",
+            "the first of params",
+        ),
+        (
+            "builtin='wedge' params='4 0 90 45 0'",
+            "the second of params",
+        ),
+        ("builtin='plate' params='4 5'", "plane"),
+        ("builtin='plate' params='4 1e300'", "needs 1 to"),
         ("builtin='ball' params='4 5'", "there is no builtin ball"),
         (
             "vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 2 0 1 3' inertia='exact'",

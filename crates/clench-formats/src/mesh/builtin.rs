@@ -7,17 +7,6 @@ use clench_math::Vec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// Names in MJCF that are not read.
-const NOT_YET: &[&str] = &[
-    "wedge",
-    "plate",
-    "grid",
-    "box",
-    "cylinder",
-    "ellipsoid",
-    "square",
-    "disc",
-];
 /// The most that a resolution can be asked to be.
 const MAX_RESOLUTION: usize = 1000;
 
@@ -30,22 +19,31 @@ pub(crate) fn make(
     parameters: &[f64],
     spending: &mut Spending,
 ) -> Result<Triangles, String> {
-    // More than any of them has: a grid of the resolution.
-    let resolution = match name {
-        "supersphere" | "supertorus" => parameters.first().map_or(0, |&n| n as usize),
+    // More than any of them has: a grid of the resolutions.
+    let resolution = |k: usize| {
+        let asked = parameters.get(k).map_or(0, |&number| number as usize);
+        asked.min(MAX_RESOLUTION)
+    };
+    let vertices = match name {
+        "supersphere" | "supertorus" => resolution(0).pow(2),
+        "wedge" | "plate" => resolution(0) * resolution(1),
         _ => 0,
     };
-    let vertices = resolution.min(MAX_RESOLUTION).pow(2);
     spending.bytes(bytes(vertices, 2 * vertices))?;
-    let count = |number: f64, least: usize, most: usize| {
+    let whole = |what: &str, number: f64, least: usize, most: usize| {
         // As in MuJoCo, what is behind the point does not count.
-        let whole = number.trunc();
-        match whole >= least as f64 && whole <= most as f64 {
-            true => Ok(whole as usize),
+        let integer = number.trunc();
+        match integer >= least as f64 && integer <= most as f64 {
+            true => Ok(integer as usize),
             false => Err(format!(
-                "the first of params is {number}, but a {name} needs {least} to {most}"
+                "the {what} of params is {number}, but a {name} needs {least} to {most}"
             )),
         }
+    };
+    let count = |number: f64, least: usize, most: usize| whole("first", number, least, most);
+    let grid = |rows: f64, columns: f64| {
+        let columns = || whole("second", columns, 1, MAX_RESOLUTION);
+        Ok::<_, String>([count(rows, 1, MAX_RESOLUTION)?, columns()?])
     };
     match (name, parameters) {
         ("sphere", &[subdivisions]) => Ok(sphere(count(subdivisions, 0, 4)?)),
@@ -66,12 +64,20 @@ pub(crate) fn make(
                 t,
             ))
         }
-        ("sphere" | "hemisphere" | "cone" | "supersphere" | "supertorus", _) => {
-            Err(format!("a {name} cannot have the params {parameters:?}"))
+        ("wedge", &[rows, columns, width, height, fovea])
+            if width > 0.0
+                && width <= 180.0
+                && height > 0.0
+                && height <= 90.0
+                && (0.0..=1.0).contains(&fovea) =>
+        {
+            Ok(wedge(grid(rows, columns)?, [width, height], fovea))
         }
-        (name, _) if NOT_YET.contains(&name) => {
-            Err(format!("the builtin {name} is not supported yet"))
-        }
+        ("plate", &[rows, columns]) => Ok(plate(grid(rows, columns)?)),
+        (
+            "sphere" | "hemisphere" | "cone" | "supersphere" | "supertorus" | "wedge" | "plate",
+            _,
+        ) => Err(format!("a {name} cannot have the params {parameters:?}")),
         _ => Err(format!("there is no builtin {name}")),
     }
 }
@@ -282,4 +288,87 @@ fn supertorus(resolution: usize, radius: f64, s: f64, t: f64) -> Triangles {
         }
     }
     Triangles { vertices, faces }
+}
+
+/// Edges of equal bins from −1 to 1.
+fn edges(bins: usize) -> impl Iterator<Item = f64> {
+    // Summed as MuJoCo sums them, so that the last bits agree.
+    let width = 2.0 / bins as f64;
+    (0..=bins).scan(-1.0, move |edge, _| {
+        let here = *edge;
+        *edge += width;
+        Some(here)
+    })
+}
+
+/// The middles of bins of azimuth and elevation on the unit sphere, about −z, up to these angles (degrees) to each side. The more `fovea`
+/// is one, the denser they are in the middle: an edge x moves to fovea x⁵ + (1 − fovea) x.
+fn wedge(bins: [usize; 2], angles: [f64; 2], fovea: f64) -> Triangles {
+    let middles = |axis: usize| -> Vec<f64> {
+        let moved = edges(bins[axis]).map(|x| match fovea > 0.0 {
+            true => fovea * x.powi(5) + (1.0 - fovea) * x,
+            false => x,
+        });
+        let scaled: Vec<f64> = moved.map(|x| x * (angles[axis] * PI / 180.0)).collect();
+        (scaled.windows(2))
+            .map(|pair| 0.5 * (pair[1] + pair[0]))
+            .collect()
+    };
+    let elevations = middles(1);
+    let row = |azimuth: f64| {
+        elevations.iter().map(move |&elevation| {
+            let out = elevation.cos();
+            point(out * azimuth.sin(), elevation.sin(), -out * azimuth.cos())
+        })
+    };
+    Triangles {
+        vertices: middles(0).into_iter().flat_map(row).collect(),
+        faces: Vec::new(),
+    }
+}
+
+/// The middles of the cells of a square with sides of length two at z = −1, and the triangles between them.
+fn plate(cells: [usize; 2]) -> Triangles {
+    let [rows, columns] = cells;
+    let middle = |k: usize, count: usize| -1.0 + (k as f64 + 0.5) * (2.0 / count as f64);
+    let at = |i: usize, j: usize| (i * columns + j) as u32;
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for i in 0..rows {
+        for j in 0..columns {
+            vertices.push(point(middle(i, rows), middle(j, columns), -1.0));
+            if i > 0 && j > 0 {
+                let [here, below] = [at(i, j), at(i, j - 1)];
+                let [beside, corner] = [at(i - 1, j), at(i - 1, j - 1)];
+                faces.extend([[corner, below, beside], [here, beside, below]]);
+            }
+        }
+    }
+    Triangles { vertices, faces }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wedge_is_a_part_of_the_unit_sphere_about_minus_z() {
+        let found = wedge([4, 6], [90.0, 30.0], 0.5);
+        assert_eq!(found.vertices.len(), 24);
+        // The fovea takes the edges 1/2 and 1 of the last bin of azimuth to (1/2⁵ + 1/2) / 2 = 17/64 and 1, of 90 degrees; the edges 2/3
+        // and 1 of elevation to 97/243 and 1, of 30 degrees.
+        let azimuth = (17.0 / 64.0 + 1.0) / 2.0 * PI / 2.0;
+        let elevation = (97.0 / 243.0 + 1.0) / 2.0 * PI / 6.0;
+        let expected = Vec3::new(
+            elevation.cos() * azimuth.sin(),
+            elevation.sin(),
+            -elevation.cos() * azimuth.cos(),
+        );
+        assert!((found.vertices[23] - expected).norm() < 1e-6);
+        assert!(
+            found
+                .vertices
+                .iter()
+                .all(|v| (v.norm() - 1.0).abs() < 1e-6 && v.z < 0.0)
+        );
+    }
 }

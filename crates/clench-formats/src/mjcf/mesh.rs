@@ -52,7 +52,12 @@ impl MeshDraft {
             mesh.refquat = Quat::from_f64(quat);
         }
         let found = match element.text("builtin") {
-            Some(builtin) => make(element, builtin, spending)?,
+            Some(builtin) => {
+                if builtin == "plate" {
+                    mesh.inertia = MeshInertia::Shell; // It has no volume.
+                }
+                make(element, builtin, spending)?
+            }
             None => {
                 let found = read_or_written(element, files, &mut mesh.name, spending)?;
                 let taken = spending.bytes(mesh::bytes(found.vertices.len(), found.faces.len()));
