@@ -1,6 +1,5 @@
 """One environment, one thread: Clench and MuJoCo's rollout from the model's initial state."""
 
-import sys
 import time
 
 import mujoco
@@ -8,7 +7,7 @@ import numpy as np
 from mujoco import rollout
 
 from program import Clench
-from scene import NEWTON, PGS, describe, load, smooth_controls
+from scene import NEWTON, PGS, Unmeasured, describe, load, smooth_controls
 from timing import alternate, table
 
 
@@ -53,7 +52,7 @@ class Rollout:
             contacts += data.ncon
             iterations += int(data.solver_niter[: max(1, data.nisland)].sum())
         if any(w.number for w in data.warning):
-            sys.exit("MuJoCo warns of an unstable motion: these controls measure nothing")
+            raise Unmeasured("MuJoCo warns of an unstable motion: these controls measure nothing")
         return contacts / len(controls), iterations / len(controls)
 
     def run(self):

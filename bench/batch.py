@@ -8,14 +8,14 @@ timed.
 """
 
 import os
-import sys
 import time
 
+import mujoco
 import numpy as np
 from mujoco import batch as mujoco_batch
 
 from program import Clench
-from scene import describe, load, perturbed_states, smooth_controls
+from scene import Unmeasured, describe, load, perturbed_states, smooth_controls
 from timing import alternate, ratio, table
 
 BASELINE = "mujoco batch"
@@ -64,7 +64,8 @@ class Batch:
     """MuJoCo's batch on the calling thread."""
 
     def __init__(self, model, ctrl, states):
-        self.batch = mujoco_batch.Batch(model, nsim=len(states), nthread=1)
+        asleep = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP  # a state of its own an environment, which MuJoCo keeps in an MjData each
+        self.batch = mujoco_batch.Batch(model, nsim=len(states), nthread=1, persistent=bool(asleep))
         self.batch.qpos = states[:, : model.nq]
         self.batch.qvel = states[:, model.nq :]
         self.start = self.batch.state.copy()
@@ -77,7 +78,7 @@ class Batch:
         """Mean contacts and iterations a step (a Runge–Kutta step reports its last stage), and a sanity check."""
         records = self.batch.rollout(self.steps, self.ctrl, record=("ncon", "solver_niter", "nisland"))
         if self.batch.warning.any():
-            sys.exit("MuJoCo warns of an unstable motion: these controls measure nothing")
+            raise Unmeasured("MuJoCo warns of an unstable motion: these controls measure nothing")
         parts = np.maximum(records["nisland"], 1)[..., None]
         solved = np.arange(records["solver_niter"].shape[-1]) < parts
         return records["ncon"].mean(), (records["solver_niter"] * solved).sum(axis=-1).mean()

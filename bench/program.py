@@ -4,12 +4,11 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 
 import numpy as np
 
-from scene import ROOT
+from scene import ROOT, Unmeasured
 
 CLENCH = os.environ.get("CLENCH", str(ROOT / "target/dist/clench"))
 
@@ -30,7 +29,7 @@ class Clench:
         """Seconds of stepping alone."""
         done = subprocess.run(self.command, capture_output=True, text=True)
         if done.returncode != 0:
-            sys.exit(f"{' '.join(self.command)}\n{done.stderr}")
+            raise Unmeasured(f"{' '.join(self.command)}\n{done.stderr}")
         self.summary = json.loads(done.stdout.splitlines()[-1])
         return self.summary["seconds"]
 

@@ -12,6 +12,10 @@ GYMNASIUM = pathlib.Path(gymnasium.__file__).parent / "envs/mujoco/assets"
 NEWTON, PGS = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtSolver.mjSOL_PGS
 
 
+class Unmeasured(Exception):
+    """An engine does not get through a scene, and says why: it measures nothing."""
+
+
 def find(name):
     """The file of one of gymnasium's models, or the file of that name."""
     path = pathlib.Path(name) if name.endswith(".xml") else GYMNASIUM / f"{name}.xml"

@@ -6,6 +6,7 @@ of batch.py says how. Times are medians over repetitions; a ratio is the median 
 read the same file with its integrator, tolerance and iterations; where the file asks for PGS, MuJoCo is timed with Newton,
 which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
 vector environments beside gymnasium's (vector.py), heaps of bodies (heaps.py), and collision pair by pair (pairs.py).
+`--only public` goes through all models of the public packages (public_models.py); it takes a while, so the whole run leaves it out.
 """
 
 import argparse
@@ -19,8 +20,9 @@ import batch
 import calls
 import heaps
 import pairs
+import public_models
 import vector
-from scene import find
+from scene import Unmeasured, find
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
 DEFAULT_TASKS = ["HalfCheetah-v5", "Humanoid-v5"]
@@ -40,9 +42,13 @@ def main():
         "vector": (vector.compare, args.tasks),
         "heaps": (heaps.compare, heaps.SCENES),
         "pairs": (pairs.compare, ["all pairs"]),
+        "public": (public_models.compare, ["all models"]),
     }.items():
-        if args.only in (None, name):
-            results += [row for subject in subjects for row in compare(subject, args)]
+        if name == args.only or (args.only is None and name != "public"):
+            try:
+                results += [row for subject in subjects for row in compare(subject, args)]
+            except Unmeasured as reason:
+                sys.exit(str(reason))
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps(results, indent=2) + "\n")
     print(f"\nratio: MuJoCo's time with Newton over this engine's; medians of {args.repeat} runs")
@@ -55,7 +61,8 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs"], help="one of the comparisons")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "public"], help="one of the comparisons")
+    parser.add_argument("--filter", default="", metavar="TEXT", help="public models whose file has this in its name")
     parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
     parser.add_argument("--batch-steps", type=int, default=500, help="steps a run of the batch (default: %(default)s)")
