@@ -251,10 +251,11 @@ fn what_is_large_or_far_or_no_number_does_not_disturb_the_rest() {
     assert!(asked <= 15 * bounds.len(), "{asked}");
 }
 
-/// Shapes stand, are placed or move by turns of three.
+/// Shapes stand, are placed, are left out or move by turns of four.
 fn mixed(count: usize) -> Vec<Mobility> {
-    let kinds = [Mobility::Static, Mobility::Placed, Mobility::Moving];
-    (0..count).map(|i| kinds[i % 3]).collect()
+    use Mobility::{Excluded, Moving, Placed, Static};
+    let kinds = [Static, Placed, Excluded, Moving];
+    (0..count).map(|i| kinds[i % 4]).collect()
 }
 
 #[test]
@@ -263,14 +264,15 @@ fn pairs_of_mixed_scenes_are_those_of_which_one_moves() {
     for count in [1, 2, 5, 60, 200] {
         let world = World::<Lanes<f64, 4>>::random(&mut random, count);
         let mobility = mixed(count);
-        let moves = |i: u32| mobility[i as usize] == Mobility::Moving;
+        let is = |i: u32, kind: Mobility| mobility[i as usize] == kind;
         let (mut by_turns, mut all, mut again) = (Vec::new(), Vec::new(), Vec::new());
         let mut broad_phase = BroadPhase::new(&mobility);
         let (bounds, margins) = (&world.bounds, &world.margins);
         broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut by_turns);
         broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut again);
         all_moving(count).pairs(bounds, margins, allowed, u64::MAX, &mut all);
-        all.retain(|&(i, j)| moves(i) || moves(j));
+        all.retain(|&(i, j)| is(i, Mobility::Moving) || is(j, Mobility::Moving));
+        all.retain(|&(i, j)| !is(i, Mobility::Excluded) && !is(j, Mobility::Excluded));
         assert_eq!(by_turns, all);
         assert_eq!(again, all);
     }

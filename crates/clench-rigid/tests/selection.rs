@@ -267,7 +267,12 @@ fn lanes_mix_like_scalars() {
 
 #[test]
 fn the_sweep_of_a_large_scene_finds_what_a_list_would() {
-    // 60 moving balls in a heap, once with enough far-away shapes that the scene is swept.
+    // 60 moving balls in a heap, once with enough far-away shapes that the scene is swept. About each ball is one that is only seen.
+    let seen = || GeomSpec {
+        contype: 0,
+        conaffinity: 0,
+        ..sphere(0.3)
+    };
     let heap = |extra: i32| {
         let mut b = world();
         b.bodies[0].geoms.push(plane());
@@ -278,7 +283,7 @@ fn the_sweep_of_a_large_scene_finds_what_a_list_would() {
                 0.18 * f64::from(y),
                 0.09 + 0.17 * f64::from(z),
             ];
-            add(&mut b, 0, "", pos, free(), vec![sphere(0.1)]);
+            add(&mut b, 0, "", pos, free(), vec![sphere(0.1), seen()]);
         }
         for i in 0..extra {
             b.bodies[0].geoms.push(GeomSpec {
@@ -292,7 +297,7 @@ fn the_sweep_of_a_large_scene_finds_what_a_list_would() {
         let key = |c: &clench_rigid::contact::Contact<f64>| (c.geoms.map(body), c.dist.to_bits());
         sim.contacts().iter().map(key).collect::<Vec<_>>()
     };
-    let (listed, swept) = (heap(0), heap(100));
+    let (listed, swept) = (heap(0), heap(200));
     assert!(listed.len() > 100, "{}", listed.len());
     assert_eq!(listed, swept);
 }

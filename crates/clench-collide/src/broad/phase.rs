@@ -6,9 +6,11 @@ use super::static_tree::StaticTree;
 use super::{Bound, near};
 use clench_math::{Mask, Real, kernel};
 
-/// Whether a shape can move.
+/// What a shape does in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mobility {
+    /// It makes no pair with anything, as a shape that is only seen: nothing looks at it.
+    Excluded,
     /// It stands where it stands: what it costs is paid once. It makes no pair with its like, nor with what is placed.
     Static,
     /// It is put where it is from outside. It makes no pair with its like, nor with what is static.
@@ -24,7 +26,7 @@ pub struct BroadPhase {
     tree: StaticTree,
     /// Whether the tree is of this scene.
     built: bool,
-    /// The shapes that are not static, ascending, with their boxes, and whether they are placed.
+    /// The shapes that are placed or move, ascending, with their boxes, and whether they are placed.
     mobile: Vec<u32>,
     boxes: Vec<Aabb>,
     placed: Vec<bool>,
@@ -39,7 +41,7 @@ impl BroadPhase {
             let wanted = shapes.filter(|&(_, &mobility)| wanted(mobility));
             Vec::from_iter(wanted.map(|(shape, _)| shape as u32))
         };
-        let mobile = of(|mobility| mobility != Mobility::Static);
+        let mobile = of(|mobility| matches!(mobility, Mobility::Placed | Mobility::Moving));
         let is_placed = |&shape: &u32| mobility[shape as usize] == Mobility::Placed;
         BroadPhase {
             statics: of(|mobility| mobility == Mobility::Static),
@@ -49,7 +51,7 @@ impl BroadPhase {
         }
     }
 
-    /// The shapes that are not static, ascending.
+    /// The shapes that are placed or move, ascending.
     pub fn mobile(&self) -> &[u32] {
         &self.mobile
     }

@@ -2,7 +2,8 @@
 
 use super::bounding_sphere::{self, BoundingSphere, may_touch};
 use super::dynamic_broad_phase::DynamicBroadPhase;
-use super::{Candidate, Contact, candidates, contact_params, contact_range, surface};
+use super::select::listed_candidates;
+use super::{Candidate, Contact, contact_params, contact_range, surface};
 use crate::Budget;
 use crate::model::{Model, Params};
 use crate::options::MaxContacts;
@@ -48,9 +49,6 @@ impl Excess {
     }
 }
 
-/// Above this many geoms the pairs are not listed once but looked for in each step: a list grows with the square.
-const MAX_LISTED_GEOMS: usize = 128;
-
 /// What detection keeps between steps.
 #[derive(Clone, Debug)]
 pub struct Collision<T: Real> {
@@ -77,13 +75,16 @@ pub struct Collision<T: Real> {
 impl<T: Real> Collision<T> {
     /// Prepares detection for a model.
     pub fn new(model: &Model) -> Self {
-        let large = model.geoms.len() > MAX_LISTED_GEOMS;
+        let listed = listed_candidates(model);
+        let broad_phase = listed
+            .is_none()
+            .then(|| Box::new(DynamicBroadPhase::new(model)));
         Collision {
             given: false,
             overflow: T::Mask::splat(false),
             excess: T::ZERO,
-            candidates: if large { Vec::new() } else { candidates(model) },
-            broad_phase: large.then(|| Box::new(DynamicBroadPhase::new(model))),
+            candidates: listed.unwrap_or_default(),
+            broad_phase,
             near: Vec::new(),
             spheres: Vec::new(),
             points: Contacts::new(),

@@ -3,7 +3,7 @@
 use super::Candidate;
 use super::bounding_sphere::{self, BoundingSphere, own_margin};
 use super::detect::{pose, shape};
-use super::select::{explicit, geoms_may_collide};
+use super::select::{explicit, geoms_may_collide, meet_any};
 use crate::model::{Geom, Model, Params};
 use crate::workspace::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
@@ -17,6 +17,8 @@ pub(super) struct DynamicBroadPhase<T> {
     bounds: Vec<Bound<T>>,
     margins: Vec<T>,
     hits: Vec<(u32, u32)>,
+    /// Geoms that only explicit pairs look at.
+    in_pairs: Vec<usize>,
     /// The geoms that stand still, and what their bounds were made of.
     statics: Vec<usize>,
     seen: Vec<Placement<T>>,
@@ -67,11 +69,18 @@ fn mobility(model: &Model, geom: &Geom) -> Mobility {
 
 impl<T: Real> DynamicBroadPhase<T> {
     pub(super) fn new(model: &Model) -> Self {
-        let mobility = Vec::from_iter(model.geoms.iter().map(|geom| mobility(model, geom)));
-        let is_static = |&geom: &usize| mobility[geom] == Mobility::Static;
+        let roles = model.geoms.iter().zip(meet_any(model));
+        let roles = Vec::from_iter(roles.map(|(geom, meets)| match meets {
+            true => mobility(model, geom),
+            false => Mobility::Excluded,
+        }));
+        let is_static = |&geom: &usize| roles[geom] == Mobility::Static;
+        let explicit = model.pairs.iter().flat_map(|pair| pair.geoms);
+        let listed = explicit.filter(|&geom| roles[geom] == Mobility::Excluded);
         DynamicBroadPhase {
-            broad_phase: BroadPhase::new(&mobility),
-            statics: (0..mobility.len()).filter(is_static).collect(),
+            broad_phase: BroadPhase::new(&roles),
+            statics: (0..roles.len()).filter(is_static).collect(),
+            in_pairs: listed.collect(),
             bounds: Vec::new(),
             margins: Vec::new(),
             hits: Vec::new(),
@@ -103,7 +112,8 @@ impl<T: Real> DynamicBroadPhase<T> {
                 self.margins[g] = own_margin(model, params, g);
             }
             let mobile = self.broad_phase.mobile().iter().map(|&g| g as usize);
-            bounding_sphere::update(model, params, pos, mobile, spheres);
+            let geoms = mobile.chain(self.in_pairs.iter().copied());
+            bounding_sphere::update(model, params, pos, geoms, spheres);
         } else {
             let all = 0..model.geoms.len();
             self.bounds.clear();

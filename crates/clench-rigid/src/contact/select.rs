@@ -8,6 +8,7 @@
 //! Candidates stand in the order in which MuJoCo lists contacts: by body pair, explicit pairs first, then by geoms.
 
 use crate::Model;
+use crate::model::Geom;
 use clench_collide::{ShapeKind, supported};
 
 /// Two geoms that may collide, the one of smaller shape kind first.
@@ -31,13 +32,40 @@ pub struct UnsupportedPair {
     kinds: String,
 }
 
+/// More pairs than these are not listed once but looked for in each step, as a list grows with the square ...
+const MAX_LISTED_PAIRS: usize = 1 << 13;
+/// ... and so they are with more geoms than these that stand still, of which a tree finds the few that are near.
+const MAX_LISTED_STATICS: usize = 128;
+/// With more geoms than these nobody counts the pairs.
+const MAX_COUNTED_GEOMS: usize = 1 << 10;
+
+/// All candidates of a model in which a list of them, compared in each step, is the fastest.
+pub(super) fn listed_candidates(model: &Model) -> Option<Vec<Candidate>> {
+    let stands = |geom: &Geom| model.bodies[model.bodies[geom.body].weld].dofs.is_empty();
+    let roles = model.geoms.iter().zip(meet_any(model));
+    let (mut all, mut statics) = (0, 0);
+    for (geom, _) in roles.filter(|&(_, meets)| meets) {
+        all += 1;
+        statics += usize::from(stands(geom));
+    }
+    let few = all <= MAX_COUNTED_GEOMS && statics <= MAX_LISTED_STATICS;
+    few.then(|| candidates_up_to(model, MAX_LISTED_PAIRS))?
+}
+
 /// All candidates of a model, in canonical order.
 pub fn candidates(model: &Model) -> Vec<Candidate> {
-    let mut found: Vec<Candidate> = (0..model.pairs.len())
-        .map(|p| explicit(model, p as u32))
-        .collect();
-    for body1 in 0..model.nbody() {
-        for body2 in body1 + 1..model.nbody() {
+    candidates_up_to(model, usize::MAX).unwrap_or_default()
+}
+
+/// All candidates, in canonical order; nothing where they are more than `most`.
+fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
+    let meets = meet_any(model);
+    let collides = |&body: &usize| model.bodies[body].geoms.clone().any(|g| meets[g]);
+    let bodies = Vec::from_iter((0..model.nbody()).filter(collides));
+    let explicit = (0..model.pairs.len()).map(|p| explicit(model, p as u32));
+    let mut found = Vec::from_iter(explicit);
+    for (index, &body1) in bodies.iter().enumerate() {
+        for &body2 in &bodies[index + 1..] {
             if !bodies_may_collide(model, body1, body2) {
                 continue;
             }
@@ -48,10 +76,24 @@ pub fn candidates(model: &Model) -> Vec<Candidate> {
                     }
                 }
             }
+            if found.len() > most {
+                return None;
+            }
         }
     }
     found.sort_by_key(|c| c.order(model));
-    found
+    Some(found)
+}
+
+/// Whether each geom's type and affinity bits meet those of any geom, its own among them. One that is only seen meets none.
+pub(super) fn meet_any(model: &Model) -> Vec<bool> {
+    let (mut contypes, mut conaffinities) = (0, 0);
+    for geom in &model.geoms {
+        contypes |= geom.contype;
+        conaffinities |= geom.conaffinity;
+    }
+    let meets = |geom: &Geom| geom.contype & conaffinities != 0 || geom.conaffinity & contypes != 0;
+    model.geoms.iter().map(meets).collect()
 }
 
 /// The candidate of explicit pair `pair`.
