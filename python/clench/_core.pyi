@@ -349,6 +349,7 @@ class Model:
     sensor_dim: Final[_Codes]  # (nsensor,) How many numbers.
     sensor_cutoff: Final[_Floats]  # (nsensor,) Bound of its numbers, where positive.
     sensor_delay: Final[_Floats]  # (nsensor,) How late it tells what it measures, s; only where it keeps past values.
+    sensor_interval: Final[_Floats]  # (nsensor,) How often it measures, s; zero: every step.
     sensor_noise: Final[_Floats]  # (nsensor,) Standard deviation of the noise that is expected; none is added.
 
     eq_anchor1: Final[_Floats]  # (neq, 3) Anchor or weld point in the first body's frame.

@@ -3,9 +3,12 @@
 //! A buffer is a run of numbers in the `history` of a state: one for its owner, the times of its samples, oldest first, and their
 //! values, sample after sample. Times are counted from the present, so that they are zero or negative and keep their digits however
 //! long a simulation runs. Once a step every buffer drops its oldest sample and takes a new one of the step's start.
+//!
+//! A buffer with a period takes samples less often: when its period has passed since the last one was due. When that was is its owner's
+//! number, which counts from the start of the simulation and is a sum of periods, as in MuJoCo, so that rounding decides the same there.
 
 use crate::model::History;
-use clench_math::{Real, Scalar};
+use clench_math::{Mask, Real, Scalar};
 
 /// Times that differ by so little, s, are the same (MuJoCo's `mjMINVAL`).
 const SAME_TIME: f64 = 1e-15;
@@ -30,6 +33,54 @@ impl History {
         let n = self.samples;
         for (k, time) in numbers[self.times()].iter_mut().enumerate() {
             *time = T::new(-step * (n - k) as f64);
+        }
+    }
+
+    /// Writes the times of a buffer that is sampled every `period` seconds, and has been due at `phase` for the last time: each sample was
+    /// taken at the first step that was not before.
+    pub fn begin_periodic<T: Real>(&self, step: f64, [period, phase]: [f64; 2], numbers: &mut [T]) {
+        let n = self.samples;
+        numbers[self.start] = T::new(phase);
+        for (k, time) in numbers[self.times()].iter_mut().enumerate() {
+            let due = phase - (n - 1 - k) as f64 * period;
+            *time = T::new((due / step).ceil() * step);
+        }
+    }
+
+    /// Where a sample is due at a time; always where the period is zero.
+    #[inline(always)]
+    pub fn is_due<T: Real>(&self, numbers: &[T], period: T, now: T) -> T::Mask {
+        !period.gt(T::ZERO) | (numbers[self.start] + period).le(now)
+    }
+
+    /// Adds a sample of the present where it is due, and lets `step` seconds pass.
+    #[inline(always)]
+    pub fn push_periodic<T: Real>(
+        &self,
+        numbers: &mut [T],
+        sample: &[T],
+        (period, now): (T, T),
+        step: T,
+    ) {
+        let due = self.is_due(numbers, period, now);
+        numbers[self.start] += T::select(due, period, T::ZERO);
+        if due.all() {
+            self.push(numbers, sample, step);
+            return;
+        }
+        let values = &mut numbers[self.values()];
+        for k in 0..values.len() {
+            let next = k + self.width;
+            let shifted = match values.get(next) {
+                Some(&value) => value,
+                None => sample[next - values.len()],
+            };
+            values[k] = T::select(due, shifted, values[k]);
+        }
+        let times = &mut numbers[self.times()];
+        for k in 0..times.len() {
+            let shifted = times.get(k + 1).copied().unwrap_or(T::ZERO);
+            times[k] = T::select(due, shifted, times[k]) - step;
         }
     }
 

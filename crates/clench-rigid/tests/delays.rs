@@ -146,3 +146,79 @@ fn a_delayed_sensor_tells_what_was_measured_before() {
         assert_eq!(seen[k].1, seen[k - 3].0);
     }
 }
+
+/// What a position that grows from 100 by one a step of one second is told as, less 100, with this period and phase and this late.
+fn ticks(interval: [f64; 2], delay: f64, steps: usize) -> Vec<f64> {
+    let mut builder = ModelBuilder::new("slider");
+    builder.physics.gravity = [0.0; 3];
+    builder.physics.timestep = 1.0;
+    builder.add_body(
+        ModelBuilder::WORLD,
+        BodySpec::new("block")
+            .joint(JointSpec::slide("slide", [1.0, 0.0, 0.0]))
+            .geom(GeomSpec::sphere(0.1).mass(2.0)),
+    );
+    let mut periodic = SensorSpec::new(SensorKind::JointPos, "slide");
+    periodic.interval = interval;
+    periodic.history = HistorySpec {
+        nsample: 3,
+        interp: Interpolation::Hold,
+        delay,
+    };
+    builder.sensors.push(periodic);
+    let model = Arc::new(builder.build().expect("valid"));
+    let told = |sim: &Sim| sim.workspace().sensors.data[0];
+    let mut sim = Sim::new(model.clone()).expect("valid");
+    sim.state.qpos[0] = 100.0;
+    sim.state.qvel[0] = 1.0;
+    let mut batch = Batch::<f64>::new(model, 3).expect("valid");
+    for env in 0..3 {
+        batch.state.write(env, &sim.state).expect("fits");
+    }
+    let seen = (0..steps)
+        .map(|_| {
+            sim.step().expect("finite");
+            told(&sim) - 100.0
+        })
+        .collect();
+    batch.step_n(steps).expect("finite");
+    let mut one = sim.state.clone();
+    for env in 0..3 {
+        batch.state.read(env, &mut one).expect("there");
+        assert_eq!(one.history, sim.state.history);
+    }
+    seen
+}
+
+#[test]
+fn a_period_that_is_no_multiple_of_the_step_alternates() {
+    // MuJoCo's documentation has these two examples.
+    let seen = ticks([2.5, 0.0], 0.0, 14);
+    assert_eq!(seen[..6], [0.0, 0.0, 0.0, 3.0, 3.0, 5.0]);
+    assert_eq!(seen[6..], [5.0, 5.0, 8.0, 8.0, 10.0, 10.0, 10.0, 13.0]);
+    let seen = ticks([2.5, -1.5], 0.0, 10);
+    assert_eq!(seen[..4], [-100.0, 1.0, 1.0, 1.0]);
+    assert_eq!(seen[4..], [4.0, 4.0, 6.0, 6.0, 6.0, 9.0]);
+}
+
+#[test]
+fn what_is_measured_periodically_can_be_told_late() {
+    let seen = ticks([3.0, 0.0], 2.0, 9);
+    assert_eq!(seen[..6], [-100.0, -100.0, 0.0, 0.0, 0.0, 3.0]);
+    assert_eq!(seen[6..], [3.0, 3.0, 6.0]);
+}
+
+#[test]
+fn a_phase_lies_within_one_period() {
+    let refused = |interval: [f64; 2]| {
+        let mut builder = ModelBuilder::new("clock");
+        let mut clock = SensorSpec::new(SensorKind::Clock, "");
+        clock.subject = clench_rigid::builder::SensorSubject::Nothing;
+        clock.interval = interval;
+        builder.sensors.push(clock);
+        builder.build().expect_err("wrong").to_string()
+    };
+    assert!(refused([-1.0, 0.0]).contains("interval"));
+    assert!(refused([1.0, 0.5]).contains("phase"));
+    assert!(refused([1.0, -1.0]).contains("phase"));
+}

@@ -17,9 +17,11 @@ macro_rules! rule {
     ($attributes:literal) => {
         Rule {
             element: "sensor",
-            read: concat!("name cutoff noise nsample interp delay ", $attributes),
+            read: concat!(
+                "name cutoff noise nsample interp delay interval ",
+                $attributes
+            ),
             ignored: "user",
-            later: "interval=0",
             ..NONE
         }
     };
@@ -34,7 +36,7 @@ const BODY: Rule = rule!("body");
 const FRAME: Rule = rule!("objtype objname reftype refname");
 const WORLD_FRAME: Rule = rule!("objtype objname");
 const INSIDE: Rule = Rule {
-    later: "enclosed=false interval=0",
+    later: "enclosed=false",
     ..rule!("site objtype objname")
 };
 const GEOMS: Rule = rule!("geom1 geom2 body1 body2");
@@ -110,12 +112,14 @@ pub(crate) fn read(element: &Element, kind: SensorKind) -> Result<SensorSpec, Lo
         cutoff: 0.0,
         noise: 0.0,
         history: HistorySpec::default(),
+        interval: [0.0; 2],
         origin: Some(element.origin.clone()),
     };
     element.refuse_negative(&["cutoff", "noise"])?;
     element.set_number("cutoff", &mut spec.cutoff)?;
     element.set_number("noise", &mut spec.noise)?;
     read_history(element, &mut spec.history)?;
+    element.overlay("interval", &mut spec.interval)?;
     Ok(spec)
 }
 

@@ -137,6 +137,9 @@ pub struct SensorSpec {
     pub noise: f64,
     /// Which past values are kept, and how late they are told.
     pub history: HistorySpec,
+    /// How often it measures, s, and when it did so last before time zero; zero: every step, and one period before. MuJoCo's
+    /// `interval`, which only counts where past values are kept.
+    pub interval: [f64; 2],
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -151,6 +154,7 @@ impl SensorSpec {
             cutoff: 0.0,
             noise: 0.0,
             history: HistorySpec::default(),
+            interval: [0.0; 2],
             origin: None,
         }
     }

@@ -42,7 +42,13 @@ pub(super) fn add_all(
             return Err(spec.error("a direction or an orientation has no cutoff"));
         }
         let history = histories::add(builder, spec, spec.history, dim, model)?;
+        let [period, phase] = spec.interval;
+        spec.require_not_negative("interval", &[period])?;
+        if phase > 0.0 || (period > 0.0 && phase <= -period) {
+            return Err(spec.error("the phase of an interval is within one period before zero"));
+        }
         model.params.sensor_delay.push(spec.history.delay);
+        model.params.sensor_interval.push(period);
         let start = model.nsensordata();
         model.sensors.push(Sensor {
             name: spec.name.clone(),
@@ -53,6 +59,7 @@ pub(super) fn add_all(
             noise: spec.noise,
             numbers: start..start + dim,
             history,
+            phase,
             origin: spec.origin.clone(),
         });
     }

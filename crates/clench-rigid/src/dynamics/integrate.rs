@@ -171,10 +171,11 @@ pub fn advance_time<T: Real>(
             history.push(&mut state.history, ctrl, params.timestep);
         }
     }
-    for sensor in &model.sensors {
+    let now = state.rounded_time();
+    for (sensor, &period) in model.sensors.iter().zip(&params.sensor_interval) {
         if let Some(history) = &sensor.history {
             let sample = &measured[sensor.numbers.clone()];
-            history.push(&mut state.history, sample, params.timestep);
+            history.push_periodic(&mut state.history, sample, (period, now), params.timestep);
         }
     }
     state.pass(params.timestep);

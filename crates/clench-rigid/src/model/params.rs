@@ -283,6 +283,8 @@ params! {
 
     /// How late sensors tell what they measure, s; only those that keep past values.
     sensor_delay: Vec<T>, NotNegative;
+    /// How often sensors measure, s; zero: every step. Only those that keep past values.
+    sensor_interval: Vec<T>, NotNegative;
 
     /// Anchor (connect) or weld point in the first body's frame.
     eq_anchor1: Vec<Vec3<T>>, Finite;

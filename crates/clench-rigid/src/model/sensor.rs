@@ -234,6 +234,8 @@ pub struct Sensor {
     pub numbers: Range<usize>,
     /// The buffer of its past values.
     pub history: Option<History>,
+    /// Of a sensor that measures periodically, when it did so last before time zero, s; zero: one period before.
+    pub phase: f64,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

@@ -92,7 +92,7 @@ pub(crate) fn evaluate<T: Real>(
     ws.sensors.data = data;
 }
 
-/// Keeps what was measured, and puts what was measured before in the place of what is told late.
+/// Keeps what was measured, and puts what was measured before in the place of what is told late, or not measured now.
 fn delay<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -106,12 +106,17 @@ fn delay<T: Real>(
             continue;
         };
         let late = params.sensor_delay[s];
-        let delayed = late.gt(T::ZERO);
-        if delayed.any() {
+        let due = history.is_due(
+            &state.history,
+            params.sensor_interval[s],
+            state.rounded_time(),
+        );
+        let past = late.gt(T::ZERO) | !due;
+        if past.any() {
             let told = &mut data[sensor.numbers.clone()];
             history.read(&state.history, -late, told);
             for (told, &now) in told.iter_mut().zip(&measured[sensor.numbers.clone()]) {
-                *told = T::select(delayed, *told, now);
+                *told = T::select(past, *told, now);
             }
         }
     }

@@ -145,8 +145,19 @@ impl<T: Real> State<T> {
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
         broadcast(&model.params.qpos0, &mut state.qpos);
+        let step = model.params.timestep;
         for history in model.histories() {
-            history.begin(model.params.timestep, &mut state.history);
+            history.begin(step, &mut state.history);
+        }
+        for (sensor, &period) in model.sensors.iter().zip(&model.params.sensor_interval) {
+            if let Some(history) = sensor.history.as_ref().filter(|_| period > 0.0) {
+                let phase = if sensor.phase == 0.0 {
+                    -period
+                } else {
+                    sensor.phase
+                };
+                history.begin_periodic(step, [period, phase], &mut state.history);
+            }
         }
         let mocap_bodies = (0..model.nbody()).filter(|&b| model.bodies[b].mocap.is_some());
         for (m, b) in mocap_bodies.enumerate() {

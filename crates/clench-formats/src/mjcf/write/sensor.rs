@@ -21,6 +21,7 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
             noise,
             numbers,
             history,
+            phase,
             origin: _,
         } = sensor;
         let mut tag = xml.tag(kind.name()).name(name);
@@ -75,6 +76,10 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
         if let Some(history) = history {
             let delay = model.params.sensor_delay[index];
             tag = write_history(history, delay, tag);
+            let period = model.params.sensor_interval[index];
+            if period > 0.0 {
+                tag = tag.numbers("interval", &[period, *phase]);
+            }
         }
         tag.number_unless("cutoff", *cutoff, 0.0)
             .number_unless("noise", *noise, 0.0)
