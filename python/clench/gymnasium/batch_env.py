@@ -8,15 +8,15 @@ from typing import Any, Literal
 
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
-from gymnasium.spaces import Box, Space
-from gymnasium.utils import seeding
+from gymnasium.spaces import Space
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from clench import Batch, FreeCamera, Model, RigidOptions, SimulationError
 from clench.gymnasium import infos as vector_infos
-from clench.gymnasium.checks import checked_action, checked_mask, checked_seeds, one_each, rows
+from clench.gymnasium import observed
+from clench.gymnasium.checks import check_action_space, checked_action, checked_mask, checked_seeds, one_each, one_or_all, rows
 from clench.gymnasium.drawn import Drawn
 from clench.gymnasium.models import action_space, loaded
 from clench.gymnasium.task_methods import TaskMethods
@@ -24,12 +24,12 @@ from clench.gymnasium.task_methods import TaskMethods
 Array = NDArray[Any]
 
 
-class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
+class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignore[misc]  # One random generator an environment.
     """Many environments of one model, stepped together.
 
     A task derives from this class, names a model, and says over all environments at once what is observed
-    (:meth:`observe`), what it is worth (:meth:`reward`) and when it is over (:meth:`terminated`), from the arrays of
-    :attr:`batch`. What these methods return is copied: they may return views.
+    (:meth:`observe`), what it is worth (:meth:`reward`) and when it is over (:meth:`terminated`, :meth:`truncated`), from the
+    arrays of :attr:`batch`. What these methods return is copied: they may return views.
 
     Each parameter can also be an attribute of the derived class; what is given here wins.
 
@@ -69,8 +69,8 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
         of the start of the last step of the simulator (with RK4 its last stage), or of the reset.
     fresh : ndarray
         Booleans (n,): environments that no step followed yet since their reset.
-    action_shape : tuple of int
-        Shape of an action of one environment.
+    elapsed : ndarray
+        Integers (n,): steps since each environment's reset, in `reward` and what comes after it this step included.
     timestep, dt : float
         Seconds that a step of the simulator, and one of the environment, takes.
     init_qpos, init_qvel : ndarray
@@ -139,7 +139,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
             raise ValueError(f"frame_skip must be at least 1, not {self.frame_skip}")
         if self.max_episode_steps is not None and self.max_episode_steps < 1 and self.max_episode_steps != -1:
             raise ValueError(f"max_episode_steps must be at least 1, or -1 for no limit, not {self.max_episode_steps}")
-        self._mode = AutoresetMode(self.autoreset_mode)
+        self.autoreset_mode = self._mode = AutoresetMode(self.autoreset_mode)
         self.render_mode = render_mode
 
         self.num_envs = num_envs
@@ -156,16 +156,15 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
         self.metadata = {**self.metadata, "render_fps": round(1 / self.dt), "autoreset_mode": self._mode}
         self.init_qpos = self.batch.qpos[0].copy()
         self.init_qvel = self.batch.qvel[0].copy()
-        own = getattr(type(self), "single_action_space", None)
-        space = own if isinstance(own, Box) else action_space(self.batch.model)
-        self.action_shape = space.shape
-        self.single_action_space = space
+        if getattr(self, "single_action_space", None) is None:
+            self.single_action_space = action_space(self.batch.model)
+        check_action_space(self.single_action_space, self._name)
         self.action_space = batch_space(self.single_action_space, num_envs)
 
         self.fresh = np.zeros(num_envs, dtype=np.bool_)
         self.started = False
         self._done = np.zeros(num_envs, dtype=np.bool_)
-        self._elapsed = np.zeros(num_envs, dtype=np.int64)
+        self.elapsed = np.zeros(num_envs, dtype=np.int64)
         self._generators: list[np.random.Generator | None] = [None] * num_envs
         self._seeds: list[int | None] = [None] * num_envs
 
@@ -173,12 +172,12 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
 
     @property
     def single_observation_space(self) -> Space[Any]:
-        """The space of one observation: no bounds, the shape and dtype of what :meth:`observe` returns."""
+        """The space of one observation: of the shape and dtype of what :meth:`observe` returns, without bounds but for bytes; a
+        ``Dict`` where that is arrays by name."""
         if self._single_observation_space is None:
             if not self.started and self.batch.outputs:
                 self.batch.forward()
-            sample = self.observation()
-            self._single_observation_space = Box(-np.inf, np.inf, sample.shape[1:], sample.dtype.type)
+            self._single_observation_space = observed.space(self.observation())
         return self._single_observation_space
 
     @single_observation_space.setter
@@ -200,28 +199,9 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
     _single_observation_space: Space[Any] | None = None
     _observation_space: Space[Any] | None = None
 
-    # As in gymnasium's SyncVectorEnv there is one generator an environment; the base class knows one for all.
-
-    @property  # type: ignore[override]
-    def np_random(self) -> tuple[np.random.Generator, ...]:
-        """The random generators, one an environment."""
-        return tuple(self._generator(env) for env in range(self.num_envs))
-
-    @np_random.setter  # type: ignore[override]
-    def np_random(self, generators: Sequence[np.random.Generator]) -> None:
-        if len(generators) != self.num_envs:
-            raise ValueError(f"expected {self.num_envs} generators, one an environment, got {len(generators)}")
-        self._generators, self._seeds = list(generators), [None] * self.num_envs
-
-    @property
-    def np_random_seed(self) -> tuple[int | None, ...]:  # type: ignore[override]
-        """What they were seeded with."""
-        self.np_random
-        return tuple(self._seeds)
-
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Array, dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """Starts episodes.
 
         Parameters
@@ -234,8 +214,8 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
 
         Returns
         -------
-        observations : ndarray
-            Of all environments.
+        observations : ndarray or dict of str to ndarray
+            Of all environments, (n, ...).
         infos : dict
             Of those that were reset.
 
@@ -250,24 +230,26 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
             raise ResetNeeded(f"{self._name}: the first reset must be of all environments")
         seeds = checked_seeds(seed, self.num_envs)
         for env in np.flatnonzero(mask).tolist():
-            if seeds[env] is not None:
-                self._generators[env], self._seeds[env] = seeding.np_random(seeds[env])
+            seed = seeds[env]
+            if seed is not None:
+                self._seed(env, seed)
         infos: dict[str, Any] = {}
         vector_infos.add(infos, self._restart(mask), mask)
         self.started = True
         return self.observation(), infos
 
-    def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
+    def step(self, actions: ArrayLike) -> tuple[Any, Array, Array, Array, dict[str, Any]]:
         """Steps every environment.
 
         Parameters
         ----------
         actions : array_like
-            Actions (n, ...), controls (n, nu) unless the task says otherwise (:meth:`control`). Controls are clamped as the model says, and not otherwise.
+            Actions (n, ...), controls (n, nu) unless the task says otherwise (:meth:`control`). Controls are clamped as the model
+            says, and not otherwise.
 
         Returns
         -------
-        observations : ndarray
+        observations : ndarray or dict of str to ndarray
             (n, ...)
         rewards : ndarray
             (n,) float64.
@@ -279,12 +261,12 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
         Raises
         ------
         ValueError
-            Actions of another shape or dtype, or not finite.
+            Actions of another shape or dtype, not finite, or not among those that there are.
         gymnasium.error.ResetNeeded
             Before the first reset; without autoreset, also when an environment is over.
         """
         self._check_ready()
-        action = checked_action(actions, (self.num_envs, *self.action_shape), self._name)
+        action = checked_action(actions, self.action_space, self._name)
         over = self._done
         if self._mode is AutoresetMode.DISABLED and over.any():
             first = int(np.flatnonzero(over)[0])
@@ -331,26 +313,22 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
         if not self.started:
             raise ResetNeeded(f"{self._name}: call reset() before step()")
 
-    def _generator(self, env: int) -> np.random.Generator:
-        generator = self._generators[env]
-        if generator is None:
-            generator, self._seeds[env] = seeding.np_random()
-            self._generators[env] = generator
-        return generator
-
     def _restart(self, mask: Array) -> Mapping[str, Array]:
         """Puts the environments in ``mask`` at the start of an episode; the reset's infos over all environments."""
         batch, qpos, qvel = self.batch, self.batch.qpos, self.batch.qvel
         batch.reset(mask)
-        for env in np.flatnonzero(mask).tolist():
-            qpos[env], qvel[env] = self.initial_state(self._generator(env))
+        envs = np.flatnonzero(mask)
+        start = self.initial_states(envs)
+        for name, rows_of, values in zip(("qpos", "qvel"), (qpos, qvel), start, strict=True):
+            shape = (len(envs), rows_of.shape[1])
+            rows_of[envs] = one_or_all(values, shape, f"{self._name}: {name} of initial_states()")
+        self.elapsed[mask] = 0
         self.on_reset(mask)
         if batch.outputs and batch.forward(mask):
             env = int(np.flatnonzero(mask & ~batch.running)[0])
             raise SimulationError(f"{self._name}: environment {env} cannot start: {batch.fault(env)}")
         self.fresh |= mask
         self._done = self._done & ~mask
-        self._elapsed[mask] = 0
         return self._checked_info(self.reset_info())
 
     def advance(self, action: Array) -> tuple[Array, Array, Array, list[vector_infos.Group]]:
@@ -359,13 +337,15 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
         batch.ctrl[...] = self.control(action)
         self.before_step()
         batch.step(self.frame_skip)
-        self._elapsed += 1
+        self.elapsed += 1
         self.fresh[:] = False
 
         rewards = one_each(self.reward(action), n, np.float64, f"{self._name}: reward()")
         terminations = one_each(self.terminated(), n, np.bool_, f"{self._name}: terminated()")
         limit = self.max_episode_steps
-        truncations = np.zeros(n, dtype=np.bool_) if limit is None or limit == -1 else self._elapsed >= limit
+        truncations = one_each(self.truncated(), n, np.bool_, f"{self._name}: truncated()")
+        if limit is not None and limit != -1:
+            truncations |= self.elapsed >= limit
         about: list[vector_infos.Group] = [(self._checked_info(self.info()), np.ones(n, dtype=np.bool_))]
 
         running = batch.running
@@ -378,12 +358,9 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Array, Array, Array]):
             about.append(({"failed": failed, "fault": faults}, failed))
         return rewards, terminations, truncations, about
 
-    def observation(self) -> Array:
-        """What is observed, in an array of its own."""
-        observation = rows(self.observe(), self.num_envs, f"{self._name}: observe()").copy()
-        if observation.ndim < 2:
-            raise ValueError(f"{self._name}: observe() must give each environment an array, not one number")
-        return observation if observation.dtype in (np.float64, np.float32) else observation.astype(np.float64)
+    def observation(self) -> Any:
+        """What is observed, in arrays of its own."""
+        return observed.checked(self.observe(), self.num_envs, f"{self._name}: observe()")
 
     def _checked_info(self, info: Mapping[str, Array]) -> Mapping[str, Array]:
         return {key: rows(value, self.num_envs, f"{self._name}: info `{key}`") for key, value in info.items()}

@@ -6,41 +6,56 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from gymnasium.spaces import Box, Discrete, MultiBinary, MultiDiscrete, Space
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
 
 
-def checked_action(action: Any, shape: tuple[int, ...], name: str) -> Array:
-    """The action as finite float64 of that shape.
+def check_action_space(space: Any, name: str) -> None:
+    """Refuses spaces whose actions are no arrays of numbers."""
+    if not isinstance(space, (Box, Discrete, MultiDiscrete, MultiBinary)):
+        what = type(space).__name__
+        raise TypeError(f"{name}: single_action_space must be a Box, Discrete, MultiDiscrete or MultiBinary, not {what}")
+
+
+def checked_action(action: Any, space: Space[Any], name: str) -> Array:
+    """The action as finite float64, or where a space has only some actions as int64, of the shape of that space.
 
     Parameters
     ----------
     action : array_like
-        One row of controls an environment, or a single row.
-    shape : tuple of int
-        The shape that it must have.
+        What was given as action.
+    space : gymnasium.spaces.Space
+        The space of actions, of one environment or of all. What a ``Box`` bounds is not looked at.
     name : str
         How messages call the environment.
 
     Returns
     -------
     ndarray
-        The same numbers; the array itself where it is float64 already.
+        The same numbers; the array itself where it is of that dtype already.
 
     Raises
     ------
     ValueError
-        Another shape, a dtype that holds no real numbers, or a number that is not finite.
+        Another shape, a dtype that holds no such numbers, a number that is not finite, or an action that is not in a space of
+        only some.
     """
     try:
         array = np.asarray(action)
     except ValueError as error:
         raise ValueError(f"{name}: the action is no array: {error}") from error
-    if array.dtype.kind not in "fiu":
-        raise ValueError(f"{name}: an action of dtype {array.dtype}, expected real numbers")
-    if array.shape != shape:
-        raise ValueError(f"{name}: an action of shape {array.shape}, expected {shape}")
+    some = not isinstance(space, Box)
+    if array.dtype.kind not in ("biu" if some else "fiu"):
+        raise ValueError(f"{name}: an action of dtype {array.dtype}, expected {'integers' if some else 'real numbers'}")
+    if array.shape != space.shape:
+        raise ValueError(f"{name}: an action of shape {array.shape}, expected {space.shape}")
+    if some:
+        array = array.astype(np.int64, copy=False)
+        if not space.contains(array.astype(space.dtype)):
+            raise ValueError(f"{name}: an action that is not in {space}")
+        return array
     array = array.astype(np.float64, copy=False)
     finite = np.isfinite(array)
     if not finite.all():
@@ -99,4 +114,12 @@ def one_each(values: Any, count: int, dtype: type[np.generic], what: str) -> Arr
     array = np.array(values, dtype=dtype)
     if array.shape != (count,):
         raise ValueError(f"{what} is an array of shape {array.shape}, expected ({count},)")
+    return array
+
+
+def one_or_all(values: Any, shape: tuple[int, int], what: str) -> Array:
+    """Rows of that shape: as given, or one row for all."""
+    array = np.asarray(values)
+    if array.shape not in (shape, shape[1:]):
+        raise ValueError(f"{what} is an array of shape {array.shape}, expected {shape} or {shape[1:]}")
     return array

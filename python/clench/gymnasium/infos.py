@@ -12,6 +12,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from clench.gymnasium.observed import of_one
+
 Array = NDArray[Any]
 
 Group: TypeAlias = tuple[Mapping[str, Array], Array]
@@ -42,15 +44,15 @@ def add(infos: dict[str, Any], values: Mapping[str, Array], mask: Array) -> None
             infos[f"_{key}"] |= mask
 
 
-def add_final(infos: dict[str, Any], observation: Array, groups: list[Group], done: Array) -> None:
+def add_final(infos: dict[str, Any], observation: Any, groups: list[Group], done: Array) -> None:
     """Adds how the episodes in ``done`` ended: ``final_obs`` and ``final_info``.
 
     Parameters
     ----------
     infos : dict
         What is added to.
-    observation : ndarray
-        The last observations (n, ...); rows of it are given out, so it must belong to nobody else.
+    observation : ndarray or dict of str to ndarray
+        The last observations (n, ...); rows of them are given out, so they must belong to nobody else.
     groups : list of Group
         The infos of the last steps.
     done : ndarray
@@ -58,7 +60,7 @@ def add_final(infos: dict[str, Any], observation: Array, groups: list[Group], do
     """
     last = np.full(done.shape, None, dtype=np.object_)
     for env in np.flatnonzero(done).tolist():
-        last[env] = observation[env]
+        last[env] = of_one(observation, env)
     final: dict[str, Any] = {}
     for values, mask in groups:
         add(final, values, mask & done)

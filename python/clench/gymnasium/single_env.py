@@ -8,15 +8,17 @@ import gymnasium
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from gymnasium.vector import AutoresetMode
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from clench import Model, Sim, SimulationError
 from clench.gymnasium.batch_env import BatchEnv
 from clench.gymnasium.checks import check_options, checked_action
+from clench.gymnasium.observed import of_one
 
 Array = NDArray[Any]
 
 
-class SingleEnv(gymnasium.Env[Array, Array]):
+class SingleEnv(gymnasium.Env[Any, Array]):
     """A vector environment of one, seen as a single environment.
 
     A derived class names the :attr:`task`; that is all it has to do.
@@ -48,7 +50,7 @@ class SingleEnv(gymnasium.Env[Array, Array]):
         self.render_mode = self.vector.render_mode
         self.metadata = {**self.metadata, "render_fps": self.vector.metadata["render_fps"]}
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Starts an episode.
 
         Parameters
@@ -60,16 +62,16 @@ class SingleEnv(gymnasium.Env[Array, Array]):
 
         Returns
         -------
-        observation : ndarray
+        observation : ndarray or dict of str to ndarray
         info : dict
         """
         check_options(options, ())
         super().reset(seed=seed)
         self.vector.np_random = (self.np_random,)
         observation, infos = self.vector.reset()
-        return observation[0], {key: value[0] for key, value in infos.items() if f"_{key}" in infos}
+        return of_one(observation, 0), {key: value[0] for key, value in infos.items() if f"_{key}" in infos}
 
-    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+    def step(self, action: ArrayLike) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Steps the environment.
 
         Parameters
@@ -79,7 +81,7 @@ class SingleEnv(gymnasium.Env[Array, Array]):
 
         Returns
         -------
-        observation : ndarray
+        observation : ndarray or dict of str to ndarray
         reward : float
         terminated, truncated : bool
         info : dict
@@ -88,7 +90,7 @@ class SingleEnv(gymnasium.Env[Array, Array]):
         Raises
         ------
         ValueError
-            An action of another shape or dtype, or not finite.
+            An action of another shape or dtype, not finite, or not among those that there are.
         gymnasium.error.ResetNeeded
             Before the first reset.
         """
@@ -96,10 +98,47 @@ class SingleEnv(gymnasium.Env[Array, Array]):
             raise ClosedEnvironmentError(f"{self} is closed")
         if not self.vector.started:
             raise ResetNeeded(f"{self}: call reset() before step()")
-        row = checked_action(action, self.vector.action_shape, str(self))
+        row = checked_action(action, self.action_space, str(self))
         rewards, terminations, truncations, about = self.vector.advance(row[np.newaxis])
         info = {key: value.copy()[0] for values, mask in about if mask[0] for key, value in values.items()}
-        return self.vector.observation()[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), info
+        return of_one(self.vector.observation(), 0), float(rewards[0]), bool(terminations[0]), bool(truncations[0]), info
+
+    @property
+    def model(self) -> Model:
+        """The model."""
+        return self.vector.batch.model
+
+    @property
+    def sim(self) -> Sim:
+        """A simulation of its own in the present state, which can be asked and stepped without moving the environment."""
+        return self.vector.batch.sim(0)
+
+    def set_state(self, qpos: ArrayLike, qvel: ArrayLike) -> None:
+        """Sets positions and velocities, as gymnasium's ``MujocoEnv.set_state``; the episode goes on from there.
+
+        Parameters
+        ----------
+        qpos : array_like
+            Positions (nq,).
+        qvel : array_like
+            Velocities (nv,).
+
+        Raises
+        ------
+        ValueError
+            Wrong shapes.
+        clench.SimulationError
+            A state that cannot be simulated.
+        """
+        batch = self.vector.batch
+        given = np.asarray(qpos), np.asarray(qvel)
+        for name, row, values in zip(("qpos", "qvel"), (batch.qpos[0], batch.qvel[0]), given, strict=True):
+            if values.shape != row.shape:
+                raise ValueError(f"{self}: {name} is an array of shape {values.shape}, expected {row.shape}")
+        batch.qpos[0], batch.qvel[0] = given
+        batch.revive()
+        if batch.outputs and batch.forward():
+            raise SimulationError(f"{self}: cannot go on from there: {batch.fault(0)}")
 
     def render(self) -> Array | None:
         """Draws the environment.

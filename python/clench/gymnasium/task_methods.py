@@ -8,18 +8,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clench.gymnasium.generators import Generators
+from clench.gymnasium.observed import Observation
+
 Array = NDArray[Any]
 
 
-class TaskMethods:
+class TaskMethods(Generators):
     """What a task defines, and what holds where it does not."""
 
-    num_envs: int
     init_qpos: Array
     init_qvel: Array
 
-    def observe(self) -> Array:
-        """What is observed, (n, ...), as a function of the arrays of :attr:`batch` alone."""
+    def observe(self) -> Observation:
+        """What is observed, as a function of the arrays of :attr:`batch` alone: an array (n, ...), or arrays (n, ...) by name.
+
+        Numbers that are not of single precision, nor bytes (uint8, as in pictures), are made float64.
+        """
         raise NotImplementedError(f"{type(self).__name__} must define observe()")
 
     def reward(self, action: Array) -> Array:
@@ -31,24 +36,32 @@ class TaskMethods:
         Parameters
         ----------
         action : ndarray
-            The actions as float64, (n, ...). Not to be written to.
+            The actions (n, ...), as :meth:`control` gets them. Not to be written to.
         """
         raise NotImplementedError(f"{type(self).__name__} must define reward(action)")
 
     def control(self, action: Array) -> Array:
         """The controls that actions mean, (n, nu). The actions themselves unless defined.
 
-        A task whose actions have another shape also has the attribute ``single_action_space``, a ``Box`` of that shape.
+        A task whose actions are others also has the attribute ``single_action_space``, of the class or set before the constructor
+        of this class: a ``Box`` of any shape, a ``Discrete``, ``MultiDiscrete`` or ``MultiBinary``.
 
         Parameters
         ----------
         action : ndarray
-            The actions as float64, (n, ...). Not to be written to.
+            The actions (n, ...): float64 of a ``Box``, else int64. Not to be written to.
         """
         return action
 
     def terminated(self) -> Array:
         """Whose episode is over, (n,) booleans. Nobody's unless defined."""
+        return np.zeros(self.num_envs, dtype=np.bool_)
+
+    def truncated(self) -> Array:
+        """Whose episode is cut short, (n,) booleans, besides those that reach ``max_episode_steps``. Nobody's unless defined.
+
+        Called after :meth:`terminated`.
+        """
         return np.zeros(self.num_envs, dtype=np.bool_)
 
     def info(self) -> Mapping[str, Array]:
@@ -63,7 +76,9 @@ class TaskMethods:
         """Called with the controls set, before the simulator steps: the place to keep what the step will change."""
 
     def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Where an episode starts. The initial state of the model unless defined.
+        """Where an episode of one environment starts. The initial state of the model unless defined.
+
+        Not asked where :meth:`initial_states` is defined.
 
         Parameters
         ----------
@@ -77,6 +92,22 @@ class TaskMethods:
         """
         return self.init_qpos, self.init_qvel
 
+    def initial_states(self, envs: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Where episodes start, of all environments that are reset at once. What :meth:`initial_state` says of each unless defined.
+
+        Parameters
+        ----------
+        envs : ndarray
+            Integers (k,): which environments. Random numbers of environment ``i`` come from ``generator(i)``.
+
+        Returns
+        -------
+        qpos, qvel : ndarray
+            Positions (k, nq) and velocities (k, nv); or (nq,) and (nv,), where all start from the same.
+        """
+        starts = [self.initial_state(self.generator(env)) for env in envs.tolist()]
+        return np.array([qpos for qpos, _ in starts]), np.array([qvel for _, qvel in starts])
+
     def on_reset(self, mask: Array) -> None:
         """Called when environments start an episode, with their states set and before anything is observed.
 
@@ -87,5 +118,5 @@ class TaskMethods:
         ----------
         mask : ndarray
             Booleans (n,): which environments; ``numpy.flatnonzero(mask)`` are their indices. Random numbers of environment ``i`` come
-            from ``np_random[i]``.
+            from ``generator(i)``.
         """

@@ -207,7 +207,7 @@ class Carrier(BatchEnv):
         envs = np.flatnonzero(mask)
         self.resets.append(envs.tolist())
         for env in envs:
-            self.goal[env] = self.np_random[env].uniform(-0.5, 0.5)
+            self.goal[env] = self.generator(env).uniform(-0.5, 0.5)
         self.batch.joint("box").qpos[mask, 2] = 0.6
         self.batch.add_weld("cup", "box", envs)
 

@@ -127,7 +127,7 @@ def test_action_dtypes() -> None:
     rows = []
     for actions in ([[1, 0], [0, 1]], np.eye(2, dtype=np.float32), np.eye(2, dtype=np.int8), np.eye(2, order="F")):
         envs.reset(seed=1)
-        rows.append(envs.step(actions)[0])  # type: ignore[arg-type]
+        rows.append(envs.step(actions)[0])
     for row in rows[1:]:
         np.testing.assert_array_equal(row, rows[0])
 

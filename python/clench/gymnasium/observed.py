@@ -1,0 +1,79 @@
+"""What is observed: an array, or arrays by name, with a row an environment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+from gymnasium.spaces import Box, Dict, Space
+from numpy.typing import NDArray
+
+from clench.gymnasium.checks import rows
+
+Array = NDArray[Any]
+
+Observation: TypeAlias = Array | Mapping[str, Array]
+"""What a task observes: an array (n, ...), or arrays (n, ...) by name."""
+
+# Dtypes that stay as they are: numbers of either precision, and those of pictures. All others become float64.
+_KEPT = ("float64", "float32", "uint8")
+
+
+def checked(values: Any, count: int, what: str) -> Any:
+    """A copy of what a task observed.
+
+    Parameters
+    ----------
+    values : ndarray or mapping of str to ndarray
+        What the task returned.
+    count : int
+        How many environments there are.
+    what : str
+        How messages call it.
+
+    Returns
+    -------
+    ndarray or dict of str to ndarray
+        The same in arrays of their own, float64, float32 or uint8.
+
+    Raises
+    ------
+    ValueError
+        An array without a row an environment, or whose rows are single numbers.
+    """
+    if isinstance(values, Mapping):
+        return {str(key): _array(value, count, f"{what}, `{key}`,") for key, value in values.items()}
+    return _array(values, count, what)
+
+
+def _array(values: Any, count: int, what: str) -> Array:
+    array = rows(values, count, what).copy()
+    if array.ndim < 2:
+        raise ValueError(f"{what} must give each environment an array, not one number")
+    return array if array.dtype.name in _KEPT else array.astype(np.float64)
+
+
+def space(sample: Any) -> Space[Any]:
+    """The space of one environment's part of what was observed: without bounds, but for bytes.
+
+    Parameters
+    ----------
+    sample : ndarray or dict of str to ndarray
+        What `checked` returned.
+
+    Returns
+    -------
+    gymnasium.spaces.Box or gymnasium.spaces.Dict
+    """
+    if isinstance(sample, Mapping):
+        return Dict({key: space(value) for key, value in sample.items()})
+    low, high = (0, 255) if sample.dtype == np.uint8 else (-np.inf, np.inf)
+    return Box(low, high, sample.shape[1:], sample.dtype.type)
+
+
+def of_one(observation: Any, env: int) -> Any:
+    """One environment's part of what was observed: views."""
+    if isinstance(observation, Mapping):
+        return {key: value[env] for key, value in observation.items()}
+    return observation[env]
