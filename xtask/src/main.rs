@@ -5,6 +5,7 @@ mod audit;
 mod fuzz;
 mod gpu;
 mod install;
+mod others;
 mod package;
 mod python;
 mod run;
@@ -47,6 +48,9 @@ Commands:
                       collide     a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones;
                                   nothing may panic, hang, or be no number
                       recordings  end `clench simulate --record` by kill -9; no half a file may be left
+  others [NAME]     Test the Python package beside large packages of others, which are installed below .venv:
+                      ray       a batch on a cluster, whose workers are killed (500 MB)
+                      learning  Stable-Baselines3 and TorchRL (5 GB)
   fuzz [--only TARGET] [--seconds N] [--address]
                     Search for bytes that break a reader, an hour each, with libFuzzer; needs a C++ compiler. --address checks
                     every access to memory. See docs/testing.md.
@@ -61,6 +65,7 @@ fn main() -> ExitCode {
         Some("test") => stages::test(&args[1..]),
         Some("bench") => stages::bench(&args[1..]),
         Some("soak") => soak::soak(&args[1..]),
+        Some("others") => others::test(&args[1..]),
         Some("fuzz") => fuzz::fuzz(&args[1..]),
         Some("sanitize") => sanitize::sanitize(&args[1..]),
         Some("audit") => audit::audit(),

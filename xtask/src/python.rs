@@ -61,7 +61,10 @@ fn make_environment() -> Result<(), String> {
 }
 
 /// Installs what a file in `parity` lists, unless a copy of it, kept in `.venv`, says that this was done.
-fn install(list: &str, options: &[&str]) -> Result<(), String> {
+///
+/// # Errors
+/// What failed, and what to check.
+pub fn install(list: &str, options: &[&str]) -> Result<(), String> {
     let wanted = read(&root().join("parity").join(list))?;
     let done = root().join(".venv").join(format!("installed-{list}"));
     if fs::read_to_string(&done).is_ok_and(|have| have == wanted) {

@@ -1,0 +1,371 @@
+"""The driver's side of a batch that is spread over a cluster."""
+
+from __future__ import annotations
+
+import dataclasses
+import operator
+import pickle
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Self
+
+import clench
+from clench.ray.asked import Asked
+from clench.ray.mirror import Mirror
+from clench.ray.worker import Worker, ray_module
+
+Array = NDArray[Any]
+
+_STATE = tuple(field.name for field in dataclasses.fields(clench.State))
+
+
+class Batch(Asked):
+    """Many environments of one model, on the machines of a Ray cluster.
+
+    The face is that of `clench.Batch`. Arrays of the state (``qpos``, ``ctrl``, ...) can be read and written as there: what is
+    written goes to the workers with the next call, and those that were ever asked for come back with each. Recorded outputs are
+    fetched when they are asked for, and are copies. The environments are parts of one after the other, and it does not matter to the
+    bit how many workers there are, nor whether one dies.
+
+    Parameters
+    ----------
+    model : clench.Model
+        The model of all environments. One that was loaded from a file is read from the same path by every worker; where there is no
+        such path, ``clench.ModelSpec.from_file(path).build()`` is a model that takes its files along.
+    n_envs : int
+        How many environments.
+    precision : {"64", "32"}
+        Bits of every number.
+    threads : int, optional
+        Threads of each worker, for which Ray keeps as many processors; by default what the cluster has, shared evenly.
+    options : clench.RigidOptions, optional
+        Options that go before those of the model.
+    record : sequence of str
+        Outputs to keep, see `record`.
+    workers : int, optional
+        How many workers; by default one a machine of the cluster.
+    snapshot_every : int
+        Time steps after which a worker hands over what it would be begun with anew. Fewer cost more, and bring less to do again after a
+        death. None is taken of a worker while one of its environments stands still.
+
+    Attributes
+    ----------
+    model : clench.Model
+        The model, without the numbers that environments have for themselves.
+    n_envs : int
+        How many environments.
+    precision : str
+        Bits of every number, "64" or "32".
+
+    Raises
+    ------
+    ImportError
+        Ray is not installed.
+    ValueError
+        What `clench.Batch` refuses, or less than one worker.
+    clench.ClenchError
+        Workers die as soon as they are there.
+    """
+
+    def __init__(
+        self,
+        model: clench.Model,
+        n_envs: SupportsIndex,
+        precision: Literal["64", "32"] = "64",
+        threads: SupportsIndex | None = None,
+        *,
+        options: clench.RigidOptions | None = None,
+        record: Sequence[str] = (),
+        workers: SupportsIndex | None = None,
+        snapshot_every: SupportsIndex = 1000,
+    ) -> None:
+        ray = ray_module()
+        if not ray.is_initialized():
+            ray.init()
+        count = operator.index(n_envs)
+        machines = sum(node["Alive"] for node in ray.nodes())
+        parts = min(machines if workers is None else operator.index(workers), max(count, 1))
+        if parts < 1 or operator.index(snapshot_every) < 1:
+            raise ValueError("there must be at least one worker, and a step between snapshots")
+        own = max(1, int(ray.cluster_resources().get("CPU", 1)) // parts) if threads is None else operator.index(threads)
+        # What is wrong with the arguments is told here, before any worker starts.
+        self._one = clench.Batch(model, 1, precision, 1, options=options, record=record)
+        self.model = model
+        self.n_envs = count
+        self.precision = self._one.precision
+        ends = [count * part // parts for part in range(parts + 1)]
+        self._parts = [slice(*pair) for pair in zip(ends, ends[1:])]
+        self._mirror = Mirror(self._parts)
+        self._workers = [
+            Worker(pickle.dumps((model, part.stop - part.start, precision, own, options, tuple(record))), own, int(snapshot_every))
+            for part in self._parts
+        ]
+
+    # Running.
+
+    def step(self, n: SupportsIndex = 1) -> int:
+        """Advances every running environment by `n` time steps.
+
+        Returns
+        -------
+        int
+            How many environments failed in this call.
+        """
+        steps = operator.index(n)
+        return sum(self._ask(lambda worker, _: worker.send_steps(steps, "step", steps, watched=self._mirror.names)))
+
+    def forward(self, mask: ArrayLike | None = None) -> int:
+        """Computes the recorded outputs that follow from the states; see `clench.Batch.forward`."""
+        return sum(self._change("forward", self._split_mask(mask)))
+
+    def reset(self, mask: ArrayLike | None = None, keyframe: str | SupportsIndex | None = None) -> None:
+        """Puts environments into their initial state, or that of a keyframe; see `clench.Batch.reset`."""
+        self._change("reset", [(*chosen, keyframe) for chosen in self._split_mask(mask)])
+
+    def revive(self, mask: ArrayLike | None = None) -> None:
+        """Lets environments run on from the states in their rows; see `clench.Batch.revive`."""
+        self._change("revive", self._split_mask(mask))
+
+    def rollout(
+        self,
+        initial: ArrayLike | None = None,
+        ctrl: ArrayLike | None = None,
+        record: Sequence[str] = ("qpos", "qvel"),
+        steps: SupportsIndex | None = None,
+    ) -> dict[str, Array]:
+        """Steps all running environments and records outputs after each step; see `clench.Batch.rollout`.
+
+        Parameters
+        ----------
+        initial : array_like, optional
+            States to start from, one for all (1 + nq + nv + na) or a row each (n, ...).
+        ctrl : array_like, optional
+            Controls of each step, for all (steps, nu) or each (n, steps, nu) environment.
+        record : sequence of str
+            Outputs to record.
+        steps : int, optional
+            How many steps; needed only without `ctrl`.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Each output (n, steps, ...).
+        """
+        starts, controls = self._split(initial, 2, "initial"), self._split(ctrl, 3, "ctrl")
+        length = 1 if steps is None else operator.index(steps)
+        if ctrl is not None and steps is None:
+            length = int(np.asarray(ctrl).shape[-2]) if np.ndim(ctrl) > 1 else 1
+        arguments = [(start, control, tuple(record), steps) for start, control in zip(starts, controls)]
+        each = self._ask(
+            lambda worker, part: worker.send_steps(length, "rollout", *arguments[part], watched=self._mirror.names)
+        )
+        return {name: np.concatenate([recorded[name] for recorded in each]) for name in each[0]}
+
+    # Parameters, options and states.
+
+    def randomize(self, field: str, values: ArrayLike, envs: ArrayLike | None = None) -> None:
+        """Gives environments numbers of their own in place of the model's; see `clench.Batch.randomize`.
+
+        Parameters
+        ----------
+        field : str
+            A parameter of the model.
+        values : array_like
+            The whole field for each environment: its shape in the model after an axis over environments.
+        envs : array_like of int, optional
+            Which environments; by default all.
+        """
+        chosen = np.arange(self.n_envs) if envs is None else np.asarray(envs)
+        if chosen.ndim != 1 or chosen.dtype.kind not in "iu":
+            raise ValueError("envs must be a list of indices")
+        if chosen.size and not 0 <= int(chosen.min()) <= int(chosen.max()) < self.n_envs:
+            raise IndexError(f"environments go from 0 to {self.n_envs}, without it")
+        rows = np.asarray(values)
+        if rows.shape[:1] != chosen.shape:
+            raise ValueError(f"{field} has shape {rows.shape}, but must have a row for each of {chosen.size} environments")
+        # All or nothing, though the workers do not know of each other.
+        for row in rows:
+            self._one.randomize(field, row[np.newaxis])
+        arguments = []
+        for part in self._parts:
+            here = (part.start <= chosen) & (chosen < part.stop)
+            arguments.append((field, rows[here], chosen[here] - part.start))
+        self._change("randomize", arguments)
+
+    @property
+    def options(self) -> clench.RigidOptions:
+        """The options that were given. Assigning others counts from the next step or forward on."""
+        return self._one.options
+
+    @options.setter
+    def options(self, options: clench.RigidOptions) -> None:
+        self._one.options = options
+        self._change("set_options", [(options,)] * len(self._workers))
+
+    @property
+    def state(self) -> clench.State:
+        """A copy of what the next step of every environment depends on, parameters apart; can be assigned."""
+        each = self._query("get_state")
+        return clench.State(**{name: np.concatenate([getattr(state, name) for state in each]) for name in _STATE})
+
+    @state.setter
+    def state(self, state: clench.State) -> None:
+        fields = {name: getattr(state, name) for name in _STATE}
+        if any(values.shape[:1] != (self.n_envs,) for values in fields.values()):
+            raise ValueError(f"a state of {self.n_envs} environments is needed")
+        parts = [clench.State(**{name: values[part] for name, values in fields.items()}) for part in self._parts]
+        self._change("set_state", [(part,) for part in parts])
+
+    def sim(self, env: SupportsIndex) -> clench.Sim:
+        """A simulation of one environment, in its state and with its parameters; it goes its own way.
+
+        Raises
+        ------
+        IndexError
+            An environment that there is not.
+        """
+        sim: clench.Sim = self._of_env("sim", env)
+        return sim
+
+    # Outputs.
+
+    def record(self, *names: str) -> None:
+        """Keeps outputs from now on, beside those that are kept already; see `clench.Batch.record`."""
+        self._one.record(*names)
+        self._change("record", [names] * len(self._workers))
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The outputs that are recorded."""
+        return self._one.outputs
+
+    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> Array:
+        """Forces along dofs (n, nv) that cause accelerations (n, nv); see `clench.Batch.inverse`."""
+        rows = self._split(qacc, 2, "qacc")
+        calls = self._ask(lambda worker, part: worker.send("inverse", rows[part], discrete))
+        return np.concatenate(calls)
+
+    def fault(self, env: SupportsIndex) -> str | None:
+        """Why an environment cannot go on; None if it runs."""
+        fault: str | None = self._of_env("fault", env)
+        return fault
+
+    # Workers.
+
+    @property
+    def workers(self) -> list[tuple[str, int]]:
+        """The name of the machine and the number of the process of each worker."""
+        return self._query("where")
+
+    @property
+    def replaced(self) -> int:
+        """How many workers died, and were replaced."""
+        return sum(worker.replaced for worker in self._workers)
+
+    def close(self) -> None:
+        """Ends the workers. The batch cannot be used any longer."""
+        for worker in self._workers:
+            worker.close()
+        self._workers = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_raised: object) -> None:
+        self.close()
+
+    def __len__(self) -> int:
+        return self.n_envs
+
+    def __repr__(self) -> str:
+        return f"<clench.ray.Batch of {self.n_envs} x {self.model.name!r} on {len(self._workers)} workers>"
+
+    # The arrays of the state.
+
+    def __getattr__(self, name: str) -> Array:
+        if name in _STATE:
+            array = self._mirror.get(name)
+            return self._mirror.add(name, self._field(name)) if array is None else array
+        if name in clench.OUTPUTS:
+            try:
+                return self.output(name)
+            except ValueError as error:
+                raise AttributeError(str(error)) from None
+        raise AttributeError(f'there is no attribute "{name}"')
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in _STATE:
+            getattr(self, name)[...] = value
+        else:
+            object.__setattr__(self, name, value)
+
+    def _field(self, name: str) -> Array:
+        calls = [worker.send("read", watched=(name,)) for worker in self._open()]
+        each = [worker.receive(call)[1][name] for worker, call in zip(self._workers, calls)]
+        return np.concatenate(each)
+
+    # Calls.
+
+    def _open(self) -> list[Worker]:
+        if not self._workers:
+            raise clench.ClenchError("this batch is closed")
+        return self._workers
+
+    def _ask(self, send: Callable[[Worker, int], Any]) -> list[Any]:
+        """Asks all workers, after what was written here, and waits for them; what they answer, or the first error."""
+        workers = self._open()
+        calls = []
+        for part, worker in enumerate(workers):
+            written = self._mirror.written(part)
+            if written:
+                worker.send("write", written, changes=True)
+            calls.append(send(worker, part))
+        results = []
+        for part, (worker, call) in enumerate(zip(workers, calls)):
+            result, fields = worker.receive(call)
+            self._mirror.update(part, fields)
+            results.append(result)
+        for result in results:
+            if isinstance(result, Exception):
+                raise result
+        return results
+
+    def _query(self, method: str, *arguments: Any) -> list[Any]:
+        """Asks what changes nothing."""
+        return self._ask(lambda worker, _: worker.send(method, *arguments))
+
+    def _change(self, method: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
+        """Lets each worker do something that changes it."""
+        names = self._mirror.names
+        return self._ask(lambda worker, part: worker.send(method, *arguments[part], changes=True, watched=names))
+
+    def _of_env(self, method: str, env: SupportsIndex) -> Any:
+        """Asks about one environment."""
+        index = operator.index(env)
+        if not 0 <= index < self.n_envs:
+            raise IndexError(f"environments go from 0 to {self.n_envs}, without it")
+        here = next(part for part, rows in enumerate(self._parts) if index < rows.stop)
+        inside = index - self._parts[here].start
+        return self._ask(lambda worker, part: worker.send(method, inside) if part == here else worker.send("read"))[here]
+
+    def _split_mask(self, mask: ArrayLike | None) -> list[tuple[Array | None]]:
+        if mask is None:
+            return [(None,)] * len(self._parts)
+        array = np.asarray(mask)
+        if array.dtype != np.bool_ or array.shape != (self.n_envs,):
+            raise ValueError(f"mask must be {self.n_envs} booleans, not {array.dtype} of shape {array.shape}")
+        return [(array[part],) for part in self._parts]
+
+    def _split(self, values: ArrayLike | None, dimensions: int, name: str) -> list[Array | None]:
+        """Rows for each worker, where there is one an environment; else the same for all."""
+        if values is None:
+            return [None] * len(self._parts)
+        array = np.asarray(values)
+        if array.ndim < dimensions:
+            return [array] * len(self._parts)
+        if len(array) != self.n_envs:
+            raise ValueError(f"{name} has shape {array.shape}, but must have {self.n_envs} rows")
+        return [array[part] for part in self._parts]

@@ -1,0 +1,187 @@
+"""A batch on a Ray cluster ends with the bits of a batch alone, also where a worker is killed."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import clench
+import numpy as np
+import pytest
+from scenes import ROOT, example
+
+ray = pytest.importorskip("ray")
+
+import clench.ray  # noqa: E402  Of use only where Ray is.
+
+N = 7
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cluster() -> Iterator[None]:
+    """Two workers' worth of processors on this machine."""
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    yield
+    ray.shutdown()
+
+
+def pair(name: str = "quadruped", **how: Any) -> tuple[clench.Batch, clench.ray.Batch]:
+    """The same environments alone and on two workers."""
+    model = example(name)
+    alone = clench.Batch(model, N, record=("xpos", "qacc"), **{key: how[key] for key in how if key == "precision"})
+    spread = clench.ray.Batch(model, N, record=("xpos", "qacc"), workers=2, threads=1, **how)
+    return alone, spread
+
+
+def drive(batch: Any, steps: int, rng: np.random.Generator) -> None:
+    """What a program might do with a batch."""
+    for step in range(steps):
+        batch.ctrl[:] = rng.uniform(-1, 1, batch.ctrl.shape)
+        batch.step(3)
+        if step % 4 == 1:
+            batch.reset(np.arange(N) == step % N)
+        if step % 5 == 2:
+            batch.randomize("geom_friction", batch.param("geom_friction")[[1, 4]] * 1.1, envs=[1, 4])
+            batch.qvel[step % N, 0] += 0.3
+
+
+def kill(batch: clench.ray.Batch, worker: int) -> None:
+    os.kill(batch.workers[worker][1], signal.SIGKILL)
+
+
+def assert_same(spread: clench.ray.Batch, alone: clench.Batch) -> None:
+    assert spread.state == alone.state
+    np.testing.assert_array_equal(spread.qpos, alone.qpos)
+    np.testing.assert_array_equal(spread.xpos, alone.xpos)
+    np.testing.assert_array_equal(spread.output("qacc"), alone.qacc)
+    np.testing.assert_array_equal(spread.param("geom_friction"), alone.param("geom_friction"))
+    np.testing.assert_array_equal(spread.status, alone.status)
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_it_moves_as_a_batch_alone(precision: str) -> None:
+    alone, spread = pair(precision=precision)
+    with spread:
+        qpos = spread.qpos
+        drive(alone, 12, np.random.default_rng(0))
+        drive(spread, 12, np.random.default_rng(0))
+        assert_same(spread, alone)
+        assert spread.qpos is qpos and len(spread) == N and spread.precision == precision and spread.replaced == 0
+        spread.qpos = alone.qpos[0]
+        assert (spread.state.qpos == alone.qpos[0]).all()
+
+
+@pytest.mark.parametrize("snapshot_every", [1, 10, 1000])
+def test_a_death_changes_no_bit(snapshot_every: int) -> None:
+    alone, spread = pair(snapshot_every=snapshot_every)
+    with spread:
+        rng, other = np.random.default_rng(1), np.random.default_rng(1)
+        for worker in (0, 1, 1):
+            drive(alone, 9, rng)
+            drive(spread, 9, other)
+            kill(spread, worker)
+        assert_same(spread, alone)
+        drive(alone, 3, rng)
+        drive(spread, 3, other)
+        assert_same(spread, alone)
+        assert spread.replaced == 3
+
+
+def test_a_death_in_a_rollout_changes_no_bit() -> None:
+    alone, spread = pair(snapshot_every=5)
+    ctrl = np.random.default_rng(2).uniform(-1, 1, (N, 40, alone.model.nu))
+    initial = np.concatenate([[0.0], alone.model.qpos0, np.zeros(alone.model.nv)])
+    with spread:
+        expected = alone.rollout(initial, ctrl, record=("qpos", "contact_force"))
+        kill(spread, 0)
+        found = spread.rollout(initial, ctrl, record=("qpos", "contact_force"))
+        for name, values in expected.items():
+            np.testing.assert_array_equal(found[name], values)
+        spread.step(10)
+        kill(spread, 1)
+        alone.step(10)
+        assert_same(spread, alone)
+        assert spread.replaced == 2
+
+
+def test_an_environment_that_fails_does_so_after_a_death_too() -> None:
+    alone, spread = pair(snapshot_every=4)
+    with spread:
+        for batch in (alone, spread):
+            batch.qpos[5, 0] = np.nan
+            assert batch.step(2) == 1
+            for _ in range(5):
+                batch.step(2)
+        kill(spread, 1)
+        assert_same(spread, alone)
+        assert spread.fault(5) == alone.fault(5) is not None and spread.fault(2) is None
+        assert not spread.running[5] and spread.running.sum() == N - 1
+        for batch in (alone, spread):
+            batch.reset(np.arange(N) == 5)
+            batch.step(20)
+        assert_same(spread, alone)
+        assert spread.running.all()
+
+
+def test_snapshots_shorten_what_is_done_again() -> None:
+    _, spread = pair(snapshot_every=6)
+    with spread:
+        drive(spread, 9, np.random.default_rng(4))
+        assert all(len(worker.journal) <= 8 for worker in spread._workers)
+
+
+def test_the_example_finds_the_same_where_a_worker_is_killed() -> None:
+    script = ROOT / "python/examples/cluster_plan.py"
+    ways = []
+    for more in ([], ["--kill"]):
+        command = [sys.executable, str(script), "--quick", "--workers", "2", *more]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stderr
+        ways.append(re.findall(r"the best goes (\S+) m", done.stdout))
+        assert f"2 workers, {len(more)} replaced" in done.stdout
+    assert ways[0] == ways[1] and float(ways[0][-1]) > float(ways[0][0])
+
+
+def test_questions_are_answered_as_by_a_batch_alone() -> None:
+    alone, spread = pair()
+    with spread:
+        for batch in (alone, spread):
+            drive(batch, 2, np.random.default_rng(3))
+        np.testing.assert_array_equal(spread.mass_matrix(), alone.mass_matrix())
+        np.testing.assert_array_equal(spread.jacobian(body=2), alone.jacobian(body=2))
+        np.testing.assert_array_equal(spread.subtree_jacobian(1), alone.subtree_jacobian(1))
+        np.testing.assert_array_equal(spread.inverse(alone.qacc), alone.inverse(alone.qacc))
+        np.testing.assert_array_equal(spread.body(1).xpos, alone.body(1).xpos)
+        spread.body(1).mass = alone.body(1).mass * 2
+        assert (spread.param("body_mass")[:, 1] == 2 * alone.param("body_mass")[:, 1]).all()
+        sim = spread.sim(6)
+        np.testing.assert_array_equal(sim.qpos, alone.qpos[6])
+        np.testing.assert_array_equal(spread.params.gravity, alone.params.gravity)
+
+
+def test_what_is_wrong_is_told_and_changes_nothing() -> None:
+    alone, spread = pair()
+    with spread:
+        mass = alone.param("body_mass")
+        mass[6, 1] = -1
+        with pytest.raises(ValueError, match="body_mass"):
+            spread.randomize("body_mass", mass)
+        np.testing.assert_array_equal(spread.param("body_mass"), alone.param("body_mass"))
+        with pytest.raises(IndexError, match="environments go from 0 to 7"):
+            spread.sim(7)
+        with pytest.raises(ValueError, match="record"):
+            spread.output("cvel")
+        with pytest.raises(ValueError, match="mask must be 7 booleans"):
+            spread.reset([True])
+        with pytest.raises(ValueError, match="rollout needs ctrl or steps"):
+            spread.rollout()
+        with pytest.raises(AttributeError, match="no attribute"):
+            spread.no_such_thing  # noqa: B018
+        assert spread.replaced == 0
+    with pytest.raises(clench.ClenchError, match="closed"):
+        spread.step()
