@@ -39,6 +39,6 @@ pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};
-pub use narrow::{collide, multiccd_matters, supported};
+pub use narrow::{SeparatingAxis, collide, collide_again, multiccd_matters, supported};
 pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, ray};
 pub use shape::{Asset, Pose, Shape, ShapeKind, bounding_radius};

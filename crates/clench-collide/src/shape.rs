@@ -25,6 +25,23 @@ pub enum ShapeKind {
     Mesh,
 }
 
+impl ShapeKind {
+    /// Every kind, in order.
+    pub const ALL: [ShapeKind; 8] = {
+        use ShapeKind::*;
+        [
+            Plane,
+            HeightField,
+            Sphere,
+            Capsule,
+            Ellipsoid,
+            Cylinder,
+            Box,
+            Mesh,
+        ]
+    };
+}
+
 /// A shape about its own origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape<'a, T> {
@@ -127,5 +144,24 @@ pub fn bounding_radius<T: Real>(shape: &Shape<T>) -> T {
         ShapeKind::Box | ShapeKind::Mesh => s.norm(),
         // Neither elevation nor base is more than four times that sum.
         ShapeKind::HeightField => Vec3::new(s.x, s.y, s.z * T::new(4.0)).norm(),
+    }
+}
+
+/// How far a shape reaches from its origin along a local unit vector d, at most.
+///
+/// That is its support function: `r + h |d_z|` of a capsule, `|S d|` of an ellipsoid with semi-axes S, `h |d_z| + r √(d_x² + d_y²)` of a
+/// cylinder, `Σ hᵢ |dᵢ|` of a box, which here holds meshes and height fields too.
+#[inline(always)]
+pub(crate) fn reach_along<T: Real>(shape: &Shape<T>, d: Vec3<T>) -> T {
+    let s = shape.size;
+    match shape.kind {
+        ShapeKind::Plane => T::new(f64::INFINITY),
+        ShapeKind::Sphere => s.x,
+        ShapeKind::Capsule => s.x + s.y * d.z.abs(),
+        ShapeKind::Ellipsoid => d.scale_by(s).norm(),
+        ShapeKind::Cylinder => s.x * (d.x * d.x + d.y * d.y).sqrt() + s.y * d.z.abs(),
+        ShapeKind::Box | ShapeKind::Mesh => s.x * d.x.abs() + s.y * d.y.abs() + s.z * d.z.abs(),
+        // Neither elevation nor base is more than four times the size.
+        ShapeKind::HeightField => s.x * d.x.abs() + s.y * d.y.abs() + s.z * T::new(4.0) * d.z.abs(),
     }
 }

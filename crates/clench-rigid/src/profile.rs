@@ -1,5 +1,6 @@
 //! Where the time of a step goes.
 
+use clench_collide::ShapeKind;
 use clench_solver::{SolveClock, SolvePart, Stopwatch};
 use std::time::Duration;
 
@@ -45,11 +46,26 @@ pub type StepClock = Stopwatch<{ Stage::COUNT }>;
 pub struct Profile {
     /// Name and time of each stage; the parts of the solve count as stages.
     pub stages: Vec<(&'static str, Duration)>,
+    /// Where the narrow phase spends its time.
+    pub pairs: Vec<PairProfile>,
+}
+
+/// What pairs of geoms of two kinds cost.
+#[derive(Clone, Debug)]
+pub struct PairProfile {
+    /// The kinds.
+    pub kinds: [ShapeKind; 2],
+    /// How many pairs were near enough to be looked at: of environments side by side, in any of them.
+    pub near: u64,
+    /// Of how many there were contacts.
+    pub touching: u64,
+    /// What looking at them took, of the narrow phase's time.
+    pub time: Duration,
 }
 
 impl Profile {
     /// What the clocks of steps and of their solves say.
-    pub fn new(steps: &StepClock, solves: &SolveClock) -> Self {
+    pub fn new(steps: &StepClock, solves: &SolveClock, pairs: Vec<PairProfile>) -> Self {
         let step = |name, stage| (name, steps.spent()[stage as usize]);
         let part = |name, part| (name, solves.spent()[part as usize]);
         let parts: Duration = solves.spent().iter().sum();
@@ -74,17 +90,31 @@ impl Profile {
             step("integration", Stage::Integration),
             step("rows and checks", Stage::Rows),
         ];
-        Profile { stages }
+        Profile { stages, pairs }
     }
 
-    /// Adds another's times, stage by stage.
+    /// Adds another's times, stage by stage and pair by pair.
     pub fn add(&mut self, other: &Profile) {
         if self.stages.is_empty() {
             self.stages.clone_from(&other.stages);
-            return;
+        } else {
+            for (mine, theirs) in self.stages.iter_mut().zip(&other.stages) {
+                mine.1 += theirs.1;
+            }
         }
-        for (mine, theirs) in self.stages.iter_mut().zip(&other.stages) {
-            mine.1 += theirs.1;
+        for theirs in &other.pairs {
+            match self
+                .pairs
+                .iter_mut()
+                .find(|mine| mine.kinds == theirs.kinds)
+            {
+                Some(mine) => {
+                    mine.near += theirs.near;
+                    mine.touching += theirs.touching;
+                    mine.time += theirs.time;
+                }
+                None => self.pairs.push(theirs.clone()),
+            }
         }
     }
 

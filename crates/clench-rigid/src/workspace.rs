@@ -241,10 +241,15 @@ impl<T: Real> Workspace<T> {
     pub fn run_clocks(&mut self, running: bool) {
         self.clock.run(running);
         self.solver.clock().run(running);
+        self.collision.clock.run(running);
     }
 
     /// Where the time went while the clocks ran.
     pub fn profile(&mut self) -> Profile {
-        Profile::new(&self.clock, self.solver.clock())
+        Profile::new(
+            &self.clock,
+            self.solver.clock(),
+            self.collision.clock.profiles(),
+        )
     }
 }

@@ -3,7 +3,7 @@
 use super::energy::{EnergyAccount, STEPS_A_LOOK, next_steps};
 use super::quality::{Verdict, verdict};
 use super::record::{BATCH_OUTPUTS, BatchRecorder};
-use super::report::{BatchReport, DivergenceReport, Failure, Report, stages};
+use super::report::{BatchReport, DivergenceReport, Failure, Report, pairs, stages};
 use super::start::{narrow, widen};
 use super::summary::{is_conservative, status};
 use super::{Arguments, Run};
@@ -168,6 +168,7 @@ pub fn run<S: Precision>(
     let env_steps = batch.divergence().env_steps;
     let total = spent * batch.threads() as u32;
     let profile = arguments.profile.then(|| batch.profile());
+    report.pairs = profile.as_ref().map(|profile| pairs(profile, env_steps));
     report.profile = profile.map(|profile| stages(&profile, total, env_steps));
     Ok(report)
 }
@@ -302,6 +303,7 @@ fn report<S: Precision>(
             },
         }),
         profile: None,
+        pairs: None,
     }
 }
 

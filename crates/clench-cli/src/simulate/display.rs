@@ -1,6 +1,6 @@
 //! The figures of a run for people.
 
-use super::report::{BatchReport, Report, StageReport};
+use super::report::{BatchReport, PairReport, Report, StageReport};
 use crate::table::Table;
 use std::fmt::{self, Display, Formatter};
 
@@ -87,9 +87,12 @@ impl Display for Report {
         }
         line(f, "quality", self.quality)?;
         line(f, "status", self.status)?;
-        match &self.profile {
-            Some(stages) => write!(f, "\n{}", table(stages)),
-            None => Ok(()),
+        if let Some(stages) = &self.profile {
+            write!(f, "\n{}", table(stages))?;
+        }
+        match &self.pairs {
+            Some(pairs) if !pairs.is_empty() => write!(f, "\n{}", pair_table(pairs)),
+            _ => Ok(()),
         }
     }
 }
@@ -146,5 +149,18 @@ fn table(stages: &[StageReport]) -> Table {
     }
     let total: f64 = stages.iter().map(|s| s.microseconds).sum();
     table.row(vec!["total".into(), format!("{total:9.3}"), String::new()]);
+    table
+}
+
+fn pair_table(pairs: &[PairReport]) -> Table {
+    let mut table = Table::new(&["narrow phase", "near", "touching", "µs a step"]);
+    for pair in pairs {
+        table.row(vec![
+            pair.kinds.join(" – "),
+            format!("{:7.2}", pair.near),
+            format!("{:8.2}", pair.touching),
+            format!("{:9.3}", pair.microseconds),
+        ]);
+    }
     table
 }

@@ -1,6 +1,7 @@
 //! The figures of a run, as text and as JSON.
 
-use clench::rigid::profile::Profile;
+use clench::collide::ShapeKind;
+use clench::rigid::profile::{PairProfile, Profile};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -49,6 +50,9 @@ pub struct Report {
     /// Where the time went, if that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<Vec<StageReport>>,
+    /// Where the narrow phase spends its time, with the profile.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pairs: Option<Vec<PairReport>>,
     /// Rows of the record, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded_rows: Option<usize>,
@@ -96,6 +100,32 @@ pub struct StageReport {
     pub microseconds: f64,
     /// Of the time of all stages.
     pub percent: f64,
+}
+
+/// Pairs of geoms of two kinds; numbers are means over steps of environments.
+#[derive(Serialize)]
+pub struct PairReport {
+    pub kinds: [String; 2],
+    /// Pairs that were near enough to be looked at: of environments side by side, in any of them.
+    pub near: f64,
+    /// Pairs with contacts.
+    pub touching: f64,
+    pub microseconds: f64,
+}
+
+/// The pairs of a profile of so many steps of environments, the most expensive first.
+pub fn pairs(profile: &Profile, env_steps: u64) -> Vec<PairReport> {
+    let steps = env_steps.max(1) as f64;
+    let kind = |kind: ShapeKind| format!("{kind:?}").to_lowercase();
+    let report = |pair: &PairProfile| PairReport {
+        kinds: pair.kinds.map(kind),
+        near: pair.near as f64 / steps,
+        touching: pair.touching as f64 / steps,
+        microseconds: 1e6 * pair.time.as_secs_f64() / steps,
+    };
+    let mut reports = Vec::from_iter(profile.pairs.iter().map(report));
+    reports.sort_by(|a, b| b.microseconds.total_cmp(&a.microseconds));
+    reports
 }
 
 /// The stages of a profile of so many steps of environments. The rest of what threads spent, `total`, comes last:

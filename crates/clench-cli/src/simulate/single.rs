@@ -3,7 +3,7 @@
 use super::energy::{EnergyAccount, STEPS_A_LOOK};
 use super::page::RunRecorder;
 use super::quality::verdict;
-use super::report::{Report, stages};
+use super::report::{Report, pairs, stages};
 use super::summary::{Summary, energy};
 use super::{Arguments, Run};
 use anyhow::Result;
@@ -62,9 +62,11 @@ pub fn run<T: Precision>(
     let verdict = verdict(&run.model, summary.quality(), account.as_ref());
     let mut report = summary.finish(&mut sim, spent.as_secs_f64(), verdict);
     report.recorded_rows = recorded_rows;
-    report.profile = arguments
-        .profile
-        .then(|| stages(&sim.profile(), spent, report.steps as u64));
+    if arguments.profile {
+        let (profile, steps) = (sim.profile(), report.steps as u64);
+        report.profile = Some(stages(&profile, spent, steps));
+        report.pairs = Some(pairs(&profile, steps));
+    }
     Ok(report)
 }
 

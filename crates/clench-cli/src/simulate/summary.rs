@@ -86,6 +86,7 @@ impl Summary {
             energy_drift,
             batch: None,
             profile: None,
+            pairs: None,
             recorded_rows: None,
             failure: self.failure,
         }

@@ -1,5 +1,6 @@
 //! A ball and a box about a shape.
 
+use crate::shape::reach_along;
 use crate::{Pose, Shape, ShapeKind, bounding_radius};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
@@ -37,24 +38,10 @@ impl<T: Real> Bound<T> {
 }
 
 /// How far a shape reaches from its origin along the coordinate axes.
-///
-/// Along a unit vector with local coordinates d that is a shape's support function: `r + h |d_z|` of a capsule, `|S d|` of an ellipsoid
-/// with semi-axes S, `h |d_z| + r √(d_x² + d_y²)` of a cylinder, `Σ hᵢ |dᵢ|` of a box, which holds meshes and height fields too.
 #[inline(always)]
 fn half_lengths<T: Real>(shape: &Shape<T>, pose: &Pose<T>) -> Vec3<T> {
-    let s = shape.size;
-    let along = |d: Vec3<T>| match shape.kind {
-        ShapeKind::Plane => T::new(f64::INFINITY),
-        ShapeKind::Sphere => s.x,
-        ShapeKind::Capsule => s.x + s.y * d.z.abs(),
-        ShapeKind::Ellipsoid => d.scale_by(s).norm(),
-        ShapeKind::Cylinder => s.x * (d.x * d.x + d.y * d.y).sqrt() + s.y * d.z.abs(),
-        ShapeKind::Box | ShapeKind::Mesh => s.x * d.x.abs() + s.y * d.y.abs() + s.z * d.z.abs(),
-        // Neither elevation nor base is more than four times the size.
-        ShapeKind::HeightField => s.x * d.x.abs() + s.y * d.y.abs() + s.z * T::new(4.0) * d.z.abs(),
-    };
-    let [x, y, z] = pose.rotation.rows;
-    Vec3::new(along(x), along(y), along(z))
+    let [x, y, z] = pose.rotation.rows.map(|axis| reach_along(shape, axis));
+    Vec3::new(x, y, z)
 }
 
 /// In which environments two shapes are near enough that they may be within `margin` metres of each other. Two planes

@@ -54,7 +54,8 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
         Feature::Edges(..) => {}
     }
     points.clear();
-    convex::points(a, b, margin, points);
+    // Where there are none, the largest of the fifteen gaps did not show it, nor would it the next time.
+    let _ = convex::points(a, b, margin, points);
 }
 
 /// What touches what.

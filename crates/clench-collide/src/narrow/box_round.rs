@@ -98,7 +98,10 @@ pub(super) fn capsule_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &
     }
     let sunk = near & enters(center, half, size);
     if sunk.any() {
-        per_lane_where(sunk, a, b, margin, out, convex::points);
+        per_lane_where(sunk, a, b, margin, out, |_, a, b, margin, points| {
+            // They overlap: a direction in which they are apart there is not.
+            let _ = convex::points(a, b, margin, points);
+        });
     }
     let beside = near & !sunk;
     if beside.any() {

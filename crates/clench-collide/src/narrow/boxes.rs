@@ -3,13 +3,19 @@
 //! Boxes are apart if they are so along a face normal of either (Gottschalk, Lin & Manocha 1996; the nine cross products of edges
 //! would find few more). A sphere is its own bound.
 
-use super::Placed;
+use super::{Placed, separating_axis::SeparatingAxis};
 use crate::{ShapeKind, allowance};
 use clench_math::{Real, Vec3};
 
 /// Where the boxes about two bounded shapes are at most `margin` apart along all of their face normals; the first may be a sphere.
+/// Where they are not, `axis` becomes the normal along which they are furthest apart.
 #[inline(always)]
-pub(super) fn boxes_near<T: Real>(a: Placed<T>, b: Placed<T>, margin: T) -> T::Mask {
+pub(super) fn boxes_near<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    axis: &mut SeparatingAxis<T>,
+) -> T::Mask {
     if a.shape.kind == ShapeKind::Sphere {
         return box_near(b, a.pose.position, a.shape.size.x + margin);
     }
@@ -21,6 +27,14 @@ pub(super) fn boxes_near<T: Real>(a: Placed<T>, b: Placed<T>, margin: T) -> T::M
         b.pose.rotation.transpose_mul(offset),
     );
     let mut near = margin.le(T::new(f64::INFINITY));
+    let (mut largest, mut direction) = (T::new(f64::NEG_INFINITY), Vec3::ZERO);
+    let mut look = |distance: T, reach: T, normal: Vec3<T>| {
+        near &= distance.abs().le(reach);
+        let gap = distance.abs() - reach;
+        let larger = gap.gt(largest);
+        largest = T::select(larger, gap, largest);
+        direction = Vec3::select(larger, normal * T::ONE.copysign(distance), direction);
+    };
     for i in 0..3 {
         let row = turn.rows[i];
         let column = turn.column(i);
@@ -28,9 +42,12 @@ pub(super) fn boxes_near<T: Real>(a: Placed<T>, b: Placed<T>, margin: T) -> T::M
             let across = axis.x.abs() * other.x + axis.y.abs() * other.y + axis.z.abs() * other.z;
             (own + across) * allowance() + margin
         };
-        near &= along_a[i].abs().le(reach(half_a[i], row, half_b));
-        near &= along_b[i].abs().le(reach(half_b[i], column, half_a));
+        let mut unit = Vec3::ZERO;
+        unit[i] = T::ONE;
+        look(along_a[i], reach(half_a[i], row, half_b), unit);
+        look(along_b[i], reach(half_b[i], column, half_a), column);
     }
+    axis.renew(!near, direction);
     near
 }
 

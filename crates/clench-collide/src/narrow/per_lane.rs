@@ -24,17 +24,20 @@ pub(super) fn per_lane<T: Real>(
     out: &mut Contacts<T>,
     pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
 ) {
-    per_lane_where(T::Mask::splat(true), a, b, margin, out, pair);
+    let all = T::Mask::splat(true);
+    per_lane_where(all, a, b, margin, out, |_, a, b, margin, points| {
+        pair(a, b, margin, points);
+    });
 }
 
-/// The same for some of the lanes.
+/// The same for some of the lanes, of which `pair` is told the number.
 pub(super) fn per_lane_where<T: Real>(
     wanted: T::Mask,
     a: Placed<T>,
     b: Placed<T>,
     margin: T,
     out: &mut Contacts<T>,
-    pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
+    mut pair: impl FnMut(usize, Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
 ) {
     let mut points = Points::new();
     for lane in (0..T::LANES).filter(|lane| wanted.lane(*lane)) {
@@ -48,7 +51,7 @@ pub(super) fn per_lane_where<T: Real>(
             pose: &pose_b,
         };
         points.clear();
-        pair(a, b, margin.lane(lane), &mut points);
+        pair(lane, a, b, margin.lane(lane), &mut points);
         let mut frame = Mat3::IDENTITY;
         for (k, point) in points.iter().enumerate() {
             // Most points of a pair have one normal.

@@ -2,7 +2,9 @@
 
 use super::bounding_sphere::{self, BoundingSphere, may_touch};
 use super::dynamic_broad_phase::DynamicBroadPhase;
+use super::pair_clock::PairClock;
 use super::select::listed_candidates;
+use super::separating_axes::SeparatingAxes;
 use super::{Candidate, Contact, contact_params, contact_range, surface};
 use crate::Budget;
 use crate::model::{Model, Params};
@@ -11,7 +13,9 @@ use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::sleep::Sleep;
 use crate::workspace::{Positions, Workspace};
-use clench_collide::{Contacts, Pose, Shape, collide, multiccd_matters};
+use clench_collide::{
+    ContactPoint, Contacts, Pose, SeparatingAxis, Shape, collide_again, multiccd_matters,
+};
 use clench_math::{Mask, Real, kernel};
 
 /// What a step can find more of than the model's budget allows.
@@ -66,6 +70,9 @@ pub struct Collision<T: Real> {
     /// Finds the candidates of a large model anew each step; those of a small one never change.
     broad_phase: Option<Box<DynamicBroadPhase<T>>>,
     spheres: Vec<BoundingSphere<T>>,
+    axes: SeparatingAxes<T>,
+    /// Where the time goes, by kinds of pair.
+    pub(crate) clock: PairClock,
     points: Contacts<T>,
     count: T,
     /// Numbers in the Jacobian of the contacts.
@@ -87,6 +94,8 @@ impl<T: Real> Collision<T> {
             broad_phase,
             near: Vec::new(),
             spheres: Vec::new(),
+            axes: SeparatingAxes::default(),
+            clock: PairClock::default(),
             points: Contacts::new(),
             count: T::ZERO,
             numbers: T::ZERO,
@@ -190,9 +199,17 @@ pub fn detect<T: Real>(
         }
     }
     ws.clock.lap(Stage::BroadPhase as usize);
+    collision.axes.reserve(collision.near.len());
+    collision.clock.start();
     for near in 0..collision.near.len() {
         let candidate = collision.candidates[collision.near[near] as usize];
-        narrow(model, params, pos, &candidate, &mut collision.points);
+        let (axis, points) = (collision.axes.of(candidate.geoms), &mut collision.points);
+        narrow(model, params, pos, &candidate, axis, points);
+        let any = |lanes: T::Mask, point: &ContactPoint<T>| lanes | point.active;
+        collision.clock.lap(candidate.kinds, T::LANES, || {
+            let points = collision.points.as_slice().iter();
+            points.fold(T::Mask::splat(false), any).count()
+        });
         let [a, b] = candidate.kinds;
         if !settings.flags.multiccd && multiccd_matters(a, b) {
             collision.points.keep_deepest();
@@ -218,13 +235,14 @@ fn narrow<T: Real>(
     params: &Params<T>,
     pos: &Positions<T>,
     candidate: &Candidate,
+    axis: &mut SeparatingAxis<T>,
     points: &mut Contacts<T>,
 ) {
     let [a, b] = [candidate.geoms[0] as usize, candidate.geoms[1] as usize];
     let (shape_a, shape_b) = (shape(model, params, a), shape(model, params, b));
     let (pose_a, pose_b) = (pose(pos, a), pose(pos, b));
     let (_, range) = contact_range(model, params, candidate);
-    collide(&shape_a, &pose_a, &shape_b, &pose_b, range, points);
+    collide_again(&shape_a, &pose_a, &shape_b, &pose_b, range, axis, points);
 }
 
 /// Makes contacts of the points of one candidate.

@@ -5,7 +5,9 @@ mod bounding_sphere;
 mod detect;
 mod dynamic_broad_phase;
 mod mix;
+pub(crate) mod pair_clock;
 mod select;
+mod separating_axes;
 mod surface;
 
 pub(crate) use detect::shape;

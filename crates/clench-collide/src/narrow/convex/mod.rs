@@ -22,6 +22,7 @@ use super::{
     Placed,
     boxes::boxes_near,
     per_lane::{Points, per_lane_where},
+    separating_axis::SeparatingAxis,
 };
 use crate::{Contacts, ShapeKind};
 use clench_math::{Mask, Real, Scalar, Vec3};
@@ -33,16 +34,37 @@ use patch::patch;
 use simplex::Simplex;
 pub(super) use terrain::terrain;
 
-/// The contacts of two shapes that are bounded and convex.
-pub(super) fn convex<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    let near = boxes_near(a, b, margin);
-    if near.any() {
-        per_lane_where(near, a, b, margin, out, points);
+/// The contacts of two shapes that are bounded and convex, unless the direction in which they were apart before shows at once that there
+/// are none. It becomes the one that a search has found.
+pub(super) fn convex<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    axis: &mut SeparatingAxis<T>,
+    out: &mut Contacts<T>,
+) {
+    let mut near = !axis.separates(a, b, margin, T::Mask::splat(true));
+    if !near.any() {
+        return;
     }
+    near &= boxes_near(a, b, margin, axis);
+    per_lane_where(near, a, b, margin, out, |lane, a, b, margin, found| {
+        if let Err(direction) = points(a, b, margin, found) {
+            axis.set(lane, direction);
+        }
+    });
 }
 
 /// The contacts of one environment.
-pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
+///
+/// # Errors
+/// The bodies are more than `margin` apart: a direction that shows it, in the frame of the first.
+pub(super) fn points<S: Scalar>(
+    a: Placed<S>,
+    b: Placed<S>,
+    margin: S,
+    points: &mut Points<S>,
+) -> Result<(), Vec3<S>> {
     let pair = Pair::new(a, b);
     let known = match (a.shape.kind, b.shape.kind) {
         (ShapeKind::Cylinder, ShapeKind::Box) => Some(cylinder_polyhedron::box_gap(&pair, margin)),
@@ -54,21 +76,21 @@ pub(super) fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &
         _ => None,
     };
     let known = known.filter(|known| Real::is_finite(known.gap));
-    if known.is_some_and(|known| known.gap > margin) {
-        return;
+    if let Some(apart) = known.filter(|known| known.gap > margin) {
+        return Err(apart.normal);
     }
     // For bodies that are apart it gives no distance.
     if let Some(certain) = known.filter(|known| known.settled && known.gap <= S::ZERO) {
-        return patch_along(&pair, a, certain, margin, points);
+        patch_along(&pair, a, certain, margin, points);
+        return Ok(());
     }
     let (start, mut simplex) = begin(&pair);
-    let Ok(best) = nearest(&pair, start, margin, &mut simplex) else {
-        return;
-    };
+    let best = nearest(&pair, start, margin, &mut simplex).map_err(|apart| apart.normal)?;
     match known.filter(|known| known.gap > best.gap + pair.tolerance) {
         Some(known) => patch_along(&pair, a, known, margin, points),
         None => patch(&pair, a, best, &simplex, margin, points),
     }
+    Ok(())
 }
 
 /// A direction to begin with, and the vertex along it.

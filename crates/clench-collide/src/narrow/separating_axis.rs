@@ -1,0 +1,108 @@
+//! What an earlier search tells of two shapes that were apart: a direction that may show it again.
+//!
+//! Along a unit direction d from the first shape to the second the gap between them is d·(p_b − p_a) − s_a(d) − s_b(−d), s being their
+//! support functions; no gap is larger than their distance. A positive one is a proof that needs no search, whatever the direction comes from.
+//! It is believed only where it exceeds the margin by more than a search may be wrong: so an old direction saves a search that would have
+//! found nothing, and changes no result.
+
+use super::Placed;
+use crate::shape::reach_along;
+use crate::{Asset, Hull, ShapeKind, bounding_radius};
+use clench_math::{Mask, Real, Scalar, Vec3};
+
+/// What a search may be wrong by: a share of the smaller shape, twice what the search itself allows ...
+const SLACK: f64 = 4e-6;
+/// ... and so many times what rounding makes of the largest coordinate.
+const SLACK_UNITS: f64 = 256.0;
+
+/// A direction along which two shapes were apart when last looked at, in each lane. [`collide_again`](crate::collide_again) uses and
+/// renews it; any unit vector will do, and which it is changes no contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeparatingAxis<T> {
+    /// In the frame of the first shape, or of the world where that is a sphere.
+    direction: Vec3<T>,
+}
+
+impl<T: Real> Default for SeparatingAxis<T> {
+    fn default() -> Self {
+        let direction = Vec3::new(T::ONE, T::ZERO, T::ZERO);
+        SeparatingAxis { direction }
+    }
+}
+
+impl<T: Real> SeparatingAxis<T> {
+    /// Where the shapes are surely more than `margin` apart, of those lanes that are `asked`; the boxes about hulls are tried first.
+    #[inline(always)]
+    pub(super) fn separates(
+        &self,
+        a: Placed<T>,
+        b: Placed<T>,
+        margin: T,
+        asked: T::Mask,
+    ) -> T::Mask {
+        let along = match a.shape.kind {
+            ShapeKind::Sphere => self.direction,
+            _ => a.pose.rotation * self.direction,
+        };
+        let offset = b.pose.position - a.pose.position;
+        let back = -b.pose.rotation.transpose_mul(along);
+        let centers = along.dot(offset);
+        let (size_a, size_b) = (bounding_radius(a.shape), bounding_radius(b.shape));
+        let largest = size_a + size_b + offset.x.abs() + offset.y.abs() + offset.z.abs();
+        let rounding = T::splat(T::Scalar::EPSILON) * T::new(SLACK_UNITS);
+        let slack = size_a.min(size_b) * T::new(SLACK) + largest * rounding;
+        let least = margin + slack;
+        let by_boxes = centers - reach_along(a.shape, self.direction) - reach_along(b.shape, back);
+        let far = by_boxes.gt(least);
+        let open = asked & !far;
+        let has_hull = |p: Placed<T>| matches!(p.shape.asset, Asset::Hull(_));
+        if !open.any() || !(has_hull(a) || has_hull(b)) {
+            return far;
+        }
+        let reach = support(a, self.direction, open) + support(b, back, open);
+        far | (open & (centers - reach).gt(least))
+    }
+
+    /// Takes another direction in some lanes, where it is a unit vector.
+    #[inline(always)]
+    pub(super) fn renew(&mut self, lanes: T::Mask, direction: Vec3<T>) {
+        let is_unit = is_unit(direction);
+        self.direction = Vec3::select(lanes & is_unit, direction, self.direction);
+    }
+
+    /// Keeps what a search has found for a lane, if that is a unit vector.
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, direction: Vec3<T::Scalar>) {
+        if !is_unit(direction).any() {
+            return;
+        }
+        self.direction.x.set_lane(lane, direction.x);
+        self.direction.y.set_lane(lane, direction.y);
+        self.direction.z.set_lane(lane, direction.z);
+    }
+}
+
+/// Without this a degenerate pair could leave no direction at all, along which any two shapes are 0 apart.
+#[inline(always)]
+fn is_unit<T: Real>(direction: Vec3<T>) -> T::Mask {
+    (direction.norm_squared() - T::ONE).abs().lt(T::new(1e-3))
+}
+
+/// The support function of a bounded convex shape along a local unit direction, in some of the lanes.
+#[inline(always)]
+fn support<T: Real>(shape: Placed<T>, d: Vec3<T>, lanes: T::Mask) -> T {
+    let Asset::Hull(hull) = shape.shape.asset else {
+        return reach_along(shape.shape, d);
+    };
+    let mut reach = T::ZERO;
+    for lane in (0..T::LANES).filter(|&lane| lanes.lane(lane)) {
+        let d = [d.x, d.y, d.z].map(|x| x.lane(lane).to_f64());
+        reach.set_lane(lane, T::Scalar::new(hull_reach(hull, Vec3::from_array(d))));
+    }
+    reach
+}
+
+/// How far a hull reaches along a direction.
+fn hull_reach(hull: &Hull, d: Vec3<f64>) -> f64 {
+    hull.vertices()[hull.support(d)].dot(d)
+}

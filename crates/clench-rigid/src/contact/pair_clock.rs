@@ -1,0 +1,74 @@
+//! Where the narrow phase spends its time, by kinds of pair; it counts and measures only while a profile is taken.
+
+use crate::profile::PairProfile;
+use clench_collide::ShapeKind;
+use clench_solver::Stopwatch;
+use std::time::Duration;
+
+/// Kinds of shape; a pair of kinds has a number below its square.
+const KINDS: usize = ShapeKind::ALL.len();
+const PAIRS: usize = KINDS * KINDS;
+
+/// Counts and times pairs by kind.
+#[derive(Clone, Debug)]
+pub(crate) struct PairClock {
+    clock: Stopwatch<PAIRS>,
+    running: bool,
+    near: [u64; PAIRS],
+    touching: [u64; PAIRS],
+}
+
+impl Default for PairClock {
+    fn default() -> Self {
+        PairClock {
+            clock: Stopwatch::default(),
+            running: false,
+            near: [0; PAIRS],
+            touching: [0; PAIRS],
+        }
+    }
+}
+
+impl PairClock {
+    pub(crate) fn run(&mut self, running: bool) {
+        self.running = running;
+        self.clock.run(running);
+    }
+
+    /// Pairs follow.
+    #[inline(always)]
+    pub(super) fn start(&mut self) {
+        self.clock.start();
+    }
+
+    /// A pair has been looked at in `lanes` environments and touches in those that `touching` counts.
+    #[inline(always)]
+    pub(super) fn lap(
+        &mut self,
+        kinds: [ShapeKind; 2],
+        lanes: usize,
+        touching: impl Fn() -> usize,
+    ) {
+        if self.running {
+            let pair = kinds[0] as usize * KINDS + kinds[1] as usize;
+            self.near[pair] += lanes as u64;
+            self.touching[pair] += touching() as u64;
+            self.clock.lap(pair);
+        }
+    }
+
+    /// The kinds of pair that there were.
+    pub(crate) fn profiles(&self) -> Vec<PairProfile> {
+        let all = ShapeKind::ALL.into_iter();
+        let kinds = all.flat_map(|a| ShapeKind::ALL.into_iter().map(move |b| [a, b]));
+        let counts = self.near.iter().zip(&self.touching);
+        let rows = kinds.zip(counts.zip(self.clock.spent()));
+        let profile = |(kinds, ((&near, &touching), &time)): (_, (_, &Duration))| PairProfile {
+            kinds,
+            near,
+            touching,
+            time,
+        };
+        rows.map(profile).filter(|pair| pair.near > 0).collect()
+    }
+}
