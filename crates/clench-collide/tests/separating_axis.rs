@@ -2,7 +2,7 @@
 
 mod common;
 
-use clench_collide::{Contacts, SeparatingAxis, collide, collide_again, distance};
+use clench_collide::{Contacts, SeparatingAxis, ShapeKind, collide, collide_again, distance};
 use clench_math::{Lanes, Real, Vec3};
 use common::{PAIRS, Random, Scene, by_support, convert_pose, convert_shape};
 
@@ -55,10 +55,15 @@ fn separation(scene: &Scene) -> Option<(f64, Vec3<f64>)> {
     distance(a, pose_a, b, pose_b, f64::INFINITY).map(|found| (found.distance, found.normal))
 }
 
+/// Whether a pair looks along an old direction.
+fn remembers(kinds: (ShapeKind, ShapeKind)) -> bool {
+    by_support(kinds) || kinds == (ShapeKind::Box, ShapeKind::Box)
+}
+
 fn no_contact_changes<T: Real + PartialEq>(seed: u64) {
     let mut random = Random(seed);
     let (mut apart, mut all) = (0, 0);
-    for kinds in PAIRS.into_iter().filter(|&kinds| by_support(kinds)) {
+    for kinds in PAIRS.into_iter().filter(|&kinds| remembers(kinds)) {
         let mut axis = SeparatingAxis::default();
         for _ in 0..40 {
             // Of each scene the direction goes on to the next.

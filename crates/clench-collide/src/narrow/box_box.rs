@@ -10,10 +10,11 @@
 
 use super::{
     Placed, convex,
-    per_lane::{Points, per_lane},
+    per_lane::{Points, per_lane_where},
+    separating_axis::SeparatingAxis,
 };
 use crate::{Contacts, Pose};
-use clench_math::{Mat3, Real, Scalar, Vec3};
+use clench_math::{Mask, Mat3, Real, Scalar, Vec3};
 
 /// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
 const EDGE_BIAS: f64 = 1e-6;
@@ -28,15 +29,38 @@ pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
     S::new(double).max(S::EPSILON * S::new(units))
 }
 
-pub(super) fn box_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    per_lane(a, b, margin, out, points);
+/// The contacts of two boxes, unless the direction in which they were apart before shows at once that there are none. It becomes the one
+/// that is found.
+pub(super) fn box_box<T: Real>(
+    a: Placed<T>,
+    b: Placed<T>,
+    margin: T,
+    axis: &mut SeparatingAxis<T>,
+    out: &mut Contacts<T>,
+) {
+    let near = !axis.separates(a, b, margin, T::Mask::splat(true));
+    if !near.any() {
+        return;
+    }
+    per_lane_where(near, a, b, margin, out, |lane, a, b, margin, found| {
+        if let Err(direction) = points(a, b, margin, found) {
+            axis.set(lane, direction);
+        }
+    });
 }
 
-fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
+/// The contacts of one environment.
+///
+/// # Errors
+/// The boxes are apart: the direction in which they are, in the frame of the first.
+fn points<S: Scalar>(
+    a: Placed<S>,
+    b: Placed<S>,
+    margin: S,
+    points: &mut Points<S>,
+) -> Result<(), Vec3<S>> {
     let boxes = BoxPair::new(a, b, margin);
-    let Some((feature, separation)) = boxes.touching_feature() else {
-        return;
-    };
+    let (feature, separation) = boxes.touching_feature()?;
     match feature {
         Feature::Face { owner, axis } => {
             boxes.face_contact(owner, axis, points);
@@ -44,18 +68,18 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
                 .iter()
                 .fold(S::INFINITY, |least, p| p.distance.min(least));
             if separation <= S::ZERO || least <= separation + boxes.slack {
-                return;
+                return Ok(());
             }
         }
         Feature::Edges(i, j) if separation <= S::ZERO => {
             let normal = boxes.edge_normal(i, j);
-            return convex::points_along((a, b), (normal, separation), margin, points);
+            convex::points_along((a, b), (normal, separation), margin, points);
+            return Ok(());
         }
         Feature::Edges(..) => {}
     }
     points.clear();
-    // Where there are none, the largest of the fifteen gaps did not show it, nor would it the next time.
-    let _ = convex::points(a, b, margin, points);
+    convex::points(a, b, margin, points)
 }
 
 /// What touches what.
@@ -103,12 +127,15 @@ impl<S: Scalar> BoxPair<S> {
         }
     }
 
-    /// The feature of largest separation, or none if that is beyond reach.
-    fn touching_feature(&self) -> Option<(Feature, S)> {
+    /// The feature of largest separation.
+    ///
+    /// # Errors
+    /// That is beyond reach: its normal towards the second box, in the frame of the first.
+    fn touching_feature(&self) -> Result<(Feature, S), Vec3<S>> {
         let (face, face_separation) = self.best_face()?;
         let (edges, separation) = self.best_edges(face_separation)?;
         let Some((i, j)) = edges else {
-            return Some((face, face_separation));
+            return Ok((face, face_separation));
         };
         let (direction, _) = self.edge_axis(i, j).normalize();
         let along_face = match face {
@@ -118,34 +145,48 @@ impl<S: Scalar> BoxPair<S> {
         };
         let share = S::new(ALIAS_SHARE) * face_separation.abs() + S::new(1e-15);
         let alias = along_face > S::new(ALIAS_COSINE) && separation < face_separation + share;
-        Some(match alias {
+        Ok(match alias {
             true => (face, face_separation),
             false => (Feature::Edges(i, j), separation),
         })
     }
 
-    fn best_face(&self) -> Option<(Feature, S)> {
-        let mut best: Option<(Feature, S)> = None;
+    /// The face of largest separation.
+    ///
+    /// # Errors
+    /// Some face separates the boxes: its normal.
+    fn best_face(&self) -> Result<(Feature, S), Vec3<S>> {
+        let (owner, axis) = (0, 0);
+        let first = self.face_separation(owner, axis);
+        let mut best = (Feature::Face { owner, axis }, first);
         for owner in 0..2 {
-            let (size, other) = (self.size[owner], self.size[1 - owner]);
             for axis in 0..3 {
-                let row = self.rotation[owner].rows[axis];
-                let extent = row.x.abs() * other.x + row.y.abs() * other.y + row.z.abs() * other.z;
-                let separation = self.offset[owner][axis].abs() - size[axis] - extent;
+                let separation = self.face_separation(owner, axis);
                 if separation > self.reach {
-                    return None;
+                    return Err(self.face_normal(owner, axis));
                 }
-                if best.is_none_or(|(_, most)| separation > most) {
-                    best = Some((Feature::Face { owner, axis }, separation));
+                if separation > best.1 {
+                    best = (Feature::Face { owner, axis }, separation);
                 }
             }
         }
-        best
+        Ok(best)
     }
 
-    /// The best edge pair that beats the best face, if any does, and the largest separation; none if some edge pair
-    /// separates the boxes.
-    fn best_edges(&self, face: S) -> Option<(Option<(usize, usize)>, S)> {
+    /// How far the other box is from the nearer face of box `owner` across `axis`.
+    #[inline(always)]
+    fn face_separation(&self, owner: usize, axis: usize) -> S {
+        let (size, other) = (self.size[owner], self.size[1 - owner]);
+        let row = self.rotation[owner].rows[axis];
+        let extent = row.x.abs() * other.x + row.y.abs() * other.y + row.z.abs() * other.z;
+        self.offset[owner][axis].abs() - size[axis] - extent
+    }
+
+    /// The best edge pair that beats the best face, if any does, and the largest separation.
+    ///
+    /// # Errors
+    /// Some edge pair separates the boxes: its normal.
+    fn best_edges(&self, face: S) -> Result<(Option<(usize, usize)>, S), Vec3<S>> {
         let mut best = (None, face);
         let (turn, offset, [a, b]) = (&self.rotation[0].rows, self.offset[0], self.size);
         for i in 0..3 {
@@ -167,7 +208,7 @@ impl<S: Scalar> BoxPair<S> {
                 let beyond = (u * offset[i2] - v * offset[i1]).abs() - extents;
                 let separation = beyond / sine_squared.sqrt();
                 if separation > self.reach {
-                    return None;
+                    return Err(self.edge_normal(i, j));
                 }
                 let biased = separation - S::new(EDGE_BIAS) * separation.abs();
                 if biased > best.1 && separation > face {
@@ -175,7 +216,17 @@ impl<S: Scalar> BoxPair<S> {
                 }
             }
         }
-        Some(best)
+        Ok(best)
+    }
+
+    /// The normal of a box's face towards the second box, in the first box's frame.
+    fn face_normal(&self, owner: usize, axis: usize) -> Vec3<S> {
+        let mut normal = Vec3::ZERO;
+        normal[axis] = S::ONE;
+        if owner == 1 {
+            normal = self.rotation[0].column(axis);
+        }
+        normal * S::ONE.copysign(normal.dot(self.offset[0]))
     }
 
     /// The cross product of axis `i` of the first box with axis `j` of the second, in the first box's frame.

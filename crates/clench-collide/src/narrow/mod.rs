@@ -120,7 +120,7 @@ pub fn collide_again<T: Real>(
         (Capsule, Capsule) => capsule::capsule_capsule(a, b, margin, out),
         (Capsule, Cylinder) => cylinder::capsule_cylinder(a, b, margin, out),
         (Capsule, Box) => box_round::capsule_box(a, b, margin, out),
-        (Box, Box) => box_box::box_box(a, b, margin, out),
+        (Box, Box) => box_box::box_box(a, b, margin, axis, out),
         (Sphere | Capsule | Ellipsoid, Ellipsoid)
         | (Ellipsoid | Cylinder, Cylinder)
         | (Ellipsoid | Cylinder, Box)

@@ -8,19 +8,28 @@ use super::{
     Placed,
     convex::MAX_CORNERS,
     outline::Outline,
-    per_lane::{Point, Points, per_lane},
+    per_lane::{Point, Points, per_lane_where},
     polygon::Polygon,
 };
-use crate::{Asset, Contacts, Hull, PATCH_POINTS};
+use crate::shape::reach_along;
+use crate::{Asset, Contacts, Hull, PATCH_POINTS, allowance};
 use arrayvec::ArrayVec;
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// Shares of the hull's extent: corners of a face nearer to each other are one; its outline may miss the deepest vertex by so much.
 const SAME: f64 = 1e-5;
 const MISSED: f64 = 1e-6;
 
 pub(super) fn plane_mesh<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    per_lane(a, b, margin, out, points);
+    // The lowest corner of the box about the mesh; what is no number is left to the search.
+    let up = b.pose.rotation.transpose_mul(a.pose.axis());
+    let height = a.pose.axis().dot(b.pose.position - a.pose.position);
+    let above = (height - reach_along(b.shape, up) * allowance()).gt(margin);
+    if !above.all() {
+        per_lane_where(!above, a, b, margin, out, |_, a, b, margin, found| {
+            points(a, b, margin, found);
+        });
+    }
 }
 
 /// A point of the hull, in its frame, and its height above the plane.
