@@ -82,6 +82,9 @@ fn points<S: Scalar>(
     convex::points(a, b, margin, points)
 }
 
+/// An axis of each box.
+type EdgePair = (usize, usize);
+
 /// What touches what.
 #[derive(Clone, Copy)]
 enum Feature {
@@ -186,7 +189,7 @@ impl<S: Scalar> BoxPair<S> {
     ///
     /// # Errors
     /// Some edge pair separates the boxes: its normal.
-    fn best_edges(&self, face: S) -> Result<(Option<(usize, usize)>, S), Vec3<S>> {
+    fn best_edges(&self, face: S) -> Result<(Option<EdgePair>, S), Vec3<S>> {
         let mut best = (None, face);
         let (turn, offset, [a, b]) = (&self.rotation[0].rows, self.offset[0], self.size);
         for i in 0..3 {
