@@ -909,6 +909,7 @@ class Sim(_Outputs):
         iterations: SupportsIndex = 100,
         tolerance: float = 1e-6,
         damping: float = 1e-3,
+        max_step: float = ...,  # infinite
         limits: bool = True,
         dofs: ArrayLike | None = None,  # (nv,)
     ) -> IkResult: ...
@@ -1024,6 +1025,28 @@ class Batch(_Outputs):
     ) -> NDArray[Any]: ...  # (n, 2, 3, nv): translation, rotation
     def subtree_jacobian(self, body: str | SupportsIndex) -> NDArray[Any]: ...  # (n, 3, nv)
     def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> NDArray[Any]: ...  # (n, nv)
+    def velocity(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        local: bool = False,
+    ) -> NDArray[Any]: ...  # (n, 2, 3): linear, angular
+    def acceleration(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        local: bool = False,
+    ) -> NDArray[Any]: ...  # (n, 2, 3): linear, angular
+    def mul_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (n, nv)
+    def solve_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (n, nv)
     def rays(
         self,
         origins: ArrayLike,  # (k, 3) or (n, k, 3)
@@ -1057,6 +1080,7 @@ class Batch(_Outputs):
         iterations: SupportsIndex = 100,
         tolerance: float = 1e-6,
         damping: float = 1e-3,
+        max_step: float = ...,  # infinite
         limits: bool = True,
         dofs: ArrayLike | None = None,  # (nv,)
     ) -> IkResult: ...

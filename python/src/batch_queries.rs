@@ -5,6 +5,7 @@ use crate::busy::lock;
 use crate::error::sim_error;
 use crate::inertia_queries::given;
 use crate::kind::Kind;
+use crate::motion_queries::axes;
 use crate::queries::ray_filter;
 use crate::scan::{RayHits, rays};
 use crate::table::Table;
@@ -78,6 +79,119 @@ impl Batch {
         each!(&mut *guard, batch => {
             let found = py.detach(|| batch.subtree_jacobian(body)).map_err(sim_error)?;
             rows_array(py, &found, &[self.count(), 3, model.nv])
+        })
+    }
+
+    /// The velocity of an object in every environment, in the present states, see `Sim.velocity`.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera : str or int
+    ///     The object, see `jacobian`.
+    /// local : bool
+    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (n, 2, 3): linear, m/s, of its position, then angular, rad/s; NaN where a state is not finite.
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn velocity<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        local: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let object = Choices([body, body_com, geom, site, camera]).one(self.described())?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let found = py.detach(|| batch.velocity(object, axes(local))).map_err(sim_error)?;
+            rows_array(py, &found, &[self.count(), 2, 3])
+        })
+    }
+
+    /// The acceleration of an object in every environment, in the present states, see `Sim.acceleration`: gravity's upward reaction
+    /// included. It takes all of forward dynamics.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera : str or int
+    ///     The object, see `jacobian`.
+    /// local : bool
+    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (n, 2, 3): linear, m/s², of its position, then angular, rad/s²; NaN where a simulation alone would raise SimulationError.
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn acceleration<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        local: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let object = Choices([body, body_com, geom, site, camera]).one(self.described())?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let found = py.detach(|| batch.acceleration(object, axes(local))).map_err(sim_error)?;
+            rows_array(py, &found, &[self.count(), 2, 3])
+        })
+    }
+
+    /// M x in every environment, in the present states, see `Sim.mul_mass`.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : array_like
+    ///     Accelerations, (nv,) for all environments, or (n, nv) for each its own.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     The forces along dofs that they take (n, nv), N and N m; NaN where a state is not finite.
+    fn mul_mass<'py>(&self, py: Python<'py>, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let nv = self.described().nv;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let x = Table::row_of("x", x, nv, Some(self.count()))?;
+            let found = py.detach(|| batch.mul_mass(x.given())).map_err(sim_error)?;
+            rows_array(py, &found, &[self.count(), nv])
+        })
+    }
+
+    /// M⁻¹ x in every environment, in the present states, see `Sim.solve_mass`.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : array_like
+    ///     Forces along dofs, (nv,) for all environments, or (n, nv) for each its own.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     The accelerations that they cause (n, nv); NaN where a state is not finite or a mass matrix is singular.
+    fn solve_mass<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let nv = self.described().nv;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let x = Table::row_of("x", x, nv, Some(self.count()))?;
+            let found = py.detach(|| batch.solve_mass(x.given())).map_err(sim_error)?;
+            rows_array(py, &found, &[self.count(), nv])
         })
     }
 

@@ -140,8 +140,7 @@ impl<S: Precision + Element> Goals<S> {
 fn search(
     model: &Model,
     iterations: Count,
-    tolerance: f64,
-    damping: f64,
+    (tolerance, damping, max_step): (f64, f64, f64),
     limits: bool,
     dofs: Choice,
 ) -> PyResult<IkOptions> {
@@ -150,6 +149,7 @@ fn search(
         iterations: iterations.0,
         tolerance,
         damping,
+        max_step,
         limits,
         dofs: dofs.unwrap_or_default(),
     })
@@ -175,6 +175,8 @@ impl Sim {
     ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
     /// damping : float
     ///     Damping at the start, in parts of the present cost; it adapts.
+    /// max_step : float
+    ///     The most that any dof moves in an iteration, m or rad: with one iteration, how far a control loop goes towards its goals.
     /// limits : bool
     ///     Whether joints are kept in their ranges; a start outside is moved in.
     /// dofs : array_like of bool, optional
@@ -189,8 +191,9 @@ impl Sim {
     /// ------
     /// ValueError
     ///     Objects that the model does not have, wrong shapes, numbers that are not finite.
-    #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3, limits = true, dofs = None),
-           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, limits=True, dofs=None)")]
+    #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
+                        max_step = f64::INFINITY, limits = true, dofs = None),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=float('inf'), limits=True, dofs=None)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn ik<'py>(
         &self,
@@ -200,11 +203,18 @@ impl Sim {
         iterations: Count,
         tolerance: f64,
         damping: f64,
+        max_step: f64,
         limits: bool,
         dofs: Choice<'_, 'py>,
     ) -> PyResult<IkResult> {
         let model = self.described();
-        let options = search(model, iterations, tolerance, damping, limits, dofs)?;
+        let options = search(
+            model,
+            iterations,
+            (tolerance, damping, max_step),
+            limits,
+            dofs,
+        )?;
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let goals = Goals::of(model, targets, None)?;
@@ -243,6 +253,8 @@ impl Batch {
     ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
     /// damping : float
     ///     Damping at the start, in parts of the present cost; it adapts.
+    /// max_step : float
+    ///     The most that any dof moves in an iteration, m or rad: with one iteration, how far a control loop goes towards its goals.
     /// limits : bool
     ///     Whether joints are kept in their ranges; a start outside is moved in.
     /// dofs : array_like of bool, optional
@@ -252,8 +264,9 @@ impl Batch {
     /// -------
     /// IkResult
     ///     With the environments as first axis.
-    #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3, limits = true, dofs = None),
-           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, limits=True, dofs=None)")]
+    #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
+                        max_step = f64::INFINITY, limits = true, dofs = None),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=float('inf'), limits=True, dofs=None)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn ik<'py>(
         &self,
@@ -263,11 +276,18 @@ impl Batch {
         iterations: Count,
         tolerance: f64,
         damping: f64,
+        max_step: f64,
         limits: bool,
         dofs: Choice<'_, 'py>,
     ) -> PyResult<IkResult> {
         let (model, n) = (self.described(), self.count());
-        let options = search(model, iterations, tolerance, damping, limits, dofs)?;
+        let options = search(
+            model,
+            iterations,
+            (tolerance, damping, max_step),
+            limits,
+            dofs,
+        )?;
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let goals = Goals::of(model, targets, Some(n))?;

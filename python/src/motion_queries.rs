@@ -217,7 +217,7 @@ impl Sim {
     }
 }
 
-fn axes(local: bool) -> Axes {
+pub(crate) fn axes(local: bool) -> Axes {
     match local {
         true => Axes::Local,
         false => Axes::World,

@@ -216,6 +216,10 @@ def test_a_batch_answers_as_simulations_do() -> None:
     hits = batch.rays([[0, 0, 0]], directions, site="tool", exclude_body="wrist")
     heights, forces = batch.heights("hills", places, body="wrist"), batch.inverse(qacc, discrete=False)
     result = batch.ik([clench.FrameTarget(site="tool", position=goals)])
+    velocities, local = batch.velocity(site="tool"), batch.velocity(site="tool", local=True)
+    accelerations = batch.acceleration(body="wrist")
+    products, solved = batch.mul_mass(qacc), batch.solve_mass(qacc[0])
+    assert velocities.shape == accelerations.shape == (11, 2, 3)
     assert jacobian.shape == (11, 2, 3, model.nv)
     assert hits.distance.shape == (11, 6)
     assert result.errors.shape == (11, 1)
@@ -229,9 +233,24 @@ def test_a_batch_answers_as_simulations_do() -> None:
         assert np.array_equal(hits.normal[env], own.normal)
         assert np.array_equal(heights[env], sim.heights("hills", places[env], body="wrist"))
         assert np.array_equal(forces[env], sim.inverse(qacc[env], discrete=False))
+        assert np.array_equal(velocities[env], sim.velocity(site="tool"))
+        assert np.array_equal(local[env], sim.velocity(site="tool", local=True))
+        assert np.array_equal(accelerations[env], sim.acceleration(body="wrist"))
+        assert np.array_equal(products[env], sim.mul_mass(qacc[env]))
+        assert np.array_equal(solved[env], sim.solve_mass(qacc[0]))
         alone = sim.ik([clench.FrameTarget(site="tool", position=goals[env])])
         assert np.array_equal(result.qpos[env], alone.qpos)
         assert (result.iterations[env], result.status[env]) == (alone.iterations, alone.status)
+
+
+def test_a_step_towards_a_goal_is_no_longer_than_it_may_be() -> None:
+    sim = clench.Sim(clench.Model.from_xml(ARM))
+    goal = clench.FrameTarget(site="tool", position=[0.4, 0.2, 0.5])
+    result = sim.ik([goal], iterations=1, max_step=0.01)
+    moved = np.abs(sim.model.differentiate_pos(sim.qpos, result.qpos)).max()
+    assert moved == pytest.approx(0.01) and result.iterations == 1
+    with pytest.raises(ValueError, match="max_step"):
+        sim.ik([goal], max_step=0)
 
 
 def test_many_rays_are_as_each_alone() -> None:

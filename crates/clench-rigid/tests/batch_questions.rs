@@ -9,7 +9,7 @@ use clench_rigid::builder::{GeomSpec, HeightFieldSpec, ModelBuilder};
 use clench_rigid::model::FrameObject;
 use clench_rigid::options::RigidOptions;
 use clench_rigid::{
-    Acceleration, Anchor, Batch, Ik, IkOptions, IkTarget, IkTask, Precision, RayFilter, Sim,
+    Acceleration, Anchor, Axes, Batch, Ik, IkOptions, IkTarget, IkTask, Precision, RayFilter, Sim,
 };
 use std::sync::Arc;
 
@@ -86,6 +86,51 @@ fn jacobians<S: Precision>(batch: &mut Batch<S>, sims: &mut [Sim<S>]) {
 fn jacobians_are_those_of_each_alone() {
     each::<f64>(jacobians);
     each::<f32>(jacobians);
+}
+
+fn motions<S: Precision>(batch: &mut Batch<S>, sims: &mut [Sim<S>]) {
+    let object = hand(&sims[0]);
+    for axes in [Axes::World, Axes::Local] {
+        let velocities = batch.velocity(object, axes).unwrap();
+        let accelerations = batch.acceleration(object, axes).unwrap();
+        for (env, sim) in sims.iter_mut().enumerate() {
+            let flat = |vectors: [Vec3<S>; 2]| vectors.map(Vec3::to_array).concat();
+            let own = flat(sim.velocity(object, axes).unwrap());
+            assert_bits(velocities.row(env), &own, &|| format!("velocity {env}"));
+            let own = flat(sim.acceleration(object, axes).unwrap());
+            assert_bits(accelerations.row(env), &own, &|| {
+                format!("acceleration {env}")
+            });
+        }
+    }
+}
+
+#[test]
+fn motions_of_objects_are_those_of_each_alone() {
+    each::<f64>(motions);
+    each::<f32>(motions);
+}
+
+fn masses<S: Precision>(batch: &mut Batch<S>, sims: &mut [Sim<S>]) {
+    let nv = sims[0].model().nv;
+    let x = Vec::from_iter((0..ENVS * nv).map(|k| S::new((k as f64 * 0.7).sin())));
+    let products = batch.mul_mass(Given::Each(&x)).unwrap();
+    let solved = batch.solve_mass(Given::Shared(&x[..nv])).unwrap();
+    for (env, sim) in sims.iter_mut().enumerate() {
+        let mut own = vec![S::ZERO; nv];
+        sim.mul_mass(&x[env * nv..][..nv], &mut own).unwrap();
+        assert_bits(products.row(env), &own, &|| format!("product {env}"));
+        own.copy_from_slice(&x[..nv]);
+        sim.solve_mass(&mut own).unwrap();
+        assert_bits(solved.row(env), &own, &|| format!("solution {env}"));
+    }
+    assert!(batch.mul_mass(Given::Each(&x[1..])).is_err());
+}
+
+#[test]
+fn products_with_mass_matrices_are_those_of_each_alone() {
+    each::<f64>(masses);
+    each::<f32>(masses);
 }
 
 #[test]

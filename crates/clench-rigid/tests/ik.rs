@@ -164,6 +164,34 @@ fn dofs_that_may_not_move_do_not() {
 }
 
 #[test]
+fn no_dof_moves_further_in_an_iteration_than_it_may() {
+    let model = arm(2.5);
+    let task = IkTask::new(&model, IkTarget::Position(TIP), 1.0);
+    let start = [0.1, 0.25, 0.3, -0.4, 0.1, 0.2, 0.0];
+    let solve = |iterations: usize| {
+        let options = IkOptions {
+            iterations,
+            max_step: 0.02,
+            ..IkOptions::default()
+        };
+        let ik = Ik::new(&model, vec![task.clone()], options).unwrap();
+        let mut sim: Sim = Sim::new(Arc::clone(&model)).unwrap();
+        sim.ik(&ik, &[0.3, 0.2, 1.2], Some(&start)).unwrap()
+    };
+    let mut before = start.to_vec();
+    for iterations in 1..6 {
+        let after = solve(iterations).qpos;
+        let moved = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
+        let most = moved.fold(0.0, f64::max);
+        assert!(most > 0.01999 && most < 0.02 + 1e-12, "{most}");
+        before = after;
+    }
+    let found = solve(200);
+    assert_eq!(found.status, IkStatus::Reached);
+    assert!(found.iterations > 10);
+}
+
+#[test]
 fn a_ball_joint_stays_within_its_cone() {
     let mut b = machines::world("lamp");
     let ball = JointSpec {
@@ -206,6 +234,13 @@ fn bad_tasks_and_goals_are_errors() {
         ..IkOptions::default()
     };
     refused(pose_of_tip(&model), options);
+    for max_step in [0.0, -1.0, f64::NAN] {
+        let options = IkOptions {
+            max_step,
+            ..IkOptions::default()
+        };
+        refused(pose_of_tip(&model), options);
+    }
     let ik = Ik::new(&model, pose_of_tip(&model), IkOptions::default()).unwrap();
     let mut sim: Sim = Sim::new(Arc::clone(&model)).unwrap();
     assert!(sim.ik(&ik, &[0.0; 3], None).is_err());

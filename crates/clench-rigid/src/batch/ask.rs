@@ -12,20 +12,22 @@ use super::{Batch, Precision, Rows};
 use crate::check::{check_length, check_values};
 use crate::dynamics::frames::Frames;
 use crate::dynamics::jacobian::{point_jacobian, subtree_jacobian};
+use crate::dynamics::velocity::velocities;
 use crate::error::SimError;
 use crate::geometry::Geoms;
 use crate::ik::{Ik, IkSolution, Search};
 use crate::inverse::{Acceleration, inverse};
 use crate::model::{FrameObject, Model, Params};
-use crate::pipeline::position_stage;
+use crate::pipeline::{forward, position_stage};
 use crate::query::{
-    HIT, RAY, RayFilter, cast, check_acceleration, check_body, check_object, check_places,
-    check_rays, sample,
+    Axes, HIT, RAY, RayFilter, along, cast, check_acceleration, check_body, check_object,
+    check_places, check_rays, sample,
 };
+use crate::sensor::bodies::update as update_body_forces;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, write_lane};
+use clench_math::{Mask, Real, Vec3, write_lane};
 
 /// Numbers of a question.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +68,12 @@ pub enum Question<'a, S> {
     Jacobian(FrameObject),
     /// That of the centre of mass of a subtree, likewise.
     SubtreeJacobian(usize),
+    /// The velocity of an object, or its acceleration: given nothing.
+    Velocity(FrameObject, Axes),
+    Acceleration(FrameObject, Axes),
+    /// M x or M⁻¹ x: given x.
+    MulMass,
+    SolveMass,
     /// What rays hit: given the rays.
     Rays {
         frame: Option<FrameObject>,
@@ -128,9 +136,25 @@ impl<S: Lanewise> Asking<'_, S> {
             inverse(self.model, params, self.settings, state, given, ws, out);
             return crate::check::good_results(state, ws);
         }
-        position_stage(self.model, params, state, ws);
+        match self.question {
+            Question::Acceleration(..) => {
+                ws.sleep.forget();
+                forward(self.model, params, self.settings, state, ws);
+                update_body_forces(self.model, params, state, ws);
+            }
+            _ => position_stage(self.model, params, state, ws),
+        }
+        if let Question::Velocity(..) = self.question {
+            velocities(self.model, &ws.position, &state.qvel, &mut ws.velocity);
+        }
         self.look(params, ws, given, out);
-        everywhere
+        match self.question {
+            Question::Acceleration(..) => {
+                crate::check::good_results(state, ws) & !ws.collision.overflow
+            }
+            Question::SolveMass => !ws.singular,
+            _ => everywhere,
+        }
     }
 
     /// What follows from positions alone.
@@ -157,6 +181,24 @@ impl<S: Lanewise> Asking<'_, S> {
                 out.resize(3 * model.nv, T::ZERO);
                 subtree_jacobian(model, params, pos, body, out);
             }
+            Question::Velocity(object, axes) => {
+                let frames = Frames::of(geoms);
+                let velocity = frames.velocity(object, &ws.velocity);
+                write_vectors(along(frames, axes, object, velocity), out);
+            }
+            Question::Acceleration(object, axes) => {
+                let (frames, cacc) = (Frames::of(geoms), &ws.sensors.bodies.cacc);
+                let acceleration = frames.acceleration(object, &ws.velocity, cacc);
+                write_vectors(along(frames, axes, object, acceleration), out);
+            }
+            Question::MulMass => {
+                out.resize(model.nv, T::ZERO);
+                ws.problem.mass.mul(&model.tree, given, out);
+            }
+            Question::SolveMass => {
+                out.extend_from_slice(given);
+                ws.problem.mass_factor.solve(&model.tree, out);
+            }
             Question::Rays { frame, filter } => cast(geoms, frame, given, filter, out),
             Question::Heights { geom, frame } => sample(geoms, geom, frame, given, out),
             Question::Inverse(_) | Question::Kinematics { .. } => {}
@@ -175,6 +217,10 @@ impl<S: Lanewise> Asking<'_, S> {
             write_lane(given.row(env, width), lane, lanes);
         }
     }
+}
+
+fn write_vectors<T: Real>(vectors: [Vec3<T>; 2], out: &mut Vec<T>) {
+    out.extend(vectors.iter().flat_map(|vector| vector.to_array()));
 }
 
 /// Room that answers take.
@@ -282,7 +328,7 @@ impl<S: Precision> Batch<S> {
     }
 
     /// Finite numbers, `width` an environment.
-    fn check_numbers(
+    pub(super) fn check_numbers(
         &self,
         name: &'static str,
         given: &Given<S>,
@@ -304,7 +350,7 @@ impl<S: Precision> Batch<S> {
         Ok(width)
     }
 
-    fn ask(
+    pub(super) fn ask(
         &mut self,
         question: Question<S>,
         given: Given<S>,

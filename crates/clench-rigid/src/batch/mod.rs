@@ -5,6 +5,7 @@
 //! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status.
 
 mod ask;
+mod ask_motion;
 mod cells;
 mod divergence;
 mod dynamic;

@@ -87,6 +87,8 @@ pub struct IkOptions {
     pub tolerance: f64,
     /// Damping at the start, in parts of the present cost, see [`search`](self).
     pub damping: f64,
+    /// The most that any dof moves in an iteration, m or rad: longer steps are shortened as a whole.
+    pub max_step: f64,
     /// Whether the limits of joints are kept: the start is moved within them, and no iterate leaves them.
     pub limits: bool,
     /// The dofs that may move (nv); all if it is empty.
@@ -94,12 +96,13 @@ pub struct IkOptions {
 }
 
 impl Default for IkOptions {
-    /// At most 100 iterations, to 1e-6 m and rad, all dofs within their limits.
+    /// At most 100 iterations of any length, to 1e-6 m and rad, all dofs within their limits.
     fn default() -> Self {
         IkOptions {
             iterations: 100,
             tolerance: 1e-6,
             damping: 1e-3,
+            max_step: f64::INFINITY,
             limits: true,
             dofs: Vec::new(),
         }
@@ -196,6 +199,13 @@ impl Ik {
                     range,
                 });
             }
+        }
+        if options.max_step.is_nan() || options.max_step <= 0.0 {
+            return Err(SimError::OutOfRange {
+                field: "max_step",
+                value: options.max_step,
+                range: "positive",
+            });
         }
         if !options.dofs.is_empty() {
             check_length("dofs", options.dofs.len(), model.nv)?;

@@ -8,7 +8,8 @@
 //!
 //! Damping in proportion to the cost (Sugihara 2011) keeps steps short far from a goal, and fades as it is reached, so that the
 //! last iterations converge as Newton's do. λ is raised where a step does not lower the cost, and lowered where the cost falls as
-//! the linear model says. Dofs at a limit against which g presses are held; a step that passes a limit ends there.
+//! the linear model says. A step in which a dof moves too far is shortened as a whole, to s δ, of which the linear model promises
+//! ½ s δ·((2 − s) g + s μ δ). Dofs at a limit against which g presses are held; a step that passes a limit ends there.
 
 use super::equations::{Equations, Scratch};
 use super::{Ik, IkSolution, IkStatus, IkTarget};
@@ -159,12 +160,16 @@ impl<T: Real> Search<T> {
             );
         }
         let positive = (self.here).solve(damping, &self.held, &mut self.factor, &mut self.step);
+        let longest = (self.step.iter()).fold(T::ZERO, |longest, step| longest.max(step.abs()));
+        let most = T::new(ik.options.max_step);
+        let share = T::select(longest.gt(most), most / longest, T::ONE);
         self.velocity.fill(T::ZERO);
         let mut promised = T::ZERO;
         for ((&dof, &step), &right) in ik.dofs.iter().zip(&self.step).zip(&self.here.right) {
-            let step = T::select(positive, step, T::ZERO);
+            let step = T::select(positive, step * share, T::ZERO);
             self.velocity[dof as usize] = step;
-            promised += T::new(0.5) * step * (right + damping * step);
+            let slope = (T::new(2.0) - share) * right + damping * step;
+            promised += T::new(0.5) * step * slope;
         }
         self.state.qpos.copy_from_slice(&self.qpos);
         integrate_positions(model, &mut self.state.qpos, &self.velocity, T::ONE);

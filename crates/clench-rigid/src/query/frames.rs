@@ -13,7 +13,7 @@ use crate::error::SimError;
 use crate::known::Extent;
 use crate::model::FrameObject;
 use crate::sim::Sim;
-use clench_math::{Motion, Vec3};
+use clench_math::{Motion, Real, Vec3};
 
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,7 +88,7 @@ impl<T: Precision> Sim<T> {
         check_object(self.model(), object)?;
         self.know(Extent::Everything)?;
         let velocity = self.frames().velocity(object, &self.workspace().velocity);
-        Ok(self.along(axes, object, velocity))
+        Ok(along(self.frames(), axes, object, velocity))
     }
 
     /// The acceleration of an object, likewise, as MuJoCo's `mj_objectAcceleration`: what an accelerometer there feels, gravity's
@@ -107,7 +107,7 @@ impl<T: Precision> Sim<T> {
         let ws = self.workspace();
         let cacc = &ws.sensors.bodies.cacc;
         let acceleration = self.frames().acceleration(object, &ws.velocity, cacc);
-        Ok(self.along(axes, object, acceleration))
+        Ok(along(self.frames(), axes, object, acceleration))
     }
 
     fn frames(&self) -> Frames<'_, T> {
@@ -115,18 +115,6 @@ impl<T: Precision> Sim<T> {
             model: self.model(),
             params: self.params(),
             pos: &self.workspace().position,
-        }
-    }
-
-    /// Linear, then angular, in the axes asked for.
-    fn along(&self, axes: Axes, object: FrameObject, motion: Motion<T>) -> [Vec3<T>; 2] {
-        let world = [motion.linear, motion.angular];
-        match axes {
-            Axes::World => world,
-            Axes::Local => {
-                let rotation = self.frames().rotation(object);
-                world.map(|v| rotation.transpose_mul(v))
-            }
         }
     }
 
@@ -144,6 +132,23 @@ impl<T: Precision> Sim<T> {
             Anchor::Point { body, place } => {
                 BodyPoint::new(self.model(), &self.workspace().position, body, place)
             }
+        }
+    }
+}
+
+/// The motion of an object, linear and then angular, in the axes asked for.
+pub(crate) fn along<T: Real>(
+    frames: Frames<T>,
+    axes: Axes,
+    object: FrameObject,
+    motion: Motion<T>,
+) -> [Vec3<T>; 2] {
+    let world = [motion.linear, motion.angular];
+    match axes {
+        Axes::World => world,
+        Axes::Local => {
+            let rotation = frames.rotation(object);
+            world.map(|v| rotation.transpose_mul(v))
         }
     }
 }

@@ -8,6 +8,7 @@ mod inertia;
 mod inverse;
 mod scan;
 
+pub(crate) use frames::along;
 pub use frames::{Anchor, Axes};
 pub use geoms::{RayFilter, RayHit};
 pub(crate) use inverse::check_acceleration;
