@@ -2,6 +2,7 @@
 //! and `audit` look long for what is rare.
 
 mod audit;
+mod docs;
 mod fuzz;
 mod gpu;
 mod install;
@@ -48,6 +49,7 @@ Commands:
                       collide     a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones;
                                   nothing may panic, hang, or be no number
                       recordings  end `clench simulate --record` by kill -9; no half a file may be left
+  docs              Build the site in target/site: pages, notebooks, which are run, and the reference of the Python package.
   others [NAME]     Test the Python package beside large packages of others, which are installed below .venv:
                       ray       a batch on a cluster, whose workers are killed (500 MB)
                       learning  Stable-Baselines3 and TorchRL (5 GB)
@@ -65,6 +67,7 @@ fn main() -> ExitCode {
         Some("test") => stages::test(&args[1..]),
         Some("bench") => stages::bench(&args[1..]),
         Some("soak") => soak::soak(&args[1..]),
+        Some("docs") => docs::build(),
         Some("others") => others::test(&args[1..]),
         Some("fuzz") => fuzz::fuzz(&args[1..]),
         Some("sanitize") => sanitize::sanitize(&args[1..]),

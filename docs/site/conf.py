@@ -1,0 +1,34 @@
+"""Settings of the site, which `cargo xtask docs` builds with Sphinx from the root of the repository."""
+
+import clench
+
+project = "Clench"
+author = "The Clench authors"
+release = clench.__version__
+
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+root_doc = "docs/site/index"
+# Pages are where they are read in the repository too, so that links between them hold in both places.
+include_patterns = [
+    "README.md",
+    "docs/*.md",
+    "docs/notebooks/*.ipynb",
+    "docs/site/index.md",
+    "docs/site/python.md",
+    "docs/site/gallery/index.md",
+    "python/README.md",
+    "models/README.md",
+]
+exclude_patterns = ["target", ".venv", ".git", "web", "crates", "fuzz", "parity", "bench", "xtask"]
+
+html_theme = "furo"
+html_title = "Clench"
+
+myst_heading_anchors = 3
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+napoleon_google_docstring = False
+# Links to code and folders lead to files that are no pages, and Rust's examples have words that no highlighter knows.
+suppress_warnings = ["myst.xref_missing", "misc.highlighting_failure"]

@@ -1,0 +1,34 @@
+"""Pages with pairs of scripts, first for another package, then for Clench, which leave the same numbers in `result`."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+from scenes import ROOT
+
+
+def sections(page: str) -> list[str]:
+    """The sections of a page of `docs/`."""
+    return (ROOT / "docs" / page).read_text(encoding="utf-8").split("\n## ")[1:]
+
+
+def title(section: str) -> str:
+    return section.splitlines()[0]
+
+
+def assert_both_give_the_same(section: str, other: str) -> None:
+    """Runs both scripts of a section; `other` is what the first is for."""
+    first, second = re.findall(r"```python\n(.*?)```", section, re.S)
+    assert first.startswith(f"# {other}\n") and second.startswith("# Clench\n")
+    expected, found = _result(first), _result(second)
+    assert len(found) == len(expected) > 0
+    for one, value in zip(found, expected):
+        np.testing.assert_allclose(one, value, rtol=1e-6, atol=1e-6)
+
+
+def _result(script: str) -> list[Any]:
+    names: dict[str, Any] = {"FOLDER": str(ROOT)}
+    exec(compile(script, "docs", "exec"), names)
+    return list(names["result"])
