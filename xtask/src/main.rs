@@ -6,6 +6,7 @@ mod docs;
 mod fuzz;
 mod gpu;
 mod install;
+mod notices;
 mod others;
 mod package;
 mod python;
@@ -50,6 +51,7 @@ Commands:
                                   nothing may panic, hang, or be no number
                       recordings  end `clench simulate --record` by kill -9; no half a file may be left
   docs              Build the site in target/site: pages, notebooks, which are run, and the reference of the Python package.
+  wheel             Build the Python package that this machine can, in target/wheels, with the licences of what is compiled in.
   others [NAME]     Test the Python package beside large packages of others, which are installed below .venv:
                       ray       a batch on a cluster, whose workers are killed (500 MB)
                       learning  Stable-Baselines3 and TorchRL (5 GB)
@@ -68,6 +70,7 @@ fn main() -> ExitCode {
         Some("bench") => stages::bench(&args[1..]),
         Some("soak") => soak::soak(&args[1..]),
         Some("docs") => docs::build(),
+        Some("wheel") => notices::build(),
         Some("others") => others::test(&args[1..]),
         Some("fuzz") => fuzz::fuzz(&args[1..]),
         Some("sanitize") => sanitize::sanitize(&args[1..]),

@@ -47,6 +47,21 @@ pub fn install(profile: Profile) -> Result<(), String> {
     })
 }
 
+/// Builds the package for others to install, in `target/wheels`.
+///
+/// # Errors
+/// What failed, and what to check.
+pub fn wheel() -> Result<(), String> {
+    prepare()?;
+    let mut build = command(
+        interpreter(),
+        &["-m", "pip", "wheel", "--no-deps", "./python"],
+    );
+    build.arg("--wheel-dir").arg(target().join("wheels"));
+    build.env("CARGO_TARGET_DIR", target());
+    run(build)
+}
+
 /// Runs the tests of the package, and with them every example in its short form.
 ///
 /// # Errors
