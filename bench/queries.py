@@ -35,7 +35,8 @@ def questions(sim, model, data, rng):
     directions = rng.normal(size=(100, 3))
     hits, distances, normals = np.zeros(100, np.int32), np.zeros(100), np.zeros(300)
     code = mujoco.mjtObj.mjOBJ_XBODY
-    q2, qfrc = data.qpos.copy(), np.zeros(nv)
+    q2, qfrc, full = data.qpos.copy(), np.zeros(nv), np.zeros((nv, nv))
+    geom, geoms, ends = np.zeros(1, np.int32), (model.ngeom - 1, model.ngeom // 2), np.zeros(6)
     own = sim.model
 
     def mujoco_solve():
@@ -57,12 +58,16 @@ def questions(sim, model, data, rng):
         ("jacobian_rate(body)", lambda: sim.jacobian_rate(body=body, point=point), lambda: mujoco.mj_jacDot(model, data, jacp, jacr, point, body)),
         ("subtree_jacobian(0)", lambda: sim.subtree_jacobian(0), lambda: mujoco.mj_jacSubtreeCom(model, data, jacp, 0)),
         ("velocity(body)", lambda: sim.velocity(body=body), lambda: mujoco.mj_objectVelocity(model, data, code, body, six, 0)),
+        ("acceleration(body)", lambda: sim.acceleration(body=body), lambda: mujoco.mj_objectAcceleration(model, data, code, body, six, 0)),
+        ("mass_matrix", lambda: sim.mass_matrix(), lambda: mujoco.mj_fullM(model, data, full)),
         ("mul_mass", lambda: sim.mul_mass(x), lambda: mujoco.mj_mulM(model, data, qfrc, x)),
         ("solve_mass", lambda: sim.solve_mass(x), mujoco_solve),
         ("joint_forces", lambda: sim.joint_forces(body, force, torque, point), mujoco_force),
         ("integrate_pos", lambda: own.integrate_pos(sim.qpos, x, 0.1), lambda: mujoco.mj_integratePos(model, q2, x, 0.1)),
         ("differentiate_pos", lambda: own.differentiate_pos(sim.qpos, q2), lambda: mujoco.mj_differentiatePos(model, qfrc, 1, data.qpos, q2)),
+        ("ray", lambda: sim.ray(point, force), lambda: mujoco.mj_ray(model, data, point, force, None, 1, -1, geom, None)),
         ("rays (100)", lambda: sim.rays([[0, 0, 0]], directions), mujoco_rays),
+        ("distance", lambda: sim.distance(*geoms, 10.0), lambda: mujoco.mj_geomDistance(model, data, *geoms, 10.0, ends)),
         ("inverse", lambda: sim.inverse(x), mujoco_inverse),
     ]
 
@@ -75,6 +80,11 @@ def batched(batch, rng):
     return [
         ("jacobian(body)", lambda: batch.jacobian(body=body)),
         ("subtree_jacobian(0)", lambda: batch.subtree_jacobian(0)),
+        ("velocity(body)", lambda: batch.velocity(body=body)),
+        ("acceleration(body)", lambda: batch.acceleration(body=body)),
+        ("mass_matrix", lambda: batch.mass_matrix()),
+        ("mul_mass", lambda: batch.mul_mass(qacc)),
+        ("solve_mass", lambda: batch.solve_mass(qacc)),
         ("rays (100)", lambda: batch.rays([[0, 0, 0]], directions)),
         ("inverse", lambda: batch.inverse(qacc)),
     ]

@@ -14,6 +14,7 @@ mod run;
 mod sanitize;
 mod soak;
 mod stages;
+mod unit;
 mod web;
 
 use std::process::ExitCode;

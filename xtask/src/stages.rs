@@ -4,6 +4,7 @@ use crate::gpu;
 use crate::package;
 use crate::python;
 use crate::run::{Profile, cargo, command, run};
+use crate::unit;
 use crate::web;
 use std::time::Instant;
 
@@ -39,7 +40,7 @@ const STAGES: &[Stage] = &[
     Stage {
         name: "unit",
         remedy: "run the failing crate alone with `cargo test -p CRATE`",
-        check: unit,
+        check: unit::test,
         missing: nothing,
     },
     Stage {
@@ -171,12 +172,6 @@ fn clippy() -> Result<(), String> {
         "-D",
         "warnings",
     ]))
-}
-
-fn unit() -> Result<(), String> {
-    let mut tests = cargo(&["test", "--quiet", "--workspace"]);
-    tests.env("CLENCH_GPU", "skip");
-    run(tests)
 }
 
 fn doc() -> Result<(), String> {

@@ -1,0 +1,202 @@
+//! The stage `unit`: all Rust tests but those on a graphics device, with a line for each program of tests, so that one sees how far
+//! it is. What `cargo test` prints besides is shown where a test fails.
+
+use crate::run::{cargo, shown};
+use std::io::{BufRead, BufReader, pipe};
+use std::process::Command;
+
+/// Builds and runs them.
+///
+/// # Errors
+/// What cannot be built, or that a test failed.
+pub fn test() -> Result<(), String> {
+    let mut programs = 0;
+    let mut build = cargo(&["test", "--workspace", "--no-run"]);
+    build.env("CLENCH_GPU", "skip");
+    read_lines(build, |line| {
+        if line.trim_start().starts_with("Executable") {
+            programs += 1;
+        } else if !is_foreign(line) {
+            println!("{line}");
+        }
+    })?;
+    let mut report = Report::new(programs);
+    let mut tests = cargo(&["test", "--workspace"]);
+    tests.env("CLENCH_GPU", "skip");
+    let outcome = read_lines(tests, |line| {
+        if let Some(text) = report.read(line) {
+            println!("{text}");
+        }
+    });
+    println!("{}", report.rest());
+    outcome
+}
+
+/// Crates of others compile by the hundred; ours have a path.
+fn is_foreign(line: &str) -> bool {
+    let line = line.trim_start();
+    ["Compiling ", "Downloaded ", "Fresh "]
+        .iter()
+        .any(|word| line.starts_with(word) && !line.contains(" (/"))
+}
+
+/// Runs a command to its end and hands on what it prints, on either stream, line by line.
+fn read_lines(mut command: Command, mut each: impl FnMut(&str)) -> Result<(), String> {
+    let failed = |e: std::io::Error| format!("cannot run cargo: {e}");
+    let (reader, writer) = pipe().map_err(failed)?;
+    command.stdout(writer.try_clone().map_err(failed)?);
+    command.stderr(writer);
+    let text = shown(&command);
+    let mut child = command.spawn().map_err(failed)?;
+    // The command holds ends of the pipe too, and reading would never end.
+    drop(command);
+    for line in BufReader::new(reader).split(b'\n') {
+        each(String::from_utf8_lossy(&line.map_err(failed)?).trim_end());
+    }
+    let status = child.wait().map_err(failed)?;
+    match status.success() {
+        true => Ok(()),
+        false => Err(format!("{status}: {text}")),
+    }
+}
+
+/// What was read of a run so far.
+struct Report {
+    /// Programs of tests, those of documentation apart.
+    programs: usize,
+    begun: usize,
+    /// Which one runs.
+    current: String,
+    /// What it printed.
+    printed: Vec<String>,
+    passed: usize,
+    failed: usize,
+}
+
+impl Report {
+    fn new(programs: usize) -> Self {
+        Report {
+            programs,
+            begun: 0,
+            current: String::new(),
+            printed: Vec::new(),
+            passed: 0,
+            failed: 0,
+        }
+    }
+
+    /// Takes a line; what to show for it, if anything.
+    fn read(&mut self, line: &str) -> Option<String> {
+        let start = line.trim_start();
+        if let Some(program) = start.strip_prefix("Running ") {
+            self.begin(program_name(program));
+            return None;
+        }
+        if let Some(of) = start.strip_prefix("Doc-tests ") {
+            self.begin(format!("documentation of {of}"));
+            return None;
+        }
+        let Some(result) = line.strip_prefix("test result: ") else {
+            if !(line.is_empty() || line.ends_with(" ... ok") || start.starts_with("running ")) {
+                self.printed.push(line.to_owned());
+            }
+            return None;
+        };
+        let passed = count(result, "passed");
+        let failed = count(result, "failed");
+        (self.passed, self.failed) = (self.passed + passed, self.failed + failed);
+        let seconds = result.rsplit(' ').next().unwrap_or_default();
+        let printed = std::mem::take(&mut self.printed);
+        match (passed, failed) {
+            (0, 0) => None,
+            (_, 0) => Some(self.line(&format!("{passed:>4} passed in {seconds}"))),
+            _ => Some(printed.join("\n") + "\n" + &self.line(&format!("{failed:>4} FAILED"))),
+        }
+    }
+
+    fn begin(&mut self, program: String) {
+        self.begun += 1;
+        self.current = program;
+    }
+
+    fn line(&self, what: &str) -> String {
+        let place = format!("[{}/{}]", self.begun.min(self.programs), self.programs);
+        format!("  {place:<9} {what:<22} {}", self.current)
+    }
+
+    /// What was printed and belongs to no result, such as errors of the compiler; and the sum.
+    fn rest(&self) -> String {
+        let mut lines = self.printed.clone();
+        lines.push(format!("{} passed, {} failed", self.passed, self.failed));
+        lines.join("\n")
+    }
+}
+
+/// How a program is called, of what cargo says about it: `tests/ik.rs (target/debug/deps/ik-0123)`.
+fn program_name(text: &str) -> String {
+    let (source, path) = text.split_once(" (").unwrap_or((text, ""));
+    let file = path.trim_end_matches(')').rsplit('/').next();
+    let name = file
+        .and_then(|file| file.rsplit_once('-'))
+        .map(|(name, _)| name);
+    match (source.strip_prefix("unittests "), name) {
+        (Some(_), Some(name)) => format!("{name}, inside"),
+        (_, Some(_)) => source.to_owned(),
+        _ => text.to_owned(),
+    }
+}
+
+/// The number before a word of `ok. 8 passed; 0 failed; ...`.
+fn count(result: &str, word: &str) -> usize {
+    let before = result.split(word).next().unwrap_or_default();
+    let number = before.trim_end().rsplit(' ').next();
+    number.and_then(|number| number.parse().ok()).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RUN: &str = "\
+     Running unittests src/lib.rs (target/debug/deps/clench_math-0a1b)
+
+running 0 tests
+
+test result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.00s
+
+     Running tests/lanes.rs (target/debug/deps/lanes-9f)
+
+running 2 tests
+test one ... ok
+test other ... FAILED
+
+failures:
+assertion failed
+test result: FAILED. 1 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.14s
+   Doc-tests clench
+running 3 tests
+test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out; finished in 1.50s";
+
+    #[test]
+    fn programs_with_tests_have_a_line_each() {
+        let mut report = Report::new(2);
+        let lines = Vec::from_iter(RUN.lines().filter_map(|line| report.read(line)));
+        assert_eq!(lines.len(), 2, "{lines:?}");
+        assert!(lines[0].contains("test other ... FAILED\nfailures:\nassertion failed\n"));
+        assert!(!lines[0].contains("test one"));
+        assert!(lines[0].contains("[2/2]") && lines[0].contains(" 1 FAILED"));
+        assert!(lines[0].ends_with(" tests/lanes.rs"));
+        assert!(lines[1].contains(" 3 passed in 1.50s"));
+        assert!(lines[1].ends_with(" documentation of clench"));
+        assert_eq!(report.rest(), "4 passed, 1 failed");
+    }
+
+    #[test]
+    fn only_our_own_crates_are_shown_while_they_compile() {
+        assert!(is_foreign("   Compiling libc v0.2.1"));
+        assert!(!is_foreign(
+            "   Compiling clench-math v0.1.0 (/work/crates/clench-math)"
+        ));
+        assert!(!is_foreign("error: expected one of"));
+    }
+}
