@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn crates_of_others_are_listed_once() {
-        let tree = "clench-python v0.1.0 (/work/python)\tMIT OR Apache-2.0\nnumpy v0.30.0\tBSD-2-Clause\n\
+        let tree = "clench-python v0.1.0 (/home/one/clench/python)\tMIT OR Apache-2.0\nnumpy v0.30.0\tBSD-2-Clause\n\
                     libc v0.2.1\tMIT OR Apache-2.0\nnumpy v0.30.0\tBSD-2-Clause (*)\n";
         let names = Vec::from_iter(read_tree(tree).into_iter().map(|part| part.name));
         assert_eq!(names, ["libc-0.2.1", "numpy-0.30.0"]);
