@@ -20,7 +20,7 @@ Load a model, move one environment of it with `Sim` or many with `Batch`:
 >>> batch.step(10)
 0
 
-Names, units, layouts and defaults are MuJoCo's. `clench.gymnasium` has vector environments.
+Names, units, layouts and defaults are MuJoCo's. `clench.gymnasium` has vector environments, `clench.ray` batches on a cluster.
 """
 
 from clench import _pickle as _pickle

@@ -309,6 +309,9 @@ class Parameters:
         object.__setattr__(self, "_owner", owner)
 
     def __getattr__(self, name: str) -> NDArray[Any]:
+        if name.startswith("_"):
+            # Also where nothing has been set yet, as in a copy that is being made.
+            raise AttributeError(f'there is no parameter "{name}"')
         try:
             values = self._owner.param(name)
         except ValueError as error:

@@ -19,6 +19,7 @@ from clench._element import SpecElement
 
 if TYPE_CHECKING:
     from clench._core import Model
+    from clench._state import State
 
 __all__ = ["ModelSpec", "SpecElement"]
 
@@ -178,15 +179,42 @@ class ModelSpec:
         """
         return self.section("tendon").add(tag, **attributes)
 
-    def add_keyframe(self, **attributes: Value) -> SpecElement:
+    def add_keyframe(self, state: State | None = None, /, **attributes: Value) -> SpecElement:
         """Add a keyframe.
 
         Parameters
         ----------
+        state : State, optional
+            The state that it brings a simulation of this model to, such as ``sim.state``; else its attributes say all of it.
         **attributes : str, bool or array_like
             Its attributes, as MJCF calls them.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            The state of a batch: a keyframe is of one environment.
+
+        Examples
+        --------
+        >>> spec = clench.ModelSpec.from_xml(
+        ...     "<mujoco><worldbody><body><joint type='slide'/><geom size='1'/></body></worldbody></mujoco>")
+        >>> sim = clench.Sim(spec.build())
+        >>> sim.qpos[0] = 0.25
+        >>> spec.add_keyframe(sim.state, name="here")["qpos"]
+        '0.25'
         """
-        return self.section("keyframe").add("key", **attributes)
+        kept: dict[str, Value] = {}
+        if state is not None:
+            if state.qpos.ndim != 1:
+                raise ValueError("a keyframe is of one environment: take the state of batch.sim(env)")
+            fields = {"mpos": state.mocap_pos, "mquat": state.mocap_quat}
+            fields.update({name: getattr(state, name) for name in ("time", "qpos", "qvel", "act", "ctrl")})
+            kept = {name: values for name, values in fields.items() if values.size}
+        return self.section("keyframe").add("key", **{**kept, **attributes})
 
     def add_asset(self, tag: str, /, data: bytes | None = None, **attributes: Value) -> SpecElement:
         """Add an asset: "mesh", "hfield", "material" and so on.
@@ -303,6 +331,16 @@ class ModelSpec:
             The name.
         """
         return self.find("sensor", name)
+
+    def keyframe(self, name: str) -> SpecElement:
+        """The keyframe of that name.
+
+        Parameters
+        ----------
+        name : str
+            The name.
+        """
+        return self.find("keyframe", name)
 
     def to_xml(self) -> str:
         """The document as MJCF text. What it names is in `assets`; `Model.to_xml` of what is built stands alone."""

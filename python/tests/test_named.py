@@ -215,3 +215,7 @@ def test_batch_queries_are_those_of_each_environment() -> None:
     assert batch.eq_active[:, 0].tolist() == [True, False, True, False]
     with pytest.raises(ValueError, match="origin has shape"):
         batch.ray([[0, 0, 1]], direction)
+
+
+def test_parameters_of_nothing_have_no_names() -> None:
+    assert not hasattr(clench.Parameters.__new__(clench.Parameters), "gravity")

@@ -65,6 +65,23 @@ def test_what_is_built_steps_as_what_is_written() -> None:
     assert ends(model) == ends(clench.Model.from_xml(written))
 
 
+@pytest.mark.parametrize("name", ["quadruped", "suction_gripper"])
+def test_a_state_becomes_a_keyframe(name: str) -> None:
+    spec = clench.ModelSpec.from_file(ROOT / f"models/{name}.xml")
+    sim = clench.Sim(spec.build())
+    sim.ctrl += 0.1
+    sim.step(20)
+    spec.add_keyframe(sim.state, name="here")
+    assert spec.keyframe("here")["qvel"].split()[0] == repr(float(sim.qvel[0]))
+    other = clench.Sim(spec.build())
+    other.reset("here")
+    assert other.time == sim.time
+    for field in ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat"):
+        np.testing.assert_allclose(getattr(other, field), getattr(sim, field), rtol=1e-15)
+    with pytest.raises(ValueError, match="of one environment"):
+        spec.add_keyframe(clench.Batch(sim.model, 2).state)
+
+
 def test_numbers_of_an_element_can_be_edited() -> None:
     spec = clench.ModelSpec.from_file(ROOT / "models/humanoid.xml")
     torso = spec.body("torso")
