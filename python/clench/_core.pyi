@@ -909,7 +909,7 @@ class Sim(_Outputs):
         iterations: SupportsIndex = 100,
         tolerance: float = 1e-6,
         damping: float = 1e-3,
-        max_step: float = ...,  # infinite
+        max_step: float | None = None,
         limits: bool = True,
         dofs: ArrayLike | None = None,  # (nv,)
     ) -> IkResult: ...
@@ -1080,7 +1080,7 @@ class Batch(_Outputs):
         iterations: SupportsIndex = 100,
         tolerance: float = 1e-6,
         damping: float = 1e-3,
-        max_step: float = ...,  # infinite
+        max_step: float | None = None,
         limits: bool = True,
         dofs: ArrayLike | None = None,  # (nv,)
     ) -> IkResult: ...

@@ -140,7 +140,7 @@ impl<S: Precision + Element> Goals<S> {
 fn search(
     model: &Model,
     iterations: Count,
-    (tolerance, damping, max_step): (f64, f64, f64),
+    (tolerance, damping, max_step): (f64, f64, Option<f64>),
     limits: bool,
     dofs: Choice,
 ) -> PyResult<IkOptions> {
@@ -149,7 +149,7 @@ fn search(
         iterations: iterations.0,
         tolerance,
         damping,
-        max_step,
+        max_step: max_step.unwrap_or(f64::INFINITY),
         limits,
         dofs: dofs.unwrap_or_default(),
     })
@@ -175,8 +175,9 @@ impl Sim {
     ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
     /// damping : float
     ///     Damping at the start, in parts of the present cost; it adapts.
-    /// max_step : float
-    ///     The most that any dof moves in an iteration, m or rad: with one iteration, how far a control loop goes towards its goals.
+    /// max_step : float, optional
+    ///     The most that any dof moves in an iteration, m or rad; by default steps are of any length. With one iteration, that is how far a
+    ///     control loop goes towards its goals.
     /// limits : bool
     ///     Whether joints are kept in their ranges; a start outside is moved in.
     /// dofs : array_like of bool, optional
@@ -192,8 +193,8 @@ impl Sim {
     /// ValueError
     ///     Objects that the model does not have, wrong shapes, numbers that are not finite.
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
-                        max_step = f64::INFINITY, limits = true, dofs = None),
-           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=float('inf'), limits=True, dofs=None)")]
+                        max_step = None, limits = true, dofs = None),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn ik<'py>(
         &self,
@@ -203,7 +204,7 @@ impl Sim {
         iterations: Count,
         tolerance: f64,
         damping: f64,
-        max_step: f64,
+        max_step: Option<f64>,
         limits: bool,
         dofs: Choice<'_, 'py>,
     ) -> PyResult<IkResult> {
@@ -253,8 +254,9 @@ impl Batch {
     ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
     /// damping : float
     ///     Damping at the start, in parts of the present cost; it adapts.
-    /// max_step : float
-    ///     The most that any dof moves in an iteration, m or rad: with one iteration, how far a control loop goes towards its goals.
+    /// max_step : float, optional
+    ///     The most that any dof moves in an iteration, m or rad; by default steps are of any length. With one iteration, that is how far a
+    ///     control loop goes towards its goals.
     /// limits : bool
     ///     Whether joints are kept in their ranges; a start outside is moved in.
     /// dofs : array_like of bool, optional
@@ -265,8 +267,8 @@ impl Batch {
     /// IkResult
     ///     With the environments as first axis.
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
-                        max_step = f64::INFINITY, limits = true, dofs = None),
-           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=float('inf'), limits=True, dofs=None)")]
+                        max_step = None, limits = true, dofs = None),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn ik<'py>(
         &self,
@@ -276,7 +278,7 @@ impl Batch {
         iterations: Count,
         tolerance: f64,
         damping: f64,
-        max_step: f64,
+        max_step: Option<f64>,
         limits: bool,
         dofs: Choice<'_, 'py>,
     ) -> PyResult<IkResult> {
