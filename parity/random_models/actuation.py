@@ -21,6 +21,35 @@ class Actuation(Maker):
             self.target(actuator)
             self.fill(actuator, without=() if kind == "intvelocity" else ("actrange",))
             self.law(actuator)
+        if self.later.chance(0.3):
+            self.orientation(section)
+
+    def orientation(self, section):
+        """A servo that turns a ball joint, or a site in the frame of another, if there is any."""
+        draw = self.later
+        balls = [name for name, kind in self.joints if kind == "ball"]
+        if not balls and len(self.sites) < 2:
+            return
+        servo = self.add(section, "orientation")
+        if balls and draw.chance(0.5) or len(self.sites) < 2:
+            servo.set("joint", draw.choice(balls))
+        else:
+            first, second = (name for name, _ in draw.sample(self.sites, 2))
+            servo.attrib.update(site=first, refsite=second)
+        for name, value in VALUES["orientation"].items():
+            if draw.chance(0.5) and not (name == "dampratio" and "kv" in servo.attrib):
+                servo.set(name, value(draw))
+        if draw.chance(0.4) and not self.implicit():  # with which rounding decides in MuJoCo whether a torque at its limit is damped
+            servo.set("forcerange", text(0, draw.scale(0.1, 3)))
+            servo.set("forcelimited", draw.choice(("true", "true", "false")))
+        if self.draw.autolimits and draw.chance(0.4):
+            servo.set("ctrlrange", text(-draw.number(0, 1), draw.number(0.1, 2)))
+        if self.classes and draw.chance(0.2):
+            servo.set("class", draw.choice(self.classes))
+        if "nsample" in servo.attrib and draw.chance(0.5):
+            servo.set("delay", text(draw.scale(0.001, 0.03)))
+        if draw.chance(0.5):
+            servo.set("name", f"orientation{draw.randint(1, 9)}x")
 
     def target(self, actuator):
         """What an actuator pulls on."""
@@ -43,7 +72,7 @@ class Actuation(Maker):
     def law(self, actuator):
         """What depends on other attributes of an actuator, or on its target."""
         draw, kind = self.draw, actuator.tag
-        if kind != "adhesion" and not {"joint", "jointinparent"} & actuator.attrib.keys():  # tendons are not damped by actuators yet
+        if kind != "adhesion" and not {"joint", "jointinparent", "tendon"} & actuator.attrib.keys():  # nothing else is damped by actuators
             actuator.attrib.update(damping="0 0 0", armature="0")
         if "nsample" in actuator.attrib and draw.chance(0.7):
             actuator.set("delay", text(draw.scale(0.001, 0.03)))

@@ -19,7 +19,7 @@ from random_models.values import Draw, text
 
 def generate(seed):
     """The root element of the model of a seed."""
-    return Generator(Draw(seed)).model()
+    return Generator(Draw(seed), Draw(f"{seed} later")).model()
 
 
 class Generator(Preamble, Tree, Relations, Actuation, Sensing):

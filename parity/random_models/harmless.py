@@ -89,7 +89,7 @@ VALUES = {
     "spatial": {**TENDON, "width": "0.1", "material": "paint", "rgba": COLOUR},
     "default/tendon": {**TENDON, "width": "0.1", "material": "paint", "rgba": COLOUR},
     "general": USER,
-    **{kind: USER for kind in "motor position velocity intvelocity damper cylinder muscle pid dcmotor adhesion".split()},
+    **{kind: USER for kind in "motor position velocity intvelocity orientation damper cylinder muscle pid dcmotor adhesion".split()},
     "global": {
         "cameraid": "0",
         "orthographic": "true",

@@ -13,8 +13,9 @@ SCALAR = ("hinge", "slide")
 class Maker:
     """A model in the making, and what of it can be referred to."""
 
-    def __init__(self, draw):
+    def __init__(self, draw, later):
         self.draw = draw
+        self.later = later  # for what came after most models had been compared, so that the rest of each stays as it was
         self.density = draw.choice((0.05, 0.15, 0.3, 0.5))
         draw.degrees = draw.chance(0.6)
         draw.autolimits = draw.chance(0.9)

@@ -41,6 +41,10 @@ class Preamble(Maker):
             for flags in self.root.iter("flag"):
                 flags.attrib.pop("sleep", None)  # is refused beside it
 
+    def implicit(self):
+        """Whether the integrator knows how forces change with velocities."""
+        return any(option.get("integrator", "").startswith("implicit") for option in self.root.iter("option"))
+
     def sleeps(self):
         """Whether islands at rest sleep."""
         return any(flags.get("sleep") == "enable" for flags in self.root.iter("flag"))

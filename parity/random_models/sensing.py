@@ -30,6 +30,9 @@ class Sensing(Maker):
             self.fill(sensor, f"sensor/{kind}")
             if "nsample" in sensor.attrib and draw.chance(0.7):
                 sensor.set("delay", text(draw.scale(0.001, 0.03)))
+            if "nsample" in sensor.attrib and self.later.chance(0.5):
+                period = self.later.scale(0.001, 0.03)
+                sensor.set("interval", text(period, *self.later.choice(((), (0,), (-period * self.later.number(0, 0.99),)))))
             if sensor.get("reduce") == "netforce" and "data" in sensor.attrib:
                 kept = [word for word in sensor.get("data").split() if word not in ("linvel", "angvel")]
                 sensor.set("data", " ".join(kept) or "found")

@@ -137,6 +137,8 @@ class Model:
     @property
     def nactuator(self) -> int: ...
     @property
+    def nout(self) -> int: ...
+    @property
     def na(self) -> int: ...
     @property
     def nhistory(self) -> int: ...
@@ -339,6 +341,8 @@ class Model:
     actuator_actnum: Final[_Codes]  # (nactuator,) How many activations; the last acts.
     actuator_ctrladr: Final[_Codes]  # (nactuator,) The first of its controls, or -1.
     actuator_ctrlnum: Final[_Codes]  # (nactuator,) How many controls: one, but for controllers and motors.
+    actuator_outadr: Final[_Codes]  # (nactuator,) The first of its lengths, velocities and forces.
+    actuator_outnum: Final[_Codes]  # (nactuator,) How many of them: one, but three of an orientation servo.
     actuator_group: Final[_Codes]  # (nactuator,) Group.
     actuator_ctrllimited: Final[_Flags]  # (nu,) Whether its control is clamped.
     actuator_forcelimited: Final[_Flags]  # (nactuator,) Whether its force is clamped.
@@ -437,6 +441,8 @@ class Element:
     ctrladr: Final[int]  # actuator
     ctrllimited: Final[bool]  # actuator
     ctrlnum: Final[int]  # actuator
+    outadr: Final[int]  # actuator
+    outnum: Final[int]  # actuator
     ctrlrange: Final[_Floats]  # (2,) actuator
     cutoff: Final[float]  # sensor
     damping: Final[float]  # tendon
@@ -720,10 +726,10 @@ class _Outputs(StateViews):
     ten_J: Final[NDArray[Any]]  # (ntendon, nv) Moment arms of tendons.
     ten_length: Final[NDArray[Any]]  # (ntendon,) Lengths of tendons.
     ten_velocity: Final[NDArray[Any]]  # (ntendon,) Velocities of tendons.
-    actuator_length: Final[NDArray[Any]]  # (nactuator,) Lengths of actuators.
-    actuator_moment: Final[NDArray[Any]]  # (nactuator, nv) Moment arms of actuators.
-    actuator_velocity: Final[NDArray[Any]]  # (nactuator,) Velocities of actuators.
-    actuator_force: Final[NDArray[Any]]  # (nactuator,) Forces of actuators.
+    actuator_length: Final[NDArray[Any]]  # (nout,) Lengths of actuators: one, but three of an orientation servo.
+    actuator_moment: Final[NDArray[Any]]  # (nout, nv) Moment arms of actuators.
+    actuator_velocity: Final[NDArray[Any]]  # (nout,) Velocities of actuators.
+    actuator_force: Final[NDArray[Any]]  # (nout,) Forces of actuators.
     qfrc_actuator: Final[NDArray[Any]]  # (nv,) The same along dofs.
     qfrc_passive: Final[NDArray[Any]]  # (nv,) Springs, dampers, gravity compensation, fluid.
     qfrc_bias: Final[NDArray[Any]]  # (nv,) Coriolis, centrifugal and gravitational forces.

@@ -248,9 +248,9 @@ class ActuatorView(ElementView):
 
     ctrl = StateLine("ctrl", "Its controls, mostly one.", "_controls")
     act = StateLine("act", "Its activations, mostly none or one.", "_activations")
-    length = OutputLine("actuator_length", "Length of its transmission.")
-    velocity = OutputLine("actuator_velocity", "Its rate of change.")
-    force = OutputLine("actuator_force", "Force, N or N m.")
+    length = OutputLine("actuator_length", "Length of its transmission; three of an orientation servo.", "_outputs")
+    velocity = OutputLine("actuator_velocity", "Its rate of change.", "_outputs")
+    force = OutputLine("actuator_force", "Force, N or N m; three of an orientation servo.", "_outputs")
     gear = ParameterLine("actuator_gear", "Scaling of the force onto the transmission's axes (6).")
     cranklength = ParameterLine("actuator_cranklength", "Length of the rod of a slider-crank, m.")
     dynprm = ParameterLine("actuator_dynprm", "Parameters of the dynamics (10).")
@@ -270,6 +270,11 @@ class ActuatorView(ElementView):
     def _controls(self) -> slice:
         first = int(self.element.ctrladr)
         return slice(first, first + int(self.element.ctrlnum))
+
+    @property
+    def _outputs(self) -> int | slice:
+        first, count = int(self.element.outadr), int(self.element.outnum)
+        return first if count == 1 else slice(first, first + count)
 
     @property
     def _activations(self) -> slice:

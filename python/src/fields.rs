@@ -159,6 +159,12 @@ const STRUCTURE: &[Reader] = &[
     ("actuator_ctrlnum", |m| {
         codes(&m.actuators, |a| id(a.controls.len()))
     }),
+    ("actuator_outadr", |m| {
+        codes(&m.actuators, |a| id(a.outputs.start))
+    }),
+    ("actuator_outnum", |m| {
+        codes(&m.actuators, |a| id(a.outputs.len()))
+    }),
     ("actuator_group", |m| codes(&m.actuators, |a| a.group)),
     ("actuator_ctrllimited", |m| {
         let limited: Vec<bool> = (m.actuators.iter())
@@ -315,6 +321,7 @@ fn gain_type(kind: GainKind) -> i32 {
         GainKind::Affine => 1,
         GainKind::Muscle => 2,
         GainKind::DcMotor => 3,
+        GainKind::So3 => 4,
         GainKind::Pid => 5,
         GainKind::User => 6,
     }
@@ -326,6 +333,7 @@ fn bias_type(kind: BiasKind) -> i32 {
         BiasKind::Affine => 1,
         BiasKind::Muscle => 2,
         BiasKind::DcMotor => 3,
+        BiasKind::So3 => 4,
         BiasKind::User => 5,
     }
 }
@@ -340,6 +348,8 @@ fn transmission(transmission: Transmission) -> (i32, [i32; 2]) {
         Transmission::Site(site) => (4, [id(site), NONE]),
         Transmission::SiteInFrame(sites) => (4, sites.map(id)),
         Transmission::Body(body) => (5, [id(body), NONE]),
+        Transmission::Rotation(joint) => (6, [id(joint), NONE]),
+        Transmission::RotationInFrame(sites) => (6, sites.map(id)),
     }
 }
 

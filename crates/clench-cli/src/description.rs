@@ -90,6 +90,8 @@ fn actuator(model: &Model, actuator: &Actuator) -> Value {
         Transmission::SiteInFrame(sites) => ("site", sites.to_vec()),
         Transmission::SliderCrank(sites) => ("slidercrank", sites.to_vec()),
         Transmission::Body(body) => ("body", vec![body]),
+        Transmission::Rotation(joint) => ("joint", vec![joint]),
+        Transmission::RotationInFrame(sites) => ("site", sites.to_vec()),
     };
     let limits = model.params.actuator_ctrlrange[actuator.controls.clone()].iter();
     let limits = limits.zip(&actuator.ctrllimited);

@@ -261,12 +261,29 @@ fn a_positive_velocity_bias_of_a_servo_is_a_damping_ratio() {
 }
 
 #[test]
-fn what_is_not_supported_yet_says_so() {
-    for element in [
-        "<general joint='j' gaintype='so3'/>",
-        "<orientation joint='j'/>",
+fn an_orientation_servo_is_a_general_actuator() {
+    let orientation = actuator(
+        "<orientation kp='2' input='quat'/>",
+        "<orientation joint='j' kv='0.5'/>",
+    );
+    assert_eq!(
+        (orientation.gain, orientation.bias),
+        (GainKind::So3, BiasKind::So3)
+    );
+    assert_eq!(servo(&orientation), [2.0, -2.0, -0.5]);
+    assert_eq!(orientation.inputs, Some(vec![ControlInput::Quaternion; 4]));
+    let vector = actuator("", "<orientation joint='j' dampratio='1' input='expmap'/>");
+    assert_eq!((vector.dampratio, vector.gainprm[0]), (Some(1.0), 1.0));
+    assert_eq!(vector.inputs, Some(vec![ControlInput::RotationVector; 3]));
+    for (element, what) in [
+        ("<orientation joint='j' kv='1' dampratio='1'/>", "dampratio"),
+        ("<orientation joint='j' kv='-1'/>", "kv"),
+        ("<orientation joint='j' input='pos'/>", "input"),
+        ("<orientation joint='j' gear='1'/>", "gear"),
+        ("<position joint='j' input='quat'/>", "input"),
+        ("<pid joint='j' kp='1' input='pos quat'/>", "input"),
     ] {
-        assert!(rejected(element).contains("not supported yet"), "{element}");
+        assert!(rejected(element).contains(what), "{element}");
     }
 }
 

@@ -63,7 +63,7 @@ pub struct Positions<T> {
 impl<T: Real> Positions<T> {
     /// Room for a model; what its poses are is not known yet.
     pub fn new(model: &Model) -> Self {
-        let (nbody, nv, nactuator) = (model.nbody(), model.nv, model.actuators.len());
+        let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
         let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
         let zeros = |n: usize| vec![T::ZERO; n];
         let points = |n: usize| vec![Vec3::ZERO; n];
@@ -88,7 +88,7 @@ impl<T: Real> Positions<T> {
             crb: vec![Inertia::ZERO; nbody],
             ten_length: zeros(model.tendons.len()),
             ten_jacobian: zeros(model.tendon_dofs.len()),
-            actuator_length: zeros(nactuator),
+            actuator_length: zeros(nout),
             actuator_moment: zeros(model.actuator_dofs.len()),
         }
     }
@@ -187,7 +187,7 @@ pub struct Workspace<T: Real> {
 impl<T: Real> Workspace<T> {
     /// Room for everything that the model needs.
     pub fn new(model: &Model) -> Self {
-        let (nbody, nv, nactuator) = (model.nbody(), model.nv, model.actuators.len());
+        let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
         let zeros = |n: usize| vec![T::ZERO; n];
         Workspace {
             position: Positions::new(model),
@@ -195,7 +195,7 @@ impl<T: Real> Workspace<T> {
                 cvel: vec![Motion::ZERO; nbody],
                 cdof_dot: vec![Motion::ZERO; nv],
                 ten_velocity: zeros(model.tendons.len()),
-                actuator_velocity: zeros(nactuator),
+                actuator_velocity: zeros(nout),
             },
             force: Forces {
                 qfrc_bias: zeros(nv),
@@ -207,7 +207,7 @@ impl<T: Real> Workspace<T> {
                 qfrc_passive: zeros(nv),
                 qfrc_actuator: zeros(nv),
                 qfrc_smooth: zeros(nv),
-                actuator_force: zeros(nactuator),
+                actuator_force: zeros(nout),
                 ten_actuator_force: zeros(model.tendons.len()),
                 ctrl: zeros(model.nu()),
                 act_dot: zeros(model.na),

@@ -26,6 +26,11 @@ impl Model {
     fn nactuator(&self) -> usize {
         self.0.actuators.len()
     }
+    /// int : Number of forces of actuators: one each, but three of an orientation servo.
+    #[getter]
+    fn nout(&self) -> usize {
+        self.0.nout()
+    }
     /// int : Numbers in the buffers of delayed actuators.
     #[getter]
     fn nhistory(&self) -> usize {

@@ -109,6 +109,7 @@ impl ActuatorDraft {
             Shortcut::Motor => ActuatorParams::default(),
             Shortcut::Position => shortcut::read_position(element, inherited)?,
             Shortcut::IntVelocity => shortcut::read_intvelocity(element, inherited)?,
+            Shortcut::Orientation => shortcut::read_orientation(element, inherited)?,
             Shortcut::Velocity => shortcut::read_velocity(element, inherited)?,
             Shortcut::Damper => shortcut::read_damper(element, inherited)?,
             Shortcut::Cylinder => shortcut::read_cylinder(element, inherited)?,
@@ -187,8 +188,8 @@ impl ActuatorDraft {
         element.set_range("lengthrange", &mut lengthrange)?;
         // MuJoCo keeps a damping ratio as a positive velocity coefficient of what pulls back, however written.
         let matches = parameters.gainprm[0] == -parameters.biasprm[1];
-        let pulls_back =
-            parameters.bias == BiasKind::Affine && (matches || parameters.gain == GainKind::Pid);
+        let pulls_back = matches!(parameters.bias, BiasKind::Affine | BiasKind::So3)
+            && (matches || parameters.gain == GainKind::Pid);
         let dampratio =
             (pulls_back && parameters.biasprm[2] > 0.0).then_some(parameters.biasprm[2]);
         let servo = pulls_back && matches!(parameters.gain, GainKind::Fixed | GainKind::Pid);
@@ -245,13 +246,13 @@ fn read_general(
         ("user", DynamicsKind::User),
     ];
     element.set_keyword("dyntype", &dynamics, &mut parameters.dynamics)?;
-    supported(element, "gaintype", &["so3"])?;
     let gains = [
         ("fixed", GainKind::Fixed),
         ("affine", GainKind::Affine),
         ("muscle", GainKind::Muscle),
         ("dcmotor", GainKind::DcMotor),
         ("pid", GainKind::Pid),
+        ("so3", GainKind::So3),
         ("user", GainKind::User),
     ];
     let inherited = parameters.gain;
@@ -260,12 +261,12 @@ fn read_general(
         parameters.inputs = None;
     }
     inputs::read_inputs(element, parameters.gain, &mut parameters.inputs)?;
-    supported(element, "biastype", &["so3"])?;
     let biases = [
         ("none", BiasKind::None),
         ("affine", BiasKind::Affine),
         ("muscle", BiasKind::Muscle),
         ("dcmotor", BiasKind::DcMotor),
+        ("so3", BiasKind::So3),
         ("user", BiasKind::User),
     ];
     element.set_keyword("biastype", &biases, &mut parameters.bias)?;
@@ -276,13 +277,4 @@ fn read_general(
     element.set_boolean("actearly", &mut parameters.actearly)?;
     element.set_integer("actdim", &mut parameters.actdim)?;
     Ok(parameters)
-}
-
-fn supported(element: &Element, name: &str, unsupported: &[&str]) -> Result<(), LoadError> {
-    match element.text(name) {
-        Some(value) if unsupported.contains(&value) => {
-            Err(element.error(format!("{name}=\"{value}\" is not supported yet")))
-        }
-        _ => Ok(()),
-    }
 }

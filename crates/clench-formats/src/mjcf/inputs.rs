@@ -5,13 +5,22 @@ use crate::LoadError;
 use clench_rigid::model::{ControlInput, GainKind};
 
 /// The inputs that an actuator names, in the order in which they must be named.
-const INPUTS: [(&str, Option<ControlInput>); 5] = [
-    ("pos", Some(ControlInput::Position)),
-    ("vel", Some(ControlInput::Velocity)),
-    ("ff", Some(ControlInput::Feedforward)),
-    ("voltage", Some(ControlInput::Voltage)),
-    ("pressure", None),
+const INPUTS: [(&str, &[ControlInput]); 7] = [
+    ("pos", &[ControlInput::Position]),
+    ("vel", &[ControlInput::Velocity]),
+    ("ff", &[ControlInput::Feedforward]),
+    ("voltage", &[ControlInput::Voltage]),
+    ("pressure", &[]),
+    ("expmap", &[ControlInput::RotationVector; 3]),
+    ("quat", &[ControlInput::Quaternion; 4]),
 ];
+
+/// The first of them that is a way to write an orientation.
+const ROTATIONS: u8 = 5;
+
+fn names() -> String {
+    INPUTS.map(|(name, _)| name).join(", ")
+}
 
 /// Some of [`INPUTS`], one a bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +32,8 @@ impl Inputs {
         let named = |k: &usize| self.0 & (1 << k) != 0;
         (0..INPUTS.len())
             .filter(named)
-            .filter_map(|k| INPUTS[k].1)
+            .flat_map(|k| INPUTS[k].1)
+            .copied()
             .collect()
     }
 }
@@ -41,14 +51,10 @@ pub(crate) fn read_inputs(
     for word in text.split_ascii_whitespace().filter(|_| text != "none") {
         let place = INPUTS.iter().position(|(name, _)| *name == word);
         let Some(place) = place else {
-            return Err(element.error(format!(
-                "input has \"{word}\", not one of pos, vel, ff, voltage, pressure"
-            )));
+            return Err(element.error(format!("input has \"{word}\", not one of {}", names())));
         };
         if found.0 >> place != 0 {
-            return Err(
-                element.error("input must name pos, vel, ff, voltage, pressure in this order")
-            );
+            return Err(element.error(format!("input must name {} in this order", names())));
         }
         found.0 |= 1 << place;
     }
@@ -56,6 +62,8 @@ pub(crate) fn read_inputs(
     let possible = match gain {
         _ if !given => true,
         GainKind::Fixed | GainKind::Affine => ["pos", "vel", "pressure"].contains(&text.trim()),
+        GainKind::So3 => ["expmap", "quat"].contains(&text.trim()),
+        _ if found.0 >= 1 << ROTATIONS => false,
         GainKind::Muscle | GainKind::User => false,
         GainKind::Pid => found.0 != 0,
         GainKind::DcMotor => found.0 != 0 || text == "none",

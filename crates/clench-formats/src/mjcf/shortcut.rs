@@ -2,7 +2,7 @@
 //! `area`.
 
 use super::document::Element;
-use super::inputs::Inputs;
+use super::inputs::{Inputs, read_inputs};
 use crate::LoadError;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
 
@@ -15,6 +15,7 @@ pub(crate) enum Shortcut {
     Position,
     Velocity,
     IntVelocity,
+    Orientation,
     Damper,
     Cylinder,
     Muscle,
@@ -32,6 +33,7 @@ impl Shortcut {
             "position" => Shortcut::Position,
             "velocity" => Shortcut::Velocity,
             "intvelocity" => Shortcut::IntVelocity,
+            "orientation" => Shortcut::Orientation,
             "damper" => Shortcut::Damper,
             "cylinder" => Shortcut::Cylinder,
             "muscle" => Shortcut::Muscle,
@@ -45,6 +47,7 @@ impl Shortcut {
     /// The kind of its gain.
     pub(super) fn gain(self) -> GainKind {
         match self {
+            Shortcut::Orientation => GainKind::So3,
             Shortcut::Damper => GainKind::Affine,
             Shortcut::Muscle => GainKind::Muscle,
             Shortcut::Pid => GainKind::Pid,
@@ -144,6 +147,22 @@ pub(crate) fn read_intvelocity(
         dynamics: DynamicsKind::Integrator,
         ..read_servo(element, inherited)?
     })
+}
+
+/// `orientation`: torque = kp · (rotation to the target) − kv · angular velocity.
+pub(crate) fn read_orientation(
+    element: &Element,
+    inherited: ActuatorParams,
+) -> Result<ActuatorParams, LoadError> {
+    let mut parameters = ActuatorParams {
+        gain: GainKind::So3,
+        bias: BiasKind::So3,
+        inheritrange: 0.0,
+        inputs: inherited.inputs.filter(|_| inherited.gain == GainKind::So3),
+        ..read_servo(element, inherited)?
+    };
+    read_inputs(element, GainKind::So3, &mut parameters.inputs)?;
+    Ok(parameters)
 }
 
 /// `damper`: force = −kv velocity · control.

@@ -6,7 +6,10 @@ use super::resolve::AllNames;
 use super::tendons::require_scalar;
 use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec, histories, transmissions};
 use crate::budget::RAISE;
-use crate::model::{Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, Model, Transmission};
+use crate::dynamics::orientation;
+use crate::model::{
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Transmission,
+};
 
 /// Adds all actuators, and numbers their activations.
 ///
@@ -43,6 +46,10 @@ fn add(
     if spec.dampratio.is_some() && spec.biasprm[1] > 0.0 {
         return Err(spec.error("dampratio needs a gain that is not negative"));
     }
+    let outputs = match spec.gain {
+        GainKind::So3 => orientation::OUTPUTS,
+        _ => 1,
+    };
     let controller = controller(spec, model.na)?;
     let activations = activations(builder, spec, &controller, model)?;
     let controls = model.nu()..model.nu() + controller.inputs.len();
@@ -51,6 +58,16 @@ fn add(
         .collect();
     if actlimited && activations == 0 {
         return Err(spec.error("has an actrange, but no activation"));
+    }
+    if let Transmission::Rotation(j) = transmission
+        && model.joints[j].kind != JointKind::Ball
+    {
+        return Err(spec.error("an orientation servo needs a ball joint"));
+    }
+    if spec.gain == GainKind::So3 && forcelimited && spec.forcerange[0] != 0.0 {
+        return Err(
+            spec.error("the forcerange of an orientation servo bounds a norm: it starts at 0")
+        );
     }
     if spec.gain == GainKind::Muscle {
         check_muscle(spec, "gainprm", &spec.gainprm)?;
@@ -64,6 +81,7 @@ fn add(
         transmission,
         dynamics: spec.dynamics,
         acts: model.na..model.na + activations,
+        outputs: model.nout()..model.nout() + outputs,
         gain: spec.gain,
         bias: spec.bias,
         states: controller.states,
@@ -97,10 +115,14 @@ fn add(
     p.actuator_dampingpoly.push([quadratic, cubic]);
     p.actuator_armature.push(spec.armature);
     if spec.damping != [0.0; 3] || spec.armature != 0.0 {
-        let u = model.actuators.len() - 1;
-        if !model.let_reflect(u) {
-            return Err(spec.error("damping and armature of an actuator are not supported yet where it pulls on no joint"));
-        }
+        // As in MuJoCo, what an orientation servo turns gets neither.
+        use Transmission::{Joint, JointInParent, Rotation, RotationInFrame, Tendon};
+        let (Joint(_) | JointInParent(_) | Tendon(_) | Rotation(_) | RotationInFrame(_)) =
+            transmission
+        else {
+            return Err(spec.error("damping and armature of an actuator need a joint or a tendon"));
+        };
+        model.let_reflect(model.actuators.len() - 1);
     }
     Ok(())
 }
@@ -125,6 +147,7 @@ fn activations(
     let own = match spec.dynamics {
         DynamicsKind::None => 0,
         DynamicsKind::Pid | DynamicsKind::DcMotor => controller.count,
+        DynamicsKind::Integrator if spec.gain == GainKind::So3 => orientation::OUTPUTS,
         _ => 1,
     };
     let actdim = spec.actdim.unwrap_or(own);
@@ -161,7 +184,7 @@ fn check_muscle(spec: &ActuatorSpec, field: &str, prm: &[f64; 10]) -> Result<(),
 /// Whether the actuator pulls back as a spring of its gain does, which may be damped by a ratio.
 fn pulls_back(spec: &ActuatorSpec) -> bool {
     let matches = spec.gain == GainKind::Pid || spec.gainprm[0] == -spec.biasprm[1];
-    spec.bias == BiasKind::Affine && matches
+    matches!(spec.bias, BiasKind::Affine | BiasKind::So3) && matches
 }
 
 /// Whether the actuator is a servo: its force vanishes where the control equals the length.

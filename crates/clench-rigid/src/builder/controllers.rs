@@ -1,5 +1,5 @@
 //! What actuators are controlled by, and the activations that controllers and motors need: MuJoCo's rules for gains of the kinds
-//! `pid` and `dcmotor`.
+//! `pid`, `dcmotor` and `so3`.
 
 use super::element::Element;
 use super::{ActuatorSpec, BuildError};
@@ -30,6 +30,10 @@ pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller
     ];
     match spec.gain {
         GainKind::Pid => pid(spec, first),
+        GainKind::So3 => orientation_servo(spec),
+        _ if spec.bias == BiasKind::So3 => {
+            Err(spec.error("so3 must be the kind of gain and bias, or of none of them"))
+        }
         GainKind::DcMotor if motor == [true; 3] => dc_motor(spec, first),
         _ if motor != [false; 3] => {
             Err(spec
@@ -41,6 +45,35 @@ pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller
             count: 0,
         }),
     }
+}
+
+fn orientation_servo(spec: &ActuatorSpec) -> Result<Controller, BuildError> {
+    let (vector, quaternion) = (
+        vec![ControlInput::RotationVector; 3],
+        vec![ControlInput::Quaternion; 4],
+    );
+    let inputs = spec.inputs.clone().unwrap_or_else(|| vector.clone());
+    let integrates = spec.dynamics == DynamicsKind::Integrator;
+    if spec.bias != BiasKind::So3 {
+        return Err(spec.error("so3 must be the kind of gain and bias, or of none of them"));
+    }
+    if !integrates && spec.dynamics != DynamicsKind::None {
+        return Err(spec.error("a gain of the kind so3 needs an integrator, or no dynamics"));
+    }
+    if spec.gainprm[0] != -spec.biasprm[1] {
+        return Err(spec.error("a gain of the kind so3 needs gainprm[0] = -biasprm[1]"));
+    }
+    if inputs != vector && (inputs != quaternion || integrates) {
+        return Err(spec.error(match integrates {
+            true => "an orientation servo that integrates is controlled by a rotation vector (expmap)",
+            false => "an orientation servo is controlled by a rotation vector (expmap) or a quaternion (quat)",
+        }));
+    }
+    Ok(Controller {
+        inputs,
+        states: ControllerStates::default(),
+        count: 0,
+    })
 }
 
 /// Numbers activations in the order in which they are asked for.

@@ -9,7 +9,7 @@ use super::{BuildError, ModelBuilder};
 use crate::dynamics::inertia::composite_inertia;
 use crate::dynamics::tendon_armature::add_tendon_inertia;
 use crate::dynamics::{tendon, transmission};
-use crate::model::{JointKind, Model};
+use crate::model::{Actuator, JointKind, Model};
 use crate::singular::first_bad_pivot;
 use crate::workspace::Positions;
 use clench_math::Motion;
@@ -283,7 +283,8 @@ fn spring_dampers(springdampers: &[[f64; 2]], model: &mut Model) {
     }
 }
 
-/// A servo of gain kp that moves the inertia m = (J M⁻¹ Jᵀ)⁻¹ is an oscillator, whose damping ratio is kv / (2 √(kp m)).
+/// A servo of gain kp that moves the inertia m = (J M⁻¹ Jᵀ)⁻¹ is an oscillator, whose damping ratio is kv / (2 √(kp m)). Of an orientation
+/// servo J M⁻¹ Jᵀ is the mean about its three axes.
 fn servo_damping(
     builder: &ModelBuilder,
     inverse: &mut InverseInertia,
@@ -294,7 +295,12 @@ fn servo_damping(
         let Some(ratio) = spec.dampratio else {
             continue;
         };
-        let weight = inverse.weight_of(model, transmission::moment(model, pose0, u));
+        let outputs = model.actuators[u].outputs.clone();
+        let share = 1.0 / outputs.len() as f64;
+        let mut weight = 0.0;
+        for output in outputs {
+            weight += share * inverse.weight_of(model, transmission::moment(model, pose0, output));
+        }
         // The gain of what pulls back is this too.
         let stiffness = -spec.biasprm[1];
         let reflected = 1.0 / weight.max(MIN_INERTIA);
@@ -304,7 +310,10 @@ fn servo_damping(
 
 /// `actuator_acc0`, by which muscles scale their force.
 fn unit_accelerations(inverse: &mut InverseInertia, pose0: &Positions<f64>, model: &mut Model) {
-    let norm = |u| inverse.acceleration_of(model, transmission::moment(model, pose0, u));
-    let norms = (0..model.actuators.len()).map(norm).collect();
+    let mut norm = |u: &Actuator| {
+        let arms = transmission::moment(model, pose0, u.outputs.start);
+        inverse.acceleration_of(model, arms)
+    };
+    let norms = model.actuators.iter().map(&mut norm).collect();
     model.params.actuator_acc0 = norms;
 }

@@ -6,7 +6,7 @@ use crate::State;
 use crate::model::{JointKind, Keyframe, Model};
 use clench_math::{Quat, Vec3};
 
-/// Adds all keyframes; a vector that is missing, or shorter than the model's, is completed from the initial state.
+/// Adds all keyframes; a vector that is missing, or shorter than the model's, is completed from the initial state, controls by zeros.
 ///
 /// # Errors
 /// A vector longer than the model's, or one that ends within a position or quaternion of a mocap body.
@@ -21,7 +21,7 @@ pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), B
             qpos: complete(spec, "qpos", 1, &spec.qpos, &initial.qpos)?,
             qvel: complete(spec, "qvel", 1, &spec.qvel, &initial.qvel)?,
             act: complete(spec, "act", 1, &spec.act, &initial.act)?,
-            ctrl: complete(spec, "ctrl", 1, &spec.ctrl, &initial.ctrl)?,
+            ctrl: complete(spec, "ctrl", 1, &spec.ctrl, &vec![0.0; model.nu()])?,
             mocap_pos: complete(
                 spec,
                 "mocap_pos",

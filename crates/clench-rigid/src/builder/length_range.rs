@@ -135,7 +135,9 @@ fn limit(model: &Model, transmission: Transmission) -> Option<[f64; 2]> {
         Transmission::Site(_)
         | Transmission::SiteInFrame(_)
         | Transmission::SliderCrank(_)
-        | Transmission::Body(_) => None,
+        | Transmission::Body(_)
+        | Transmission::Rotation(_)
+        | Transmission::RotationInFrame(_) => None,
     }
 }
 
@@ -242,8 +244,9 @@ impl<'a> Search<'a> {
         }
         self.sim.refresh_positions()?;
         let (model, ws) = (self.sim.model(), self.sim.workspace());
-        let length = ws.position.actuator_length[u];
-        let arms = || transmission::moment(model, &ws.position, u);
+        let output = model.actuators[u].outputs.start;
+        let length = ws.position.actuator_length[output];
+        let arms = || transmission::moment(model, &ws.position, output);
         self.force.fill(0.0);
         for (dof, arm) in arms() {
             self.force[dof] = arm;

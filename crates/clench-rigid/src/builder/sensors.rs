@@ -80,6 +80,9 @@ fn dim(spec: &SensorSpec, target: &SensorTarget, model: &Model) -> Option<usize>
             };
             rays.checked_mul(fields.iter().map(|field| field.size()).sum())
         }
+        (_, &SensorTarget::Element(u)) if spec.kind.attachment() == Attachment::Actuator => {
+            Some(model.actuators[u].outputs.len())
+        }
         (_, SensorTarget::Contacts(query)) => query.count.checked_mul(query.size()),
         _ => Some(spec.kind.dim()),
     }

@@ -39,9 +39,12 @@ pub(super) fn add_trees(
     for actuator in &model.actuators {
         // Of two sites only the first counts, as in MuJoCo.
         let body = match actuator.transmission {
-            Transmission::Joint(j) | Transmission::JointInParent(j) => model.joints[j].body,
+            Transmission::Joint(j) | Transmission::JointInParent(j) | Transmission::Rotation(j) => {
+                model.joints[j].body
+            }
             Transmission::Site(site)
             | Transmission::SiteInFrame([site, _])
+            | Transmission::RotationInFrame([site, _])
             | Transmission::SliderCrank([site, _]) => model.sites[site].body,
             Transmission::Body(body) => body,
             Transmission::Tendon(tendon) => {

@@ -40,6 +40,7 @@ pub(super) fn add_all(
             limited,
             actfrclimited,
             frictionloss: spec.frictionloss > 0.0,
+            reflecting: Vec::new(),
         };
         if spec.armature > 0.0 && tendon.has_obstacles() {
             return Err(spec.error("a tendon that goes around geoms cannot have an armature"));

@@ -4,15 +4,28 @@ use super::element::Element;
 use super::resolve::AllNames;
 use super::{ActuatorSpec, BuildError, TransmissionSpec};
 use crate::dynamics::chains::Chains;
-use crate::model::{Model, Transmission};
+use crate::model::{GainKind, Model, Transmission};
 
 /// The target of an actuator.
 ///
 /// # Errors
-/// A name that nothing has; a slider-crank without a length.
+/// A name that nothing has; a slider-crank without a length; an orientation servo of what does not turn.
 pub(super) fn find(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission, BuildError> {
     let site = |name: &String| names.sites.find(name, spec);
+    let turns = spec.gain == GainKind::So3;
     Ok(match &spec.transmission {
+        TransmissionSpec::Joint(name) if turns => {
+            Transmission::Rotation(names.joints.find(name, spec)?)
+        }
+        TransmissionSpec::SiteInFrame {
+            site: name,
+            reference,
+        } if turns => Transmission::RotationInFrame([site(name)?, site(reference)?]),
+        _ if turns => {
+            return Err(spec.error(
+                "an orientation servo turns a ball joint, or a site in the frame of a refsite",
+            ));
+        }
         TransmissionSpec::Joint(name) => Transmission::Joint(names.joints.find(name, spec)?),
         TransmissionSpec::JointInParent(name) => {
             Transmission::JointInParent(names.joints.find(name, spec)?)
@@ -34,7 +47,7 @@ pub(super) fn find(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission
     })
 }
 
-/// Notes which dofs a transmission acts on.
+/// Notes which dofs a transmission acts on, for each of its lengths.
 pub(super) fn push_dofs(transmission: Transmission, model: &mut Model) {
     let body = |site: usize| model.sites[site].body;
     let between = |bodies: Chains| -> Vec<u32> {
@@ -42,6 +55,17 @@ pub(super) fn push_dofs(transmission: Transmission, model: &mut Model) {
         parts.flat_map(|(part, _)| part).copied().collect()
     };
     let dofs: Vec<u32> = match transmission {
+        Transmission::Rotation(j) => {
+            // Each axis of the joint is a dof.
+            let first = model.joints[j].dof as u32;
+            (0..3).for_each(|axis| model.actuator_dofs.push([first + axis]));
+            return;
+        }
+        Transmission::RotationInFrame(sites) => {
+            let dofs = between(Chains::new(model, sites.map(body)).without_common());
+            (0..3).for_each(|_| model.actuator_dofs.push(dofs.clone()));
+            return;
+        }
         Transmission::Joint(j) | Transmission::JointInParent(j) => {
             let joint = &model.joints[j];
             let dofs = joint.dof..joint.dof + joint.kind.nv();

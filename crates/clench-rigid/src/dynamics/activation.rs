@@ -74,14 +74,20 @@ pub fn activation_rates<T: Real>(
         let Some(a) = actuator.act() else { continue };
         let act = given.act[a];
         let ctrl = || given.ctrl[actuator.controls.start];
-        let at = ActuatorMotion::of(pos, vel, u);
+        let at = ActuatorMotion::of(model, pos, vel, u);
         act_dot[a] = match actuator.dynamics {
             // What a callback of MuJoCo's user would say.
             DynamicsKind::None | DynamicsKind::User => T::ZERO,
             DynamicsKind::Muscle => {
                 muscle::activation_rate(ctrl(), act, &params.actuator_dynprm[u])
             }
-            DynamicsKind::Integrator => ctrl(),
+            DynamicsKind::Integrator => {
+                let controls = &given.ctrl[actuator.controls.clone()];
+                for (a, &rate) in actuator.acts.clone().zip(controls) {
+                    act_dot[a] = rate;
+                }
+                continue;
+            }
             DynamicsKind::Filter | DynamicsKind::FilterExact => {
                 (nearest_setpoint(model, params, u, ctrl(), act) - act) / time_constant(params, u)
             }

@@ -1,10 +1,10 @@
 //! Actuator forces, force = gain · input + bias, and the dof forces they make.
 
 use crate::dynamics::activation::{Given, acting_controls, activation_rates};
-use crate::dynamics::dc_motor;
 use crate::dynamics::gain::{ActuatorMotion, unlimited_force};
 use crate::dynamics::transmission::moment;
-use crate::model::{BiasKind, Model, Params, Transmission};
+use crate::dynamics::{dc_motor, orientation};
+use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Real, kernel};
@@ -36,31 +36,43 @@ pub fn actuation<T: Real>(
     activation_rates(model, params, given, pos, vel, &mut force.act_dot);
     for (u, actuator) in model.actuators.iter().enumerate() {
         if !actuator.disabled {
-            let at = ActuatorMotion::of(pos, vel, u);
             let act_dot = &force.act_dot;
-            force.actuator_force[u] = unlimited_force(model, params, given, act_dot, u, at);
+            let out = &mut force.actuator_force[actuator.outputs.clone()];
+            if actuator.gain == GainKind::So3 {
+                orientation::torque(model, params, given, act_dot, u, (pos, vel)).write(out);
+            } else {
+                let at = ActuatorMotion::of(model, pos, vel, u);
+                out[0] = unlimited_force(model, params, given, act_dot, u, at);
+            }
         }
     }
     limit_tendon_forces(model, params, force);
     for (u, actuator) in model.actuators.iter().enumerate() {
+        let first = actuator.outputs.start;
         if actuator.forcelimited {
-            let [low, high] = params.actuator_forcerange[u];
-            force.actuator_force[u] = force.actuator_force[u].clamp(low, high);
+            let range = params.actuator_forcerange[u];
+            let out = &mut force.actuator_force[actuator.outputs.clone()];
+            match actuator.gain {
+                GainKind::So3 => orientation::limit(out, range),
+                _ => out[0] = out[0].clamp(range[0], range[1]),
+            }
         }
         if actuator.bias == BiasKind::DcMotor && !actuator.disabled {
-            let (act_dot, length) = (&force.act_dot, pos.actuator_length[u]);
+            let (act_dot, length) = (&force.act_dot, pos.actuator_length[first]);
             let given = Given {
                 ctrl: &force.ctrl,
                 act: &state.act,
             };
-            force.actuator_force[u] +=
+            force.actuator_force[first] +=
                 dc_motor::mechanical_force(model, params, given, act_dot, u, length);
         }
         if let Some(t) = limited_tendon(model, actuator.transmission) {
-            force.ten_actuator_force[t] += force.actuator_force[u];
+            force.ten_actuator_force[t] += force.actuator_force[first];
         }
-        for (dof, arm) in moment(model, pos, u) {
-            force.qfrc_actuator[dof] += arm * force.actuator_force[u];
+        for output in actuator.outputs.clone() {
+            for (dof, arm) in moment(model, pos, output) {
+                force.qfrc_actuator[dof] += arm * force.actuator_force[output];
+            }
         }
     }
     finish_joints(model, params, force);
@@ -78,12 +90,12 @@ fn limited_tendon(model: &Model, transmission: Transmission) -> Option<usize> {
 /// Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
 #[inline(always)]
 fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut Forces<T>) {
-    for (u, actuator) in model.actuators.iter().enumerate() {
+    for actuator in &model.actuators {
         if let Some(t) = limited_tendon(model, actuator.transmission) {
-            force.ten_actuator_force[t] += force.actuator_force[u];
+            force.ten_actuator_force[t] += force.actuator_force[actuator.outputs.start];
         }
     }
-    for (u, actuator) in model.actuators.iter().enumerate() {
+    for actuator in &model.actuators {
         if let Some(t) = limited_tendon(model, actuator.transmission) {
             let total = force.ten_actuator_force[t];
             let [low, high] = params.tendon_actfrcrange[t];
@@ -91,7 +103,7 @@ fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut F
             let share = total.clamp(low, high) / T::select(zero, T::ONE, total);
             let within = zero | (total.ge(low) & total.le(high));
             let scale = T::select(within, T::ONE, share);
-            force.actuator_force[u] *= scale;
+            force.actuator_force[actuator.outputs.start] *= scale;
         }
     }
     force.ten_actuator_force.fill(T::ZERO);

@@ -14,9 +14,9 @@ use clench_math::{Real, kernel};
 #[kernel]
 pub fn adhesion<T: Real>(model: &Model, contacts: &[Contact<T>], pos: &mut Positions<T>) {
     let mut moments = std::mem::take(&mut pos.actuator_moment);
-    for (u, actuator) in model.actuators.iter().enumerate() {
+    for actuator in &model.actuators {
         if let Transmission::Body(body) = actuator.transmission {
-            let row = &mut moments[model.actuator_dofs.range(u)];
+            let row = &mut moments[model.actuator_dofs.range(actuator.outputs.start)];
             body_arms(model, contacts, pos, body, row);
         }
     }

@@ -14,7 +14,7 @@
 //! roundings however long the chain. In double precision M's own digits suffice.
 
 use crate::constraint::softness::is_single;
-use crate::dynamics::reflected::dof_armature;
+use crate::dynamics::reflected::{dof_armature, tendon_armature};
 use crate::model::{JointKind, Model, Params};
 use crate::workspace::Positions;
 use clench_math::{Inertia, Mask, Mat3, Real, Vec3, kernel};
@@ -111,7 +111,8 @@ const MAX_DOFS: usize = 20;
 /// tendons is not that of a body: with it M is factored itself.
 pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> {
     let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();
-    let heavy_tendons = model.params.tendon_armature.iter().any(|&m| m > 0.0);
+    let heavy = |t| tendon_armature(model, &model.params, t) > 0.0;
+    let heavy_tendons = (0..model.tendons.len()).any(heavy);
     if is_single::<T>() && longest.is_some_and(|n| n > MAX_DOFS) && !heavy_tendons {
         vec![ArticulatedInertia::ZERO; model.nbody()]
     } else {

@@ -5,13 +5,13 @@
 //! its slope: s′ JᵀJ.
 
 use crate::dynamics::activation::Given;
-use crate::dynamics::dc_motor;
 use crate::dynamics::ellipsoid::ellipsoid_rates;
 use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
 use crate::dynamics::gain::{ActuatorMotion, unlimited_force, unlimited_slope};
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
+use crate::dynamics::{dc_motor, orientation};
 use crate::model::{GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
@@ -34,7 +34,9 @@ pub fn add_velocity_derivatives<T: Real>(
     if model.flags.actuation {
         for u in 0..model.actuators.len() {
             let slope = actuator_derivative(model, params, state, (pos, vel, force), u);
-            add_outer(model, moment(model, pos, u), slope * scale, matrix);
+            for output in model.actuators[u].outputs.clone() {
+                add_outer(model, moment(model, pos, output), slope * scale, matrix);
+            }
         }
     }
     if fluid_acts(model, params) {
@@ -49,7 +51,7 @@ pub fn add_velocity_derivatives<T: Real>(
             }
         }
         for (t, &velocity) in vel.ten_velocity.iter().enumerate() {
-            let damping = tendon_damper(params, t).damping_slope(velocity);
+            let damping = tendon_damper(model, params, t).damping_slope(velocity);
             let row = tendon::gradient(model, pos, t);
             add_outer(model, row, -damping * scale, matrix);
         }
@@ -90,7 +92,10 @@ fn actuator_derivative<T: Real>(
     if actuator.disabled {
         return T::ZERO;
     }
-    let (act_dot, at) = (&force.act_dot, ActuatorMotion::of(pos, vel, u));
+    if actuator.gain == GainKind::So3 {
+        return orientation::slope(model, params, u, &force.actuator_force);
+    }
+    let (act_dot, at) = (&force.act_dot, ActuatorMotion::of(model, pos, vel, u));
     let given = Given {
         ctrl: &force.ctrl,
         act: &state.act,
@@ -103,7 +108,7 @@ fn actuator_derivative<T: Real>(
         // Cogging and friction of a motor come after its limit, which holds its current alone.
         let limited = match is_motor {
             true => unlimited_force(model, params, given, act_dot, u, at),
-            false => force.actuator_force[u],
+            false => force.actuator_force[actuator.outputs.start],
         };
         held |= saturated(limited, params.actuator_forcerange[u]);
     }
@@ -127,11 +132,17 @@ fn actuator_derivative<T: Real>(
     T::select(held, T::ZERO, slope)
 }
 
+/// By what share a force that was scaled to the end of a range may miss it.
+#[inline(always)]
+pub(super) fn scaling_error<T: Real>() -> T {
+    T::new(SUM_ROUNDING).max(T::splat(T::Scalar::EPSILON) * T::new(16.0))
+}
+
 /// Whether a sum of forces that were scaled into a range is at one of its ends. As in MuJoCo, where actuators reach the
 /// range of their tendon and one of them is then cut by its own, what is left of the sum decides.
 #[inline(always)]
 fn reached<T: Real>(sum: T, [low, high]: [T; 2]) -> T::Mask {
-    let rounding = T::new(SUM_ROUNDING).max(T::splat(T::Scalar::EPSILON) * T::new(16.0));
+    let rounding = scaling_error::<T>();
     sum.le(low + low.abs() * rounding) | sum.ge(high - high.abs() * rounding)
 }
 

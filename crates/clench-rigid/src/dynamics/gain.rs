@@ -17,12 +17,13 @@ pub struct ActuatorMotion<T> {
 }
 
 impl<T: Real> ActuatorMotion<T> {
-    /// Of actuator `u`.
+    /// Of actuator `u`, the first where it has several.
     #[inline(always)]
-    pub fn of(pos: &Positions<T>, vel: &Velocities<T>, u: usize) -> Self {
+    pub fn of(model: &Model, pos: &Positions<T>, vel: &Velocities<T>, u: usize) -> Self {
+        let output = model.actuators[u].outputs.start;
         ActuatorMotion {
-            length: pos.actuator_length[u],
-            velocity: vel.actuator_velocity[u],
+            length: pos.actuator_length[output],
+            velocity: vel.actuator_velocity[output],
         }
     }
 }
@@ -47,9 +48,10 @@ pub fn unlimited_force<T: Real>(
         GainKind::DcMotor => dc_motor::electrical_force(model, params, given, act_dot, u, at),
         GainKind::Pid => pid::force(model, params, given, act_dot, u, at),
         GainKind::User => input(),
+        GainKind::So3 => T::ZERO, // Has a torque of three parts, see `orientation`.
     };
     match model.actuators[u].bias {
-        BiasKind::None | BiasKind::DcMotor | BiasKind::User => active,
+        BiasKind::None | BiasKind::DcMotor | BiasKind::So3 | BiasKind::User => active,
         BiasKind::Affine => active + affine(biasprm),
         BiasKind::Muscle => active + Muscle::new(params, u, biasprm, at.length).bias(),
     }
@@ -68,7 +70,7 @@ pub fn unlimited_slope<T: Real>(
     let gainprm = &params.actuator_gainprm[u];
     let input = || input(model, params, given, act_dot, u, at);
     let by_gain = match model.actuators[u].gain {
-        GainKind::Fixed | GainKind::Pid | GainKind::User => T::ZERO,
+        GainKind::Fixed | GainKind::Pid | GainKind::So3 | GainKind::User => T::ZERO,
         GainKind::Affine => gainprm[2] * input(),
         GainKind::Muscle => {
             Muscle::new(params, u, gainprm, at.length).gain_slope(at.velocity) * input()
@@ -77,6 +79,8 @@ pub fn unlimited_slope<T: Real>(
     };
     match model.actuators[u].bias {
         BiasKind::Affine => params.actuator_biasprm[u][2] + by_gain,
-        BiasKind::None | BiasKind::Muscle | BiasKind::DcMotor | BiasKind::User => by_gain,
+        BiasKind::None | BiasKind::Muscle | BiasKind::DcMotor | BiasKind::So3 | BiasKind::User => {
+            by_gain
+        }
     }
 }

@@ -3,6 +3,7 @@
 use crate::dynamics::activation::{nearest_setpoint, next_activation};
 use crate::dynamics::coriolis::Coriolis;
 use crate::dynamics::gain::ActuatorMotion;
+use crate::dynamics::orientation;
 use crate::model::{GainKind, Integrator, JointKind, Model, Params};
 use crate::state::State;
 use crate::workspace::{Positions, Velocities, Workspace};
@@ -148,11 +149,14 @@ pub fn advance_activations<T: Real>(
             } else {
                 act_dot[a]
             };
-            let at = ActuatorMotion::of(pos, vel, u);
+            let at = ActuatorMotion::of(model, pos, vel, u);
             act[a] = next_activation(model, params, u, a, (act[a], rate), at.velocity);
             if actuator.gain == GainKind::Fixed {
                 act[a] = nearest_setpoint(model, params, u, act[a], at.length);
             }
+        }
+        if actuator.gain == GainKind::So3 && !actuator.acts.is_empty() {
+            orientation::shorten(&mut act[actuator.acts.clone()]);
         }
     }
 }

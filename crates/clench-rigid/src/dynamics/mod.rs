@@ -31,6 +31,7 @@ pub mod integrate;
 pub mod jacobian;
 pub mod kinematics;
 pub mod muscle;
+pub mod orientation;
 pub mod passive;
 pub mod pid;
 pub mod polynomial;

@@ -109,7 +109,7 @@ fn dampers<T: Real>(
     }
     for t in 0..model.tendons.len() {
         let velocity = vel.ten_velocity[t];
-        let force = -velocity * tendon_damper(params, t).damping(velocity);
+        let force = -velocity * tendon_damper(model, params, t).damping(velocity);
         add_tendon_force(model, pos, t, force, qfrc);
     }
 }

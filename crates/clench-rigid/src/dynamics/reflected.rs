@@ -15,10 +15,11 @@ pub fn dof_damper<T: Real>(model: &Model, params: &Params<T>, i: usize) -> Polyn
     add_dampers(params, actuators, own)
 }
 
-/// The force law of the damper of tendon `t`.
+/// The force law of the damper of tendon `t`: its own and that of its actuators.
 #[inline(always)]
-pub fn tendon_damper<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
-    Polynomial::new(params.tendon_damping[t], params.tendon_dampingpoly[t])
+pub fn tendon_damper<T: Real>(model: &Model, params: &Params<T>, t: usize) -> Polynomial<T> {
+    let own = Polynomial::new(params.tendon_damping[t], params.tendon_dampingpoly[t]);
+    add_dampers(params, &model.tendons[t].reflecting, own)
 }
 
 #[inline(always)]
@@ -42,6 +43,13 @@ fn add_dampers<T: Real>(
 pub fn dof_armature<T: Real>(model: &Model, params: &Params<T>, i: usize) -> T {
     let actuators = &model.joints[model.dofs[i].joint].reflecting;
     add_armatures(params, actuators, params.dof_armature[i])
+}
+
+/// The inertia of tendon `t`: its own armature and that of its actuators.
+#[inline(always)]
+pub fn tendon_armature<T: Real>(model: &Model, params: &Params<T>, t: usize) -> T {
+    let actuators = &model.tendons[t].reflecting;
+    add_armatures(params, actuators, params.tendon_armature[t])
 }
 
 #[inline(always)]

@@ -50,6 +50,8 @@ impl<T: Real> Setpoints<T> {
                 ControlInput::Velocity => setpoints.velocity = value,
                 ControlInput::Feedforward => setpoints.feedforward = value,
                 ControlInput::Voltage | ControlInput::Command => setpoints.voltage = value,
+                // Of orientation servos, which have no controller.
+                ControlInput::RotationVector | ControlInput::Quaternion => {}
             }
         }
         setpoints

@@ -77,9 +77,7 @@ pub fn relative_pose<T: Real>(
     let (along, about) = (Vec3::from_slice(gear), Vec3::from_slice(&gear[3..]));
     let axes = &pos.site_xmat[reference];
     let shift = axes.transpose_mul(pos.site_xpos[site] - pos.site_xpos[reference]);
-    let orientation =
-        |site: usize| -> Quat<T> { pos.xquat[model.sites[site].body] * params.site_quat[site] };
-    let turn = orientation(site).difference(orientation(reference));
+    let turn = relative_turn(model, params, pos, [site, reference]);
     let pull = |site: usize, sign: T| Pull {
         site,
         force: *axes * (along * sign),
@@ -88,6 +86,42 @@ pub fn relative_pose<T: Real>(
     let pulls = [pull(site, T::ONE), pull(reference, -T::ONE)];
     relative_arms(model, pos, pulls, row);
     shift.dot(along) + turn.dot(about)
+}
+
+/// The rotation vector of a site in the frame of another.
+#[inline(always)]
+pub fn relative_turn<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    sites: [usize; 2],
+) -> Vec3<T> {
+    let orientation =
+        |site: usize| -> Quat<T> { pos.xquat[model.sites[site].body] * params.site_quat[site] };
+    orientation(sites[0]).difference(orientation(sites[1]))
+}
+
+/// Moment arms of a couple about an axis of a site, against another site.
+#[inline(always)]
+pub fn turning_arms<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    [site, reference]: [usize; 2],
+    axis: usize,
+    row: &mut [T],
+) {
+    let couple = pos.site_xmat[site].column(axis);
+    let pull = |site: usize, couple: Vec3<T>| Pull {
+        site,
+        force: Vec3::ZERO,
+        couple,
+    };
+    relative_arms(
+        model,
+        pos,
+        [pull(site, couple), pull(reference, -couple)],
+        row,
+    );
 }
 
 /// Length and moment arms of a slider-crank: a rod of length r joins the crank's pin, at v from the slider's site, to a slider

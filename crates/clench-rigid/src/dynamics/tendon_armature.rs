@@ -4,6 +4,7 @@
 //! left out, so that the mass matrix keeps its pattern.
 
 use crate::dynamics::derivatives::add_outer;
+use crate::dynamics::reflected::tendon_armature;
 use crate::dynamics::tendon::{add_tendon_force, gradient};
 use crate::dynamics::tendon_path::bias_acceleration;
 use crate::model::{Model, Params};
@@ -19,7 +20,8 @@ pub fn add_tendon_inertia<T: Real>(
     pos: &Positions<T>,
     mass: &mut TreeMatrix<T>,
 ) {
-    for (t, &armature) in params.tendon_armature.iter().enumerate() {
+    for t in 0..model.tendons.len() {
+        let armature = tendon_armature(model, params, t);
         add_outer(model, gradient(model, pos, t), armature, mass);
     }
 }
@@ -34,7 +36,8 @@ pub fn add_tendon_bias<T: Real>(
     qvel: &[T],
     qfrc_bias: &mut [T],
 ) {
-    for (t, &armature) in params.tendon_armature.iter().enumerate() {
+    for t in 0..model.tendons.len() {
+        let armature = tendon_armature(model, params, t);
         if !model.tendons[t].is_spatial() || armature.eq(T::ZERO).all() {
             continue;
         }

@@ -1,18 +1,20 @@
 //! Transmissions: the length of each actuator and its moment arms, ∂length/∂q along each dof.
 
-use crate::dynamics::site_transmission::{relative_pose, slider_crank, wrench_arms};
-use crate::model::{Joint, JointKind, Model, Params, Transmission};
+use crate::dynamics::site_transmission::{
+    relative_pose, relative_turn, slider_crank, turning_arms, wrench_arms,
+};
+use crate::model::{Actuator, Joint, JointKind, Model, Params, Transmission};
 use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 
-/// The dofs that an actuator acts on, with its moment arm along each.
+/// The dofs that a force of an actuator, one of `Model::nout`, acts on, with its moment arm along each.
 #[inline(always)]
 pub fn moment<'a, T: Real>(
     model: &'a Model,
     pos: &'a Positions<T>,
-    actuator: usize,
+    output: usize,
 ) -> impl Iterator<Item = (usize, T)> + Clone + 'a {
-    model.actuator_dofs.row(&pos.actuator_moment, actuator)
+    model.actuator_dofs.row(&pos.actuator_moment, output)
 }
 
 /// `actuator_length` and `actuator_moment`, after the kinematics and the tendons.
@@ -29,8 +31,9 @@ pub fn transmissions<T: Real>(
     let mut moments = std::mem::take(&mut pos.actuator_moment);
     for (u, actuator) in model.actuators.iter().enumerate() {
         let gear = &params.actuator_gear[u];
-        let row = &mut moments[model.actuator_dofs.range(u)];
-        pos.actuator_length[u] = match actuator.transmission {
+        let first = actuator.outputs.start;
+        let row = &mut moments[model.actuator_dofs.range(first)];
+        pos.actuator_length[first] = match actuator.transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 let joint = &model.joints[j];
                 let in_parent = matches!(actuator.transmission, Transmission::JointInParent(_));
@@ -52,9 +55,37 @@ pub fn transmissions<T: Real>(
             Transmission::SliderCrank(sites) => slider_crank(model, params, pos, u, sites, row),
             // Its moment arms wait for the contacts, see `adhesion`.
             Transmission::Body(_) => T::ZERO,
+            Transmission::Rotation(_) | Transmission::RotationInFrame(_) => {
+                rotation(model, params, pos, actuator, &mut moments);
+                continue;
+            }
         };
     }
     pos.actuator_moment = moments;
+}
+
+/// Writes the three lengths and moment arms of an orientation: those of its rotation vector, about the axes of what is turned.
+#[inline(always)]
+fn rotation<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &mut Positions<T>,
+    actuator: &Actuator,
+    moments: &mut [T],
+) {
+    let vector = match actuator.transmission {
+        Transmission::Rotation(j) => pos.jnt_turn[j].to_rotation_vector(),
+        Transmission::RotationInFrame(sites) => relative_turn(model, params, pos, sites),
+        _ => return,
+    };
+    vector.write(&mut pos.actuator_length[actuator.outputs.clone()]);
+    for (axis, output) in actuator.outputs.clone().enumerate() {
+        let row = &mut moments[model.actuator_dofs.range(output)];
+        match actuator.transmission {
+            Transmission::RotationInFrame(sites) => turning_arms(model, pos, sites, axis, row),
+            _ => row.fill(T::ONE),
+        }
+    }
 }
 
 /// Writes the moment arms on a joint that stands at `q`, or at the rotation `turn`, and returns the length.

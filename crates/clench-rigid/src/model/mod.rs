@@ -156,32 +156,37 @@ impl Model {
     pub fn nu(&self) -> usize {
         self.actuators.last().map_or(0, |last| last.controls.end)
     }
+    /// Number of forces of actuators. Most actuators have one.
+    pub fn nout(&self) -> usize {
+        self.actuators.last().map_or(0, |last| last.outputs.end)
+    }
     /// The buffers of past values.
     pub fn histories(&self) -> impl Iterator<Item = &History> {
         let of_actuators = self.actuators.iter().filter_map(|a| a.history.as_ref());
         let of_sensors = self.sensors.iter().filter_map(|s| s.history.as_ref());
         of_actuators.chain(of_sensors)
     }
-    /// Lets actuator `u` damp its target and add inertia to it; false where the target cannot be damped.
-    pub(crate) fn let_reflect(&mut self, u: usize) -> bool {
+    /// Lets actuator `u` damp its target and add inertia to it, if that is a joint or a tendon. Others have neither, as in MuJoCo.
+    pub(crate) fn let_reflect(&mut self, u: usize) {
         let reflecting = match self.actuators[u].transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 &mut self.joints[j].reflecting
             }
-            _ => return false,
+            Transmission::Tendon(t) => &mut self.tendons[t].reflecting,
+            _ => return,
         };
         if let Err(place) = reflecting.binary_search(&u) {
             reflecting.insert(place, u);
         }
-        true
     }
-    /// Whether actuator `u` may damp its target, or add inertia to it.
+    /// Whether actuator `u` may damp its target, or add inertia to it, as far as that has any.
     fn reflects(&self, u: usize) -> bool {
         match self.actuators[u].transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 self.joints[j].reflecting.contains(&u)
             }
-            _ => false,
+            Transmission::Tendon(t) => self.tendons[t].reflecting.contains(&u),
+            _ => true,
         }
     }
     /// Numbers that all sensors give.

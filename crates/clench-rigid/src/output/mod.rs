@@ -122,14 +122,14 @@ outputs! {
     ten_J [m.tendons.len(), m.nv] of Positions => dense(s.model, (&s.model.tendon_dofs, s.model.tendons.len()), &s.ws.position.ten_jacobian, out);
     /// Velocities of tendons (ntendon).
     ten_velocity [m.tendons.len()] of Everything => out.extend_from_slice(&s.ws.velocity.ten_velocity);
-    /// Lengths of actuators (nactuator).
-    actuator_length [m.actuators.len()] of Positions => out.extend_from_slice(&s.ws.position.actuator_length);
-    /// Moment arms of actuators, ∂length/∂q (nactuator, nv); those that act on contacts have theirs from the contacts.
-    actuator_moment [m.actuators.len(), m.nv] of Everything => dense(s.model, (&s.model.actuator_dofs, s.model.actuators.len()), &s.ws.position.actuator_moment, out);
-    /// Velocities of actuators (nactuator).
-    actuator_velocity [m.actuators.len()] of Everything => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
-    /// Forces of actuators (nactuator).
-    actuator_force [m.actuators.len()] of Everything => out.extend_from_slice(&s.ws.force.actuator_force);
+    /// Lengths of actuators, three of an orientation servo and one of any other (nout).
+    actuator_length [m.nout()] of Positions => out.extend_from_slice(&s.ws.position.actuator_length);
+    /// Moment arms of actuators, ∂length/∂q (nout, nv); those that act on contacts have theirs from the contacts.
+    actuator_moment [m.nout(), m.nv] of Everything => dense(s.model, (&s.model.actuator_dofs, s.model.nout()), &s.ws.position.actuator_moment, out);
+    /// Velocities of actuators (nout).
+    actuator_velocity [m.nout()] of Everything => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
+    /// Forces of actuators (nout).
+    actuator_force [m.nout()] of Everything => out.extend_from_slice(&s.ws.force.actuator_force);
     /// Power that actuators put in, W: the sum over those that drive. Those that brake do not count.
     actuator_power [] of Everything => out.push(driving_power(s.ws));
     /// Forces of actuators along dofs (nv).

@@ -6,7 +6,7 @@
 
 use super::Source;
 use crate::constraint::{ConstraintSource, equality_slope};
-use crate::dynamics::reflected::tendon_damper;
+use crate::dynamics::reflected::{tendon_armature, tendon_damper};
 use crate::dynamics::spring::{tendon_spring, tendon_stretch};
 use crate::dynamics::tendon::gradient;
 use crate::dynamics::tendon_path::{Span, bias_acceleration, each_span};
@@ -36,14 +36,14 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     }
     if model.flags.damper {
         let velocity = ws.velocity.ten_velocity[t];
-        force -= velocity * tendon_damper(params, t).damping(velocity);
+        force -= velocity * tendon_damper(model, params, t).damping(velocity);
     }
     for (u, actuator) in model.actuators.iter().enumerate() {
         if actuator.transmission == Transmission::Tendon(t) {
-            force += ws.force.actuator_force[u] * params.actuator_gear[u][0];
+            force += ws.force.actuator_force[actuator.outputs.start] * params.actuator_gear[u][0];
         }
     }
-    let armature = params.tendon_armature[t];
+    let armature = tendon_armature(model, params, t);
     if !armature.eq(T::ZERO).all() {
         let (pos, vel) = (&ws.position, &ws.velocity);
         let mut acceleration = bias_acceleration(model, params, pos, vel, &s.state.qvel, t);

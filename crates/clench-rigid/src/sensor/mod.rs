@@ -199,6 +199,7 @@ impl<'a, T: Real> Reading<'a, T> {
         use SensorKind as Kind;
         let (model, ws, state) = (self.model, self.ws, self.state);
         let joint = || &model.joints[element];
+        let outputs = || model.actuators[element].outputs.clone();
         let limit = |of: ConstraintSource| self.limit(of);
         let joint_limit = || limit(ConstraintSource::JointLimit(element));
         let tendon_limit = || limit(ConstraintSource::TendonLimit(element));
@@ -228,9 +229,9 @@ impl<'a, T: Real> Reading<'a, T> {
             Kind::TendonLimitPos => out[0] = tendon_limit().pos,
             Kind::TendonLimitVel => out[0] = tendon_limit().vel,
             Kind::TendonLimitFrc => out[0] = tendon_limit().force,
-            Kind::ActuatorPos => out[0] = ws.position.actuator_length[element],
-            Kind::ActuatorVel => out[0] = ws.velocity.actuator_velocity[element],
-            Kind::ActuatorFrc => out[0] = ws.force.actuator_force[element],
+            Kind::ActuatorPos => out.copy_from_slice(&ws.position.actuator_length[outputs()]),
+            Kind::ActuatorVel => out.copy_from_slice(&ws.velocity.actuator_velocity[outputs()]),
+            Kind::ActuatorFrc => out.copy_from_slice(&ws.force.actuator_force[outputs()]),
             Kind::SubtreeCom => ws.position.subtree_com[element].write(out),
             Kind::SubtreeLinVel => self.subtree(element).velocity.write(out),
             Kind::SubtreeAngMom => self.subtree(element).angular_momentum.write(out),
@@ -241,14 +242,9 @@ impl<'a, T: Real> Reading<'a, T> {
     /// The total force of a tendon's actuators.
     fn tendon_actuator_force(&self, tendon: usize) -> T {
         let mut sum = T::ZERO;
-        for (actuator, &force) in self
-            .model
-            .actuators
-            .iter()
-            .zip(&self.ws.force.actuator_force)
-        {
+        for actuator in &self.model.actuators {
             if actuator.transmission == Transmission::Tendon(tendon) {
-                sum += force;
+                sum += self.ws.force.actuator_force[actuator.outputs.start];
             }
         }
         sum

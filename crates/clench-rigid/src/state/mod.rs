@@ -3,7 +3,7 @@
 pub mod kind;
 mod table;
 
-use crate::model::{Joint, Keyframe, Model};
+use crate::model::{ControlInput, Joint, Keyframe, Model};
 use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast};
 use kind::Kind;
 use std::ops::Range;
@@ -145,6 +145,11 @@ impl<T: Real> State<T> {
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
         broadcast(&model.params.qpos0, &mut state.qpos);
+        for actuator in &model.actuators {
+            if actuator.inputs.first() == Some(&ControlInput::Quaternion) {
+                state.ctrl[actuator.controls.start] = T::ONE; // No rotation.
+            }
+        }
         let step = model.params.timestep;
         for history in model.histories() {
             history.begin(step, &mut state.history);

@@ -5,8 +5,8 @@ use super::{NONE, Rule, section};
 pub(super) const RULES: &[Rule] = &[
     section(
         "actuator",
-        "general motor position velocity intvelocity damper cylinder muscle pid dcmotor adhesion",
-        "orientation plugin",
+        "general motor position velocity intvelocity orientation damper cylinder muscle pid dcmotor adhesion",
+        "plugin",
     ),
     Rule {
         element: "general",
@@ -44,6 +44,13 @@ pub(super) const RULES: &[Rule] = &[
         read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
             cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited ctrllimited \
             actlimited actrange kp kv dampratio inheritrange",
+        ignored: "user",
+        ..NONE
+    },
+    Rule {
+        element: "orientation",
+        read: "name class group nsample interp delay joint site refsite ctrlrange forcerange forcelimited kp kv \
+            dampratio input",
         ignored: "user",
         ..NONE
     },

@@ -63,8 +63,7 @@ pub(super) const RULES: &[Rule] = &[
         read: "class",
         children: "default",
         once: "mesh texture material joint geom site camera light pair equality tendon general motor position \
-            velocity intvelocity damper cylinder muscle pid dcmotor adhesion",
-        later_children: "orientation",
+            velocity intvelocity orientation damper cylinder muscle pid dcmotor adhesion",
         ..NONE
     },
     section("extension", "", "plugin"),

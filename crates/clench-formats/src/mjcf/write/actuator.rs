@@ -24,6 +24,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         gain,
         bias,
         states: _,
+        outputs: _,
         controls,
         inputs,
         ctrllimited,
@@ -35,13 +36,12 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         group,
     } = &model.actuators[u];
     let p = &model.params;
-    let &[ControlInput::Command] = &inputs[..] else {
-        let reason = "the inputs of controllers and motors are not written yet";
-        return Err(SaveError::new(label("actuator", name, u), reason));
+    let pulls_back = match bias {
+        BiasKind::Affine | BiasKind::So3 => {
+            *gain == GainKind::Pid || p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1]
+        }
+        _ => false,
     };
-    let (control, clamped) = (controls.start, ctrllimited[0]);
-    let pulls_back =
-        *bias == BiasKind::Affine && p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1];
     if pulls_back && p.actuator_biasprm[u][2] > 0.0 {
         let reason = "MJCF takes its positive velocity coefficient for a damping ratio";
         return Err(SaveError::new(label("actuator", name, u), reason));
@@ -55,7 +55,9 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         Transmission::JointInParent(j) => tag.text("jointinparent", joint(j)?),
         Transmission::Tendon(t) => tag.text("tendon", named("tendon", &model.tendons[t].name, t)?),
         Transmission::Site(s) => tag.text("site", site(s)?),
-        Transmission::SiteInFrame([s, reference]) => {
+        Transmission::Rotation(j) => tag.text("joint", joint(j)?),
+        Transmission::SiteInFrame([s, reference])
+        | Transmission::RotationInFrame([s, reference]) => {
             tag.text("site", site(s)?).text("refsite", site(reference)?)
         }
         Transmission::SliderCrank([crank, slider]) => tag
@@ -64,9 +66,8 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
             .numbers("cranklength", &[p.actuator_cranklength[u]]),
         Transmission::Body(b) => tag.text("body", body_name(model, b)?),
     };
-    let mut tag = tag
-        .numbers_unless("ctrlrange", &p.actuator_ctrlrange[control], &[0.0; 2])
-        .boolean("ctrllimited", clamped)
+    let ranges = &p.actuator_ctrlrange[controls.clone()];
+    let mut tag = write_controls(inputs, ctrllimited, ranges, tag)
         .numbers_unless("forcerange", &p.actuator_forcerange[u], &[0.0; 2])
         .boolean("forcelimited", *forcelimited)
         .numbers_unless("actrange", &p.actuator_actrange[u], &[0.0; 2])
@@ -83,7 +84,9 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         .number_unless("armature", p.actuator_armature[u], 0.0)
         .integer_unless("group", (*group).into(), 0);
     let usual = usize::from(*dynamics != DynamicsKind::None);
-    if acts.len() != usual {
+    // Those of controllers, motors and orientation servos follow from their parameters.
+    let follows = matches!(gain, GainKind::Pid | GainKind::DcMotor | GainKind::So3);
+    if acts.len() != usual && !follows {
         tag = tag.integer("actdim", acts.len() as i64);
     }
     if let Some(history) = history {
@@ -94,6 +97,51 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
     }
     tag.end();
     Ok(())
+}
+
+/// What the controls are, and their ranges.
+fn write_controls<'a>(
+    inputs: &[ControlInput],
+    limited: &[bool],
+    ranges: &[[f64; 2]],
+    mut tag: Tag<'a>,
+) -> Tag<'a> {
+    let names = inputs.iter().filter_map(|input| match input {
+        ControlInput::Command => None,
+        ControlInput::Position => Some("pos"),
+        ControlInput::Velocity => Some("vel"),
+        ControlInput::Feedforward => Some("ff"),
+        ControlInput::Voltage => Some("voltage"),
+        ControlInput::RotationVector => Some("expmap"),
+        ControlInput::Quaternion => Some("quat"),
+    });
+    let mut names: Vec<&str> = names.collect();
+    names.dedup();
+    if inputs.is_empty() {
+        names.push("none");
+    }
+    if !names.is_empty() {
+        tag = tag.words("input", names.iter().copied());
+    }
+    // Velocity and feedforward of a PID controller have ranges of their own; all other controls share one.
+    let own = |input: &ControlInput| match input {
+        ControlInput::Velocity => "velrange",
+        ControlInput::Feedforward => "ffrange",
+        _ => "ctrlrange",
+    };
+    let mut written: Vec<&str> = Vec::new();
+    for ((input, range), &limited) in inputs.iter().zip(ranges).zip(limited) {
+        let attribute = own(input);
+        if written.contains(&attribute) {
+            continue;
+        }
+        written.push(attribute);
+        tag = tag.numbers_unless(attribute, range, &[0.0; 2]);
+        if attribute == "ctrlrange" {
+            tag = tag.boolean("ctrllimited", limited);
+        }
+    }
+    tag
 }
 
 /// Which past values are kept, and how late they arrive.
@@ -137,6 +185,7 @@ fn gain_type(kind: GainKind) -> &'static str {
         GainKind::Muscle => "muscle",
         GainKind::DcMotor => "dcmotor",
         GainKind::Pid => "pid",
+        GainKind::So3 => "so3",
         GainKind::User => "user",
     }
 }
@@ -147,6 +196,7 @@ fn bias_type(kind: BiasKind) -> &'static str {
         BiasKind::Affine => "affine",
         BiasKind::Muscle => "muscle",
         BiasKind::DcMotor => "dcmotor",
+        BiasKind::So3 => "so3",
         BiasKind::User => "user",
     }
 }

@@ -137,6 +137,7 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
         limited,
         actfrclimited,
         frictionloss: _,
+        reflecting: _,
     } = tendon;
     let p = &model.params;
     if p.tendon_lengthspring[t] == [-1.0; 2] && p.tendon_length0[t] != -1.0 {

@@ -20,6 +20,10 @@ pub enum Transmission {
     SliderCrank([usize; 2]),
     /// The contacts of a body.
     Body(usize),
+    /// The rotation of a ball joint about all axes of the child.
+    Rotation(usize),
+    /// The rotation of the first site in the frame of the second, about all axes of the first.
+    RotationInFrame([usize; 2]),
 }
 
 /// How a control becomes an activation.
@@ -58,6 +62,8 @@ pub enum GainKind {
     DcMotor,
     /// Setpoints of a PID controller.
     Pid,
+    /// Stiffness of an orientation servo; see [`orientation`](crate::dynamics::orientation).
+    So3,
     /// MuJoCo leaves it to a callback; without one it is 1.
     User,
 }
@@ -74,6 +80,8 @@ pub enum BiasKind {
     Muscle,
     /// Back-EMF, cogging and friction of a direct-current motor.
     DcMotor,
+    /// Damping of an orientation servo.
+    So3,
     /// MuJoCo leaves it to a callback; without one it is zero.
     User,
 }
@@ -91,6 +99,10 @@ pub enum ControlInput {
     Feedforward,
     /// The voltage at the terminals of a motor, beside its controller's.
     Voltage,
+    /// A part of the rotation vector that an orientation servo goes for.
+    RotationVector,
+    /// A part of the quaternion that it goes for.
+    Quaternion,
 }
 
 /// Which activations hold a state of a controller or motor.
@@ -119,6 +131,8 @@ pub struct Actuator {
     pub dynamics: DynamicsKind,
     /// Its activations; the last one acts.
     pub acts: Range<usize>,
+    /// Its lengths, velocities and forces: one, but for orientation servos.
+    pub outputs: Range<usize>,
     /// Its gain.
     pub gain: GainKind,
     /// Its bias.

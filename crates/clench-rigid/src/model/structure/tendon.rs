@@ -35,6 +35,8 @@ pub struct Tendon {
     pub actfrclimited: bool,
     /// It may have dry friction.
     pub frictionloss: bool,
+    /// The actuators that may damp it or add inertia to it, in order.
+    pub reflecting: Vec<usize>,
 }
 
 /// A part of a spatial tendon between two sites that follow each other.
