@@ -20,6 +20,7 @@ pub fn test() -> Result<(), String> {
         "steps",
         "refusals",
         "gymnasium",
+        "dm_control",
         "gpu",
         "silhouettes",
     ] {
@@ -29,6 +30,7 @@ pub fn test() -> Result<(), String> {
     // A part of Mesa that would choose the device complains on stderr where there is no display.
     tests.env("NODEVICE_SELECT", "1");
     tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
+    tests.env("CLENCH_DM_CONTROL", python::dm_control_suite());
     run(tests)
 }
 

@@ -48,6 +48,11 @@ pub fn gymnasium_assets() -> Result<PathBuf, String> {
     Ok(PathBuf::from(package).join("envs/mujoco/assets"))
 }
 
+/// The folder of the models of dm-control's suite.
+pub fn dm_control_suite() -> PathBuf {
+    root().join(".venv/models/dm_control/suite")
+}
+
 /// `.venv` with pip in it. One left half made by an interrupted run is made again.
 fn make_environment() -> Result<(), String> {
     let has_pip = |mut c: std::process::Command| c.output().is_ok_and(|o| o.status.success());

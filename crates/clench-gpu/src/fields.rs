@@ -54,6 +54,7 @@ fields! {
     state_fields(m, c);
     qpos: m.nq;
     qvel: m.nv;
+    act: m.na;
     qacc_warmstart: m.nv;
     ctrl: m.nu();
     qfrc_applied: m.nv;
@@ -61,6 +62,8 @@ fields! {
     xfrc_applied: 6 * m.nbody();
     mocap_pos: 3 * m.nmocap;
     mocap_quat: 4 * m.nmocap;
+    /// Zero where an equality is off.
+    eq_active: m.equalities.len();
 }
 
 fields! {
@@ -75,6 +78,8 @@ fields! {
     xaxis: 3 * m.joints.len();
     geom_xpos: 3 * m.geoms.len();
     geom_xmat: 9 * m.geoms.len();
+    site_xpos: 3 * m.sites.len();
+    site_xmat: 9 * m.sites.len();
     subtree_com: 3 * m.nbody();
     cinert: 10 * m.nbody();
     crb: 10 * m.nbody();
@@ -91,12 +96,19 @@ fields! {
     qld_inverse: m.nv;
     qfrc_passive: m.nv;
     qfrc_bias: m.nv;
+    ten_length: m.tendons.len();
+    ten_velocity: m.tendons.len();
+    ten_jacobian: m.tendon_dofs.len();
+    qfrc_gravcomp: m.nv;
+    actuator_moment: m.actuator_dofs.len();
+    act_dot: m.na;
     actuator_length: m.actuators.len();
     actuator_velocity: m.actuators.len();
     actuator_force: m.actuators.len();
     qfrc_actuator: m.nv;
     qfrc_smooth: m.nv;
     qacc_smooth: m.nv;
+    polytope: c.polytope;
     contacts: CONTACT_SIZE * c.contacts;
     qacc: m.nv;
     qfrc_constraint: m.nv;
@@ -106,6 +118,8 @@ fields! {
     mean_qacc: m.nv;
     start_qpos: m.nq;
     start_qvel: m.nv;
+    start_act: m.na;
+    mean_act_dot: m.na;
     start_warmstart: m.nv;
 }
 

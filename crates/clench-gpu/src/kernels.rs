@@ -52,22 +52,28 @@ macro_rules! kernels {
 kernels! {
     /// Puts environments into the initial state.
     RESTART = "restart", Thread: "restart";
-    /// Poses, spatial inertias, the mass matrix and its factor.
-    POSITIONS = "positions", Thread: "kinematics", "com", "tree", "inertia";
+    /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
+    POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "tendon",
+        "transmission", "inertia";
     /// Contacts.
-    CONTACTS = "contacts", Thread: "contact_pool", "plane", "round", "detect";
+    CONTACTS = "contacts", Thread: "contact_pool", "plane", "round", "cylinder", "penetration", "box_round",
+        "convex/body", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "velocity", "passive", "forces";
+    FORCES = "forces", Thread: "tree", "velocity", "passive", "tendon_forces", "muscle", "activation", "gain",
+        "actuation", "forces";
     /// Which constraints act, and how soft they are.
-    CONSTRAINTS = "constraints", Thread: "softness", "constraints";
+    CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "constraints";
     /// Their Jacobians.
-    ASSEMBLE = "assemble", Workgroup: "group", "assembly";
+    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "newton";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Thread: "tree", "integrate";
+    EULER = "euler", Thread: "tree", "activation", "integrate", "euler";
+    /// The same, implicit in velocity derivatives.
+    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "chains", "muscle", "activation", "gain", "integrate", "derivatives",
+        "gyroscopic", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "activation", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.

@@ -119,6 +119,7 @@ impl Pipelines {
                 let stage = |k: u8| compile(&kernels::RUNGE_KUTTA, &[("stage", f64::from(k))]);
                 (0..4).map(stage).collect::<Result<_, _>>()?
             }
+            Integrator::ImplicitFast => vec![compile(&kernels::IMPLICIT_FAST, &[])?],
             _ => vec![compile(&kernels::EULER, &[])?],
         };
         let forward = forward.iter().map(|kernel| compile(kernel, &[]));

@@ -22,6 +22,9 @@ impl Tables {
                 "qpos" => row.extend(&state.qpos),
                 "mocap_pos" => row.extend(state.mocap_pos.iter().flat_map(|v| v.to_array())),
                 "mocap_quat" => row.extend(state.mocap_quat.iter().flat_map(|q| q.to_array())),
+                "eq_active" => {
+                    row.extend(state.eq_active.iter().map(|&on| f64::from(u8::from(on))))
+                }
                 _ => row.resize(row.len() + field.width, 0.0),
             }
         }
@@ -30,8 +33,9 @@ impl Tables {
 }
 
 impl GpuBatch {
-    /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `qacc_warmstart`, `ctrl`, `qfrc_applied`,
-    /// `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`, `mocap_quat`.
+    /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `qacc_warmstart`, `ctrl`,
+    /// `qfrc_applied`, `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`,
+    /// `mocap_quat`, `eq_active` (zero where an equality is off).
     ///
     /// # Errors
     /// A name that no such field has; a wrong count; a number that is not finite, or a position or velocity beyond 1e10.

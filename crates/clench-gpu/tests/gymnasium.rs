@@ -2,31 +2,25 @@
 
 mod common;
 
-use std::path::PathBuf;
-use std::sync::Arc;
-
-/// Each, and how far from its initial state.
-const ROBOTS: [(&str, f64); 9] = [
-    ("half_cheetah", 0.3),
-    ("hopper", 0.5),
-    ("walker2d_v5", 0.5),
-    ("ant", 0.5),
-    ("swimmer", 1.0),
-    ("inverted_pendulum", 0.5),
-    ("inverted_double_pendulum", 0.5),
-    ("humanoid", 0.5),
-    ("humanoidstandup", 0.5),
+/// Each, on how many states, and how far from its initial one.
+const ROBOTS: &[(&str, usize, f64)] = &[
+    ("half_cheetah", 100, 0.3),
+    ("hopper", 100, 0.5),
+    ("walker2d", 100, 0.5),
+    ("walker2d_v5", 100, 0.5),
+    ("ant", 100, 0.5),
+    ("swimmer", 100, 1.0),
+    ("point", 100, 0.5),
+    ("pusher", 100, 0.5),
+    ("pusher_v5", 100, 0.5),
+    ("reacher", 100, 0.5),
+    ("inverted_pendulum", 100, 0.5),
+    ("inverted_double_pendulum", 100, 0.5),
+    ("humanoid", 100, 0.5),
+    ("humanoidstandup", 100, 0.5),
 ];
 
 #[test]
 fn stages_agree_on_gymnasiums_robots() {
-    let Some(folder) = std::env::var_os("CLENCH_GYMNASIUM").map(PathBuf::from) else {
-        eprintln!("skipped: CLENCH_GYMNASIUM names no folder");
-        return;
-    };
-    for (name, spread) in ROBOTS {
-        let path = folder.join(format!("{name}.xml"));
-        let model = clench_formats::load(path).expect("a robot of Gymnasium loads");
-        common::agree(&Arc::new(model), 100, spread);
-    }
+    common::agree_on_folder("CLENCH_GYMNASIUM", ROBOTS, &[]);
 }

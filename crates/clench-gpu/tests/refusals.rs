@@ -27,11 +27,12 @@ fn what_is_not_there_yet_is_refused_by_name() {
         let open = "<body pos='0 0 0.1'><joint/><geom size='0.01' contype='0' conaffinity='0'/>";
         open.repeat(n) + &"</body>".repeat(n)
     };
-    let free = "<body name='b' pos='3 0 1'><freejoint name='f'/><geom name='box' type='box' size='0.1 0.1 0.1'/></body>";
+    let can_and_box = "<body pos='3 0 1'><freejoint/><geom name='can' type='cylinder' size='0.1 0.1'/></body>
+                       <body pos='4 0 1'><freejoint/><geom name='box' type='box' size='0.1 0.1 0.1'/></body>";
     for (text_of_model, words) in [
         (
-            model("<option integrator='implicitfast'/>", "", "", ""),
-            "option integrator: implicit",
+            model("<option integrator='implicit'/>", "", "", ""),
+            "option integrator: the integrator `implicit`",
         ),
         (
             model("<option solver='CG'/>", "", "", ""),
@@ -49,58 +50,49 @@ fn what_is_not_there_yet_is_refused_by_name() {
             model(
                 "",
                 "",
-                "<body gravcomp='1' name='light' pos='2 0 0'><freejoint/><geom size='0.1'/></body>",
-                "",
+                "<site name='a' pos='0 0 2'/><body pos='2 0 0'><joint/><geom name='post' size='0.1'/><site name='b' pos='0.3 0 0'/></body>",
+                "<tendon><spatial name='string'><site site='a'/><geom geom='post'/><site site='b'/></spatial></tendon>",
             ),
-            "body \"light\": gravity",
+            "tendon \"string\": tendons around",
         ),
         (
             model(
                 "",
                 "",
                 "",
-                "<equality><joint name='tie' joint1='hinge' joint2='joint'/></equality>",
+                "<tendon><fixed name='heavy' armature='0.1'><joint joint='hinge' coef='1'/></fixed></tendon>",
             ),
-            "equality \"tie\"",
+            "tendon \"heavy\": tendons with inertia",
         ),
         (
             model(
                 "",
                 "",
                 "",
-                "<tendon><fixed name='string' stiffness='1'><joint joint='hinge' coef='1'/></fixed></tendon>",
+                "<actuator><adhesion name='suck' body='bob' ctrlrange='0 1'/></actuator>",
             ),
-            "tendon \"string\"",
-        ),
-        (
-            model(
-                "",
-                "",
-                free,
-                "<actuator><motor name='push' joint='f' gear='1'/></actuator>",
-            ),
-            "actuator \"push\": actuators on",
+            "actuator \"suck\": actuators that make",
         ),
         (
             model(
                 "",
                 "",
                 "",
-                "<actuator><general name='slow' joint='hinge' dyntype='filter' dynprm='1'/></actuator>",
+                "<actuator><motor name='late' joint='hinge' delay='0.1' nsample='100'/></actuator>",
             ),
-            "actuator \"slow\": actuators with",
+            "actuator \"late\": actuators with delays",
         ),
         (
             model(
                 "",
                 "",
                 "",
-                "<actuator><muscle name='biceps' joint='hinge' lengthrange='0 1'/></actuator>",
+                "<actuator><dcmotor name='motor' joint='hinge' motorconst='0.1' resistance='1'/></actuator>",
             ),
-            "actuator \"biceps\"",
+            "actuator \"motor\": controllers and motors",
         ),
-        (model("", "", free, ""), "sphere geom \"ball\" and"),
-        (model("", "", &chain(21), ""), "a path of more than 20 dofs"),
+        (model("", "", can_and_box, ""), "cylinder geom \"can\" and"),
+        (model("", "", &chain(27), ""), "a path of more than 26 dofs"),
         (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),
             "model: a model without",

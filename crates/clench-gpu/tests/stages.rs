@@ -41,6 +41,22 @@ fn one_of_each_joint_shape_actuator_and_constraint() {
 }
 
 #[test]
+fn one_of_each_tendon_equality_transmission_and_activation() {
+    agree(&text(&own("linkage")), 100, 0.5);
+}
+
+/// Where curved shapes overlap the depth hardly changes with the direction, which rounding decides: the processor's precisions differ
+/// by as much.
+#[test]
+fn a_heap_of_all_shapes() {
+    let model = text(&own("shapes"));
+    if let Some(batch) = common::agree_within(1e-3, &model, 100, 1.0) {
+        let solves = batch.solves().expect("a device");
+        assert!(solves.iter().map(|s| s.contacts).sum::<usize>() > 500);
+    }
+}
+
+#[test]
 fn elliptic_cones() {
     let medley = own("medley");
     let elliptic = medley.replace(

@@ -82,6 +82,22 @@ fn so_does_one_by_runge_kutta() {
     drift_alike(&text(&rk4), 200);
 }
 
+#[test]
+fn so_do_a_medley_and_a_linkage_implicit_in_velocities() {
+    for name in ["medley", "linkage"] {
+        let implicit = own(name).replace("<option ", "<option integrator=\"implicitfast\" ");
+        drift_alike(&text(&implicit), 100);
+    }
+}
+
+#[test]
+fn activations_go_along_by_either_integrator() {
+    let linkage = own("linkage");
+    drift_alike(&text(&linkage), 200);
+    let rk4 = linkage.replace("<option ", "<option integrator=\"RK4\" ");
+    drift_alike(&text(&rk4), 100);
+}
+
 /// The positions after some steps.
 fn after(batch: &mut GpuBatch, states: &[State<f32>], steps: usize) -> Vec<u32> {
     batch.reset().expect("a device");

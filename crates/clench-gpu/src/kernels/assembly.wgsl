@@ -4,15 +4,35 @@
 // R is at least this share of the inverse inertia: 4.5 ε of single precision, as on the processor.
 const MIN_REGULARIZATION: f32 = 4.5 * 1.1920929e-7;
 
-fn moves(body: u32, dof: u32) -> bool {
-    return ((words[DOF_MASK + MASK_WORDS * body + (dof >> 5u)] >> (dof & 31u)) & 1u) == 1u;
+// Row `k` of a connect or weld: what separates the points, then what turns one frame in the other.
+fn held_entry(equality: u32, k: u32, i: u32) -> f32 {
+    let first = words[EQ_PAIR + 2u * equality];
+    let second = words[EQ_PAIR + 2u * equality + 1u];
+    var motion = Spatial(vec3f(), vec3f());
+    if (moves(first, i)) {
+        motion = motion_at(first, i, held_point(equality, 0u));
+    }
+    if (moves(second, i)) {
+        motion = plus(motion, times(motion_at(second, i, held_point(equality, 1u)), -1.0));
+    }
+    if (k < 3u) {
+        return motion.linear[k];
+    }
+    if (moves(first, i) && moves(second, i)) {
+        return 0.0;
+    }
+    let u = quat_rotate(to_second_frame(equality), motion.angular);
+    return (half_product(u, relative_quat(equality)) * torquescale(equality))[k - 3u];
 }
 
-// How dof `i` moves the point of body `b` that is at `point`, and turns the body.
-fn motion_at(b: u32, i: u32, point: vec3f) -> Spatial {
-    let motion = fetch_spatial(CDOF + 6u * i);
-    let offset = point - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
-    return Spatial(motion.angular, motion.linear + cross(motion.angular, offset));
+// The follower's derivative, less that of its leader times the slope, which the row has as its shape.
+fn coupling_entry(equality: u32, a: u32, i: u32) -> f32 {
+    var sum = coordinate_entry(words[EQ_PAIR + 2u * equality], i);
+    let leader = words[EQ_PAIR + 2u * equality + 1u];
+    if (leader != NONE) {
+        sum -= row(SHAPE + a) * coordinate_entry(leader, i);
+    }
+    return sum;
 }
 
 // Row `k` of a contact: along the normal and the tangents, then about them; the second body against the first.
@@ -32,17 +52,24 @@ fn contact_entry(contact: u32, k: u32, i: u32) -> f32 {
     return select(-along, along, by_second);
 }
 
-fn limit_entry(source: u32, i: u32) -> f32 {
-    let j = source >> 1u;
-    let dof = words[JNT_DOF + j];
-    if (words[JNT_KIND + j] != BALL) {
-        let sign = select(1.0, -1.0, (source & 1u) == 1u);
-        return select(0.0, sign, i == dof);
+fn friction_entry(source: u32, i: u32) -> f32 {
+    if (source < NV) {
+        return select(0.0, 1.0, i == source);
     }
+    return coordinate_entry(NJNT + source - NV, i);
+}
+
+fn limit_entry(source: u32, i: u32) -> f32 {
+    let c = source >> 1u;
+    if (!is_ball(c)) {
+        let sign = select(1.0, -1.0, (source & 1u) == 1u);
+        return sign * coordinate_entry(c, i);
+    }
+    let dof = words[JNT_DOF + c];
     if (i < dof || i >= dof + 3u) {
         return 0.0;
     }
-    let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + j]));
+    let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
     return -direction(quat_rotation_vector(turn))[i - dof];
 }
 
@@ -50,8 +77,14 @@ fn entry(a: u32, i: u32) -> f32 {
     let b = u32(row(ROW_BLOCK + a));
     let source = block(b, BLOCK_SOURCE);
     switch block(b, BLOCK_KIND) {
+        case HELD: {
+            return held_entry(source, a - block(b, BLOCK_ROW), i);
+        }
+        case COUPLING: {
+            return coupling_entry(source, a, i);
+        }
         case DRY_FRICTION: {
-            return select(0.0, 1.0, i == source);
+            return friction_entry(source, i);
         }
         case LIMIT: {
             return limit_entry(source, i);
@@ -79,24 +112,42 @@ fn finish_row(a: u32) {
 }
 
 // Raises R to what rounding leaves of it, the rows of a cone together. RESIDUAL holds the inverse inertia of each row.
-fn finish_block(b: u32) {
-    let kind = block(b, BLOCK_KIND);
-    let first = block(b, BLOCK_ROW);
-    let dim = block(b, BLOCK_DIM);
+fn finish_cone(first: u32, dim: u32, is_pyramid: bool) {
     let normal = row(RESIDUAL + first);
     var factor = 1.0;
     for (var a = first; a < first + dim; a++) {
         var inertia = row(RESIDUAL + a);
-        if (kind == CONTACT_PYRAMID) {
+        if (is_pyramid) {
             let mu = row(SHAPE + a);
             inertia = normal + mu * mu * inertia;
         }
         factor = max(factor, MIN_REGULARIZATION * inertia / row(R + a));
     }
     for (var a = first; a < first + dim; a++) {
-        let r = row(R + a) * factor;
-        put_row(R + a, r);
-        put_row(D + a, 1.0 / r);
+        finish_stiffness(a, row(R + a) * factor);
+    }
+}
+
+fn finish_stiffness(a: u32, r: f32) {
+    put_row(R + a, r);
+    put_row(D + a, 1.0 / r);
+}
+
+fn finish_block(b: u32) {
+    let kind = block(b, BLOCK_KIND);
+    let first = block(b, BLOCK_ROW);
+    let dim = block(b, BLOCK_DIM);
+    if (kind == CONTACT_PYRAMID || kind == CONTACT_ELLIPTIC) {
+        finish_cone(first, dim, kind == CONTACT_PYRAMID);
+        return;
+    }
+    for (var a = first; a < first + dim; a++) {
+        finish_stiffness(a, max(row(R + a), MIN_REGULARIZATION * row(RESIDUAL + a)));
+    }
+    // A single row that nothing can change is no constraint, but for contacts.
+    if (dim == 1u && kind != CONTACT_NORMAL && row(RESIDUAL + first) == 0.0) {
+        put_row(D + first, 0.0);
+        put_row(SHAPE + first, 0.0);
     }
 }
 

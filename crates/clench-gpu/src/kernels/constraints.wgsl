@@ -1,4 +1,4 @@
-// Every active constraint becomes a block of rows: dry friction, joint limits, contacts, in this order. Sisters of
+// Every active constraint becomes a block of rows: equalities, dry friction, limits, contacts, in this order. Sisters of
 // `constraint/friction.rs`, `limit.rs` and `contact.rs`. Jacobians and velocities are added by `assembly.wgsl`.
 
 var<private> nblock: u32;
@@ -29,12 +29,12 @@ fn push_friction() {
     for (var k = 0u; k < NFRICTION; k++) {
         let prm = FRICTION_PRM + 9u * k;
         let soft = soften(prm + 2u, 0.0);
-        begin_block(DRY_FRICTION, 1u, words[FRICTION_DOF + k]);
+        begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k]);
         add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, numbers[prm + 1u]), numbers[prm]);
     }
 }
 
-// One end of the range of a joint. `source` is twice the joint, one more at the upper end.
+// One end of the range of a coordinate. `source` is twice the coordinate, one more at the upper end.
 fn push_limit(prm: u32, distance: f32, source: u32) {
     let margin = numbers[prm + 2u];
     if (distance >= margin) {
@@ -48,16 +48,17 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
 
 fn push_limits() {
     for (var k = 0u; k < NLIMIT; k++) {
-        let j = words[LIMIT_JNT + k];
+        let c = words[LIMIT_COORDINATE + k];
         let prm = LIMIT_PRM + 11u * k;
-        let q = QPOS + words[JNT_QPOS + j];
-        if (words[JNT_KIND + j] == BALL) {
-            let turn = direction(quat_rotation_vector(quat_normalize(given4(q))));
-            push_limit(prm, max(numbers[prm], numbers[prm + 1u]) - turn.w, 2u * j);
+        if (is_ball(c)) {
+            let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
+            let angle = length(quat_rotation_vector(turn));
+            push_limit(prm, max(numbers[prm], numbers[prm + 1u]) - angle, 2u * c);
             continue;
         }
-        push_limit(prm, given(q) - numbers[prm], 2u * j);
-        push_limit(prm, numbers[prm + 1u] - given(q), 2u * j + 1u);
+        let value = coordinate_value(c);
+        push_limit(prm, value - numbers[prm], 2u * c);
+        push_limit(prm, numbers[prm + 1u] - value, 2u * c + 1u);
     }
 }
 
@@ -122,6 +123,7 @@ fn constraints(@builtin(global_invocation_id) id: vec3u) {
     }
     nblock = 0u;
     nrow = 0u;
+    push_equalities();
     push_friction();
     push_limits();
     let ncon = reports[NCON * N + env];

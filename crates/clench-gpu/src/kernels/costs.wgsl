@@ -52,6 +52,19 @@ fn pyramid_along(first: u32, dim: u32, alpha: f32) -> Along {
     return sum;
 }
 
+// Equalities: a quadratic in each row.
+fn quadratic_along(first: u32, dim: u32, alpha: f32) -> Along {
+    var sum = Along(0.0, 0.0, 0.0);
+    for (var a = first; a < first + dim; a++) {
+        let d = row(D + a);
+        let y = row(RESIDUAL + a);
+        let dy = row(RAY + a);
+        let step = alpha * dy;
+        sum = join_along(sum, Along(d * dy * (y + step), d * dy * dy, d * step * (y + 0.5 * step)));
+    }
+    return sum;
+}
+
 fn block_along(b: u32, alpha: f32) -> Along {
     let first = block(b, BLOCK_ROW);
     let kind = block(b, BLOCK_KIND);
@@ -59,6 +72,9 @@ fn block_along(b: u32, alpha: f32) -> Along {
         return elliptic_along(first, block(b, BLOCK_DIM), alpha);
     }
     switch kind {
+        case HELD, COUPLING: {
+            return quadratic_along(first, block(b, BLOCK_DIM), alpha);
+        }
         case DRY_FRICTION: {
             return huber_along(first, alpha);
         }
@@ -119,6 +135,17 @@ fn evaluate_pyramid(first: u32, dim: u32) -> Value {
     return Value(0.5 * d * squares, pieces, false);
 }
 
+fn evaluate_quadratic(first: u32, dim: u32) -> Value {
+    var cost = 0.0;
+    for (var a = first; a < first + dim; a++) {
+        let y = row(RESIDUAL + a);
+        let d = row(D + a);
+        put_row(FORCE + a, -(d * y));
+        cost += 0.5 * d * y * y;
+    }
+    return Value(cost, 1u, false);
+}
+
 fn evaluate_block(b: u32) -> Value {
     let first = block(b, BLOCK_ROW);
     let kind = block(b, BLOCK_KIND);
@@ -126,6 +153,9 @@ fn evaluate_block(b: u32) -> Value {
         return evaluate_elliptic(first, block(b, BLOCK_DIM));
     }
     switch kind {
+        case HELD, COUPLING: {
+            return evaluate_quadratic(first, block(b, BLOCK_DIM));
+        }
         case DRY_FRICTION: {
             return evaluate_huber(first);
         }

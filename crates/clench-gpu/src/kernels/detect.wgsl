@@ -33,24 +33,44 @@ fn on_plane(pair: u32, plane: Placed, b: Placed, kind: u32, range: f32) {
         plane_capsule(pair, normal, above, b.center, b.axes[2], b.size, range);
     } else if (kind == ELLIPSOID) {
         plane_ellipsoid(pair, normal, above, b.center, b.axes, b.size, range);
+    } else if (kind == CYLINDER) {
+        plane_cylinder(pair, normal, above, b.center, b.axes, b.size, range);
     } else {
         plane_box(pair, normal, above, b.center, b.axes, b.size, range);
     }
 }
 
+// Methods that no pair of the model needs are left out. Drivers put the text of a function wherever it is called: hence one call of
+// the general one.
 fn collide(pair: u32, a: u32, b: u32) {
     let first = placed(a);
     let second = placed(b);
-    let kind = words[GEOM_KIND + b];
     let range = numbers[PAIR_RANGE + pair];
-    if (words[GEOM_KIND + a] == PLANE) {
-        on_plane(pair, first, second, kind, range);
-    } else if (words[GEOM_KIND + a] == CAPSULE) {
-        capsule_capsule(pair, first, second, range);
-    } else if (kind == CAPSULE) {
-        sphere_capsule(pair, first, second, range);
-    } else {
+    let method = words[PAIR_METHOD + pair];
+    var rest = FOUND;
+    if (ANY_ON_PLANE && method == ON_PLANE) {
+        on_plane(pair, first, second, words[GEOM_KIND + b], range);
+    } else if (ANY_SPHERE_SPHERE && method == SPHERE_SPHERE) {
         sphere_sphere(pair, first, second, range);
+    } else if (ANY_SPHERE_CAPSULE && method == SPHERE_CAPSULE) {
+        sphere_capsule(pair, first, second, range);
+    } else if (ANY_SPHERE_CYLINDER && method == SPHERE_CYLINDER) {
+        sphere_cylinder(pair, first, second, range);
+    } else if (ANY_SPHERE_BOX && method == SPHERE_BOX) {
+        sphere_box(pair, first, second, range);
+    } else if (ANY_CAPSULE_CAPSULE && method == CAPSULE_CAPSULE) {
+        capsule_capsule(pair, first, second, range);
+    } else if (ANY_CAPSULE_CYLINDER && method == CAPSULE_CYLINDER) {
+        capsule_cylinder(pair, first, second, range);
+    } else if (ANY_CAPSULE_BOX && method == CAPSULE_BOX) {
+        rest = select(AS_CONVEX, FOUND, capsule_box(pair, first, second, range));
+    } else if (ANY_BOX_BOX && method == BOX_BOX) {
+        rest = box_box(pair, first, second, range);
+    } else {
+        rest = AS_CONVEX;
+    }
+    if (ANY_CONVEX && rest != FOUND) {
+        convex(pair, first, second, rest == ALONG_BEST, range);
     }
 }
 

@@ -45,9 +45,12 @@ fn weigh(b: u32, i: u32) {
         case CONTACT_PYRAMID: {
             weigh_pyramid(b, first, block(b, BLOCK_DIM), i);
         }
-        // Of the pieces of dry friction and of one-sided costs alike, 1 has curvature.
+        // Of the pieces of quadratic costs, dry friction and one-sided costs alike, 1 has curvature.
         default: {
-            weigh_edge(first, i, select(0.0, row(D + first), row(PIECES + b) == 1.0));
+            let stiff = row(PIECES + b) == 1.0;
+            for (var a = first; a < first + block(b, BLOCK_DIM); a++) {
+                weigh_edge(a, i, select(0.0, row(D + a), stiff));
+            }
         }
     }
 }

@@ -41,4 +41,6 @@ fn positions(@builtin(global_invocation_id) id: vec3u) {
     com_positions();
     composite_inertia();
     factor_mass();
+    tendons();
+    transmissions();
 }

@@ -33,6 +33,9 @@ fn save_start() {
         put(START_QVEL + i, given(QVEL + i));
         put(START_WARMSTART + i, given(QACC_WARMSTART + i));
     }
+    for (var a = 0u; a < NA; a++) {
+        put(START_ACT + a, given(ACT + a));
+    }
 }
 
 fn restore_start() {
@@ -41,6 +44,26 @@ fn restore_start() {
     }
     for (var i = 0u; i < bound(NV); i++) {
         keep(QVEL + i, fetch(START_QVEL + i));
+    }
+    for (var a = 0u; a < NA; a++) {
+        keep(ACT + a, fetch(START_ACT + a));
+    }
+}
+
+// Moves activations a time step on, at the rates in `rates` (in work). Those of actuators that are off stay where they are, but for
+// whole turns on a circle.
+fn advance_activations(rates: u32) {
+    for (var u = 0u; u < NU; u++) {
+        let a = words[ACTUATOR_ACT + u];
+        if (!ACTUATION || a == NONE) {
+            continue;
+        }
+        let rate = select(fetch(rates + a), 0.0, words[ACTUATOR_OFF + u] == 1u);
+        var next = next_activation(u, given(ACT + a), rate);
+        if (words[ACTUATOR_SERVO + u] == 1u) {
+            next = nearest_setpoint(u, next, fetch(ACTUATOR_LENGTH + u));
+        }
+        keep(ACT + a, next);
     }
 }
 
@@ -58,6 +81,9 @@ fn finish_step() {
     for (var i = 0u; i < bound(NQ); i++) {
         far = far || is_far(given(QPOS + i));
     }
+    for (var a = 0u; a < NA; a++) {
+        far = far || is_wild(given(ACT + a));
+    }
     if (far) {
         trouble(DIVERGED);
     }
@@ -73,6 +99,12 @@ fn finish_step() {
     }
 }
 
+// Minus the change of a damper's force with its velocity.
+fn damping_slope(law: u32, velocity: f32) -> f32 {
+    let v = abs(velocity);
+    return numbers[law] + v * (2.0 * numbers[law + 1u] + v * 3.0 * numbers[law + 2u]);
+}
+
 // The acceleration that advances the velocity: damping is implicit, so it solves (M + h B) a = τ + Jᵀf.
 fn damped_acceleration() {
     if (!IMPLICIT_DAMPING) {
@@ -85,9 +117,7 @@ fn damped_acceleration() {
         put(QLD + p, fetch(QM + p));
     }
     for (var i = 0u; i < bound(NV); i++) {
-        let law = number3(DOF_DAMPER + 3u * i);
-        let v = abs(given(QVEL + i));
-        let slope = law.x + v * (2.0 * law.y + v * 3.0 * law.z);
+        let slope = damping_slope(DOF_DAMPER + 3u * i, given(QVEL + i));
         add(QLD + words[TREE_START + i + 1u] - 1u, TIMESTEP * slope);
         put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
     }
@@ -97,14 +127,9 @@ fn damped_acceleration() {
     solve_tree(RATE);
 }
 
-// Semi-implicit Euler: one thread an environment.
-@compute @workgroup_size(GROUP)
-fn euler(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
-    save_start();
-    damped_acceleration();
+// Activations, then velocities by the acceleration in RATE, then positions with the new velocities.
+fn advance_semi_implicit() {
+    advance_activations(ACT_DOT);
     for (var i = 0u; i < bound(NV); i++) {
         let v = given(QVEL + i) + fetch(RATE + i) * TIMESTEP;
         keep(QVEL + i, v);

@@ -1,4 +1,4 @@
-// Forward kinematics: poses of bodies, inertial frames, joints and geoms. Sister of `dynamics/kinematics.rs`.
+// Forward kinematics: poses of bodies, inertial frames, joints, geoms and sites. Sister of `dynamics/kinematics.rs`.
 
 // The rotation by a joint from its position at qpos0; the whole orientation of a ball or free joint.
 fn joint_turn(joint: u32, kind: u32, q: u32) -> vec4f {
@@ -54,7 +54,7 @@ fn body_pose(b: u32) {
     put_matrix(XMAT + 9u * b, quat_matrix(xquat));
 }
 
-// What is fixed to a body: its inertial frame and its geoms.
+// What is fixed to a body: its inertial frame, its geoms and its sites.
 fn attached_poses(b: u32) {
     let xpos = fetch3(XPOS + 3u * b);
     let xquat = fetch4(XQUAT + 4u * b);
@@ -65,6 +65,11 @@ fn attached_poses(b: u32) {
     for (var g = words[BODY_GEOM + b]; g < last; g++) {
         put3(GEOM_XPOS + 3u * g, xpos + xmat * number3(GEOM_POS + 3u * g));
         put_matrix(GEOM_XMAT + 9u * g, quat_matrix(quat_product(xquat, number4(GEOM_QUAT + 4u * g))));
+    }
+    let last_site = words[BODY_SITE + b + 1u];
+    for (var s = words[BODY_SITE + b]; s < last_site; s++) {
+        put3(SITE_XPOS + 3u * s, xpos + xmat * number3(SITE_POS + 3u * s));
+        put_matrix(SITE_XMAT + 9u * s, quat_matrix(quat_product(xquat, number4(SITE_QUAT + 4u * s))));
     }
 }
 

@@ -1,4 +1,4 @@
-// Springs, dampers and the medium. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
+// Springs, dampers, gravity compensation and the medium. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
 //
 // A spring pulls with −(a x + b x² + c x³), a damper with −(a v + b v |v| + c v³).
 
@@ -65,10 +65,29 @@ fn fluid_forces() {
     project_forces(QFRC_PASSIVE);
 }
 
+// Each body's weight, or the share of it that is lifted, is held at its centre of mass; `BODY_LIFT` is its mass times that share.
+fn gravity_compensation() {
+    clear_dofs(QFRC_GRAVCOMP);
+    for (var b = 0u; b < bound(NBODY); b++) {
+        let lift = number3(GRAVITY) * -numbers[BODY_LIFT + b];
+        put_spatial(CFRC + 6u * b, force_at_com(b, lift, vec3f()));
+    }
+    project_forces(QFRC_GRAVCOMP);
+    for (var i = 0u; i < bound(NV); i++) {
+        if (words[DOF_ACTGRAVCOMP + i] == 0u) {
+            add(QFRC_PASSIVE + i, fetch(QFRC_GRAVCOMP + i));
+        }
+    }
+}
+
 fn passive_forces() {
     clear_dofs(QFRC_PASSIVE);
     springs();
     dampers();
+    tendon_forces();
+    if (HAS_GRAVCOMP) {
+        gravity_compensation();
+    }
     if (HAS_FLUID) {
         fluid_forces();
     }

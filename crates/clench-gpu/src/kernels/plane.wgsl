@@ -29,6 +29,33 @@ fn plane_ellipsoid(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: ma
     add_on_plane(pair, center - axes * support, above - depth, normal, tangent_from_normal(normal), range);
 }
 
+// The lowest points of both rims, then two more on the lower rim, so that the three there form a regular triangle.
+fn plane_cylinder(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
+    let up = axes[2];
+    let cosine = dot(normal, up);
+    let axis = select(up, -up, cosine > 0.0) * size.y;
+    let axis_rise = -abs(cosine) * size.y;
+    let steepest = up * cosine - normal;
+    let steepness = length(steepest);
+    var spoke = axes[0] * size.x;
+    if (steepness >= TINY) {
+        spoke = steepest * (size.x / steepness);
+    }
+    let spoke_rise = dot(spoke, normal);
+    let lowest = above + axis_rise + spoke_rise;
+    if (lowest > range) {
+        return;
+    }
+    let tangent = tangent_from_normal(normal);
+    add_on_plane(pair, center + axis + spoke, lowest, normal, tangent, range);
+    add_on_plane(pair, center - axis + spoke, above - axis_rise + spoke_rise, normal, tangent, range);
+    let flank = above + axis_rise - spoke_rise * 0.5;
+    let sideways = direction(cross(spoke, axis)).xyz * (size.x * 0.8660254);
+    let middle = center + axis - spoke * 0.5;
+    add_on_plane(pair, middle + sideways, flank, normal, tangent, range);
+    add_on_plane(pair, middle - sideways, flank, normal, tangent, range);
+}
+
 // The corners of a box on its lower side, at most four.
 fn plane_box(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
     let local = (transpose(axes) * normal) * size;

@@ -51,6 +51,10 @@ fn add_to_mean() {
         put(MEAN_RATE + i, select(0.0, fetch(MEAN_RATE + i), before) + weight() * fetch(RATE + i));
         put(MEAN_QACC + i, select(0.0, fetch(MEAN_QACC + i), before) + weight() * fetch(QACC + i));
     }
+    for (var a = 0u; a < NA; a++) {
+        let mean = select(0.0, fetch(MEAN_ACT_DOT + a), stage > 0u);
+        put(MEAN_ACT_DOT + a, mean + weight() * fetch(ACT_DOT + a));
+    }
 }
 
 // Goes from the start for `time` seconds, at the rates in `rate` (in work) and accelerations in `qacc`.
@@ -74,6 +78,9 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     add_to_mean();
     if (stage < 3u) {
         go(RATE, QACC, reach(stage));
+        for (var a = 0u; a < NA; a++) {
+            keep(ACT + a, given(ACT + a) + fetch(ACT_DOT + a) * reach(stage));
+        }
         // The stage before is nearer than the last step.
         for (var i = 0u; i < bound(NV); i++) {
             keep(QACC_WARMSTART + i, fetch(QACC + i));
@@ -81,5 +88,6 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     go(MEAN_RATE, MEAN_QACC, TIMESTEP);
+    advance_activations(MEAN_ACT_DOT);
     finish_step();
 }

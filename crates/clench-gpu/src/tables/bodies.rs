@@ -1,7 +1,7 @@
-//! The tree: bodies, joints, dofs, and the geoms on them.
+//! The tree: bodies, joints, dofs, and the geoms and sites on them.
 
 use super::{NONE, Tables, starts};
-use clench_rigid::model::Model;
+use clench_rigid::model::{JointKind, Model};
 
 impl Tables {
     pub(super) fn bodies(&mut self, m: &Model) {
@@ -14,6 +14,7 @@ impl Tables {
         self.words("BODY_JNT", starts(bodies.iter().map(|b| b.joints.len())));
         self.words("BODY_DOF", starts(bodies.iter().map(|b| b.dofs.len())));
         self.words("BODY_GEOM", starts(bodies.iter().map(|b| b.geoms.len())));
+        self.words("BODY_SITE", starts(bodies.iter().map(|b| b.sites.len())));
         let vectors =
             |v: &[clench_math::Vec3<f64>]| Vec::from_iter(v.iter().flat_map(|v| v.to_array()));
         let quats =
@@ -28,6 +29,9 @@ impl Tables {
         self.numbers("GEOM_POS", vectors(&p.geom_pos));
         self.numbers("GEOM_QUAT", quats(&p.geom_quat));
         self.numbers("GEOM_SIZE", vectors(&p.geom_size));
+        self.words("SITE_BODY", m.sites.iter().map(|s| s.body));
+        self.numbers("SITE_POS", vectors(&p.site_pos));
+        self.numbers("SITE_QUAT", quats(&p.site_quat));
         self.numbers("JNT_POS", vectors(&p.jnt_pos));
         self.numbers("JNT_AXIS", vectors(&p.jnt_axis));
     }
@@ -40,6 +44,14 @@ impl Tables {
         self.words("JNT_BODY", joints.iter().map(|j| j.body));
         self.words("JNT_QPOS", joints.iter().map(|j| j.qpos));
         self.words("JNT_DOF", joints.iter().map(|j| j.dof).chain([m.nv]));
+        let tree_of = |dof: usize| m.tree.tree_of(dof);
+        let is_tree = |&j: &usize| {
+            let (free, dof) = (joints[j].kind == JointKind::Free, joints[j].dof);
+            free && (dof + 6 >= m.nv || tree_of(dof + 6) != tree_of(dof))
+        };
+        let free_trees = Vec::from_iter((0..joints.len()).filter(is_tree));
+        self.count("NFREE_TREE", free_trees.len());
+        self.words("FREE_TREE_JNT", free_trees);
         self.numbers("QPOS0", m.params.qpos0.iter().copied());
         self.numbers("QPOS_SPRING", m.params.qpos_spring.iter().copied());
     }

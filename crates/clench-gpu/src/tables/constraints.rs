@@ -1,11 +1,13 @@
-//! Dry friction and limits.
+//! Dry friction and limits of dofs, joints and tendons.
 
 use super::{Capacity, Tables};
 use clench_rigid::model::{JointKind, Model};
 use clench_rigid::settings::StepSettings;
 
 /// What a block of the convex problem is.
-const BLOCK_KINDS: [&str; 5] = [
+const BLOCK_KINDS: [&str; 7] = [
+    "HELD",
+    "COUPLING",
     "DRY_FRICTION",
     "LIMIT",
     "CONTACT_NORMAL",
@@ -27,41 +29,66 @@ impl Tables {
         self.count("BLOCK_SIZE", BLOCK_SIZE);
         let p = &m.params;
         let on = s.flags.constraint && s.flags.frictionloss;
-        let rubs = |&i: &usize| on && m.dofs[i].frictionloss && p.dof_frictionloss[i] > 0.0;
-        let dofs = Vec::from_iter((0..m.nv).filter(rubs));
-        self.count("NFRICTION", dofs.len());
-        self.words("FRICTION_DOF", dofs.iter().copied());
-        let numbers = |&i: &usize| {
-            let strength = [p.dof_frictionloss[i], p.dof_invweight0[i]];
-            let soft = p.dof_solref[i].into_iter().chain(p.dof_solimp[i]);
-            strength.into_iter().chain(soft)
+        let (mut sources, mut numbers) = (Vec::new(), Vec::new());
+        let mut add = |source: usize, strength: [f64; 2], solref: [f64; 2], solimp: [f64; 5]| {
+            if on && strength[0] > 0.0 {
+                sources.push(source);
+                numbers.extend(strength.into_iter().chain(solref).chain(solimp));
+            }
         };
-        self.numbers("FRICTION_PRM", dofs.iter().flat_map(numbers));
-        capacity.blocks += dofs.len();
-        capacity.rows += dofs.len();
+        for (i, _) in m.dofs.iter().enumerate().filter(|(_, d)| d.frictionloss) {
+            let strength = [p.dof_frictionloss[i], p.dof_invweight0[i]];
+            add(i, strength, p.dof_solref[i], p.dof_solimp[i]);
+        }
+        for (t, _) in (m.tendons.iter().enumerate()).filter(|(_, t)| t.frictionloss) {
+            let strength = [p.tendon_frictionloss[t], p.tendon_invweight0[t]];
+            add(
+                m.nv + t,
+                strength,
+                p.tendon_solref_fri[t],
+                p.tendon_solimp_fri[t],
+            );
+        }
+        self.count("NFRICTION", sources.len());
+        capacity.blocks += sources.len();
+        capacity.rows += sources.len();
+        // Dofs, then tendons.
+        self.words("FRICTION_SOURCE", sources);
+        self.numbers("FRICTION_PRM", numbers);
     }
 
     pub(super) fn limits(&mut self, m: &Model, s: &StepSettings, capacity: &mut Capacity) {
         let p = &m.params;
         let on = s.flags.constraint && s.enable_joint_limit;
-        let limited = |&j: &usize| on && m.joints[j].limited && m.joints[j].kind != JointKind::Free;
-        let joints = Vec::from_iter((0..m.joints.len()).filter(limited));
-        self.count("NLIMIT", joints.len());
-        self.words("LIMIT_JNT", joints.iter().copied());
-        let numbers = |&j: &usize| {
-            let [low, high] = p.jnt_range[j];
-            let place = [
-                low,
-                high,
-                p.jnt_margin[j],
-                p.dof_invweight0[m.joints[j].dof],
-            ];
-            let soft = p.jnt_solref[j].into_iter().chain(p.jnt_solimp[j]);
-            place.into_iter().chain(soft)
+        let (mut coordinates, mut numbers) = (Vec::new(), Vec::new());
+        let mut add = |coordinate: usize, place: [f64; 4], solref: [f64; 2], solimp: [f64; 5]| {
+            coordinates.push(coordinate);
+            numbers.extend(place.into_iter().chain(solref).chain(solimp));
         };
-        self.numbers("LIMIT_PRM", joints.iter().flat_map(numbers));
-        // A joint can be at both ends of its range, where that is narrower than the margins.
-        capacity.blocks += 2 * joints.len();
-        capacity.rows += 2 * joints.len();
+        for (j, joint) in m.joints.iter().enumerate() {
+            if on && joint.limited && joint.kind != JointKind::Free {
+                let [low, high] = p.jnt_range[j];
+                let place = [low, high, p.jnt_margin[j], p.dof_invweight0[joint.dof]];
+                add(j, place, p.jnt_solref[j], p.jnt_solimp[j]);
+            }
+        }
+        let on = s.flags.constraint && s.flags.limit;
+        for (t, _) in (m.tendons.iter().enumerate()).filter(|(_, t)| on && t.limited) {
+            let [low, high] = p.tendon_range[t];
+            let place = [low, high, p.tendon_margin[t], p.tendon_invweight0[t]];
+            add(
+                m.joints.len() + t,
+                place,
+                p.tendon_solref_lim[t],
+                p.tendon_solimp_lim[t],
+            );
+        }
+        self.count("NLIMIT", coordinates.len());
+        // A coordinate can be at both ends of its range, where that is narrower than the margins.
+        capacity.blocks += 2 * coordinates.len();
+        capacity.rows += 2 * coordinates.len();
+        // Joints, then tendons.
+        self.words("LIMIT_COORDINATE", coordinates);
+        self.numbers("LIMIT_PRM", numbers);
     }
 }

@@ -1,7 +1,7 @@
 //! Pairs of geoms that may collide, with the parameters of their contacts: mixed here, once, by the rules of `clench-rigid`.
 
 use super::{Capacity, Tables};
-use crate::check::points_of_pair;
+use crate::check::{METHODS, may_be_general, method_of_pair, points_of_pair};
 use clench_collide::{ShapeKind, allowance};
 use clench_rigid::contact::{Candidate, contact_params, contact_range};
 use clench_rigid::model::Model;
@@ -11,6 +11,8 @@ use clench_rigid::settings::StepSettings;
 /// The pool of an environment, where the options leave it open and the pairs could fill a larger one. Contacts beyond are a fault,
 /// never left out in silence.
 const POOL: usize = 48;
+/// Vertices of the polytope of overlapping shapes. Single precision has no use for the 128 that the processor has room for.
+const POLYTOPE_VERTICES: usize = 64;
 /// Numbers of a contact: pair, distance, position, normal, two tangents.
 pub(crate) const CONTACT_SIZE: usize = 14;
 
@@ -50,14 +52,52 @@ impl Tables {
             ("SPHERE", ShapeKind::Sphere),
             ("CAPSULE", ShapeKind::Capsule),
             ("ELLIPSOID", ShapeKind::Ellipsoid),
+            ("CYLINDER", ShapeKind::Cylinder),
+            ("BOX", ShapeKind::Box),
         ] {
             self.count(name, kind as usize);
+        }
+        for (code, name) in METHODS.iter().enumerate() {
+            self.count(name, code);
         }
         let geoms = || candidates.iter().flat_map(|c| c.geoms);
         let dim = |c: &Candidate| contact_params::<f64>(m, &m.params, c).dim;
         self.count("NPAIR", candidates.len());
         self.words("PAIR_GEOM", geoms().map(|g| g as usize));
         self.words("PAIR_BODY", geoms().map(|g| m.geoms[g as usize].body));
+        let method = |c: &Candidate| method_of_pair(c.kinds).unwrap_or(0);
+        self.words("PAIR_METHOD", candidates.iter().map(method));
+        let general = candidates.iter().any(|c| may_be_general(c.kinds));
+        for (code, name) in METHODS.iter().enumerate() {
+            let used = candidates.iter().any(|c| method(c) == code);
+            self.flag(
+                &format!("ANY_{name}"),
+                used || (general && *name == "CONVEX"),
+            );
+        }
+        // What kinds of shape general pairs have.
+        let has = |kind: ShapeKind| {
+            let mut all = candidates.iter().filter(|c| may_be_general(c.kinds));
+            all.any(|c| c.kinds.contains(&kind))
+        };
+        let flat = |c: &Candidate| may_be_general(c.kinds) && method(c) + 1 < METHODS.len();
+        self.flag("ANY_ELLIPSOID", has(ShapeKind::Ellipsoid));
+        self.flag("ANY_CYLINDER", has(ShapeKind::Cylinder));
+        self.flag(
+            "CURVED_PAIRS",
+            has(ShapeKind::Ellipsoid) || has(ShapeKind::Cylinder),
+        );
+        self.flag("FLAT_PAIRS", candidates.iter().any(flat));
+        let vertices = if general { POLYTOPE_VERTICES } else { 4 };
+        let faces = 2 * vertices - 4;
+        self.count("POLYTOPE_VERTICES", vertices);
+        self.count("POLYTOPE_FACES", faces);
+        // Nine numbers of a vertex, twelve of a face; a list of sides, of faces, and three numbers of each side of the horizon.
+        capacity.polytope = if general {
+            9 * vertices + 17 * faces + 4
+        } else {
+            0
+        };
         self.words("PAIR_DIM", candidates.iter().map(dim));
         let range = |c: &Candidate| contact_range::<f64>(m, &m.params, c).1;
         self.numbers("PAIR_RANGE", candidates.iter().map(range));

@@ -1,9 +1,7 @@
-//! Springs, dampers, the medium and actuators, each reduced to the coefficients of its law; and the numbers of the step itself.
+//! Springs, dampers, lifted weights and the medium, each reduced to the coefficients of its law; and the numbers of the step itself.
 
-use super::{ENDLESS, Tables};
-use clench_rigid::model::{
-    Actuator, BiasKind, GainKind, Integrator, JointKind, Model, Transmission,
-};
+use super::Tables;
+use clench_rigid::model::{Integrator, JointKind, Model};
 use clench_rigid::options::FrictionCone;
 use clench_rigid::settings::StepSettings;
 
@@ -38,7 +36,18 @@ impl Tables {
         let euler = m.integrator == Integrator::Euler && m.flags.eulerdamp;
         self.flag("IMPLICIT_DAMPING", damped && euler);
         self.numbers("DOF_ARMATURE", (0..m.nv).map(|i| armature(m, i)));
+        self.gravity_compensation(m);
         self.medium(m);
+    }
+
+    /// The mass of each body whose weight is lifted. As in MuJoCo a share below zero counts only where another is positive, and
+    /// without springs and dampers there is nothing passive at all.
+    fn gravity_compensation(&mut self, m: &Model) {
+        let p = &m.params;
+        let lifted = m.flags.gravity && p.body_gravcomp.iter().any(|&share| share > 0.0);
+        self.flag("HAS_GRAVCOMP", lifted && (m.flags.spring || m.flags.damper));
+        let lift = p.body_mass.iter().zip(&p.body_gravcomp);
+        self.numbers("BODY_LIFT", lift.map(|(mass, share)| mass * share));
     }
 
     /// The coefficients of the resistance to the box that has a body's mass and inertia, see `dynamics/fluid.rs`.
@@ -48,43 +57,6 @@ impl Tables {
         self.flag("HAS_FLUID", any && (m.flags.spring || m.flags.damper));
         self.numbers("WIND", p.wind.to_array());
         self.numbers("BODY_DRAG", (0..m.nbody()).flat_map(|b| drag(m, b)));
-    }
-
-    pub(super) fn actuators(&mut self, m: &Model) {
-        let p = &m.params;
-        let acting = if m.flags.actuation {
-            &m.actuators[..]
-        } else {
-            &[]
-        };
-        let range =
-            |limited: bool, range: [f64; 2]| if limited { range } else { [-ENDLESS, ENDLESS] };
-        let each = || acting.iter().enumerate();
-        self.count("NU", acting.len());
-        self.words(
-            "ACTUATOR_JNT",
-            acting.iter().map(|a| joint_of(a).unwrap_or(0)),
-        );
-        self.numbers("ACTUATOR_GEAR", each().map(|(u, _)| p.actuator_gear[u][0]));
-        self.numbers(
-            "ACTUATOR_GAIN",
-            each().flat_map(|(u, a)| gain(a, &p.actuator_gainprm[u])),
-        );
-        self.numbers(
-            "ACTUATOR_BIAS",
-            each().flat_map(|(u, a)| bias(a, &p.actuator_biasprm[u])),
-        );
-        let limited = |a: &Actuator| m.flags.clampctrl && a.ctrllimited.first() == Some(&true);
-        let ctrl = each().flat_map(|(u, a)| range(limited(a), p.actuator_ctrlrange[u]));
-        self.numbers("CTRL_RANGE", ctrl);
-        let force = each().flat_map(|(u, a)| range(a.forcelimited, p.actuator_forcerange[u]));
-        self.numbers("FORCE_RANGE", force);
-        let dofs = m.dofs.iter().enumerate().flat_map(|(i, dof)| {
-            let joint = &m.joints[dof.joint];
-            let limited = joint.actfrclimited && joint.dof == i && !acting.is_empty();
-            range(limited, p.jnt_actfrcrange[dof.joint])
-        });
-        self.numbers("DOF_FORCE_RANGE", dofs);
     }
 
     pub(super) fn settings(&mut self, m: &Model, s: &StepSettings) {
@@ -173,29 +145,4 @@ fn drag(m: &Model, b: usize) -> [f64; 12] {
     all[..6].copy_from_slice(&viscous);
     all[6..].copy_from_slice(&quadratic);
     all
-}
-
-/// The joint that an actuator acts on.
-fn joint_of(actuator: &Actuator) -> Option<usize> {
-    match actuator.transmission {
-        Transmission::Joint(j) | Transmission::JointInParent(j) => Some(j),
-        _ => None,
-    }
-}
-
-/// Gain = a + b length + c velocity.
-fn gain(actuator: &Actuator, prm: &[f64; 10]) -> [f64; 3] {
-    match actuator.gain {
-        _ if actuator.disabled => [0.0; 3],
-        GainKind::Affine => [prm[0], prm[1], prm[2]],
-        _ => [prm[0], 0.0, 0.0],
-    }
-}
-
-/// Bias, likewise.
-fn bias(actuator: &Actuator, prm: &[f64; 10]) -> [f64; 3] {
-    match actuator.bias {
-        BiasKind::Affine if !actuator.disabled => [prm[0], prm[1], prm[2]],
-        _ => [0.0; 3],
-    }
 }

@@ -1,10 +1,13 @@
 //! The model as the device reads it: one array of words, one of numbers, and the constants by which the kernels find what they
 //! want in them. A table is one line of one of the files here; its name in capitals is its place.
 
+mod actuators;
 mod bodies;
 mod constraints;
 mod contacts;
+mod equalities;
 mod forces;
+mod tendons;
 
 pub(crate) use constraints::BLOCK_SIZE;
 pub(crate) use contacts::CONTACT_SIZE;
@@ -38,6 +41,8 @@ pub(crate) struct Capacity {
     pub blocks: usize,
     /// Rows of the convex problem.
     pub rows: usize,
+    /// Numbers of the polytope of overlapping shapes.
+    pub polytope: usize,
 }
 
 impl Tables {
@@ -57,10 +62,12 @@ impl Tables {
         tables.joints(model);
         tables.dofs(model);
         tables.geoms(model);
+        tables.tendons(model);
         tables.forces(model);
         tables.actuators(model);
         tables.settings(model, settings);
         let mut capacity = Capacity::default();
+        tables.equalities(model, settings, &mut capacity);
         tables.friction(model, settings, &mut capacity);
         tables.limits(model, settings, &mut capacity);
         tables.pairs(model, settings, candidates, &mut capacity);

@@ -1,0 +1,32 @@
+// From activations to the next ones. Sister of `dynamics/activation.rs`.
+
+// The setpoint of a servo on a circle, moved by whole turns to the one nearest to `near`; other inputs pass unchanged.
+fn nearest_setpoint(u: u32, input: f32, near: f32) -> f32 {
+    let turn = numbers[ACTUATOR_TURN + u];
+    if (turn == 0.0) {
+        return input;
+    }
+    return input - turn * floor((input - near) / turn + 0.5);
+}
+
+fn time_constant(u: u32) -> f32 {
+    return max(numbers[DYNAMICS_PRM + 3u * u], TINY);
+}
+
+// e^x − 1, without the digits that a device's own power loses where x is small.
+fn exp_less_one(x: f32) -> f32 {
+    if (abs(x) < 0.5) {
+        return x * (1.0 + x / 2.0 * (1.0 + x / 3.0 * (1.0 + x / 4.0 * (1.0 + x / 5.0 * (1.0 + x / 6.0 * (1.0 + x / 7.0))))));
+    }
+    return exp(x) - 1.0;
+}
+
+// An activation of actuator `u` a time step later, within its range.
+fn next_activation(u: u32, act: f32, rate: f32) -> f32 {
+    var time = TIMESTEP;
+    if (words[ACTUATOR_DYNAMICS + u] == DYN_FILTER_EXACT) {
+        let tau = time_constant(u);
+        time = -tau * exp_less_one(-TIMESTEP / tau);
+    }
+    return clamp(act + rate * time, numbers[ACT_RANGE + 2u * u], numbers[ACT_RANGE + 2u * u + 1u]);
+}

@@ -1,0 +1,61 @@
+// Actuator forces and the dof forces they make. Sister of `dynamics/actuation.rs`. A range that is not limited is one of all numbers.
+
+fn actuator_velocities() {
+    for (var u = 0u; u < NU; u++) {
+        var velocity = 0.0;
+        for (var k = words[ACTUATOR_ROW + u]; k < words[ACTUATOR_ROW + u + 1u]; k++) {
+            velocity += fetch(ACTUATOR_MOMENT + k) * given(QVEL + words[ACTUATOR_DOF + k]);
+        }
+        put(ACTUATOR_VELOCITY + u, velocity);
+    }
+}
+
+// Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
+fn limit_tendon_forces() {
+    for (var t = 0u; ANY_ON_TENDON && t < NTENDON; t++) {
+        var total = 0.0;
+        for (var u = 0u; u < NU; u++) {
+            if (words[ACTUATOR_LIMITED_TENDON + u] == t) {
+                total += fetch(ACTUATOR_FORCE + u);
+            }
+        }
+        let low = numbers[TENDON_FORCE_RANGE + 2u * t];
+        let high = numbers[TENDON_FORCE_RANGE + 2u * t + 1u];
+        if (total == 0.0 || (total >= low && total <= high)) {
+            continue;
+        }
+        let share = clamp(total, low, high) / total;
+        for (var u = 0u; u < NU; u++) {
+            if (words[ACTUATOR_LIMITED_TENDON + u] == t) {
+                put(ACTUATOR_FORCE + u, fetch(ACTUATOR_FORCE + u) * share);
+            }
+        }
+    }
+}
+
+fn actuation() {
+    clear_dofs(QFRC_ACTUATOR);
+    actuator_velocities();
+    if (!ACTUATION) {
+        return;
+    }
+    for (var u = 0u; u < NU; u++) {
+        put(ACTUATOR_FORCE + u, unlimited_force(u));
+    }
+    limit_tendon_forces();
+    for (var u = 0u; u < NU; u++) {
+        let range = FORCE_RANGE + 2u * u;
+        let force = clamp(fetch(ACTUATOR_FORCE + u), numbers[range], numbers[range + 1u]);
+        put(ACTUATOR_FORCE + u, force);
+        for (var k = words[ACTUATOR_ROW + u]; k < words[ACTUATOR_ROW + u + 1u]; k++) {
+            add(QFRC_ACTUATOR + words[ACTUATOR_DOF + k], fetch(ACTUATOR_MOMENT + k) * force);
+        }
+    }
+    for (var i = 0u; i < bound(NV); i++) {
+        if (HAS_GRAVCOMP && words[DOF_ACTGRAVCOMP + i] == 1u) {
+            add(QFRC_ACTUATOR + i, fetch(QFRC_GRAVCOMP + i));
+        }
+        let range = DOF_FORCE_RANGE + 2u * i;
+        put(QFRC_ACTUATOR + i, clamp(fetch(QFRC_ACTUATOR + i), numbers[range], numbers[range + 1u]));
+    }
+}

@@ -1,0 +1,184 @@
+// Box–box: separating axes, then the face of one box clipped to the face of the other, or two edges that cross. Sisters of
+// `clench-collide/src/narrow/box_box.rs` and `box_manifold.rs`, where the rules and their numbers are explained.
+
+const EDGE_BIAS: f32 = 1e-6;
+const ALIAS_COSINE: f32 = 1.0 - 3.8e-7;
+const ALIAS_SHARE: f32 = 0.05;
+
+// How a pair goes on: its contacts are found, they are those along `best`, or those of any convex shapes.
+const FOUND: u32 = 0u;
+const ALONG_BEST: u32 = 1u;
+const AS_CONVEX: u32 = 2u;
+
+// An axis of largest separation: that of a face of box `owner`, or, where `owner` is 2, across edges along an axis of each.
+struct Separation {
+    owner: u32,
+    axis: u32,
+    other: u32,
+    distance: f32,
+}
+
+// Of face normals; that of an owner beyond 2 separates the boxes. `turn` has the axes of the second box in the frame of the first.
+fn best_face(turn: mat3x3f, offset: vec3f, a: Placed, b: Placed, reach: f32) -> Separation {
+    var most = Separation(3u, 0u, 0u, -3e38);
+    for (var k = 0u; k < bound(6u); k++) {
+        let second = k >= 3u;
+        let axis = k % 3u;
+        var along = transpose(turn)[axis];
+        var extent = dot(abs(along), b.size) + a.size[axis];
+        var apart = offset[axis];
+        if (second) {
+            along = turn[axis];
+            extent = dot(abs(along), a.size) + b.size[axis];
+            apart = dot(along, offset);
+        }
+        let distance = abs(apart) - extent;
+        if (distance > reach) {
+            return Separation(3u, 0u, 0u, distance);
+        }
+        if (distance > most.distance) {
+            most = Separation(select(0u, 1u, second), axis, 0u, distance);
+        }
+    }
+    return most;
+}
+
+// An edge pair that beats the best face, if any does.
+fn best_edges(face: Separation, turn: mat3x3f, offset: vec3f, a: vec3f, b: vec3f, reach: f32) -> Separation {
+    var most = face;
+    for (var k = 0u; k < bound(9u); k++) {
+        let i = k / 3u;
+        let j = k % 3u;
+        let i1 = (i + 1u) % 3u;
+        let i2 = (i + 2u) % 3u;
+        let j1 = (j + 1u) % 3u;
+        let j2 = (j + 2u) % 3u;
+        let u = turn[j][i1];
+        let v = turn[j][i2];
+        let sine_squared = u * u + v * v;
+        // Nearly parallel edges: their cross product is noise, and the faces cover the case.
+        if (sine_squared < 0.5 * ROUNDING) {
+            continue;
+        }
+        let extent = a[i1] * abs(v) + a[i2] * abs(u) + b[j1] * abs(turn[j2][i]) + b[j2] * abs(turn[j1][i]);
+        let distance = (abs(u * offset[i2] - v * offset[i1]) - extent) / sqrt(sine_squared);
+        if (distance > reach) {
+            return Separation(3u, 0u, 0u, distance);
+        }
+        if (distance - EDGE_BIAS * abs(distance) > most.distance && distance > face.distance) {
+            most = Separation(2u, i, j, distance);
+        }
+    }
+    return most;
+}
+
+fn unit_axis(axis: u32) -> vec3f {
+    var unit = vec3f();
+    unit[axis] = 1.0;
+    return unit;
+}
+
+// The corners of the face of the other box that most opposes the face of the owner, in the polygon: x and y in that face, z above it.
+fn opposing_face(axis: u32, side: f32, size: vec3f, turn: mat3x3f, offset: vec3f, other: vec3f) {
+    let slope = transpose(turn)[axis];
+    var most = 0u;
+    for (var k = 1u; k < bound(3u); k++) {
+        if (abs(slope[k]) > abs(slope[most])) {
+            most = k;
+        }
+    }
+    let facing = select(1.0, -1.0, side * slope[most] > 0.0);
+    let center = offset + turn[most] * (other[most] * facing);
+    let u = turn[(most + 1u) % 3u] * other[(most + 1u) % 3u];
+    let v = turn[(most + 2u) % 3u] * other[(most + 2u) % 3u];
+    for (var k = 0u; k < bound(4u); k++) {
+        let p = center + u * select(-1.0, 1.0, k == 0u || k == 3u) + v * select(-1.0, 1.0, k < 2u);
+        polygon[k] = vec3f(p[(axis + 1u) % 3u], p[(axis + 2u) % 3u], side * p[axis] - size[axis]);
+    }
+    polygon_count = 4u;
+}
+
+// Adds the corners of the opposing face clipped to the owner's, each midway between the two faces; gives the least distance. `turn`
+// and `offset` are of the other box in the owner's frame.
+fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, turn: mat3x3f, offset: vec3f, out: f32, range: f32) -> f32 {
+    let x = (axis + 1u) % 3u;
+    let y = (axis + 2u) % 3u;
+    let size = owner.size;
+    let side = signed(1.0, offset[axis]);
+    opposing_face(axis, side, size, turn, offset, other.size);
+    for (var k = 0u; k < bound(4u); k++) {
+        let sign = select(1.0, -1.0, (k & 1u) == 1u);
+        clip_polygon(select(vec2f(0.0, sign), vec2f(sign, 0.0), k < 2u), select(size[y], size[x], k < 2u));
+    }
+    let normal = owner.axes[axis] * (side * out);
+    let tangent = tangent_from_normal(normal);
+    let radius = 100.0 * ROUNDING;
+    let apart = radius * radius * (size[x] * size[x] + size[y] * size[y]);
+    var least = 3e38;
+    var accepted = 0u;
+    for (var k = 0u; k < polygon_count; k++) {
+        let p = polygon[k];
+        var twin = p.z > range || accepted == 8u;
+        for (var other_corner = 0u; other_corner < accepted; other_corner++) {
+            let between_them = polygon[other_corner].xy - p.xy;
+            twin = twin || dot(between_them, between_them) < apart;
+        }
+        if (twin) {
+            continue;
+        }
+        polygon[accepted] = p;
+        accepted++;
+        var local = vec3f();
+        local[x] = p.x;
+        local[y] = p.y;
+        local[axis] = side * (size[axis] + 0.5 * p.z);
+        add_contact(pair, p.z, owner.center + owner.axes * local, normal, tangent);
+        least = min(least, p.z);
+    }
+    return least;
+}
+
+fn box_box(pair: u32, a: Placed, b: Placed, range: f32) -> u32 {
+    let turn = transpose(a.axes) * b.axes;
+    let offset = transpose(a.axes) * (b.center - a.center);
+    let slack = 8.0 * ROUNDING * (a.size.x + a.size.y + a.size.z + b.size.x + b.size.y + b.size.z);
+    let face = best_face(turn, offset, a, b, range + slack);
+    if (face.owner == 3u) {
+        return FOUND;
+    }
+    var most = best_edges(face, turn, offset, a.size, b.size, range + slack);
+    if (most.owner == 3u) {
+        return FOUND;
+    }
+    if (most.owner == 2u) {
+        let n = direction(cross(unit_axis(most.axis), turn[most.other])).xyz;
+        var along_face = abs(n[face.axis]);
+        if (face.owner == 1u) {
+            along_face = abs(dot(turn[face.axis], n));
+        }
+        let share = ALIAS_SHARE * abs(face.distance) + 1e-15;
+        if (along_face > ALIAS_COSINE && most.distance < face.distance + share) {
+            most = face;
+        } else {
+            best = Gap(n * signed(1.0, dot(n, offset)), most.distance, true);
+            return select(AS_CONVEX, ALONG_BEST, most.distance <= 0.0);
+        }
+    }
+    var owner = a;
+    var other = b;
+    var owner_turn = turn;
+    var owner_offset = offset;
+    if (most.owner == 1u) {
+        owner = b;
+        other = a;
+        owner_turn = transpose(turn);
+        owner_offset = transpose(b.axes) * (a.center - b.center);
+    }
+    let before = found;
+    let least = face_contacts(pair, most.axis, owner, other, owner_turn, owner_offset, select(1.0, -1.0, most.owner == 1u), range);
+    if (most.distance <= 0.0 || least <= most.distance + slack) {
+        return FOUND;
+    }
+    found = before;
+    return AS_CONVEX;
+}

@@ -1,0 +1,36 @@
+// Which dofs move a body, how they move a point of it, and what a point accelerates by while no dof does. Sister of
+// `dynamics/chains.rs`.
+
+fn moves(body: u32, dof: u32) -> bool {
+    return ((words[DOF_MASK + MASK_WORDS * body + (dof >> 5u)] >> (dof & 31u)) & 1u) == 1u;
+}
+
+// From the reference point of the tree of body `b` to a point.
+fn offset_of(b: u32, point: vec3f) -> vec3f {
+    return point - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
+}
+
+// How dof `i` moves the point of body `b` that is at `point`, and turns the body.
+fn motion_at(b: u32, i: u32, point: vec3f) -> Spatial {
+    let motion = fetch_spatial(CDOF + 6u * i);
+    return Spatial(motion.angular, motion.linear + cross(motion.angular, offset_of(b, point)));
+}
+
+// The same of the body itself, as it moves.
+fn velocity_at(b: u32, point: vec3f) -> Spatial {
+    let motion = fetch_spatial(CVEL + 6u * b);
+    return Spatial(motion.angular, motion.linear + cross(motion.angular, offset_of(b, point)));
+}
+
+// J̇ v of a body, angular, and of its point at `point`, linear.
+fn bias_acceleration(b: u32, point: vec3f) -> Spatial {
+    var sum = Spatial(vec3f(), vec3f());
+    for (var i = 0u; i < bound(NV); i++) {
+        if (moves(b, i)) {
+            sum = plus(sum, times(fetch_spatial(CDOF_DOT + 6u * i), given(QVEL + i)));
+        }
+    }
+    let velocity = velocity_at(b, point);
+    let linear = sum.linear + cross(sum.angular, offset_of(b, point));
+    return Spatial(sum.angular, linear + cross(velocity.angular, velocity.linear));
+}

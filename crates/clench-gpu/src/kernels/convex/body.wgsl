@@ -1,0 +1,137 @@
+// Convex bodies by their support functions, as a core plus a radius. Sister of `clench-collide/src/narrow/convex/body.rs`, where they
+// are explained.
+
+const LEAST_NORMAL: f32 = 1.1754944e-38;
+const ROUNDING: f32 = 1.1920929e-7;
+// The root of that.
+const ROOT_OF_ROUNDING: f32 = 3.4526698e-4;
+
+struct Body {
+    kind: u32,
+    size: vec3f,
+    // Of the ball that is added to the core.
+    radius: f32,
+    // Of a sphere about the origin that holds the body.
+    reach: f32,
+}
+
+fn body_of(kind: u32, size: vec3f) -> Body {
+    let least = min(size.x, min(size.y, size.z));
+    let most = max(size.x, max(size.y, size.z));
+    switch kind {
+        case SPHERE: {
+            return Body(kind, size, size.x, size.x);
+        }
+        case CAPSULE: {
+            return Body(kind, size, size.x, size.x + size.y);
+        }
+        case ELLIPSOID: {
+            return Body(kind, size, least * (least / max(most, LEAST_NORMAL)), most);
+        }
+        case CYLINDER: {
+            return Body(kind, size, 0.0, length(size.xy));
+        }
+        default: {
+            return Body(kind, size, 0.0, length(size));
+        }
+    }
+}
+
+fn is_curved(body: Body) -> bool {
+    return body.kind == ELLIPSOID || body.kind == CYLINDER;
+}
+
+// x with the sign of y.
+fn signed(x: f32, y: f32) -> f32 {
+    return select(x, -x, y < 0.0);
+}
+
+// The unit direction of `d` projected across z; x where there is none.
+fn radial_direction(d: vec3f) -> vec2f {
+    let level = length(d.xy);
+    if (level > LEAST_NORMAL) {
+        return d.xy / level;
+    }
+    return vec2f(1.0, 0.0);
+}
+
+// The point of the core that is furthest along `d`. Of several corners or ends that are, the one further along `side`.
+fn support(body: Body, d: vec3f, side: vec3f) -> vec3f {
+    let s = body.size;
+    switch body.kind {
+        case CAPSULE: {
+            return vec3f(0.0, 0.0, signed(s.y, side.z));
+        }
+        case ELLIPSOID: {
+            let scaled = d * s;
+            let unit = d / max(length(d), LEAST_NORMAL);
+            return scaled * s / max(length(scaled), LEAST_NORMAL) - unit * body.radius;
+        }
+        case CYLINDER: {
+            return vec3f(radial_direction(d) * s.x, signed(s.y, side.z));
+        }
+        case BOX: {
+            return vec3f(signed(s.x, side.x), signed(s.y, side.y), signed(s.z, side.z));
+        }
+        default: {
+            return vec3f();
+        }
+    }
+}
+
+// The point of the core that is nearest to a point, for the kinds whose size tells it; else the origin.
+fn nearest_of_body(body: Body, p: vec3f) -> vec3f {
+    let s = body.size;
+    switch body.kind {
+        case CAPSULE: {
+            return vec3f(0.0, 0.0, clamp(p.z, -s.y, s.y));
+        }
+        case CYLINDER: {
+            return vec3f(p.xy * min(s.x / max(length(p.xy), LEAST_NORMAL), 1.0), clamp(p.z, -s.y, s.y));
+        }
+        case BOX: {
+            return clamp(p, -s, s);
+        }
+        default: {
+            return vec3f();
+        }
+    }
+}
+
+// How the supporting point of a core moves with the direction: share (Q − p pᵀ) − radius, Q being diagonal.
+struct Curvature {
+    share: f32,
+    diagonal: vec3f,
+    pull: vec3f,
+    radius: f32,
+}
+
+fn curvature_of(body: Body, d: vec3f) -> Curvature {
+    let s = body.size;
+    if (ANY_ELLIPSOID && body.kind == ELLIPSOID) {
+        let scaled = d * s;
+        let inverse = 1.0 / max(length(scaled), LEAST_NORMAL);
+        return Curvature(inverse, s * s, scaled * s * inverse, body.radius);
+    }
+    if (ANY_CYLINDER && body.kind == CYLINDER) {
+        let rim = radial_direction(d);
+        return Curvature(-s.x / max(length(d.xy), ROUNDING), vec3f(), vec3f(-rim.y, rim.x, 0.0), 0.0);
+    }
+    return Curvature(0.0, vec3f(), vec3f(), 0.0);
+}
+
+// The matrix between two vectors.
+fn between(c: Curvature, u: vec3f, v: vec3f) -> f32 {
+    return c.share * (dot(u * c.diagonal, v) - dot(c.pull, u) * dot(c.pull, v)) - c.radius * dot(u, v);
+}
+
+// Of a point of the core, the part that jumps where the support function has a crease.
+fn corner_of(body: Body, point: vec3f) -> vec3f {
+    if (body.kind == ELLIPSOID) {
+        return vec3f();
+    }
+    if (body.kind == CYLINDER) {
+        return vec3f(0.0, 0.0, point.z);
+    }
+    return point;
+}

@@ -1,0 +1,178 @@
+// How deep two cores overlap: the expanding polytope algorithm (van den Bergen 2001). Sister of
+// `clench-collide/src/narrow/convex/epa.rs`.
+
+// By how much, as a share of the smaller body, the true depth of curved bodies may be smaller than the one found.
+const SLACK: f32 = 1e-4;
+// Newton's method is tried where a face can be moved by less than this share of the smaller body.
+const NEAR: f32 = 0.1;
+// A polytope begins with vertices that are further apart than this share of the smaller body, if it can.
+const FAR: f32 = 0.05;
+
+// How far `w` is from the first vertex, from the line of the first two, or from the plane of the first three.
+fn reach_from(stage: u32, w: vec3f, along: vec3f, normal: vec3f) -> f32 {
+    let offset = w - polytope_w(0u);
+    if (stage == 1u) {
+        return length(offset);
+    }
+    if (stage == 2u) {
+        return length(cross(offset, along));
+    }
+    return abs(dot(offset, normal));
+}
+
+// The direction `k` in which to look for a vertex further away.
+fn direction_of_stage(stage: u32, k: u32, along: vec3f, normal: vec3f) -> vec3f {
+    var found = normal;
+    if (stage == 1u) {
+        found = vec3f();
+        found[k >> 1u] = 1.0;
+    } else if (stage == 2u) {
+        let frame = across(along);
+        found = select(frame.e, frame.f, k >> 1u == 1u);
+    }
+    return select(found, -found, (k & 1u) == 1u);
+}
+
+// Four vertices with a volume, among them those of the simplex where these span something. False where the difference has no volume:
+// then `best` is the gap across it.
+fn enclose() -> bool {
+    vertex_count = 0u;
+    push_vertex(simplex[0]);
+    var along = vec3f();
+    var normal = vec3f();
+    for (var stage = 1u; stage < bound(4u); stage++) {
+        var furthest = simplex[0];
+        var most = 0.0;
+        var across_gap = Gap(vec3f(), -UNMOVABLE, false);
+        let directions = 8u - 2u * stage;
+        for (var k = 0u; k < simplex_count + directions; k++) {
+            var vertex = simplex[min(k, 3u)];
+            if (k >= simplex_count) {
+                // What the simplex has is far enough.
+                if (most > smallest * FAR) {
+                    break;
+                }
+                let n = direction_of_stage(stage, k - simplex_count, along, normal);
+                vertex = vertex_along(n);
+                let gap = dot(n, vertex.w);
+                if (k < simplex_count + 2u && gap > across_gap.gap) {
+                    across_gap = Gap(n, gap, false);
+                }
+            }
+            let reach = reach_from(stage, vertex.w, along, normal);
+            if (reach > most) {
+                most = reach;
+                furthest = vertex;
+            }
+        }
+        if (most <= largest * ROUNDING * 16.0) {
+            best = across_gap;
+            return false;
+        }
+        push_vertex(furthest);
+        if (stage == 1u) {
+            along = direction(furthest.w - polytope_w(0u)).xyz;
+        } else if (stage == 2u) {
+            normal = direction(cross(along, furthest.w - polytope_w(0u))).xyz;
+        }
+    }
+    return true;
+}
+
+// Makes the simplex of the corners of a face.
+fn touch(corners: vec3u) {
+    simplex[0] = polytope_vertex(corners.x);
+    simplex[1] = polytope_vertex(corners.y);
+    simplex[2] = polytope_vertex(corners.z);
+    simplex_count = 3u;
+}
+
+fn corners_of(face: u32) -> vec3u {
+    return vec3u(fetch3(face_at(face)));
+}
+
+// Where an expansion stands: the corners of the face that the best direction belongs to, whether Newton's method has refined that,
+// and whether the depth is known.
+var<private> touching: vec3u;
+var<private> refined: bool;
+var<private> known: bool;
+
+// Begins with the depth along a direction.
+fn begin_expansion(start: vec3f) {
+    begin_polytope();
+    best = Gap(start, dot(start, vertex_along(start).w), false);
+    touching = corners_of(0u);
+    refined = false;
+    known = false;
+}
+
+// Grows the polytope until the depth is known, in `best`, or, of curved bodies, until a better direction is worth refining: then the
+// answer is no, and the simplex has what touches there. In the end it is the face that the gap belongs to.
+fn expand(curved: bool) -> bool {
+    for (var round = 0u; round < bound(2u * POLYTOPE_VERTICES); round++) {
+        let face = nearest_face_of_polytope();
+        let distance = fetch(face_at(face) + 10u);
+        // By how much the depth through the nearest face may still be smaller.
+        let slack = select(exactness, max(smallest * SLACK, exactness), best.settled);
+        let corners = corners_of(face);
+        known = -best.gap - distance <= slack;
+        if (known && !best.settled && distance < UNMOVABLE) {
+            touching = corners;
+        }
+        if (known || vertex_count == POLYTOPE_VERTICES) {
+            break;
+        }
+        let outward = fetch3(face_at(face) + 6u);
+        let vertex = vertex_along(-outward);
+        let raw = Gap(-outward, -dot(outward, vertex.w), false);
+        let movable = -raw.gap - distance;
+        let better = improve(raw);
+        refined = refined && !better;
+        known = movable <= exactness;
+        if (better || (known && !best.settled)) {
+            touching = corners;
+        }
+        if (known) {
+            break;
+        }
+        if (!add_to_polytope(face, vertex)) {
+            // As far out as rounding lets it be.
+            put(face_at(face) + 10u, UNMOVABLE);
+        }
+        if (better && curved && movable < max(smallest, distance) * NEAR) {
+            touch(corners);
+            return false;
+        }
+    }
+    touch(touching);
+    return true;
+}
+
+// Directions across two creases of the gap: the normals of flat faces, and what is across an edge of each body. Where the polytope
+// has run out of room, the smallest of depths that are nearly equal lies there.
+fn try_crossings() {
+    let own = mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    for (var k = 0u; k < bound(15u); k++) {
+        var n = vec3f();
+        if (k < 3u && has_face(body_a, k)) {
+            n = own[k];
+        } else if (k >= 3u && k < 6u && has_face(body_b, k - 3u)) {
+            n = turn_b[k - 3u];
+        } else if (k >= 6u && has_edge(body_a, (k - 6u) / 3u) && has_edge(body_b, (k - 6u) % 3u)) {
+            n = cross(own[(k - 6u) / 3u], turn_b[(k - 6u) % 3u]);
+        }
+        let size = length(n);
+        if (size > ROOT_OF_ROUNDING) {
+            n = n * (signed(1.0, dot(n, offset_b)) / size);
+            improve(Gap(n, dot(n, vertex_along(n).w), false));
+        }
+    }
+}
+
+fn has_face(body: Body, axis: u32) -> bool {
+    return body.kind == BOX || (body.kind == CYLINDER && axis == 2u);
+}
+
+fn has_edge(body: Body, axis: u32) -> bool {
+    return body.kind == BOX || ((body.kind == CYLINDER || body.kind == CAPSULE) && axis == 2u);
+}

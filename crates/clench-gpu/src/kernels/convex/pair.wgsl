@@ -1,0 +1,92 @@
+// Two convex bodies in the frame of the first, and the gap between their cores along a direction. Sister of
+// `clench-collide/src/narrow/convex/pair.rs`.
+
+var<private> body_a: Body;
+var<private> body_b: Body;
+// The axes of the second as columns, and its origin.
+var<private> turn_b: mat3x3f;
+var<private> offset_b: vec3f;
+// The smaller of the bodies' sizes, a bound of all coordinates, and how exactly the gap is to be found.
+var<private> smallest: f32;
+var<private> largest: f32;
+var<private> exactness: f32;
+
+// A point of the difference of the cores, from the first to the second, and the points that it is the difference of: on the first
+// in its frame, on the second in its own.
+struct Vertex {
+    w: vec3f,
+    a: vec3f,
+    b: vec3f,
+}
+
+// A direction, the gap along it, and whether it is the largest in its neighbourhood and the direction exact.
+struct Gap {
+    normal: vec3f,
+    gap: f32,
+    settled: bool,
+}
+
+// The largest gap found so far.
+var<private> best: Gap;
+
+fn begin_pair(a: Body, b: Body, turn: mat3x3f, offset: vec3f) {
+    body_a = a;
+    body_b = b;
+    turn_b = turn;
+    offset_b = offset;
+    smallest = min(a.reach, b.reach);
+    largest = a.reach + b.reach + abs(offset.x) + abs(offset.y) + abs(offset.z);
+    exactness = max(largest * ROUNDING * 64.0, smallest * 1e-9);
+}
+
+// The direction between points of the cores that are near to each other.
+fn start_direction() -> vec3f {
+    let p = nearest_of_body(body_a, offset_b);
+    let q = offset_b + turn_b * nearest_of_body(body_b, transpose(turn_b) * (p - offset_b));
+    let apart = direction(q - p);
+    if (apart.w > 0.0) {
+        return apart.xyz;
+    }
+    return direction(offset_b).xyz;
+}
+
+// The vertex along `n`, a direction of any length; where there are several, the one furthest against `side`.
+fn vertex_beside(n: vec3f, side: vec3f) -> Vertex {
+    let back = transpose(turn_b);
+    let a = support(body_a, n, side);
+    let b = support(body_b, -(back * n), -(back * side));
+    return Vertex(offset_b + turn_b * b - a, a, b);
+}
+
+fn vertex_along(n: vec3f) -> Vertex {
+    return vertex_beside(n, n);
+}
+
+// Takes the other gap if it is larger; between equals, to the tolerance, a settled one. Whether it did.
+fn improve(other: Gap) -> bool {
+    var handicap = 0.0;
+    if (best.settled != other.settled) {
+        handicap = select(-exactness, exactness, best.settled);
+    }
+    if (other.gap > best.gap + handicap) {
+        best = other;
+        return true;
+    }
+    return false;
+}
+
+// Two unit vectors across a unit vector (Duff et al. 2017).
+struct Across {
+    e: vec3f,
+    f: vec3f,
+}
+
+fn across(n: vec3f) -> Across {
+    let sign = signed(1.0, n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    return Across(
+        vec3f(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+        vec3f(b, sign + n.y * n.y * a, -n.y),
+    );
+}

@@ -1,0 +1,207 @@
+// Newton's method for the direction of the largest gap, near it. Sister of `clench-collide/src/narrow/convex/refine.rs`, where the
+// steps are derived.
+
+const NEWTON_STEPS: u32 = 12u;
+const NEWTON_HALVINGS: u32 = 3u;
+// The largest turn of a step, and its cosine.
+const MAX_TURN: f32 = 0.3;
+const MAX_TURN_COSINE: f32 = 0.9553365;
+// The last step turns by less.
+const CONVERGED_TURN: f32 = 256.0 * 1.1920929e-7;
+
+// Directions of the edges that touch, orthonormal: none, an edge, or two that span a face (or cross).
+var<private> edges: array<vec3f, 2>;
+var<private> edge_count: u32;
+
+fn extend_edges(edge: vec3f) {
+    let whole = length(edge);
+    if (edge_count == 2u || whole <= LEAST_NORMAL) {
+        return;
+    }
+    var rest = edge;
+    if (edge_count == 1u) {
+        rest -= edges[0] * dot(edges[0], edge);
+    }
+    let left = length(rest);
+    if (left > whole * ROOT_OF_ROUNDING * 64.0) {
+        edges[edge_count] = rest / left;
+        edge_count++;
+    }
+}
+
+// The span of the edges between the corners that the vertices of the simplex are made of.
+fn find_edges() {
+    edge_count = 0u;
+    let a = corner_of(body_a, simplex[0].a);
+    let b = corner_of(body_b, simplex[0].b);
+    for (var k = 1u; k < simplex_count; k++) {
+        extend_edges(corner_of(body_a, simplex[k].a) - a);
+        extend_edges(turn_b * (corner_of(body_b, simplex[k].b) - b));
+    }
+}
+
+// The direction nearest to `n` across the edges; `n` if they leave none.
+fn across_edges(n: vec3f) -> vec3f {
+    var left = n;
+    if (edge_count == 2u) {
+        let normal = cross(edges[0], edges[1]);
+        left = normal * dot(normal, n);
+    } else if (edge_count == 1u) {
+        left = n - edges[0] * dot(edges[0], n);
+    }
+    let size = length(left);
+    if (size > 0.5) {
+        return left / size;
+    }
+    return n;
+}
+
+// Whether turning off the one edge, to either side, would make the gap smaller.
+fn edge_holds(n: vec3f) -> bool {
+    if (edge_count != 1u) {
+        return true;
+    }
+    for (var k = 0u; k < bound(2u); k++) {
+        let side = select(-edges[0], edges[0], k == 0u);
+        if (dot(side, vertex_beside(n, n + side * ROOT_OF_ROUNDING).w) > exactness) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The step, and in w whether there is none (0), the gap curves up one way (1) or down both ways (2).
+fn newton_step(at: Gap, w: vec3f) -> vec4f {
+    let back = transpose(turn_b);
+    let of_a = curvature_of(body_a, at.normal);
+    let of_b = curvature_of(body_b, back * at.normal);
+    if (edge_count == 1u) {
+        let e = cross(at.normal, edges[0]);
+        let bend = between(of_a, e, e) + between(of_b, back * e, back * e) + at.gap;
+        if (bend <= 0.0) {
+            return vec4f();
+        }
+        return vec4f(e * (dot(e, w) / bend), 2.0);
+    }
+    let frame = across(at.normal);
+    let e = frame.e;
+    let f = frame.f;
+    var ee = between(of_a, e, e) + between(of_b, back * e, back * e);
+    let ef = between(of_a, e, f) + between(of_b, back * e, back * f);
+    var ff = between(of_a, f, f) + between(of_b, back * f, back * f);
+    let mean = (ee + ff) * 0.5 + at.gap;
+    let spread = sqrt((ee - ff) * (ee - ff) * 0.25 + ef * ef);
+    let most = mean + spread;
+    if (most <= 0.0) {
+        return vec4f();
+    }
+    // Around an axis that both bodies share the gap does not change; on a saddle, away from it is up.
+    let least = most * 1e-6;
+    let shift = max(least - (mean - spread), 0.0);
+    ee += at.gap + shift;
+    ff += at.gap + shift;
+    let inverse = 1.0 / (ee * ff - ef * ef);
+    let we = dot(e, w);
+    let wf = dot(f, w);
+    let turn = e * ((ff * we - ef * wf) * inverse) + f * ((ee * wf - ef * we) * inverse);
+    return vec4f(turn, select(1.0, 2.0, mean - spread > -least));
+}
+
+// Newton's iteration; a step that loses is halved.
+fn climb(start: vec3f) -> Gap {
+    var w = vertex_along(start).w;
+    var at = Gap(start, dot(start, w), false);
+    for (var k = 0u; k < bound(NEWTON_STEPS); k++) {
+        let step = newton_step(at, w);
+        if (step.w == 0.0) {
+            return at;
+        }
+        var turn = step.xyz;
+        let size = length(turn);
+        if (size > MAX_TURN) {
+            turn = turn * (MAX_TURN / size);
+        }
+        let before = at.gap;
+        var lost = true;
+        for (var halving = 0u; lost && halving <= bound(NEWTON_HALVINGS); halving++) {
+            let tried = direction(at.normal + turn).xyz;
+            w = vertex_along(tried).w;
+            let gap = dot(tried, w);
+            if (gap >= before - exactness * 1e-3) {
+                at.normal = tried;
+                at.gap = gap;
+                lost = false;
+            }
+            turn = turn * 0.5;
+        }
+        if (lost) {
+            return at;
+        }
+        if (size <= CONVERGED_TURN && at.gap - before <= exactness) {
+            at.settled = step.w == 2.0 && edge_holds(at.normal);
+            return at;
+        }
+    }
+    return at;
+}
+
+// The best cap of a cylinder that faces `n` more or less, if the gap across it is larger than `gap`: settled if the cap touches;
+// else, where the gap grows beside it, a direction to start from. Without a gap, there is none.
+fn refine_cap(n: vec3f, gap: f32) -> Gap {
+    var found = Gap(n, gap, false);
+    for (var side = 0u; side < bound(2u); side++) {
+        var body = body_a;
+        var axis = vec3f(0.0, 0.0, 1.0);
+        if (side == 1u) {
+            body = body_b;
+            axis = turn_b[2];
+        }
+        let cosine = dot(axis, n);
+        if (body.kind != CYLINDER || abs(cosine) < MAX_TURN_COSINE) {
+            continue;
+        }
+        axis = axis * signed(1.0, cosine);
+        let vertex = vertex_along(axis);
+        let along = dot(axis, vertex.w);
+        if (along <= found.gap) {
+            continue;
+        }
+        // From the middle of the cap to the other body's point: within the disc, or the gap grows towards it.
+        var to_middle = turn_b * (corner_of(body, vertex.b) - vertex.b);
+        if (side == 0u) {
+            to_middle = vertex.a - corner_of(body, vertex.a);
+        }
+        var lateral = vertex.w + to_middle;
+        lateral -= axis * dot(axis, lateral);
+        let toward = direction(lateral);
+        if (toward.w <= body.size.x || toward.w <= TINY) {
+            found = Gap(axis, along, true);
+            continue;
+        }
+        // Beside the axis, for on the axis itself no point of the circle is distinguished.
+        let back = transpose(turn_b);
+        let start = axis + toward.xyz * ROOT_OF_ROUNDING;
+        let bend = between(curvature_of(body_a, start), toward.xyz, toward.xyz)
+            + between(curvature_of(body_b, back * start), back * toward.xyz, back * toward.xyz);
+        let turn = (toward.w - body.size.x) / max(bend + along, exactness);
+        found = Gap(direction(axis + toward.xyz * clamp(turn, ROOT_OF_ROUNDING, MAX_TURN)).xyz, along, false);
+    }
+    return found;
+}
+
+// The largest gap in the neighbourhood of a direction, across the edges.
+fn refine(n: vec3f) -> Gap {
+    let start = across_edges(n);
+    let gap = dot(start, vertex_along(start).w);
+    if (edge_count == 2u) {
+        return Gap(start, gap, false);
+    }
+    var from_cap = Gap(start, gap, false);
+    if (ANY_CYLINDER && (body_a.kind == CYLINDER || body_b.kind == CYLINDER)) {
+        from_cap = refine_cap(start, gap);
+    }
+    if (from_cap.settled) {
+        return from_cap;
+    }
+    return climb(from_cap.normal);
+}

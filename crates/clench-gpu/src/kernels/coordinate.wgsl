@@ -1,0 +1,25 @@
+// Scalar functions of positions: joints, then tendons, in one numbering. Sister of `constraint/coordinate.rs`.
+
+fn coordinate_value(c: u32) -> f32 {
+    if (c < NJNT) {
+        return given(QPOS + words[JNT_QPOS + c]);
+    }
+    return fetch(TEN_LENGTH + c - NJNT);
+}
+
+fn is_ball(c: u32) -> bool {
+    return c < NJNT && words[JNT_KIND + min(c, NJNT - 1u)] == BALL;
+}
+
+// Its derivative along dof `i`.
+fn coordinate_entry(c: u32, i: u32) -> f32 {
+    if (c < NJNT) {
+        return select(0.0, 1.0, i == words[JNT_DOF + c]);
+    }
+    for (var k = words[TENDON_ROW + c - NJNT]; k < words[TENDON_ROW + c - NJNT + 1u]; k++) {
+        if (words[TENDON_DOF + k] == i) {
+            return fetch(TEN_JACOBIAN + k);
+        }
+    }
+    return 0.0;
+}

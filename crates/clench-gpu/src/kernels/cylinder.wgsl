@@ -1,0 +1,183 @@
+// Sphere–cylinder and capsule–cylinder. Sister of `clench-collide/src/narrow/cylinder.rs`. Vectors are in the cylinder's frame, where
+// its axis is z; `size` has its radius and half length.
+
+// Steps to the nearest point of a segment.
+const SEGMENT_STEPS: u32 = 40u;
+// A capsule lies along a cap or a side that it is tilted against by less (5°).
+const LEVEL_SINE: f32 = 0.087;
+
+// The middle line of a capsule.
+struct Segment {
+    center: vec3f,
+    axis: vec3f,
+    half_length: f32,
+}
+
+fn on_segment(s: Segment, t: f32) -> vec3f {
+    return s.center + s.axis * t;
+}
+
+// The outward direction at a point and the signed distance to the surface. `spare` is the direction for points on the axis.
+fn cylinder_distance(p: vec3f, size: vec3f, spare: vec3f) -> vec4f {
+    let from_axis = length(p.xy);
+    let above_cap = abs(p.z) - size.y;
+    let off_side = from_axis - size.x;
+    let up = max(above_cap, 0.0);
+    let out = max(off_side, 0.0);
+    let apart = sqrt(up * up + out * out);
+    // Within the cylinder the nearer of cap and side decides; beyond both, the circle where they meet.
+    var along = select(0.0, 1.0, above_cap > off_side);
+    var across = 1.0 - along;
+    var signed_distance = max(above_cap, off_side);
+    if (apart >= TINY) {
+        along = up / apart;
+        across = out / apart;
+        signed_distance = apart;
+    }
+    var outward = spare * across;
+    if (from_axis >= TINY) {
+        outward = vec3f(p.xy * (across / from_axis), 0.0);
+    }
+    outward.z = select(-along, along, p.z > 0.0);
+    return vec4f(outward, signed_distance);
+}
+
+// The outward direction for points on the axis of `b`, across it, as `a` meets it.
+fn spare_direction(a: Placed, b: Placed) -> vec3f {
+    return -(transpose(b.axes) * across_axes(a.axes[2], b.axes[2]));
+}
+
+// Adds the contact of a ball with the cylinder `b`.
+fn ball_cylinder(pair: u32, center: vec3f, radius: f32, surface: vec4f, b: Placed, range: f32) {
+    let gap = surface.w - radius;
+    if (gap > range) {
+        return;
+    }
+    let position = center - surface.xyz * (radius + gap * 0.5);
+    let normal = -(b.axes * surface.xyz);
+    add_contact(pair, gap, b.center + b.axes * position, normal, tangent_from_normal(normal));
+}
+
+fn sphere_cylinder(pair: u32, a: Placed, b: Placed, range: f32) {
+    let center = transpose(b.axes) * (a.center - b.center);
+    let surface = cylinder_distance(center, b.size, spare_direction(a, b));
+    ball_cylinder(pair, center, a.size.x, surface, b, range);
+}
+
+// How half the squared distance beyond the surface changes along a segment: once and twice differentiated.
+fn segment_slope(s: Segment, t: f32, size: vec3f) -> vec2f {
+    let p = on_segment(s, t);
+    let from_axis = length(p.xy);
+    let inverse = 1.0 / max(from_axis, 1.1754944e-38);
+    let beyond_side = max(from_axis - size.x, 0.0);
+    let beyond_cap = max(abs(p.z) - size.y, 0.0);
+    let outward = dot(p.xy, s.axis.xy) * inverse;
+    let upward = select(s.axis.z, -s.axis.z, p.z < 0.0);
+    let around = (dot(s.axis.xy, s.axis.xy) - outward * outward) * inverse;
+    let bend = select(0.0, outward * outward + beyond_side * around, beyond_side > 0.0)
+        + select(0.0, upward * upward, beyond_cap > 0.0);
+    return vec2f(beyond_side * outward + beyond_cap * upward, bend);
+}
+
+// The parameter of the point on a segment that is nearest to the cylinder, by safeguarded Newton steps; somewhere within, if it
+// enters.
+fn nearest_on_segment(s: Segment, size: vec3f) -> f32 {
+    var low = -s.half_length;
+    var high = s.half_length;
+    if (segment_slope(s, low, size).x >= 0.0) {
+        return low;
+    }
+    if (segment_slope(s, high, size).x <= 0.0) {
+        return high;
+    }
+    var t = 0.0;
+    var last = 2.0 * s.half_length;
+    let enough = (s.half_length + size.x + size.y) * 1.1920929e-7;
+    for (var k = 0u; k < bound(SEGMENT_STEPS); k++) {
+        let slope = segment_slope(s, t, size);
+        if (slope.x > 0.0) {
+            high = t;
+        } else {
+            low = t;
+        }
+        let step = -slope.x / max(slope.y, 1.1754944e-38);
+        var next = t + step;
+        if (!(abs(step) <= 0.5 * last && next >= low && next <= high)) {
+            next = 0.5 * (low + high);
+        }
+        last = abs(next - t);
+        t = next;
+        if (last <= enough) {
+            break;
+        }
+    }
+    return t;
+}
+
+// The ends of the stretch of a segment along the cap, or along the side, whichever the point at `nearest` faces more; that point
+// alone if the segment is tilted against it.
+fn segment_overlap(s: Segment, nearest: f32, size: vec3f, spare: vec3f) -> vec2f {
+    let c = s.center;
+    let u = s.axis;
+    let square = max(dot(u.xy, u.xy), TINY);
+    var middle = -dot(c.xy, u.xy) / square;
+    let miss = c.x * u.y - c.y * u.x;
+    var reach = sqrt(max(size.x * size.x * square - miss * miss, 0.0)) / square;
+    var tilt = u.z * u.z;
+    let outward = cylinder_distance(on_segment(s, nearest), size, spare);
+    if (outward.z * outward.z <= 0.5) {
+        let slope = select(u.z, TINY, abs(u.z) < TINY);
+        middle = -c.z / slope;
+        reach = size.y / abs(slope);
+        tilt = dot(u.xy, u.xy);
+    }
+    if (tilt > LEVEL_SINE * LEVEL_SINE) {
+        return vec2f(nearest);
+    }
+    let low = min(max(middle - reach, -s.half_length), nearest);
+    return vec2f(low, max(min(middle + reach, s.half_length), nearest));
+}
+
+// A capsule whose middle line stays outside: the deepest point, and where it lies along the cap or the side both ends of that
+// stretch.
+fn capsule_beside_cylinder(pair: u32, s: Segment, radius: f32, nearest: f32, least: f32, b: Placed, spare: vec3f, range: f32) {
+    let ends = segment_overlap(s, nearest, b.size, spare);
+    // Where the two are parallel an end is as deep as anything between.
+    let level = least + 8.0 * 1.1920929e-7 * (radius + b.size.x);
+    var first = nearest;
+    for (var k = 0u; k < 2u; k++) {
+        if (cylinder_distance(on_segment(s, ends[k]), b.size, spare).w <= level) {
+            first = ends[k];
+        }
+    }
+    for (var k = 0u; k < bound(3u); k++) {
+        var t = first;
+        if (k > 0u) {
+            t = ends[k - 1u];
+        }
+        if (k == 0u || t != first) {
+            let center = on_segment(s, t);
+            ball_cylinder(pair, center, radius, cylinder_distance(center, b.size, spare), b, range);
+        }
+    }
+}
+
+fn capsule_cylinder(pair: u32, a: Placed, b: Placed, range: f32) {
+    let back = transpose(b.axes);
+    let s = Segment(back * (a.center - b.center), back * a.axes[2], a.size.y);
+    let spare = spare_direction(a, b);
+    let radius = a.size.x;
+    let nearest = nearest_on_segment(s, b.size);
+    let least = cylinder_distance(on_segment(s, nearest), b.size, spare).w;
+    if (least - radius > range) {
+        return;
+    }
+    // Once its middle line enters the cylinder, distances of its points no longer tell how far the capsule must move to be free.
+    if (least <= 8.0 * 1.1920929e-7 * (radius + b.size.x)) {
+        let out = penetration_depth(s, b.size);
+        let center = on_segment(s, deepest_of_segment(s, b.size, out.xyz, nearest));
+        ball_cylinder(pair, center, radius, vec4f(out.xyz, -out.w), b, range);
+        return;
+    }
+    capsule_beside_cylinder(pair, s, radius, nearest, least, b, spare, range);
+}

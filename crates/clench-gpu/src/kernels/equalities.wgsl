@@ -1,0 +1,74 @@
+// Equalities as blocks: connects, welds, and couplings of joints or tendons. Sisters of `constraint/connect.rs`, `weld.rs` and
+// `joint_equality.rs`.
+
+fn push_coupling(equality: u32, prm: u32) {
+    let follower = words[EQ_PAIR + 2u * equality];
+    let leader = words[EQ_PAIR + 2u * equality + 1u];
+    var value = numbers[prm + 2u];
+    var slope = 0.0;
+    if (leader != NONE) {
+        let e = coordinate_value(leader) - numbers[prm + 1u];
+        value = numbers[prm + 6u];
+        for (var k = 4u; k > 0u; k--) {
+            slope = slope * e + value;
+            value = value * e + numbers[prm + 1u + k];
+        }
+    }
+    let violation = coordinate_value(follower) - numbers[prm] - value;
+    let soft = soften(prm + 8u, violation);
+    begin_block(COUPLING, 1u, equality);
+    // The slope stands where costs have their shape: this one needs none.
+    add_row(violation, -soft.stiffness * violation, soft.damping, regularization(soft.impedance, numbers[prm + 7u]), slope);
+}
+
+// J̇ v of the last three rows of a weld, for bias accelerations whose difference is `alpha`.
+fn weld_bias(equality: u32, alpha: vec3f) -> vec3f {
+    let omega1 = fetch3(CVEL + 6u * words[EQ_PAIR + 2u * equality]);
+    let omega2 = fetch3(CVEL + 6u * words[EQ_PAIR + 2u * equality + 1u]);
+    let to_second = to_second_frame(equality);
+    let rho = relative_quat(equality);
+    let u = quat_rotate(to_second, omega1 - omega2);
+    let u_dot = quat_rotate(to_second, alpha - cross(omega2, omega1 - omega2));
+    let rho_dot = quat_product(vec4f(0.0, u), rho);
+    return (half_product(u_dot, rho) + 0.5 * half_product(u, rho_dot)) * torquescale(equality);
+}
+
+// Three rows at a violation, with the acceleration that they have while no dof has any.
+fn add_held_rows(violation: vec3f, bias: vec3f, soft: Softness, a0: f32) {
+    for (var k = 0u; k < 3u; k++) {
+        let aref = -soft.stiffness * violation[k] - bias[k];
+        add_row(violation[k], aref, soft.damping, regularization(soft.impedance, a0), 0.0);
+    }
+}
+
+fn push_held(equality: u32, prm: u32, dim: u32) {
+    let p = held_point(equality, 0u);
+    let q = held_point(equality, 1u);
+    let first = bias_acceleration(words[EQ_PAIR + 2u * equality], p);
+    let second = bias_acceleration(words[EQ_PAIR + 2u * equality + 1u], q);
+    let apart = p - q;
+    var turned = vec3f();
+    if (dim == 6u) {
+        turned = relative_quat(equality).yzw * torquescale(equality);
+    }
+    let soft = soften(prm + 17u, sqrt(dot(apart, apart) + dot(turned, turned)));
+    begin_block(HELD, dim, equality);
+    add_held_rows(apart, first.linear - second.linear, soft, numbers[prm + 15u]);
+    if (dim == 6u) {
+        add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, numbers[prm + 16u]);
+    }
+}
+
+fn push_equalities() {
+    for (var equality = 0u; equality < NEQ; equality++) {
+        let dim = words[EQ_ROWS + equality];
+        if (dim == 0u || given(EQ_ACTIVE + equality) == 0.0) {
+            continue;
+        }
+        if (dim == 1u) {
+            push_coupling(equality, words[EQ_PRM + equality]);
+        } else {
+            push_held(equality, words[EQ_PRM + equality], dim);
+        }
+    }
+}

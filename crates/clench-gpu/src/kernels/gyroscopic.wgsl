@@ -1,0 +1,76 @@
+// Gyroscopic forces of a free body without jointed children, integrated implicitly. Sister of `dynamics/gyroscopic.rs`, where they are
+// derived.
+
+// Six equations, each with its right side as the seventh number.
+var<private> equations: array<f32, 42>;
+
+// Takes the joint's part of M − h D, which stands in QLD, and of the forces, in RATE.
+fn begin_equations(dof: u32) {
+    for (var r = 0u; r < bound(6u); r++) {
+        for (var c = 0u; c < bound(6u); c++) {
+            equations[7u * r + c] = fetch(QLD + words[TREE_START + dof + max(r, c)] + min(r, c));
+        }
+        equations[7u * r + 6u] = fetch(RATE + dof + r);
+    }
+}
+
+// Adds h ∂bias/∂v.
+fn add_bias_derivative(j: u32) {
+    let b = words[JNT_BODY + j];
+    let axes = fetch_matrix(XMAT + 9u * b);
+    let mass = fetch(CRB + 10u * b + 9u);
+    let s = fetch3(SUBTREE_COM + 3u * b) - fetch3(XPOS + 3u * b);
+    let w = axes * given3(QVEL + words[JNT_DOF + j] + 3u);
+    let spin = momentum(CRB + 10u * b, Spatial(w, vec3f())).angular;
+    for (var k = 0u; k < bound(3u); k++) {
+        let dw = axes[k];
+        let df = (cross(dw, cross(w, s)) + cross(w, cross(dw, s))) * mass;
+        let dt = cross(dw, spin) + cross(w, momentum(CRB + 10u * b, Spatial(dw, vec3f())).angular);
+        let moment = transpose(axes) * (dt + cross(s, df));
+        for (var r = 0u; r < bound(3u); r++) {
+            equations[7u * r + 3u + k] += TIMESTEP * df[r];
+            equations[7u * r + 24u + k] += TIMESTEP * moment[r];
+        }
+    }
+}
+
+// Solves by elimination with partial pivoting; the unknowns are left on the right.
+fn solve_equations() {
+    for (var k = 0u; k < bound(6u); k++) {
+        for (var r = k + 1u; r < bound(6u); r++) {
+            let swap = abs(equations[7u * r + k]) > abs(equations[7u * k + k]);
+            for (var c = k; swap && c < 7u; c++) {
+                let above = equations[7u * k + c];
+                equations[7u * k + c] = equations[7u * r + c];
+                equations[7u * r + c] = above;
+            }
+        }
+        for (var r = k + 1u; r < bound(6u); r++) {
+            let factor = equations[7u * r + k] / equations[7u * k + k];
+            for (var c = k; c < bound(7u); c++) {
+                equations[7u * r + c] -= factor * equations[7u * k + c];
+            }
+        }
+    }
+    for (var up = 0u; up < bound(6u); up++) {
+        let k = 5u - up;
+        for (var c = k + 1u; c < bound(6u); c++) {
+            equations[7u * k + 6u] -= equations[7u * k + c] * equations[7u * c + 6u];
+        }
+        equations[7u * k + 6u] /= equations[7u * k + k];
+    }
+}
+
+// The accelerations of all such bodies, in MEAN_RATE.
+fn gyroscopic_accelerations() {
+    for (var k = 0u; k < NFREE_TREE; k++) {
+        let j = words[FREE_TREE_JNT + k];
+        let dof = words[JNT_DOF + j];
+        begin_equations(dof);
+        add_bias_derivative(j);
+        solve_equations();
+        for (var r = 0u; r < bound(6u); r++) {
+            put(MEAN_RATE + dof + r, equations[7u * r + 6u]);
+        }
+    }
+}

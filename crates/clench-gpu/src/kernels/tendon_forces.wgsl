@@ -1,0 +1,29 @@
+// Velocities of tendons, and the forces of their springs and dampers. Sisters of `dynamics/tendon.rs` and `passive.rs`.
+
+fn tendon_velocities() {
+    for (var t = 0u; t < NTENDON; t++) {
+        var velocity = 0.0;
+        for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
+            velocity += fetch(TEN_JACOBIAN + k) * given(QVEL + words[TENDON_DOF + k]);
+        }
+        put(TEN_VELOCITY + t, velocity);
+    }
+}
+
+// How far a tendon is outside the dead band of its spring.
+fn tendon_stretch(t: u32) -> f32 {
+    let length = fetch(TEN_LENGTH + t);
+    return length - clamp(length, numbers[TENDON_SPRING + 5u * t], numbers[TENDON_SPRING + 5u * t + 1u]);
+}
+
+fn tendon_forces() {
+    for (var t = 0u; t < NTENDON; t++) {
+        let x = tendon_stretch(t);
+        let v = fetch(TEN_VELOCITY + t);
+        let spring = x * stiffness(number3(TENDON_SPRING + 5u * t + 2u), x);
+        let force = -spring - v * stiffness(number3(TENDON_DAMPER + 3u * t), abs(v));
+        for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
+            add(QFRC_PASSIVE + words[TENDON_DOF + k], fetch(TEN_JACOBIAN + k) * force);
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Actuators: what they act on, the dynamics of their activations, and the coefficients of their gains and biases.
+
+use super::{ENDLESS, NONE, Tables, starts};
+use clench_rigid::model::{
+    Actuator, BiasKind, DynamicsKind, GainKind, JointKind, Model, Transmission,
+};
+use std::f64::consts::TAU;
+
+/// What an actuator acts on.
+const TRANSMISSIONS: [&str; 7] = [
+    "ON_SCALAR",
+    "ON_BALL",
+    "ON_FREE",
+    "ON_TENDON",
+    "ON_SITE",
+    "ON_SITE_IN_FRAME",
+    "ON_SLIDER_CRANK",
+];
+/// How its activation follows its control.
+const DYNAMICS: [&str; 5] = [
+    "DYN_NONE",
+    "DYN_INTEGRATOR",
+    "DYN_FILTER",
+    "DYN_FILTER_EXACT",
+    "DYN_MUSCLE",
+];
+/// What its gain, or its bias, is.
+const LAWS: [&str; 2] = ["LAW_AFFINE", "LAW_MUSCLE"];
+/// Numbers of a law: three coefficients, or those of a muscle.
+const LAW_SIZE: usize = 9;
+/// The shortest time constant (s) of a filter, and the least divisor (MuJoCo's `mjMINVAL`).
+const TINY: f64 = 1e-15;
+
+impl Tables {
+    pub(super) fn actuators(&mut self, m: &Model) {
+        for names in [&TRANSMISSIONS[..], &DYNAMICS, &LAWS] {
+            for (code, name) in names.iter().enumerate() {
+                self.count(name, code);
+            }
+        }
+        let count = m.actuators.len();
+        self.count("NU", count);
+        self.count("NA", m.na);
+        self.flag("ACTUATION", m.flags.actuation && count > 0);
+        self.words(
+            "ACTUATOR_ROW",
+            starts((0..count).map(|u| m.actuator_dofs.dofs(u).len())),
+        );
+        let dofs = (0..count).flat_map(|u| m.actuator_dofs.dofs(u));
+        self.words("ACTUATOR_DOF", dofs.map(|&dof| dof as usize));
+        self.transmissions(m);
+        self.activations(m);
+        self.gains(m);
+        self.actuator_ranges(m);
+    }
+
+    fn transmissions(&mut self, m: &Model) {
+        let each = || m.actuators.iter().map(|a| target(m, a));
+        // What no actuator needs is left out of the kernels.
+        self.flag("ANY_ON_ROTATION", each().any(|t| (1..3).contains(&t.kind)));
+        self.flag("ANY_ON_TENDON", each().any(|t| t.kind == 3));
+        self.flag("ANY_ON_SITE", each().any(|t| t.kind > 3));
+        self.words("ACTUATOR_ON", each().map(|t| t.kind));
+        self.words("ACTUATOR_TARGET", each().flat_map(|t| t.elements));
+        self.words(
+            "ACTUATOR_IN_PARENT",
+            each().map(|t| usize::from(t.in_parent)),
+        );
+        let p = &m.params;
+        self.numbers("ACTUATOR_GEAR", p.actuator_gear.iter().copied().flatten());
+        self.numbers("ACTUATOR_ROD", p.actuator_cranklength.iter().copied());
+        let turns = (0..m.actuators.len()).map(|u| whole_turn(m, u));
+        self.numbers("ACTUATOR_TURN", turns);
+    }
+
+    fn activations(&mut self, m: &Model) {
+        let (p, each) = (&m.params, || m.actuators.iter());
+        let kind = |a: &Actuator| match a.dynamics {
+            DynamicsKind::Integrator => 1,
+            DynamicsKind::Filter => 2,
+            DynamicsKind::FilterExact => 3,
+            DynamicsKind::Muscle => 4,
+            _ => 0,
+        };
+        let muscle = |a: &Actuator| {
+            let law = a.gain == GainKind::Muscle || a.bias == BiasKind::Muscle;
+            law || a.dynamics == DynamicsKind::Muscle
+        };
+        self.flag("ANY_MUSCLE", each().any(muscle));
+        self.words("ACTUATOR_DYNAMICS", each().map(kind));
+        self.words(
+            "ACTUATOR_ACT",
+            each().map(|a| a.act().unwrap_or(NONE as usize)),
+        );
+        self.words("ACTUATOR_EARLY", each().map(|a| usize::from(a.actearly)));
+        self.words("ACTUATOR_OFF", each().map(|a| usize::from(a.disabled)));
+        self.words(
+            "ACTUATOR_SERVO",
+            each().map(|a| usize::from(a.gain == GainKind::Fixed)),
+        );
+        self.words("ACTUATOR_CTRL", each().map(|a| a.controls.start));
+        let prm = p
+            .actuator_dynprm
+            .iter()
+            .flat_map(|prm| [prm[0], prm[1], prm[2]]);
+        self.numbers("DYNAMICS_PRM", prm);
+        let range = |(u, a): (usize, &Actuator)| range(a.actlimited, p.actuator_actrange[u]);
+        self.numbers("ACT_RANGE", each().enumerate().flat_map(range));
+    }
+
+    fn gains(&mut self, m: &Model) {
+        let (p, each) = (&m.params, || m.actuators.iter().enumerate());
+        self.count("LAW_SIZE", LAW_SIZE);
+        let is_muscle = |muscle: bool| usize::from(muscle);
+        self.words(
+            "GAIN_LAW",
+            each().map(|(_, a)| is_muscle(a.gain == GainKind::Muscle)),
+        );
+        self.words(
+            "BIAS_LAW",
+            each().map(|(_, a)| is_muscle(a.bias == BiasKind::Muscle)),
+        );
+        let gain = |(u, a): (usize, &Actuator)| {
+            let prm = &p.actuator_gainprm[u];
+            match a.gain {
+                GainKind::Muscle => muscle(m, u, prm),
+                GainKind::Affine => affine([prm[0], prm[1], prm[2]]),
+                // What MuJoCo takes where its user gives no callback.
+                GainKind::User => affine([1.0, 0.0, 0.0]),
+                _ => affine([prm[0], 0.0, 0.0]),
+            }
+        };
+        let bias = |(u, a): (usize, &Actuator)| {
+            let prm = &p.actuator_biasprm[u];
+            match a.bias {
+                BiasKind::Muscle => muscle(m, u, prm),
+                BiasKind::Affine => affine([prm[0], prm[1], prm[2]]),
+                _ => affine([0.0; 3]),
+            }
+        };
+        self.numbers("ACTUATOR_GAIN", each().flat_map(gain));
+        self.numbers("ACTUATOR_BIAS", each().flat_map(bias));
+    }
+
+    fn actuator_ranges(&mut self, m: &Model) {
+        let (p, each) = (&m.params, || m.actuators.iter().enumerate());
+        let ctrl = each().flat_map(|(_, a)| {
+            let limited = m.flags.clampctrl && a.ctrllimited.first() == Some(&true);
+            range(limited, p.actuator_ctrlrange[a.controls.start])
+        });
+        self.numbers("CTRL_RANGE", ctrl);
+        let force = each().flat_map(|(u, a)| range(a.forcelimited, p.actuator_forcerange[u]));
+        self.numbers("FORCE_RANGE", force);
+        let of_tendon = |a: &Actuator| match a.transmission {
+            Transmission::Tendon(t) if m.tendons[t].actfrclimited => t,
+            _ => NONE as usize,
+        };
+        self.words("ACTUATOR_LIMITED_TENDON", each().map(|(_, a)| of_tendon(a)));
+        self.numbers(
+            "TENDON_FORCE_RANGE",
+            p.tendon_actfrcrange.iter().copied().flatten(),
+        );
+        let dofs = m.dofs.iter().enumerate().flat_map(|(i, dof)| {
+            let joint = &m.joints[dof.joint];
+            let limited = joint.actfrclimited && joint.dof == i && !m.actuators.is_empty();
+            range(limited && m.flags.actuation, p.jnt_actfrcrange[dof.joint])
+        });
+        self.numbers("DOF_FORCE_RANGE", dofs);
+        let lifted = m
+            .dofs
+            .iter()
+            .map(|dof| usize::from(m.joints[dof.joint].actgravcomp));
+        self.words("DOF_ACTGRAVCOMP", lifted);
+    }
+}
+
+/// What an actuator acts on, as the device knows it.
+struct Target {
+    kind: usize,
+    elements: [usize; 2],
+    in_parent: bool,
+}
+
+fn target(m: &Model, actuator: &Actuator) -> Target {
+    let joint = |j: usize, in_parent| Target {
+        kind: match m.joints[j].kind {
+            JointKind::Hinge | JointKind::Slide => 0,
+            JointKind::Ball => 1,
+            JointKind::Free => 2,
+        },
+        elements: [j, 0],
+        in_parent,
+    };
+    let other = |kind, elements| Target {
+        kind,
+        elements,
+        in_parent: false,
+    };
+    match actuator.transmission {
+        Transmission::Joint(j) => joint(j, false),
+        Transmission::JointInParent(j) => joint(j, true),
+        Transmission::Tendon(t) => other(3, [t, 0]),
+        Transmission::Site(site) => other(4, [site, 0]),
+        Transmission::SiteInFrame(sites) => other(5, sites),
+        Transmission::SliderCrank(sites) => other(6, sites),
+        Transmission::Body(body) => other(4, [body, 0]),
+    }
+}
+
+/// By how much the length of a servo on a circle changes in a whole turn; zero for what is no servo or on no circle. See
+/// `dynamics/activation.rs`.
+fn whole_turn(m: &Model, u: usize) -> f64 {
+    let (actuator, p) = (&m.actuators[u], &m.params);
+    let length = |axis: &[f64]| axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let gear = &p.actuator_gear[u];
+    let (rotates, axis) = match actuator.transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => {
+            (m.joints[j].kind == JointKind::Ball, &gear[..3])
+        }
+        Transmission::SiteInFrame(_) => (length(&gear[..3]) == 0.0, &gear[3..]),
+        _ => (false, &gear[..3]),
+    };
+    let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
+    let pulls_back = p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1];
+    if rotates && fixed && pulls_back {
+        TAU * length(axis)
+    } else {
+        0.0
+    }
+}
+
+fn range(limited: bool, range: [f64; 2]) -> [f64; 2] {
+    if limited { range } else { [-ENDLESS, ENDLESS] }
+}
+
+/// a + b length + c velocity.
+fn affine([a, b, c]: [f64; 3]) -> [f64; LAW_SIZE] {
+    [a, b, c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+}
+
+/// What of a muscle does not change: its strength, its resting length, where its scaled length begins, and the shape of its curves.
+/// See `dynamics/muscle.rs`.
+fn muscle(m: &Model, u: usize, prm: &[f64; 10]) -> [f64; LAW_SIZE] {
+    let [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
+    let [shortest, longest] = m.params.actuator_lengthrange[u];
+    let resting = (longest - shortest) / (high - low).max(TINY);
+    let derived = scale / m.params.actuator_acc0[u].max(TINY);
+    let peak = if force < 0.0 { derived } else { force };
+    let resting = resting.max(TINY);
+    [
+        peak,
+        resting,
+        low - shortest / resting,
+        lmin,
+        lmax,
+        vmax,
+        fpmax,
+        fvmax,
+        0.0,
+    ]
+}
