@@ -203,7 +203,10 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
         Transmission::Site(site) => other(4, [site, 0]),
         Transmission::SiteInFrame(sites) => other(5, sites),
         Transmission::SliderCrank(sites) => other(6, sites),
-        Transmission::Body(body) => other(4, [body, 0]),
+        // Refused, see `check.rs`.
+        Transmission::Body(_) | Transmission::Rotation(_) | Transmission::RotationInFrame(_) => {
+            other(0, [0, 0])
+        }
     }
 }
 

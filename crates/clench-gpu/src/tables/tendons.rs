@@ -60,7 +60,7 @@ impl Tables {
         self.words("SECTION_OBSTACLE", obstacle);
     }
 
-    /// The dead band and the coefficients of each spring, and those of each damper; none where the flags switch them off.
+    /// The dead band and the coefficients of each spring, and those of each damper with its actuators'; none where the flags switch them off.
     fn tendon_laws(&mut self, m: &Model) {
         let p = &m.params;
         let law = |on: bool, a: f64, [b, c]: [f64; 2]| if on { [a, b, c] } else { [0.0; 3] };
@@ -73,7 +73,17 @@ impl Tables {
             let [low, high] = p.tendon_lengthspring[t];
             [low, high, a, b, c]
         };
-        let damper = |t: usize| law(m.flags.damper, p.tendon_damping[t], p.tendon_dampingpoly[t]);
+        let damper = |t: usize| {
+            let mut sum = law(true, p.tendon_damping[t], p.tendon_dampingpoly[t]);
+            for &u in &m.tendons[t].reflecting {
+                let ratio = p.actuator_gear[u][0].powi(2);
+                let [b, c] = p.actuator_dampingpoly[u];
+                for (to, of) in sum.iter_mut().zip([p.actuator_damping[u], b, c]) {
+                    *to += ratio * of;
+                }
+            }
+            if m.flags.damper { sum } else { [0.0; 3] }
+        };
         self.numbers("TENDON_SPRING", (0..m.tendons.len()).flat_map(spring));
         self.numbers("TENDON_DAMPER", (0..m.tendons.len()).flat_map(damper));
     }
