@@ -5,7 +5,7 @@ use crate::model::{Model, Params};
 use crate::query::RayFilter;
 use crate::workspace::Positions;
 use clench_collide::{Asset, Hit, Pose, Ray, Shape, ShapeKind, allowance, ray};
-use clench_math::{Mask, Real, Scalar, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// The geoms of a configuration.
 #[derive(Clone, Copy)]
@@ -39,6 +39,7 @@ impl<'a, T: Real> Geoms<'a, T> {
     }
 
     /// The geom that a ray hits first, by its number, and where; the distance is infinite where it hits none.
+    #[kernel]
     pub(crate) fn first_hit(&self, line: &Ray<T>, filter: &RayFilter) -> (T, Hit<T>) {
         let mut best = (
             T::ZERO,
@@ -71,6 +72,7 @@ impl<'a, T: Real> Geoms<'a, T> {
     }
 
     /// Where a ray meets a geom's bounding sphere.
+    #[kernel]
     fn may_hit(&self, geom: usize, line: &Ray<T>) -> T::Mask {
         if self.model.geoms[geom].kind == ShapeKind::Plane {
             return T::Mask::splat(true);

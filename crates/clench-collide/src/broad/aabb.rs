@@ -1,7 +1,7 @@
 //! A box along the coordinate axes.
 
 use super::{Bound, allowance};
-use clench_math::{Real, Scalar};
+use clench_math::{Real, Scalar, kernel};
 
 /// What a shape covers in any environment, with its margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,7 @@ impl Aabb {
     };
 
     /// What a bound covers in any environment.
+    #[kernel]
     pub(super) fn new<T: Real>(bound: &Bound<T>, margin: T) -> Self {
         let Aabb { mut low, mut high } = Aabb::EMPTY;
         for lane in 0..T::LANES {

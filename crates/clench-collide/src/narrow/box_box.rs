@@ -14,7 +14,7 @@ use super::{
     separating_axis::SeparatingAxis,
 };
 use crate::{Contacts, Pose};
-use clench_math::{Mask, Mat3, Real, Scalar, Vec3};
+use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
 /// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
 const EDGE_BIAS: f64 = 1e-6;
@@ -31,6 +31,7 @@ pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
 
 /// The contacts of two boxes, unless the direction in which they were apart before shows at once that there are none. It becomes the one
 /// that is found.
+#[kernel]
 pub(super) fn box_box<T: Real>(
     a: Placed<T>,
     b: Placed<T>,

@@ -28,24 +28,21 @@ pub(super) fn boxes_near<T: Real>(
     );
     let mut near = margin.le(T::new(f64::INFINITY));
     let (mut largest, mut direction) = (T::new(f64::NEG_INFINITY), Vec3::ZERO);
-    let mut look = |distance: T, reach: T, normal: Vec3<T>| {
-        near &= distance.abs().le(reach);
-        let gap = distance.abs() - reach;
-        let larger = gap.gt(largest);
-        largest = T::select(larger, gap, largest);
-        direction = Vec3::select(larger, normal * T::ONE.copysign(distance), direction);
-    };
     for i in 0..3 {
-        let row = turn.rows[i];
-        let column = turn.column(i);
-        let reach = |own: T, axis: Vec3<T>, other: Vec3<T>| {
-            let across = axis.x.abs() * other.x + axis.y.abs() * other.y + axis.z.abs() * other.z;
-            (own + across) * allowance() + margin
-        };
         let mut unit = Vec3::ZERO;
         unit[i] = T::ONE;
-        look(along_a[i], reach(half_a[i], row, half_b), unit);
-        look(along_b[i], reach(half_b[i], column, half_a), column);
+        let own = (along_a[i], half_a[i], turn.rows[i], half_b, unit);
+        let column = turn.column(i);
+        let other = (along_b[i], half_b[i], column, half_a, column);
+        for (distance, own, axis, other, normal) in [own, other] {
+            let across = axis.x.abs() * other.x + axis.y.abs() * other.y + axis.z.abs() * other.z;
+            let reach = (own + across) * allowance() + margin;
+            let gap = distance.abs() - reach;
+            near &= distance.abs().le(reach);
+            let larger = gap.gt(largest);
+            largest = T::select(larger, gap, largest);
+            direction = Vec3::select(larger, normal * T::ONE.copysign(distance), direction);
+        }
     }
     axis.renew(!near, direction);
     near

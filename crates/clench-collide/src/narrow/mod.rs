@@ -20,7 +20,7 @@ mod segment;
 mod separating_axis;
 
 use crate::{Contacts, Pose, Shape, ShapeKind};
-use clench_math::Real;
+use clench_math::{Real, kernel};
 pub use separating_axis::SeparatingAxis;
 
 /// A shape where it is.
@@ -83,6 +83,7 @@ pub fn collide<T: Real>(
 
 /// As [`collide`], for a pair that is asked about again and again: with the direction in which its shapes were apart the last time, or
 /// that of any other pair. It saves searches and changes no result.
+#[kernel]
 pub fn collide_again<T: Real>(
     a: &Shape<T>,
     pose_a: &Pose<T>,

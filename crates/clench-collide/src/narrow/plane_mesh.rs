@@ -14,12 +14,13 @@ use super::{
 use crate::shape::reach_along;
 use crate::{Asset, Contacts, Hull, PATCH_POINTS, allowance};
 use arrayvec::ArrayVec;
-use clench_math::{Mask, Real, Scalar, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// Shares of the hull's extent: corners of a face nearer to each other are one; its outline may miss the deepest vertex by so much.
 const SAME: f64 = 1e-5;
 const MISSED: f64 = 1e-6;
 
+#[kernel]
 pub(super) fn plane_mesh<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
     // The lowest corner of the box about the mesh; what is no number is left to the search.
     let up = b.pose.rotation.transpose_mul(a.pose.axis());

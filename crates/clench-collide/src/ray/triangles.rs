@@ -5,7 +5,7 @@
 
 use super::{Hit, Line, Ray, each_lane};
 use crate::Pose;
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Vec3, kernel};
 
 /// Leaves hold up to so many triangles.
 const LEAF: usize = 4;
@@ -87,6 +87,7 @@ impl TriangleMesh {
 
     /// Where a ray hits a triangle first, from either side. The normal is on the side from which its corners are
     /// counter-clockwise.
+    #[kernel]
     pub fn ray<T: Real>(&self, pose: &Pose<T>, ray: &Ray<T>) -> Hit<T> {
         let (line, unit) = Line::of(pose, ray);
         let (distance, normal) = each_lane(&line, |origin, along| self.cast(origin, along));

@@ -12,7 +12,7 @@ use super::{connect, weld};
 use crate::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::Model;
 use crate::state::State;
-use clench_math::{Mask, Real, Scalar};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// `dynamic_kind` of a connect.
 pub(crate) const CONNECT: f64 = 1.0;
@@ -85,6 +85,7 @@ pub(crate) fn softness<T: Real>() -> ([T; 2], [T; 5]) {
 }
 
 /// Appends what the slots hold, in their order.
+#[kernel]
 pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
     let (solref, solimp) = softness();
     for slot in 0..context.state.dynamic_kind.len() {

@@ -30,7 +30,7 @@ use crate::sleep::Sleep;
 use crate::state::State;
 use crate::workspace::{Positions, Velocities, Workspace};
 use assembly::Assembly;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 use coordinate::Coordinate;
 use exact::ExactDiagonal;
 use held::Held;
@@ -141,6 +141,7 @@ pub fn constraint_stage<T: Real>(
 }
 
 /// Replaces the problem's blocks by those of the configuration.
+#[kernel]
 pub fn assemble<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -208,6 +209,7 @@ fn least_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
     }
 }
 
+#[kernel]
 fn push_equalities<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
     for (i, equality) in context.model.equalities.iter().enumerate() {
         if !context.active_equality(i).any() {

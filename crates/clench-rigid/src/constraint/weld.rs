@@ -57,6 +57,7 @@ pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
 
 /// The torque on the first body that forces f of the last three rows mean, in world axes: Jᵀ f = R₂ s Bᵀ f, with
 /// Bᵀ f = ½ (w f + Im ρ × f). The second body takes its negative.
+#[kernel]
 pub(crate) fn weld_torque<T: Real>(
     position: &Positions<T>,
     frames: &Frames<T>,

@@ -2,9 +2,10 @@
 
 use crate::model::{CameraMode, Model, Params};
 use crate::workspace::Positions;
-use clench_math::{Mat3, Real, Vec3};
+use clench_math::{Mat3, Real, Vec3, kernel};
 
 /// The pose of a camera that is fixed to its body.
+#[kernel]
 pub(crate) fn fixed_pose<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -18,6 +19,7 @@ pub(crate) fn fixed_pose<T: Real>(
 }
 
 /// The pose of a camera: its position, and its axes as columns.
+#[kernel]
 pub(crate) fn camera_pose<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -50,6 +52,7 @@ pub(crate) fn camera_pose<T: Real>(
 
 /// The axes of a camera that looks from one point to another, with the world's z axis upwards in its picture. Where that is no
 /// direction, the x axis takes its place, as in MuJoCo.
+#[kernel]
 fn looking<T: Real>(from: Vec3<T>, to: Vec3<T>) -> Mat3<T> {
     let up = Vec3::new(T::ZERO, T::ZERO, T::ONE);
     let z = (from - to).normalize().0;

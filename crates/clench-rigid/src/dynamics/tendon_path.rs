@@ -39,12 +39,19 @@ pub fn each_span<T: Real>(
     let mut length = T::ZERO;
     for section in tendon.sections() {
         let divisor = section.divisor.map_or(T::ONE, |i| params.wrap_coef[i]);
-        length += section_spans(model, params, pos, &section, |mut span| {
-            span.pull = span.pull * (T::ONE / divisor);
-            if span.bodies[0] != span.bodies[1] {
-                show(span);
-            }
-        }) / divisor;
+        length += section_spans(
+            model,
+            params,
+            pos,
+            &section,
+            #[inline(always)]
+            |mut span| {
+                span.pull = span.pull * (T::ONE / divisor);
+                if span.bodies[0] != span.bodies[1] {
+                    show(span);
+                }
+            },
+        ) / divisor;
     }
     length
 }
@@ -120,9 +127,16 @@ pub fn spatial_tendon<T: Real>(
     let mut gradient = std::mem::take(&mut pos.ten_jacobian);
     let row = &mut gradient[range];
     row.fill(T::ZERO);
-    let length = each_span(model, params, pos, &model.tendons[t], |span| {
-        add_span(model, pos, &span, dofs, row);
-    });
+    let length = each_span(
+        model,
+        params,
+        pos,
+        &model.tendons[t],
+        #[inline(always)]
+        |span| {
+            add_span(model, pos, &span, dofs, row);
+        },
+    );
     pos.ten_jacobian = gradient;
     pos.ten_length[t] = length;
 }
@@ -169,19 +183,26 @@ pub fn bias_acceleration<T: Real>(
     if !tendon.is_spatial() {
         return sum;
     }
-    each_span(model, params, pos, tendon, |span| {
-        let ends: [BodyPoint<T>; 2] =
-            [0, 1].map(|i| BodyPoint::new(model, pos, span.bodies[i], span.points[i]));
-        let acceleration = |i: usize| ends[i].bias_acceleration(model, vel, qvel).linear;
-        let velocity = |i: usize| vel.cvel[span.bodies[i]].velocity_at(ends[i].offset);
-        let apart = velocity(1) - velocity(0);
-        let (unit, distance) = (span.points[1] - span.points[0]).normalize();
-        let none = distance.lt(T::new(MIN_DISTANCE));
-        let inverse = T::ONE / T::select(none, T::ONE, distance);
-        let across = (apart.norm_squared() - unit.dot(apart).squared()) * inverse;
-        let share = span.pull.dot(unit);
-        let along = unit.dot(acceleration(1) - acceleration(0));
-        sum += share * (along + T::select(none, T::ZERO, across));
-    });
+    each_span(
+        model,
+        params,
+        pos,
+        tendon,
+        #[inline(always)]
+        |span| {
+            let ends: [BodyPoint<T>; 2] =
+                [0, 1].map(|i| BodyPoint::new(model, pos, span.bodies[i], span.points[i]));
+            let acceleration = |i: usize| ends[i].bias_acceleration(model, vel, qvel).linear;
+            let velocity = |i: usize| vel.cvel[span.bodies[i]].velocity_at(ends[i].offset);
+            let apart = velocity(1) - velocity(0);
+            let (unit, distance) = (span.points[1] - span.points[0]).normalize();
+            let none = distance.lt(T::new(MIN_DISTANCE));
+            let inverse = T::ONE / T::select(none, T::ONE, distance);
+            let across = (apart.norm_squared() - unit.dot(apart).squared()) * inverse;
+            let share = span.pull.dot(unit);
+            let along = unit.dot(acceleration(1) - acceleration(0));
+            sum += share * (along + T::select(none, T::ZERO, across));
+        },
+    );
     sum
 }

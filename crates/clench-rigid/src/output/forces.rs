@@ -9,7 +9,7 @@ use crate::constraint::{ConstraintSource, Frames, weld_torque};
 use crate::contact::Contact;
 use crate::model::EqualityTarget;
 use crate::workspace::Workspace;
-use clench_math::{Force, Real, Vec3};
+use clench_math::{Force, Real, Vec3, kernel};
 
 /// A force and a couple in world axes, and where the force acts.
 struct Wrench<T> {
@@ -20,6 +20,7 @@ struct Wrench<T> {
 
 impl<T: Real> Wrench<T> {
     /// As a spatial force about `origin`.
+    #[kernel]
     fn about(&self, origin: Vec3<T>) -> Force<T> {
         let moment = self.couple + (self.at - origin).cross(self.force);
         Force::new(moment, self.force)
@@ -27,6 +28,7 @@ impl<T: Real> Wrench<T> {
 }
 
 /// Appends what acts on each body from outside, about the centre of mass of its tree: torque, force.
+#[kernel]
 pub(crate) fn external<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     let start = out.len();
     let pos = &s.ws.position;
@@ -71,6 +73,7 @@ pub(crate) fn external<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
 }
 
 /// Appends the force and torque of contacts on each body, at its centre of mass.
+#[kernel]
 pub(super) fn of_contacts<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     let start = out.len();
     out.resize(start + 6 * s.model.nbody(), T::ZERO);
@@ -113,6 +116,7 @@ pub(crate) fn of_contact<T: Real>(ws: &Workspace<T>, contact: &Contact<T>) -> Op
 }
 
 /// Shows every contact that is a constraint: its bodies, and the force on the second.
+#[kernel]
 fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<T>)) {
     for contact in &s.ws.contacts {
         let Some([n, t1, t2, spin, roll1, roll2]) = of_contact(s.ws, contact) else {
@@ -129,6 +133,7 @@ fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<
 }
 
 /// Shows every connect and weld: its bodies, and the force on the first at the anchor of each.
+#[kernel]
 fn each_joint_of_bodies<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], [Wrench<T>; 2])) {
     let pos = &s.ws.position;
     for (block, record) in s.ws.record.blocks.iter().enumerate() {

@@ -11,22 +11,31 @@ use crate::dynamics::spring::{tendon_spring, tendon_stretch};
 use crate::dynamics::tendon::gradient;
 use crate::dynamics::tendon_path::{Span, bias_acceleration, each_span};
 use crate::model::{EqualityTarget, Transmission};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// Shows every span of every spatial tendon, with the force of the tendon.
+#[kernel]
 pub(super) fn each_pull<T: Real>(s: &Source<T>, mut show: impl FnMut(Span<T>, T)) {
     for (t, tendon) in s.model.tendons.iter().enumerate() {
         if !tendon.is_spatial() {
             continue;
         }
         let force = smooth_force(s, t) + constraint_force(s, t);
-        each_span(s.model, s.params, &s.ws.position, tendon, |span| {
-            show(span, force);
-        });
+        each_span(
+            s.model,
+            s.params,
+            &s.ws.position,
+            tendon,
+            #[inline(always)]
+            |span| {
+                show(span, force);
+            },
+        );
     }
 }
 
 /// What springs, dampers, actuators and inertia do along tendon `t`.
+#[kernel]
 fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let (model, params, ws) = (s.model, s.params, &s.ws);
     let mut force = T::ZERO;
@@ -56,6 +65,7 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
 }
 
 /// What limits, dry friction and equalities do along tendon `t`.
+#[kernel]
 fn constraint_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let ws = &s.ws;
     let mut sum = T::ZERO;

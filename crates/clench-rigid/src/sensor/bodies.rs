@@ -115,6 +115,7 @@ pub(super) struct Subtree<T> {
 
 impl<T: Real> Reading<'_, T> {
     /// What a site's body carries through its joints, world axes, about the site.
+    #[kernel]
     pub(super) fn force_at(&self, site: usize) -> Force<T> {
         let body = self.model.sites[site].body;
         let force = self.ws.sensors.bodies.cfrc_int[body];
@@ -124,6 +125,7 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// Adds up the momenta of a body and all below it.
+    #[kernel]
     pub(super) fn subtree(&self, body: usize) -> Subtree<T> {
         let (model, pos) = (self.model, &self.ws.position);
         let mut momentum = Force::ZERO;

@@ -6,7 +6,7 @@
 use super::Reading;
 use crate::dynamics::camera::camera_pose;
 use clench_collide::Ray;
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Vec3, kernel};
 
 /// A point nearer to the camera's plane than this (m, MuJoCo's `mjMINVAL`) is seen as if it were so far away.
 const MIN_DEPTH: f64 = 1e-15;
@@ -14,6 +14,7 @@ const MIN_DEPTH: f64 = 1e-15;
 impl<T: Real> Reading<'_, T> {
     /// Where a camera sees a site, pixels from the upper left corner. As in MuJoCo, lines of sight meet in the camera even if it is
     /// orthographic, and the principal point is the middle of the picture.
+    #[kernel]
     pub(super) fn project(&self, site: usize, camera: usize, out: &mut [T]) {
         let (place, axes) = camera_pose(self.model, self.params, &self.ws.position, camera);
         let p = axes.transpose_mul(self.ws.position.site_xpos[site] - place);
@@ -28,6 +29,7 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// Focal lengths in pixels.
+    #[kernel]
     fn focal_lengths(&self, camera: usize) -> [T; 2] {
         let structure = &self.model.cameras[camera];
         let [width, height] = structure.resolution.map(|n| T::new(n as f64));
@@ -42,6 +44,7 @@ impl<T: Real> Reading<'_, T> {
         [height * T::new(0.5) * cos / sin; 2]
     }
 
+    #[kernel]
     fn half_angle(&self, camera: usize) -> (T, T) {
         let half = self.params.cam_fovy[camera] * T::new(0.5_f64.to_radians());
         half.sin_cos()

@@ -9,7 +9,7 @@ use super::Reading;
 use crate::contact::Contact;
 use crate::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
 use crate::output::of_contact;
-use clench_math::{Force, Mask, Motion, Real, Vec3};
+use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 
 /// The most numbers that are told of a contact.
 const MAX_SIZE: usize = 23;
@@ -27,6 +27,7 @@ struct Match<'a, T: Real> {
 
 impl<T: Real> Reading<'_, T> {
     /// What a sensor of contacts tells; zeros where there are fewer contacts than it has room for.
+    #[kernel]
     pub(super) fn read_contacts(&self, query: &ContactQuery, out: &mut [T]) {
         out.fill(T::ZERO);
         let mut count = T::ZERO;
@@ -73,6 +74,7 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// Shows the contacts that match, in order.
+    #[kernel]
     fn each_match(&self, query: &ContactQuery, mut show: impl FnMut(Match<'_, T>)) {
         for (index, contact) in self.ws.contacts.iter().enumerate() {
             let Some(sign) = self.direction(query, contact.geoms) else {
@@ -150,6 +152,7 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// How the second body moves relative to the first where they touch, in the contact's frame.
+    #[kernel]
     fn relative_motion(&self, contact: &Contact<T>) -> Motion<T> {
         let [first, second] = contact.geoms.map(|geom| {
             let body = self.model.geoms[geom].body;
@@ -165,6 +168,7 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// All that match as one contact in world axes: it acts at the mean of their positions, each weighted by its force.
+    #[kernel]
     fn read_net_force(&self, query: &ContactQuery, count: T, mut out: &mut [T]) {
         let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
         let (mut weight, mut pos) = (T::ZERO, Vec3::ZERO);

@@ -5,10 +5,11 @@
 
 use super::Reading;
 use crate::model::{FrameObject, SensorKind};
-use clench_math::{Mat3, Motion, Quat, Real, Vec3};
+use clench_math::{Mat3, Motion, Quat, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
     /// A sensor of a frame, relative to another or in the world.
+    #[kernel]
     pub(super) fn read_frame(
         &self,
         kind: SensorKind,
@@ -60,6 +61,7 @@ impl<T: Real> Reading<'_, T> {
         self.frames().orientation(object)
     }
 
+    #[kernel]
     fn relative_position(&self, object: FrameObject, reference: Option<FrameObject>) -> Vec3<T> {
         let position = self.position(object);
         match reference {
@@ -75,6 +77,7 @@ impl<T: Real> Reading<'_, T> {
         self.frames().velocity(object, &self.ws.velocity)
     }
 
+    #[kernel]
     fn relative_velocity(&self, object: FrameObject, reference: Option<FrameObject>) -> Motion<T> {
         let velocity = self.velocity(object);
         let Some(reference) = reference else {

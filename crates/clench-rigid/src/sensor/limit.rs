@@ -2,7 +2,7 @@
 
 use super::Reading;
 use crate::constraint::ConstraintSource;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// The row of a limit; zero where it does not act.
 pub(super) struct Limit<T> {
@@ -16,6 +16,7 @@ pub(super) struct Limit<T> {
 
 impl<T: Real> Reading<'_, T> {
     /// The first limit of a joint or tendon that acts.
+    #[kernel]
     pub(super) fn limit(&self, source: ConstraintSource) -> Limit<T> {
         let ws = self.ws;
         let mut limit = Limit {

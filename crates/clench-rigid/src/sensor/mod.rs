@@ -22,7 +22,7 @@ use crate::model::{
 use crate::state::State;
 use crate::workspace::Workspace;
 use bodies::BodyForces;
-use clench_math::{Mask, Quat, Real, Vec3};
+use clench_math::{Mask, Quat, Real, Vec3, kernel};
 
 /// What sensors give, and what they are computed from.
 #[derive(Clone, Debug)]
@@ -58,6 +58,7 @@ fn keeps_past(model: &Model) -> bool {
 }
 
 /// Evaluates all sensors of the model, if anybody wants them, or will.
+#[kernel]
 pub(crate) fn evaluate<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -166,6 +167,7 @@ impl<'a, T: Real> Reading<'a, T> {
     }
 
     /// Writes the numbers of a sensor.
+    #[kernel]
     fn read(&self, sensor: &Sensor, out: &mut [T]) {
         match &sensor.target {
             SensorTarget::Nothing => self.read_whole(sensor.kind, out),
@@ -195,6 +197,7 @@ impl<'a, T: Real> Reading<'a, T> {
     }
 
     /// A sensor of a site, joint, tendon, actuator or body.
+    #[kernel]
     fn read_element(&self, kind: SensorKind, element: usize, out: &mut [T]) {
         use SensorKind as Kind;
         let (model, ws, state) = (self.model, self.ws, self.state);

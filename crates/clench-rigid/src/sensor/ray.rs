@@ -5,10 +5,11 @@ use crate::dynamics::camera::camera_pose;
 use crate::model::{RayField, RaySource};
 use crate::query::RayFilter;
 use clench_collide::Ray;
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
     /// What rays meet, ray after ray.
+    #[kernel]
     pub(super) fn read_rays(&self, source: RaySource, fields: &[RayField], out: &mut [T]) {
         let pos = &self.ws.position;
         match source {
@@ -34,6 +35,7 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// What one ray meets, from a sensor on `body` that looks along `axis`.
+    #[kernel]
     fn read_ray(
         &self,
         line: &Ray<T>,

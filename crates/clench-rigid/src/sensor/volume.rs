@@ -3,11 +3,12 @@
 use super::Reading;
 use crate::output::of_contact;
 use clench_collide::{Pose, Ray, Shape, ShapeKind, ray};
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Mask, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
     /// The sum of the normal forces of those contacts of a site's body whose line of force meets the site's volume on its way into
     /// the body.
+    #[kernel]
     pub(super) fn touch(&self, site: usize) -> T {
         let (shape, pose) = self.volume(site);
         let own = self.model.sites[site].body;
@@ -36,6 +37,7 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// 1 where a point is inside a site's volume, else 0.
+    #[kernel]
     pub(super) fn is_inside(&self, site: usize, point: Vec3<T>) -> T {
         let (shape, pose) = self.volume(site);
         let (p, size) = (pose.local(point), shape.size);

@@ -13,11 +13,12 @@ use crate::sensor;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 use std::ops::Range;
 
 /// Whether a step only lets time pass. Actuators and mocap bodies act on what sleeps, or may touch it, and past values are
 /// written in every step, so a model that has them is looked at in full.
+#[kernel]
 pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) -> bool {
     if !model.actuators.is_empty() || model.nhistory > 0 || ws.collision.given {
         return false;

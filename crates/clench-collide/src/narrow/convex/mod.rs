@@ -25,7 +25,7 @@ use super::{
     separating_axis::SeparatingAxis,
 };
 use crate::{Contacts, ShapeKind};
-use clench_math::{Mask, Real, Scalar, Vec3};
+use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 use epa::epa;
 pub(super) use feature::MAX_CORNERS;
 use gjk::{Cores, gjk};
@@ -36,6 +36,7 @@ pub(super) use terrain::terrain;
 
 /// The contacts of two shapes that are bounded and convex, unless the direction in which they were apart before shows at once that there
 /// are none. It becomes the one that a search has found.
+#[kernel]
 pub(super) fn convex<T: Real>(
     a: Placed<T>,
     b: Placed<T>,
