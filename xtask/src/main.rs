@@ -6,6 +6,7 @@ mod docs;
 mod fuzz;
 mod gpu;
 mod install;
+mod lanes;
 mod notices;
 mod others;
 mod package;
@@ -51,6 +52,7 @@ Commands:
                       collide     a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones;
                                   nothing may panic, hang, or be no number
                       recordings  end `clench simulate --record` by kill -9; no half a file may be left
+  lanes             List the functions of the release program in which operations on lanes are calls: where a #[kernel] is missing.
   docs              Build the site in target/site: pages, notebooks, which are run, and the reference of the Python package.
   wheel             Build the Python package that this machine can, in target/wheels, with the licences of what is compiled in.
   others [NAME]     Test the Python package beside large packages of others, which are installed below .venv:
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Some("test") => stages::test(&args[1..]),
         Some("bench") => stages::bench(&args[1..]),
         Some("soak") => soak::soak(&args[1..]),
+        Some("lanes") => lanes::list(),
         Some("docs") => docs::build(),
         Some("wheel") => notices::build(),
         Some("others") => others::test(&args[1..]),

@@ -1,0 +1,112 @@
+//! `cargo xtask lanes`: where an operation on lanes is a call, in the release program.
+//!
+//! A plain function between two kernels is compiled for the oldest processor, and each operation on lanes in it becomes a call (see
+//! `clench_math::kernel`). Nothing is wrong then but the speed, by a factor of two to four, so that no test fails. This list shows it.
+
+use crate::run::{Profile, cargo, command, run};
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
+use std::process::{ChildStdout, Stdio};
+
+/// Fewer calls than these in a function are its first and last lines, not its work.
+const FEW: usize = 8;
+
+/// Prints the functions with such calls, most first.
+///
+/// # Errors
+/// The program cannot be built, or there is no `objdump`.
+pub fn list() -> Result<(), String> {
+    if !cfg!(target_arch = "x86_64") {
+        return Err("the list is made of instructions of x86-64".to_owned());
+    }
+    run(cargo(&["build", "--release", "--package", "clench-cli"]))?;
+    let mut dump = command(
+        "objdump",
+        &["--disassemble", "--demangle", "--no-show-raw-insn"],
+    );
+    dump.arg(Profile::Release.program("clench"));
+    let failed = |e: std::io::Error| format!("cannot run objdump, of the package binutils: {e}");
+    let mut child = dump.stdout(Stdio::piped()).spawn().map_err(failed)?;
+    let output = child.stdout.take().ok_or("objdump prints nothing")?;
+    let calls = count(output).map_err(failed)?;
+    let status = child.wait().map_err(failed)?;
+    if !status.success() {
+        return Err(format!("objdump: {status}"));
+    }
+    let mut rows = Vec::from_iter(calls.into_iter().filter(|&(_, calls)| calls >= FEW));
+    rows.sort_by_key(|(name, calls)| (std::cmp::Reverse(*calls), name.clone()));
+    println!(
+        "{} functions in which operations on lanes are calls:",
+        rows.len()
+    );
+    for (name, calls) in rows {
+        println!("{calls:>6}  {name}");
+    }
+    Ok(())
+}
+
+/// The most calls that one instance of each function makes to operations on lanes.
+fn count(output: ChildStdout) -> std::io::Result<BTreeMap<String, usize>> {
+    let mut most = BTreeMap::new();
+    let (mut function, mut calls) = (String::new(), 0);
+    for line in BufReader::new(output).split(b'\n') {
+        let line = String::from_utf8_lossy(&line?).into_owned();
+        if let Some(name) = header(&line) {
+            note(&mut most, &function, calls);
+            (function, calls) = (name.to_owned(), 0);
+        } else if is_call_of_lanes(&line) {
+            calls += 1;
+        }
+    }
+    note(&mut most, &function, calls);
+    Ok(most)
+}
+
+fn note(most: &mut BTreeMap<String, usize>, function: &str, calls: usize) {
+    if calls > 0 {
+        let known = most.entry(function.to_owned()).or_default();
+        *known = calls.max(*known);
+    }
+}
+
+/// The function that begins at a line such as `00000000004c9370 <clench_collide::narrow::collide::h0123456789abcdef>:`, without its hash.
+fn header(line: &str) -> Option<&str> {
+    let (address, rest) = line.split_once(" <")?;
+    let name = rest.strip_suffix(">:")?;
+    let is_address = !address.is_empty() && address.bytes().all(|b| b.is_ascii_hexdigit());
+    let plain = match name.rsplit_once("::h") {
+        Some((plain, hash)) if hash.len() == 16 => plain,
+        _ => name,
+    };
+    is_address.then_some(plain)
+}
+
+/// Whether a line calls an operation: an intrinsic of the processor, or what lanes are made of.
+fn is_call_of_lanes(line: &str) -> bool {
+    let Some((_, target)) = line.split_once("call ") else {
+        return false;
+    };
+    let operations = ["core_arch::x86::", "lanes::registers::Registers<"];
+    operations.iter().any(|name| target.contains(name)) && !target.contains("vectorize")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_lose_their_hash() {
+        let line = "00000000004c9370 <clench_collide::narrow::collide::h0123456789abcdef>:";
+        assert_eq!(header(line), Some("clench_collide::narrow::collide"));
+        assert_eq!(header("  4c9370:\tret"), None);
+    }
+
+    #[test]
+    fn calls_of_operations_are_told_from_other_calls() {
+        let line = |target: &str| format!("  4c93a1:\tcall   4c9370 <{target}>");
+        let operation = "core::core_arch::x86::avx512f::_mm512_mul_pd::h0123456789abcdef";
+        assert!(is_call_of_lanes(&line(operation)));
+        assert!(!is_call_of_lanes(&line("clench_collide::narrow::collide")));
+        assert!(!is_call_of_lanes("  4c93a1:\tvmulpd zmm0,zmm1,zmm2"));
+    }
+}
