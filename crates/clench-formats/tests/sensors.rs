@@ -54,8 +54,12 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
             "unknown attribute \"joint\"",
         ),
         (
-            "<gyro site='tip' nsample='4' interval='0.1'/>",
-            "interval is not supported yet",
+            "<gyro site='tip' nsample='4' interval='-0.1'/>",
+            "interval cannot be negative",
+        ),
+        (
+            "<gyro site='tip' nsample='4' interval='0.1 0.1'/>",
+            "within one period before zero",
         ),
         ("<gyro site='tip' delay='0.1'/>", "nsample"),
         ("<giro site='tip'/>", "did you mean \"gyro\"?"),
