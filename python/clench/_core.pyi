@@ -335,8 +335,8 @@ class Model:
     actuator_trntype: Final[_Codes]  # (nactuator,) 0 joint, 1 in the parent's frame, 2 slider-crank, 3 tendon, 4 site, 5 body.
     actuator_trnid: Final[_Codes]  # (nactuator, 2) What it pulls on; the slider or reference site, or -1.
     actuator_dyntype: Final[_Codes]  # (nactuator,) 0 none, 1 integrator, 2 filter, 3 filterexact, 4 muscle, 5 dcmotor, 6 pid, 7 user.
-    actuator_gaintype: Final[_Codes]  # (nactuator,) 0 fixed, 1 affine, 2 muscle, 3 dcmotor, 5 pid, 6 user.
-    actuator_biastype: Final[_Codes]  # (nactuator,) 0 none, 1 affine, 2 muscle, 3 dcmotor, 5 user.
+    actuator_gaintype: Final[_Codes]  # (nactuator,) 0 fixed, 1 affine, 2 muscle, 3 dcmotor, 4 so3, 5 pid, 6 user.
+    actuator_biastype: Final[_Codes]  # (nactuator,) 0 none, 1 affine, 2 muscle, 3 dcmotor, 4 so3, 5 user.
     actuator_actadr: Final[_Codes]  # (nactuator,) The first of its activations, or -1.
     actuator_actnum: Final[_Codes]  # (nactuator,) How many activations; the last acts.
     actuator_ctrladr: Final[_Codes]  # (nactuator,) The first of its controls, or -1.
@@ -353,7 +353,7 @@ class Model:
     sensor_dim: Final[_Codes]  # (nsensor,) How many numbers.
     sensor_cutoff: Final[_Floats]  # (nsensor,) Bound of its numbers, where positive.
     sensor_delay: Final[_Floats]  # (nsensor,) How late it tells what it measures, s; only where it keeps past values.
-    sensor_interval: Final[_Floats]  # (nsensor,) How often it measures, s; zero: every step.
+    sensor_interval: Final[_Floats]  # (nsensor,) How often it measures, s, without MuJoCo's phase; zero: every step.
     sensor_noise: Final[_Floats]  # (nsensor,) Standard deviation of the noise that is expected; none is added.
 
     eq_anchor1: Final[_Floats]  # (neq, 3) Anchor or weld point in the first body's frame.
@@ -475,6 +475,7 @@ class Element:
     gravcomp: Final[float]  # body
     group: Final[int]  # joint, geom, actuator
     inertia: Final[_Floats]  # (3,) body
+    interval: Final[float]  # sensor
     intrinsic: Final[_Floats]  # (4,) camera
     invweight0: Final[Any]  # body, tendon
     ipos: Final[_Floats]  # (3,) body
