@@ -86,7 +86,7 @@ def expected_field(theirs: mujoco.MjModel, name: str) -> np.ndarray:
     if name == "sensor_interval":
         return value[:, 0]  # MuJoCo has the phase beside it.
     if name.startswith("actuator_") and len(value) == theirs.nout != theirs.nactuator:
-        return value[theirs.actuator_outadr]  # The outputs of an orientation servo have equal ones, or the first one's are meant.
+        value = value[theirs.actuator_outadr]  # The outputs of an orientation servo have equal ones, or the first one's are meant.
     if name in ("eq_obj1id", "eq_obj2id"):
         # MuJoCo names the sites that an equality holds together, we the bodies that carry them.
         sites = theirs.eq_objtype == int(mujoco.mjtObj.mjOBJ_SITE)
