@@ -15,13 +15,15 @@ fn tremble<T: Real + PartialEq>(
     let (a, b) = (convert_shape::<T>(&scene.a), convert_shape::<T>(&scene.b));
     let pose_a = convert_pose::<T>(&scene.pose_a);
     let margin = T::new(scene.margin);
+    // How far the second shape must move, and where, until the two are exactly the margin apart.
+    let (distance, normal) = separation(scene).unwrap_or((scene.margin, Vec3::ZERO));
     let mut apart = 0;
     for _ in 0..24 {
         let mut pose_b = convert_pose::<T>(&scene.pose_b);
         for lane in 0..T::LANES {
-            let to_margin = way_to_margin(scene) + random.pick(&[0.0, 1e-7, 1e-6, 1e-5, 1e-3]);
+            let to_margin = scene.margin - distance + random.pick(&[0.0, 1e-7, 1e-6, 1e-5, 1e-3]);
             let by = random.direction() * random.pick(&[0.0, 1e-9, 1e-6, 1e-4, 1e-2]);
-            let place = scene.pose_b.position + scene_normal(scene) * to_margin + by;
+            let place = scene.pose_b.position + normal * to_margin + by;
             for i in 0..3 {
                 pose_b.position[i].set_lane(lane, T::new(place[i]).lane(0));
             }
@@ -35,15 +37,7 @@ fn tremble<T: Real + PartialEq>(
     apart
 }
 
-/// How far the second shape must move along the normal until the two are exactly the margin apart.
-fn way_to_margin(scene: &Scene) -> f64 {
-    separation(scene).map_or(0.0, |(distance, _)| scene.margin - distance)
-}
-
-fn scene_normal(scene: &Scene) -> Vec3<f64> {
-    separation(scene).map_or(Vec3::ZERO, |(_, normal)| normal)
-}
-
+/// The distance of the shapes, and its normal.
 fn separation(scene: &Scene) -> Option<(f64, Vec3<f64>)> {
     let Scene {
         a,

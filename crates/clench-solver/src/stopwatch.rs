@@ -28,6 +28,11 @@ impl<const N: usize> Stopwatch<N> {
         self.since = None;
     }
 
+    /// Whether it runs.
+    pub fn is_running(&self) -> bool {
+        self.running
+    }
+
     /// Begins a first lap.
     #[inline(always)]
     pub fn start(&mut self) {

@@ -39,7 +39,7 @@ pub(super) fn box_box<T: Real>(
     axis: &mut SeparatingAxis<T>,
     out: &mut Contacts<T>,
 ) {
-    let near = !axis.separates(a, b, margin, T::Mask::splat(true));
+    let near = !axis.separates(a, b, margin);
     if !near.any() {
         return;
     }

@@ -99,7 +99,7 @@ pub(super) fn capsule_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &
     let sunk = near & enters(center, half, size);
     if sunk.any() {
         per_lane_where(sunk, a, b, margin, out, |_, a, b, margin, points| {
-            // They overlap: a direction in which they are apart there is not.
+            // They overlap, so that no direction separates them.
             let _ = convex::points(a, b, margin, points);
         });
     }

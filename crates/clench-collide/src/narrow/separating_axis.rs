@@ -31,15 +31,9 @@ impl<T: Real> Default for SeparatingAxis<T> {
 }
 
 impl<T: Real> SeparatingAxis<T> {
-    /// Where the shapes are surely more than `margin` apart, of those lanes that are `asked`; the boxes about hulls are tried first.
+    /// Where the shapes are surely more than `margin` apart; the boxes about hulls are tried first.
     #[inline(always)]
-    pub(super) fn separates(
-        &self,
-        a: Placed<T>,
-        b: Placed<T>,
-        margin: T,
-        asked: T::Mask,
-    ) -> T::Mask {
+    pub(super) fn separates(&self, a: Placed<T>, b: Placed<T>, margin: T) -> T::Mask {
         let along = match a.shape.kind {
             ShapeKind::Sphere => self.direction,
             _ => a.pose.rotation * self.direction,
@@ -54,7 +48,7 @@ impl<T: Real> SeparatingAxis<T> {
         let least = margin + slack;
         let by_boxes = centers - reach_along(a.shape, self.direction) - reach_along(b.shape, back);
         let far = by_boxes.gt(least);
-        let open = asked & !far;
+        let open = !far;
         let has_hull = |p: Placed<T>| matches!(p.shape.asset, Asset::Hull(_));
         if !open.any() || !(has_hull(a) || has_hull(b)) {
             return far;
@@ -66,8 +60,8 @@ impl<T: Real> SeparatingAxis<T> {
     /// Takes another direction in some lanes, where it is a unit vector.
     #[inline(always)]
     pub(super) fn renew(&mut self, lanes: T::Mask, direction: Vec3<T>) {
-        let is_unit = is_unit(direction);
-        self.direction = Vec3::select(lanes & is_unit, direction, self.direction);
+        let taken = lanes & is_unit(direction);
+        self.direction = Vec3::select(taken, direction, self.direction);
     }
 
     /// Keeps what a search has found for a lane, if that is a unit vector.

@@ -13,7 +13,6 @@ const PAIRS: usize = KINDS * KINDS;
 #[derive(Clone, Debug)]
 pub(crate) struct PairClock {
     clock: Stopwatch<PAIRS>,
-    running: bool,
     near: [u64; PAIRS],
     touching: [u64; PAIRS],
 }
@@ -22,7 +21,6 @@ impl Default for PairClock {
     fn default() -> Self {
         PairClock {
             clock: Stopwatch::default(),
-            running: false,
             near: [0; PAIRS],
             touching: [0; PAIRS],
         }
@@ -31,7 +29,6 @@ impl Default for PairClock {
 
 impl PairClock {
     pub(crate) fn run(&mut self, running: bool) {
-        self.running = running;
         self.clock.run(running);
     }
 
@@ -49,7 +46,7 @@ impl PairClock {
         lanes: usize,
         touching: impl Fn() -> usize,
     ) {
-        if self.running {
+        if self.clock.is_running() {
             let pair = kinds[0] as usize * KINDS + kinds[1] as usize;
             self.near[pair] += lanes as u64;
             self.touching[pair] += touching() as u64;

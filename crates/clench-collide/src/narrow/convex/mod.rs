@@ -44,7 +44,7 @@ pub(super) fn convex<T: Real>(
     axis: &mut SeparatingAxis<T>,
     out: &mut Contacts<T>,
 ) {
-    let mut near = !axis.separates(a, b, margin, T::Mask::splat(true));
+    let mut near = !axis.separates(a, b, margin);
     if !near.any() {
         return;
     }
