@@ -1,6 +1,6 @@
 //! Meshes and height fields in MuJoCo's names: counts, where each begins in the arrays of all, and those arrays.
 
-use crate::fields::{Field, Numbers, Reader, codes, id};
+use crate::field::{Field, Numbers, Reader, codes, id};
 use clench::Model;
 use clench::rigid::model::{HeightField, Mesh};
 use std::ops::Range;

@@ -1,28 +1,13 @@
 //! The fields of a model by name: its parameters, and the structure in MuJoCo's names and codes.
 
 use crate::assets::ASSETS;
+use crate::field::{Field, NONE, Numbers, Reader, codes, first, flags, id, id_or_none, reals};
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::rigid::model::{
     BiasKind, DynamicsKind, EqualityTarget, GainKind, JointKind, Keyframe, ParamField,
     Transmission, Wrap,
 };
-use numpy::ndarray::{ArrayD, IxDyn};
-use numpy::{Element, PyArrayDyn, PyArrayMethods};
-use pyo3::prelude::*;
-use std::ops::Range;
-
-/// Some numbers, and how many along each axis.
-pub(crate) struct Field {
-    pub(crate) shape: Vec<usize>,
-    pub(crate) numbers: Numbers,
-}
-
-pub(crate) enum Numbers {
-    Real(Vec<f64>),
-    Code(Vec<i32>),
-    Flag(Vec<bool>),
-}
 
 /// The names of all fields.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
@@ -46,35 +31,6 @@ pub(crate) fn find(model: &Model, name: &str) -> Option<Field> {
         Some(read(model))
     })
 }
-
-impl Field {
-    /// A float if it is a single number, else an array that cannot be written to.
-    pub(crate) fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        match self.numbers {
-            Numbers::Real(numbers) if self.shape.is_empty() => {
-                Ok(numbers[0].into_pyobject(py)?.into_any())
-            }
-            Numbers::Real(numbers) => read_only(py, &self.shape, numbers),
-            Numbers::Code(numbers) => read_only(py, &self.shape, numbers),
-            Numbers::Flag(numbers) => read_only(py, &self.shape, numbers),
-        }
-    }
-}
-
-/// A new array that cannot be written to.
-fn read_only<'py, T: Element>(
-    py: Python<'py>,
-    shape: &[usize],
-    numbers: Vec<T>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let array = ArrayD::from_shape_vec(IxDyn(shape), numbers).expect("shapes say how many");
-    let array = PyArrayDyn::from_owned_array(py, array);
-    array.try_readwrite()?.make_nonwriteable();
-    Ok(array.into_any())
-}
-
-/// The name of a field, and how it is read.
-pub(crate) type Reader = (&'static str, fn(&Model) -> Field);
 
 /// Structure, read from the records of the model. Where there is nothing to point at, the index is −1.
 const STRUCTURE: &[Reader] = &[
@@ -209,27 +165,6 @@ const STRUCTURE: &[Reader] = &[
     }),
 ];
 
-pub(crate) fn codes<E>(elements: &[E], code: impl Fn(&E) -> i32) -> Field {
-    Field {
-        shape: vec![elements.len()],
-        numbers: Numbers::Code(elements.iter().map(code).collect()),
-    }
-}
-
-fn flags<E>(elements: &[E], flag: impl Fn(&E) -> bool) -> Field {
-    Field {
-        shape: vec![elements.len()],
-        numbers: Numbers::Flag(elements.iter().map(flag).collect()),
-    }
-}
-
-fn reals<E>(elements: &[E], number: impl Fn(&E) -> f64) -> Field {
-    Field {
-        shape: vec![elements.len()],
-        numbers: Numbers::Real(elements.iter().map(number).collect()),
-    }
-}
-
 /// Numbers of keyframes, each of shape `shape`.
 fn stored(model: &Model, shape: &[usize], numbers: impl Fn(&Keyframe) -> &[f64]) -> Field {
     let keyframes = &model.keyframes;
@@ -262,22 +197,6 @@ fn transmission_targets(model: &Model) -> Field {
         shape: vec![model.actuators.len(), 2],
         numbers: Numbers::Code(targets.collect()),
     }
-}
-
-/// The index of nothing.
-const NONE: i32 = -1;
-
-/// Indices and counts are far below 2³¹: no memory holds so many elements.
-pub(crate) fn id(index: usize) -> i32 {
-    index as i32
-}
-
-fn id_or_none(index: Option<usize>) -> i32 {
-    index.map_or(NONE, id)
-}
-
-fn first(range: &Range<usize>) -> i32 {
-    id_or_none(Some(range.start).filter(|_| !range.is_empty()))
 }
 
 fn joint_type(kind: JointKind) -> i32 {

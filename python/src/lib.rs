@@ -14,6 +14,7 @@ mod contacts;
 mod count;
 mod element;
 mod error;
+mod field;
 mod fields;
 mod ik;
 mod ik_targets;

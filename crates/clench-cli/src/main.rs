@@ -4,8 +4,10 @@
 //! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`), and what the library
 //! beside this file reads and writes. Physics lives in the library `clench`.
 
+mod allocator;
 mod convert;
 mod description;
+mod exit;
 mod forward;
 mod inspect;
 mod interrupt;
@@ -20,19 +22,11 @@ mod simulate;
 mod table;
 mod view;
 
-use cap::Cap;
 use clap::{Parser, Subcommand};
 use clench_cli::{limits, npy, protocol};
+use exit::{BAD_INPUT, is_closed_pipe};
 use message::tell;
-use std::alloc::System;
 use std::process::ExitCode;
-
-/// The system's allocator, which also tells how much is allocated: what a batch takes beside its rows is measured.
-#[global_allocator]
-static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
-
-/// Exit code of bad input: a model, a state or an option that cannot be used.
-const BAD_INPUT: u8 = 2;
 
 /// Constrained motion of articulated rigid bodies, with MuJoCo's numbers.
 #[derive(Parser)]
@@ -102,13 +96,4 @@ fn main() -> ExitCode {
             ExitCode::from(BAD_INPUT)
         }
     }
-}
-
-/// The reader of our output has gone, as in `clench … | head`: nothing to complain about.
-fn is_closed_pipe(error: &anyhow::Error) -> bool {
-    error.chain().any(|cause| {
-        cause
-            .downcast_ref::<std::io::Error>()
-            .is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
-    })
 }

@@ -4,7 +4,6 @@
 //! `Lanes<f32, N>`) with the same source. What differs between environments is a [`Mask`] and a
 //! [`select`](Real::select); a branch on [`Mask::any`] keeps the one-environment case as fast as plain code.
 
-use crate::elementary;
 use crate::{Instructions, LaneTask};
 use std::fmt::Debug;
 use std::ops::{
@@ -150,30 +149,15 @@ pub trait Real:
     ///
     /// Beyond, the error is at most that of an argument off by its own last place; past 2⁵⁰ rad (2²¹), where that place
     /// is worth a quarter of a radian, the angle counts as 0. Infinity and NaN give NaN.
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        elementary::sin_cos(self)
-    }
+    fn sin_cos(self) -> (Self, Self);
     /// Angle of the point (`x`, `self`), in [−π, π], rad; signed zeros and infinities as in IEEE 754.
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        elementary::atan2(self, x)
-    }
+    fn atan2(self, x: Self) -> Self;
     /// Exponential.
-    #[inline(always)]
-    fn exp(self) -> Self {
-        elementary::exp(self)
-    }
+    fn exp(self) -> Self;
     /// Natural logarithm; −∞ at zero, NaN below.
-    #[inline(always)]
-    fn ln(self) -> Self {
-        elementary::ln(self)
-    }
+    fn ln(self) -> Self;
     /// `self` ≥ 0 raised to a real power; NaN below zero. Anything to the power 0 is 1.
-    #[inline(always)]
-    fn powf(self, exponent: Self) -> Self {
-        elementary::powf(self, exponent)
-    }
+    fn powf(self, exponent: Self) -> Self;
 
     /// Sine of an angle in radians.
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! `Real` for one environment: `f64` and `f32`.
 
+use crate::elementary::elementary_functions;
 use crate::lanes::dispatch as lanes;
 use crate::real::{Real, Scalar};
 use crate::{Instructions, LaneTask};
@@ -130,6 +131,8 @@ macro_rules! scalar {
                     let mantissa = $t::from_bits((moved & FRACTION_MASK) + ROOT_HALF);
                     (exponent - BIASED_INTEGERS, mantissa)
                 }
+
+                elementary_functions!();
             }
 
             impl Scalar for $t {

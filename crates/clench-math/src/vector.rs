@@ -1,6 +1,6 @@
 //! Three-vectors.
 
-use crate::{Mat3, Real, kernel};
+use crate::{Real, kernel};
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 /// A vector in space, in metres, newtons or whatever the context says.
@@ -91,7 +91,8 @@ impl<T: Real> Vec3<T> {
     #[kernel]
     pub fn any_perpendicular(self) -> Self {
         let (x, y, z) = (self.x.abs(), self.y.abs(), self.z.abs());
-        let [unit_x, unit_y, unit_z] = Mat3::IDENTITY.rows;
+        let (o, i) = (T::ZERO, T::ONE);
+        let (unit_x, unit_y, unit_z) = (Vec3::new(i, o, o), Vec3::new(o, i, o), Vec3::new(o, o, i));
         let y_or_z = Vec3::select(y.le(z), unit_y, unit_z);
         let axis = Vec3::select(x.le(y) & x.le(z), unit_x, y_or_z);
         (axis - self * self.dot(axis)).normalize().0

@@ -1,55 +1,8 @@
 //! What a problem must be to be solved, and what is wrong with one that is not.
 
-use crate::costs::MAX_DIM;
+use crate::error::ProblemError;
 use crate::{Block, Cost, Problem, TreeFactor};
 use clench_math::{Mask, Real, Scalar};
-
-/// Why a problem is not one.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ProblemError {
-    /// Tree numbering.
-    #[error("dof {dof} has parent {parent}, which does not come before it")]
-    ParentAfterChild {
-        /// The child.
-        dof: usize,
-        /// Its parent.
-        parent: usize,
-    },
-    /// A slice of the wrong length.
-    #[error("{what} has {found} entries where {expected} are needed")]
-    WrongLength {
-        /// Which array.
-        what: &'static str,
-        /// Its length.
-        found: usize,
-        /// The length it needs.
-        expected: usize,
-    },
-    /// An infinite or undefined number.
-    #[error("{what} is not finite at entry {index} (lane {lane})")]
-    NotFinite {
-        /// Which array.
-        what: &'static str,
-        /// Where in it.
-        index: usize,
-        /// Which lane.
-        lane: usize,
-    },
-    /// The mass matrix cannot be factored.
-    #[error("the mass matrix is not positive definite (lane {lane})")]
-    MassNotPositiveDefinite {
-        /// Which lane.
-        lane: usize,
-    },
-    /// A block that makes no sense.
-    #[error("constraint block {block}: {reason}")]
-    Block {
-        /// Which block.
-        block: usize,
-        /// What is wrong with it.
-        reason: &'static str,
-    },
-}
 
 impl<T: Real> Problem<T> {
     /// Checks the sizes that a solve indexes by.
@@ -119,29 +72,6 @@ fn check_finite<T: Real>(what: &'static str, values: &[T]) -> Result<(), Problem
 
 /// How far D may be from 1 / R, and the rows of an elliptic block from their common scale.
 const CONSISTENT: f64 = 1e-4;
-
-/// Whether a block over these dofs can be stored and indexed at all.
-pub(crate) fn check_size(
-    cost: Cost,
-    dim: usize,
-    dofs: &[u32],
-    nv: usize,
-) -> Result<(), &'static str> {
-    let cone = matches!(cost, Cost::Pyramid | Cost::Elliptic);
-    if !(1..=MAX_DIM).contains(&dim) {
-        return Err("a block has 1 to 6 rows");
-    }
-    if cone && dim < 2 {
-        return Err("a cone has 2 to 6 rows");
-    }
-    if dofs.windows(2).any(|w| w[0] >= w[1]) {
-        return Err("its dofs do not ascend");
-    }
-    if dofs.last().is_some_and(|&dof| dof as usize >= nv) {
-        return Err("it acts on a dof that the tree does not have");
-    }
-    Ok(())
-}
 
 /// The ranges of a block's parameters, lane by lane; a lane without the constraint has D = 0.
 fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {

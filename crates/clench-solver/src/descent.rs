@@ -2,7 +2,8 @@
 
 use crate::costs::Totals;
 use crate::iterate::{Iterate, dot};
-use crate::line_search::{Precision, Ray, Step};
+use crate::line_search::{Precision, Step};
+use crate::ray::Ray;
 use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Status};
 use clench_math::{Mask, Real, Scalar, kernel};
 
@@ -107,7 +108,7 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
         ray.prepare(problem, iterate);
         let step = ray.search(problem, iterate, D::NEWTON, precision, convergence.live);
         clock.lap(SolvePart::LineSearch as usize);
-        iterate.advance(step.alpha, ray);
+        ray.advance(step.alpha, iterate);
         let totals = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
         convergence.record(step, totals, norm, &mut state.stats);

@@ -11,11 +11,10 @@
 use crate::partition::{Island, Lists, Partition};
 use crate::problem::{Part, Problem};
 use crate::results::Results;
+use crate::slot::Slot;
 use crate::transfer::{AllLanes, OneLane, Transfer};
-use crate::workspace::Workspace;
-use crate::{Settings, SolveClock, Tree};
+use crate::{Settings, SolveClock};
 use clench_math::{Mask, Real};
-use std::sync::Arc;
 
 /// The partition, and a compact problem for each part.
 #[derive(Clone, Debug, Default)]
@@ -46,17 +45,6 @@ struct Slots<T: Real> {
     /// Those of the first island of several trees, of the second and so on, and how many are taken.
     several: Vec<u32>,
     taken: usize,
-}
-
-/// Memory for an island.
-#[derive(Clone, Debug)]
-pub(crate) struct Slot<F: Real> {
-    /// Its dofs in the whole problem, in the order that they have here; its blocks, ascending.
-    pub dofs: Vec<u32>,
-    pub blocks: Vec<u32>,
-    pub problem: Problem<F>,
-    warmstart: Vec<F>,
-    pub work: Workspace<F>,
 }
 
 /// A solve of all islands.
@@ -228,17 +216,5 @@ impl<T: Real> Slots<T> {
             self.slots.push(Slot::default());
         }
         &mut self.slots[slot as usize]
-    }
-}
-
-impl<F: Real> Default for Slot<F> {
-    fn default() -> Self {
-        Slot {
-            dofs: Vec::new(),
-            blocks: Vec::new(),
-            problem: Problem::new(Arc::new(Tree::dense(0))),
-            warmstart: Vec::new(),
-            work: Workspace::default(),
-        }
     }
 }

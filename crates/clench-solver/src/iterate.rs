@@ -4,7 +4,7 @@ use crate::Problem;
 use crate::continuation::Continuation;
 use crate::costs::{BlockCost, Rows, Totals, with_cost};
 use crate::jacobian::{BlockIndex, Jacobian};
-use crate::line_search::Ray;
+use crate::ray::Ray;
 use clench_math::{Mask, Real, kernel};
 
 /// A point, and everything that follows from it.
@@ -185,14 +185,6 @@ impl<T: Real> Iterate<T> {
         }
         T::new(0.5) * sum
     }
-
-    /// Moves by `alpha` along the ray.
-    #[kernel]
-    pub fn advance(&mut self, alpha: T, ray: &Ray<T>) {
-        add_scaled(&mut self.qacc, alpha, &ray.direction);
-        add_scaled(&mut self.inertial, alpha, &ray.mass_direction);
-        add_scaled(&mut self.residual, alpha, &ray.rows);
-    }
 }
 
 /// The lanes in which all of `x` is finite.
@@ -216,7 +208,7 @@ pub(crate) fn dot<T: Real>(x: &[T], y: &[T]) -> T {
 }
 
 #[inline(always)]
-fn add_scaled<T: Real>(x: &mut [T], alpha: T, y: &[T]) {
+pub(crate) fn add_scaled<T: Real>(x: &mut [T], alpha: T, y: &[T]) {
     for (x, &y) in x.iter_mut().zip(y) {
         *x += alpha * y;
     }

@@ -5,24 +5,11 @@
 //! changes as lie on the way. J p and M p are computed once for the ray; an evaluation touches rows only.
 
 use crate::costs::{BlockCost, Slope, with_cost};
-use crate::iterate::{Iterate, dot};
+use crate::iterate::{Iterate, add_scaled, dot};
 use crate::jacobian::Jacobian;
+use crate::ray::Ray;
 use crate::{Cost, Problem};
 use clench_math::{Mask, Real, Scalar, kernel};
-
-/// A search direction with what the line search needs of it.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Ray<T> {
-    /// p.
-    pub direction: Vec<T>,
-    /// M p.
-    pub mass_direction: Vec<T>,
-    /// J p.
-    pub rows: Vec<T>,
-    /// Derivatives at 0 of what is quadratic everywhere: inertia and equalities.
-    first: T,
-    second: T,
-}
 
 /// Where a line search ended.
 #[derive(Clone, Copy)]
@@ -80,6 +67,14 @@ impl<T: Real> Ray<T> {
             crate::costs::Quadratic::slope(problem.rows(b), y, dy, T::ZERO, &mut slope);
         }
         (self.first, self.second) = (slope.first, slope.second);
+    }
+
+    /// Moves the iterate by `alpha` along the ray.
+    #[kernel]
+    pub fn advance(&self, alpha: T, iterate: &mut Iterate<T>) {
+        add_scaled(&mut iterate.qacc, alpha, &self.direction);
+        add_scaled(&mut iterate.inertial, alpha, &self.mass_direction);
+        add_scaled(&mut iterate.residual, alpha, &self.rows);
     }
 
     /// Derivatives of the cost at α.

@@ -1,29 +1,12 @@
 //! The problem: what stays constant during a solve.
 
-use crate::check::check_size;
-use crate::costs::{self, Rows};
+use crate::costs::{Cost, MAX_DIM, Rows};
 use crate::jacobian::{BlockIndex, StoredRows};
 use crate::transfer::Transfer;
-use crate::{Tree, TreeFactor, TreeMatrix};
+use crate::{Tree, TreeFactor, TreeMatrix, costs};
 use clench_math::{Real, kernel};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// The shape of a constraint's cost s(y), y = J a − aref.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Cost {
-    /// ½ D y² always: equalities.
-    #[default]
-    Quadratic,
-    /// ½ D y² where y < 0: limits, frictionless contacts.
-    OneSided,
-    /// ½ D y² near zero, η |y| − ½ R η² beyond: dry friction of loss η.
-    Huber,
-    /// One-sided on each of the 2 (dim − 1) edges y₀ ± μ_j y_j: frictional contact, linearised.
-    Pyramid,
-    /// Distance to a circular cone after scaling: frictional contact, exact.
-    Elliptic,
-}
 
 /// The convex problem. Blocks stay in the order in which they were pushed.
 #[derive(Clone, Debug)]
@@ -296,4 +279,27 @@ impl<T: Real> Problem<T> {
             }
         }
     }
+}
+
+/// Whether a block over these dofs can be stored and indexed at all.
+pub(crate) fn check_size(
+    cost: Cost,
+    dim: usize,
+    dofs: &[u32],
+    nv: usize,
+) -> Result<(), &'static str> {
+    let cone = matches!(cost, Cost::Pyramid | Cost::Elliptic);
+    if !(1..=MAX_DIM).contains(&dim) {
+        return Err("a block has 1 to 6 rows");
+    }
+    if cone && dim < 2 {
+        return Err("a cone has 2 to 6 rows");
+    }
+    if dofs.windows(2).any(|w| w[0] >= w[1]) {
+        return Err("its dofs do not ascend");
+    }
+    if dofs.last().is_some_and(|&dof| dof as usize >= nv) {
+        return Err("it acts on a dof that the tree does not have");
+    }
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! What a solve gives out.
 
-use crate::islands::Slot;
 use crate::iterate::all_finite;
+use crate::slot::Slot;
 use crate::transfer::Transfer;
 use crate::workspace::Workspace;
 use crate::{Problem, SolveStats, Status};

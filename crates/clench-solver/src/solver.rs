@@ -3,34 +3,10 @@
 use crate::check::check_length;
 use crate::islands::Islands;
 use crate::results::Results;
+use crate::stopwatch::SolveClock;
 use crate::workspace::Workspace;
-use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Stopwatch, Switch, Tree};
+use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Switch, Tree};
 use clench_math::Real;
-
-/// What a solve spends its time on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SolvePart {
-    /// The better of two starting points, and whether it is good enough already.
-    Start,
-    /// H.
-    Hessian,
-    /// Its factorization, or an update of it.
-    Factorization,
-    /// The direction.
-    Direction,
-    /// How far to go along it.
-    LineSearch,
-    /// Costs and gradient at the new point, and whether to stop there.
-    Evaluation,
-}
-
-impl SolvePart {
-    /// How many there are.
-    pub const COUNT: usize = 6;
-}
-
-/// Times the parts of solves.
-pub type SolveClock = Stopwatch<{ SolvePart::COUNT }>;
 
 /// Solves [`Problem`]s; keeps its memory between solves.
 ///

@@ -62,3 +62,28 @@ impl<const N: usize> Stopwatch<N> {
         &self.spent
     }
 }
+
+/// What a solve spends its time on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolvePart {
+    /// The better of two starting points, and whether it is good enough already.
+    Start,
+    /// H.
+    Hessian,
+    /// Its factorization, or an update of it.
+    Factorization,
+    /// The direction.
+    Direction,
+    /// How far to go along it.
+    LineSearch,
+    /// Costs and gradient at the new point, and whether to stop there.
+    Evaluation,
+}
+
+impl SolvePart {
+    /// How many there are.
+    pub const COUNT: usize = 6;
+}
+
+/// Times the parts of solves.
+pub type SolveClock = Stopwatch<{ SolvePart::COUNT }>;

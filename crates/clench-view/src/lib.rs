@@ -19,6 +19,7 @@ mod player;
 mod recording;
 pub mod scene;
 mod server;
+mod shared;
 mod socket;
 pub mod viewed;
 

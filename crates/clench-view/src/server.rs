@@ -2,6 +2,7 @@
 
 use crate::command::Command;
 use crate::http::{self, CROWDED, Request};
+use crate::shared::{HEARTBEAT, News, Shared};
 use crate::{Page, Scene, socket};
 use data_encoding::HEXLOWER;
 use serde_json::json;
@@ -9,8 +10,8 @@ use std::io::{self, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use tungstenite::handshake::derive_accept_key;
@@ -20,8 +21,6 @@ use tungstenite::{Bytes, Utf8Bytes};
 pub const MAX_CLIENTS: usize = 64;
 /// The most commands that wait.
 const MAX_COMMANDS: usize = 1024;
-/// A browser that asks for a frame gets the old one again when no new one has come for so long.
-const HEARTBEAT: Duration = Duration::from_millis(100);
 
 /// Where a server listens.
 #[derive(Clone, Debug)]
@@ -57,42 +56,6 @@ pub enum ServeError {
     /// The system gives no random numbers, or no threads.
     #[error("the viewer cannot start: {0}")]
     System(String),
-}
-
-/// What all connections share.
-pub(crate) struct Shared {
-    page: Page,
-    pub scene: Utf8Bytes,
-    token: String,
-    anywhere: bool,
-    news: Mutex<News>,
-    changed: Condvar,
-    pub commands: SyncSender<Command>,
-    clients: AtomicUsize,
-    pub closing: AtomicBool,
-}
-
-/// What is newest, each with its number.
-#[derive(Clone)]
-pub(crate) struct News {
-    pub number: u64,
-    pub frame: Bytes,
-    pub said: u64,
-    pub message: Utf8Bytes,
-}
-
-impl Shared {
-    fn news(&self) -> MutexGuard<'_, News> {
-        self.news.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// What is newest, once there is a frame after this one or a while has passed.
-    pub fn newer_than(&self, seen: u64) -> News {
-        let old = |news: &mut News| news.number <= seen && !self.closing.load(Relaxed);
-        let waited = (self.changed).wait_timeout_while(self.news(), HEARTBEAT, old);
-        let (news, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        news.clone()
-    }
 }
 
 /// A page, served to browsers as long as this lives.

@@ -2,7 +2,7 @@
 //! nobody.
 
 use crate::command::Command;
-use crate::server::Shared;
+use crate::shared::Shared;
 use serde::Deserialize;
 use serde_json::json;
 use std::io;

@@ -1,19 +1,19 @@
 //! A run of many environments side by side.
 
+use super::arguments::Arguments;
 use super::energy::{EnergyAccount, STEPS_A_LOOK, next_steps};
 use super::quality::{Verdict, verdict};
 use super::record::{BATCH_OUTPUTS, BatchRecorder};
 use super::report::{BatchReport, DivergenceReport, Failure, Report, pairs, stages};
+use super::run::Run;
 use super::start::{narrow, widen};
 use super::summary::{is_conservative, status};
-use super::{Arguments, Run};
-use crate::ALLOCATOR;
+use crate::allocator::ALLOCATOR;
 use anyhow::Result;
-use clap::{Args, ValueEnum};
 use clench::math::{Instructions, Scalar};
 use clench::rigid::batch::{Controls, Recording};
 use clench::rigid::{EnvStatus, Precision};
-use clench::{Batch, BatchOptions, RigidOptions};
+use clench::{Batch, RigidOptions};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -24,43 +24,6 @@ const LEAST_STEPS_A_CALL: usize = 8;
 /// How many failed environments a report names.
 const NAMED_FAILURES: usize = 10;
 
-/// How many environments there are, and how they are stepped.
-#[derive(Args)]
-#[command(next_help_heading = "Many environments")]
-pub struct BatchArguments {
-    /// Step so many environments as a batch
-    #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
-    pub envs: Option<u32>,
-    /// Threads of a batch [default: as many as processors]; one environment alone uses one
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-    /// How the environments of a batch lie side by side [default: what is fastest here]
-    #[arg(long, ignore_case = true, requires = "envs")]
-    instructions: Option<InstructionsName>,
-    /// What steps a batch: the processor, or (of programs with the feature `gpu`) a graphics device in single precision
-    #[arg(long, value_name = "DEVICE", default_value = "cpu", requires = "envs")]
-    pub device: DeviceName,
-    /// Leave the environments of a batch in order, where those of like contacts would be put side by side
-    #[arg(long, requires = "envs")]
-    no_grouping: bool,
-}
-
-/// What steps environments.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DeviceName {
-    Cpu,
-    Gpu,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum InstructionsName {
-    Scalar,
-    Portable,
-    Neon,
-    Avx2,
-    Avx512,
-}
-
 fn name(instructions: Instructions) -> &'static str {
     match instructions {
         Instructions::Scalar => "scalar",
@@ -68,35 +31,6 @@ fn name(instructions: Instructions) -> &'static str {
         Instructions::Neon => "neon",
         Instructions::Avx2 => "avx2",
         Instructions::Avx512 => "avx512",
-    }
-}
-
-impl BatchArguments {
-    /// The first flag that says how a processor steps, if any was given.
-    #[cfg(feature = "gpu")]
-    pub fn of_processor(&self) -> Option<&'static str> {
-        let flags = [
-            ("--threads", self.threads.is_some()),
-            ("--instructions", self.instructions.is_some()),
-            ("--no-grouping", self.no_grouping),
-        ];
-        let given = flags.into_iter().find(|&(_, given)| given);
-        given.map(|(flag, _)| flag)
-    }
-
-    fn options(&self, options: RigidOptions) -> BatchOptions {
-        BatchOptions {
-            options,
-            instructions: self.instructions.map(|name| match name {
-                InstructionsName::Scalar => Instructions::Scalar,
-                InstructionsName::Portable => Instructions::Portable,
-                InstructionsName::Neon => Instructions::Neon,
-                InstructionsName::Avx2 => Instructions::Avx2,
-                InstructionsName::Avx512 => Instructions::Avx512,
-            }),
-            threads: self.threads.map(usize::from),
-            grouping: !self.no_grouping,
-        }
     }
 }
 

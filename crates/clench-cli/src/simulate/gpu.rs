@@ -1,7 +1,8 @@
 //! A run of many environments on a graphics device.
 
+use super::arguments::Arguments;
 use super::report::Failure;
-use super::{Arguments, Run};
+use super::run::Run;
 use anyhow::{Result, bail, ensure};
 use clench::{Batch, BatchOptions, RigidOptions};
 use clench_gpu::{GpuBatch, GpuError, GpuOptions, GpuSolve};

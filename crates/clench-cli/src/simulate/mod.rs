@@ -2,6 +2,7 @@
 //!
 //! One environment goes through [`single`], many through [`batch`]; both give a [`report`].
 
+mod arguments;
 mod batch;
 mod display;
 mod energy;
@@ -11,139 +12,26 @@ mod page;
 mod quality;
 mod record;
 mod report;
+mod run;
 mod single;
 mod start;
 mod summary;
 
 use crate::interrupt::Interrupt;
-use crate::limits::{MAX_DEFAULT_STEPS, MAX_STEPS, MemoryArguments};
+use crate::limits::{MAX_DEFAULT_STEPS, MAX_STEPS};
 use crate::message::tell;
 use crate::npy::{Rows, read_rows};
-use crate::options::ModelArguments;
 use crate::replacement::require_other;
 use anyhow::{Context, Result, bail, ensure};
-use batch::{BatchArguments, DeviceName};
-use clap::{Args, ValueEnum};
-use clench::Model;
-use indicatif::{ProgressBar, ProgressStyle};
+pub use arguments::Arguments;
+use arguments::{Bits, DeviceName};
 use record::RecordOptions;
+use run::Run;
 use serde::Serialize;
 pub use start::StartArguments;
-use start::Starts;
 use std::io::{self, Write};
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
-
-/// Steps the model from its initial state, or a keyframe, and prints a summary: speed of stepping alone, contacts and
-/// solver iterations a step, the worst duality gap (how far a solution's cost may lie above the minimum, proven), the
-/// worst penetration, and the energy drift where nothing in the model adds or removes energy. Of a batch also: how unlike
-/// its environments are, memory, and the environments that failed, if any did. A word says what the run is worth, see below;
-/// what is wrong with it also comes as warnings on standard error.
-#[derive(Args)]
-#[command(after_help = DETAILS)]
-pub struct Arguments {
-    /// Steps to take [default: one simulated second, or as many as --ctrl has rows]
-    #[arg(long, value_name = "N", conflicts_with = "time")]
-    steps: Option<usize>,
-    /// Seconds to simulate
-    #[arg(long, value_name = "SECONDS")]
-    time: Option<f64>,
-    /// Controls as a NumPy array (N, nu): row k for step k, the same in every environment
-    #[arg(long, value_name = "FILE.npy")]
-    ctrl: Option<PathBuf>,
-    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`), or a page that replays the run in a
-    /// browser (`.html`, of one environment), in place of an old file once all is done
-    #[arg(long, value_name = "OUT")]
-    record: Option<PathBuf>,
-    /// Record every K-th step
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]
-    every: usize,
-    /// Bits of a number
-    #[arg(long, value_name = "BITS", default_value = "64")]
-    precision: Bits,
-    /// Tell the time of each stage of a step; reading the clocks adds to it
-    #[arg(long)]
-    profile: bool,
-    /// Print the summary as one JSON object, the last line of the output
-    #[arg(long)]
-    json: bool,
-
-    #[command(flatten)]
-    start: StartArguments,
-
-    #[command(flatten)]
-    batch: BatchArguments,
-
-    #[command(flatten)]
-    memory: MemoryArguments,
-
-    // Last, because its heading in the help holds for all that follows.
-    #[command(flatten)]
-    model: ModelArguments,
-}
-
-const DETAILS: &str = "\
-A record holds, a row for each recorded step: time, qpos, qvel and ctrl after the step; contacts, penetration (m),
-iterations, gradient, improvement, gap and status of its solve (0 unconstrained, 1 proven by the gap, 2 converged,
-3 no progress at the working precision, 4 iteration limit, 5 not finite). That of a batch holds time, qpos, qvel, ctrl,
-contacts and iterations, environment by environment; one that has failed repeats its last good row.
-
-The quality of a run is `good`, or the gravest of:
-  energy_growth         mechanical energy rose by more than twice what actuators put in and what lifting each body by its own
-                        radius of gyration takes, and a fifth of the kinetic energy (not judged where mocap bodies, gravity
-                        compensation or wind may give energy too)
-  deep_penetration      in more than 1% of the steps a contact was deeper than half the thickness of one of its geoms,
-                        and deeper than its softness explains: at rest under its force, or in an impact at 5 m/s
-  constraint_violation  in more than 5% of the steps an equality or a limit was violated by more than 0.1 (m or rad),
-                        and by more than its softness explains
-  unconverged           the solves of more than 1% of the steps stopped at the iteration limit
-
-Ctrl-C (SIGINT) and SIGTERM end a run after the step it is in: the record is written, the summary says `interrupted`, and the
-exit code is 130 or 143. A second one ends the program at once, without a record. The exit code is 2 for bad input and for
-runs that failed.";
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Bits {
-    #[value(name = "64")]
-    Double,
-    #[value(name = "32")]
-    Single,
-}
-
-fn at_least_one(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(0) => Err("it must be at least 1".into()),
-        Ok(number) => Ok(number),
-        Err(error) => Err(error.to_string()),
-    }
-}
-
-/// What a run is told, read and checked.
-struct Run<'a> {
-    model: Arc<Model>,
-    starts: Starts<'a>,
-    controls: Option<Rows>,
-    steps: usize,
-    record: Option<RecordOptions<'a>>,
-    interrupt: Interrupt,
-}
-
-impl Run<'_> {
-    /// A bar on standard error that appears once a run has lasted a while, and only on a terminal.
-    fn progress(&self) -> ProgressBar {
-        let bar = ProgressBar::new(self.steps as u64);
-        let style = ProgressStyle::with_template(
-            "{elapsed_precise} [{wide_bar}] {pos}/{len} steps, {per_sec}, {eta} left",
-        );
-        if let Ok(style) = style {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(500));
-        bar
-    }
-}
 
 /// Runs the simulation, writes the record, prints the summary.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
@@ -224,7 +112,7 @@ fn on_device(
     let report = gpu::run(arguments, run, envs, options)?;
     print(arguments, &report)?;
     if report.failed() {
-        return Ok(ExitCode::from(crate::BAD_INPUT));
+        return Ok(ExitCode::from(crate::exit::BAD_INPUT));
     }
     let code = run.interrupt.signal().map(|signal| signal.exit_code());
     Ok(code.map_or(ExitCode::SUCCESS, ExitCode::from))

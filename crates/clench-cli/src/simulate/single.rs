@@ -1,11 +1,12 @@
 //! A run of one environment.
 
+use super::arguments::Arguments;
 use super::energy::{EnergyAccount, STEPS_A_LOOK};
 use super::page::RunRecorder;
 use super::quality::verdict;
 use super::report::{Report, pairs, stages};
+use super::run::Run;
 use super::summary::{Summary, energy};
-use super::{Arguments, Run};
 use anyhow::Result;
 use clench::rigid::Precision;
 use clench::{RigidOptions, Sim};

@@ -1,7 +1,7 @@
 //! Exponential, logarithm and real powers.
 
 use super::extended::{ordered_sum, two_product, two_sum};
-use super::{bounded, by_precision, nearest_integer, polynomial};
+use super::polynomial::{bounded, by_precision, nearest_integer, polynomial};
 use crate::{Real, Scalar, kernel};
 use std::f64::consts::LOG2_E;
 

@@ -3,7 +3,7 @@
 //! Dekker, *A floating-point technique for extending the available precision* (1971); Knuth, *The Art of Computer
 //! Programming*, volume 2, 4.2.2.
 
-use super::by_precision;
+use super::polynomial::by_precision;
 use crate::Real;
 
 /// a + b.

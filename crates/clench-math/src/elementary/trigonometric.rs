@@ -1,7 +1,7 @@
 //! Sine, cosine and the angle of a point.
 
 use super::extended::{ordered_sum, two_sum};
-use super::{by_precision, nearest_integer, polynomial};
+use super::polynomial::{by_precision, nearest_integer, polynomial};
 use crate::{Real, Scalar, kernel};
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, SQRT_2};
 

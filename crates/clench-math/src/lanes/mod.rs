@@ -18,6 +18,7 @@ mod neon;
 mod portable;
 mod registers;
 
+use crate::elementary::elementary_functions;
 use crate::real::{Mask, Real, Scalar};
 pub use dispatch::{Instructions, LaneTask};
 pub use portable::Portable;
@@ -245,6 +246,8 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
         let (exponent, fraction) = I::split_exponent(self.0);
         (Lanes(exponent), Lanes(fraction))
     }
+
+    elementary_functions!();
 }
 
 impl<S: Scalar, const N: usize, I: Registers<S, N>> LaneMask<S, N, I> {

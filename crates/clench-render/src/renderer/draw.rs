@@ -1,22 +1,12 @@
 //! The passes of a picture.
 
-use super::Renderer;
+use super::{Draw, Renderer};
 use crate::canvas::Canvas;
 use crate::light::SKY;
-use std::ops::Range;
 use wgpu::{
-    BindGroup, Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureView,
 };
-
-/// What is drawn.
-pub struct Draw<'a> {
-    pub scene: &'a BindGroup,
-    pub opaque: &'a [usize],
-    pub transparent: &'a [usize],
-    /// Parts of tendons, among the items.
-    pub strings: Range<usize>,
-}
 
 impl Renderer {
     /// Draws what the sun sees.

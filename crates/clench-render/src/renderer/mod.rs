@@ -12,7 +12,6 @@ use crate::passes::{DEPTH, Passes};
 use crate::triangles::{self, Vertex};
 use clench::Model;
 use clench::rigid::{Precision, Sim};
-use draw::Draw;
 use std::ops::Range;
 use std::sync::Arc;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -291,4 +290,13 @@ struct Shown {
     geoms: usize,
     opaque: Vec<usize>,
     transparent: Vec<usize>,
+}
+
+/// What is drawn.
+pub struct Draw<'a> {
+    pub scene: &'a BindGroup,
+    pub opaque: &'a [usize],
+    pub transparent: &'a [usize],
+    /// Parts of tendons, among the items.
+    pub strings: Range<usize>,
 }

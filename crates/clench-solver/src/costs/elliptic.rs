@@ -22,7 +22,7 @@
 //! In the bottom zone W = diag(D).
 //! The piece is 0, 1, 2 for top, middle, bottom.
 
-use super::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Totals, Weight};
+use super::block_cost::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Elliptic;

@@ -8,7 +8,7 @@
 //! s(y₁) − s(y₀) = D [ c₀ (y₁ − y₀) + (c₁ − c₀)(y₁ − ½ (c₀ + c₁)) ]      as s = D (c y − ½ c²)
 //! ```
 
-use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
+use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Huber;

@@ -1,5 +1,6 @@
 //! The five constraint costs. Each file derives one: its value, force, Hessian block, and its restriction to a ray.
 
+mod block_cost;
 mod elliptic;
 mod huber;
 mod one_sided;
@@ -8,120 +9,12 @@ mod quadratic;
 #[cfg(test)]
 mod tests;
 
-use crate::Cost;
-use clench_math::{Mask, Real};
+pub(crate) use block_cost::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Totals, Weight};
 pub(crate) use elliptic::Elliptic;
 pub(crate) use huber::Huber;
 pub(crate) use one_sided::OneSided;
 pub(crate) use pyramid::Pyramid;
 pub(crate) use quadratic::Quadratic;
-
-/// Most rows of a block: a weld, or a contact with spin and roll.
-pub(crate) const MAX_DIM: usize = 6;
-
-/// The parameters of one block, row by row; see [`BlockMut`](crate::BlockMut).
-#[derive(Clone, Copy)]
-pub(crate) struct Rows<'a, T> {
-    pub d: &'a [T],
-    pub r: &'a [T],
-    pub shape: &'a [T],
-    /// Added to R by a stage of [continuation](crate::continuation); only elliptic cones heed it.
-    pub softer: T,
-}
-
-/// What evaluating the blocks adds up to.
-#[derive(Clone, Copy)]
-pub(crate) struct Totals<T: Real> {
-    /// Σ s(y).
-    pub cost: T,
-    /// Pieces that differ from those of the last evaluation.
-    pub changes: T,
-    /// Where some block is on a piece whose Hessian varies: an elliptic cone's surface.
-    pub curved: T::Mask,
-}
-
-impl<T: Real> Totals<T> {
-    #[inline(always)]
-    pub(crate) fn new() -> Self {
-        Totals {
-            cost: T::ZERO,
-            changes: T::ZERO,
-            curved: T::Mask::splat(false),
-        }
-    }
-
-    /// Records the piece that a row or edge is on now.
-    #[inline(always)]
-    pub(crate) fn mark(&mut self, piece: &mut T, now: T) {
-        self.changes += T::select(piece.eq(now), T::ZERO, T::ONE);
-        *piece = now;
-    }
-}
-
-/// The Hessian block of one cost, as far as its [`Form`] says it is written.
-pub(crate) type Weight<T> = [[T; MAX_DIM]; MAX_DIM];
-
-/// Which entries of a [`Weight`] can be nonzero.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Form {
-    /// None.
-    Zero,
-    /// The diagonal.
-    Diagonal,
-    /// First row, first column, diagonal (row 0 and the diagonal are written).
-    Arrow,
-    /// All.
-    Full,
-}
-
-impl Form {
-    /// A diagonal with nonzero entries, or nothing.
-    #[inline(always)]
-    fn diagonal_if(nonzero: bool) -> Form {
-        if nonzero { Form::Diagonal } else { Form::Zero }
-    }
-}
-
-/// First and second derivative along a ray.
-#[derive(Clone, Copy)]
-pub(crate) struct Slope<T> {
-    pub first: T,
-    pub second: T,
-}
-
-/// A change σ j jᵀ of a Hessian block, with j = J_row + factor · J_side.
-#[derive(Clone, Copy)]
-pub(crate) struct RankOne<T> {
-    pub sigma: T,
-    pub row: usize,
-    pub side: Option<(usize, T)>,
-}
-
-/// What Newton, CG and the line search ask of a constraint's cost. (Noslip, continuation and the checks of input match on
-/// [`Cost`] where they need more.)
-///
-/// `y` is J a − aref. A lane without the constraint has D = 0: it adds nothing, and its pieces never change.
-pub(crate) trait BlockCost<T: Real> {
-    /// How many pieces (rows or edges that switch on their own) a block of `dim` rows has.
-    fn active_len(dim: usize) -> usize;
-    /// Writes the force −∇s(y) and the pieces, and adds to the totals.
-    fn evaluate(
-        rows: Rows<T>,
-        y: &[T],
-        force: &mut [T],
-        active_set: &mut [T],
-        totals: &mut Totals<T>,
-    );
-    /// Writes ∇²s(y), whose pieces are known.
-    fn hessian(rows: Rows<T>, y: &[T], active_set: &[T], weight: &mut Weight<T>) -> Form;
-    /// Calls `emit` with each rank-one change of the Hessian block from the pieces `old` to the pieces `new`, none of which
-    /// may be curved.
-    fn changes(rows: Rows<T>, old: &[T], new: &[T], emit: impl FnMut(RankOne<T>));
-    /// Adds the derivatives of α ↦ s(y + α dy).
-    fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>);
-    /// s(y + α dy) − s(y), without the cancellation of subtracting two values.
-    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T;
-}
 
 /// Runs an expression with `$c` standing for the [`BlockCost`] of `$cost`.
 macro_rules! with_cost {
@@ -155,4 +48,20 @@ pub(crate) use with_cost;
 /// How many pieces a block of this cost has.
 pub(crate) fn active_len(cost: Cost, dim: usize) -> usize {
     with_cost!(cost, C => <C as BlockCost<f64>>::active_len(dim))
+}
+
+/// The shape of a constraint's cost s(y), y = J a − aref.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Cost {
+    /// ½ D y² always: equalities.
+    #[default]
+    Quadratic,
+    /// ½ D y² where y < 0: limits, frictionless contacts.
+    OneSided,
+    /// ½ D y² near zero, η |y| − ½ R η² beyond: dry friction of loss η.
+    Huber,
+    /// One-sided on each of the 2 (dim − 1) edges y₀ ± μ_j y_j: frictional contact, linearised.
+    Pyramid,
+    /// Distance to a circular cone after scaling: frictional contact, exact.
+    Elliptic,
 }

@@ -7,7 +7,7 @@
 //! s(y₁) − s(y₀) = ½ Σ D (m₁ − m₀)(m₁ + m₀)
 //! ```
 
-use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
+use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct OneSided;

@@ -12,8 +12,8 @@
 //! So the Hessian is an arrow, and friction obeys Σ |force_j| / μ_j ≤ force₀. Pieces: each edge 1 or 0, in the order
 //! 1+, 1−, 2+, 2−, ... All rows have the same D.
 
+use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use super::one_sided::{active, add_edge_slope, edge_change};
-use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Pyramid;

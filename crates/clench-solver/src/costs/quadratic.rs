@@ -5,7 +5,7 @@
 //! s(y + α dy) − s(y) = α Σ D dy (y + ½ α dy)
 //! ```
 
-use super::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
+use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use clench_math::Real;
 
 pub(crate) struct Quadratic;

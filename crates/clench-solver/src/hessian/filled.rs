@@ -1,6 +1,6 @@
 //! The Hessian in what elimination fills.
 
-use super::each_of_change;
+use super::rank_one::each_of_change;
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, Jacobian};
 use crate::sparse::{SparseFactor, SparsePattern};

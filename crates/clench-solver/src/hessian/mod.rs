@@ -8,6 +8,7 @@
 
 mod filled;
 mod paths;
+mod rank_one;
 
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, StoredRows};
@@ -121,24 +122,6 @@ impl<T: Real> Hessian<T> {
         } else {
             self.paths.solve(x);
         }
-    }
-}
-
-/// The vector of a rank-one change of a block's Hessian, entry by entry.
-#[inline(always)]
-fn each_of_change<T: Real>(
-    problem: &Problem<T>,
-    b: &BlockIndex,
-    change: &RankOne<T>,
-    mut put: impl FnMut(usize, T),
-) {
-    let (dofs, values) = (problem.jacobian.dofs(b), problem.jacobian.values(b));
-    let row = |i: usize| &values[i * b.ndof..(i + 1) * b.ndof];
-    for (k, &dof) in dofs.iter().enumerate() {
-        let side = change
-            .side
-            .map_or(T::ZERO, |(side, factor)| factor * row(side)[k]);
-        put(dof as usize, row(change.row)[k] + side);
     }
 }
 

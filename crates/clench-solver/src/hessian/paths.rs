@@ -1,6 +1,6 @@
 //! The Hessian in whole paths of its elimination tree.
 
-use super::each_of_change;
+use super::rank_one::each_of_change;
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, Jacobian};
 use crate::tree::Coupling;

@@ -1,0 +1,160 @@
+//! What `clench simulate` is told.
+
+use super::start::StartArguments;
+use crate::limits::MemoryArguments;
+use crate::options::ModelArguments;
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+use clench::math::Instructions;
+use clench::{BatchOptions, RigidOptions};
+use std::path::PathBuf;
+
+/// Steps the model from its initial state, or a keyframe, and prints a summary: speed of stepping alone, contacts and
+/// solver iterations a step, the worst duality gap (how far a solution's cost may lie above the minimum, proven), the
+/// worst penetration, and the energy drift where nothing in the model adds or removes energy. Of a batch also: how unlike
+/// its environments are, memory, and the environments that failed, if any did. A word says what the run is worth, see below;
+/// what is wrong with it also comes as warnings on standard error.
+#[derive(Args)]
+#[command(after_help = DETAILS)]
+pub struct Arguments {
+    /// Steps to take [default: one simulated second, or as many as --ctrl has rows]
+    #[arg(long, value_name = "N", conflicts_with = "time")]
+    pub(super) steps: Option<usize>,
+    /// Seconds to simulate
+    #[arg(long, value_name = "SECONDS")]
+    pub(super) time: Option<f64>,
+    /// Controls as a NumPy array (N, nu): row k for step k, the same in every environment
+    #[arg(long, value_name = "FILE.npy")]
+    pub(super) ctrl: Option<PathBuf>,
+    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`), or a page that replays the run in a
+    /// browser (`.html`, of one environment), in place of an old file once all is done
+    #[arg(long, value_name = "OUT")]
+    pub(super) record: Option<PathBuf>,
+    /// Record every K-th step
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]
+    pub(super) every: usize,
+    /// Bits of a number
+    #[arg(long, value_name = "BITS", default_value = "64")]
+    pub(super) precision: Bits,
+    /// Tell the time of each stage of a step; reading the clocks adds to it
+    #[arg(long)]
+    pub(super) profile: bool,
+    /// Print the summary as one JSON object, the last line of the output
+    #[arg(long)]
+    pub(super) json: bool,
+
+    #[command(flatten)]
+    pub(super) start: StartArguments,
+
+    #[command(flatten)]
+    pub(super) batch: BatchArguments,
+
+    #[command(flatten)]
+    pub(super) memory: MemoryArguments,
+
+    // Last, because its heading in the help holds for all that follows.
+    #[command(flatten)]
+    pub(super) model: ModelArguments,
+}
+
+pub(super) const DETAILS: &str = "\
+A record holds, a row for each recorded step: time, qpos, qvel and ctrl after the step; contacts, penetration (m),
+iterations, gradient, improvement, gap and status of its solve (0 unconstrained, 1 proven by the gap, 2 converged,
+3 no progress at the working precision, 4 iteration limit, 5 not finite). That of a batch holds time, qpos, qvel, ctrl,
+contacts and iterations, environment by environment; one that has failed repeats its last good row.
+
+The quality of a run is `good`, or the gravest of:
+  energy_growth         mechanical energy rose by more than twice what actuators put in and what lifting each body by its own
+                        radius of gyration takes, and a fifth of the kinetic energy (not judged where mocap bodies, gravity
+                        compensation or wind may give energy too)
+  deep_penetration      in more than 1% of the steps a contact was deeper than half the thickness of one of its geoms,
+                        and deeper than its softness explains: at rest under its force, or in an impact at 5 m/s
+  constraint_violation  in more than 5% of the steps an equality or a limit was violated by more than 0.1 (m or rad),
+                        and by more than its softness explains
+  unconverged           the solves of more than 1% of the steps stopped at the iteration limit
+
+Ctrl-C (SIGINT) and SIGTERM end a run after the step it is in: the record is written, the summary says `interrupted`, and the
+exit code is 130 or 143. A second one ends the program at once, without a record. The exit code is 2 for bad input and for
+runs that failed.";
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(super) enum Bits {
+    #[value(name = "64")]
+    Double,
+    #[value(name = "32")]
+    Single,
+}
+
+pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("it must be at least 1".into()),
+        Ok(number) => Ok(number),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// How many environments there are, and how they are stepped.
+#[derive(Args)]
+#[command(next_help_heading = "Many environments")]
+pub struct BatchArguments {
+    /// Step so many environments as a batch
+    #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
+    pub envs: Option<u32>,
+    /// Threads of a batch [default: as many as processors]; one environment alone uses one
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(super) threads: Option<u16>,
+    /// How the environments of a batch lie side by side [default: what is fastest here]
+    #[arg(long, ignore_case = true, requires = "envs")]
+    pub(super) instructions: Option<InstructionsName>,
+    /// What steps a batch: the processor, or (of programs with the feature `gpu`) a graphics device in single precision
+    #[arg(long, value_name = "DEVICE", default_value = "cpu", requires = "envs")]
+    pub device: DeviceName,
+    /// Leave the environments of a batch in order, where those of like contacts would be put side by side
+    #[arg(long, requires = "envs")]
+    pub(super) no_grouping: bool,
+}
+
+/// What steps environments.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DeviceName {
+    Cpu,
+    Gpu,
+}
+
+impl BatchArguments {
+    /// The first flag that says how a processor steps, if any was given.
+    #[cfg(feature = "gpu")]
+    pub fn of_processor(&self) -> Option<&'static str> {
+        let flags = [
+            ("--threads", self.threads.is_some()),
+            ("--instructions", self.instructions.is_some()),
+            ("--no-grouping", self.no_grouping),
+        ];
+        let given = flags.into_iter().find(|&(_, given)| given);
+        given.map(|(flag, _)| flag)
+    }
+
+    pub(super) fn options(&self, options: RigidOptions) -> BatchOptions {
+        BatchOptions {
+            options,
+            instructions: self.instructions.map(|name| match name {
+                InstructionsName::Scalar => Instructions::Scalar,
+                InstructionsName::Portable => Instructions::Portable,
+                InstructionsName::Neon => Instructions::Neon,
+                InstructionsName::Avx2 => Instructions::Avx2,
+                InstructionsName::Avx512 => Instructions::Avx512,
+            }),
+            threads: self.threads.map(usize::from),
+            grouping: !self.no_grouping,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(super) enum InstructionsName {
+    Scalar,
+    Portable,
+    Neon,
+    Avx2,
+    Avx512,
+}

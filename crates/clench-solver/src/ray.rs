@@ -1,0 +1,15 @@
+//! A search direction, with its images under M and J.
+
+/// A search direction with what the line search needs of it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ray<T> {
+    /// p.
+    pub direction: Vec<T>,
+    /// M p.
+    pub mass_direction: Vec<T>,
+    /// J p.
+    pub rows: Vec<T>,
+    /// Derivatives at 0 of what is quadratic everywhere: inertia and equalities.
+    pub first: T,
+    pub second: T,
+}

@@ -1,0 +1,85 @@
+//! A field of a model as it is read: its shape, and its numbers.
+
+use clench::Model;
+use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::{Element, PyArrayDyn, PyArrayMethods};
+use pyo3::prelude::*;
+use std::ops::Range;
+
+/// Some numbers, and how many along each axis.
+pub(crate) struct Field {
+    pub(crate) shape: Vec<usize>,
+    pub(crate) numbers: Numbers,
+}
+
+pub(crate) enum Numbers {
+    Real(Vec<f64>),
+    Code(Vec<i32>),
+    Flag(Vec<bool>),
+}
+
+impl Field {
+    /// A float if it is a single number, else an array that cannot be written to.
+    pub(crate) fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        match self.numbers {
+            Numbers::Real(numbers) if self.shape.is_empty() => {
+                Ok(numbers[0].into_pyobject(py)?.into_any())
+            }
+            Numbers::Real(numbers) => read_only(py, &self.shape, numbers),
+            Numbers::Code(numbers) => read_only(py, &self.shape, numbers),
+            Numbers::Flag(numbers) => read_only(py, &self.shape, numbers),
+        }
+    }
+}
+
+/// A new array that cannot be written to.
+pub(super) fn read_only<'py, T: Element>(
+    py: Python<'py>,
+    shape: &[usize],
+    numbers: Vec<T>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = ArrayD::from_shape_vec(IxDyn(shape), numbers).expect("shapes say how many");
+    let array = PyArrayDyn::from_owned_array(py, array);
+    array.try_readwrite()?.make_nonwriteable();
+    Ok(array.into_any())
+}
+
+/// The name of a field, and how it is read.
+pub(crate) type Reader = (&'static str, fn(&Model) -> Field);
+
+pub(crate) fn codes<E>(elements: &[E], code: impl Fn(&E) -> i32) -> Field {
+    Field {
+        shape: vec![elements.len()],
+        numbers: Numbers::Code(elements.iter().map(code).collect()),
+    }
+}
+
+pub(super) fn flags<E>(elements: &[E], flag: impl Fn(&E) -> bool) -> Field {
+    Field {
+        shape: vec![elements.len()],
+        numbers: Numbers::Flag(elements.iter().map(flag).collect()),
+    }
+}
+
+pub(super) fn reals<E>(elements: &[E], number: impl Fn(&E) -> f64) -> Field {
+    Field {
+        shape: vec![elements.len()],
+        numbers: Numbers::Real(elements.iter().map(number).collect()),
+    }
+}
+
+/// Indices and counts are far below 2³¹: no memory holds so many elements.
+pub(crate) fn id(index: usize) -> i32 {
+    index as i32
+}
+
+pub(super) fn id_or_none(index: Option<usize>) -> i32 {
+    index.map_or(NONE, id)
+}
+
+pub(super) fn first(range: &Range<usize>) -> i32 {
+    id_or_none(Some(range.start).filter(|_| !range.is_empty()))
+}
+
+/// The index of nothing.
+pub(super) const NONE: i32 = -1;
