@@ -232,3 +232,7 @@ fn at(place: &Option<Arc<str>>) -> String {
         .as_ref()
         .map_or_else(String::new, |place| format!(" at {place}"))
 }
+
+pub(crate) fn no_such(kind: &'static str, index: usize, count: usize) -> SimError {
+    SimError::NoSuchElement { kind, index, count }
+}

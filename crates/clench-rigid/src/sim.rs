@@ -3,25 +3,25 @@
 mod dynamic;
 mod halves;
 mod parameters;
+mod quality;
 
 pub use dynamic::DynamicConstraint;
 
-use crate::Precision;
 use crate::check::{self, check_contact, check_values};
 use crate::contact::Contact;
 use crate::dynamics::energy::Energy;
-use crate::error::SimError;
+use crate::error::{SimError, no_such};
 use crate::inverse::Acceleration;
 use crate::known::{Extent, Known};
 use crate::model::{Model, Params};
 use crate::options::RigidOptions;
 use crate::output::{Output, Source};
 use crate::profile::{Profile, Stage};
-use crate::readout;
 use crate::sensor::bodies::update as update_body_forces;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
+use crate::{Precision, readout};
 use clench_solver::LaneStats;
 use std::sync::Arc;
 
@@ -438,8 +438,4 @@ impl<T: Precision> Sim<T> {
             scratch,
         ))
     }
-}
-
-pub(crate) fn no_such(kind: &'static str, index: usize, count: usize) -> SimError {
-    SimError::NoSuchElement { kind, index, count }
 }

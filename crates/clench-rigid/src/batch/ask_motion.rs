@@ -1,6 +1,6 @@
 //! Questions to all environments at once about how objects move, and about what the mass matrix makes of numbers.
 
-use super::ask::{Given, Question};
+use super::answer::{Given, Question};
 use super::{Batch, Precision, Rows};
 use crate::error::SimError;
 use crate::model::FrameObject;

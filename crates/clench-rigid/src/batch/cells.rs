@@ -5,9 +5,9 @@
 //! the groups are. What a step only reads goes through them too, since those who hold pointers to rows may write it meanwhile.
 
 use super::Rows;
-use super::precision::{Lanewise, Shared};
+use super::shared::Shared;
 use crate::state::kind::Kind;
-use clench_math::Real;
+use clench_math::{Real, Scalar};
 
 /// The rows of a table, shared by threads for the time of a call.
 pub struct Cells<'a, S: Shared> {
@@ -89,7 +89,7 @@ impl<C: Shared> Cells<'_, C> {
     }
 }
 
-impl<S: Lanewise> Cells<'_, S> {
+impl<S: Scalar + Shared> Cells<'_, S> {
     /// Copies lane `lane` of numbers into the row of an environment, from number `start` on.
     #[inline(always)]
     pub fn write_part<T: Real<Scalar = S>>(

@@ -4,12 +4,15 @@
 //! contacts into groups; each thread has a stepper (`stepper.rs`), scratch in lanes, that claims a group, gathers its rows,
 //! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status.
 
+mod answer;
 mod ask;
 mod ask_motion;
 mod cells;
 mod divergence;
 mod dynamic;
+mod env_rows;
 mod group;
+mod job;
 mod options;
 mod parameters;
 mod precision;
@@ -19,36 +22,40 @@ mod reset;
 mod rows;
 mod run;
 mod seen;
+mod shared;
 mod snapshot;
 mod state_rows;
 mod stepper;
+mod summary;
+mod targets;
 
-pub use ask::Given;
+pub use answer::Given;
 pub use divergence::Divergence;
+use env_rows::ParamRows;
+use job::Stepper;
 pub use options::BatchOptions;
 pub use precision::Precision;
+pub(crate) use quality::Place;
 pub use quality::{DeepContact, Quality, Violation};
-pub use record::{Controls, Recording};
+pub use record::Recording;
 pub use rows::Rows;
-pub use run::Summary;
 pub use snapshot::Snapshot;
 pub use state_rows::StateRows;
+pub use summary::Summary;
+pub use targets::Controls;
+use targets::{OutputRows, row_bytes};
 
-use crate::error::{Fault, SimError};
+use crate::error::{Fault, SimError, no_such};
 use crate::model::Model;
 use crate::profile::Profile;
 use crate::settings::StepSettings;
-use crate::sim::no_such;
 use crate::state::State;
-use parameters::ParamRows;
 use rayon::ThreadPool;
-use record::{OutputRows, row_bytes};
 use rows::{per_env, try_reserve};
 use seen::Seen;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
-use stepper::Stepper;
 
 /// Bytes that an environment takes besides its rows: whether it runs, how often it was reset, the number of its last constraint at run
 /// time, and its place in groups.

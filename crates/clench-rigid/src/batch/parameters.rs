@@ -1,30 +1,12 @@
 //! Parameters that each environment has for itself, and options of all.
 
-use super::precision::Lanewise;
+use super::env_rows::ParamRows;
 use super::{Batch, Precision, Rows};
 use crate::check::check_length;
 use crate::error::SimError;
-use crate::model::{Model, ParamField, Params};
+use crate::model::{Model, ParamField};
 use crate::options::RigidOptions;
 use crate::settings::StepSettings;
-use clench_math::Real;
-
-/// A field of the parameters, a row an environment.
-pub struct ParamRows<S> {
-    field: ParamField,
-    rows: Rows<S>,
-}
-
-impl<S: Lanewise> ParamRows<S> {
-    /// Copies the row of an environment into lane `lane`.
-    pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, params: &mut Params<T>) {
-        params.write_lane(self.field, lane, self.rows.row(env));
-    }
-    /// Bytes that a row takes.
-    pub fn row_bytes(&self) -> usize {
-        self.rows.row_bytes()
-    }
-}
 
 impl<S: Precision> Batch<S> {
     /// Gives environments numbers of their own in place of the model's. `field` is a field of

@@ -1,6 +1,8 @@
 //! The number types of batches.
 
-use super::stepper::{MakeStepper, Stepper};
+use super::job::Stepper;
+use super::shared::Shared;
+use super::stepper::MakeStepper;
 use crate::dynamics::energy::{Energy, EnergyScratch};
 use crate::ik::{Ik, Search};
 use crate::inverse::{self, Acceleration};
@@ -10,7 +12,6 @@ use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Instructions, Scalar};
-use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
 use zerocopy::{Immutable, IntoBytes};
 
 /// A number type of simulations and batches: `f64` or `f32`.
@@ -21,48 +22,6 @@ use zerocopy::{Immutable, IntoBytes};
 pub trait Precision: Lanewise {}
 impl Precision for f64 {}
 impl Precision for f32 {}
-
-/// What rows that threads share are made of.
-pub trait Shared: Copy {
-    /// The same number where several threads write.
-    type Cell: Sync;
-    /// Numbers as cells.
-    fn cells(values: &mut [Self]) -> &[Self::Cell];
-    /// The number in a cell.
-    fn load(cell: &Self::Cell) -> Self;
-    /// Puts a number into a cell.
-    fn store(cell: &Self::Cell, value: Self);
-    /// The bits of the number in a cell.
-    fn bits(cell: &Self::Cell) -> u64;
-}
-
-macro_rules! shared {
-    ($number:ident in $cell:ident, $from:expr, $to:expr) => {
-        impl Shared for $number {
-            type Cell = $cell;
-            fn cells(values: &mut [$number]) -> &[$cell] {
-                let cells: &mut [$cell] = zerocopy::transmute_mut!(values);
-                cells
-            }
-            #[inline(always)]
-            fn load(cell: &$cell) -> $number {
-                $from(cell.load(Relaxed))
-            }
-            #[inline(always)]
-            fn store(cell: &$cell, value: $number) {
-                cell.store($to(value), Relaxed);
-            }
-            #[inline(always)]
-            fn bits(cell: &$cell) -> u64 {
-                u64::from(cell.load(Relaxed))
-            }
-        }
-    };
-}
-shared!(f64 in AtomicU64, f64::from_bits, f64::to_bits);
-shared!(f32 in AtomicU32, f32::from_bits, f32::to_bits);
-shared!(u8 in AtomicU8, u8::from, u8::from);
-shared!(i32 in AtomicU32, u32::cast_signed, i32::cast_unsigned);
 
 /// What a batch needs of a number type; outside this crate only its name is known.
 pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {

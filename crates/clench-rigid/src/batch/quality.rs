@@ -11,13 +11,11 @@
 //! The stiffness is that of the model as written. Where a time step is too long for it, a step is softer than that
 //! (`refsafe`), and what comes of it is not what the model asks for.
 
-use super::Precision;
 use crate::constraint::dynamic::softness;
 use crate::constraint::{BlockRecord, ConstraintSource, Softness};
 use crate::contact::Contact;
 use crate::model::{Model, Params};
 use crate::settings::StepSettings;
-use crate::sim::Sim;
 use crate::workspace::Workspace;
 use clench_collide::ShapeKind;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
@@ -77,7 +75,7 @@ pub struct Violation {
 
 /// Where steps happen: what their workspace is read with.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a, T: Real> {
+pub(crate) struct Place<'a, T: Real> {
     pub model: &'a Model,
     pub params: &'a Params<T>,
     pub settings: &'a StepSettings,
@@ -85,19 +83,8 @@ pub(super) struct Place<'a, T: Real> {
 }
 
 impl Quality {
-    /// Takes in the last step of a simulation, which must have gone well.
-    pub fn note<T: Precision>(&mut self, sim: &Sim<T>) {
-        let place = Place {
-            model: sim.model(),
-            params: sim.params(),
-            settings: sim.settings(),
-            ws: sim.workspace(),
-        };
-        self.count(place, 1, true);
-    }
-
     /// Takes in the `good` ones of the first `len` lanes, in which environments are.
-    pub(super) fn count<T: Real>(&mut self, place: Place<T>, len: usize, good: T::Mask) {
+    pub(crate) fn count<T: Real>(&mut self, place: Place<T>, len: usize, good: T::Mask) {
         let stats = place.ws.solver.stats();
         let extent = extent(place);
         let (deep, violated) = (extent.deep & good, extent.violated & good);

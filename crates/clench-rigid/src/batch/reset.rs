@@ -2,8 +2,8 @@
 
 use super::{Batch, EnvStatus, Precision, StateRows};
 use crate::check::check_length;
-use crate::error::SimError;
-use crate::sim::{Sim, no_such};
+use crate::error::{SimError, no_such};
+use crate::sim::Sim;
 use std::sync::Arc;
 
 impl<S: Precision> Batch<S> {

@@ -1,8 +1,10 @@
 //! Stepping a batch: environments are grouped, threads claim groups, and what went wrong becomes a status.
 
-use super::record::{OutputRows, targets};
+use super::env_rows::EnvRows;
+use super::job::{Job, Pass, Stepper};
 use super::seen::Seen;
-use super::stepper::{EnvRows, Job, Pass, Stepper};
+use super::summary::Summary;
+use super::targets::{OutputRows, targets};
 use super::{Batch, Controls, EnvStatus, Precision};
 use crate::check::check_length;
 use crate::error::SimError;
@@ -12,17 +14,6 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// After so many steps of a call environments are grouped anew.
 const STEPS_A_GROUP: usize = 8;
-
-/// What a call did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Summary {
-    /// Environments that failed in this call.
-    pub failed: usize,
-    /// Environments that run on.
-    pub running: usize,
-    /// How often environments started over from the initial state in this call, with the option `autoreset`.
-    pub resets: usize,
-}
 
 impl<S: Precision> Batch<S> {
     /// Advances every running environment by one time step.

@@ -1,13 +1,13 @@
 //! For which positions and velocities recorded outputs hold.
 
 use super::cells::Cells;
-use super::precision::Lanewise;
-use super::{Precision, Rows, StateRows};
+use super::shared::Shared;
+use super::{Rows, StateRows};
 use crate::error::SimError;
 use crate::model::Model;
 use crate::state::State;
 use crate::state::kind::{Number, Quaternion, Vector};
-use clench_math::Real;
+use clench_math::{Real, Scalar};
 
 /// What each environment's state was when its outputs were last recorded, as far as they depend on it. Kept only while
 /// outputs are.
@@ -18,7 +18,7 @@ pub(super) struct Seen<S> {
     mocap_quat: Rows<S>,
 }
 
-impl<S: Precision> Seen<S> {
+impl<S: Scalar + Shared> Seen<S> {
     /// Nothing seen yet.
     pub(super) fn new(model: &Model, count: usize) -> Result<Self, SimError> {
         // Not equal to itself, nor to any other number.
@@ -62,14 +62,14 @@ impl<S: Precision> Seen<S> {
 }
 
 /// The tables as a step writes them.
-pub struct SeenCells<'a, S: Lanewise> {
+pub struct SeenCells<'a, S: Scalar + Shared> {
     qpos: Cells<'a, S>,
     qvel: Cells<'a, S>,
     mocap_pos: Cells<'a, S>,
     mocap_quat: Cells<'a, S>,
 }
 
-impl<S: Lanewise> SeenCells<'_, S> {
+impl<S: Scalar + Shared> SeenCells<'_, S> {
     /// Notes the state of an environment, of which outputs were recorded.
     pub fn note<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
         self.qpos.write::<Number, T>(env, lane, &state.qpos);

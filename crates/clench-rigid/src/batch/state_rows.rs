@@ -1,17 +1,16 @@
 //! The states of a batch, a table a field: what users read and write, and how rows become lanes and lanes rows.
 
+use super::Rows;
 use super::cells::Cells;
-use super::precision::Lanewise;
 use super::rows::try_reserve;
-use super::{Precision, Rows};
+use super::shared::Shared;
 use crate::check::check_length;
-use crate::error::SimError;
+use crate::error::{SimError, no_such};
 use crate::model::Model;
-use crate::sim::no_such;
 use crate::sleep::AWAKE;
 use crate::state::kind::{self, Kind};
 use crate::state::{FIELDS, State};
-use clench_math::{Clock, Real};
+use clench_math::{Clock, Real, Scalar};
 
 /// What a row holds of a kind of element.
 type Cell<K, S> = <K as Kind>::Cell<S>;
@@ -40,7 +39,7 @@ macro_rules! declare_rows {
             $($(#[$occasional_doc])* pub $occasional: Rows<Cell<kind::$occasional_kind, S>>,)*
         }
 
-        impl<S: Precision> StateRows<S> {
+        impl<S: Scalar + Shared> StateRows<S> {
             /// Room for `count` states of a model, all zero: [`write`](Self::write) puts states in.
             ///
             /// # Errors
@@ -102,12 +101,12 @@ macro_rules! declare_rows {
         }
 
         /// What a step reads and writes.
-        pub struct MovingRows<'a, S: Lanewise> {
+        pub struct MovingRows<'a, S: Scalar + Shared> {
             time: Cells<'a, f64>,
             $($moving: Cells<'a, Cell<kind::$moving_kind, S>>,)*
         }
 
-        impl<S: Lanewise> MovingRows<'_, S> {
+        impl<S: Scalar + Shared> MovingRows<'_, S> {
             /// Copies the row of an environment into lane `lane`.
             pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
                 state.time.set_lane(lane, self.time.get(env));
@@ -122,12 +121,12 @@ macro_rules! declare_rows {
         }
 
         /// What a step only reads.
-        pub struct Inputs<'a, S: Lanewise> {
+        pub struct Inputs<'a, S: Scalar + Shared> {
             $($input: Cells<'a, Cell<kind::$input_kind, S>>,)*
             $($occasional: Cells<'a, Cell<kind::$occasional_kind, S>>,)*
         }
 
-        impl<S: Lanewise> Inputs<'_, S> {
+        impl<S: Scalar + Shared> Inputs<'_, S> {
             /// Copies the row of an environment into lane `lane`, but for occasional inputs.
             pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
                 $(self.$input.read::<kind::$input_kind, T>(env, lane, &mut state.$input);)*
@@ -163,7 +162,7 @@ macro_rules! declare_rows {
 }
 crate::state_fields!(declare_rows);
 
-impl<S: Precision> StateRows<S> {
+impl<S: Scalar + Shared> StateRows<S> {
     /// How many states there are.
     pub fn count(&self) -> usize {
         self.time.count()
@@ -234,7 +233,7 @@ impl<S: Precision> StateRows<S> {
     }
 }
 
-impl<S: Lanewise> MovingRows<'_, S> {
+impl<S: Scalar + Shared> MovingRows<'_, S> {
     /// Replaces the row of an environment by time, `nq` positions, `nv` velocities and activations. The solver starts anew, and everything is
     /// awake.
     pub fn start(&self, env: usize, row: &[S], nq: usize, nv: usize) {

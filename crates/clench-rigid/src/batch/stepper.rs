@@ -1,100 +1,30 @@
 //! A thread's scratch: environments come in by groups, are stepped side by side, and go out again.
 
-use super::ask::{AskMemory, Asking};
-use super::divergence::Divergence;
+use super::answer::{AskMemory, Asking};
+use super::env_rows::EnvRows;
 use super::group::{Group, MAX_LANES};
-use super::parameters::ParamRows;
-use super::precision::Lanewise;
-use super::quality::{Place, Quality};
-use super::record::{Controls, Targets};
-use super::seen::SeenCells;
-use super::state_rows::{Inputs, MovingRows, clear_occasional};
-use crate::check;
+use super::job::{Job, Pass, StepTotals, Stepper};
+use super::quality::Place;
+use super::shared::Shared;
+use super::state_rows::clear_occasional;
 use crate::error::Fault;
 use crate::model::{Model, Params};
 use crate::options::MaxContacts;
 use crate::output::{Output, Source};
-use crate::pipeline;
 use crate::profile::{Profile, Stage};
-use crate::settings::StepSettings;
 use crate::state::State;
 use crate::state::kind::Number;
 use crate::workspace::Workspace;
-use clench_math::{Clock, LaneTask, Mask, Real, write_lane};
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
-/// What users see of environments.
-pub struct EnvRows<'a, S: Lanewise> {
-    pub motion: MovingRows<'a, S>,
-    pub inputs: Inputs<'a, S>,
-    /// Parameters that environments have for themselves.
-    pub params: &'a [ParamRows<S>],
-}
-
-/// What a call asks of its threads, the same for every group.
-pub struct Job<'a, S: Lanewise> {
-    pub model: &'a Model,
-    pub settings: &'a StepSettings,
-    pub rows: EnvRows<'a, S>,
-    /// Where each environment stands in an order that puts those of like contacts side by side.
-    pub sort_keys: &'a [AtomicU64],
-    /// What is done.
-    pub pass: Pass,
-    /// For which states outputs hold, where any are kept.
-    pub seen: Option<SeenCells<'a, S>>,
-    /// Where outputs go.
-    pub targets: Targets<'a, S>,
-    pub controls: Controls<'a, S>,
-    /// Of all steps of the call, these are done now.
-    pub first: usize,
-    pub end: usize,
-    pub steps: usize,
-}
-
-/// What a call does with environments.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pass {
-    /// Their states advance.
-    Step,
-    /// Their states stay, and what follows from them is computed.
-    Forward,
-    /// The same for somebody who only asks: nothing fails and nothing is counted.
-    Query,
-}
-
-/// What a stepper has to report.
-#[derive(Default)]
-pub struct StepTotals {
-    /// Environments that cannot go on, and why.
-    pub faults: Vec<(u32, Fault)>,
-    /// Environments that started over from the initial state.
-    pub resets: Vec<u32>,
-    pub divergence: Divergence,
-    pub quality: Quality,
-}
-
-/// A thread's scratch in lanes of some width.
-pub trait Stepper<S: Lanewise>: Send {
-    /// How many environments it steps at once.
-    fn lanes(&self) -> usize;
-    /// Does a job for a group of at most so many environments.
-    fn run(&mut self, group: &[u32], job: &Job<S>);
-    /// Answers a question about a group likewise.
-    fn ask(&mut self, group: &[u32], asking: &Asking<S>);
-    /// What happened since it was last cleared.
-    fn totals(&mut self) -> &mut StepTotals;
-    /// Lets its clocks run, or not.
-    fn run_clocks(&mut self, running: bool);
-    /// Where the time went while they ran.
-    fn profile(&mut self) -> Profile;
-}
+use crate::{check, pipeline};
+use clench_math::{Clock, LaneTask, Mask, Real, Scalar, write_lane};
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Makes a stepper in lanes picked at run time.
 pub(super) struct MakeStepper<'a> {
     pub model: &'a Model,
 }
 
-impl<S: Lanewise> LaneTask<S> for MakeStepper<'_> {
+impl<S: Scalar + Shared> LaneTask<S> for MakeStepper<'_> {
     type Output = Box<dyn Stepper<S>>;
     fn run<T: Real<Scalar = S>>(self) -> Self::Output {
         Box::new(LaneStepper::<T>::new(self.model))
@@ -129,7 +59,7 @@ enum Start {
 
 impl<T: Real> LaneStepper<T>
 where
-    T::Scalar: Lanewise,
+    T::Scalar: Shared,
 {
     fn new(model: &Model) -> Self {
         LaneStepper {
@@ -378,7 +308,7 @@ fn gray_rank(mut bits: u64) -> u64 {
 
 impl<T: Real> Stepper<T::Scalar> for LaneStepper<T>
 where
-    T::Scalar: Lanewise,
+    T::Scalar: Shared,
 {
     fn lanes(&self) -> usize {
         T::LANES

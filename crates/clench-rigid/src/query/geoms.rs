@@ -1,10 +1,10 @@
 //! Questions about where geoms are: what a ray hits, and how far apart two geoms are.
 
 use crate::Precision;
-use crate::error::SimError;
+use crate::error::{SimError, no_such};
 use crate::geometry::Geoms;
 use crate::known::Extent;
-use crate::sim::{Sim, no_such};
+use crate::sim::Sim;
 use clench_collide::{Ray, Separation, distance};
 use clench_math::Vec3;
 

@@ -14,9 +14,8 @@ pub use geoms::{RayFilter, RayHit};
 pub(crate) use inverse::check_acceleration;
 pub(crate) use scan::{HIT, RAY, cast, check_places, check_rays, sample};
 
-use crate::error::SimError;
+use crate::error::{SimError, no_such};
 use crate::model::{FrameObject, Model};
-use crate::sim::no_such;
 
 /// An object that the model has.
 pub(crate) fn check_object(model: &Model, object: FrameObject) -> Result<(), SimError> {

@@ -3,12 +3,12 @@
 use super::check_object;
 use crate::check::{check_count, check_values};
 use crate::dynamics::frames::Frames;
-use crate::error::SimError;
+use crate::error::{SimError, no_such};
 use crate::geometry::Geoms;
 use crate::known::Extent;
 use crate::model::FrameObject;
 use crate::query::{RayFilter, RayHit};
-use crate::sim::{Sim, no_such};
+use crate::sim::Sim;
 use crate::{Model, Precision};
 use clench_collide::{Asset, Ray};
 use clench_math::{Real, Scalar, Vec3, kernel};

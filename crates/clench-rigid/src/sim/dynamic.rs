@@ -1,9 +1,9 @@
 //! Constraints that are added and removed while a simulation runs, and equalities of the file that hold the present pose.
 
-use super::{Sim, no_such};
+use super::Sim;
 use crate::Precision;
 use crate::constraint::dynamic::{CONNECT, WELD, tied};
-use crate::error::SimError;
+use crate::error::{SimError, no_such};
 use crate::model::{EqualityTarget, Model};
 use crate::sleep::wake_in_state;
 use crate::state::State;

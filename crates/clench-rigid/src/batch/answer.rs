@@ -1,0 +1,229 @@
+//! Answers to questions about the states of environments, in lanes.
+
+use super::cells::Cells;
+use super::env_rows::EnvRows;
+use super::group::Group;
+use super::shared::Shared;
+use crate::dynamics::frames::Frames;
+use crate::dynamics::jacobian::{point_jacobian, subtree_jacobian};
+use crate::dynamics::velocity::velocities;
+use crate::geometry::Geoms;
+use crate::ik::{Ik, Search};
+use crate::inverse::{Acceleration, inverse};
+use crate::model::{FrameObject, Model, Params};
+use crate::pipeline::{forward, position_stage};
+use crate::query::{Axes, RayFilter, along, cast, sample};
+use crate::sensor::bodies::update as update_body_forces;
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Mask, Real, Scalar, Vec3, write_lane};
+
+/// Numbers of a question.
+#[derive(Clone, Copy, Debug)]
+pub enum Given<'a, S> {
+    /// The same for all environments.
+    Shared(&'a [S]),
+    /// Its own for each environment, one after the other.
+    Each(&'a [S]),
+}
+
+impl<S: Copy> Given<'_, S> {
+    /// All numbers.
+    pub(super) fn all(&self) -> &[S] {
+        match self {
+            Given::Shared(values) | Given::Each(values) => values,
+        }
+    }
+
+    /// How many numbers an environment has.
+    pub(super) fn width(&self, count: usize) -> usize {
+        match self {
+            Given::Shared(values) => values.len(),
+            Given::Each(values) => values.len() / count.max(1),
+        }
+    }
+
+    fn row(&self, env: usize, width: usize) -> &[S] {
+        match self {
+            Given::Shared(values) => values,
+            Given::Each(values) => &values[env * width..][..width],
+        }
+    }
+}
+
+/// What is asked.
+pub enum Question<'a, S> {
+    /// The Jacobian of an object: given nothing.
+    Jacobian(FrameObject),
+    /// That of the centre of mass of a subtree, likewise.
+    SubtreeJacobian(usize),
+    /// The velocity of an object, or its acceleration: given nothing.
+    Velocity(FrameObject, Axes),
+    Acceleration(FrameObject, Axes),
+    /// M x or M⁻¹ x: given x.
+    MulMass,
+    SolveMass,
+    /// What rays hit: given the rays.
+    Rays {
+        frame: Option<FrameObject>,
+        filter: &'a RayFilter,
+    },
+    /// Heights of a height field: given places.
+    Heights {
+        geom: usize,
+        frame: Option<FrameObject>,
+    },
+    /// Inverse dynamics: given accelerations.
+    Inverse(Acceleration),
+    /// Inverse kinematics: given goals, and where to begin, if not in the present state.
+    Kinematics {
+        ik: &'a Ik,
+        start: Option<Given<'a, S>>,
+    },
+}
+
+/// A question to a group of environments.
+pub struct Asking<'a, S: Scalar + Shared> {
+    pub model: &'a Model,
+    pub settings: &'a StepSettings,
+    pub rows: EnvRows<'a, S>,
+    pub question: Question<'a, S>,
+    pub given: Given<'a, S>,
+    /// Numbers that an environment is given.
+    pub width: usize,
+    pub answers: Cells<'a, S>,
+}
+
+impl<S: Scalar + Shared> Asking<'_, S> {
+    /// Appends the answer for environments whose states are in lanes; the lanes in which it is one. `given` is room for the numbers
+    /// of the question, `search` for inverse kinematics.
+    pub fn answer<T: Real<Scalar = S>>(
+        &self,
+        group: &Group<T>,
+        (params, state, ws): (&Params<T>, &State<T>, &mut Workspace<T>),
+        memory: &mut AskMemory<T>,
+        out: &mut Vec<T>,
+    ) -> T::Mask {
+        let AskMemory { given, search } = memory;
+        self.gather(group, &self.given, self.width, given);
+        let everywhere = T::Mask::splat(true);
+        if let Question::Kinematics { ik, start } = &self.question {
+            let memory = search.take().filter(|memory| memory.fits(self.model, ik));
+            let search = search.insert(memory.unwrap_or_else(|| Search::new(self.model, ik)));
+            search.state.copy_from(state);
+            if let Some(start) = start {
+                self.gather(group, start, self.model.nq, &mut search.state.qpos);
+            }
+            search.goals.copy_from_slice(given);
+            search.run(self.model, params, ik);
+            search.write(out);
+            return everywhere;
+        }
+        if let Question::Inverse(kind) = self.question {
+            out.resize(self.model.nv, T::ZERO);
+            let given = (&given[..], kind);
+            inverse(self.model, params, self.settings, state, given, ws, out);
+            return crate::check::good_results(state, ws);
+        }
+        match self.question {
+            Question::Acceleration(..) => {
+                ws.sleep.forget();
+                forward(self.model, params, self.settings, state, ws);
+                update_body_forces(self.model, params, state, ws);
+            }
+            _ => position_stage(self.model, params, state, ws),
+        }
+        if let Question::Velocity(..) = self.question {
+            velocities(self.model, &ws.position, &state.qvel, &mut ws.velocity);
+        }
+        self.look(params, ws, given, out);
+        match self.question {
+            Question::Acceleration(..) => {
+                crate::check::good_results(state, ws) & !ws.collision.overflow
+            }
+            Question::SolveMass => !ws.singular,
+            _ => everywhere,
+        }
+    }
+
+    /// What follows from positions alone.
+    fn look<T: Real<Scalar = S>>(
+        &self,
+        params: &Params<T>,
+        ws: &Workspace<T>,
+        given: &[T],
+        out: &mut Vec<T>,
+    ) {
+        let (model, pos) = (self.model, &ws.position);
+        let geoms = Geoms {
+            model,
+            params,
+            position: pos,
+        };
+        match self.question {
+            Question::Jacobian(object) => {
+                out.resize(6 * model.nv, T::ZERO);
+                let point = Frames::of(geoms).point(object);
+                point_jacobian(model, pos, &point, out);
+            }
+            Question::SubtreeJacobian(body) => {
+                out.resize(3 * model.nv, T::ZERO);
+                subtree_jacobian(model, params, pos, body, out);
+            }
+            Question::Velocity(object, axes) => {
+                let frames = Frames::of(geoms);
+                let velocity = frames.velocity(object, &ws.velocity);
+                write_vectors(along(frames, axes, object, velocity), out);
+            }
+            Question::Acceleration(object, axes) => {
+                let (frames, cacc) = (Frames::of(geoms), &ws.sensors.bodies.cacc);
+                let acceleration = frames.acceleration(object, &ws.velocity, cacc);
+                write_vectors(along(frames, axes, object, acceleration), out);
+            }
+            Question::MulMass => {
+                out.resize(model.nv, T::ZERO);
+                ws.problem.mass.mul(&model.tree, given, out);
+            }
+            Question::SolveMass => {
+                out.extend_from_slice(given);
+                ws.problem.mass_factor.solve(&model.tree, out);
+            }
+            Question::Rays { frame, filter } => cast(geoms, frame, given, filter, out),
+            Question::Heights { geom, frame } => sample(geoms, geom, frame, given, out),
+            Question::Inverse(_) | Question::Kinematics { .. } => {}
+        }
+    }
+
+    fn gather<T: Real<Scalar = S>>(
+        &self,
+        group: &Group<T>,
+        given: &Given<S>,
+        width: usize,
+        lanes: &mut Vec<T>,
+    ) {
+        lanes.resize(width, T::ZERO);
+        for (lane, env) in group.fill() {
+            write_lane(given.row(env, width), lane, lanes);
+        }
+    }
+}
+
+pub(super) fn write_vectors<T: Real>(vectors: [Vec3<T>; 2], out: &mut Vec<T>) {
+    out.extend(vectors.iter().flat_map(|vector| vector.to_array()));
+}
+
+/// Room that answers take.
+pub struct AskMemory<T: Real> {
+    given: Vec<T>,
+    search: Option<Search<T>>,
+}
+
+impl<T: Real> AskMemory<T> {
+    pub fn new() -> Self {
+        AskMemory {
+            given: Vec::new(),
+            search: None,
+        }
+    }
+}

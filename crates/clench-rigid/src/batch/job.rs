@@ -1,0 +1,73 @@
+//! What a call asks of its threads, and what they report.
+
+use super::answer::Asking;
+use super::divergence::Divergence;
+use super::env_rows::EnvRows;
+use super::quality::Quality;
+use super::seen::SeenCells;
+use super::shared::Shared;
+use super::targets::{Controls, Targets};
+use crate::error::Fault;
+use crate::model::Model;
+use crate::profile::Profile;
+use crate::settings::StepSettings;
+use clench_math::Scalar;
+use std::sync::atomic::AtomicU64;
+
+/// What a call asks of its threads, the same for every group.
+pub struct Job<'a, S: Scalar + Shared> {
+    pub model: &'a Model,
+    pub settings: &'a StepSettings,
+    pub rows: EnvRows<'a, S>,
+    /// Where each environment stands in an order that puts those of like contacts side by side.
+    pub sort_keys: &'a [AtomicU64],
+    /// What is done.
+    pub pass: Pass,
+    /// For which states outputs hold, where any are kept.
+    pub seen: Option<SeenCells<'a, S>>,
+    /// Where outputs go.
+    pub targets: Targets<'a, S>,
+    pub controls: Controls<'a, S>,
+    /// Of all steps of the call, these are done now.
+    pub first: usize,
+    pub end: usize,
+    pub steps: usize,
+}
+
+/// What a call does with environments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pass {
+    /// Their states advance.
+    Step,
+    /// Their states stay, and what follows from them is computed.
+    Forward,
+    /// The same for somebody who only asks: nothing fails and nothing is counted.
+    Query,
+}
+
+/// What a stepper has to report.
+#[derive(Default)]
+pub struct StepTotals {
+    /// Environments that cannot go on, and why.
+    pub faults: Vec<(u32, Fault)>,
+    /// Environments that started over from the initial state.
+    pub resets: Vec<u32>,
+    pub divergence: Divergence,
+    pub quality: Quality,
+}
+
+/// A thread's scratch in lanes of some width.
+pub trait Stepper<S: Scalar + Shared>: Send {
+    /// How many environments it steps at once.
+    fn lanes(&self) -> usize;
+    /// Does a job for a group of at most so many environments.
+    fn run(&mut self, group: &[u32], job: &Job<S>);
+    /// Answers a question about a group likewise.
+    fn ask(&mut self, group: &[u32], asking: &Asking<S>);
+    /// What happened since it was last cleared.
+    fn totals(&mut self) -> &mut StepTotals;
+    /// Lets its clocks run, or not.
+    fn run_clocks(&mut self, running: bool);
+    /// Where the time went while they ran.
+    fn profile(&mut self) -> Profile;
+}

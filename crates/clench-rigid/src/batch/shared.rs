@@ -1,0 +1,45 @@
+//! Numbers in atomic cells, so that threads can share the rows that hold them.
+
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
+
+/// What rows that threads share are made of.
+pub trait Shared: Copy {
+    /// The same number where several threads write.
+    type Cell: Sync;
+    /// Numbers as cells.
+    fn cells(values: &mut [Self]) -> &[Self::Cell];
+    /// The number in a cell.
+    fn load(cell: &Self::Cell) -> Self;
+    /// Puts a number into a cell.
+    fn store(cell: &Self::Cell, value: Self);
+    /// The bits of the number in a cell.
+    fn bits(cell: &Self::Cell) -> u64;
+}
+
+macro_rules! shared {
+    ($number:ident in $cell:ident, $from:expr, $to:expr) => {
+        impl Shared for $number {
+            type Cell = $cell;
+            fn cells(values: &mut [$number]) -> &[$cell] {
+                let cells: &mut [$cell] = zerocopy::transmute_mut!(values);
+                cells
+            }
+            #[inline(always)]
+            fn load(cell: &$cell) -> $number {
+                $from(cell.load(Relaxed))
+            }
+            #[inline(always)]
+            fn store(cell: &$cell, value: $number) {
+                cell.store($to(value), Relaxed);
+            }
+            #[inline(always)]
+            fn bits(cell: &$cell) -> u64 {
+                u64::from(cell.load(Relaxed))
+            }
+        }
+    };
+}
+shared!(f64 in AtomicU64, f64::from_bits, f64::to_bits);
+shared!(f32 in AtomicU32, f32::from_bits, f32::to_bits);
+shared!(u8 in AtomicU8, u8::from, u8::from);
+shared!(i32 in AtomicU32, u32::cast_signed, i32::cast_unsigned);

@@ -1,0 +1,71 @@
+//! The outputs that a batch keeps, and where a call puts them; the controls that it takes.
+
+use super::Rows;
+use super::cells::Cells;
+use super::shared::Shared;
+use crate::output::Output;
+use clench_math::Scalar;
+use std::array::from_fn;
+
+/// An output of every environment.
+#[derive(Debug)]
+pub(super) struct OutputRows<S> {
+    pub(super) output: Output,
+    pub(super) rows: Rows<S>,
+}
+
+/// Where an output goes.
+pub struct Target<'a, S: Scalar + Shared> {
+    /// What it was in the last forward pass of a call.
+    pub last: Option<Cells<'a, S>>,
+    /// What it was after each step of a rollout.
+    pub trace: Option<Cells<'a, S>>,
+}
+
+/// Where each output goes, in the order of [`Output::ALL`].
+pub(super) type Targets<'a, S> = [Target<'a, S>; Output::COUNT];
+
+/// Shares the tables of outputs with threads.
+pub(super) fn targets<'a, S: Scalar + Shared>(
+    last: &'a mut [OutputRows<S>],
+    trace: &'a mut [OutputRows<S>],
+) -> Targets<'a, S> {
+    let mut targets = from_fn(|_| Target {
+        last: None,
+        trace: None,
+    });
+    for own in last {
+        targets[own.output as usize].last = Some(Cells::new(&mut own.rows));
+    }
+    for own in trace {
+        targets[own.output as usize].trace = Some(Cells::new(&mut own.rows));
+    }
+    targets
+}
+
+/// The controls of a rollout.
+#[derive(Clone, Copy, Debug)]
+pub enum Controls<'a, S> {
+    /// Those in [`StateRows::ctrl`](super::StateRows::ctrl), all the time.
+    Held,
+    /// The same for all environments (steps, nu).
+    Shared(&'a [S]),
+    /// Its own for each environment (n, steps, nu).
+    Each(&'a [S]),
+}
+
+impl<S> Controls<'_, S> {
+    /// The controls of an environment in a step, if they are not held.
+    pub(super) fn row(&self, env: usize, step: usize, steps: usize, nu: usize) -> Option<&[S]> {
+        match self {
+            Controls::Held => None,
+            Controls::Shared(values) => Some(&values[step * nu..][..nu]),
+            Controls::Each(values) => Some(&values[(env * steps + step) * nu..][..nu]),
+        }
+    }
+}
+
+/// Bytes that the rows of an environment take.
+pub(super) fn row_bytes<S>(outputs: &[OutputRows<S>]) -> usize {
+    outputs.iter().map(|own| own.rows.row_bytes()).sum()
+}
