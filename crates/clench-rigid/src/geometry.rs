@@ -2,7 +2,6 @@
 
 use crate::contact::shape;
 use crate::model::{Model, Params};
-use crate::query::RayFilter;
 use crate::workspace::Positions;
 use clench_collide::{Asset, Hit, Pose, Ray, Shape, ShapeKind, allowance, ray};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
@@ -94,4 +93,37 @@ impl<'a, T: Real> Geoms<'a, T> {
             None => ray(&shape(self.model, self.params, geom), &pose, line),
         }
     }
+}
+
+/// Which geoms a ray can hit. Those that cannot be seen, it never hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RayFilter {
+    /// For each group whether its geoms are hit; groups beyond these count as the nearest of them.
+    pub groups: [bool; 6],
+    /// Whether geoms are hit that are fixed to the world.
+    pub fixed: bool,
+    /// A body whose geoms are not hit, such as the one that a sensor sits on.
+    pub excluded_body: Option<usize>,
+}
+
+impl Default for RayFilter {
+    /// Everything.
+    fn default() -> Self {
+        RayFilter {
+            groups: [true; 6],
+            fixed: true,
+            excluded_body: None,
+        }
+    }
+}
+
+/// Where a ray hits first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit<T> {
+    /// The geom.
+    pub geom: usize,
+    /// From the ray's origin, in lengths of its direction.
+    pub distance: T,
+    /// The unit vector out of the geom there, in world coordinates.
+    pub normal: Vec3<T>,
 }

@@ -7,25 +7,13 @@
 //! A buffer with a period takes samples less often: when its period has passed since the last one was due. When that was is its owner's
 //! number, which counts from the start of the simulation and is a sum of periods, as in MuJoCo, so that rounding decides the same there.
 
-use crate::model::History;
+use crate::model::{History, Interpolation};
 use clench_math::{Mask, Real, Scalar};
 
 /// Times that differ by so little, s, are the same (MuJoCo's `mjMINVAL`).
 const SAME_TIME: f64 = 1e-15;
 /// In units of the precision of the times.
 const SAME_TIME_ROUNDING: f64 = 8.0;
-
-/// How a buffer is read between two samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Interpolation {
-    /// The earlier sample holds.
-    #[default]
-    Hold,
-    /// By a straight line.
-    Linear,
-    /// By a cubic through both, with slopes from their neighbours (Catmull and Rom), zero at the ends.
-    Cubic,
-}
 
 impl History {
     /// Writes the times of a buffer that is sampled every `step` seconds and has not begun.

@@ -20,29 +20,10 @@ use crate::dynamics::euler::damped_inertia;
 use crate::dynamics::implicit::{full_inertia, gyroscopic_product, symmetric_inertia};
 use crate::model::{Integrator, Model, Params};
 use crate::pipeline::{position_stage, velocity_stage};
-use crate::settings::StepSettings;
+use crate::settings::{Acceleration, StepSettings};
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Real, kernel};
-
-/// Which acceleration is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Acceleration {
-    /// That which forward dynamics find.
-    Continuous,
-    /// That by which a step changes the velocity, (v₁ − v₀) / h.
-    Discrete,
-}
-
-impl Acceleration {
-    /// Which one a model says is given (MuJoCo's flag `invdiscrete`).
-    pub fn of(model: &Model) -> Self {
-        match model.flags.invdiscrete {
-            true => Acceleration::Discrete,
-            false => Acceleration::Continuous,
-        }
-    }
-}
 
 /// Leaves the acceleration that forward dynamics would find in `ws.qacc`, the constraint forces in `ws.qfrc_constraint` and in
 /// the solver, and in `qfrc_inverse` (nv) the forces along dofs that actuators and users must give for it. The state is that of

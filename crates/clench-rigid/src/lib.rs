@@ -40,15 +40,14 @@ pub use batch::{Batch, BatchOptions, EnvStatus, Precision};
 pub use budget::Budget;
 pub use error::{Fault, SimError};
 pub use ik::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask};
-pub use inverse::Acceleration;
 pub use options::RigidOptions;
+pub use settings::{Acceleration, StepSettings};
 // The rows of the solver in the table of options.
 #[doc(hidden)]
 pub use clench_solver::solver_options;
 pub use model::{Model, Params};
 pub use output::Output;
 pub use query::{Anchor, Axes, RayFilter, RayHit};
-pub use settings::StepSettings;
 pub use sim::{DynamicConstraint, Sim};
 pub use state::State;
 pub use workspace::Workspace;

@@ -4,8 +4,7 @@ use clench_rigid::builder::{
     ActuatorSpec, BodySpec, GeomSpec, HistorySpec, JointSpec, ModelBuilder, SensorSpec,
     TransmissionSpec,
 };
-use clench_rigid::history::Interpolation;
-use clench_rigid::model::SensorKind;
+use clench_rigid::model::{Interpolation, SensorKind};
 use clench_rigid::{Batch, Model, Sim, State};
 use std::sync::Arc;
 

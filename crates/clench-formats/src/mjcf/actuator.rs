@@ -11,7 +11,7 @@ use super::shortcut::{self, ActuatorParams, Shortcut};
 use super::transmission;
 use crate::LoadError;
 use clench_rigid::builder::{ActuatorSpec, HistorySpec};
-use clench_rigid::history::Interpolation;
+use clench_rigid::model::Interpolation;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
 
 /// Overwrites what the element says of past values; fewer samples than none are none, as in MuJoCo.

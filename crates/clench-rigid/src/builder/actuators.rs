@@ -2,9 +2,10 @@
 
 use super::controllers::{Controller, controller};
 use super::element::{Element, resolve_range};
+use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
-use super::{ActuatorSpec, BuildError, ModelBuilder, TransmissionSpec, histories, transmissions};
+use super::{ActuatorSpec, BuildError, TransmissionSpec, histories, transmissions};
 use crate::budget::RAISE;
 use crate::dynamics::orientation;
 use crate::model::{

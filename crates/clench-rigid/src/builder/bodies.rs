@@ -3,10 +3,11 @@
 use super::check::describe;
 use super::element::Element;
 use super::inertia::{MassProperties, mass_properties};
+use super::model_builder::ModelBuilder;
 use super::placed::Assets;
 use super::{
-    BodySpec, BuildError, CompilerSpec, GeomSpec, InertiaFromGeom, JointSpec, ModelBuilder,
-    cameras, geoms, joints,
+    BodySpec, BuildError, CompilerSpec, GeomSpec, InertiaFromGeom, JointSpec, cameras, geoms,
+    joints,
 };
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
@@ -110,7 +111,7 @@ fn add(
     check_joints(spec, parent).map_err(|e| e.about(&place.name))?;
     let mut inertia = match is_world {
         true => MassProperties::NONE,
-        false => mass_properties(spec, &place.name, spec.settings(builder), assets)?,
+        false => mass_properties(spec, &place.name, builder.settings_of(spec), assets)?,
     };
     let frame = align(builder, spec, place.has_children, &mut inertia);
     let within = |e: BuildError| e.of_body(&place.name);
@@ -230,7 +231,7 @@ fn align(
     let (pos, quat) = (spec.pos, spec.quat.normalize());
     let wanted = match &spec.joints[..] {
         [joint] if joint.kind == JointKind::Free => {
-            joint.align.unwrap_or(spec.settings(builder).alignfree)
+            joint.align.unwrap_or(builder.settings_of(spec).alignfree)
         }
         _ => false,
     };

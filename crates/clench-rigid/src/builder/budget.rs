@@ -1,7 +1,8 @@
 //! What a model would take, held against its budget before it is taken.
 
+use super::BuildError;
 use super::element::Element;
-use super::{BuildError, ModelBuilder};
+use super::model_builder::ModelBuilder;
 use crate::budget::RAISE;
 use crate::model::{EqualityTarget, Model};
 

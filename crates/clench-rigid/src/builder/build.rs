@@ -1,11 +1,11 @@
 //! From a description to a model.
 
+use super::model_builder::ModelBuilder;
 use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
-    BuildError, DEFAULT_DYNAMIC_CONSTRAINTS, ModelBuilder, actuators, bodies, budget, cameras,
-    check, contacts, equalities, fuse, invweight0, keyframes, length_range, sensors, sleep,
-    tendons,
+    BuildError, DEFAULT_DYNAMIC_CONSTRAINTS, actuators, bodies, budget, cameras, check, contacts,
+    equalities, fuse, invweight0, keyframes, length_range, sensors, sleep, tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};

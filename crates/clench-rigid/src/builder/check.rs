@@ -2,10 +2,11 @@
 //! numbers that must be positive.
 
 use super::element::Element;
+use super::model_builder::ModelBuilder;
 use super::{
     ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, EqualityKind, EqualitySpec,
-    GeomMass, GeomSpec, InertiaSpec, JointSpec, KeyframeSpec, ModelBuilder, PairSpec, SiteSpec,
-    TendonSpec, WrapSpec,
+    GeomMass, GeomSpec, InertiaSpec, JointSpec, KeyframeSpec, PairSpec, SiteSpec, TendonSpec,
+    WrapSpec,
 };
 use crate::model::Integrator;
 use clench_collide::ShapeKind;

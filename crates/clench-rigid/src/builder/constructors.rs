@@ -1,12 +1,12 @@
 //! Writing a description in Rust: constructors and setters for what one says most often. Every other field is public,
 //! and struct update syntax reaches it: `GeomSpec { condim: 6, ..GeomSpec::sphere(0.1) }`.
 
+use super::model_builder::ModelBuilder;
 use super::{
-    ActuatorSpec, BodySpec, EqualityKind, EqualitySpec, GeomMass, GeomSpec, HistorySpec,
-    InertiaSpec, InertialSpec, JointSpec, KeyframeSpec, ModelBuilder, SiteSpec, TendonSpec,
-    TransmissionSpec, WrapSpec,
+    ActuatorSpec, BodySpec, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind, EqualitySpec, GeomMass,
+    GeomSpec, HistorySpec, InertiaSpec, InertialSpec, JointSpec, KeyframeSpec, SiteSpec,
+    TendonSpec, TransmissionSpec, WrapSpec,
 };
-use super::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};

@@ -2,8 +2,9 @@
 
 use super::check::require_condim;
 use super::element::Element;
+use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
-use super::{BuildError, ModelBuilder, PairSpec};
+use super::{BuildError, PairSpec};
 use crate::contact::mixed_params;
 use crate::model::{Model, Pair};
 

@@ -1,15 +1,12 @@
 //! Bodies and what stands on them, with MuJoCo's defaults.
 
-use super::{AppearanceSpec, CameraSpec, CompilerSpec, ModelBuilder, Origin};
-use crate::model::{JointKind, SleepPolicy};
+use super::constraint_defaults::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use super::{AppearanceSpec, CameraSpec, CompilerSpec, Origin};
+use crate::model::{Interpolation, JointKind, SleepPolicy};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
-/// MuJoCo's default reference dynamics: time constant 0.02 s, damping ratio 1.
-pub const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
-/// MuJoCo's default impedance.
-pub const DEFAULT_SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
 /// How many constraints can be added at run time, unless the model says otherwise.
 pub const DEFAULT_DYNAMIC_CONSTRAINTS: usize = 8;
 
@@ -52,13 +49,6 @@ pub struct BodySpec {
     pub compiler: Option<Arc<CompilerSpec>>,
     /// Where it was written.
     pub origin: Option<Origin>,
-}
-
-impl BodySpec {
-    /// The settings that decide about its inertia and its frame.
-    pub(super) fn settings<'a>(&'a self, builder: &'a ModelBuilder) -> &'a CompilerSpec {
-        self.compiler.as_deref().unwrap_or(&builder.compiler)
-    }
 }
 
 /// Mass properties given by the author.
@@ -309,4 +299,15 @@ impl Default for SiteSpec {
             origin: None,
         }
     }
+}
+
+/// What is kept of the past, and how late it is read: MuJoCo's `nsample`, `interp` and `delay`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HistorySpec {
+    /// How many samples are kept.
+    pub nsample: usize,
+    /// How they are read between samples.
+    pub interp: Interpolation,
+    /// How late values arrive, s; needs samples.
+    pub delay: f64,
 }

@@ -1,9 +1,10 @@
 //! Equality constraints: what they hold together, and where in the initial configuration.
 
 use super::element::Element;
+use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
-use super::{BuildError, ConnectAnchor, EqualityKind, EqualitySpec, ModelBuilder};
+use super::{BuildError, ConnectAnchor, EqualityKind, EqualitySpec};
 use crate::model::{Equality, EqualityTarget, Model};
 use crate::workspace::Positions;
 use clench_math::{Quat, Vec3};

@@ -7,12 +7,13 @@
 use super::bodies::depth_first;
 use super::check::describe;
 use super::inertia::{MassProperties, combine, mass_properties, unbounded_mass_properties};
+use super::model_builder::ModelBuilder;
 use super::placed::Assets;
 use super::{
-    BodySpec, BuildError, EqualityKind, FrameKind, FrameName, GeomsName, InertiaFromGeom,
-    InertiaSpec, InertialSpec, ModelBuilder, SensorSubject, TransmissionSpec,
+    BodySpec, BuildError, CameraSpec, CameraTracking, ConnectAnchor, ContactSideName, EqualityKind,
+    FrameKind, FrameName, GeomSpec, GeomsName, InertiaFromGeom, InertiaSpec, InertialSpec,
+    SensorSubject, SiteSpec, TransmissionSpec,
 };
-use super::{CameraSpec, CameraTracking, ConnectAnchor, ContactSideName, GeomSpec, SiteSpec};
 use crate::model::{Attachment, SensorKind};
 use clench_math::{Quat, Vec3};
 use std::collections::HashSet;

@@ -1,21 +1,11 @@
 //! Buffers of past values: what actuators and sensors keep, so that it can arrive late.
 
+use super::BuildError;
 use super::element::Element;
-use super::{BuildError, ModelBuilder};
+use super::elements::HistorySpec;
+use super::model_builder::ModelBuilder;
 use crate::budget::RAISE;
-use crate::history::Interpolation;
 use crate::model::{History, Model};
-
-/// What is kept of the past, and how late it is read: MuJoCo's `nsample`, `interp` and `delay`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct HistorySpec {
-    /// How many samples are kept.
-    pub nsample: usize,
-    /// How they are read between samples.
-    pub interp: Interpolation,
-    /// How late values arrive, s; needs samples.
-    pub delay: f64,
-}
 
 /// The buffer of an element with so many numbers a sample, if it keeps any; room for it is taken.
 ///

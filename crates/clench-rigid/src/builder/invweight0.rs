@@ -3,9 +3,10 @@
 //! The inverse inertia that a constraint with Jacobian J meets is A = J M⁻¹ Jᵀ; MuJoCo's `invweight0` are such numbers at
 //! qpos0, averaged over the directions that belong together. With M = LᵀDL, A_ii = ‖D^(-1/2) L^(-T) J_iᵀ‖².
 
+use super::BuildError;
 use super::bodies::{is_null, is_null_position};
 use super::check::describe;
-use super::{BuildError, ModelBuilder};
+use super::model_builder::ModelBuilder;
 use crate::dynamics::inertia::composite_inertia;
 use crate::dynamics::tendon_armature::add_tendon_inertia;
 use crate::dynamics::{tendon, transmission};

@@ -1,7 +1,8 @@
 //! Joints and their degrees of freedom.
 
 use super::element::{Element, resolve_limited, resolve_range};
-use super::{BuildError, JointSpec, ModelBuilder};
+use super::model_builder::ModelBuilder;
+use super::{BuildError, JointSpec};
 use crate::model::{Dof, Joint, JointKind, Model};
 use clench_math::{Quat, Vec3};
 

@@ -1,7 +1,8 @@
 //! Keyframes.
 
 use super::element::Element;
-use super::{BuildError, KeyframeSpec, ModelBuilder};
+use super::model_builder::ModelBuilder;
+use super::{BuildError, KeyframeSpec};
 use crate::State;
 use crate::model::{JointKind, Keyframe, Model};
 use clench_math::{Quat, Vec3};

@@ -3,7 +3,9 @@
 //! does (modeling chapter, "Length range").
 
 use super::element::Element;
-use super::{ActuatorSpec, BuildError, ModelBuilder};
+use super::model_builder::ModelBuilder;
+use super::physics::{LengthRangeMode, LengthRangeSpec};
+use super::{ActuatorSpec, BuildError};
 use crate::budget::RAISE;
 use crate::dynamics::transmission;
 use crate::model::{Actuator, BiasKind, Flags, GainKind, Integrator, Model, Transmission};
@@ -15,62 +17,6 @@ use std::sync::Arc;
 const MIN_TIMECONST: f64 = 0.01;
 /// Accelerations and forces that are divided by are at least so large (MuJoCo's `mjMINVAL`).
 const MIN_NORM: f64 = 1e-15;
-
-/// Which actuators need a length range.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LengthRangeMode {
-    /// None.
-    None,
-    /// Those whose gain or bias is a muscle's.
-    #[default]
-    Muscle,
-    /// Those whose gain or bias is a muscle's or the user's.
-    MuscleUser,
-    /// All.
-    All,
-}
-
-/// How length ranges are found where they are needed: MuJoCo's `<compiler><lengthrange/>`, with its defaults.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LengthRangeSpec {
-    /// Which actuators need one.
-    pub mode: LengthRangeMode,
-    /// A range that rises counts as given.
-    pub useexisting: bool,
-    /// The range of a limited joint or tendon is the range of its actuator.
-    pub uselimit: bool,
-    /// Norm of the acceleration that the force causes.
-    pub accel: f64,
-    /// Largest norm of the force along dofs; 0 for no bound.
-    pub maxforce: f64,
-    /// Time constant of the fading of velocities, s.
-    pub timeconst: f64,
-    /// Time step, s; 0 for that of the model.
-    pub timestep: f64,
-    /// Time simulated in each direction, s.
-    pub inttotal: f64,
-    /// Time at the end over which the length must have settled, s.
-    pub interval: f64,
-    /// By how much of its range it may still move then.
-    pub tolrange: f64,
-}
-
-impl Default for LengthRangeSpec {
-    fn default() -> Self {
-        LengthRangeSpec {
-            mode: LengthRangeMode::Muscle,
-            useexisting: true,
-            uselimit: false,
-            accel: 20.0,
-            maxforce: 0.0,
-            timeconst: 1.0,
-            timestep: 0.01,
-            inttotal: 10.0,
-            interval: 2.0,
-            tolrange: 0.05,
-        }
-    }
-}
 
 /// Fills in the length ranges that are needed and not given.
 ///

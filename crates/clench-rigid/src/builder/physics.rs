@@ -1,7 +1,6 @@
 //! Model-wide settings: how to derive what was not said, and the physics of the world.
 
-use super::LengthRangeSpec;
-use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use super::constraint_defaults::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::{Flags, Integrator};
 
 /// When a body's inertia comes from its geoms.
@@ -130,6 +129,62 @@ impl Default for PhysicsSpec {
             flags: Flags::default(),
             contact_override: None,
             disabled_actuator_groups: Vec::new(),
+        }
+    }
+}
+
+/// Which actuators need a length range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LengthRangeMode {
+    /// None.
+    None,
+    /// Those whose gain or bias is a muscle's.
+    #[default]
+    Muscle,
+    /// Those whose gain or bias is a muscle's or the user's.
+    MuscleUser,
+    /// All.
+    All,
+}
+
+/// How length ranges are found where they are needed: MuJoCo's `<compiler><lengthrange/>`, with its defaults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LengthRangeSpec {
+    /// Which actuators need one.
+    pub mode: LengthRangeMode,
+    /// A range that rises counts as given.
+    pub useexisting: bool,
+    /// The range of a limited joint or tendon is the range of its actuator.
+    pub uselimit: bool,
+    /// Norm of the acceleration that the force causes.
+    pub accel: f64,
+    /// Largest norm of the force along dofs; 0 for no bound.
+    pub maxforce: f64,
+    /// Time constant of the fading of velocities, s.
+    pub timeconst: f64,
+    /// Time step, s; 0 for that of the model.
+    pub timestep: f64,
+    /// Time simulated in each direction, s.
+    pub inttotal: f64,
+    /// Time at the end over which the length must have settled, s.
+    pub interval: f64,
+    /// By how much of its range it may still move then.
+    pub tolrange: f64,
+}
+
+impl Default for LengthRangeSpec {
+    fn default() -> Self {
+        LengthRangeSpec {
+            mode: LengthRangeMode::Muscle,
+            useexisting: true,
+            uselimit: false,
+            accel: 20.0,
+            maxforce: 0.0,
+            timeconst: 1.0,
+            timestep: 0.01,
+            inttotal: 10.0,
+            interval: 2.0,
+            tolrange: 0.05,
         }
     }
 }

@@ -2,10 +2,11 @@
 
 use super::element::Element;
 use super::meshes::{Processed, process};
+use super::model_builder::ModelBuilder;
 use super::resolve::Names;
 use super::uses::GeomUses;
 use super::visuals::Palette;
-use super::{BuildError, GeomSpec, ModelBuilder};
+use super::{BuildError, GeomSpec};
 use crate::model::{HeightField, Model};
 use clench_collide::{Shape, ShapeKind, bounding_radius};
 use clench_math::{Motion, Quat, Vec3};

@@ -1,6 +1,6 @@
 //! Elements that name others: tendons, actuators, equality constraints, contact pairs and keyframes, with MuJoCo's defaults.
 
-use super::elements::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use super::constraint_defaults::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use super::{AppearanceSpec, HistorySpec, Origin};
 use crate::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 use clench_math::{Quat, Vec3};

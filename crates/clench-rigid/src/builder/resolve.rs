@@ -1,8 +1,9 @@
 //! From names to indices.
 
 use super::element::Element;
+use super::model_builder::ModelBuilder;
 use super::uses::GeomUses;
-use super::{BodySpec, BuildError, GeomSpec, ModelBuilder};
+use super::{BodySpec, BuildError, GeomSpec};
 use std::collections::HashMap;
 
 /// The named elements of one kind.

@@ -1,11 +1,12 @@
 //! Sensors: which elements they are attached to, and where their numbers are.
 
 use super::element::Element;
+use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
 };
-use super::{BuildError, ModelBuilder, histories};
+use super::{BuildError, histories};
 use crate::model::{
     Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, JointKind,
     Model, RayField, RaySource, Sensor, SensorData, SensorTarget,

@@ -2,7 +2,8 @@
 
 use super::check::describe;
 use super::element::Element;
-use super::{BodySpec, BuildError, ModelBuilder};
+use super::model_builder::ModelBuilder;
+use super::{BodySpec, BuildError};
 use crate::contact::check_supported;
 use crate::model::{JointKind, KinematicTree, Model, SleepPolicy, Transmission};
 use crate::options::RigidOptions;

@@ -1,9 +1,10 @@
 //! Tendons: their paths, and what follows from them in the initial configuration.
 
 use super::element::{Element, resolve_range};
+use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::visuals::Palette;
-use super::{BuildError, ModelBuilder, TendonSpec, WrapSpec};
+use super::{BuildError, TendonSpec, WrapSpec};
 use crate::dynamics::chains::Chains;
 use crate::model::{JointKind, Model, Tendon, Wrap};
 use crate::workspace::Positions;

@@ -1,7 +1,8 @@
 //! What a description says of geoms besides themselves: which collide, and which are only seen and named by nothing else.
 
+use super::model_builder::ModelBuilder;
 use super::sensor_specs::{ContactSideName, FrameKind, FrameName, GeomsName, SensorSubject};
-use super::{GeomSpec, ModelBuilder, WrapSpec};
+use super::{GeomSpec, WrapSpec};
 use std::collections::HashSet;
 
 /// What a description says of geoms besides themselves.

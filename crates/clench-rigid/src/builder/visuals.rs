@@ -1,47 +1,9 @@
 //! How elements look, by names.
 
-use super::ModelBuilder;
+use super::appearance::{AppearanceSpec, MaterialSpec};
+use super::model_builder::ModelBuilder;
 use crate::model::{Appearance, Material, Visuals};
 use std::collections::HashMap;
-use std::sync::Arc;
-
-/// How an element looks.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct AppearanceSpec {
-    /// Red, green, blue and opacity, each from 0 to 1; `None`: those of the material, else grey.
-    pub rgba: Option<[f32; 4]>,
-    /// Name of its material, or empty. A name that no material has means none.
-    pub material: Arc<str>,
-}
-
-/// A surface, in MuJoCo's terms; see [`Material`].
-#[derive(Clone, Debug)]
-pub struct MaterialSpec {
-    /// What is resolved already; its `texture` is not looked at.
-    pub surface: Material,
-    /// Name of its texture, or empty. A name that no texture has means none.
-    pub texture: Arc<str>,
-}
-
-/// MuJoCo's defaults.
-impl Default for MaterialSpec {
-    fn default() -> Self {
-        MaterialSpec {
-            surface: Material {
-                name: String::new(),
-                rgba: [1.0; 4],
-                texture: None,
-                texrepeat: [1.0; 2],
-                texuniform: false,
-                emission: 0.0,
-                specular: 0.5,
-                shininess: 0.5,
-                reflectance: 0.0,
-            },
-            texture: Arc::default(),
-        }
-    }
-}
 
 /// The materials and textures of a model, and where each name stands.
 pub(super) struct Palette {

@@ -1,7 +1,8 @@
 //! Where constraints put their rows: the convex problem, and beside it what a reader wants to know of each row.
 
 use super::exact::ExactDiagonal;
-use super::softness::{Softness, is_single, least_regularization};
+use super::row::Row;
+use super::softness::{is_single, least_regularization};
 use clench_math::{Mask, Real};
 use clench_solver::{Cost, Problem};
 
@@ -58,41 +59,6 @@ pub struct ConstraintRecord<T: Real> {
     pub vel: Vec<T>,
     /// The dofs of the next block.
     pub(super) dofs: Vec<u32>,
-}
-
-/// One row of a block to be: everything but its Jacobian.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Row<T> {
-    /// Position.
-    pub pos: T,
-    /// Part of the reference acceleration that does not depend on the row's velocity.
-    pub aref: T,
-    /// Damping b: the rest of the reference acceleration is −b v.
-    pub damping: T,
-    /// Regularization.
-    pub r: T,
-    /// What else moves along the row, beside the dofs.
-    pub drift: T,
-    /// A force that the row gives where its reference acceleration is met: it is raised by R times this.
-    pub pull: T,
-    /// Shape of its cost, see `clench_solver::BlockMut::shape`.
-    pub shape: T,
-}
-
-impl<T: Real> Row<T> {
-    /// A row at `pos` that is violated by `r = pos − margin` and sees the inverse inertia `a0`.
-    #[inline(always)]
-    pub(super) fn new(soft: &Softness<T>, pos: T, margin: T, a0: T) -> Self {
-        Row {
-            pos,
-            aref: -soft.stiffness * (pos - margin),
-            damping: soft.damping,
-            r: soft.regularization(a0),
-            drift: T::ZERO,
-            pull: T::ZERO,
-            shape: T::ZERO,
-        }
-    }
 }
 
 /// The problem under construction.

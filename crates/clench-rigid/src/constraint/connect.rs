@@ -8,9 +8,10 @@
 //! point, plus ω × ṗ. The impedance is that of the violation's length; A₀ the sum of the bodies' translational inverse
 //! weights.
 
-use super::ConstraintContext;
-use super::assembly::{Assembly, Row};
+use super::assembly::Assembly;
+use super::context::ConstraintContext;
 use super::held::{Frames, Held};
+use super::row::Row;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use clench_math::{Motion, Real, Vec3, kernel};
 use clench_solver::Cost;

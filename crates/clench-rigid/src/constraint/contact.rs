@@ -21,8 +21,10 @@
 //! The pyramid's R makes its friction as stiff as the elliptic cone's. Elliptic friction rows may have their own damping
 //! (`solreffriction`); the rows of a pyramid share the normal's, since its edges mix them.
 
-use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
-use super::{ConstraintContext, Softness};
+use super::Softness;
+use super::assembly::{Assembly, BlockRecord, ConstraintSource};
+use super::context::ConstraintContext;
+use super::row::Row;
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use crate::options::FrictionCone;

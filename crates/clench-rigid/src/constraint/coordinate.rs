@@ -1,6 +1,6 @@
 //! A scalar function of positions, which equalities, limits and dry friction of joints and tendons act on.
 
-use super::ConstraintContext;
+use super::context::ConstraintContext;
 use crate::dynamics::tendon;
 use clench_math::Real;
 

@@ -5,8 +5,8 @@
 //! lanes that tie this pair, as contacts of different geoms become different blocks: in a lane, at most one block of a slot acts.
 //! All are as soft as MuJoCo's equalities are by default.
 
-use super::ConstraintContext;
 use super::assembly::{Assembly, ConstraintSource};
+use super::context::ConstraintContext;
 use super::held::{Frames, Held};
 use super::{connect, weld};
 use crate::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};

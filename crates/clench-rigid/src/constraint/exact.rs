@@ -4,7 +4,7 @@
 //! R = A (1 − d) / d, with A = J M⁻¹ Jᵀ of the row in place of A₀. Of a cone one row decides: of an elliptic one the normal, of a
 //! pyramid its first edge, J = J_n + μ₁ J_1. The others keep their ratio to it, so that the shape of the cone stays.
 
-use super::assembly::Row;
+use super::row::Row;
 use super::softness::inverse_weight;
 use clench_math::Real;
 use clench_solver::{Cost, Tree, TreeFactor};

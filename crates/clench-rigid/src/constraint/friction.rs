@@ -7,9 +7,11 @@
 //! Its slope R holds at small accelerations: dry friction creeps, softly, where it should stick. The impedance is the one
 //! at zero violation; A₀ the inverse weight of the dof or tendon.
 
-use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::Softness;
+use super::assembly::{Assembly, BlockRecord, ConstraintSource};
+use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
-use super::{ConstraintContext, Softness};
+use super::row::Row;
 use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 

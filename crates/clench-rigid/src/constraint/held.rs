@@ -1,7 +1,7 @@
 //! What connects and welds hold: a frame on each of two bodies, whether they come from the file or were added at run time.
 
-use super::ConstraintContext;
 use super::assembly::{BlockRecord, ConstraintSource};
+use super::context::ConstraintContext;
 use super::softness::Softness;
 use crate::model::Params;
 use crate::state::State;

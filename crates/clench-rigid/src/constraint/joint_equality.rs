@@ -7,9 +7,10 @@
 //! Zero subscripts are the initial configuration. As in MuJoCo the part of r̈ that is quadratic in velocity, −P″ ẋ², is
 //! left out of aref. A₀ is the sum of both coordinates' inverse weights.
 
-use super::ConstraintContext;
-use super::assembly::{Assembly, Row};
+use super::assembly::Assembly;
+use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
+use super::row::Row;
 use crate::model::Params;
 use crate::workspace::Positions;
 use clench_math::{Real, kernel};

@@ -9,9 +9,11 @@
 //! vector θ has the angle |θ|, and d|θ|/dt is the angular velocity along θ whatever its other parts. A₀ is the inverse
 //! weight of the joint's first dof, or of the tendon.
 
-use super::assembly::{Assembly, BlockRecord, ConstraintSource, Row};
+use super::Softness;
+use super::assembly::{Assembly, BlockRecord, ConstraintSource};
+use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
-use super::{ConstraintContext, Softness};
+use super::row::Row;
 use crate::model::JointKind;
 use clench_math::{Mask, Quat, Real, kernel};
 use clench_solver::Cost;

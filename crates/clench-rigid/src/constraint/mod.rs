@@ -3,9 +3,11 @@
 //! One file a kind of constraint, each with its derivation; `softness` turns their parameters into R and aref. Blocks
 //! stand in MuJoCo's order: equalities, dry friction, limits, contacts. What was added at run time comes after the equalities.
 
+mod active;
 mod assembly;
 mod connect;
 mod contact;
+mod context;
 mod coordinate;
 pub(crate) mod dynamic;
 mod exact;
@@ -13,10 +15,12 @@ mod friction;
 mod held;
 mod joint_equality;
 mod limit;
+mod row;
 pub mod softness;
 mod weld;
 
 pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
+use context::ConstraintContext;
 pub(crate) use held::Frames;
 pub(crate) use joint_equality::equality_slope;
 pub use softness::Softness;
@@ -26,96 +30,13 @@ use crate::contact::Contact;
 use crate::model::{EqualityTarget, Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
-use crate::sleep::Sleep;
 use crate::state::State;
-use crate::workspace::{Positions, Velocities, Workspace};
+use crate::workspace::Workspace;
 use assembly::Assembly;
 use clench_math::{Mask, Real, kernel};
 use coordinate::Coordinate;
 use exact::ExactDiagonal;
 use held::Held;
-
-/// All that constraints read.
-struct ConstraintContext<'a, T: Real> {
-    model: &'a Model,
-    params: &'a Params<T>,
-    settings: &'a StepSettings,
-    state: &'a State<T>,
-    position: &'a Positions<T>,
-    velocity: &'a Velocities<T>,
-    sleep: &'a Sleep<T>,
-    /// No constraint has a shorter time constant, s.
-    least_timeconst: T,
-    /// Ratio of friction to normal impedance.
-    impratio: T,
-}
-
-impl<T: Real> ConstraintContext<'_, T> {
-    /// Lanes in which an equality is on and couples anything that is awake.
-    #[inline(always)]
-    fn active_equality(&self, equality: usize) -> T::Mask {
-        let active = self.state.eq_active[equality];
-        if !self.settings.flags.sleep {
-            return active;
-        }
-        let awake = match self.model.equalities[equality].target {
-            EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 } => {
-                self.sleep.is_either_awake([body1, body2])
-            }
-            EqualityTarget::Joint { joint1, joint2 } => {
-                let joints = [Some(joint1), joint2].into_iter().flatten();
-                self.awake(joints.map(Coordinate::Joint))
-            }
-            EqualityTarget::Tendon { tendon1, tendon2 } => {
-                let tendons = [Some(tendon1), tendon2].into_iter().flatten();
-                self.awake(tendons.map(Coordinate::Tendon))
-            }
-        };
-        active & awake
-    }
-
-    /// Lanes in which anything that moves one of these coordinates is awake.
-    #[inline(always)]
-    fn awake(&self, coordinates: impl IntoIterator<Item = Coordinate>) -> T::Mask {
-        let mut awake = T::Mask::splat(!self.settings.flags.sleep);
-        for coordinate in coordinates {
-            coordinate.each(self, |dof, _| {
-                awake |= self.sleep.is_awake(self.model.tree.tree_of(dof as usize));
-            });
-        }
-        awake
-    }
-
-    /// How soft an equality is at a violation of this size, and the record of its block.
-    #[inline(always)]
-    fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
-        let source = ConstraintSource::Equality(equality);
-        let solver = (
-            self.params.eq_solref[equality],
-            self.params.eq_solimp[equality],
-        );
-        self.soften(source, self.active_equality(equality), solver, violation)
-    }
-
-    /// How soft a constraint without a margin is at a violation of this size, and the record of its block.
-    #[inline(always)]
-    fn soften(
-        &self,
-        source: ConstraintSource,
-        active: T::Mask,
-        (solref, solimp): ([T; 2], [T; 5]),
-        violation: T,
-    ) -> (Softness<T>, BlockRecord<T>) {
-        let soft = Softness::new(solref, solimp, violation, self.least_timeconst);
-        let record = BlockRecord {
-            source,
-            active,
-            margin: T::ZERO,
-            impedance: soft.impedance,
-        };
-        (soft, record)
-    }
-}
 
 /// Turns the constraints of a configuration into blocks, solves the problem, and leaves the acceleration in `ws.qacc`
 /// and the constraint forces along dofs in `ws.qfrc_constraint`.

@@ -12,10 +12,11 @@
 //! J̇ v is r̈ with ω̇ the bias accelerations. The impedance is that of the length of all six rows; A₀ the sums of the
 //! bodies' inverse weights, translational and rotational.
 
-use super::ConstraintContext;
-use super::assembly::{Assembly, Row};
+use super::assembly::Assembly;
 use super::connect::Anchors;
+use super::context::ConstraintContext;
 use super::held::{Frames, Held};
+use super::row::Row;
 use crate::dynamics::chains::{Chains, Side};
 use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};

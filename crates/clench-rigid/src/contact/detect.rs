@@ -1,141 +1,16 @@
 //! Finds the contacts of a configuration: bounding spheres, then the narrow phase, in slots that all lanes share.
 
-use super::bounding_sphere::{self, BoundingSphere, may_touch};
-use super::dynamic_broad_phase::DynamicBroadPhase;
-use super::pair_clock::PairClock;
-use super::select::listed_candidates;
-use super::separating_axes::SeparatingAxes;
+use super::bounding_sphere::{self, may_touch};
+use super::collision::{Collision, Excess};
+use super::placed_shape::{pose, shape};
 use super::{Candidate, Contact, contact_params, contact_range, surface};
-use crate::Budget;
 use crate::model::{Model, Params};
-use crate::options::MaxContacts;
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::sleep::Sleep;
 use crate::workspace::{Positions, Workspace};
-use clench_collide::{
-    ContactPoint, Contacts, Pose, SeparatingAxis, Shape, collide_again, multiccd_matters,
-};
+use clench_collide::{ContactPoint, Contacts, SeparatingAxis, collide_again, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
-
-/// What a step can find more of than the model's budget allows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Excess {
-    /// Pairs of geoms whose bounds meet.
-    Pairs = 1,
-    /// Contacts.
-    Contacts,
-    /// Numbers in the Jacobian of the contacts.
-    Jacobian,
-    /// Numbers in the factor of an island's Hessian, or in the matrix of `noslip`.
-    Factor,
-}
-
-impl Excess {
-    /// The excess of a code; `Factor` where it is none of the others.
-    pub(crate) fn from_code(code: f64) -> Excess {
-        let others = [Excess::Pairs, Excess::Contacts, Excess::Jacobian];
-        let found = others.into_iter().find(|&one| f64::from(one as u8) == code);
-        found.unwrap_or(Excess::Factor)
-    }
-
-    /// What there is too much of, and how much there may be.
-    pub(crate) fn describe(self, budget: &Budget) -> (&'static str, u64) {
-        match self {
-            Excess::Pairs => ("pairs of geoms whose bounds meet", budget.pairs()),
-            Excess::Contacts => ("contacts", budget.contacts),
-            Excess::Jacobian => ("numbers in the Jacobian of the contacts", budget.matrix),
-            Excess::Factor => (
-                "numbers in the factor of the Hessian of an island",
-                budget.matrix,
-            ),
-        }
-    }
-}
-
-/// What detection keeps between steps.
-#[derive(Clone, Debug)]
-pub struct Collision<T: Real> {
-    /// The workspace's contacts were given by the user: detection leaves them alone.
-    pub given: bool,
-    /// Lanes in which the last step found more contacts than the options allow.
-    pub overflow: T::Mask,
-    /// What the last step found so much of that it exceeds the model's budget, as the code of an [`Excess`]; such lanes have no
-    /// contacts.
-    pub excess: T,
-    /// Pairs to look at, in canonical order.
-    candidates: Vec<Candidate>,
-    /// Those of them that may touch now.
-    near: Vec<u32>,
-    /// Finds the candidates of a large model anew each step; those of a small one never change.
-    broad_phase: Option<Box<DynamicBroadPhase<T>>>,
-    spheres: Vec<BoundingSphere<T>>,
-    axes: SeparatingAxes<T>,
-    /// Where the time goes, by kinds of pair.
-    pub(crate) clock: PairClock,
-    points: Contacts<T>,
-    count: T,
-    /// Numbers in the Jacobian of the contacts.
-    numbers: T,
-}
-
-impl<T: Real> Collision<T> {
-    /// Prepares detection for a model.
-    pub fn new(model: &Model) -> Self {
-        let listed = listed_candidates(model);
-        let broad_phase = listed
-            .is_none()
-            .then(|| Box::new(DynamicBroadPhase::new(model)));
-        Collision {
-            given: false,
-            overflow: T::Mask::splat(false),
-            excess: T::ZERO,
-            candidates: listed.unwrap_or_default(),
-            broad_phase,
-            near: Vec::new(),
-            spheres: Vec::new(),
-            axes: SeparatingAxes::default(),
-            clock: PairClock::default(),
-            points: Contacts::new(),
-            count: T::ZERO,
-            numbers: T::ZERO,
-        }
-    }
-
-    /// Counts the lanes of a new contact, whose Jacobian has `numbers`; leaves those that have room for it.
-    #[inline(always)]
-    fn count_within_limit(
-        &mut self,
-        active: T::Mask,
-        most: MaxContacts,
-        numbers: usize,
-        budget: &Budget,
-    ) -> T::Mask {
-        let full = match most {
-            MaxContacts::Limit(most) => self.count.ge(T::new(most as f64)),
-            MaxContacts::Auto => T::Mask::splat(false),
-        };
-        self.overflow |= active & full;
-        let active = active & !full & self.excess.le(T::ZERO);
-        self.count += T::select(active, T::ONE, T::ZERO);
-        self.numbers += T::select(active, T::new(numbers as f64), T::ZERO);
-        self.exceed(
-            self.count.gt(T::new(budget.contacts as f64)),
-            Excess::Contacts,
-        );
-        self.exceed(
-            self.numbers.gt(T::new(budget.matrix as f64)),
-            Excess::Jacobian,
-        );
-        active
-    }
-
-    /// Notes what lanes have too much of.
-    #[inline(always)]
-    fn exceed(&mut self, lanes: T::Mask, excess: Excess) {
-        self.excess = T::select(lanes, T::new(f64::from(excess as u8)), self.excess);
-    }
-}
 
 /// What sleeps: two bodies neither of which is awake make no contact.
 struct Awake<'a, T: Real> {
@@ -296,28 +171,5 @@ fn list<T: Real>(
                 block: None,
             });
         }
-    }
-}
-
-/// The shape of a geom.
-#[inline(always)]
-pub(crate) fn shape<'a, T: Real>(
-    model: &'a Model,
-    params: &Params<T>,
-    geom: usize,
-) -> Shape<'a, T> {
-    Shape {
-        kind: model.geoms[geom].kind,
-        size: params.geom_size[geom],
-        asset: model.asset(geom),
-    }
-}
-
-/// The pose of a geom.
-#[inline(always)]
-pub(super) fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
-    Pose {
-        position: pos.geom_xpos[geom],
-        rotation: pos.geom_xmat[geom],
     }
 }

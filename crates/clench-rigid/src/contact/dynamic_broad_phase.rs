@@ -2,7 +2,7 @@
 
 use super::Candidate;
 use super::bounding_sphere::{self, BoundingSphere, own_margin};
-use super::detect::{pose, shape};
+use super::placed_shape::{pose, shape};
 use super::select::{explicit, geoms_may_collide, meet_any};
 use crate::model::{Geom, Model, Params};
 use crate::workspace::Positions;

@@ -2,18 +2,21 @@
 //! contact becomes is `constraint::contact`.
 
 mod bounding_sphere;
+mod collision;
 mod detect;
 mod dynamic_broad_phase;
 mod mix;
 pub(crate) mod pair_clock;
+mod placed_shape;
 mod select;
 mod separating_axes;
 mod surface;
 
-pub(crate) use detect::shape;
-pub use detect::{Collision, Excess, detect};
+pub use collision::{Collision, Excess};
+pub use detect::detect;
 pub(crate) use mix::mixed_params;
 pub use mix::{ContactParams, contact_params, contact_range};
+pub(crate) use placed_shape::shape;
 pub use select::{Candidate, UnsupportedPair, candidates, check_supported};
 
 use clench_math::{Mat3, Real, Vec3};

@@ -3,7 +3,7 @@
 //! The surface of a geom moves with v + ω × (x − p) at a point x, v and ω given in the geom's frame, whose origin is p. A contact
 //! feels the difference of its two surfaces along its tangents, and about its normal.
 
-use super::detect::pose;
+use super::placed_shape::pose;
 use crate::model::Params;
 use crate::workspace::Positions;
 use clench_math::{Mask, Mat3, Real, Vec3};

@@ -1,7 +1,9 @@
 //! Actuator forces, force = gain · input + bias, and the dof forces they make.
 
-use crate::dynamics::activation::{Given, acting_controls, activation_rates};
-use crate::dynamics::gain::{ActuatorMotion, unlimited_force};
+use super::activation_rates::activation_rates;
+use super::actuator::{ActuatorMotion, Given};
+use crate::dynamics::activation::acting_controls;
+use crate::dynamics::gain::unlimited_force;
 use crate::dynamics::transmission::moment;
 use crate::dynamics::{dc_motor, orientation};
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};

@@ -14,8 +14,7 @@
 //! `gainprm` R₀ K α T₀ kp ki kd Vmax; `dynprm` te, largest |i̇|, RT, C, ambient, σ₀, σ₁, slew rate, bound of the integral; `biasprm` A
 //! N φ F_C F_S v_S.
 
-use crate::dynamics::activation::Given;
-use crate::dynamics::gain::ActuatorMotion;
+use super::actuator::{ActuatorMotion, Given};
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
 use crate::model::{ControlInput, Model, Params};
 use clench_math::Real;

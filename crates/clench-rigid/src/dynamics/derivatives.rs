@@ -4,22 +4,18 @@
 //! factors without fill (both as in MuJoCo's `implicitfast`). A force s along a generalized velocity J v contributes
 //! its slope: s′ JᵀJ.
 
-use crate::dynamics::activation::Given;
+use super::actuator::{ActuatorMotion, Given, scaling_error};
 use crate::dynamics::ellipsoid::ellipsoid_rates;
 use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
-use crate::dynamics::gain::{ActuatorMotion, unlimited_force, unlimited_slope};
+use crate::dynamics::gain::{unlimited_force, unlimited_slope};
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
-use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
-use crate::dynamics::{dc_motor, orientation};
+use crate::dynamics::{dc_motor, orientation, tendon};
 use crate::model::{GainKind, Model, Params, Transmission};
 use crate::state::State;
 use crate::workspace::{Forces, Positions, Velocities};
-use clench_math::{Force, Mask, Motion, Real, Scalar, kernel};
+use clench_math::{Force, Mask, Motion, Real, kernel};
 use clench_solver::TreeMatrix;
-
-/// A sum of scaled forces is at the end of a range if it misses it by so little of it (as in MuJoCo), or by rounding.
-const SUM_ROUNDING: f64 = 1e-10;
 
 /// `matrix += scale · D`.
 #[kernel]
@@ -130,12 +126,6 @@ fn actuator_derivative<T: Real>(
         _ => {}
     }
     T::select(held, T::ZERO, slope)
-}
-
-/// By what share a force that was scaled to the end of a range may miss it.
-#[inline(always)]
-pub(super) fn scaling_error<T: Real>() -> T {
-    T::new(SUM_ROUNDING).max(T::splat(T::Scalar::EPSILON) * T::new(16.0))
 }
 
 /// Whether a sum of forces that were scaled into a range is at one of its ends. As in MuJoCo, where actuators reach the

@@ -17,25 +17,6 @@ pub struct Energy<T> {
     pub kinetic: T,
 }
 
-/// Where the energy of a state is worked out: positions in a workspace are those of its last pass, which others still read.
-#[derive(Clone, Debug)]
-pub struct EnergyScratch<T> {
-    /// Poses of the state.
-    pub position: Positions<T>,
-    /// The mass matrix at them.
-    pub mass: TreeMatrix<T>,
-}
-
-impl<T: Real> EnergyScratch<T> {
-    /// Room for a model.
-    pub fn new(model: &Model) -> Self {
-        EnergyScratch {
-            position: Positions::new(model),
-            mass: TreeMatrix::zeros(&model.tree),
-        }
-    }
-}
-
 /// The energy at the positions of `pos` and `qpos`, with velocities `qvel` and the mass matrix at those positions.
 #[kernel]
 pub fn energy<T: Real>(

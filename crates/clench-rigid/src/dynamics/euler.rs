@@ -3,8 +3,9 @@
 //! The damping force is taken at the end of the step to first order, with B its slope: the acceleration that advances the
 //! velocity solves (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second factorization.
 
+use super::integration::Integration;
 use crate::dynamics::articulated::articulated_factor;
-use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit};
+use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit};
 use crate::dynamics::reflected::dof_damper;
 use crate::model::{Model, Params};
 use crate::state::State;

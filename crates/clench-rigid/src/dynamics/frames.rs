@@ -100,3 +100,30 @@ impl<'a, T: Real> Frames<'a, T> {
         Motion::new(cacc.angular, linear)
     }
 }
+
+/// Axes in which vectors are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the world.
+    #[default]
+    World,
+    /// Those of the object.
+    Local,
+}
+
+/// The motion of an object, linear and then angular, in the axes asked for.
+pub(crate) fn along<T: Real>(
+    frames: Frames<T>,
+    axes: Axes,
+    object: FrameObject,
+    motion: Motion<T>,
+) -> [Vec3<T>; 2] {
+    let world = [motion.linear, motion.angular];
+    match axes {
+        Axes::World => world,
+        Axes::Local => {
+            let rotation = frames.rotation(object);
+            world.map(|v| rotation.transpose_mul(v))
+        }
+    }
+}

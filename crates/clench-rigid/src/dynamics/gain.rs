@@ -1,32 +1,11 @@
 //! Gains and biases of actuators, force = gain · input + bias, and how the force changes with velocity.
 
-use crate::dynamics::activation::{Given, input};
+use super::actuator::{ActuatorMotion, Given};
+use crate::dynamics::activation::input;
 use crate::dynamics::muscle::Muscle;
 use crate::dynamics::{dc_motor, pid};
 use crate::model::{BiasKind, GainKind, Model, Params};
-use crate::workspace::{Positions, Velocities};
 use clench_math::Real;
-
-/// Length and velocity of an actuator.
-#[derive(Clone, Copy, Debug)]
-pub struct ActuatorMotion<T> {
-    /// Length of its transmission.
-    pub length: T,
-    /// Velocity of its transmission.
-    pub velocity: T,
-}
-
-impl<T: Real> ActuatorMotion<T> {
-    /// Of actuator `u`, the first where it has several.
-    #[inline(always)]
-    pub fn of(model: &Model, pos: &Positions<T>, vel: &Velocities<T>, u: usize) -> Self {
-        let output = model.actuators[u].outputs.start;
-        ActuatorMotion {
-            length: pos.actuator_length[output],
-            velocity: vel.actuator_velocity[output],
-        }
-    }
-}
 
 /// The force of actuator `u` before any limit, but for what no limit holds.
 #[inline(always)]

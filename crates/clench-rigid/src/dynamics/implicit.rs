@@ -6,10 +6,11 @@
 //! gyroscopic forces, see [`gyroscopic`](crate::dynamics::gyroscopic). With Coriolis forces, see
 //! [`coriolis`](crate::dynamics::coriolis), D is not symmetric, and all bodies are solved for by LU.
 
+use super::integration::Integration;
 use crate::dynamics::coriolis::add_bias_derivatives;
 use crate::dynamics::derivatives::add_velocity_derivatives;
 use crate::dynamics::gyroscopic::{add_gyroscopic_product, is_free_tree, solve_gyroscopic};
-use crate::dynamics::integrate::{Integration, advance_semi_implicit, solve_implicit, sum_forces};
+use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit, sum_forces};
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;

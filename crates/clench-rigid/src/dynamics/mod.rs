@@ -8,7 +8,9 @@
 //! in MuJoCo: the numbers stay small wherever the tree is.
 
 pub mod activation;
+pub mod activation_rates;
 pub mod actuation;
+pub mod actuator;
 pub mod adhesion;
 pub mod articulated;
 pub mod bias;
@@ -28,6 +30,7 @@ pub mod gyroscopic;
 pub mod implicit;
 pub mod inertia;
 pub mod integrate;
+pub mod integration;
 pub mod jacobian;
 pub mod kinematics;
 pub mod muscle;

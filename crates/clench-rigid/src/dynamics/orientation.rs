@@ -8,8 +8,8 @@
 //! in the frame of what is turned. The servo has three lengths, the rotation vector of q, and three moment arms, each with a force of its
 //! own. Its target is a rotation vector, of three controls or of three activations that integrate them, or a quaternion of four controls.
 
-use crate::dynamics::activation::{Given, next_activation};
-use crate::dynamics::derivatives::scaling_error;
+use super::actuator::{Given, scaling_error};
+use crate::dynamics::activation::next_activation;
 use crate::model::{ControlInput, Model, Params};
 use crate::workspace::{Positions, Velocities};
 use clench_math::{Mask, Quat, Real, Vec3};

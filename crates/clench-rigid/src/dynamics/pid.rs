@@ -3,8 +3,9 @@
 //! As in MuJoCo, kp and kv are those of the affine bias, which makes the part of the force that no setpoint makes; ki is `gainprm[0]`, the bound
 //! of the integral `dynprm[0]`, the fastest change of the position setpoint `dynprm[1]`.
 
-use crate::dynamics::activation::{Given, nearest_setpoint, next_activation};
-use crate::dynamics::gain::ActuatorMotion;
+use super::actuator::{ActuatorMotion, Given};
+use super::setpoint::nearest_setpoint;
+use crate::dynamics::activation::next_activation;
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
 use crate::model::{Model, Params};
 use clench_math::Real;

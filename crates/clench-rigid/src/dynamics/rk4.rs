@@ -9,8 +9,9 @@
 //! u̇ = ω + ½ u×ω + c u×(u×ω),   c = (1 − (θ/2) cot(θ/2)) / θ²,   θ = |u|
 //! ```
 
+use super::integration::{Integration, Rates};
 use crate::dynamics::integrate::{
-    Integration, Rates, add_scaled, advance_activations, advance_time, integrate_positions,
+    add_scaled, advance_activations, advance_time, integrate_positions,
 };
 use crate::model::{JointKind, Model, Params};
 use crate::profile::Stage;

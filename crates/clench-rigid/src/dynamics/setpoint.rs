@@ -1,8 +1,10 @@
 //! What controllers are asked for: the controls of an actuator by what they mean, moved no faster than the first may move.
 
-use crate::dynamics::activation::{Given, nearest_setpoint};
-use crate::model::{ControlInput, DynamicsKind, Model, Params};
-use clench_math::Real;
+use super::actuator::Given;
+use crate::model::{
+    BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Params, Transmission,
+};
+use clench_math::{Mask, Real, Vec3};
 
 /// The controls of an actuator with a controller; what it has no control for is zero.
 #[derive(Clone, Copy, Debug)]
@@ -72,4 +74,42 @@ pub fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
     let low = bounded & !high & integral.le(-bound);
     let from_low = T::select(low, error.max(T::ZERO), error);
     T::select(high, error.min(T::ZERO), from_low)
+}
+
+/// The setpoint of a servo on a ball joint, or on the rotation of a site in the frame of another, moved by whole turns to the one
+/// nearest to `near`; other inputs pass
+/// unchanged.
+///
+/// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
+#[inline(always)]
+pub fn nearest_setpoint<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    u: usize,
+    input: T,
+    near: T,
+) -> T {
+    let actuator = &model.actuators[u];
+    let gear = &params.actuator_gear[u];
+    let (rotates, axis) = match actuator.transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => {
+            let on_ball = model.joints[j].kind == JointKind::Ball;
+            (T::Mask::splat(on_ball), &gear[..3])
+        }
+        Transmission::SiteInFrame(_) => (Vec3::from_slice(gear).norm().eq(T::ZERO), &gear[3..]),
+        _ => (T::Mask::splat(false), &gear[..3]),
+    };
+    let pid = actuator.gain == GainKind::Pid;
+    let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
+    if !rotates.any() || !(pid || fixed) {
+        return input;
+    }
+    let turn = Vec3::from_slice(axis).norm() * T::new(std::f64::consts::TAU);
+    let pulls_back = params.actuator_gainprm[u][0].eq(-params.actuator_biasprm[u][1]);
+    let wraps = rotates & (pulls_back | T::Mask::splat(pid)) & turn.gt(T::ZERO);
+    if !wraps.any() {
+        return input;
+    }
+    let turns = (input - near) / T::select(wraps, turn, T::ONE) + T::new(0.5);
+    T::select(wraps, input - turn * turns.floor(), input)
 }

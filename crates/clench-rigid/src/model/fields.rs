@@ -1,5 +1,6 @@
 //! The fields of [`Params`] by name: what their numbers must be, and what follows from them.
 
+use super::rule::Rule;
 use super::{Model, ParamField, Params};
 use crate::check::check_length;
 use crate::error::SimError;
@@ -9,29 +10,6 @@ use std::sync::Arc;
 
 /// Shorter axes and quaternions say no direction.
 const MIN_LENGTH: f64 = 1e-7;
-
-/// What the numbers of a field must be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rule {
-    /// Finite.
-    Finite,
-    /// Positive and finite.
-    Positive,
-    /// Finite, zero or more.
-    NotNegative,
-    /// Finite, positive where the model's number is, else zero or more.
-    AsModel,
-    /// Finite, zero or more where the model's number is positive, else zero.
-    IfModel,
-    /// Pairs that do not fall, infinite if need be.
-    Range,
-    /// Quaternions, which are made unit ones.
-    Quaternion,
-    /// Directions, which are made unit vectors.
-    Axis,
-    /// It cannot be set: it follows from another field.
-    Follows(&'static str),
-}
 
 impl ParamField {
     /// The field of that name.
@@ -104,22 +82,6 @@ impl ParamField {
         };
         (row.chunks_exact_mut(size).enumerate())
             .try_for_each(|(i, direction)| normalize(field, size * i, direction))
-    }
-}
-
-impl Rule {
-    /// What a number must be, if it is not.
-    fn refuses<S: Scalar>(self, x: S, of_model: f64) -> Option<&'static str> {
-        let positive = self == Rule::Positive || self == Rule::AsModel && of_model > 0.0;
-        let not_negative = matches!(self, Rule::NotNegative | Rule::AsModel | Rule::IfModel);
-        let (holds, range) = match self {
-            Rule::Range => (!x.to_f64().is_nan(), "a number, or infinite"),
-            _ if positive => (x > S::ZERO && x.is_finite(), "positive and finite"),
-            Rule::IfModel if of_model <= 0.0 => (x == S::ZERO, "zero, as in the model"),
-            _ if not_negative => (x >= S::ZERO && x.is_finite(), "finite, zero or more"),
-            _ => (x.is_finite(), "finite"),
-        };
-        (!holds).then_some(range)
     }
 }
 

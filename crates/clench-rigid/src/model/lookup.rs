@@ -1,6 +1,8 @@
-//! Elements by name, and what to call those that have none.
+//! Elements and the user's own data by name, what to call elements that have no name, and the body of an object.
 
 use super::Model;
+use super::custom::TupleEntry;
+use super::sensor_target::FrameObject;
 
 macro_rules! lookups {
     ($($(#[$doc:meta])* $method:ident in $elements:ident;)*) => {
@@ -58,5 +60,40 @@ impl Model {
             "" => format!("body {}[{number}]", found.body),
             name => format!("{name}[{number}]"),
         }
+    }
+}
+
+impl FrameObject {
+    /// The body that carries it.
+    #[inline(always)]
+    pub fn body(self, model: &Model) -> usize {
+        match self {
+            FrameObject::Inertial(body) | FrameObject::Body(body) => body,
+            FrameObject::Geom(geom) => model.geoms[geom].body,
+            FrameObject::Site(site) => model.sites[site].body,
+            FrameObject::Camera(camera) => model.cameras[camera].body,
+        }
+    }
+}
+
+fn named<'a, T>(list: &'a [(String, T)], name: &str) -> Option<&'a T> {
+    let found = list.iter().find(|(other, _)| other == name);
+    found.map(|(_, value)| value)
+}
+
+impl Model {
+    /// The user's array of numbers with this name.
+    pub fn numeric(&self, name: &str) -> Option<&[f64]> {
+        named(&self.custom.numerics, name).map(Vec::as_slice)
+    }
+
+    /// The user's text with this name.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        named(&self.custom.texts, name).map(String::as_str)
+    }
+
+    /// The user's list of elements with this name.
+    pub fn tuple(&self, name: &str) -> Option<&[TupleEntry]> {
+        named(&self.custom.tuples, name).map(Vec::as_slice)
     }
 }

@@ -9,6 +9,7 @@ mod fields;
 pub(crate) mod flat;
 mod lookup;
 mod params;
+mod rule;
 mod sensor;
 mod sensor_target;
 mod structure;
@@ -23,9 +24,9 @@ pub use sensor_target::{
 pub use structure::{
     Actuator, Appearance, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates, Dof,
     DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField, History,
-    Integrator, Joint, JointKind, Keyframe, KinematicTree, Material, Mesh, Pair, RowPattern,
-    Section, Site, SleepPolicy, Tendon, Texture, TextureMark, TexturePattern, Transmission,
-    Visuals, Wrap,
+    Integrator, Interpolation, Joint, JointKind, Keyframe, KinematicTree, Material, Mesh, Pair,
+    RowPattern, Section, Site, SleepPolicy, Tendon, Texture, TextureMark, TexturePattern,
+    Transmission, Visuals, Wrap,
 };
 
 use crate::Budget;

@@ -1,7 +1,7 @@
 //! Every number of a model, one array a field, in any precision or width.
 
-use super::fields::Rule;
 use super::flat::{Broadcast, Flat, FlatMut, Numbers};
+use super::rule::Rule;
 use clench_math::{Quat, Real, Vec3};
 
 macro_rules! params {

@@ -1,6 +1,5 @@
 //! What sensors measure, by the numbers of elements.
 
-use super::Model;
 use std::ops::Range;
 
 /// A frame that a sensor measures, or relative to which it does.
@@ -16,19 +15,6 @@ pub enum FrameObject {
     Site(usize),
     /// A camera.
     Camera(usize),
-}
-
-impl FrameObject {
-    /// The body that carries it.
-    #[inline(always)]
-    pub fn body(self, model: &Model) -> usize {
-        match self {
-            FrameObject::Inertial(body) | FrameObject::Body(body) => body,
-            FrameObject::Geom(geom) => model.geoms[geom].body,
-            FrameObject::Site(site) => model.sites[site].body,
-            FrameObject::Camera(camera) => model.cameras[camera].body,
-        }
-    }
 }
 
 /// Where the rays of a sensor go out.

@@ -3,7 +3,7 @@
 //! A force F at a point p with a couple Q has the moment Q + (p − o) × F about o. The second body of a contact takes its
 //! force, the first its negative; a connect or weld pulls its first body along its rows, and the second against them.
 
-use super::Source;
+use super::source::Source;
 use super::tendon_forces::each_pull;
 use crate::constraint::{ConstraintSource, Frames, weld_torque};
 use crate::contact::Contact;

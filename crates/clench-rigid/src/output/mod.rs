@@ -3,29 +3,23 @@
 //! Names, order and frames are MuJoCo's where it has the same thing.
 
 mod forces;
+mod source;
 mod tendon_forces;
 
+use crate::sensor::BodyForces;
 pub(crate) use forces::{external as external_forces, of_contact};
+pub(crate) use source::Source;
 
 use crate::dynamics::camera::camera_pose;
 use crate::dynamics::frames::Frames;
 use crate::dynamics::jacobian::point_jacobian;
 use crate::error::SimError;
 use crate::known::Extent;
-use crate::model::{FrameObject, Model, Params, RowPattern};
+use crate::model::{FrameObject, Model, RowPattern};
 use crate::pipeline::state_energy;
-use crate::sensor::bodies::{BodyForces, update as update_body_forces};
-use crate::state::State;
+use crate::sensor::bodies::update as update_body_forces;
 use crate::workspace::Workspace;
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
-
-/// All that outputs are read from.
-pub(crate) struct Source<'a, T: Real> {
-    pub model: &'a Model,
-    pub params: &'a Params<T>,
-    pub state: &'a State<T>,
-    pub ws: &'a mut Workspace<T>,
-}
 
 macro_rules! outputs {
     ($m:ident, $s:ident, $out:ident; $($(#[$doc:meta])* $name:ident [$($size:expr),*] of $extent:ident => $read:expr;)*) => {

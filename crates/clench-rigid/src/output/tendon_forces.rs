@@ -4,7 +4,7 @@
 //! f times the change of its length with that end. All that acts along a tendon counts: spring, damper, actuators, inertia, and
 //! the constraints.
 
-use super::Source;
+use super::source::Source;
 use crate::constraint::{ConstraintSource, equality_slope};
 use crate::dynamics::reflected::{tendon_armature, tendon_damper};
 use crate::dynamics::spring::{tendon_spring, tendon_stretch};

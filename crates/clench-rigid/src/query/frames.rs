@@ -7,13 +7,13 @@ use super::{check_body, check_object};
 use crate::Precision;
 use crate::check::check_length;
 use crate::dynamics::chains::BodyPoint;
-use crate::dynamics::frames::Frames;
+use crate::dynamics::frames::{Axes, Frames, along};
 use crate::dynamics::jacobian::{point_jacobian, point_jacobian_rate, subtree_jacobian};
 use crate::error::SimError;
 use crate::known::Extent;
 use crate::model::FrameObject;
 use crate::sim::Sim;
-use clench_math::{Motion, Real, Vec3};
+use clench_math::Vec3;
 
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,16 +27,6 @@ pub enum Anchor<T> {
         /// The place.
         place: Vec3<T>,
     },
-}
-
-/// Axes in which vectors are told.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Axes {
-    /// Those of the world.
-    #[default]
-    World,
-    /// Those of the object.
-    Local,
 }
 
 impl<T: Precision> Sim<T> {
@@ -132,23 +122,6 @@ impl<T: Precision> Sim<T> {
             Anchor::Point { body, place } => {
                 BodyPoint::new(self.model(), &self.workspace().position, body, place)
             }
-        }
-    }
-}
-
-/// The motion of an object, linear and then angular, in the axes asked for.
-pub(crate) fn along<T: Real>(
-    frames: Frames<T>,
-    axes: Axes,
-    object: FrameObject,
-    motion: Motion<T>,
-) -> [Vec3<T>; 2] {
-    let world = [motion.linear, motion.angular];
-    match axes {
-        Axes::World => world,
-        Axes::Local => {
-            let rotation = frames.rotation(object);
-            world.map(|v| rotation.transpose_mul(v))
         }
     }
 }

@@ -2,44 +2,11 @@
 
 use crate::Precision;
 use crate::error::{SimError, no_such};
-use crate::geometry::Geoms;
+use crate::geometry::{Geoms, RayFilter, RayHit};
 use crate::known::Extent;
 use crate::sim::Sim;
 use clench_collide::{Ray, Separation, distance};
 use clench_math::Vec3;
-
-/// Which geoms a ray can hit. Those that cannot be seen, it never hits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RayFilter {
-    /// For each group whether its geoms are hit; groups beyond these count as the nearest of them.
-    pub groups: [bool; 6],
-    /// Whether geoms are hit that are fixed to the world.
-    pub fixed: bool,
-    /// A body whose geoms are not hit, such as the one that a sensor sits on.
-    pub excluded_body: Option<usize>,
-}
-
-impl Default for RayFilter {
-    /// Everything.
-    fn default() -> Self {
-        RayFilter {
-            groups: [true; 6],
-            fixed: true,
-            excluded_body: None,
-        }
-    }
-}
-
-/// Where a ray hits first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayHit<T> {
-    /// The geom.
-    pub geom: usize,
-    /// From the ray's origin, in lengths of its direction.
-    pub distance: T,
-    /// The unit vector out of the geom there, in world coordinates.
-    pub normal: Vec3<T>,
-}
 
 impl<T: Precision> Sim<T> {
     /// The geom that a ray hits first, where geoms are as in [`refresh`](Self::refresh), as MuJoCo's `mj_ray`: planes are hit

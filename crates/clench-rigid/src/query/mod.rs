@@ -2,17 +2,21 @@
 //! query changes a status, a figure or a bit of a later step. A file a subject; what is here asks, and computes nothing that
 //! has a place in `dynamics`.
 
+mod cast;
 mod frames;
 mod geoms;
+mod ik;
 mod inertia;
 mod inverse;
 mod scan;
 
-pub(crate) use frames::along;
-pub use frames::{Anchor, Axes};
-pub use geoms::{RayFilter, RayHit};
+pub use crate::dynamics::frames::Axes;
+pub(crate) use crate::dynamics::frames::along;
+pub use crate::geometry::{RayFilter, RayHit};
+pub(crate) use cast::{HIT, RAY, cast, sample};
+pub use frames::Anchor;
 pub(crate) use inverse::check_acceleration;
-pub(crate) use scan::{HIT, RAY, cast, check_places, check_rays, sample};
+pub(crate) use scan::{check_places, check_rays};
 
 use crate::error::{SimError, no_such};
 use crate::model::{FrameObject, Model};

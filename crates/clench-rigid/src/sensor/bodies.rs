@@ -3,52 +3,12 @@
 //! A recursive Newton–Euler pass with the joint accelerations found (Featherstone 2008, §5.3): a body's acceleration takes the force
 //! I a + v ×* I v, of which what acts from outside is one part; the joints to its parent and children carry the rest.
 
-use super::Reading;
-use crate::model::{Model, Params, SensorKind};
+use super::reading::Reading;
+use crate::model::{Model, Params};
 use crate::output::{Source, external_forces};
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Force, Motion, Real, Vec3, kernel};
-
-/// Accelerations of bodies, and what their joints carry.
-#[derive(Clone, Debug)]
-pub(crate) struct BodyForces<T> {
-    /// Spatial accelerations about the centre of mass of each body's tree, gravity's upward reaction included (nbody).
-    pub cacc: Vec<Motion<T>>,
-    /// Force of each body's parent on it through their joints, about the same point (nbody).
-    pub cfrc_int: Vec<Force<T>>,
-    /// What acts on each body from outside, six numbers a body.
-    external: Vec<T>,
-}
-
-impl<T: Real> BodyForces<T> {
-    pub(crate) fn new(model: &Model) -> Self {
-        let mut bodies = BodyForces::default();
-        if model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {
-            bodies.make_room(model.nbody());
-        }
-        bodies
-    }
-
-    fn make_room(&mut self, count: usize) {
-        self.cacc.resize(count, Motion::ZERO);
-        self.cfrc_int.resize(count, Force::ZERO);
-        self.external.clear();
-        self.external.reserve(6 * count);
-    }
-}
-
-/// Whether a kind of sensor reads accelerations or forces of bodies.
-pub(super) fn is_needed(kind: SensorKind) -> bool {
-    matches!(
-        kind,
-        SensorKind::Accelerometer
-            | SensorKind::Force
-            | SensorKind::Torque
-            | SensorKind::FrameLinAcc
-            | SensorKind::FrameAngAcc
-    )
-}
 
 /// Computes accelerations and forces from the last forward pass.
 #[kernel]
@@ -93,16 +53,6 @@ pub(crate) fn update<T: Real>(
         bodies.cfrc_int[parent] += force;
     }
     ws.sensors.bodies = bodies;
-}
-
-impl<T> Default for BodyForces<T> {
-    fn default() -> Self {
-        BodyForces {
-            cacc: Vec::new(),
-            cfrc_int: Vec::new(),
-            external: Vec::new(),
-        }
-    }
 }
 
 /// How a body and all below it move.

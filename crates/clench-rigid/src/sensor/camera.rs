@@ -3,7 +3,7 @@
 //! In the camera's frame a pinhole with focal lengths f_x, f_y, measured in pixels, has the point (x, y, z) at f_x x / −z to the
 //! right and f_y y / −z above the optical axis. With a field of view φ and a picture of h pixels, f = ½ h / tan(½ φ).
 
-use super::Reading;
+use super::reading::Reading;
 use crate::dynamics::camera::camera_pose;
 use clench_collide::Ray;
 use clench_math::{Real, Vec3, kernel};

@@ -5,7 +5,7 @@
 //! contact is then the opposite one, so in that frame only its component along the second tangent changes its sign, and likewise of
 //! the torque and the velocities.
 
-use super::Reading;
+use super::reading::Reading;
 use crate::contact::Contact;
 use crate::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
 use crate::output::of_contact;

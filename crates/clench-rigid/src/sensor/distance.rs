@@ -1,6 +1,6 @@
 //! The smallest distance of two sets of geoms. Distances are searched for in each lane alone.
 
-use super::Reading;
+use super::reading::Reading;
 use crate::model::{Sensor, SensorKind};
 use clench_collide::{Pose, Separation, Shape, distance};
 use clench_math::{Mat3, Real, Vec3};

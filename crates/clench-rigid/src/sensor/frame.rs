@@ -3,7 +3,7 @@
 //! With R, p, ω, v of the reference frame, an object at p' that moves with ω', v' has there the position Rᵀ(p' − p), the angular
 //! velocity Rᵀ(ω' − ω) and the linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
-use super::Reading;
+use super::reading::Reading;
 use crate::model::{FrameObject, SensorKind};
 use clench_math::{Mat3, Motion, Quat, Real, Vec3, kernel};
 

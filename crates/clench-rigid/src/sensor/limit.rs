@@ -1,6 +1,6 @@
 //! Limits of joints and tendons as constraints.
 
-use super::Reading;
+use super::reading::Reading;
 use crate::constraint::ConstraintSource;
 use clench_math::{Mask, Real, kernel};
 

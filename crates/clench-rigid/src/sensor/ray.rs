@@ -1,6 +1,6 @@
 //! Rangefinders: the nearest geom along rays from a site or a camera, geoms of its own body and invisible ones left out.
 
-use super::Reading;
+use super::reading::Reading;
 use crate::dynamics::camera::camera_pose;
 use crate::model::{RayField, RaySource};
 use crate::query::RayFilter;

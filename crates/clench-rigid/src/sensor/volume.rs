@@ -1,6 +1,6 @@
 //! Volumes of sites: what touches there, and what is inside.
 
-use super::Reading;
+use super::reading::Reading;
 use crate::output::of_contact;
 use clench_collide::{Pose, Ray, Shape, ShapeKind, ray};
 use clench_math::{Mask, Real, Vec3, kernel};

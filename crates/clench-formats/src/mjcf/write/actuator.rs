@@ -3,7 +3,7 @@
 use super::xml::{Tag, Xml};
 use super::{SaveError, body_name, label, named};
 use clench_rigid::Model;
-use clench_rigid::history::Interpolation;
+use clench_rigid::model::Interpolation;
 use clench_rigid::model::{
     Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Transmission,
 };

@@ -1,6 +1,5 @@
 //! Where buffers of past values lie.
 
-use crate::history::Interpolation;
 use std::ops::Range;
 
 /// A buffer of past values in the `history` of a state; see [`history`](crate::history).
@@ -34,4 +33,16 @@ impl History {
         let first = self.start + 1 + self.samples;
         first..first + self.samples * self.width
     }
+}
+
+/// How a buffer is read between two samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The earlier sample holds.
+    #[default]
+    Hold,
+    /// By a straight line.
+    Linear,
+    /// By a cubic through both, with slopes from their neighbours (Catmull and Rom), zero at the ends.
+    Cubic,
 }

@@ -20,7 +20,7 @@ pub use body::{Body, Dof, Joint, JointKind, Site};
 pub use camera::{Camera, CameraMode};
 pub use equality::{Equality, EqualityTarget};
 pub use geom::{Geom, HeightField, Mesh, Pair};
-pub use history::History;
+pub use history::{History, Interpolation};
 pub use keyframe::Keyframe;
 pub use option::{Flags, Integrator};
 pub use pattern::RowPattern;

@@ -1,0 +1,75 @@
+//! Where a constraint acts, and how soft it is there.
+
+use super::assembly::{BlockRecord, ConstraintSource};
+use super::context::ConstraintContext;
+use super::coordinate::Coordinate;
+use super::softness::Softness;
+use crate::model::EqualityTarget;
+use clench_math::{Mask, Real};
+
+impl<T: Real> ConstraintContext<'_, T> {
+    /// Lanes in which an equality is on and couples anything that is awake.
+    #[inline(always)]
+    pub(super) fn active_equality(&self, equality: usize) -> T::Mask {
+        let active = self.state.eq_active[equality];
+        if !self.settings.flags.sleep {
+            return active;
+        }
+        let awake = match self.model.equalities[equality].target {
+            EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 } => {
+                self.sleep.is_either_awake([body1, body2])
+            }
+            EqualityTarget::Joint { joint1, joint2 } => {
+                let joints = [Some(joint1), joint2].into_iter().flatten();
+                self.awake(joints.map(Coordinate::Joint))
+            }
+            EqualityTarget::Tendon { tendon1, tendon2 } => {
+                let tendons = [Some(tendon1), tendon2].into_iter().flatten();
+                self.awake(tendons.map(Coordinate::Tendon))
+            }
+        };
+        active & awake
+    }
+
+    /// Lanes in which anything that moves one of these coordinates is awake.
+    #[inline(always)]
+    pub(super) fn awake(&self, coordinates: impl IntoIterator<Item = Coordinate>) -> T::Mask {
+        let mut awake = T::Mask::splat(!self.settings.flags.sleep);
+        for coordinate in coordinates {
+            coordinate.each(self, |dof, _| {
+                awake |= self.sleep.is_awake(self.model.tree.tree_of(dof as usize));
+            });
+        }
+        awake
+    }
+
+    /// How soft an equality is at a violation of this size, and the record of its block.
+    #[inline(always)]
+    pub(super) fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
+        let source = ConstraintSource::Equality(equality);
+        let solver = (
+            self.params.eq_solref[equality],
+            self.params.eq_solimp[equality],
+        );
+        self.soften(source, self.active_equality(equality), solver, violation)
+    }
+
+    /// How soft a constraint without a margin is at a violation of this size, and the record of its block.
+    #[inline(always)]
+    pub(super) fn soften(
+        &self,
+        source: ConstraintSource,
+        active: T::Mask,
+        (solref, solimp): ([T; 2], [T; 5]),
+        violation: T,
+    ) -> (Softness<T>, BlockRecord<T>) {
+        let soft = Softness::new(solref, solimp, violation, self.least_timeconst);
+        let record = BlockRecord {
+            source,
+            active,
+            margin: T::ZERO,
+            impedance: soft.impedance,
+        };
+        (soft, record)
+    }
+}

@@ -1,0 +1,23 @@
+//! All that constraints read.
+
+use crate::model::{Model, Params};
+use crate::settings::StepSettings;
+use crate::sleep::Sleep;
+use crate::state::State;
+use crate::workspace::{Positions, Velocities};
+use clench_math::Real;
+
+/// All that constraints read.
+pub(super) struct ConstraintContext<'a, T: Real> {
+    pub(super) model: &'a Model,
+    pub(super) params: &'a Params<T>,
+    pub(super) settings: &'a StepSettings,
+    pub(super) state: &'a State<T>,
+    pub(super) position: &'a Positions<T>,
+    pub(super) velocity: &'a Velocities<T>,
+    pub(super) sleep: &'a Sleep<T>,
+    /// No constraint has a shorter time constant, s.
+    pub(super) least_timeconst: T,
+    /// Ratio of friction to normal impedance.
+    pub(super) impratio: T,
+}

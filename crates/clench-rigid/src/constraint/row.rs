@@ -1,0 +1,39 @@
+//! One row of a block to be.
+
+use super::softness::Softness;
+use clench_math::Real;
+
+/// One row of a block to be: everything but its Jacobian.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Row<T> {
+    /// Position.
+    pub pos: T,
+    /// Part of the reference acceleration that does not depend on the row's velocity.
+    pub aref: T,
+    /// Damping b: the rest of the reference acceleration is −b v.
+    pub damping: T,
+    /// Regularization.
+    pub r: T,
+    /// What else moves along the row, beside the dofs.
+    pub drift: T,
+    /// A force that the row gives where its reference acceleration is met: it is raised by R times this.
+    pub pull: T,
+    /// Shape of its cost, see `clench_solver::BlockMut::shape`.
+    pub shape: T,
+}
+
+impl<T: Real> Row<T> {
+    /// A row at `pos` that is violated by `r = pos − margin` and sees the inverse inertia `a0`.
+    #[inline(always)]
+    pub(super) fn new(soft: &Softness<T>, pos: T, margin: T, a0: T) -> Self {
+        Row {
+            pos,
+            aref: -soft.stiffness * (pos - margin),
+            damping: soft.damping,
+            r: soft.regularization(a0),
+            drift: T::ZERO,
+            pull: T::ZERO,
+            shape: T::ZERO,
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! What the detection of contacts keeps between steps, and how much it may find.
+
+use super::Candidate;
+use super::bounding_sphere::BoundingSphere;
+use super::dynamic_broad_phase::DynamicBroadPhase;
+use super::pair_clock::PairClock;
+use super::select::listed_candidates;
+use super::separating_axes::SeparatingAxes;
+use crate::Budget;
+use crate::model::Model;
+use crate::options::MaxContacts;
+use clench_collide::Contacts;
+use clench_math::{Mask, Real};
+
+/// What a step can find more of than the model's budget allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Excess {
+    /// Pairs of geoms whose bounds meet.
+    Pairs = 1,
+    /// Contacts.
+    Contacts,
+    /// Numbers in the Jacobian of the contacts.
+    Jacobian,
+    /// Numbers in the factor of an island's Hessian, or in the matrix of `noslip`.
+    Factor,
+}
+
+impl Excess {
+    /// The excess of a code; `Factor` where it is none of the others.
+    pub(crate) fn from_code(code: f64) -> Excess {
+        let others = [Excess::Pairs, Excess::Contacts, Excess::Jacobian];
+        let found = others.into_iter().find(|&one| f64::from(one as u8) == code);
+        found.unwrap_or(Excess::Factor)
+    }
+
+    /// What there is too much of, and how much there may be.
+    pub(crate) fn describe(self, budget: &Budget) -> (&'static str, u64) {
+        match self {
+            Excess::Pairs => ("pairs of geoms whose bounds meet", budget.pairs()),
+            Excess::Contacts => ("contacts", budget.contacts),
+            Excess::Jacobian => ("numbers in the Jacobian of the contacts", budget.matrix),
+            Excess::Factor => (
+                "numbers in the factor of the Hessian of an island",
+                budget.matrix,
+            ),
+        }
+    }
+}
+
+/// What detection keeps between steps.
+#[derive(Clone, Debug)]
+pub struct Collision<T: Real> {
+    /// The workspace's contacts were given by the user: detection leaves them alone.
+    pub given: bool,
+    /// Lanes in which the last step found more contacts than the options allow.
+    pub overflow: T::Mask,
+    /// What the last step found so much of that it exceeds the model's budget, as the code of an [`Excess`]; such lanes have no
+    /// contacts.
+    pub excess: T,
+    /// Pairs to look at, in canonical order.
+    pub(super) candidates: Vec<Candidate>,
+    /// Those of them that may touch now.
+    pub(super) near: Vec<u32>,
+    /// Finds the candidates of a large model anew each step; those of a small one never change.
+    pub(super) broad_phase: Option<Box<DynamicBroadPhase<T>>>,
+    pub(super) spheres: Vec<BoundingSphere<T>>,
+    pub(super) axes: SeparatingAxes<T>,
+    /// Where the time goes, by kinds of pair.
+    pub(crate) clock: PairClock,
+    pub(super) points: Contacts<T>,
+    pub(super) count: T,
+    /// Numbers in the Jacobian of the contacts.
+    pub(super) numbers: T,
+}
+
+impl<T: Real> Collision<T> {
+    /// Prepares detection for a model.
+    pub fn new(model: &Model) -> Self {
+        let listed = listed_candidates(model);
+        let broad_phase = listed
+            .is_none()
+            .then(|| Box::new(DynamicBroadPhase::new(model)));
+        Collision {
+            given: false,
+            overflow: T::Mask::splat(false),
+            excess: T::ZERO,
+            candidates: listed.unwrap_or_default(),
+            broad_phase,
+            near: Vec::new(),
+            spheres: Vec::new(),
+            axes: SeparatingAxes::default(),
+            clock: PairClock::default(),
+            points: Contacts::new(),
+            count: T::ZERO,
+            numbers: T::ZERO,
+        }
+    }
+
+    /// Counts the lanes of a new contact, whose Jacobian has `numbers`; leaves those that have room for it.
+    #[inline(always)]
+    pub(super) fn count_within_limit(
+        &mut self,
+        active: T::Mask,
+        most: MaxContacts,
+        numbers: usize,
+        budget: &Budget,
+    ) -> T::Mask {
+        let full = match most {
+            MaxContacts::Limit(most) => self.count.ge(T::new(most as f64)),
+            MaxContacts::Auto => T::Mask::splat(false),
+        };
+        self.overflow |= active & full;
+        let active = active & !full & self.excess.le(T::ZERO);
+        self.count += T::select(active, T::ONE, T::ZERO);
+        self.numbers += T::select(active, T::new(numbers as f64), T::ZERO);
+        self.exceed(
+            self.count.gt(T::new(budget.contacts as f64)),
+            Excess::Contacts,
+        );
+        self.exceed(
+            self.numbers.gt(T::new(budget.matrix as f64)),
+            Excess::Jacobian,
+        );
+        active
+    }
+
+    /// Notes what lanes have too much of.
+    #[inline(always)]
+    pub(super) fn exceed(&mut self, lanes: T::Mask, excess: Excess) {
+        self.excess = T::select(lanes, T::new(f64::from(excess as u8)), self.excess);
+    }
+}

@@ -1,0 +1,52 @@
+//! Activation dynamics: the rates of change of activations.
+
+use super::activation::time_constant;
+use super::actuator::{ActuatorMotion, Given};
+use super::setpoint::nearest_setpoint;
+use super::{dc_motor, muscle, pid};
+use crate::model::{DynamicsKind, Model, Params};
+use crate::workspace::{Positions, Velocities};
+use clench_math::{Real, kernel};
+
+/// The rate of change of each activation (na). A filtered servo on a circle turns towards its control by the shorter way.
+#[kernel]
+pub fn activation_rates<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: Given<'_, T>,
+    pos: &Positions<T>,
+    vel: &Velocities<T>,
+    act_dot: &mut [T],
+) {
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        let Some(a) = actuator.act() else { continue };
+        let act = given.act[a];
+        let ctrl = || given.ctrl[actuator.controls.start];
+        let at = ActuatorMotion::of(model, pos, vel, u);
+        act_dot[a] = match actuator.dynamics {
+            // What a callback of MuJoCo's user would say.
+            DynamicsKind::None | DynamicsKind::User => T::ZERO,
+            DynamicsKind::Muscle => {
+                muscle::activation_rate(ctrl(), act, &params.actuator_dynprm[u])
+            }
+            DynamicsKind::Integrator => {
+                let controls = &given.ctrl[actuator.controls.clone()];
+                for (a, &rate) in actuator.acts.clone().zip(controls) {
+                    act_dot[a] = rate;
+                }
+                continue;
+            }
+            DynamicsKind::Filter | DynamicsKind::FilterExact => {
+                (nearest_setpoint(model, params, u, ctrl(), act) - act) / time_constant(params, u)
+            }
+            DynamicsKind::Pid => {
+                pid::activation_rates(model, params, given, u, at.length, act_dot);
+                continue;
+            }
+            DynamicsKind::DcMotor => {
+                dc_motor::activation_rates(model, params, given, u, at, act_dot);
+                continue;
+            }
+        };
+    }
+}

@@ -1,0 +1,71 @@
+//! The memory of the integrators.
+
+use super::coriolis::Coriolis;
+use crate::model::{Integrator, Model};
+use clench_math::Real;
+use clench_solver::{TreeFactor, TreeLu, TreeMatrix};
+
+/// Memory of the integrators.
+#[derive(Clone, Debug)]
+pub struct Integration<T> {
+    /// M − h ∂τ/∂v.
+    pub matrix: TreeMatrix<T>,
+    /// Its factor.
+    pub factor: TreeFactor<T>,
+    /// The same with what is not symmetric, then its factors; empty but for [`Integrator::Implicit`].
+    pub full: TreeLu<T>,
+    /// What the derivatives of bias forces take, likewise.
+    pub coriolis: Coriolis<T>,
+    /// The acceleration that advances the velocity (nv).
+    pub qacc: Vec<T>,
+    /// Runge–Kutta: by how much the present stage is later than the state's time, s; else zero.
+    pub offset: T,
+    /// Runge–Kutta: the state at the start of the step.
+    pub start: Rates<T>,
+    /// Runge–Kutta: the rates of the present stage.
+    pub stage: Rates<T>,
+    /// Runge–Kutta: the weighted mean of all stages' rates.
+    pub mean: Rates<T>,
+}
+
+/// Positions, velocities and activations, or their rates of change.
+#[derive(Clone, Debug, Default)]
+pub struct Rates<T> {
+    /// Positions (nq), or their rates (nv).
+    pub position: Vec<T>,
+    /// Velocities, or accelerations (nv).
+    pub velocity: Vec<T>,
+    /// Activations, or their rates (na).
+    pub activation: Vec<T>,
+}
+
+impl<T: Real> Rates<T> {
+    fn new(model: &Model, npos: usize) -> Self {
+        Rates {
+            position: vec![T::ZERO; npos],
+            velocity: vec![T::ZERO; model.nv],
+            activation: vec![T::ZERO; model.na],
+        }
+    }
+}
+
+impl<T: Real> Integration<T> {
+    /// Room for the integrators of a model.
+    pub fn new(model: &Model) -> Self {
+        let (full, coriolis) = match model.integrator {
+            Integrator::Implicit => (TreeLu::zeros(&model.tree), Coriolis::new(model)),
+            _ => Default::default(),
+        };
+        Integration {
+            matrix: TreeMatrix::zeros(&model.tree),
+            factor: TreeFactor::zeros(&model.tree),
+            full,
+            coriolis,
+            qacc: vec![T::ZERO; model.nv],
+            offset: T::ZERO,
+            start: Rates::new(model, model.nq),
+            stage: Rates::new(model, model.nv),
+            mean: Rates::new(model, model.nv),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! What many rays hit, and heights of terrain at many places, of an environment in lanes.
+
+use super::RayFilter;
+use crate::dynamics::frames::Frames;
+use crate::geometry::Geoms;
+use crate::model::FrameObject;
+use clench_collide::{Asset, Ray};
+use clench_math::{Real, Scalar, Vec3, kernel};
+
+/// Numbers of a ray: its origin, its direction.
+pub(crate) const RAY: usize = 6;
+
+/// Numbers of what a ray hits: the geom, or −1; how far, or infinity; the normal.
+pub(crate) const HIT: usize = 5;
+
+/// Appends what each of some rays hits, [`HIT`] numbers a ray. With a frame they are in its coordinates.
+#[kernel]
+pub(crate) fn cast<T: Real>(
+    geoms: Geoms<'_, T>,
+    frame: Option<FrameObject>,
+    rays: &[T],
+    filter: &RayFilter,
+    out: &mut Vec<T>,
+) {
+    let frames = Frames::of(geoms);
+    for numbers in rays.chunks_exact(RAY) {
+        let mut line = Ray {
+            origin: Vec3::from_slice(numbers),
+            direction: Vec3::from_slice(&numbers[3..]),
+        };
+        if let Some(frame) = frame {
+            let rotation = frames.rotation(frame);
+            line.origin = frames.position(frame) + rotation * line.origin;
+            line.direction = rotation * line.direction;
+        }
+        let (geom, hit) = geoms.first_hit(&line, filter);
+        let found = hit.distance.lt(T::splat(T::Scalar::INFINITY));
+        out.push(T::select(found, geom, -T::ONE));
+        out.push(hit.distance);
+        out.extend(hit.normal.to_array());
+    }
+}
+
+/// Appends the height of a height field's surface, in the world, over each of some places (x, y). With a frame these are from its
+/// position, along its x axis as seen from above.
+#[kernel]
+pub(crate) fn sample<T: Real>(
+    geoms: Geoms<'_, T>,
+    geom: usize,
+    frame: Option<FrameObject>,
+    places: &[T],
+    out: &mut Vec<T>,
+) {
+    let frames = Frames::of(geoms);
+    let (mut origin, mut ahead) = (Vec3::ZERO, Vec3::new(T::ONE, T::ZERO, T::ZERO));
+    if let Some(frame) = frame {
+        origin = frames.position(frame);
+        let x = frames.rotation(frame).column(0);
+        ahead = Vec3::new(x.x, x.y, T::ZERO).normalize().0;
+    }
+    let pose = geoms.pose(geom);
+    for place in places.chunks_exact(2) {
+        let (along, across) = (place[0], place[1]);
+        let world = Vec3::new(
+            origin.x + ahead.x * along - ahead.y * across,
+            origin.y + ahead.y * along + ahead.x * across,
+            pose.position.z,
+        );
+        let mut local = pose.rotation.transpose_mul(world - pose.position);
+        if let Asset::HeightField(field) = geoms.model.asset(geom) {
+            for lane in 0..T::LANES {
+                let (x, y) = (local.x.lane(lane).to_f64(), local.y.lane(lane).to_f64());
+                local
+                    .z
+                    .set_lane(lane, T::Scalar::new(field.height_at(x, y)));
+            }
+        }
+        out.push((pose.position + pose.rotation * local).z);
+    }
+}
