@@ -4,52 +4,58 @@
 //! triangle on, each takes in its neighbours whose corners are all near to its plane; a face's own plane is then laid
 //! through the farthest vertex along its normal, so that no vertex is beyond it.
 
+use super::lists::Lists;
 use super::sectors::Sectors;
 use super::surface::{MeshEdge, edges};
-use super::{Crease, FEW_FACES, Hull, HullSurface, Lists};
+use super::{Crease, FEW_FACES, Hull, HullSurface};
 use clench_math::Vec3;
 
 /// Corners within this part of the hull's size of a plane are in it: some ulps of the 24 bits in files.
 const COPLANAR: f64 = 1e-6;
 const NONE: u32 = u32::MAX;
 
-pub(super) fn build(surface: &HullSurface, points: &[Vec3<f64>]) -> Hull {
-    assert!(points.len() >= surface.point_count());
-    let (vertices, triangles) = compact(surface, points);
-    let sum = vertices.iter().fold(Vec3::ZERO, |sum, &v| sum + v);
-    let center = sum * (1.0 / vertices.len() as f64);
-    let edges = edges(&triangles);
-    let (faces, face_of) = merge(&vertices, &triangles, &edges, center);
-
-    let mut hull = Hull {
-        neighbors: neighbors(vertices.len(), &edges),
-        vertex_faces: faces_at(vertices.len(), &triangles, &face_of),
-        corners: Lists::default(),
-        normals: Vec::new(),
-        offsets: Vec::new(),
-        creases: Vec::new(),
-        center,
-        vertices,
-        sectors: Sectors::default(),
-    };
-    hull.sectors = Sectors::new(&hull.vertices, &hull.neighbors, |direction, near| {
-        hull.climb(direction, near)
-    });
-    for corners in faces {
-        let normal = newell(&hull.vertices, &corners).normalize().0;
-        let farthest = hull.support(normal);
-        hull.offsets.push(hull.vertices[farthest].dot(normal));
-        hull.normals.push(normal);
-        hull.corners.push(corners);
-    }
-    if hull.normals.len() <= FEW_FACES {
-        let creases = edges.iter().filter_map(|edge| hull.crease(edge, &face_of));
-        hull.creases = creases.collect();
-    }
-    hull
-}
-
 impl Hull {
+    /// A surface whose points have moved by an affine map, such as a scale and a turn: `points` are those that the surface
+    /// was found from, where they are now. A map that mirrors is allowed.
+    ///
+    /// # Panics
+    /// Where `points` are fewer than those that the surface was found from.
+    pub fn new(surface: &HullSurface, points: &[Vec3<f64>]) -> Self {
+        assert!(points.len() >= surface.point_count());
+        let (vertices, triangles) = compact(surface, points);
+        let sum = vertices.iter().fold(Vec3::ZERO, |sum, &v| sum + v);
+        let center = sum * (1.0 / vertices.len() as f64);
+        let edges = edges(&triangles);
+        let (faces, face_of) = merge(&vertices, &triangles, &edges, center);
+
+        let mut hull = Hull {
+            neighbors: neighbors(vertices.len(), &edges),
+            vertex_faces: faces_at(vertices.len(), &triangles, &face_of),
+            corners: Lists::default(),
+            normals: Vec::new(),
+            offsets: Vec::new(),
+            creases: Vec::new(),
+            center,
+            vertices,
+            sectors: Sectors::default(),
+        };
+        hull.sectors = Sectors::new(&hull.vertices, &hull.neighbors, |direction, near| {
+            hull.climb(direction, near)
+        });
+        for corners in faces {
+            let normal = newell(&hull.vertices, &corners).normalize().0;
+            let farthest = hull.support(normal);
+            hull.offsets.push(hull.vertices[farthest].dot(normal));
+            hull.normals.push(normal);
+            hull.corners.push(corners);
+        }
+        if hull.normals.len() <= FEW_FACES {
+            let creases = edges.iter().filter_map(|edge| hull.crease(edge, &face_of));
+            hull.creases = creases.collect();
+        }
+        hull
+    }
+
     /// An edge between triangles, if it is one between faces.
     fn crease(&self, edge: &MeshEdge, face_of: &[u32]) -> Option<Crease> {
         let faces = [edge.left, edge.right].map(|triangle| face_of[triangle] as usize);

@@ -20,12 +20,16 @@
 //! # Ok::<(), clench_collide::HullError>(())
 //! ```
 
+mod error;
 mod faces;
+mod lists;
 mod quickhull;
 mod sectors;
 
 mod surface;
 
+pub use error::HullError;
+use lists::Lists;
 pub use surface::{HullSurface, convex_hull};
 
 use clench_math::Vec3;
@@ -35,39 +39,6 @@ use std::fmt;
 
 /// A face counts as lying across a direction up to this tilt (5°).
 pub(crate) const FACE_COSINE: f64 = 0.996;
-
-/// Points that have no hull with an inside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum HullError {
-    /// Fewer than four points.
-    #[error("a convex hull needs at least four points, not {0}")]
-    TooFew(usize),
-    /// More points than can be numbered.
-    #[error("{0} points are too many for a convex hull")]
-    TooMany(usize),
-    /// A coordinate that is not finite or beyond 1e60 m.
-    #[error("point {0} has a coordinate that is not a number, or too large")]
-    NotFinite(usize),
-    /// All points coincide.
-    #[error("all points coincide: they have no convex hull (a small sphere may serve instead)")]
-    Point,
-    /// All points lie on a line.
-    #[error(
-        "all points lie on a line: they have no convex hull (a thin capsule may serve instead)"
-    )]
-    Line,
-    /// All points lie in a plane.
-    #[error(
-        "all points lie in a plane: their convex hull has no volume (a plane or a thin box may serve instead)"
-    )]
-    Plane,
-    /// Fewer than four vertices were allowed.
-    #[error("a convex hull has at least four vertices, but only {0} are allowed")]
-    Bound(usize),
-    /// The surface found is not closed.
-    #[error("the convex hull is not closed: please report the points")]
-    Broken,
-}
 
 /// A convex polyhedron about its own origin.
 ///
@@ -110,15 +81,6 @@ pub(crate) struct Crease {
 }
 
 impl Hull {
-    /// A surface whose points have moved by an affine map, such as a scale and a turn: `points` are those that the surface
-    /// was found from, where they are now. A map that mirrors is allowed.
-    ///
-    /// # Panics
-    /// Where `points` are fewer than those that the surface was found from.
-    pub fn new(surface: &HullSurface, points: &[Vec3<f64>]) -> Self {
-        faces::build(surface, points)
-    }
-
     /// Corners, m.
     pub fn vertices(&self) -> &[Vec3<f64>] {
         &self.vertices
@@ -234,34 +196,5 @@ impl fmt::Debug for Hull {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (vertices, faces) = (self.vertices.len(), self.face_count());
         write!(f, "Hull of {vertices} vertices and {faces} faces")
-    }
-}
-
-/// Lists of numbers, one after the other.
-#[derive(Clone, PartialEq)]
-struct Lists {
-    /// Where each list begins, and where the last ends.
-    starts: Vec<u32>,
-    items: Vec<u32>,
-}
-
-impl Default for Lists {
-    fn default() -> Self {
-        Lists {
-            starts: vec![0],
-            items: Vec::new(),
-        }
-    }
-}
-
-impl Lists {
-    fn push(&mut self, list: impl IntoIterator<Item = u32>) {
-        self.items.extend(list);
-        self.starts.push(self.items.len() as u32);
-    }
-
-    #[inline]
-    fn get(&self, index: usize) -> &[u32] {
-        &self.items[self.starts[index] as usize..self.starts[index + 1] as usize]
     }
 }

@@ -6,7 +6,7 @@
 //! always form a disk and the surface stays closed and convex, however thin or fine it is. Distances, which are rounded, only
 //! choose the order.
 
-use super::HullError;
+use super::error::HullError;
 use clench_math::Vec3;
 use robust::{Coord3D, orient3d};
 

@@ -5,7 +5,7 @@
 //! farther along all corners, it is so along all directions between them. Vertices without such a neighbor are the sector's
 //! candidates; they hang together, so walking finds them.
 
-use super::Lists;
+use super::lists::Lists;
 use clench_math::Vec3;
 
 /// Of more candidates than this one is kept, to climb from.

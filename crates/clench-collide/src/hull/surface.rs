@@ -1,6 +1,6 @@
 //! Which points are on a hull, and in which triangles.
 
-use super::HullError;
+use super::error::HullError;
 use super::quickhull::{side, triangles};
 use clench_math::Vec3;
 

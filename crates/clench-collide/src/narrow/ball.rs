@@ -1,6 +1,7 @@
 //! Two balls, and the pairs that come down to two balls: sphere–sphere and sphere–capsule.
 
-use super::{Placed, segment::Segment};
+use super::placed::Placed;
+use super::segment::Segment;
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Vec3, kernel};
 

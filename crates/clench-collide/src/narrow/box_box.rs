@@ -8,11 +8,10 @@
 //! Where the boxes are apart the axis tells their distance only if a corner is over a face; else the nearest points of the
 //! two are found as for any convex shapes.
 
-use super::{
-    Placed, convex,
-    per_lane::{Points, per_lane_where},
-    separating_axis::SeparatingAxis,
-};
+use super::convex;
+use super::per_lane::{Points, per_lane_where};
+use super::placed::Placed;
+use super::separating_axis::SeparatingAxis;
 use crate::{Contacts, Pose};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 

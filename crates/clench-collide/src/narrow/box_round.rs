@@ -4,7 +4,9 @@
 //! segment enters the box, no sphere on it tells how far the capsule must move to be free, and the general convex search
 //! does.
 
-use super::{Placed, convex, per_lane::per_lane_where};
+use super::convex;
+use super::per_lane::per_lane_where;
+use super::placed::Placed;
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 

@@ -3,7 +3,8 @@
 //! Boxes are apart if they are so along a face normal of either (Gottschalk, Lin & Manocha 1996; the nine cross products of edges
 //! would find few more). A sphere is its own bound.
 
-use super::{Placed, separating_axis::SeparatingAxis};
+use super::placed::Placed;
+use super::separating_axis::SeparatingAxis;
 use crate::{ShapeKind, allowance};
 use clench_math::{Real, Vec3};
 

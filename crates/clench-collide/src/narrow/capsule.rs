@@ -11,11 +11,9 @@
 //! parallel. Below an angle of 1e-4 (MuJoCo 4.0's limit) they count as parallel and touch at both ends of their overlap;
 //! where they do not overlap both contacts are the same, as in MuJoCo.
 
-use super::{
-    Placed,
-    ball::{Ball, across_axes, ball_ball},
-    segment::Segment,
-};
+use super::ball::{Ball, across_axes, ball_ball};
+use super::placed::Placed;
+use super::segment::Segment;
 use crate::Contacts;
 use clench_math::{Mask, Real, kernel};
 

@@ -1,11 +1,9 @@
 //! Sphere–cylinder and capsule–cylinder, from the signed distance of a point to a cylinder.
 
-use super::{
-    Placed,
-    ball::across_axes,
-    penetration::{deepest, penetration_depth},
-    segment::Segment,
-};
+use super::ball::across_axes;
+use super::penetration::{deepest, penetration_depth};
+use super::placed::Placed;
+use super::segment::Segment;
 use crate::{ContactPoint, Contacts};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 

@@ -13,6 +13,7 @@ mod cylinder;
 mod outline;
 mod penetration;
 mod per_lane;
+mod placed;
 mod plane;
 mod plane_mesh;
 mod polygon;
@@ -21,14 +22,8 @@ mod separating_axis;
 
 use crate::{Contacts, Pose, Shape, ShapeKind};
 use clench_math::{Real, kernel};
+use placed::Placed;
 pub use separating_axis::SeparatingAxis;
-
-/// A shape where it is.
-#[derive(Clone, Copy)]
-struct Placed<'a, T> {
-    shape: &'a Shape<'a, T>,
-    pose: &'a Pose<T>,
-}
 
 /// Whether [`collide`] knows the pair, given in either order.
 pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {

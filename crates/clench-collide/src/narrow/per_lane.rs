@@ -1,6 +1,6 @@
 //! Pairs whose decisions branch too much for lanes: each lane is computed on its own, in scalar code.
 
-use super::Placed;
+use super::placed::Placed;
 use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, Shape, frame_from_normal};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Mat3, Real, Vec3};

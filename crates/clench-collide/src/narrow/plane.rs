@@ -1,6 +1,6 @@
 //! Everything that can lie on a plane. The plane is first, so normals point out of it.
 
-use super::Placed;
+use super::placed::Placed;
 use crate::{ContactPoint, Contacts, frame_along, frame_from_normal};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 

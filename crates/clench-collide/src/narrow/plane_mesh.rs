@@ -4,13 +4,11 @@
 //! [`Outline`]). If there are fewer points than there is room for, other vertices within the margin around the deepest one:
 //! the vertices of a hull on one side of a plane hang together, so walking over neighbours finds them.
 
-use super::{
-    Placed,
-    convex::MAX_CORNERS,
-    outline::Outline,
-    per_lane::{Point, Points, per_lane_where},
-    polygon::Polygon,
-};
+use super::convex::MAX_CORNERS;
+use super::outline::Outline;
+use super::per_lane::{Point, Points, per_lane_where};
+use super::placed::Placed;
+use super::polygon::Polygon;
 use crate::shape::reach_along;
 use crate::{Asset, Contacts, Hull, PATCH_POINTS, allowance};
 use arrayvec::ArrayVec;

@@ -1,6 +1,6 @@
 //! The middle line of a capsule.
 
-use super::Placed;
+use super::placed::Placed;
 use clench_math::{Real, Vec3};
 
 /// The points center + t axis with |t| ≤ half length.

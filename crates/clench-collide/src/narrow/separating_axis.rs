@@ -5,7 +5,7 @@
 //! It is believed only where it exceeds the margin by more than a search may be wrong: so an old direction saves a search that would have
 //! found nothing, and changes no result.
 
-use super::Placed;
+use super::placed::Placed;
 use crate::shape::reach_along;
 use crate::{Asset, Hull, ShapeKind, bounding_radius};
 use clench_math::{Mask, Real, Scalar, Vec3};

@@ -1,6 +1,6 @@
 //! The part of a line within a convex body.
 
-use super::Line;
+use super::line::Line;
 use clench_math::{Real, Scalar, Vec3};
 
 /// Where a line enters and leaves, and the normals out of the body there. It misses where it would leave before it enters.

@@ -1,6 +1,7 @@
 //! Rays against planes, boxes and hulls.
 
-use super::{Line, chord::Chord};
+use super::chord::Chord;
+use super::line::Line;
 use crate::Hull;
 use clench_math::{Real, Vec3};
 

@@ -1,6 +1,7 @@
 //! Rays against spheres, capsules, ellipsoids and cylinders. The normals of missed shapes mean nothing.
 
-use super::{Line, chord::Chord};
+use super::chord::Chord;
+use super::line::Line;
 use clench_math::{Real, Vec3};
 
 #[inline(always)]

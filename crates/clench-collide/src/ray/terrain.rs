@@ -4,7 +4,8 @@
 //! and below where it leaves has hit the surface in between; and since neighbours agree about their common edge, no ray slips
 //! through. A ray passes at most as many cells as there are rows and columns.
 
-use super::{Line, chord::Chord};
+use super::chord::Chord;
+use super::line::Line;
 use crate::HeightField;
 use clench_math::Vec3;
 

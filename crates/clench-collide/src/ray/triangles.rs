@@ -3,7 +3,8 @@
 //! A ray and a triangle are sheared so that the ray is the z axis; then the signs of three areas say on which side of each edge
 //! the ray passes, the same for both triangles at an edge: no ray slips between them (Woop, Benthin & Wald 2013).
 
-use super::{Hit, Line, Ray, each_lane};
+use super::each_lane;
+use super::line::{Hit, Line, Ray};
 use crate::Pose;
 use clench_math::{Real, Vec3, kernel};
 

@@ -1,7 +1,8 @@
 //! Meshes that a model asks for by name and parameters, MJCF's `builtin`: points and triangles as MuJoCo makes them, with 24 bits
 //! a coordinate.
 
-use super::{Triangles, bytes};
+use super::bytes;
+use super::triangles::Triangles;
 use crate::spending::Spending;
 use clench_math::Vec3;
 use std::collections::HashMap;

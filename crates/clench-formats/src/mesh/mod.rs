@@ -7,17 +7,10 @@ pub(crate) mod builtin;
 mod msh;
 mod obj;
 mod stl;
+mod triangles;
 
 use clench_math::Vec3;
-
-/// What a mesh file holds.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Triangles {
-    /// Vertices, in the file's unit, each finite.
-    pub vertices: Vec<Vec3<f64>>,
-    /// Triangles; none for a cloud of points.
-    pub faces: Vec<[u32; 3]>,
-}
+pub(crate) use triangles::Triangles;
 
 /// What a mesh takes in all, bytes: in the builder, in the model, as a hull, and in a tree for rays.
 pub(crate) fn bytes(vertices: usize, faces: usize) -> u64 {
@@ -83,17 +76,4 @@ fn check(found: &Triangles) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// The numbers of a run of little-endian bytes.
-fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> {
-    let words = bytes.as_chunks::<4>().0;
-    words.iter().copied().map(f32::from_le_bytes)
-}
-
-/// Points from their coordinates, one after the other.
-fn points(coordinates: impl Iterator<Item = f32>) -> Vec<Vec3<f64>> {
-    let coordinates: Vec<f64> = coordinates.map(f64::from).collect();
-    let (points, _) = coordinates.as_chunks::<3>();
-    points.iter().copied().map(Vec3::from_array).collect()
 }

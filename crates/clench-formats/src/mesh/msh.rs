@@ -1,7 +1,7 @@
 //! MSH, MuJoCo's old binary format: four counts (vertices, normals, texture coordinates, faces), then three `f32` a vertex, three a
 //! normal, two a texture coordinate, three `i32` a face.
 
-use super::{Triangles, floats, points};
+use super::triangles::{Triangles, floats, points};
 
 /// Bytes of the four counts.
 const HEADER: u64 = 16;

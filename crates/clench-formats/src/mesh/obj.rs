@@ -3,7 +3,7 @@
 //! All vertices of the file count towards the hull, but only the faces of its first object or group. Quadrilaterals are split along
 //! their shorter diagonal, larger polygons by clipping ears.
 
-use super::Triangles;
+use super::triangles::Triangles;
 use clench_math::Vec3;
 use earcut::{Earcut, utils3d::project3d_to_2d};
 

@@ -1,6 +1,6 @@
 //! STL, binary or text. Corners with the same bits are one vertex.
 
-use super::{Triangles, points};
+use super::triangles::{Triangles, points};
 use std::io::Cursor;
 
 /// What a binary file begins with: 80 bytes to please, then the number of triangles.

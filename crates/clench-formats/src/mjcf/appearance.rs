@@ -1,7 +1,7 @@
 //! How elements look: colours, materials, and which of them geoms have.
 
 use super::document::Element;
-use super::entries;
+use super::sections::entries;
 use crate::LoadError;
 use clench_rigid::builder::{AppearanceSpec, MaterialSpec};
 use clench_rigid::model::Material;

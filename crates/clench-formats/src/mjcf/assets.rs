@@ -1,8 +1,9 @@
 //! `<asset>`: meshes and height fields. Who names a material must name one that exists.
 
 use super::document::Element;
+use super::sections::{entries, sections};
 use super::source::Sources;
-use super::{entries, hfield, schema, sections};
+use super::{hfield, schema};
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_rigid::builder::ModelBuilder;

@@ -1,7 +1,8 @@
 //! `<custom>`: what a file keeps for its user's program.
 
 use super::document::Element;
-use super::{entries, schema};
+use super::schema;
+use super::sections::entries;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_rigid::model::{Custom, TupleEntry};

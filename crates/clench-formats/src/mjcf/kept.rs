@@ -1,7 +1,7 @@
 //! Bodies that elements which move nothing name: MuJoCo does not fuse them into others.
 
 use super::document::Element;
-use super::entries;
+use super::sections::entries;
 use clench_rigid::builder::BodySpec;
 use std::collections::HashSet;
 

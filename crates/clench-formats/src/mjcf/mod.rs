@@ -30,6 +30,7 @@ pub(crate) mod orientation;
 mod relations;
 mod rules;
 pub(crate) mod schema;
+mod sections;
 mod sensor;
 mod shortcut;
 mod site;
@@ -40,8 +41,10 @@ mod transmission;
 mod visual;
 mod write;
 
+pub use crate::mjcf::write::SaveError;
+use sections::sections;
 pub use support::{Support, supported};
-pub use write::{SaveError, SaveModel};
+pub use write::SaveModel;
 
 use crate::LoadError;
 use crate::document::{self, Element};
@@ -69,18 +72,6 @@ pub(crate) fn read(
     let composed = compose::compose(root, path, ignore_unsupported, spending)?;
     assets::check_materials(&composed.root)?;
     read_model(&composed, spending)
-}
-
-/// The sections of a kind, in order.
-fn sections<'a>(root: &'a Element, tag: &str) -> impl Iterator<Item = &'a Element> {
-    root.children
-        .iter()
-        .filter(move |section| section.tag == tag)
-}
-
-/// The elements in all sections of a kind.
-fn entries<'a>(root: &'a Element, tag: &str) -> impl Iterator<Item = &'a Element> {
-    sections(root, tag).flat_map(|section| &section.children)
 }
 
 fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuilder, LoadError> {

@@ -2,9 +2,10 @@
 
 use super::defaults::MAIN;
 use super::document::Element;
+use super::sections::{entries, sections};
 use super::shortcut::Shortcut;
 use super::source::Sources;
-use super::{contact, entries, equality, keyframe, sections, sensor, tendon};
+use super::{contact, equality, keyframe, sensor, tendon};
 use crate::LoadError;
 use clench_rigid::builder::{ActuatorSpec, ModelBuilder, TendonSpec};
 use clench_rigid::model::SensorKind;

@@ -4,9 +4,10 @@
 //! tables are [`rules`](super::rules).
 
 use super::document::Element;
-use super::rules::{Rule, rules};
+use super::rules::rules;
 use super::sensor;
 use crate::LoadError;
+use crate::mjcf::rules::Rule;
 use clench_rigid::model::SensorKind;
 
 /// Attributes that an element has in the model, but not in a default class.

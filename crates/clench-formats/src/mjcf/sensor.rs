@@ -2,8 +2,8 @@
 
 use super::actuator::read_history;
 use super::document::Element;
-use super::rules::{NONE, Rule};
 use crate::LoadError;
+use crate::mjcf::rules::{NONE, Rule};
 use clench_rigid::builder::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, HistorySpec, SensorSpec,
     SensorSubject,

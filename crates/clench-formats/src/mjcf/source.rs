@@ -5,7 +5,7 @@ use super::compiler::{self, CompilerOptions};
 use super::defaults::Classes;
 use super::document::Element;
 use super::files::Files;
-use super::sections;
+use super::sections::sections;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_rigid::builder::CompilerSpec;

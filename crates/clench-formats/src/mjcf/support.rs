@@ -1,7 +1,8 @@
 //! What of MJCF is read, for users and for tests that must reach all of it.
 
-use super::rules::{Rule, rules};
+use super::rules::rules;
 use super::sensor;
+use crate::mjcf::rules::Rule;
 use clench_rigid::model::SensorKind;
 use std::borrow::Cow;
 

@@ -2,7 +2,7 @@
 
 use super::appearance::{read_material, set};
 use super::document::Element;
-use super::entries;
+use super::sections::entries;
 use super::source::Sources;
 use crate::LoadError;
 use crate::spending::Spending;

@@ -1,6 +1,6 @@
 //! `<collision>` and `<visual>`: shapes on links, and `<material>`, which may make them invisible to rays.
 
-use super::charge;
+use super::element::charge;
 use super::meshes::Meshes;
 use crate::LoadError;
 use crate::document::Element;

@@ -1,8 +1,8 @@
 //! `<joint>`: where a link stands on its parent, and how it moves there.
 
+use super::element::{charge, inside};
 use super::geometry::read_origin;
 use super::tree::Tree;
-use super::{charge, inside};
 use crate::LoadError;
 use crate::document::Element;
 use crate::spending::Spending;

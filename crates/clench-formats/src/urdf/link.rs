@@ -1,8 +1,8 @@
 //! `<link>`: a body with its mass and shapes.
 
+use super::element::{charge, inside};
 use super::geometry::{GeomReader, read_origin};
 use super::tree::Link;
-use super::{charge, inside};
 use crate::LoadError;
 use crate::document::Element;
 use crate::spending::Spending;

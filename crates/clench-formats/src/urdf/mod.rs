@@ -5,6 +5,7 @@
 //! element that is read is noted. Text keeps its place in the file, which is why our own tree of elements is read
 //! ([`document`](crate::document)).
 
+mod element;
 mod geometry;
 mod hints;
 mod joint;
@@ -54,51 +55,4 @@ pub(crate) fn read(
     joint::read_all(&tree, &mut builder, spending)?;
     builder.meshes = geoms.meshes.found;
     Ok(builder)
-}
-
-impl Element {
-    /// The only child of that name.
-    ///
-    /// # Errors
-    /// More than one.
-    fn child(&self, tag: &str) -> Result<Option<&Element>, LoadError> {
-        let mut found = self.children.iter().filter(|child| child.tag == tag);
-        let first = found.next();
-        match found.next() {
-            Some(second) => Err(second.error(format!("there can be only one in {}", self.label()))),
-            None => Ok(first),
-        }
-    }
-
-    /// The only child of that name, which must be there.
-    fn required_child(&self, tag: &str) -> Result<&Element, LoadError> {
-        self.child(tag)?
-            .ok_or_else(|| self.error(format!("the element <{tag}> is required")))
-    }
-}
-
-/// An error inside of a link or joint, which says so.
-fn inside(outer: &Element) -> impl Fn(LoadError) -> LoadError {
-    let label = outer.label();
-    move |mut error| {
-        error.element = error.element.map(|element| match element == label {
-            true => element,
-            false => format!("{element} of {label}"),
-        });
-        error
-    }
-}
-
-/// Takes the memory of an element of this size with these texts.
-fn charge(
-    element: &Element,
-    size: usize,
-    texts: &[&str],
-    spending: &mut Spending,
-) -> Result<(), LoadError> {
-    /// What is read stands in the builder, in that of the fused bodies, then in the model.
-    const COPIES: usize = 4;
-    let texts: usize = texts.iter().map(|text| text.len()).sum();
-    let charged = spending.bytes((COPIES * (size + texts)) as u64);
-    charged.map_err(|excess| element.error(excess))
 }

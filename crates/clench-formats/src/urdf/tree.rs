@@ -51,7 +51,7 @@ impl<'a> Tree<'a> {
         let mut joints = Vec::new();
         let mut above: Vec<Option<usize>> = vec![None; links.len()];
         for element in children(root, "joint") {
-            let joint = read_joint(element, &names).map_err(super::inside(element))?;
+            let joint = read_joint(element, &names).map_err(super::element::inside(element))?;
             let child = links[joint.child];
             if above[joint.child].is_some() {
                 let message = format!("{} has a parent already", child.label());

@@ -1,29 +1,17 @@
 //! What of a body lies against a plane: a face, an edge or a corner.
 
 use super::body::{Body, radial_direction};
+use super::corners::{EDGE_SINE, Feature, MAX_CORNERS, most_level};
 use crate::{Hull, ShapeKind, hull::FACE_COSINE};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// Most corners of a feature. A face of a hull that has more is represented by every second, third, ... of them and the furthest one.
-pub(crate) const MAX_CORNERS: usize = 24;
-/// An edge counts as lying against the plane up to this tilt (5°), as a face does.
-const EDGE_SINE: f64 = 0.087;
 /// How much further than the others, as a share of its body, a corner must be to count, which would not be among those looked at.
 const NOTICEABLE: f64 = 1e-7;
 /// Faces tilted by less are level.
 const LEVEL: f64 = 2e-3;
 /// A cap tilted by less is level to rounding: all its corners are equally deep.
 const TILT: f64 = 5e-6;
-
-/// A face, counter-clockwise seen from outside, an edge (two corners) or a corner of a core.
-pub(super) struct Feature<S> {
-    pub corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
-    /// The outward normal of a face.
-    pub normal: Vec3<S>,
-    /// The radius of a round cap about the z axis, which its corners only stand for.
-    pub radius: Option<S>,
-}
 
 impl<S: Scalar> Feature<S> {
     /// The feature of a body that is furthest along the unit direction `d`, in the body's frame. Its corners come in an order that
@@ -148,25 +136,6 @@ impl<S: Scalar> Feature<S> {
             ));
         }
     }
-}
-
-/// Of the edges from a corner to some ends, which are numbered, the one that is most nearly level across the unit direction `d`,
-/// if one is level enough.
-pub(super) fn most_level<S: Scalar>(
-    corner: Vec3<S>,
-    ends: impl Iterator<Item = (usize, Vec3<S>)>,
-    d: Vec3<S>,
-) -> Option<(usize, Vec3<S>)> {
-    // The rise and the length of the best edge, squared: its sine is their quotient's root.
-    let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
-    for (number, end) in ends {
-        let edge = end - corner;
-        let (rise, length) = (edge.dot(d).squared(), edge.norm_squared());
-        if rise * best.1 <= best.0 * length {
-            best = (rise, length, Some((number, end)));
-        }
-    }
-    best.2
 }
 
 /// Sixteen directions round a circle.

@@ -3,6 +3,7 @@
 
 mod body;
 mod clipping;
+mod corners;
 mod cylinder_polyhedron;
 mod cylinders;
 mod ellipse;
@@ -18,16 +19,14 @@ mod refine;
 mod simplex;
 mod terrain;
 
-use super::{
-    Placed,
-    boxes::boxes_near,
-    per_lane::{Points, per_lane_where},
-    separating_axis::SeparatingAxis,
-};
+use super::boxes::boxes_near;
+use super::per_lane::{Points, per_lane_where};
+use super::placed::Placed;
+use super::separating_axis::SeparatingAxis;
 use crate::{Contacts, ShapeKind};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
+pub(super) use corners::MAX_CORNERS;
 use epa::epa;
-pub(super) use feature::MAX_CORNERS;
 use gjk::{Cores, gjk};
 use pair::{Gap, Pair};
 use patch::patch;

@@ -5,7 +5,7 @@
 //! bodies is the largest gap. Its gradient on the sphere is the part of w across n, its Hessian there −(H_A + H_B + g 1).
 
 use super::body::Body;
-use crate::narrow::Placed;
+use crate::narrow::placed::Placed;
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 

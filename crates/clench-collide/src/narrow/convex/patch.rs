@@ -3,19 +3,15 @@
 //! At each corner of the overlap the contact's distance is the difference of the features' heights. For many corners stand
 //! a few points on the outline (see [`Outline`]), and the deepest.
 
-use super::{
-    clipping::ProjectedFeature,
-    feature::Feature,
-    pair::{Gap, Pair, Vertex, across},
-    simplex::Simplex,
-};
+use super::clipping::ProjectedFeature;
+use super::corners::Feature;
+use super::pair::{Gap, Pair, Vertex, across};
+use super::simplex::Simplex;
 use crate::PATCH_POINTS;
-use crate::narrow::{
-    Placed,
-    outline::Outline,
-    per_lane::{Point, Points},
-    polygon::{CAPACITY, Polygon},
-};
+use crate::narrow::outline::Outline;
+use crate::narrow::per_lane::{Point, Points};
+use crate::narrow::placed::Placed;
+use crate::narrow::polygon::{CAPACITY, Polygon};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 

@@ -1,6 +1,6 @@
 //! A triangle of terrain with the ground below it: a convex body of six corners.
 
-use super::feature::{Feature, most_level};
+use super::corners::{Feature, most_level};
 use crate::hull::FACE_COSINE;
 use clench_math::{Scalar, Vec3};
 

@@ -1,102 +1,16 @@
 //! `<attach>`: a body, a frame or the whole world of another model, or a body or frame of this one.
 
+use super::composer::{Composer, Level, check_depth};
+use super::models::Part;
 use super::names::Namespace;
 use super::relations::{FOLLOWING, follows};
 use super::replicate::drop_inertia;
 use super::settings::Settings;
-use super::{Composer, Level, Shared, check_depth, compose_model};
 use crate::LoadError;
 use crate::mjcf::compiler::Conflict;
-use crate::mjcf::document::{self, Element};
-use crate::mjcf::include::Includes;
-use crate::mjcf::{schema, sections};
-use std::path::Path;
-use std::sync::Arc;
-
-/// Deepest nesting of models in models.
-const MAX_NESTING: usize = 50;
-
-/// A model that can be attached: all of it, and its options.
-struct Part {
-    root: Element,
-    settings: Settings,
-}
-
-/// The models that a model can attach, by name, in the order in which they are written.
-#[derive(Default)]
-pub(super) struct Models(Vec<(String, Part)>);
-
-impl Models {
-    /// Reads the `<model>`s among the assets of a model.
-    ///
-    /// # Errors
-    /// Where one cannot be read, is no MJCF, or is one of the models that this one is attached to.
-    pub(super) fn read(root: &Element, shared: &mut Shared) -> Result<Self, LoadError> {
-        let mut models = Models::default();
-        let assets = sections(root, "asset").flat_map(|section| &section.children);
-        for element in assets.filter(|asset| asset.tag == "model") {
-            let model = read_model(element, shared)?;
-            let name = element.text("name").or_else(|| model.root.text("model"));
-            let name = name.unwrap_or("MuJoCo Model").to_owned();
-            models.0.push((name, model));
-        }
-        Ok(models)
-    }
-
-    fn find(&self, name: &str) -> Option<&Part> {
-        let found = self.0.iter().find(|(known, _)| known == name);
-        found.map(|(_, model)| model)
-    }
-}
-
-/// Reads the model that an element names, with all that it attaches itself.
-fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError> {
-    let name = element.required_text("file")?;
-    check_type(element, name)?;
-    let directory = &shared.sources.of(element).files.model_directory;
-    let path = directory.join(name.replace('\\', "/"));
-    let unreadable =
-        |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
-    let identity = shared.spending.identity(&path).map_err(unreadable)?;
-    if let Some(start) = shared.open.iter().position(|open| *open == identity) {
-        let chain = shared.open[start..].iter().chain([&identity]);
-        let chain: Vec<String> = chain.map(|file| file.display().to_string()).collect();
-        return Err(element.error(format!("the model attaches itself: {}", chain.join(" -> "))));
-    }
-    if shared.open.len() >= MAX_NESTING {
-        return Err(element.error(format!("models are nested more than {MAX_NESTING} deep")));
-    }
-    let bytes = shared.spending.read(&path).map_err(unreadable)?;
-    let mut root = document::parse(&bytes, &Arc::from(path.to_string_lossy()), shared.spending)?;
-    match root.tag.as_str() {
-        "mujoco" => {}
-        "robot" => return Err(element.error("attaching URDF is not supported yet")),
-        _ => return Err(root.error("the root element of a model is <mujoco>")),
-    }
-    let directory = path.parent().unwrap_or(Path::new(""));
-    Includes::new(Some(&path), shared.spending).expand(&mut root, directory, shared.spending)?;
-    shared.check(&mut root)?;
-    shared.open.push(identity);
-    let settings = compose_model(&mut root, directory, shared)?;
-    shared.open.pop();
-    Ok(Part { root, settings })
-}
-
-/// Refuses what is no MJCF by what the element says of it, or by its name.
-fn check_type(element: &Element, name: &str) -> Result<(), LoadError> {
-    let known = match element.text("content_type") {
-        Some(media_type) => ["text/xml", "application/xml"].contains(&media_type),
-        None => Path::new(name).extension().is_some_and(|extension| {
-            ["xml", "mjcf", "urdf"]
-                .iter()
-                .any(|known| extension.eq_ignore_ascii_case(known))
-        }),
-    };
-    match known {
-        true => Ok(()),
-        false => Err(element.error("a model's file is MJCF: \".xml\", or content_type text/xml")),
-    }
-}
+use crate::mjcf::document::Element;
+use crate::mjcf::schema;
+use crate::mjcf::sections::sections;
 
 impl Composer<'_, '_> {
     /// What stands in place of an `<attach>`, inside of these elements.

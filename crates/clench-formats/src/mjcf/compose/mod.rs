@@ -5,21 +5,27 @@
 //! settings.
 
 mod attach;
+mod composer;
+mod models;
 mod names;
 mod relations;
 mod replicate;
 mod settings;
+mod shared;
 
-use super::document::{self, Element, MAX_DEPTH};
-use super::leave_out::leave_out;
-use super::schema;
+use super::document::{self, Element};
+use super::include::Includes;
 use super::source::Sources;
 use crate::LoadError;
+use crate::mjcf::sections::sections;
 use crate::spending::Spending;
-use attach::Models;
+use composer::Composer;
+use models::{Models, Part};
 use names::Names;
 use settings::Settings;
-use std::path::{Path, PathBuf};
+use shared::Shared;
+use std::path::Path;
+use std::sync::Arc;
 
 /// A model of several files made into one, and how to read its elements.
 #[derive(Debug)]
@@ -61,45 +67,6 @@ pub(crate) fn compose(
     })
 }
 
-/// What all models of a composition share.
-struct Shared<'a> {
-    sources: Sources,
-    spending: &'a mut Spending,
-    /// The files of the models that are being read, the outermost first.
-    open: Vec<PathBuf>,
-    notes: Vec<String>,
-    /// What was left out because it is not supported yet, if it may be.
-    left_out: Option<Vec<String>>,
-}
-
-impl Shared<'_> {
-    /// Holds a document against the schema, after what can be left out is.
-    fn check(&mut self, root: &mut Element) -> Result<(), LoadError> {
-        if let Some(left_out) = &mut self.left_out {
-            leave_out(root, left_out);
-        }
-        schema::check(root)
-    }
-
-    /// Takes copies of an element and all in it, before they are made.
-    fn charge(&mut self, at: &Element, what: &Element) -> Result<(), LoadError> {
-        let (mut count, mut bytes, mut pending) = (0, 0, vec![what]);
-        while let Some(element) = pending.pop() {
-            let texts = element
-                .attributes
-                .iter()
-                .map(|(name, value)| name.len() + value.len());
-            let attributes = element.attributes.len() * size_of::<(String, String)>();
-            bytes += size_of::<Element>() + element.tag.len() + attributes + texts.sum::<usize>();
-            count += 1;
-            pending.extend(&element.children);
-        }
-        let excess = |excess| at.error(excess);
-        self.spending.elements(count).map_err(excess)?;
-        self.spending.bytes(bytes as u64).map_err(excess)
-    }
-}
-
 /// Replaces every attachment and replication in a model. Returns its options, with what they took from attached models.
 fn compose_model(
     root: &mut Element,
@@ -107,7 +74,7 @@ fn compose_model(
     shared: &mut Shared,
 ) -> Result<Settings, LoadError> {
     let source = shared.sources.add(root, directory, shared.spending)?;
-    let models = Models::read(root, shared)?;
+    let models = read_models(root, shared)?;
     let (options, others) = std::mem::take(&mut root.children)
         .into_iter()
         .partition(|section| section.tag == "option");
@@ -136,6 +103,22 @@ fn compose_model(
     Ok(settings)
 }
 
+/// Reads the `<model>`s among the assets of a model.
+///
+/// # Errors
+/// Where one cannot be read, is no MJCF, or is one of the models that this one is attached to.
+fn read_models(root: &Element, shared: &mut Shared) -> Result<Models, LoadError> {
+    let mut models = Models::default();
+    let assets = sections(root, "asset").flat_map(|section| &section.children);
+    for element in assets.filter(|asset| asset.tag == "model") {
+        let model = read_model(element, shared)?;
+        let name = element.text("name").or_else(|| model.root.text("model"));
+        let name = name.unwrap_or("MuJoCo Model").to_owned();
+        models.0.push((name, model));
+    }
+    Ok(models)
+}
+
 /// Takes the sections whose elements can be copied out of a model, each kind as one.
 fn take_lists(root: &mut Element) -> Vec<Element> {
     let kinds = relations::FOLLOWING.iter().chain(&["asset", "keyframe"]);
@@ -154,112 +137,54 @@ fn take_lists(root: &mut Element) -> Vec<Element> {
     lists
 }
 
-/// Expands the body tree of one model.
-struct Composer<'a, 's> {
-    models: Models,
-    /// The model's own settings.
-    source: usize,
-    names: Names,
-    settings: Settings,
-    /// Its sections outside the tree that can grow.
-    lists: Vec<Element>,
-    /// Those parts of the world that are expanded.
-    worlds: Vec<Element>,
-    shared: &'a mut Shared<'s>,
+/// Deepest nesting of models in models.
+pub(crate) const MAX_NESTING: usize = 50;
+
+/// Reads the model that an element names, with all that it attaches itself.
+fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError> {
+    let name = element.required_text("file")?;
+    check_type(element, name)?;
+    let directory = &shared.sources.of(element).files.model_directory;
+    let path = directory.join(name.replace('\\', "/"));
+    let unreadable =
+        |error: String| element.error(format!("cannot read \"{}\": {error}", path.display()));
+    let identity = shared.spending.identity(&path).map_err(unreadable)?;
+    if let Some(start) = shared.open.iter().position(|open| *open == identity) {
+        let chain = shared.open[start..].iter().chain([&identity]);
+        let chain: Vec<String> = chain.map(|file| file.display().to_string()).collect();
+        return Err(element.error(format!("the model attaches itself: {}", chain.join(" -> "))));
+    }
+    if shared.open.len() >= MAX_NESTING {
+        return Err(element.error(format!("models are nested more than {MAX_NESTING} deep")));
+    }
+    let bytes = shared.spending.read(&path).map_err(unreadable)?;
+    let mut root = document::parse(&bytes, &Arc::from(path.to_string_lossy()), shared.spending)?;
+    match root.tag.as_str() {
+        "mujoco" => {}
+        "robot" => return Err(element.error("attaching URDF is not supported yet")),
+        _ => return Err(root.error("the root element of a model is <mujoco>")),
+    }
+    let directory = path.parent().unwrap_or(Path::new(""));
+    Includes::new(Some(&path), shared.spending).expand(&mut root, directory, shared.spending)?;
+    shared.check(&mut root)?;
+    shared.open.push(identity);
+    let settings = compose_model(&mut root, directory, shared)?;
+    shared.open.pop();
+    Ok(Part { root, settings })
 }
 
-/// An element of the tree whose children are being expanded.
-struct Level {
-    element: Element,
-    left: std::vec::IntoIter<Element>,
-}
-
-impl Level {
-    fn new(mut element: Element) -> Self {
-        Level {
-            left: std::mem::take(&mut element.children).into_iter(),
-            element,
-        }
-    }
-}
-
-impl Composer<'_, '_> {
-    fn add_list_names(&mut self) {
-        for list in &self.lists {
-            for element in &list.children {
-                self.names.add(&list.tag, element);
-            }
-        }
-    }
-
-    fn list(&mut self, section: &str) -> &mut Vec<Element> {
-        let found = self.lists.iter().position(|list| list.tag == section);
-        &mut self.lists[found.unwrap_or_default()].children
-    }
-
-    /// Expands one `<worldbody>`.
-    fn expand(&mut self, world: Element) -> Result<(), LoadError> {
-        let mut open = vec![Level::new(world)];
-        while let Some(level) = open.last_mut() {
-            let Some(child) = level.left.next() else {
-                let Some(Level { element, .. }) = open.pop() else {
-                    break;
-                };
-                let expanded = match element.tag.as_str() {
-                    "replicate" => self.replicate(element)?,
-                    _ => vec![element],
-                };
-                match open.last_mut() {
-                    Some(around) => around.element.children.extend(expanded),
-                    None => self.worlds.extend(expanded),
-                }
-                continue;
-            };
-            self.names.add("worldbody", &child);
-            if child.tag == "attach" {
-                let attached = self.attach(&child, &open)?;
-                if let Some(around) = open.last_mut() {
-                    around.element.children.push(attached);
-                }
-            } else {
-                open.push(Level::new(child));
-            }
-        }
-        Ok(())
-    }
-
-    /// Copies the elements of a section that follow a part of the tree into a namespace.
-    fn copy_following(
-        &mut self,
-        at: &Element,
-        section: &str,
-        from: &[&Element],
-        namespace: &names::Namespace,
-    ) -> Result<Vec<usize>, LoadError> {
-        let mut copied = Vec::new();
-        for element in from {
-            let Some(copy) = relations::copy(section, element, namespace, &self.names) else {
-                continue;
-            };
-            self.shared.charge(at, &copy)?;
-            self.names.add(section, &copy);
-            let list = self.list(section);
-            copied.push(list.len());
-            list.push(copy);
-        }
-        Ok(copied)
-    }
-}
-
-/// Refuses a copy that would stand too deep.
-fn check_depth(at: &Element, around: usize, what: &Element) -> Result<(), LoadError> {
-    let (mut deepest, mut pending) = (0, vec![(what, around + 1)]);
-    while let Some((element, depth)) = pending.pop() {
-        deepest = deepest.max(depth);
-        pending.extend(element.children.iter().map(|child| (child, depth + 1)));
-    }
-    match deepest > MAX_DEPTH {
-        true => Err(at.error(document::too_deep())),
-        false => Ok(()),
+/// Refuses what is no MJCF by what the element says of it, or by its name.
+pub(crate) fn check_type(element: &Element, name: &str) -> Result<(), LoadError> {
+    let known = match element.text("content_type") {
+        Some(media_type) => ["text/xml", "application/xml"].contains(&media_type),
+        None => Path::new(name).extension().is_some_and(|extension| {
+            ["xml", "mjcf", "urdf"]
+                .iter()
+                .any(|known| extension.eq_ignore_ascii_case(known))
+        }),
+    };
+    match known {
+        true => Ok(()),
+        false => Err(element.error("a model's file is MJCF: \".xml\", or content_type text/xml")),
     }
 }

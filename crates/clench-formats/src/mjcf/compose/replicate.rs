@@ -1,6 +1,6 @@
 //! `<replicate>`: its content again and again, each time displaced once more and with its number in the names.
 
-use super::Composer;
+use super::composer::Composer;
 use super::names::{Kind, Namespace, kind_of};
 use super::relations::{FOLLOWING, concerns, follows, resolves};
 use crate::LoadError;

@@ -1,6 +1,6 @@
 //! Actuators.
 
-use super::{NONE, Rule, section};
+use super::rule::{NONE, Rule, section};
 
 pub(super) const RULES: &[Rule] = &[
     section(

@@ -1,6 +1,6 @@
 //! Assets.
 
-use super::{NONE, Rule, ignored, section};
+use super::rule::{NONE, Rule, ignored, section};
 
 pub(super) const RULES: &[Rule] = &[
     section("asset", "texture material mesh hfield skin model", ""),

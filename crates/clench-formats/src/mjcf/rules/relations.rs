@@ -1,6 +1,6 @@
 //! Sections that name elements of the tree, but for actuators.
 
-use super::{NONE, Rule, section};
+use super::rule::{NONE, Rule, section};
 
 pub(super) const RULES: &[Rule] = &[
     section("contact", "pair exclude", ""),

@@ -1,6 +1,6 @@
 //! The top level: compiler, options, defaults, keyframes, and what belongs to a user's program.
 
-use super::{NONE, Rule, ignored, section};
+use super::rule::{NONE, Rule, ignored, section};
 
 pub(super) const RULES: &[Rule] = &[
     Rule {

@@ -1,6 +1,6 @@
 //! The tree of bodies.
 
-use super::{NONE, Rule, ignored, section};
+use super::rule::{NONE, Rule, ignored, section};
 
 /// What stands in the world, a body, a frame or a replica.
 const IN_A_BODY: &str =

@@ -1,6 +1,6 @@
 //! What is only seen.
 
-use super::{NONE, Rule, ignored};
+use super::rule::{NONE, Rule, ignored};
 
 pub(super) const RULES: &[Rule] = &[
     Rule {

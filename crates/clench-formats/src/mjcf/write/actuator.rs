@@ -1,11 +1,10 @@
 //! Actuators, each as `<general>`.
 
+use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
-use super::{SaveError, body_name, label, named};
 use clench_rigid::Model;
-use clench_rigid::model::Interpolation;
 use clench_rigid::model::{
-    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Transmission,
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Interpolation, Transmission,
 };
 
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {

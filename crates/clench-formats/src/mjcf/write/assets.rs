@@ -1,6 +1,6 @@
 //! Meshes and height fields, as their author gave them: what follows from them is computed again when the file is loaded.
 
-use super::SaveError;
+use super::names::SaveError;
 use super::xml::Xml;
 use clench_math::Vec3;
 use clench_rigid::Model;

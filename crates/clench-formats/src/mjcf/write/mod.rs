@@ -7,6 +7,7 @@
 
 mod actuator;
 mod assets;
+mod names;
 mod option;
 mod relations;
 mod sensor;
@@ -17,27 +18,9 @@ mod xml;
 mod tests;
 
 use clench_rigid::Model;
-use clench_rigid::model::{Body, Custom, Keyframe, TupleEntry};
+use clench_rigid::model::{Custom, Keyframe, TupleEntry};
+pub use names::SaveError;
 use xml::Xml;
-
-/// What of a model MJCF cannot say.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{element} cannot be written as MJCF: {reason}")]
-pub struct SaveError {
-    /// The element, such as `joint "knee"`.
-    pub element: String,
-    /// Why it cannot be written.
-    pub reason: String,
-}
-
-impl SaveError {
-    fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
-        SaveError {
-            element: element.into(),
-            reason: reason.into(),
-        }
-    }
-}
 
 /// Writing a model as MJCF.
 ///
@@ -76,34 +59,6 @@ impl SaveModel for Model {
         xml.section("custom", |xml| write_custom(self, xml))?;
         xml.section("keyframe", |xml| write_keyframes(self, xml))?;
         Ok(xml.finish())
-    }
-}
-
-/// How errors call an element.
-fn label(kind: &str, name: &str, index: usize) -> String {
-    match name {
-        "" => format!("{kind} {index}"),
-        name => format!("{kind} \"{name}\""),
-    }
-}
-
-/// The name by which another element refers to one.
-fn named<'a>(kind: &str, name: &'a str, index: usize) -> Result<&'a str, SaveError> {
-    match name {
-        "" => Err(SaveError::new(
-            label(kind, name, index),
-            "another element refers to it, but it has no name",
-        )),
-        name => Ok(name),
-    }
-}
-
-/// The name of a body; the world has one whatever else it is called.
-fn body_name(model: &Model, index: usize) -> Result<&str, SaveError> {
-    let Body { name, .. } = &model.bodies[index];
-    match index {
-        0 => Ok("world"),
-        _ => named("body", name, index),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `<compiler>` and `<option>`: nothing is left to derive, and the physics of the world.
 
-use super::SaveError;
+use super::names::SaveError;
 use super::xml::{Tag, Xml};
 use crate::mjcf::option::format_defaults;
 use clench_rigid::Model;

@@ -1,7 +1,7 @@
 //! Contacts, equalities and tendons.
 
+use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
-use super::{SaveError, body_name, label, named};
 use clench_math::{Quat, Vec3};
 use clench_rigid::Model;
 use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};

@@ -1,8 +1,8 @@
 //! Sensors: each names what it is attached to.
 
 use super::actuator::write_history;
+use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
-use super::{SaveError, body_name, label, named};
 use clench_rigid::Model;
 use clench_rigid::model::{
     Attachment, ContactQuery, ContactReduction, ContactSide, FrameObject, RaySource, Sensor,

@@ -1,7 +1,7 @@
 //! Bodies and what stands on them.
 
+use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
-use super::{SaveError, body_name, label, named};
 use crate::document::MAX_DEPTH;
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};

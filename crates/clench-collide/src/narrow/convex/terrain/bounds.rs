@@ -3,6 +3,7 @@
 use super::grid::{Grid, Node};
 use crate::narrow::convex::body::Body;
 use clench_math::{Mat3, Scalar, Vec3};
+use std::ops::RangeInclusive;
 
 /// How far a body with its margin reaches, in the field's frame.
 pub(super) struct Bounds {
@@ -53,6 +54,15 @@ impl Bounds {
             slopes: slopes.map(|(x, y)| -most(Vec3::new(x, y, -1.0))),
             lowest: Vec3::from_array(lowest.to_array().map(S::to_f64)),
         })
+    }
+
+    /// The rows and columns of cells of a grid that they reach, no higher than the highest; nothing where they are off the field.
+    pub(super) fn window(&self, grid: &Grid) -> Option<[RangeInclusive<i64>; 2]> {
+        let (low, high) = self.below(grid.elevation);
+        let over = |axis: usize| low[axis] <= grid.half[axis] && high[axis] >= -grid.half[axis];
+        let cells = |axis| grid.cell(axis, low[axis])..=grid.cell(axis, high[axis]);
+        let level = self.low.z <= grid.elevation && self.high.z >= -grid.base;
+        (over(0) && over(1) && level).then(|| [cells(1), cells(0)])
     }
 
     /// Between which x and y the part is that is lower than some height.

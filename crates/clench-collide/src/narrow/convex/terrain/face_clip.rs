@@ -2,7 +2,9 @@
 
 use super::grid::Triangle;
 use super::manifold::Manifold;
-use crate::narrow::convex::{body::Body, feature::Feature, pair::across};
+use crate::narrow::convex::body::Body;
+use crate::narrow::convex::corners::Feature;
+use crate::narrow::convex::pair::across;
 use crate::narrow::{per_lane::Point, polygon::Polygon};
 use clench_math::{Mat3, Scalar, Vec3};
 

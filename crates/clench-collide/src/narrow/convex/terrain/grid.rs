@@ -1,10 +1,8 @@
 //! The triangles of a height field, one at a time, and what lies across their edges.
 
-use super::bounds::Bounds;
 use crate::HeightField;
 use crate::narrow::convex::prism::Prism;
 use clench_math::{Real, Scalar, Vec3};
-use std::ops::RangeInclusive;
 
 /// Row and column of a grid point; those beyond the border do not exist.
 pub(super) type Node = [i64; 2];
@@ -17,11 +15,11 @@ pub(super) fn same_direction<S: Scalar>() -> S {
 /// A height field with what follows from its size.
 pub(super) struct Grid<'a> {
     field: &'a HeightField,
-    half: [f64; 2],
+    pub half: [f64; 2],
     /// Lengths of a cell along x and y, m.
     pub step: [f64; 2],
-    elevation: f64,
-    base: f64,
+    pub elevation: f64,
+    pub base: f64,
 }
 
 impl<'a> Grid<'a> {
@@ -38,19 +36,10 @@ impl<'a> Grid<'a> {
     }
 
     /// The cell above or below a place along an axis, or the nearest one.
-    fn cell(&self, axis: usize, place: f64) -> i64 {
+    pub(super) fn cell(&self, axis: usize, place: f64) -> i64 {
         let count = [self.field.columns(), self.field.rows()][axis];
         let cell = ((place + self.half[axis]) / self.step[axis]).floor();
         cell.clamp(0.0, (count - 2) as f64) as i64
-    }
-
-    /// The rows and columns of cells that bounds reach, no higher than the highest; nothing where they are off the field.
-    pub(super) fn window(&self, bounds: &Bounds) -> Option<[RangeInclusive<i64>; 2]> {
-        let (low, high) = bounds.below(self.elevation);
-        let over = |axis: usize| low[axis] <= self.half[axis] && high[axis] >= -self.half[axis];
-        let cells = |axis| self.cell(axis, low[axis])..=self.cell(axis, high[axis]);
-        let level = bounds.low.z <= self.elevation && bounds.high.z >= -self.base;
-        (over(0) && over(1) && level).then(|| [cells(1), cells(0)])
     }
 
     /// The cell at a point, or the nearest one: row and column.

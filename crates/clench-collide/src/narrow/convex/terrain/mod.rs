@@ -27,10 +27,8 @@ use super::{
     prism::Prism,
     simplex::Simplex,
 };
-use crate::narrow::{
-    Placed,
-    per_lane::{Point, Points, per_lane},
-};
+use crate::narrow::per_lane::{Point, Points, per_lane};
+use crate::narrow::placed::Placed;
 use crate::{Asset, Contacts, Pose, Shape, ShapeKind};
 use arrayvec::ArrayVec;
 use bounds::Bounds;
@@ -71,7 +69,7 @@ fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<
     let Some(bounds) = Bounds::new(&body, &search.rotation, search.offset, around, &grid) else {
         return;
     };
-    let Some([rows, columns]) = grid.window(&bounds) else {
+    let Some([rows, columns]) = bounds.window(&grid) else {
         return;
     };
     let mut add_triangle = |cell, reached: [bool; 2]| {

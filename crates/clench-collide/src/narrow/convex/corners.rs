@@ -1,0 +1,38 @@
+//! The corners of a face, an edge or a corner, and which edge counts as level.
+
+use arrayvec::ArrayVec;
+use clench_math::{Scalar, Vec3};
+
+/// Most corners of a feature. A face of a hull that has more is represented by every second, third, ... of them and the furthest one.
+pub(crate) const MAX_CORNERS: usize = 24;
+
+/// An edge counts as lying against the plane up to this tilt (5°), as a face does.
+pub(super) const EDGE_SINE: f64 = 0.087;
+
+/// A face, counter-clockwise seen from outside, an edge (two corners) or a corner of a core.
+pub(super) struct Feature<S> {
+    pub corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
+    /// The outward normal of a face.
+    pub normal: Vec3<S>,
+    /// The radius of a round cap about the z axis, which its corners only stand for.
+    pub radius: Option<S>,
+}
+
+/// Of the edges from a corner to some ends, which are numbered, the one that is most nearly level across the unit direction `d`,
+/// if one is level enough.
+pub(super) fn most_level<S: Scalar>(
+    corner: Vec3<S>,
+    ends: impl Iterator<Item = (usize, Vec3<S>)>,
+    d: Vec3<S>,
+) -> Option<(usize, Vec3<S>)> {
+    // The rise and the length of the best edge, squared: its sine is their quotient's root.
+    let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
+    for (number, end) in ends {
+        let edge = end - corner;
+        let (rise, length) = (edge.dot(d).squared(), edge.norm_squared());
+        if rise * best.1 <= best.0 * length {
+            best = (rise, length, Some((number, end)));
+        }
+    }
+    best.2
+}

@@ -1,0 +1,21 @@
+//! The models that a model can attach.
+
+use super::settings::Settings;
+use crate::mjcf::document::Element;
+
+/// A model that can be attached: all of it, and its options.
+pub(super) struct Part {
+    pub root: Element,
+    pub settings: Settings,
+}
+
+/// The models that a model can attach, by name, in the order in which they are written.
+#[derive(Default)]
+pub(super) struct Models(pub(super) Vec<(String, Part)>);
+
+impl Models {
+    pub(super) fn find(&self, name: &str) -> Option<&Part> {
+        let found = self.0.iter().find(|(known, _)| known == name);
+        found.map(|(_, model)| model)
+    }
+}
