@@ -5,7 +5,8 @@ First one environment: each repetition steps every engine from the model's defau
 of batch.py says how. Times are medians over repetitions; a ratio is the median of what each repetition gave. Both engines
 read the same file with its integrator, tolerance and iterations; where the file asks for PGS, MuJoCo is timed with Newton,
 which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
-vector environments beside gymnasium's (vector.py), heaps of bodies (heaps.py), and collision pair by pair (pairs.py).
+vector environments beside gymnasium's (vector.py), heaps of bodies (heaps.py), collision pair by pair (pairs.py), and what the
+viewer's frames cost (view.py).
 `--only public` goes through all models of the public packages (public_models.py); it takes a while, so the whole run leaves it out.
 """
 
@@ -22,6 +23,7 @@ import heaps
 import pairs
 import public_models
 import vector
+import view
 from scene import Unmeasured, find
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
@@ -42,6 +44,7 @@ def main():
         "vector": (vector.compare, args.tasks),
         "heaps": (heaps.compare, heaps.SCENES),
         "pairs": (pairs.compare, ["all pairs"]),
+        "view": (view.compare, ["the viewer"]),
         "public": (public_models.compare, ["all models"]),
     }.items():
         if name == args.only or (args.only is None and name != "public"):
@@ -61,7 +64,7 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "public"], help="one of the comparisons")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "public"], help="one of the comparisons")
     parser.add_argument("--filter", default="", metavar="TEXT", help="public models whose file has this in its name")
     parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")

@@ -11,6 +11,8 @@ export interface Sight {
   hulls: boolean;
   transparent: boolean;
   sites: boolean;
+  /** Bodies in the colours of their islands. */
+  islands: boolean;
 }
 
 interface Drawn {
@@ -29,6 +31,8 @@ export interface Copy {
   fails: boolean;
   /** Which of its trees sleep, where that is known. */
   asleep: Float32Array;
+  /** The island of each tree, by its lowest tree, where that is known; -1 where no constraint acts. */
+  islands: Float32Array;
   /** The body that is chosen in it. */
   chosen: number | null;
 }
@@ -129,12 +133,13 @@ export class Bodies {
     const place = new THREE.Matrix4();
     for (const drawn of this.geoms) {
       const { body, group, rgba } = drawn.placed as Geom;
-      const { poses, fails, asleep, chosen } = copies[drawn.place];
+      const { poses, fails, asleep, islands, chosen } = copies[drawn.place];
       const visible = this.sight.groups[group] ?? true;
       place.multiplyMatrices(poses[body], drawn.local);
       drawn.mesh.setMatrixAt(drawn.slot, visible ? place : NOWHERE);
       const tree = this.scene.trees[body];
       const colour = tint(rgba);
+      if (this.sight.islands && tree !== null && islands[tree] >= 0) colour.lerp(islandColour(islands[tree]), 0.8);
       if (tree !== null && asleep[tree] >= 0) colour.lerp(SLEEPING, 0.75);
       if (fails && body !== 0) colour.lerp(FAILED, 0.7);
       if (body === chosen && body !== 0) colour.lerp(CHOSEN, 0.55);
@@ -159,6 +164,11 @@ export class Bodies {
     }
     return null;
   }
+}
+
+/** Neighbouring numbers have colours far apart: their hues go round by the golden section. */
+function islandColour(island: number): THREE.Color {
+  return new THREE.Color().setHSL((0.11 + 0.618034 * island) % 1, 0.72, 0.5, THREE.SRGBColorSpace);
 }
 
 function tint(rgba: Numbers4): THREE.Color {

@@ -15,6 +15,8 @@ export interface Rows {
 export interface Frame {
   time: number;
   paused: boolean;
+  /** As it came. */
+  bytes: ArrayBuffer;
   rows: Record<string, Rows>;
 }
 
@@ -32,6 +34,7 @@ export function decode(scene: Scene, buffer: ArrayBuffer): Frame | null {
   });
   return {
     time: view.getFloat64(8, true),
+    bytes: buffer,
     paused: (view.getUint32(4, true) & 1) !== 0,
     rows,
   };

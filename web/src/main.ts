@@ -10,6 +10,7 @@ import { Plots } from "./plots.ts";
 import { Replay } from "./replay.ts";
 import type { Scene } from "./scene.ts";
 import { Stage } from "./stage.ts";
+import { Tape } from "./tape.ts";
 import { listen } from "./touch.ts";
 
 /** Geoms of these groups are not seen at first, as in MuJoCo. */
@@ -20,10 +21,12 @@ const sight: Sight = {
   hulls: false,
   transparent: false,
   sites: true,
+  islands: false,
 };
 const layers: Layers = {
   contacts: true,
   forces: true,
+  constraints: true,
   cones: false,
   tendons: true,
   frames: false,
@@ -47,10 +50,17 @@ function notify(text: string): void {
   notice.hidden = text === "";
 }
 
-function open(scene: Scene, first: Frame, send: (command: Command) => void, replay: Replay | null): Parts {
+function open(
+  scene: Scene,
+  first: Frame,
+  send: (command: Command) => void,
+  past: Replay | Tape,
+): Parts {
+  const replay = past instanceof Replay ? past : null;
+  const tape = past instanceof Tape ? past : null;
   view.replaceChildren();
   const stage = new Stage(scene, first, sight, layers, view);
-  const panel = new Panel(scene, stage, sight, layers, send, replay);
+  const panel = new Panel(scene, stage, sight, layers, send, replay, tape);
   const plots = new Plots(scene, document.getElementById("plots")!);
   listen(replay ? { ...scene, active: false } : scene, stage, panel, send);
   return { stage, panel, plots };
@@ -68,14 +78,18 @@ function show(parts: Parts, frame: Frame): void {
 function watch(): void {
   let scene: Scene | null = null;
   let parts: Parts | null = null;
+  const tape = new Tape(notify);
   const link = new Link({
     scene(told) {
       scene = told;
+      parts?.stage.dispose();
       parts = null;
+      tape.begin(told);
       notify("");
     },
     frame(frame) {
-      parts ??= open(scene!, frame, (command) => link.send(command), null);
+      tape.keep(frame);
+      parts ??= open(scene!, frame, (command) => link.send(command), tape);
       show(parts, frame);
     },
     error: notify,

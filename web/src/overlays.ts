@@ -11,6 +11,8 @@ import type { Scene } from "./scene.ts";
 export interface Layers {
   contacts: boolean;
   forces: boolean;
+  /** Forces and torques of limits and equalities. */
+  constraints: boolean;
   cones: boolean;
   tendons: boolean;
   frames: boolean;
@@ -22,6 +24,8 @@ export interface Layers {
 const NORMAL = new THREE.Color(0x2f7de1);
 const FRICTION = new THREE.Color(0xf08a24);
 const PULL = new THREE.Color(0xd5348b);
+const HELD = new THREE.Color(0x8d5bd1);
+const LIMIT = new THREE.Color(0xc9a400);
 const STICKS = new THREE.Color(0x2eb872);
 const SLIPS = new THREE.Color(0xe0342c);
 
@@ -36,10 +40,19 @@ function glow(opacity: number, through = true): THREE.MeshBasicMaterial {
   });
 }
 
+/** The tendons whose limits push. */
+function strainedTendons(frame: Frame): Set<number> {
+  const { data, count } = frame.rows.constraints;
+  const rows = Array.from({ length: count }, (_, row) => data.subarray(3 * row, 3 * row + 3));
+  return new Set(rows.filter(([kind, , force]) => kind === 2 && force > 0).map(([, tendon]) => tendon));
+}
+
 export class Overlays {
   readonly group = new THREE.Group();
   /** Metres a newton. */
   forceScale = 0.002;
+  /** Tendons that are at their limits. */
+  private strained = new Set<number>();
   private discs = new Many(new THREE.CylinderGeometry(1, 1, 0.12, 32), glow(0.85), 3);
   private shafts = new Many(standing(new THREE.CylinderGeometry(1, 1, 1, 12)), glow(0.95), 5);
   private heads = new Many(standing(new THREE.ConeGeometry(1, 1, 20)), glow(0.95), 5);
@@ -77,15 +90,21 @@ export class Overlays {
     if (weight > 0) this.forceScale = (1.1 * extent) / weight;
   }
 
+  /** Metres a newton metre: a torque is as long as the force that has it at a lever as long as a usual body. */
+  private get torqueScale(): number {
+    return (3 * this.forceScale) / this.size;
+  }
+
   private all(): Many[] {
     return [this.discs, this.shafts, this.heads, this.cones, this.strings, this.balls, this.boxes];
   }
 
   update(frame: Frame, poses: THREE.Matrix4[]): void {
-    const { contacts, spans, drag } = frame.rows;
+    const { contacts, spans, drag, turn, pushes } = frame.rows;
     const { scene, layers } = this;
     const marks = 3 * (scene.bodies.length + scene.joints.length);
-    const arrows = 2 * contacts.count + marks + 1;
+    // A torque has two heads.
+    const arrows = 2 * contacts.count + 3 * pushes.count + marks + 3;
     this.discs.begin(contacts.count);
     this.cones.begin(contacts.count);
     this.shafts.begin(arrows);
@@ -96,6 +115,10 @@ export class Overlays {
     for (let row = 0; row < contacts.count; row++) {
       this.contact(contacts.data.subarray(20 * row, 20 * row + 20));
     }
+    if (layers.constraints) {
+      for (let row = 0; row < pushes.count; row++) this.push(pushes.data.subarray(12 * row, 12 * row + 12));
+    }
+    this.strained = strainedTendons(frame);
     if (layers.tendons) {
       for (let row = 0; row < spans.count; row++) this.span(spans.data.subarray(7 * row, 7 * row + 7));
     }
@@ -103,6 +126,7 @@ export class Overlays {
     if (layers.joints) scene.joints.forEach((_, joint) => this.joint(joint, poses));
     scene.bodies.forEach((_, body) => body > 0 && this.mass(body, poses[body]));
     if (drag.count > 0) this.drag(drag.data);
+    if (turn.count > 0) this.turn(turn.data);
     this.marks.update(frame);
     for (const many of this.all()) many.end();
   }
@@ -151,7 +175,9 @@ export class Overlays {
     const along = new THREE.Vector3(row[4], row[5], row[6]).sub(from);
     const length = along.length();
     if (length === 0) return;
-    const colour = new THREE.Color().setRGB(rgba[0], rgba[1], rgba[2], THREE.SRGBColorSpace);
+    const colour = this.strained.has(row[0])
+      ? LIMIT
+      : new THREE.Color().setRGB(rgba[0], rgba[1], rgba[2], THREE.SRGBColorSpace);
     this.strings.add(stretched(from, along.divideScalar(length), width, length), colour);
   }
 
@@ -193,6 +219,31 @@ export class Overlays {
     const from = new THREE.Vector3(row[1], row[2], row[3]);
     const along = new THREE.Vector3(row[4], row[5], row[6]).sub(from);
     this.arrow(from, along, PULL);
+    const radius = 0.012 * this.size;
+    this.balls.add(stretched(from, UP, radius, radius), PULL);
+  }
+
+  /** What a limit or an equality does: an arrow for its force, one with two heads for its torque. */
+  private push(row: Float32Array): void {
+    const colour = row[0] === 1 ? LIMIT : HELD;
+    const at = new THREE.Vector3(row[3], row[4], row[5]);
+    const force = new THREE.Vector3(row[6], row[7], row[8]).multiplyScalar(this.forceScale);
+    const torque = new THREE.Vector3(row[9], row[10], row[11]).multiplyScalar(this.torqueScale);
+    this.arrow(at, force, colour);
+    this.torque(at, torque, colour);
+  }
+
+  /** An arrow along the axis of a torque, with two heads. */
+  private torque(from: THREE.Vector3, along: THREE.Vector3, colour: THREE.Color): void {
+    this.arrow(from, along, colour);
+    const head = 4 * 0.0085 * this.size;
+    if (along.length() > 2 * head) this.arrow(from, along.clone().setLength(along.length() - head), colour);
+  }
+
+  private turn(row: Float32Array): void {
+    const from = new THREE.Vector3(row[1], row[2], row[3]);
+    const left = new THREE.Vector3(row[4], row[5], row[6]).multiplyScalar(0.5 * this.size);
+    this.torque(from, left, PULL);
     const radius = 0.012 * this.size;
     this.balls.add(stretched(from, UP, radius, radius), PULL);
   }

@@ -8,6 +8,7 @@ import type { Command } from "./link.ts";
 import type { Replay } from "./replay.ts";
 import { nameOf, type Scene } from "./scene.ts";
 import type { Stage } from "./stage.ts";
+import type { Tape } from "./tape.ts";
 
 const SPEEDS: [string, string][] = [
   ["0.1", "0.1 ×"],
@@ -22,6 +23,7 @@ const SPEEDS: [string, string][] = [
 const LAYERS: [keyof Layers, string][] = [
   ["contacts", "contacts"],
   ["forces", "forces"],
+  ["constraints", "limits, equalities"],
   ["cones", "friction cones"],
   ["tendons", "tendons"],
   ["frames", "frames"],
@@ -32,6 +34,9 @@ const LAYERS: [keyof Layers, string][] = [
 
 /** How many environments can be side by side. */
 const GRIDS = [1, 4, 9, 16, 25, 36, 49, 64];
+
+/** Seconds that can be saved. */
+const SAVED = [5, 10, 30];
 
 /** Range of a slider for what has none. */
 const OPEN: [number, number] = [-3.1416, 3.1416];
@@ -44,6 +49,7 @@ export class Panel {
   private clock = element("output", { id: "clock" });
   private pause: HTMLButtonElement;
   private time: HTMLInputElement | null = null;
+  private past = this.makePast();
   private facts = element("div", { id: "facts" });
   private rows = new Map<number, HTMLElement>();
   private paused = false;
@@ -60,6 +66,7 @@ export class Panel {
     private layers: Layers,
     private send: (command: Command) => void,
     private replay: Replay | null,
+    private tape: Tape | null,
   ) {
     this.pause = button("pause", "pause or go on (space)", () => this.toggle());
     this.pause.id = "pause";
@@ -88,9 +95,9 @@ export class Panel {
         replay.seek(this.time!.valueAsNumber);
       };
       const speed = choice(SPEEDS.slice(0, -1), "1", (value) => (replay.speed = Number(value)));
-      return [title, this.pause, this.time, speed, this.clock];
+      return [title, this.pause, this.time, speed, ...this.cameras(), this.clock];
     }
-    if (!this.live) return [title, this.clock];
+    if (!this.live) return [title, ...this.cameras(), this.clock];
     const keys = scene.keyframes.map((name, index): [string, string] => [`${index}`, nameOf("key", index, name)]);
     const keyframe = choice([["", "keyframe"], ...keys], "", (value) => {
       if (value !== "") this.send({ do: "keyframe", index: Number(value) });
@@ -102,13 +109,55 @@ export class Panel {
       title,
       this.pause,
       step,
-      ...(scene.rewinds ? [button("back", "a second back (←)", () => this.send({ do: "rewind", seconds: 1 }))] : []),
+      ...(scene.rewinds ? [button("back", "a second back (←)", () => this.send({ do: "rewind", seconds: 1 })), this.past] : []),
       button("reset", "reset (backspace)", () => this.send({ do: "reset" })),
       ...(keys.length > 0 ? [keyframe] : []),
       choice(SPEEDS, "1", (value) => this.send({ do: "speed", factor: Number(value) })),
       ...(scene.envs > 1 ? this.envControls() : []),
+      ...this.cameras(),
+      ...(this.tape ? [this.saves(this.tape)] : []),
       this.clock,
     ];
+  }
+
+  /** Saves what was seen last as a page. */
+  private saves(tape: Tape): HTMLElement {
+    const options = SAVED.map((seconds): [string, string] => [`${seconds}`, `the last ${seconds} s`]);
+    const list = choice([["", "save"], ...options], "", (seconds) => {
+      list.value = "";
+      if (seconds !== "") void tape.save(Number(seconds));
+    });
+    list.id = "save";
+    list.title = "save what was seen last as a page that replays it";
+    return list;
+  }
+
+  /** The model's cameras, if it has any. */
+  private cameras(): HTMLElement[] {
+    const { cameras } = this.scene;
+    if (cameras.length === 0) return [];
+    const options = cameras.map(({ name }, index): [string, string] => [`${index}`, nameOf("camera", index, name)]);
+    const list = choice([["", "free camera"], ...options], "", (value) => {
+      this.stage.choose(value === "" ? null : Number(value));
+    });
+    list.id = "camera";
+    return [list];
+  }
+
+  /** A slider over the moments to which one can come back. */
+  private makePast(): HTMLInputElement {
+    const title = "any moment of the last ten seconds";
+    const made = element("input", { id: "past", type: "range", title, min: "0", max: "0", step: "any" });
+    made.oninput = () => this.send({ do: "moment", time: made.valueAsNumber });
+    made.onchange = () => made.blur();
+    return made;
+  }
+
+  private showPast(frame: Frame): void {
+    const { past } = frame.rows;
+    if (past.count === 0 || document.activeElement === this.past) return;
+    [this.past.min, this.past.max] = [`${past.data[0]}`, `${past.data[1]}`];
+    this.past.valueAsNumber = frame.time;
   }
 
   /** Chooses environments. */
@@ -177,6 +226,9 @@ export class Panel {
       box.append(check(text, this.layers[key], (on) => (this.layers[key] = on)));
     }
     box.append(check("sites", this.sight.sites, (on) => (this.sight.sites = on)));
+    if (this.scene.trees.some((tree) => tree !== null)) {
+      box.append(check("islands in colours", this.sight.islands, (on) => (this.sight.islands = on)));
+    }
     const anew = (key: "hulls" | "transparent") => (on: boolean) => {
       this.sight[key] = on;
       this.stage.bodies.rebuild();
@@ -283,6 +335,7 @@ export class Panel {
     this.controls.forEach((control, index) => control.show(frame.rows.ctrl.data[index]));
     this.joints.forEach(({ slider: joint, qpos }) => joint.show(frame.rows.qpos.data[qpos]));
     this.equalities.forEach((box, index) => (box.checked = frame.rows.eq_active.data[index] > 0));
+    this.showPast(frame);
     this.describe(frame);
   }
 
@@ -290,7 +343,7 @@ export class Panel {
     const body = this.chosen;
     if (body === null || frame === null) {
       this.facts.replaceChildren(
-        element("p", { className: "hint" }, "Click a body to see its numbers. " + (this.live ? "Ctrl-drag pulls it." : "")),
+        element("p", { className: "hint" }, "Click a body to see its numbers. " + (this.live ? "Ctrl-drag pulls it, with the right button it turns." : "")),
       );
       return;
     }

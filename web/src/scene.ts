@@ -61,6 +61,7 @@ export interface Scene {
   equalities: { name: string; kind: string }[];
   sensors: { name: string; start: number; count: number }[];
   keyframes: string[];
+  cameras: { name: string; orthographic: boolean; fovy: number }[];
   meshes: (Surface & { name: string; hull: Surface | null })[];
   height_fields: { rows: number; columns: number; size: Numbers4; heights: string }[];
   materials: {

@@ -11,13 +11,17 @@ import { localPose, readPoses, readPosesOf } from "./poses.ts";
 import type { Scene } from "./scene.ts";
 
 const SKY = 0xdfe6ee;
+/** Vertical field of view of the free camera, degrees. */
+const FOV = 42;
 
 export class Stage {
-  readonly camera = new THREE.PerspectiveCamera(42, 1, 0.01, 500);
+  readonly camera = new THREE.PerspectiveCamera(FOV, 1, 0.01, 500);
   readonly bodies: Bodies;
   readonly overlays: Overlays;
   readonly controls: OrbitControls;
   readonly poses: THREE.Matrix4[] = [];
+  /** The camera of the model that one looks through. */
+  through: number | null = null;
   /** The body that the camera follows. */
   followed: number | null = null;
   private renderer: THREE.WebGLRenderer;
@@ -37,7 +41,7 @@ export class Stage {
   readonly extent: number;
 
   constructor(
-    scene: Scene,
+    private scene: Scene,
     first: Frame,
     sight: Sight,
     layers: Layers,
@@ -206,6 +210,7 @@ export class Stage {
       for (const pose of copy.poses) pose.setPosition(new THREE.Vector3().setFromMatrixPosition(pose).add(at));
       copy.fails = (envs[k]?.fault ?? "") !== "";
       copy.asleep = k === own ? frame.rows.asleep.data : NOTHING;
+      copy.islands = k === own ? frame.rows.islands.data : NOTHING;
       copy.chosen = k === own ? chosen : null;
     });
     this.offset.copy(this.placeOf(own));
@@ -227,10 +232,47 @@ export class Stage {
     this.overlays.update(frame, this.poses);
     this.follow();
     this.controls.update();
+    if (this.through !== null) this.lookThrough(frame, this.through);
     const target = this.controls.target;
     this.sun.target.position.copy(target);
     this.sun.position.copy(target).add(new THREE.Vector3(2.2, -1.6, 4.6).multiplyScalar(this.reach * this.extent));
     this.renderer.render(this.world, this.camera);
+  }
+
+  /** Chooses a camera of the model, or the free one. */
+  choose(camera: number | null): void {
+    this.through = camera;
+    this.controls.enabled = camera === null;
+    if (camera !== null) return;
+    this.camera.fov = FOV;
+    this.fit();
+    this.home();
+  }
+
+  /** Puts the camera where one of the model's is. One with parallel lines of sight is far away, with a narrow view. */
+  private lookThrough(frame: Frame, index: number): void {
+    const { orthographic, fovy } = this.scene.cameras[index];
+    const row = frame.rows.cameras.data.subarray(12 * index, 12 * index + 12);
+    const axis = (k: number) => new THREE.Vector3(row[3 + 3 * k], row[4 + 3 * k], row[5 + 3 * k]);
+    const turn = new THREE.Matrix4().makeBasis(axis(0), axis(1), axis(2));
+    const { camera } = this;
+    camera.position.set(row[0], row[1], row[2]).add(this.offset);
+    camera.quaternion.setFromRotationMatrix(turn);
+    camera.fov = fovy;
+    if (orthographic) {
+      const distance = 40 * this.extent;
+      camera.position.addScaledVector(axis(2), distance);
+      camera.fov = (2 * Math.atan(0.5 * fovy / distance) * 180) / Math.PI;
+    }
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+  }
+
+  /** Gives back what the graphics card holds. */
+  dispose(): void {
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   private follow(): void {
@@ -263,7 +305,7 @@ export class Stage {
 const NOTHING = new Float32Array();
 
 function newCopy(): Copy {
-  return { poses: [], fails: false, asleep: NOTHING, chosen: null };
+  return { poses: [], fails: false, asleep: NOTHING, islands: NOTHING, chosen: null };
 }
 
 /** A length that marks on bodies are measured by: several times the half size of a usual geom, m. */

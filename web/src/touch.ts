@@ -14,10 +14,24 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
   const label = document.getElementById("label")!;
   let pressed: { x: number; y: number } | null = null;
   let pulled: { body: number; point: [number, number, number]; plane: THREE.Plane } | null = null;
+  let turned: { body: number; from: THREE.Quaternion; x: number; y: number } | null = null;
 
   const pull = (event: PointerEvent) => {
     const target = stage.rayAt(event.clientX, event.clientY).ray.intersectPlane(pulled!.plane, new THREE.Vector3());
     if (target) send({ do: "drag", body: pulled!.body, point: pulled!.point, target: target.sub(stage.offset).toArray() });
+  };
+
+  /** Turns the body with the pointer, as if one rolled a ball: half a turn over the height of the picture. */
+  const turn = (event: PointerEvent) => {
+    const { body, from, x, y } = turned!;
+    const scale = Math.PI / canvas.clientHeight;
+    const axis = (k: number) => new THREE.Vector3().setFromMatrixColumn(stage.camera.matrixWorld, k);
+    const rolled = new THREE.Quaternion()
+      .setFromAxisAngle(axis(1), scale * (event.clientX - x))
+      .multiply(new THREE.Quaternion().setFromAxisAngle(axis(0), scale * (event.clientY - y)))
+      .multiply(from)
+      .normalize();
+    send({ do: "turn", body, target: [rolled.w, rolled.x, rolled.y, rolled.z] });
   };
 
   canvas.addEventListener(
@@ -33,6 +47,15 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
         panel.show({ env });
         return;
       }
+      stage.controls.enabled = false;
+      canvas.setPointerCapture(event.pointerId);
+      panel.choose(hit.body);
+      if (event.button === 2 || event.altKey) {
+        const from = new THREE.Quaternion().setFromRotationMatrix(stage.poses[hit.body]);
+        turned = { body: hit.body, from, x: event.clientX, y: event.clientY };
+        turn(event);
+        return;
+      }
       const facing = stage.camera.getWorldDirection(new THREE.Vector3());
       const local = hit.point.clone().sub(stage.offset).applyMatrix4(stage.poses[hit.body].clone().invert());
       pulled = {
@@ -40,17 +63,15 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
         point: local.toArray(),
         plane: new THREE.Plane().setFromNormalAndCoplanarPoint(facing, hit.point),
       };
-      stage.controls.enabled = false;
-      canvas.setPointerCapture(event.pointerId);
-      panel.choose(hit.body);
       pull(event);
     },
     { capture: true },
   );
 
   canvas.addEventListener("pointermove", (event) => {
-    if (pulled) {
-      pull(event);
+    if (pulled || turned) {
+      if (pulled) pull(event);
+      else turn(event);
       return;
     }
     if (event.buttons !== 0) return;
@@ -64,10 +85,10 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
   });
 
   canvas.addEventListener("pointerup", (event) => {
-    if (pulled) {
+    if (pulled || turned) {
       send({ do: "release" });
-      pulled = null;
-      stage.controls.enabled = true;
+      pulled = turned = null;
+      stage.controls.enabled = stage.through === null;
     } else if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) < CLICK) {
       const hit = stage.bodies.pick(stage.rayAt(event.clientX, event.clientY));
       const env = hit && stage.envAt(hit);

@@ -8,7 +8,7 @@ import { chromium, type Browser, type Page } from "playwright-core";
 
 /** npm runs scripts in the folder of its package. */
 export const ROOT = join(process.cwd(), "..");
-const PROGRAM = process.env.CLENCH ?? join(ROOT, "target/release/clench");
+export const PROGRAM = process.env.CLENCH ?? join(ROOT, "target/release/clench");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 /** Where pictures go that a person may want to look at. */
 export const PICTURES = process.env.PICTURES ?? mkdtempSync(join(tmpdir(), "clench-view-"));
@@ -33,9 +33,19 @@ export function launch(): Promise<Browser> {
 }
 
 /** Starts `clench view`; its address, and how to end it. */
-export async function view(...words: string[]): Promise<{ url: string; end(): Promise<void> }> {
-  const program: ChildProcess = spawn(PROGRAM, ["view", "--no-open", ...words], {
+export function view(...words: string[]): Promise<{ url: string; end(): Promise<void> }> {
+  return started(PROGRAM, ["view", "--no-open", ...words]);
+}
+
+/** Starts a program that prints the address of a viewer; the address, and how to end it. */
+export async function started(
+  name: string,
+  words: string[],
+  environment: Record<string, string> = {},
+): Promise<{ url: string; end(): Promise<void> }> {
+  const program: ChildProcess = spawn(name, words, {
     cwd: ROOT,
+    env: { ...process.env, ...environment },
     stdio: ["ignore", "pipe", "inherit"],
   });
   const gone = new Promise<void>((done) => program.once("exit", () => done()));
@@ -46,7 +56,7 @@ export async function view(...words: string[]): Promise<{ url: string; end(): Pr
       const line = said.match(/http\S+/);
       if (line) found(line[0]);
     });
-    program.once("exit", () => failed(new Error("clench view ended before it printed its address")));
+    program.once("exit", () => failed(new Error(`${name} ended before it printed an address`)));
   });
   return {
     url,

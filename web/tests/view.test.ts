@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
-import { PICTURES, ROOT, launch, missing, open, until, view } from "./browser.ts";
+import { PICTURES, PROGRAM, ROOT, launch, missing, open, started, until, view } from "./browser.ts";
 
 const skip = missing ? `${missing} is not here` : false;
 let browser: Browser;
@@ -60,6 +60,26 @@ async function detail(page: Page, [left, top, right, bottom]: number[]): Promise
   );
 }
 
+/** The highest body, and where it is on the screen. */
+function topBody(page: Page): Promise<{ body: number; x: number; y: number }> {
+  return page.evaluate(() => {
+    const { stage, frame } = window.clench as unknown as {
+      stage: { camera: never; poses: { elements: number[] }[] };
+      frame: Seen["frame"];
+    };
+    const rows = frame.rows.bodies;
+    let top = 1;
+    for (let body = 1; body < rows.count; body++) {
+      if (rows.data[7 * body + 2] > rows.data[7 * top + 2]) top = body;
+    }
+    const place = stage.poses[top].elements.slice(12, 15);
+    const camera = stage.camera as { matrixWorldInverse: { elements: number[] }; projectionMatrix: { elements: number[] } };
+    const times = (m: number[], v: number[]) => [0, 1, 2, 3].map((i) => m[i] * v[0] + m[i + 4] * v[1] + m[i + 8] * v[2] + m[i + 12] * v[3]);
+    const [x, y, , w] = times(camera.projectionMatrix.elements, times(camera.matrixWorldInverse.elements, [...place, 1]));
+    return { body: top, x: ((x / w + 1) / 2) * innerWidth, y: ((1 - y / w) / 2) * innerHeight };
+  });
+}
+
 test("the humanoid is seen where it stands", { skip }, async () => {
   const program = await view("models/humanoid.xml", "--keyframe", "standing", "--paused");
   try {
@@ -94,6 +114,14 @@ test("pause, step, reset and keys do what they say", { skip }, async () => {
     await page.locator("body").press("Backspace");
     await until(page, () => window.clench.frame.time === 0);
     assert.ok((await page.evaluate(() => window.clench.plots.counts()))[0] > 0);
+    // Any moment of the past, and the present again.
+    await page.click("#pause");
+    await until(page, () => window.clench.frame.time > 0.4);
+    const past = page.locator("#past");
+    await past.fill("0.1");
+    await until(page, () => window.clench.frame.paused && Math.abs(window.clench.frame.time - 0.1) < 0.02);
+    await past.fill("0.3");
+    await until(page, () => Math.abs(window.clench.frame.time - 0.3) < 0.02);
     await page.close();
   } finally {
     await program.end();
@@ -105,23 +133,7 @@ test("a body follows the pointer that drags it, and only with the key", { skip }
   try {
     const page = await open(browser, program.url);
     await page.waitForTimeout(800);
-    // Where the top body is on the screen.
-    const at = await page.evaluate(() => {
-      const { stage, frame } = window.clench as unknown as {
-        stage: { camera: never; poses: { elements: number[] }[] };
-        frame: Seen["frame"];
-      };
-      const rows = frame.rows.bodies;
-      let top = 1;
-      for (let body = 1; body < rows.count; body++) {
-        if (rows.data[7 * body + 2] > rows.data[7 * top + 2]) top = body;
-      }
-      const place = stage.poses[top].elements.slice(12, 15);
-      const camera = stage.camera as { matrixWorldInverse: { elements: number[] }; projectionMatrix: { elements: number[] } };
-      const times = (m: number[], v: number[]) => [0, 1, 2, 3].map((i) => m[i] * v[0] + m[i + 4] * v[1] + m[i + 8] * v[2] + m[i + 12] * v[3]);
-      const [x, y, , w] = times(camera.projectionMatrix.elements, times(camera.matrixWorldInverse.elements, [...place, 1]));
-      return { body: top, x: ((x / w + 1) / 2) * innerWidth, y: ((1 - y / w) / 2) * innerHeight };
-    });
+    const at = await topBody(page);
     const before = await height(page, at.body);
     await page.keyboard.down("Control");
     await page.mouse.move(at.x, at.y);
@@ -135,6 +147,19 @@ test("a body follows the pointer that drags it, and only with the key", { skip }
     await page.mouse.up();
     await page.keyboard.up("Control");
     await until(page, () => window.clench.frame.rows.drag.count === 0);
+    // With the right button it is turned instead.
+    const now = await topBody(page);
+    await page.keyboard.down("Control");
+    await page.mouse.move(now.x, now.y);
+    await page.mouse.down({ button: "right" });
+    await page.mouse.move(now.x + 60, now.y, { steps: 3 });
+    await until(page, (body) => {
+      const { turn, bodies } = window.clench.frame.rows;
+      return turn.count === 1 && Math.abs(bodies.data[7 * body + 6]) > 0.05;
+    }, now.body);
+    await page.mouse.up({ button: "right" });
+    await page.keyboard.up("Control");
+    await until(page, () => window.clench.frame.rows.turn.count === 0);
     await page.close();
   } finally {
     await program.end();
@@ -207,11 +232,67 @@ test("a page whose program has ended says so", { skip }, async () => {
   await page.close();
 });
 
+test("a page finds a program again that was started anew", { skip }, async () => {
+  const environment = { CLENCH_VIEW_TOKEN: "a-token-for-this-test-alone" };
+  const start = (model: string, port: string) =>
+    started(PROGRAM, ["view", "--no-open", model, "--port", port], environment);
+  let program = await start("models/pendulum.xml", "0");
+  const port = new URL(program.url).port;
+  const page = await open(browser, program.url);
+  await program.end();
+  await page.waitForSelector("#notice:not([hidden])");
+  program = await start("models/box_stack.xml", port);
+  try {
+    await page.waitForSelector("#notice", { state: "hidden" });
+    await until(page, () => document.title.startsWith("box") && window.clench.frame.rows.contacts.count > 0);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("limits and equalities push with arrows, and islands have colours", { skip }, async () => {
+  const program = await view("models/toggled_weld.xml", "--keyframe", "touching", "--paused");
+  try {
+    const page = await open(browser, program.url);
+    await page.locator("#equalities input").first().click();
+    for (let k = 0; k < 9; k++) await page.click("#step");
+    await until(page, () => window.clench.frame.rows.pushes.count > 0);
+    const [drawn, row] = await page.evaluate(() => {
+      const { stage, frame } = window.clench;
+      const lengths = stage.overlays.arrowLengths().map((length) => length / stage.overlays.forceScale);
+      return [lengths, [...frame.rows.pushes.data.slice(0, 12)]];
+    });
+    const force = Math.hypot(row[6], row[7], row[8]);
+    assert.ok(drawn.some((length) => Math.abs(length / force - 1) < 1e-4), `${drawn} ${row}`);
+    assert.ok(await page.evaluate(() => [...window.clench.frame.rows.islands.data].some((first) => first >= 0)));
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("what was seen last is saved as a page that replays it", { skip }, async () => {
+  const program = await view("models/box_stack.xml");
+  const file = join(mkdtempSync(join(tmpdir(), "clench-saved-")), "saved.html");
+  try {
+    const page = await open(browser, program.url);
+    await until(page, () => window.clench.frame.time > 0.3);
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save").selectOption("5")]);
+    await download.saveAs(file);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+  const page = await open(browser, `file://${file}`);
+  await until(page, () => window.clench.frame.time > 0.1);
+  await page.close();
+});
+
 test("a recording opens from a disk and replays", { skip }, async () => {
   const file = join(mkdtempSync(join(tmpdir(), "clench-recording-")), "fall.html");
-  const program = process.env.CLENCH ?? join(ROOT, "target/release/clench");
   const words = ["simulate", "models/humanoid.xml", "--time", "0.5", "--every", "8", "--record", file];
-  const done = spawnSync(program, words, { cwd: ROOT, encoding: "utf8" });
+  const done = spawnSync(PROGRAM, words, { cwd: ROOT, encoding: "utf8" });
   assert.equal(done.status, 0, done.stderr);
   const page = await open(browser, `file://${file}`);
   await until(page, () => window.clench.frame.time > 0.1);

@@ -5,23 +5,20 @@ use crate::message::tell;
 use crate::options::ModelArguments;
 use crate::replacement::{Replacement, require_other};
 use crate::simulate::StartArguments;
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::Args;
 use clench::{Model, Sim};
 use clench_render::{Image, Picture, Renderer, View};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode, Stdio};
 use std::sync::Arc;
 
-/// Pictures a second of a film.
-const RATE: f64 = 25.0;
-
-/// Draws a model without a window: a picture (`.png`) of its initial state, or a film (`.gif`) of its motion. Cameras of the file are
-/// honoured; without one all that moves is seen.
+/// Draws a model without a window: a picture (`.png`) of its initial state, or a film (`.gif`, or `.mp4` by the program ffmpeg) of its
+/// motion. Cameras of the file are honoured; without one all that moves is seen.
 #[derive(Args)]
 pub struct Arguments {
-    /// Where to: `.png` or `.gif`
+    /// Where to: `.png`, `.gif` or `.mp4`
     #[arg(long, value_name = "OUT")]
     out: PathBuf,
     /// Pixels in a row
@@ -67,15 +64,20 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         view: camera.transpose()?.map(View::Camera),
         ..Picture::new(arguments.width, arguments.height)
     };
-    let film = match arguments.out.extension().and_then(|end| end.to_str()) {
-        Some("png") => false,
-        Some("gif") => true,
+    let form = match arguments.out.extension().and_then(|end| end.to_str()) {
+        Some("png") => Form::Png,
+        Some("gif") => Form::Gif,
+        Some("mp4") => Form::Mp4,
         _ => bail!(
-            "--out {}: the name must end in .png or .gif",
+            "--out {}: the name must end in .png, .gif or .mp4",
             arguments.out.display()
         ),
     };
-    let time = arguments.time.unwrap_or(if film { 2.0 } else { 0.0 });
+    let time = match (arguments.time, form) {
+        (Some(time), _) => time,
+        (None, Form::Png) => 0.0,
+        (None, Form::Gif | Form::Mp4) => 2.0,
+    };
     ensure!(
         (0.0..=3600.0).contains(&time),
         "--time: {time} is not between 0 and 3600 s"
@@ -86,18 +88,27 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         renderer: &mut renderer,
         picture,
     };
-    let written = match film {
-        false => {
+    let written = match form {
+        Form::Png => {
             advance(&mut sim, time)?;
             let image = camera.take(&mut sim)?;
             write_png(file.file()?, &image)
         }
-        true => write_gif(file.file()?, &mut sim, &mut camera, time),
+        Form::Gif => write_gif(file.file()?, &mut sim, &mut camera, time),
+        Form::Mp4 => write_mp4(&file, &mut sim, &mut camera, time),
     };
     written.with_context(|| context(&arguments.out))?;
     file.finish().with_context(|| context(&arguments.out))?;
     tell(format_args!("drawn by {}", renderer.device()));
     Ok(ExitCode::SUCCESS)
+}
+
+/// What a file holds.
+#[derive(Clone, Copy)]
+enum Form {
+    Png,
+    Gif,
+    Mp4,
 }
 
 fn context(path: &Path) -> String {
@@ -136,6 +147,24 @@ fn write_png(to: impl Write, image: &Image) -> Result<()> {
     Ok(())
 }
 
+/// Takes pictures of a motion, so many a second.
+fn film(
+    sim: &mut Sim<f64>,
+    camera: &mut Camera,
+    time: f64,
+    rate: f64,
+    mut show: impl FnMut(Image) -> Result<()>,
+) -> Result<()> {
+    for k in 0..=(time * rate) as usize {
+        advance(sim, k as f64 / rate)?;
+        show(camera.take(sim)?)?;
+    }
+    Ok(())
+}
+
+/// Pictures a second of a film in a GIF, which counts hundredths of a second.
+const GIF_RATE: f64 = 25.0;
+
 /// Writes a film that repeats; each of its pictures has colours of its own.
 fn write_gif(to: impl Write, sim: &mut Sim<f64>, camera: &mut Camera, time: f64) -> Result<()> {
     let side =
@@ -143,15 +172,52 @@ fn write_gif(to: impl Write, sim: &mut Sim<f64>, camera: &mut Camera, time: f64)
     let (width, height) = (side(camera.picture.width)?, side(camera.picture.height)?);
     let mut encoder = gif::Encoder::new(BufWriter::new(to), width, height, &[])?;
     encoder.set_repeat(gif::Repeat::Infinite)?;
-    for k in 0..=(time * RATE) as usize {
-        advance(sim, k as f64 / RATE)?;
-        let image = camera.take(sim)?;
+    film(sim, camera, time, GIF_RATE, |image| {
         let mut frame = gif::Frame::from_rgb_speed(width, height, &image.rgb, 10);
-        frame.delay = (100.0 / RATE) as u16;
-        encoder.write_frame(&frame)?;
-    }
+        frame.delay = (100.0 / GIF_RATE) as u16;
+        Ok(encoder.write_frame(&frame)?)
+    })?;
     encoder.into_inner()?.flush()?;
     Ok(())
+}
+
+/// Pictures a second of a film in an MP4.
+const MP4_RATE: f64 = 30.0;
+
+/// Lets ffmpeg write a film. It gets the pictures as they are, and looks for its best encoder itself.
+fn write_mp4(to: &Replacement, sim: &mut Sim<f64>, camera: &mut Camera, time: f64) -> Result<()> {
+    let Some(path) = to.path() else {
+        bail!("a film as .mp4 has to be a file on a disk");
+    };
+    let Picture { width, height, .. } = camera.picture;
+    let mut encoder = Command::new("ffmpeg")
+        .args(["-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"])
+        .args(["-s", &format!("{width}x{height}"), "-r", &MP4_RATE.to_string(), "-i", "-"])
+        // What players show has sides of even length and half as many colours.
+        .args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"])
+        .args(["-movflags", "+faststart", "-f", "mp4"])
+        .arg(path)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| match error.kind() {
+            ErrorKind::NotFound => anyhow!(
+                "films as .mp4 are encoded by the program ffmpeg, which is not installed: install it, on Debian with \
+                 `apt-get install ffmpeg`, or write a .gif"
+            ),
+            _ => anyhow!("ffmpeg: {error}"),
+        })?;
+    let mut pictures = encoder.stdin.take();
+    let shown = film(sim, camera, time, MP4_RATE, |image| {
+        let written = pictures.as_mut().map(|to| to.write_all(&image.rgb));
+        Ok(written.transpose().map(drop)?)
+    });
+    drop(pictures);
+    let done = encoder.wait_with_output()?;
+    let said = String::from_utf8_lossy(&done.stderr).trim().to_owned();
+    ensure!(done.status.success(), "ffmpeg: {said}");
+    shown
 }
 
 /// The camera of a name or an index.

@@ -61,6 +61,15 @@ impl Replacement {
         }
     }
 
+    /// Where it is written, if that is a file on a disk.
+    #[cfg(feature = "render")]
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Replacement::Beside { file, .. } => Some(file.path()),
+            Replacement::Direct(_) => None,
+        }
+    }
+
     /// Puts the file in its place, once all of it is on the disk.
     ///
     /// # Errors

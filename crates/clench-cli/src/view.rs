@@ -9,6 +9,7 @@ use anyhow::Result;
 use clap::Args;
 use clench::{Batch, BatchOptions, Sim};
 use clench_view::{Page, Player, Scene, Server, ServerOptions, Stepped};
+use std::env;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::thread::sleep;
@@ -58,7 +59,12 @@ pub struct Arguments {
     model: ModelArguments,
 }
 
+/// The variable of the environment that may hold a token: on the command line every user of the machine could read it.
+const TOKEN: &str = "CLENCH_VIEW_TOKEN";
+
 const DETAILS: &str = "\
+The address holds a random token, without which nobody is let in. One of your own, of 16 to 128 letters, digits, - and _ in the
+environment variable CLENCH_VIEW_TOKEN, lets an open page find a viewer again that is started anew at the same --port.
 On a remote machine: `ssh -L 8000:127.0.0.1:8000 machine` here, `clench view MODEL --no-open --port 8000` there, and open the
 printed address here. Ctrl-C ends it.";
 
@@ -88,6 +94,7 @@ fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
     let place = ServerOptions {
         host: arguments.host.clone(),
         port: arguments.port,
+        token: env::var(TOKEN).ok(),
     };
     let scene = Scene::new(viewed.model()).of_envs(viewed.envs());
     let interrupt = Interrupt::listen()?;

@@ -1,13 +1,20 @@
 //! What a step computed, in MuJoCo's terms: constraint rows with the edges of pyramids spelled out, contact forces, dense
 //! matrices. For looking at, not for stepping: everything here allocates.
 
+mod blocks;
+mod push;
+
+pub use push::Push;
+pub(crate) use push::pushes;
+
 use crate::constraint::ConstraintSource;
 use crate::contact::Contact;
 use crate::model::Model;
 use crate::output::of_contact;
 use crate::workspace::Workspace;
+use blocks::active_blocks;
 use clench_math::{Mask, Real, Scalar};
-use clench_solver::{Block, Cost};
+use clench_solver::{Block, Cost, Partition};
 use std::array::from_fn;
 
 /// One constraint row as MuJoCo's `efc` arrays have it.
@@ -205,12 +212,19 @@ impl ConstraintSource {
     }
 }
 
-fn active_blocks<T: Real>(
-    ws: &Workspace<T>,
-    lane: usize,
-) -> impl Iterator<Item = (usize, Block<'_, T>)> {
-    let blocks = ws.problem.blocks().enumerate();
-    blocks.filter(move |&(i, _)| ws.record.blocks[i].active.lane(lane))
+/// Which island each tree belongs to in lane `lane` (ntree), named by its lowest tree; none where no constraint acts.
+pub fn islands<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Option<usize>> {
+    let mut partition = Partition::default();
+    partition.find(&ws.problem);
+    let mut of_tree = vec![None; ws.problem.tree().ntree()];
+    for island in (partition.islands().iter()).filter(|island| island.lanes.lane(lane)) {
+        let trees = partition.trees(island);
+        let lowest = trees.iter().min().map(|&tree| tree as usize);
+        for &tree in trees {
+            of_tree[tree as usize] = lowest;
+        }
+    }
+    of_tree
 }
 
 /// A row to show: a row of the block, or an edge of a pyramid, y₀ ± μ_j y_j.

@@ -3,6 +3,7 @@
 mod dynamic;
 mod halves;
 mod parameters;
+mod pushes;
 mod quality;
 
 pub use dynamic::DynamicConstraint;

@@ -60,6 +60,13 @@ pub enum Command {
         /// Where to, m.
         target: [f64; 3],
     },
+    /// Turn a body by a spring.
+    Turn {
+        /// Which body.
+        body: usize,
+        /// The orientation that it is turned to, a quaternion with w first.
+        target: [f64; 4],
+    },
     /// Let the body go.
     Release {},
     /// Set an option of the solver.
@@ -86,6 +93,11 @@ pub enum Command {
     Rewind {
         /// How long ago, s of simulated time.
         seconds: f64,
+    },
+    /// To a moment of the last ten seconds, from which one can come forward again as long as no step is taken.
+    Moment {
+        /// Its time, s of simulated time.
+        time: f64,
     },
 }
 
@@ -141,6 +153,11 @@ impl Command {
                 (point.iter().chain(&target))
                     .try_for_each(|&x| within("a coordinate", x, [-FAR, FAR]))
             }
+            Command::Turn { body, target } => {
+                below("body", body, model.nbody())?;
+                let length = target.iter().map(|x| x * x).sum::<f64>().sqrt();
+                within("the length of a quaternion", length, [0.99, 1.01])
+            }
             Command::Options {
                 iterations,
                 tolerance,
@@ -158,6 +175,7 @@ impl Command {
                 within("count", count as f64, [1.0, MAX_SIDE_BY_SIDE as f64])
             }
             Command::Rewind { seconds } => within("seconds", seconds, [0.0, FAR]),
+            Command::Moment { time } => within("time", time, [-1e10, 1e10]),
             Command::Pause { .. } | Command::Reset {} | Command::Release {} => Ok(()),
         }
     }

@@ -1,10 +1,12 @@
-//! A spring that draws a body to where the user points.
+//! Springs that draw a body to where the user points, or turn it.
 //!
 //! Per unit of the mass m that the body resists a force with, the spring has the rate k = 100 s⁻² and critical damping, so that
 //! light and heavy bodies follow alike: f = m (k (target − p) − 2 √k ṗ), at the point p of the body. m is the inverse of the
-//! body's mean inverse weight in the initial configuration, `body_invweight0`.
+//! body's mean inverse weight in the initial configuration, `body_invweight0`. What turns has the same rate and damping about the
+//! centre of mass, with the inverse of the rotational inverse weight in the place of m: τ = I (k θ − 2 √k ω), where θ is the rotation
+//! vector that is left.
 
-use clench::math::{Force, Scalar, Vec3};
+use clench::math::{Force, Quat, Scalar, Vec3};
 use clench::rigid::{Precision, Sim, Workspace};
 
 /// The spring's rate over mass, s⁻².
@@ -63,6 +65,66 @@ impl Drag {
         let mut row = [self.body as f32; 10];
         let place = wide(at(ws, self.body, self.point)).to_array();
         let numbers = place.iter().chain(&self.target).chain(&self.force);
+        for (to, &from) in row[1..].iter_mut().zip(numbers) {
+            *to = from as f32;
+        }
+        row
+    }
+}
+
+/// A torsional spring between a body and an orientation in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turn {
+    /// The body.
+    pub body: usize,
+    /// The orientation that it is turned to; w first, of length 1.
+    pub target: [f64; 4],
+    /// The torque of the last step, N m.
+    torque: [f64; 3],
+}
+
+impl Turn {
+    /// A spring that has not turned yet.
+    pub fn new(body: usize, target: [f64; 4]) -> Self {
+        Turn {
+            body,
+            target,
+            torque: [0.0; 3],
+        }
+    }
+
+    /// Writes the spring's torque into the applied forces of the body, in place of what is there.
+    pub fn apply<T: Precision>(&mut self, sim: &mut Sim<T>) {
+        let (model, ws) = (sim.model(), sim.workspace());
+        let compliance = model.params.body_invweight0[self.body][1];
+        if compliance <= 0.0 {
+            return;
+        }
+        let omega = wide(ws.velocity.cvel[self.body].angular);
+        let spring = self.left(ws) * RATE - omega * (2.0 * RATE.sqrt());
+        let torque = spring * (1.0 / compliance);
+        self.torque = torque.to_array();
+        sim.state.xfrc_applied[self.body] = Force::new(narrow(torque), Vec3::ZERO);
+    }
+
+    /// Takes the torque away.
+    pub fn release<T: Precision>(&self, sim: &mut Sim<T>) {
+        sim.state.xfrc_applied[self.body] = Force::ZERO;
+    }
+
+    /// The rotation from where the body is to where it shall be, in world axes, rad.
+    fn left<T: Precision>(&self, ws: &Workspace<T>) -> Vec3<f64> {
+        let now = ws.position.xquat[self.body].to_array().map(|x| x.to_f64());
+        let from_now = Quat::from_f64(self.target) * Quat::from_f64(now).conjugate();
+        from_now.to_rotation_vector()
+    }
+
+    /// As a frame shows it: the body, its centre of mass, what is left to turn, the torque.
+    pub(crate) fn row<T: Precision>(&self, ws: &Workspace<T>) -> [f32; 10] {
+        let mut row = [self.body as f32; 10];
+        let place = wide(ws.position.xipos[self.body]).to_array();
+        let left = self.left(ws).to_array();
+        let numbers = place.iter().chain(&left).chain(&self.torque);
         for (to, &from) in row[1..].iter_mut().zip(numbers) {
             *to = from as f32;
         }

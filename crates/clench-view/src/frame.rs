@@ -3,12 +3,13 @@
 //! A frame is, in little-endian order: the letters `CLNF`, flags (u32), the time in seconds (f64), the number of sections
 //! (u32), how many rows each has (u32 each), then the rows of all sections in order, in f32. [`SECTIONS`] says what they are.
 
-use crate::drag::Drag;
+use crate::drag::{Drag, Turn};
 use crate::marks::Mark;
 use clench::SimError;
 use clench::math::{Mask, Scalar, Vec3};
+use clench::rigid::constraint::ConstraintSource;
 use clench::rigid::dynamics::tendon_path::each_span;
-use clench::rigid::readout::{ContactRow, contact_rows};
+use clench::rigid::readout::{ContactRow, Push, contact_rows, islands};
 use clench::rigid::{Precision, Sim, Workspace};
 use std::time::Duration;
 
@@ -44,6 +45,10 @@ pub struct Besides<'a> {
     pub timing: Timing,
     /// The spring that drags a body.
     pub drag: Option<&'a Drag>,
+    /// The spring that turns a body.
+    pub turn: Option<&'a Turn>,
+    /// The first and last time, s, to which one can come back.
+    pub past: Option<[f64; 2]>,
     /// What users draw.
     pub marks: Vec<&'a Mark>,
     /// The environment of a batch whose contacts are shown, and the first of those side by side.
@@ -75,6 +80,8 @@ impl Besides<'_> {
 struct Shown<'a, T: Precision> {
     sim: &'a Sim<T>,
     energy: [f64; 2],
+    pushes: Vec<Push>,
+    cameras: Vec<[f32; 12]>,
     besides: &'a Besides<'a>,
 }
 
@@ -107,6 +114,12 @@ sections! {
     contacts: 20 => contact_rows(s.sim.workspace(), 0).iter().for_each(|row| contact(row, out));
     /// Constraints but contacts: kind (0 equality, 1 joint limit, 2 tendon limit, 3 dry friction), element, size of its force.
     constraints: 3 => constraints(s.sim.workspace(), out);
+    /// What constraints but contacts push on: kind as in `constraints`, element, body, where, force, torque.
+    pushes: 12 => s.pushes.iter().for_each(|push| out.extend(pushed(push)));
+    /// The island of each tree, by its lowest tree; -1 where no constraint acts.
+    islands: 1 => out.extend(islands(s.sim.workspace(), 0).iter().map(|first| first.map_or(-1.0, |tree| tree as f32)));
+    /// Cameras: position, and as columns the axes to the right, upwards and backwards.
+    cameras: 12 => s.cameras.iter().for_each(|row| out.extend(row));
     /// Straight parts of tendons: the tendon, both ends.
     spans: 7 => tendon_spans(s.sim, out);
     /// Position coordinates of the state.
@@ -123,6 +136,10 @@ sections! {
     sensors: 1 => narrow(&s.sim.workspace().sensors.data, out);
     /// The spring that drags a body: the body, the point, where it is drawn to, the force.
     drag: 10 => out.extend(s.besides.drag.into_iter().flat_map(|drag| drag.row(s.sim.workspace())));
+    /// The spring that turns a body: the body, where its centre of mass is, what is left to turn (rad, along the axis), the torque.
+    turn: 10 => out.extend(s.besides.turn.into_iter().flat_map(|turn| turn.row(s.sim.workspace())));
+    /// The first and last time, s, to which one can come back.
+    past: 2 => out.extend(s.besides.past.iter().flatten().map(|&time| time as f32));
     /// Plotted: iterations, log10 of the duality gap and of the gradient, deepest penetration (m), contacts, potential
     /// and kinetic energy (J), time of a step (µs), simulated over real time.
     plots: 9 => plots(s, out);
@@ -147,7 +164,11 @@ sections! {
 pub fn encode<T: Precision>(sim: &mut Sim<T>, besides: &Besides) -> Result<Vec<u8>, SimError> {
     sim.refresh()?;
     let energy = sim.energy()?;
+    let pushes = sim.pushes()?;
+    let cameras = cameras(sim)?;
     let shown = Shown {
+        pushes,
+        cameras,
         sim,
         energy: [energy.potential.to_f64(), energy.kinetic.to_f64()],
         besides,
@@ -189,19 +210,52 @@ fn contact(row: &ContactRow, out: &mut Vec<f32>) {
     out.extend([row.geoms[0] as f32, row.geoms[1] as f32, row.dim as f32]);
 }
 
+/// The kind of a constraint as a frame has it; none of contacts.
+fn kind(source: ConstraintSource) -> Option<f32> {
+    match source.kind() {
+        "equality" | "dynamic" => Some(0.0),
+        "limit_joint" => Some(1.0),
+        "limit_tendon" => Some(2.0),
+        "contact" => None,
+        _ => Some(3.0),
+    }
+}
+
+fn pushed(push: &Push) -> [f32; 12] {
+    let mut row = [push.body as f32; 12];
+    row[0] = kind(push.source).unwrap_or(-1.0);
+    row[1] = push.source.index() as f32;
+    let numbers = push.at.iter().chain(&push.force).chain(&push.torque);
+    for (to, &from) in row[3..].iter_mut().zip(numbers) {
+        *to = from as f32;
+    }
+    row
+}
+
+fn cameras<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<[f32; 12]>, SimError> {
+    if sim.model().cameras.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (places, turns) = (sim.output("cam_xpos")?, sim.output("cam_xmat")?);
+    let row = |(place, turn): (&[T], &[T])| {
+        // The matrix comes row by row.
+        let axes = (0..9).map(|k| turn[3 * (k % 3) + k / 3]);
+        let mut row = [0.0; 12];
+        for (to, from) in row.iter_mut().zip(place.iter().copied().chain(axes)) {
+            *to = from.to_f64() as f32;
+        }
+        row
+    };
+    let both = places.chunks_exact(3).zip(turns.chunks_exact(9));
+    Ok(both.map(row).collect())
+}
+
 fn constraints<T: Precision>(ws: &Workspace<T>, out: &mut Vec<f32>) {
     let forces = ws.solver.force();
     for (index, record) in ws.record.blocks.iter().enumerate() {
-        let kind = match record.source.kind() {
-            "equality" => 0.0,
-            "limit_joint" => 1.0,
-            "limit_tendon" => 2.0,
-            "contact" => continue,
-            _ => 3.0,
-        };
-        if !record.active.any() {
+        let Some(kind) = kind(record.source).filter(|_| record.active.any()) else {
             continue;
-        }
+        };
         let rows = &forces[ws.problem.block(index).rows()];
         let squares = rows.iter().map(|f| f.to_f64() * f.to_f64());
         let size = squares.sum::<f64>().sqrt();

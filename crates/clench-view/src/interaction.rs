@@ -1,11 +1,12 @@
 //! What users of the page have chosen, and what they do to a simulation, whoever steps it.
 
 use crate::command::{Command, cone};
-use crate::drag::Drag;
+use crate::drag::{Drag, Turn};
 use crate::frame::{Besides, PAUSED, Timing, encode};
 use crate::marks::Marks;
 use crate::viewed::Viewed;
 use clench::math::Real;
+use clench::rigid::{Precision, Sim};
 use clench::{RigidOptions, SimError};
 
 /// Which environments of a batch are seen.
@@ -28,7 +29,31 @@ pub struct Interaction {
     /// Which environments are seen.
     pub selection: Selection,
     /// The spring that pulls, and the environment that it pulls in.
-    drag: Option<(usize, Drag)>,
+    drag: Option<(usize, Hold)>,
+}
+
+/// What a user does with a body.
+enum Hold {
+    /// Pulls it.
+    Pull(Drag),
+    /// Turns it.
+    Turn(Turn),
+}
+
+impl Hold {
+    fn apply<T: Precision>(&mut self, sim: &mut Sim<T>) {
+        match self {
+            Hold::Pull(drag) => drag.apply(sim),
+            Hold::Turn(turn) => turn.apply(sim),
+        }
+    }
+
+    fn release<T: Precision>(&self, sim: &mut Sim<T>) {
+        match self {
+            Hold::Pull(drag) => drag.release(sim),
+            Hold::Turn(turn) => turn.release(sim),
+        }
+    }
 }
 
 impl Interaction {
@@ -120,10 +145,17 @@ impl Interaction {
                 point,
                 target,
             } => match &mut self.drag {
-                Some((_, drag)) if drag.body == body => drag.target = target,
+                Some((_, Hold::Pull(drag))) if drag.body == body => drag.target = target,
                 _ => {
                     self.release(viewed)?;
-                    self.drag = Some((env, Drag::new(body, point, target)));
+                    self.drag = Some((env, Hold::Pull(Drag::new(body, point, target))));
+                }
+            },
+            Command::Turn { body, target } => match &mut self.drag {
+                Some((_, Hold::Turn(turn))) if turn.body == body => turn.target = target,
+                _ => {
+                    self.release(viewed)?;
+                    self.drag = Some((env, Hold::Turn(Turn::new(body, target))));
                 }
             },
             Command::Release {} => self.release(viewed)?,
@@ -148,12 +180,12 @@ impl Interaction {
                 }
                 viewed.set_options(options)?;
             }
-            Command::Step { .. } | Command::Rewind { .. } => {}
+            Command::Step { .. } | Command::Rewind { .. } | Command::Moment { .. } => {}
         }
         Ok(())
     }
 
-    /// The bytes of a frame of what is now.
+    /// The bytes of a frame of what is now; `past` are the first and last time, s, to which one can come back.
     ///
     /// # Errors
     /// A state that cannot be evaluated.
@@ -161,13 +193,21 @@ impl Interaction {
         &self,
         viewed: &mut V,
         timing: Timing,
+        past: Option<[f64; 2]>,
         marks: &mut Marks,
     ) -> Result<Vec<u8>, SimError> {
         let Selection { env, first, count } = self.selection;
+        let (drag, turn) = match &self.drag {
+            Some((_, Hold::Pull(drag))) => (Some(drag), None),
+            Some((_, Hold::Turn(turn))) => (None, Some(turn)),
+            None => (None, None),
+        };
         let mut besides = Besides {
             flags: if self.paused { PAUSED } else { 0 },
             timing,
-            drag: self.drag.as_ref().map(|(_, drag)| drag),
+            drag,
+            turn,
+            past,
             marks: marks.at(viewed.time(env)).collect(),
             ..Besides::default()
         };

@@ -101,7 +101,7 @@ impl PassiveViewer {
     /// Shows what is now.
     pub fn show<V: Viewed>(&mut self, viewed: &mut V) {
         self.published = Some(Instant::now());
-        match self.interaction.frame(viewed, self.timing, &mut self.marks) {
+        match (self.interaction).frame(viewed, self.timing, None, &mut self.marks) {
             Ok(frame) => self.server.publish(frame),
             Err(error) => self.server.tell(&format!("nothing to show: {error}")),
         }
@@ -116,7 +116,7 @@ impl PassiveViewer {
                     self.steps += count;
                 })
             }
-            Command::Rewind { .. } => {
+            Command::Rewind { .. } | Command::Moment { .. } => {
                 Err("only the program whose loop steps could go back".to_owned())
             }
             command => self.interaction.apply(viewed, command),

@@ -21,6 +21,8 @@ pub struct Player<V: Stepped> {
     /// Simulated time that is due, s.
     due: f64,
     past: VecDeque<State<V::Scalar>>,
+    /// The remembered moment that is looked at: those after it are forgotten with the next step.
+    at: Option<usize>,
     timing: Timing,
 }
 
@@ -32,6 +34,7 @@ impl<V: Stepped> Player<V> {
             interaction: Interaction::new(paused),
             due: 0.0,
             past: VecDeque::new(),
+            at: None,
             timing: Timing::default(),
         }
     }
@@ -52,7 +55,10 @@ impl<V: Stepped> Player<V> {
     /// A state that cannot be evaluated.
     pub fn frame(&mut self) -> Result<Vec<u8>, SimError> {
         let nothing = &mut Marks::default();
-        (self.interaction).frame(&mut self.viewed, self.timing, nothing)
+        let ends = self.past.front().zip(self.past.back());
+        let now = self.time();
+        let past = ends.map(|(first, last)| [first.time, last.time.max(now)]);
+        (self.interaction).frame(&mut self.viewed, self.timing, past, nothing)
     }
 
     /// The simulated time of the environment that is looked at, s.
@@ -89,6 +95,9 @@ impl<V: Stepped> Player<V> {
     }
 
     fn step(&mut self) -> Result<(), SimError> {
+        if let Some(at) = self.at.take() {
+            self.past.truncate(at + 1);
+        }
         self.remember();
         let pulled = self.interaction.pull(&mut self.viewed);
         let done = pulled.and_then(|()| self.viewed.step());
@@ -122,9 +131,11 @@ impl<V: Stepped> Player<V> {
                 self.interaction.paused = true;
                 (0..count).try_for_each(|_| self.step()).map_err(said)
             }
-            Command::Rewind { seconds } => self.rewind(seconds).map_err(said),
+            Command::Rewind { seconds } => self.go_to(self.time() - seconds).map_err(said),
+            Command::Moment { time } => self.go_to(time).map_err(said),
             Command::Reset {} | Command::Keyframe { .. } => {
                 self.past.clear();
+                self.at = None;
                 self.due = 0.0;
                 self.interaction.apply(&mut self.viewed, command)
             }
@@ -132,16 +143,26 @@ impl<V: Stepped> Player<V> {
         }
     }
 
-    /// Back to the remembered state that is nearest to so long ago, standing still there.
-    fn rewind(&mut self, seconds: f64) -> Result<(), SimError> {
+    /// To the last remembered state that is not after a time, s, standing still there. The present is remembered too, so that one can
+    /// come forward again.
+    fn go_to(&mut self, time: f64) -> Result<(), SimError> {
         self.interaction.paused = true;
         self.interaction.release(&mut self.viewed)?;
-        let wanted = self.time() - seconds;
-        while self.past.len() > 1 && self.past.back().is_some_and(|last| last.time > wanted) {
-            self.past.pop_back();
+        if self.at.is_none() {
+            let now = self.time();
+            // What was changed by hand since it was remembered.
+            if self.past.back().is_some_and(|last| last.time >= now) {
+                self.past.pop_back();
+            }
+            self.past.extend(self.viewed.moment());
         }
-        if let Some(state) = self.past.back() {
+        // Pages tell times in single precision.
+        let until = time + 0.5 * self.viewed.model().params.timestep;
+        let at = self.past.iter().rposition(|moment| moment.time <= until);
+        let at = at.unwrap_or(0);
+        if let Some(state) = self.past.get(at) {
             self.viewed.go_back(state);
+            self.at = Some(at);
         }
         Ok(())
     }

@@ -27,6 +27,7 @@ pub struct Scene {
     equalities: Vec<Value>,
     sensors: Vec<Value>,
     keyframes: Vec<String>,
+    cameras: Vec<Value>,
     meshes: Vec<Value>,
     height_fields: Vec<Value>,
     materials: Vec<Value>,
@@ -65,6 +66,11 @@ impl Scene {
                 )
                 .collect(),
             keyframes: model.keyframes.iter().map(|k| k.name.clone()).collect(),
+            cameras: (model.cameras.iter().zip(&model.params.cam_fovy))
+                .map(|(camera, fovy)| {
+                    json!({"name": camera.name, "orthographic": camera.orthographic, "fovy": fovy})
+                })
+                .collect(),
             meshes: model.meshes.iter().map(|mesh| surface(mesh)).collect(),
             height_fields: (model.height_fields.iter())
                 .map(|field| {

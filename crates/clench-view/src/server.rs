@@ -8,6 +8,7 @@ use data_encoding::HEXLOWER;
 use serde_json::json;
 use std::io::{self, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::ops::RangeInclusive;
 use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -29,6 +30,9 @@ pub struct ServerOptions {
     pub host: String,
     /// Port; 0 for any that is free.
     pub port: u16,
+    /// What the address must tell; a random one is made if none is given. One that stays the same lets pages find a server again
+    /// that was started anew.
+    pub token: Option<String>,
 }
 
 impl Default for ServerOptions {
@@ -36,8 +40,28 @@ impl Default for ServerOptions {
         ServerOptions {
             host: "127.0.0.1".to_owned(),
             port: 0,
+            token: None,
         }
     }
+}
+
+/// Characters of a token that is given.
+const TOKEN_LENGTHS: RangeInclusive<usize> = 16..=128;
+
+/// The token that is given, if others could not guess it and it fits into an address; else a random one.
+fn token(given: Option<&str>) -> Result<String, ServeError> {
+    if let Some(token) = given {
+        let plain = token
+            .bytes()
+            .all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_');
+        if !plain || !TOKEN_LENGTHS.contains(&token.len()) {
+            return Err(ServeError::Token);
+        }
+        return Ok(token.to_owned());
+    }
+    let mut random = [0; 16];
+    getrandom::fill(&mut random).map_err(|error| ServeError::System(error.to_string()))?;
+    Ok(HEXLOWER.encode(&random))
 }
 
 /// A server that cannot start.
@@ -53,6 +77,9 @@ pub enum ServeError {
         /// What the system says.
         error: io::Error,
     },
+    /// A token that others could guess, or that does not fit into an address.
+    #[error("the viewer's token must have 16 to 128 letters, digits, - and _")]
+    Token,
     /// The system gives no random numbers, or no threads.
     #[error("the viewer cannot start: {0}")]
     System(String),
@@ -69,10 +96,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens, with a new random token.
+    /// Listens.
     ///
     /// # Errors
-    /// A place where one cannot listen; a system without random numbers.
+    /// A place where one cannot listen; a token that is none; a system without random numbers.
     pub fn start(options: &ServerOptions, page: Page, scene: &Scene) -> Result<Self, ServeError> {
         let refused = |error| ServeError::Listen {
             host: options.host.clone(),
@@ -81,13 +108,12 @@ impl Server {
         };
         let listener = TcpListener::bind((options.host.as_str(), options.port)).map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
-        let mut random = [0; 16];
-        getrandom::fill(&mut random).map_err(|error| ServeError::System(error.to_string()))?;
+        let token = token(options.token.as_deref())?;
         let (sender, commands) = sync_channel(MAX_COMMANDS);
         let shared = Arc::new(Shared {
             page,
             scene: scene.to_json().into(),
-            token: HEXLOWER.encode(&random),
+            token,
             anywhere: !address.ip().is_loopback(),
             news: Mutex::new(News {
                 number: 0,

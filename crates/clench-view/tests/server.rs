@@ -188,6 +188,11 @@ fn commands_that_the_model_cannot_follow_are_refused() {
             target: zeros,
         },
         Command::Rewind { seconds: -1.0 },
+        Command::Moment { time: f64::NAN },
+        Command::Turn {
+            body: 1,
+            target: [0.0; 4],
+        },
         Command::Options {
             elliptic: None,
             iterations: Some(usize::MAX),
@@ -246,6 +251,69 @@ fn a_user_can_go_back_and_the_motion_repeats() {
         player.apply(Command::Step { count: steps }).unwrap();
     }
     assert_eq!(player.viewed().state.qpos, qpos);
+}
+
+#[test]
+fn a_user_can_look_at_any_moment_of_the_past_and_come_forward_again() {
+    let mut player = player();
+    player.apply(Command::Step { count: 400 }).unwrap();
+    let state = |player: &Player<Sim<f64>>| player.viewed().state.clone();
+    let end = state(&player);
+    for time in [0.5, 0.1, 0.3] {
+        player.apply(Command::Moment { time }).unwrap();
+        let found = player.viewed().state.time;
+        assert!((found - time).abs() < 0.02, "{found} for {time}");
+    }
+    player.apply(Command::Moment { time: end.time }).unwrap();
+    assert_eq!(state(&player).qpos, end.qpos);
+    assert_eq!(state(&player).time, end.time);
+    // What would have come after a moment is forgotten where another future begins.
+    player.apply(Command::Moment { time: 0.3 }).unwrap();
+    player.apply(Command::Step { count: 1 }).unwrap();
+    let time = player.viewed().state.time;
+    player.apply(Command::Moment { time: 0.7 }).unwrap();
+    assert_eq!(player.viewed().state.time, time);
+}
+
+#[test]
+fn a_body_is_turned_to_where_the_user_wants_it() {
+    let free = "<mujoco><option gravity='0 0 0'/><worldbody><body><freejoint/><geom type='box' size='.1 .2 .3'/></body>
+        </worldbody></mujoco>";
+    let model = Arc::new(load_str(free).unwrap());
+    let mut player = Player::new(Sim::<f64>::new(model).unwrap(), true);
+    let target = [0.8, 0.0, 0.6, 0.0];
+    player.apply(Command::Turn { body: 1, target }).unwrap();
+    for _ in 0..3 {
+        player.apply(Command::Step { count: 1000 }).unwrap();
+    }
+    let found = &player.viewed().state.qpos[3..7];
+    let apart = found.iter().zip(target).map(|(a, b)| (a - b).abs());
+    assert!(apart.fold(0.0, f64::max) < 1e-6, "{found:?}");
+    player.apply(Command::Release {}).unwrap();
+    let applied = player.viewed().state.xfrc_applied[1];
+    assert_eq!(applied.angular.to_array(), [0.0; 3]);
+}
+
+#[test]
+fn a_token_of_ones_own_outlives_the_server_and_one_to_guess_is_refused() {
+    let own = |token: &str| ServerOptions {
+        token: Some(token.to_owned()),
+        ..ServerOptions::default()
+    };
+    let start = |options: &ServerOptions| {
+        let scene = Scene::new(player().viewed().model());
+        Server::start(options, Page::of("<html></html>"), &scene)
+    };
+    let kept = own("one-that-nobody_knows");
+    let tokens = [0, 1].map(|_| place(&start(&kept).unwrap()).1);
+    assert_eq!(tokens, ["one-that-nobody_knows"; 2]);
+    for bad in [
+        "short",
+        "with spaces in it, many",
+        "&amp;&amp;&amp;&amp;&amp;",
+    ] {
+        assert!(matches!(start(&own(bad)), Err(ServeError::Token)), "{bad}");
+    }
 }
 
 #[test]

@@ -107,6 +107,7 @@ impl Viewer {
         let options = ServerOptions {
             host: host.to_owned(),
             port,
+            ..ServerOptions::default()
         };
         let speed = check_speed(speed)?;
         let page = page(py)?;
@@ -117,7 +118,7 @@ impl Viewer {
             each_viewed!(&target, viewed => PassiveViewer::start(&options, page, chosen, viewed));
         let viewer = viewer.map_err(|error| match error {
             ServeError::Listen { .. } => PyOSError::new_err(error.to_string()),
-            ServeError::System(_) => ClenchError::new_err(error.to_string()),
+            ServeError::System(_) | ServeError::Token => ClenchError::new_err(error.to_string()),
         })?;
         Ok(Viewer {
             target,

@@ -26,8 +26,9 @@ pub struct Arguments {
     /// Controls as a NumPy array (N, nu): row k for step k, the same in every environment
     #[arg(long, value_name = "FILE.npy")]
     pub(super) ctrl: Option<PathBuf>,
-    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`), or a page that replays the run in a
-    /// browser (`.html`, of one environment), in place of an old file once all is done
+    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`) in place of an old file once all is done;
+    /// of one environment also a page that replays the run in a browser (`.html`), likewise, or poses, shapes, forces and plots as
+    /// messages for Foxglove (`.mcap`), which can be read up to the last second wherever the run ends
     #[arg(long, value_name = "OUT")]
     pub(super) record: Option<PathBuf>,
     /// Record every K-th step

@@ -90,11 +90,11 @@ pub fn run<S: Precision>(
     }
     progress.finish_and_clear();
     batch.run_clocks(false);
-    let recorded_rows = recorder.map(BatchRecorder::write).transpose()?;
+    let recorded = recorder.map(BatchRecorder::write).transpose();
     let verdict = verdict(&run.model, &batch.quality(), account.as_ref());
     let mut report = report(&batch, done(&batch, &times, steps), spent, &heap, verdict);
-    report.recorded_rows = recorded_rows;
     let whole = report.failure.is_none() && report.resets == 0;
+    report.take_record(recorded);
     let free = whole && batch.quality().constrained == 0;
     if free && is_conservative(&run.model) {
         report.energy_drift = drift(&energies, &self::energies(&mut batch, &mut heap)?);

@@ -8,6 +8,7 @@ mod display;
 mod energy;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod messages;
 mod page;
 mod quality;
 mod record;

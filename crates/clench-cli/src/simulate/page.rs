@@ -1,5 +1,6 @@
 //! A record that is a page: it replays the run in a browser, without a server.
 
+use super::messages::{self, MessageRecorder};
 use super::record::{RecordOptions, Recorder};
 use crate::message::tell;
 use crate::replacement::Replacement;
@@ -19,15 +20,22 @@ pub enum RunRecorder {
     Arrays(Recorder),
     /// A page.
     Page(Box<PageRecorder>),
+    /// Messages.
+    Messages(Box<MessageRecorder>),
 }
 
 impl RunRecorder {
     /// An empty record.
     pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
         let end = options.path.extension();
-        if end.is_some_and(|end| end.eq_ignore_ascii_case(EXTENSION)) {
+        let ends = |name: &str| end.is_some_and(|end| end.eq_ignore_ascii_case(name));
+        if ends(EXTENSION) {
             let page = PageRecorder::create(options, model)?;
             return Ok(RunRecorder::Page(Box::new(page)));
+        }
+        if ends(messages::EXTENSION) {
+            let messages = MessageRecorder::create(options, model)?;
+            return Ok(RunRecorder::Messages(Box::new(messages)));
         }
         Recorder::create(options, model).map(RunRecorder::Arrays)
     }
@@ -37,6 +45,7 @@ impl RunRecorder {
         match self {
             RunRecorder::Arrays(recorder) => recorder.after_steps(steps, sim),
             RunRecorder::Page(recorder) => recorder.after_steps(steps, sim)?,
+            RunRecorder::Messages(recorder) => recorder.after_steps(steps, sim)?,
         }
         Ok(())
     }
@@ -46,6 +55,7 @@ impl RunRecorder {
         match self {
             RunRecorder::Arrays(recorder) => recorder.write(),
             RunRecorder::Page(recorder) => recorder.write(),
+            RunRecorder::Messages(recorder) => recorder.write(),
         }
     }
 }

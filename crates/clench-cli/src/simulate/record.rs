@@ -36,7 +36,7 @@ impl RecordOptions<'_> {
         ensure!(
             (self.path.extension()).is_some_and(|end| end.eq_ignore_ascii_case(EXTENSION)),
             "--record {}: a record is an archive of NumPy arrays, whose name must end in .{EXTENSION}, or, of one environment, a page \
-             (.html)",
+             (.html) or messages (.mcap)",
             self.path.display()
         );
         let file = Replacement::begin(self.path).with_context(context)?;

@@ -9,7 +9,7 @@ use std::time::Duration;
 #[derive(Serialize)]
 pub struct Report {
     /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out), `reset`
-    /// (some step diverged and started over), `interrupted` or `failed`.
+    /// (some step diverged and started over), `interrupted`, `failed`, or `record_failed` (all went well but the record).
     pub status: &'static str,
     /// What the run is worth in a word, see [`verdict`](super::quality::verdict).
     pub quality: &'static str,
@@ -59,6 +59,20 @@ pub struct Report {
     /// What went wrong, if something did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
+}
+
+impl Report {
+    /// Takes over how many rows a record has, if there is one and it could be written; that it could not is the least of failures.
+    pub fn take_record(&mut self, recorded: anyhow::Result<Option<usize>>) {
+        match recorded {
+            Ok(rows) => self.recorded_rows = rows,
+            Err(error) if self.failure.is_none() => {
+                self.status = "record_failed";
+                self.failure = Some(format!("{error:#}"));
+            }
+            Err(error) => self.warnings.push(format!("{error:#}")),
+        }
+    }
 }
 
 /// What only a batch has.

@@ -58,11 +58,11 @@ pub fn run<T: Precision>(
         account.look(0, energy(&mut sim)?);
     }
     progress.finish_and_clear();
-    let recorded_rows = recorder.map(RunRecorder::write).transpose()?;
+    let recorded = recorder.map(RunRecorder::write).transpose();
     sim.run_clocks(false);
     let verdict = verdict(&run.model, summary.quality(), account.as_ref());
     let mut report = summary.finish(&mut sim, spent.as_secs_f64(), verdict);
-    report.recorded_rows = recorded_rows;
+    report.take_record(recorded);
     if arguments.profile {
         let (profile, steps) = (sim.profile(), report.steps as u64);
         report.profile = Some(stages(&profile, spent, steps));

@@ -12,10 +12,10 @@ use crate::workspace::Workspace;
 use clench_math::{Force, Real, Vec3, kernel};
 
 /// A force and a couple in world axes, and where the force acts.
-struct Wrench<T> {
-    force: Vec3<T>,
-    couple: Vec3<T>,
-    at: Vec3<T>,
+pub(crate) struct Wrench<T> {
+    pub force: Vec3<T>,
+    pub couple: Vec3<T>,
+    pub at: Vec3<T>,
 }
 
 impl<T: Real> Wrench<T> {
@@ -56,7 +56,7 @@ pub(crate) fn external<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
         add(bodies[0], -T::ONE, &wrench);
         add(bodies[1], T::ONE, &wrench);
     });
-    each_joint_of_bodies(s, |bodies, wrenches| {
+    each_joint_of_bodies(s, |_, bodies, wrenches| {
         add(bodies[0], T::ONE, &wrenches[0]);
         add(bodies[1], -T::ONE, &wrenches[1]);
     });
@@ -132,9 +132,12 @@ fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<
     }
 }
 
-/// Shows every connect and weld: its bodies, and the force on the first at the anchor of each.
+/// Shows every connect and weld: where it comes from, its bodies, and the force on the first at the anchor of each.
 #[kernel]
-fn each_joint_of_bodies<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], [Wrench<T>; 2])) {
+pub(crate) fn each_joint_of_bodies<T: Real>(
+    s: &Source<T>,
+    mut show: impl FnMut(ConstraintSource, [usize; 2], [Wrench<T>; 2]),
+) {
     let pos = &s.ws.position;
     for (block, record) in s.ws.record.blocks.iter().enumerate() {
         let Some((frames, weld)) = frames(s, record.source) else {
@@ -151,7 +154,7 @@ fn each_joint_of_bodies<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2],
             couple,
             at,
         });
-        show(frames.bodies, wrenches);
+        show(record.source, frames.bodies, wrenches);
     }
 }
 

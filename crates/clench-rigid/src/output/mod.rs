@@ -7,7 +7,7 @@ mod source;
 mod tendon_forces;
 
 use crate::sensor::BodyForces;
-pub(crate) use forces::{external as external_forces, of_contact};
+pub(crate) use forces::{each_joint_of_bodies, external as external_forces, of_contact};
 pub(crate) use source::Source;
 
 use crate::dynamics::camera::camera_pose;

@@ -1,0 +1,73 @@
+//! A record as MCAP: messages that reach the file while the run goes on.
+
+use super::record::RecordOptions;
+use crate::message::tell;
+use anyhow::{Context, Result, bail};
+use clench::rigid::Precision;
+use clench::{Model, Sim};
+use clench_view::McapRecorder;
+use clench_view::mcap::McapRecordError;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+/// How the name of such a record ends.
+pub const EXTENSION: &str = "mcap";
+
+/// A file of messages in the making. It stands at its place from the beginning: what is in it can be read even if the program is killed.
+pub struct MessageRecorder {
+    path: PathBuf,
+    recorder: McapRecorder<BufWriter<File>>,
+    every: usize,
+    /// Why the file takes no more, if so.
+    full: Option<String>,
+}
+
+fn context(path: &Path) -> String {
+    format!("--record {}", path.display())
+}
+
+impl MessageRecorder {
+    /// An empty record in place of an old one.
+    pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
+        let path = options.path.to_path_buf();
+        let file = File::create(&path).with_context(|| context(&path))?;
+        let recorder = McapRecorder::new(BufWriter::new(file), model);
+        Ok(MessageRecorder {
+            recorder: recorder.with_context(|| context(&path))?,
+            every: options.every,
+            full: None,
+            path,
+        })
+    }
+
+    /// Records what `steps` steps led to, if it is wanted. Where the file takes no more, that is told once and the run goes on.
+    pub fn after_steps<T: Precision>(&mut self, steps: usize, sim: &mut Sim<T>) -> Result<()> {
+        if !steps.is_multiple_of(self.every) || self.full.is_some() {
+            return Ok(());
+        }
+        match self.recorder.append(sim) {
+            Ok(()) => Ok(()),
+            Err(error @ McapRecordError::Sim(_)) => Err(error).with_context(|| context(&self.path)),
+            Err(error @ McapRecordError::File(_)) => {
+                let moments = self.recorder.len();
+                let context = context(&self.path);
+                tell(format_args!(
+                    "warning: {context}: {error}; nothing is recorded after {moments} moments, the run goes on"
+                ));
+                self.full = Some(error.to_string());
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes the rest; how many moments there are.
+    pub fn write(self) -> Result<usize> {
+        let moments = self.recorder.len();
+        if let Some(error) = self.full {
+            bail!("{}: {error}", context(&self.path));
+        }
+        (self.recorder.finish()).with_context(|| context(&self.path))?;
+        Ok(moments)
+    }
+}

@@ -1,0 +1,70 @@
+//! What a frame of the viewer costs its server: `cargo run --release -p clench-view --example frames [MODEL...]`.
+//!
+//! Each model, or the humanoid and a heap of a thousand bodies, is stepped; after every eighth step a frame is made, as `clench view`
+//! does sixty times a second. One JSON line a model: bodies, mean contacts, mean bytes of a frame, and the median time in µs that it
+//! takes to make one, beside that of the eight steps.
+
+use clench::{Model, Sim, load, load_str};
+use clench_view::frame::{Besides, encode};
+use serde_json::json;
+use std::error::Error;
+use std::sync::Arc;
+use std::time::Instant;
+
+const FRAMES: usize = 60;
+const STEPS: usize = 8;
+
+/// A thousand bodies of four shapes that fall onto each other.
+const HEAP: &str = "<mujoco model='a thousand bodies'><option timestep='0.002'/><worldbody><geom type='plane' size='9 9 1'/>
+  <replicate count='10' offset='.21 .01 .003'><replicate count='25' offset='.013 .21 .002'>
+    <body pos='0 0 .06'><freejoint/><geom size='.05'/></body>
+    <body pos='.02 .01 .2' euler='10 20 0'><freejoint/><geom type='box' size='.05 .05 .05'/></body>
+    <body pos='0 .02 .35' euler='80 0 0'><freejoint/><geom type='capsule' size='.04 .05'/></body>
+    <body pos='.01 0 .5' euler='40 0 0'><freejoint/><geom type='cylinder' size='.05 .05'/></body>
+  </replicate></replicate></worldbody></mujoco>";
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let named: Vec<String> = std::env::args().skip(1).collect();
+    for path in &named {
+        measure(load(path)?)?;
+    }
+    if named.is_empty() {
+        measure(load(format!("{root}/models/humanoid.xml"))?)?;
+        measure(load_str(HEAP)?)?;
+    }
+    Ok(())
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+fn measure(model: Model) -> Result<(), Box<dyn Error>> {
+    let mut sim = Sim::<f64>::new(Arc::new(model))?;
+    let (mut bytes, mut contacts) = (0, 0);
+    let (mut steps, mut frames) = (Vec::new(), Vec::new());
+    for _ in 0..FRAMES {
+        let start = Instant::now();
+        for _ in 0..STEPS {
+            sim.step()?;
+        }
+        steps.push(1e6 * start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let frame = encode(&mut sim, &Besides::default())?;
+        frames.push(1e6 * start.elapsed().as_secs_f64());
+        bytes += frame.len();
+        contacts += sim.contacts().len();
+    }
+    let row = json!({
+        "model": sim.model().name,
+        "bodies": sim.model().nbody() - 1,
+        "contacts": contacts / FRAMES,
+        "bytes": bytes / FRAMES,
+        "frame_microseconds": median(frames),
+        "steps_microseconds": median(steps),
+    });
+    println!("{row}");
+    Ok(())
+}

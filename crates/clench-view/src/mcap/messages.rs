@@ -1,0 +1,280 @@
+//! The messages of a moment.
+
+use super::shapes::{self, point, pose};
+use crate::frame::tendon_spans;
+use clench::Model;
+use clench::math::{Quat, Vec3};
+use clench::rigid::model::JointKind;
+use clench::rigid::readout::{Push, contact_rows};
+use clench::rigid::{Precision, Sim};
+use serde_json::{Map, Value, json};
+use std::collections::HashSet;
+
+/// The numbers of the solver.
+pub const SOLVER: [&str; 6] = [
+    "iterations",
+    "gap",
+    "gradient",
+    "penetration",
+    "contacts",
+    "islands",
+];
+/// Energies, J.
+pub const ENERGY: [&str; 2] = ["potential", "kinetic"];
+
+/// What the arrow of the whole weight is as long as, over the size of the model.
+const WEIGHT: f64 = 1.1;
+/// Thickness of an arrow's shaft over the size of the model.
+const THICK: f64 = 0.015;
+
+const NORMAL: [f32; 4] = [0.18, 0.49, 0.88, 1.0];
+const FRICTION: [f32; 4] = [0.94, 0.54, 0.14, 1.0];
+const HELD: [f32; 4] = [0.55, 0.36, 0.82, 1.0];
+
+/// What messages are made of.
+pub struct Moment<'a, T: Precision> {
+    pub sim: &'a Sim<T>,
+    /// Potential and kinetic, J.
+    pub energy: [f64; 2],
+    pub pushes: &'a [Push],
+    pub frames: &'a [String],
+    /// Metres a newton.
+    pub scale: f64,
+}
+
+/// A name of its own for the frame of each body.
+pub fn frame_names(model: &Model) -> Vec<String> {
+    let mut taken = HashSet::new();
+    let mut name = |(index, body): (usize, &clench::rigid::model::Body)| {
+        let mut name = match (index, body.name.as_str()) {
+            (0, _) => "world".to_owned(),
+            (_, "") => format!("body {index}"),
+            (_, name) => name.to_owned(),
+        };
+        while !taken.insert(name.clone()) {
+            name.push('\'');
+        }
+        name
+    };
+    model.bodies.iter().enumerate().map(&mut name).collect()
+}
+
+/// A length that suits the model, m: the root of the mean square of how far its masses are from their centre at first, and the sizes
+/// of what they are.
+fn size(model: &Model) -> f64 {
+    let (p, count) = (&model.params, model.geoms.len());
+    let moving = (0..count).filter(|&g| model.geoms[g].body > 0);
+    let reach = moving.map(|g| {
+        let radius = p.geom_rbound[g];
+        let parent = model.geoms[g].body;
+        p.body_pos[parent].norm() + p.geom_pos[g].norm() + radius
+    });
+    let far = reach.filter(|x| x.is_finite()).fold(0.0, f64::max);
+    if far > 0.0 { far } else { 1.0 }
+}
+
+/// How long arrows are, m/N: that of the whole weight is a little longer than the model.
+pub fn force_scale(model: &Model) -> f64 {
+    let weight = 9.81 * model.params.body_mass.iter().sum::<f64>();
+    WEIGHT * size(model) / weight.max(1e-9)
+}
+
+/// A name, or what stands for it.
+fn named(name: &str, kind: &str, index: usize) -> String {
+    match name {
+        "" => format!("{kind} {index}"),
+        name => name.to_owned(),
+    }
+}
+
+/// The joints with one coordinate.
+fn plain_joints(model: &Model) -> impl Iterator<Item = (usize, &clench::rigid::model::Joint)> {
+    let joints = model.joints.iter().enumerate();
+    joints.filter(|(_, joint)| matches!(joint.kind, JointKind::Slide | JointKind::Hinge))
+}
+
+/// Their names.
+pub fn joint_names(model: &Model) -> Vec<String> {
+    plain_joints(model)
+        .map(|(j, joint)| named(&joint.name, "joint", j))
+        .collect()
+}
+
+/// The names of all controls.
+pub fn control_names(model: &Model) -> Vec<String> {
+    let mut names = Vec::with_capacity(model.nu());
+    for (a, actuator) in model.actuators.iter().enumerate() {
+        let name = named(&actuator.name, "actuator", a);
+        match actuator.controls.len() {
+            1 => names.push(name),
+            several => names.extend((0..several).map(|k| format!("{name} {k}"))),
+        }
+    }
+    names
+}
+
+/// The names of all sensors.
+pub fn sensor_names(model: &Model) -> Vec<String> {
+    let sensors = model.sensors.iter().enumerate();
+    sensors
+        .map(|(s, sensor)| named(&sensor.name, "sensor", s))
+        .collect()
+}
+
+/// Where the frames of bodies are.
+pub fn frames<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+    let position = &moment.sim.workspace().position;
+    let transform = |body: usize| {
+        let at = position.xpos[body].to_array().map(|x| x.to_f64());
+        let turn = position.xquat[body].to_array().map(|x| x.to_f64());
+        json!({
+            "timestamp": time,
+            "parent_frame_id": moment.frames[0],
+            "child_frame_id": moment.frames[body],
+            "translation": point(at),
+            "rotation": shapes::turn(turn),
+        })
+    };
+    let transforms: Vec<_> = (1..moment.frames.len()).map(transform).collect();
+    json!({ "transforms": transforms })
+}
+
+/// An entity of a scene with these lists of things in it.
+fn entity(time: &Value, frame: &str, id: &str, things: Map<String, Value>) -> Value {
+    let mut entity = json!({
+        "timestamp": time,
+        "frame_id": frame,
+        "id": id,
+        "lifetime": {"sec": 0, "nsec": 0},
+        "frame_locked": true,
+        "metadata": [], "arrows": [], "cubes": [], "spheres": [], "cylinders": [], "lines": [], "triangles": [],
+        "texts": [], "models": [],
+    });
+    if let Value::Object(fields) = &mut entity {
+        fields.extend(things);
+    }
+    entity
+}
+
+fn update(entities: Vec<Value>) -> Value {
+    json!({"deletions": [], "entities": entities})
+}
+
+/// What bodies look like, each in its frame.
+pub fn shapes<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+    let model = moment.sim.model();
+    let of_body = |body: usize| {
+        let things = shapes::of_body(model, body);
+        let (frame, id) = (&moment.frames[body], format!("body {body}"));
+        (!things.is_empty()).then(|| entity(time, frame, &id, things))
+    };
+    update((0..model.nbody()).filter_map(of_body).collect())
+}
+
+/// What pushes on what: contacts, and after them connects, welds and limits.
+pub fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+    let mut arrows = Vec::new();
+    let thick = THICK * size(moment.sim.model());
+    let mut add = |at: [f64; 3], force: Vec3<f64>, color: [f32; 4]| {
+        let length = moment.scale * force.norm();
+        if length < 0.2 * thick {
+            return;
+        }
+        let head = (3.0 * thick).min(0.5 * length);
+        let turn = Quat::from_two_vectors(Vec3::new(1.0, 0.0, 0.0), force.normalize().0);
+        arrows.push(json!({
+            "pose": pose(at, turn.to_array()),
+            "shaft_length": length - head,
+            "shaft_diameter": thick,
+            "head_length": head,
+            "head_diameter": 2.2 * thick,
+            "color": shapes::color(color),
+        }));
+    };
+    for row in contact_rows(moment.sim.workspace(), 0) {
+        let axis = |k: usize| Vec3::from_array(row.frame[k]);
+        add(row.pos, axis(0) * row.force[0], NORMAL);
+        let along = axis(1) * row.force[1] + axis(2) * row.force[2];
+        add(row.pos, along, FRICTION);
+    }
+    for push in moment.pushes {
+        add(push.at, Vec3::from_array(push.force), HELD);
+    }
+    let things = Map::from_iter([("arrows".to_owned(), Value::Array(arrows))]);
+    update(vec![entity(time, &moment.frames[0], "forces", things)])
+}
+
+/// Straight parts of tendons.
+pub fn tendons<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+    let model = moment.sim.model();
+    let mut spans = Vec::new();
+    tendon_spans(moment.sim, &mut spans);
+    let line = |row: &[f32]| {
+        let tendon = row[0] as usize;
+        let end = |k: usize| point([row[k], row[k + 1], row[k + 2]].map(f64::from));
+        json!({
+            "type": 2,
+            "pose": pose([0.0; 3], [1.0, 0.0, 0.0, 0.0]),
+            "thickness": 2.0 * model.visuals.tendon_width[tendon],
+            "scale_invariant": false,
+            "points": [end(1), end(4)],
+            "color": shapes::color(model.visuals.rgba(model.visuals.tendons[tendon])),
+            "colors": [], "indices": [],
+        })
+    };
+    let lines = spans.chunks_exact(7).map(line).collect();
+    let things = Map::from_iter([("lines".to_owned(), Value::Array(lines))]);
+    update(vec![entity(time, &moment.frames[0], "tendons", things)])
+}
+
+/// Numbers under names.
+fn record(names: impl IntoIterator<Item = impl Into<String>>, numbers: Vec<Value>) -> Value {
+    Value::Object(names.into_iter().map(Into::into).zip(numbers).collect())
+}
+
+/// How the last solve went.
+pub fn solver<T: Precision>(moment: &Moment<T>) -> Value {
+    let (stats, contacts) = (moment.sim.stats(), moment.sim.contacts());
+    let depths = contacts.iter().map(|contact| -contact.dist.to_f64());
+    let numbers = vec![
+        json!(stats.iterations),
+        json!(stats.gap),
+        json!(stats.gradient),
+        json!(depths.fold(0.0, f64::max)),
+        json!(contacts.len()),
+        json!(stats.islands),
+    ];
+    record(SOLVER, numbers)
+}
+
+/// Energies.
+pub fn energy<T: Precision>(moment: &Moment<T>) -> Value {
+    record(ENERGY, moment.energy.map(|x| json!(x)).to_vec())
+}
+
+/// Positions (m, rad) and velocities of slides and hinges.
+pub fn joints<T: Precision>(moment: &Moment<T>) -> Value {
+    let (model, state) = (moment.sim.model(), &moment.sim.state);
+    let of = |(_, joint): (usize, &clench::rigid::model::Joint)| {
+        let (position, velocity) = (state.qpos[joint.qpos], state.qvel[joint.dof]);
+        json!({"position": position.to_f64(), "velocity": velocity.to_f64()})
+    };
+    record(joint_names(model), plain_joints(model).map(of).collect())
+}
+
+/// Controls.
+pub fn controls<T: Precision>(moment: &Moment<T>) -> Value {
+    let numbers = moment.sim.state.ctrl.iter().map(|x| json!(x.to_f64()));
+    record(control_names(moment.sim.model()), numbers.collect())
+}
+
+/// What each sensor measures.
+pub fn sensors<T: Precision>(moment: &Moment<T>) -> Value {
+    let model = moment.sim.model();
+    let data = &moment.sim.workspace().sensors.data;
+    let of = |sensor: &clench::rigid::model::Sensor| {
+        let numbers = data[sensor.numbers.clone()].iter();
+        json!(numbers.map(|x| x.to_f64()).collect::<Vec<_>>())
+    };
+    record(sensor_names(model), model.sensors.iter().map(of).collect())
+}

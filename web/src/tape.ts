@@ -1,0 +1,66 @@
+// What was seen last, kept so that it can be saved as a page that replays it.
+
+import type { Frame } from "./frame.ts";
+import type { Scene } from "./scene.ts";
+
+/** What is kept at most: simulated time, s, and bytes. */
+const SECONDS = 30;
+const BYTES = 256e6;
+/** Bytes that are turned into letters at once. */
+const PIECE = 0x8000;
+
+export class Tape {
+  private scene: Scene | null = null;
+  private frames: Frame[] = [];
+  private bytes = 0;
+
+  constructor(private notify: (text: string) => void) {}
+
+  /** Begins anew, with another scene. */
+  begin(scene: Scene): void {
+    this.scene = scene;
+    this.frames = [];
+    this.bytes = 0;
+  }
+
+  /** Keeps a frame. What came after it, when the simulation was set back, is forgotten. */
+  keep(frame: Frame): void {
+    while (this.frames.length > 0 && this.frames.at(-1)!.time >= frame.time) this.drop(this.frames.pop()!);
+    this.frames.push(frame);
+    this.bytes += frame.bytes.byteLength;
+    while (this.bytes > BYTES || this.frames[0].time < frame.time - SECONDS) this.drop(this.frames.shift()!);
+  }
+
+  private drop(frame: Frame): void {
+    this.bytes -= frame.bytes.byteLength;
+  }
+
+  /** Saves the last seconds: the page itself, as the server gave it, with the frames in it. */
+  async save(seconds: number): Promise<void> {
+    const last = this.frames.at(-1);
+    if (!last || !this.scene) return;
+    const kept = this.frames.filter((frame) => frame.time >= last.time - seconds);
+    const reply = await fetch(location.href).catch(() => null);
+    if (!reply?.ok) {
+      this.notify("The page could not be fetched again: is the simulation still there?");
+      return;
+    }
+    const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: kept.map(({ bytes }) => letters(bytes)) });
+    // A script ends at `</`, wherever that stands.
+    const script = `<script id="recording" type="application/json">${data.replaceAll("</", "<\\/")}</script>`;
+    const page = (await reply.text()).replace("<body>", () => `<body>${script}`);
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([page], { type: "text/html" }));
+    link.download = `${this.scene.name || "clench"} ${last.time.toFixed(2)} s.html`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  }
+}
+
+/** Base 64. */
+function letters(bytes: ArrayBuffer): string {
+  const all = new Uint8Array(bytes);
+  const pieces: string[] = [];
+  for (let at = 0; at < all.length; at += PIECE) pieces.push(String.fromCharCode(...all.subarray(at, at + PIECE)));
+  return btoa(pieces.join(""));
+}
