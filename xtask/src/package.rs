@@ -2,6 +2,7 @@
 
 use crate::python::{interpreter, prepare};
 use crate::run::{Profile, command, run, target};
+use crate::web;
 
 /// Installs the package, and holds its types to what was installed.
 ///
@@ -62,7 +63,8 @@ pub fn wheel() -> Result<(), String> {
     run(build)
 }
 
-/// Runs the tests of the package, and with them every example in its short form.
+/// Runs the tests of the package, and with them every example in its short form; then looks at a loop in Python through a browser, where
+/// there is one.
 ///
 /// # Errors
 /// That a test failed.
@@ -70,5 +72,12 @@ pub fn test() -> Result<(), String> {
     run(command(
         interpreter(),
         &["-m", "pytest", "--quiet", "-rs", "python/tests"],
-    ))
+    ))?;
+    match web::no_browser() {
+        None => web::test_python(),
+        Some(reason) => {
+            println!("skipped: the page of a loop in Python: {reason}");
+            Ok(())
+        }
+    }
 }

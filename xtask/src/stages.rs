@@ -57,7 +57,7 @@ const STAGES: &[Stage] = &[
     },
     Stage {
         name: "browser",
-        remedy: "run one case alone in web/ with `npm test -- --test-name-pattern NAME`",
+        remedy: "run one case alone in web/ with `NAME='part of its name' npm test`",
         check: web::test,
         missing: web::no_browser,
     },

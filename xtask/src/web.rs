@@ -1,6 +1,7 @@
 //! The viewer's page: built by Node, and driven in a browser by its tests.
 
 use crate::install::try_to_install;
+use crate::python::interpreter;
 use crate::run::{Profile, command, root, run};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -22,8 +23,21 @@ pub fn build() -> Result<(), String> {
 /// # Errors
 /// That a test failed.
 pub fn test() -> Result<(), String> {
-    let mut tests = in_web("npm", &["run", "--silent", "test"]);
+    drive("test")
+}
+
+/// Drives the page of a viewer that a loop in Python feeds, once the package is installed.
+///
+/// # Errors
+/// That a test failed.
+pub fn test_python() -> Result<(), String> {
+    drive("test:python")
+}
+
+fn drive(script: &str) -> Result<(), String> {
+    let mut tests = in_web("npm", &["run", "--silent", script]);
     tests.env("CLENCH", Profile::Release.program("clench"));
+    tests.env("PYTHON", interpreter());
     tests.env("CHROMIUM", chromium());
     run(tests)
 }
