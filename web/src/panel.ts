@@ -23,7 +23,7 @@ const SPEEDS: [string, string][] = [
 const LAYERS: [keyof Layers, string][] = [
   ["contacts", "contacts"],
   ["forces", "forces"],
-  ["constraints", "limits, equalities"],
+  ["constraints", "limits, welds"],
   ["cones", "friction cones"],
   ["tendons", "tendons"],
   ["frames", "frames"],
@@ -227,7 +227,7 @@ export class Panel {
     }
     box.append(check("sites", this.sight.sites, (on) => (this.sight.sites = on)));
     if (this.scene.trees.some((tree) => tree !== null)) {
-      box.append(check("islands in colours", this.sight.islands, (on) => (this.sight.islands = on)));
+      box.append(check("islands", this.sight.islands, (on) => (this.sight.islands = on)));
     }
     const anew = (key: "hulls" | "transparent") => (on: boolean) => {
       this.sight[key] = on;

@@ -158,9 +158,9 @@ export class Stage {
     const reach = 1 + 0.66 * (side - 1);
     this.reach = reach;
     this.shade(reach);
-    const away = new THREE.Vector3(1.35, -1.55, side > 1 ? 1.1 : 0.62).multiplyScalar(1.4 * reach * this.extent);
-    // The plots cover the lower edge: what matters stands a little higher.
-    this.controls.target.copy(this.centre).addScaledVector(this.camera.up, -0.14 * this.extent);
+    const away = new THREE.Vector3(1.35, -1.55, side > 1 ? 1.1 : 0.62).multiplyScalar(1.55 * reach * this.extent);
+    // The plots cover more of the lower edge than the bar of the upper: what matters stands a little higher.
+    this.controls.target.copy(this.centre).addScaledVector(this.camera.up, -0.09 * this.extent);
     this.camera.position.copy(this.controls.target).add(away);
     this.camera.near = 0.01 * this.extent;
     this.camera.far = 120 * reach * this.extent;

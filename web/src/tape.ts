@@ -46,11 +46,16 @@ export class Tape {
       return;
     }
     const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: kept.map(({ bytes }) => letters(bytes)) });
+    const page = new DOMParser().parseFromString(await reply.text(), "text/html");
+    const script = page.createElement("script");
+    script.id = "recording";
+    script.type = "application/json";
     // A script ends at `</`, wherever that stands.
-    const script = `<script id="recording" type="application/json">${data.replaceAll("</", "<\\/")}</script>`;
-    const page = (await reply.text()).replace("<body>", () => `<body>${script}`);
+    script.textContent = data.replaceAll("</", "<\\/");
+    page.body.prepend(script);
+    const text = `<!doctype html>\n${page.documentElement.outerHTML}`;
     const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([page], { type: "text/html" }));
+    link.href = URL.createObjectURL(new Blob([text], { type: "text/html" }));
     link.download = `${this.scene.name || "clench"} ${last.time.toFixed(2)} s.html`;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
