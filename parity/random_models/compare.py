@@ -27,14 +27,23 @@ FASTEST = 1.0  # radians or metres a step
 OF_MESHES = 1e4  # times what is allowed elsewhere
 STIFFEST = 1e12  # D of bodies that have no inverse inertia in some direction: their centre of mass is on the axis
 IDLE = 1e-14  # metres: a lever that is nothing but rounding
+STILL = 1e-11  # m/s² or rad/s² for a newton
+OVERDAMPED = 1e6  # N s/m
 NEXT = 1e-8  # of what a step changes
 FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
 CLEARLY = 1e-6  # metres: whether a contact exists is certain
+LIMITS_OF_TENDONS = (
+    mujoco.mjtSensor.mjSENS_TENDONLIMITPOS,
+    mujoco.mjtSensor.mjSENS_TENDONLIMITVEL,
+    mujoco.mjtSensor.mjSENS_TENDONLIMITFRC,
+)
+# What only MuJoCo takes: a `general` of a motor's class that changes one kind of three, and computes with what is left of the motor.
+REFUSED_HERE = ("dcmotor must be the kind of dynamics, gain and bias",)
 FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
 
 
 class Refused(Exception):
-    """MuJoCo does not take the model, or cannot step it."""
+    """MuJoCo does not take the model, or cannot step it; or Clench refuses it as it is meant to."""
 
 
 @dataclasses.dataclass
@@ -72,7 +81,19 @@ def compiled(text):
     except (ValueError, RuntimeError) as error:  # Its compiler may fail without saying why.
         raise Refused(str(error)) from None
     model.opt.iterations = ITERATIONS
+    if strong_by_rounding(model):
+        raise Refused("an actuator that moves nothing pulls with a quotient of roundings")
     return model
+
+
+def strong_by_rounding(model):
+    """Whether an actuator that accelerates the model by rounding alone has numbers that follow from it: the peak force of a muscle
+    (scale / acc0), or the damping of a servo by its ratio.
+    """
+    by_scale = (model.actuator_gaintype == mujoco.mjtGain.mjGAIN_MUSCLE) & (model.actuator_gainprm[:, 2] < 0)
+    by_scale |= (model.actuator_biastype == mujoco.mjtBias.mjBIAS_MUSCLE) & (model.actuator_biasprm[:, 2] < 0)
+    by_ratio = (model.actuator_biastype == mujoco.mjtBias.mjBIAS_AFFINE) & (model.actuator_biasprm[:, 2] < -OVERDAMPED)
+    return bool(((by_scale | by_ratio) & (model.actuator_acc0[model.actuator_outadr] < STILL)).any())
 
 
 def examine(text, seed):
@@ -93,6 +114,8 @@ def examine(text, seed):
                 continue
             message = str(error).splitlines()[0]
             return Difference(kind_of(message.removeprefix(question.what)), message, json.dumps(question.state))
+    if any(reason in done.stderr for reason in REFUSED_HERE):
+        raise Refused(done.stderr)
     if done.returncode != 0:
         failing = questions[len(answers)]
         message = done.stderr.replace(file.name, "model.xml").strip().splitlines()[-1]
@@ -215,6 +238,8 @@ def judge(model, question, ours):
     if question.own and not same_contacts(model, what, ours, theirs):
         return
     if not question.own:
+        if pushed_by_rounding(theirs):
+            return
         drop_idle_rows(ours, theirs)
         agreement.constraint_rows(what, ours, theirs)
     if oracle.distance_to_optimum(theirs) > agreement.SOLVED / 10 or largest(theirs.efc_D) > STIFFEST:
@@ -228,13 +253,16 @@ def judge(model, question, ours):
 
 
 def is_undecided(model, sensor, theirs):
-    """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, and
-    how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths)."""
+    """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, the
+    limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths)."""
     kind = mujoco.mjtSensor(model.sensor_type[sensor])
     if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
         return True
     if kind == mujoco.mjtSensor.mjSENS_GEOMDIST and theirs.sensordata[model.sensor_adr[sensor]] < 0:
         return True
+    if kind in LIMITS_OF_TENDONS and theirs.sensordata[model.sensor_adr[sensor]] != 0:
+        limits = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)  # of tendons that move something
+        return model.sensor_objid[sensor] not in theirs.efc_id[limits]
     ends = ((model.sensor_objtype, model.sensor_objid), (model.sensor_reftype, model.sensor_refid))
     for kind, index in ends:
         if kind[sensor] == mujoco.mjtObj.mjOBJ_BODY and index[sensor] >= 0:
@@ -251,6 +279,12 @@ def forces(what, ours, theirs):
     assert_close(what + "qfrc_constraint", ours["qfrc_constraint"], theirs.qfrc_constraint, agreement.SOLVED, scale)
     scale = largest(theirs.efc_force, slow, floor=1e-3) + 1e-3 * theirs.efc_D * agreement.asked(theirs)
     assert_close(what + "force", program.rows(ours, "force"), theirs.efc_force, 10 * agreement.SOLVED, scale)
+
+
+def pushed_by_rounding(theirs):
+    """Whether something pushes whose levers are nothing but rounding: its stiffness is the reciprocal of another rounding."""
+    idle = np.abs(theirs.jacobian).max(axis=1, initial=0) <= IDLE
+    return largest(theirs.jacobian[idle].T @ theirs.efc_force[idle]) > NEXT
 
 
 def drop_idle_rows(ours, theirs):

@@ -431,3 +431,23 @@ fn an_input_only_says_what_it_is_where_the_gain_scales_it() {
     );
     assert_eq!(changed.inputs, None);
 }
+
+#[test]
+fn a_general_of_a_motors_class_has_its_activations_and_no_range_of_them() {
+    let class = "<default class='c'><dcmotor motorconst='.1' resistance='1' lugre='9 .1 .2 .3 .4'/></default>";
+    let user =
+        "class='c' joint='j' dyntype='user' gaintype='user' biastype='affine' actrange='-1 1'";
+    let general = actuator(class, &format!("<general {user}/>"));
+    assert_eq!((general.actdim, general.actlimited), (Some(1), Some(false)));
+    assert!(general.actearly);
+    let class = "<default class='c'><dcmotor motorconst='.1' resistance='1'/></default>";
+    let pid = "class='c' joint='j' dyntype='pid' gaintype='pid' biastype='affine' dynprm='0 2'";
+    assert_eq!(actuator(class, &format!("<general {pid}/>")).actdim, None);
+    // Other shortcuts begin anew, but for the range.
+    let range = "<general actlimited='true' actrange='-1 1' dyntype='filter'/>";
+    let cylinder = actuator(range, "<cylinder joint='j'/>");
+    assert_eq!(
+        (cylinder.actlimited, cylinder.actrange),
+        (None, [-1.0, 1.0])
+    );
+}

@@ -74,6 +74,22 @@ fn what_is_only_seen_is_left_out_where_its_group_counts_towards_no_inertia() {
 }
 
 #[test]
+fn what_is_only_seen_and_weighs_nothing_is_left_out_and_what_a_medium_drags_is_kept() {
+    for (geom, left) in [
+        ("mass='0'", 1),
+        ("density='0'", 1),
+        ("fluidshape='ellipsoid'", 2),
+    ] {
+        let text = format!(
+            "<mujoco><compiler inertiafromgeom='true' discardvisual='true'/>
+             <worldbody><body><joint/><geom size='1' mass='3'/>
+               <geom size='1' contype='0' conaffinity='0' {geom}/></body></worldbody></mujoco>"
+        );
+        assert_eq!(load_str(&text).expect("valid").geoms.len(), left, "{geom}");
+    }
+}
+
+#[test]
 fn orientations_may_be_written_in_five_ways() {
     let half = FRAC_1_SQRT_2;
     let about_z = [half, 0.0, 0.0, half];

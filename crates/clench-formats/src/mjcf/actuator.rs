@@ -120,11 +120,16 @@ impl ActuatorDraft {
         };
         self.parameters = parameters;
         match shortcut {
-            // As in MuJoCo, whatever the file says of it: an activation range limits if there is one.
-            Shortcut::IntVelocity => self.actlimited = None,
             Shortcut::Damper | Shortcut::Adhesion => self.require_positive_controls(element)?,
             _ => {}
         }
+        self.actlimited = match shortcut {
+            Shortcut::General => self.actlimited,
+            // Its activations are of many kinds, which no range bounds.
+            Shortcut::DcMotor => Some(false),
+            // As in MuJoCo, whatever the file says of it: an activation range limits if there is one.
+            _ => None,
+        };
         self.settle_inheritrange(element)
     }
 
@@ -196,6 +201,8 @@ impl ActuatorDraft {
         if dampratio.is_some() {
             parameters.biasprm[2] = 0.0;
         }
+        // A controller has the activations that it needs, where its class says that there are none.
+        let counts = parameters.dynamics != DynamicsKind::Pid || parameters.actdim > 0;
         Ok(ActuatorSpec {
             name: element.string("name"),
             transmission: transmission::read(element)?,
@@ -222,7 +229,7 @@ impl ActuatorDraft {
             forcelimited: self.forcelimited,
             actrange: self.actrange,
             actlimited: self.actlimited,
-            actdim: usize::try_from(parameters.actdim).ok(),
+            actdim: usize::try_from(parameters.actdim).ok().filter(|_| counts),
             actearly: parameters.actearly,
             group: self.group,
             origin: Some(element.origin.clone()),

@@ -101,7 +101,7 @@ impl CameraDraft {
             tracking: match self.mode {
                 Mode::Fixed => CameraTracking::Fixed,
                 Mode::Track => CameraTracking::Track,
-                Mode::TrackCom => CameraTracking::TrackCom,
+                Mode::TrackCom => CameraTracking::TrackCom(target()),
                 Mode::TargetBody => CameraTracking::TargetBody(target()),
                 Mode::TargetBodyCom => CameraTracking::TargetBodyCom(target()),
             },

@@ -98,7 +98,15 @@ pub(crate) fn read_dc_motor(
     read_heat(element, &mut motor)?;
     read_friction(element, &mut motor)?;
     let saturation = read_saturation(element, &mut motor)?;
+    motor.actdim = count_activations(&motor);
     Ok((motor, saturation))
+}
+
+/// How many activations the motor has: one each for current, heat, friction, slew and integral. A `general` of its class inherits the number.
+fn count_activations(motor: &ActuatorParams) -> i32 {
+    let [te, _, thermal, _, _, bristle, _, slewmax, ..] = motor.dynprm;
+    let states = [te, thermal, bristle, slewmax, motor.gainprm[5]];
+    states.map(|state| i32::from(state > 0.0)).iter().sum()
 }
 
 /// Resistance R and motor constant K, given or from a nominal operating point (MuJoCo's technical note on motors, section 2.1).

@@ -6,8 +6,8 @@ use super::inertia::{MassProperties, mass_properties};
 use super::model_builder::ModelBuilder;
 use super::placed::Assets;
 use super::{
-    BodySpec, BuildError, CompilerSpec, GeomSpec, InertiaFromGeom, JointSpec, cameras, geoms,
-    joints,
+    BodySpec, BuildError, CompilerSpec, GeomMass, GeomSpec, InertiaFromGeom, JointSpec, cameras,
+    geoms, joints,
 };
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
@@ -150,7 +150,10 @@ fn add(
 /// Whether the inertia of a geom's body would be lost without the geom, so that MuJoCo does not discard it.
 fn is_needed(compiler: &CompilerSpec, geom: &GeomSpec) -> bool {
     let [first, last] = compiler.inertiagrouprange;
-    compiler.inertiafromgeom == InertiaFromGeom::Always && (first..=last).contains(&geom.group)
+    let (GeomMass::Mass(amount) | GeomMass::Density(amount)) = geom.mass;
+    compiler.inertiafromgeom == InertiaFromGeom::Always
+        && (first..=last).contains(&geom.group)
+        && amount != 0.0
 }
 
 /// Adds the record of a body that has no joints, geoms and sites yet.

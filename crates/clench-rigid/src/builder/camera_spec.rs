@@ -11,8 +11,9 @@ pub enum CameraTracking {
     Fixed,
     /// At a constant offset from its body in world axes, with a constant orientation.
     Track,
-    /// The same from the centre of mass of its body and all below it.
-    TrackCom,
+    /// The same from the centre of mass of its body and all below it. Its offset is that from the centre of mass of the body of that
+    /// name at first, if it is not empty (as in MuJoCo, where `target` says so).
+    TrackCom(String),
     /// Fixed in place to its body, turned towards the body of that name; fixed altogether where it is empty.
     TargetBody(String),
     /// Turned towards the centre of mass of that body and all below it.

@@ -55,14 +55,17 @@ pub(super) fn aim_all(
 ) -> Result<(), BuildError> {
     let specs = order.iter().flat_map(|&b| &builder.bodies[b].cameras);
     for (camera, spec) in model.cameras.iter_mut().zip(specs) {
-        let target = |name: &String, mode: fn(usize) -> CameraMode| match name.is_empty() {
-            true => Ok(CameraMode::Fixed),
-            false => names.bodies.find(name, spec).map(mode),
+        let named = |name: &String| match name.is_empty() {
+            true => Ok(None),
+            false => names.bodies.find(name, spec).map(Some),
+        };
+        let target = |name: &String, mode: fn(usize) -> CameraMode| {
+            named(name).map(|body| body.map_or(CameraMode::Fixed, mode))
         };
         camera.mode = match &spec.tracking {
             CameraTracking::Fixed => CameraMode::Fixed,
             CameraTracking::Track => CameraMode::Track,
-            CameraTracking::TrackCom => CameraMode::TrackCom,
+            CameraTracking::TrackCom(name) => CameraMode::TrackCom(named(name)?),
             CameraTracking::TargetBody(name) => target(name, CameraMode::TargetBody)?,
             CameraTracking::TargetBodyCom(name) => target(name, CameraMode::TargetBodyCom)?,
         };
@@ -76,7 +79,11 @@ pub(super) fn set_initial_frames(pose0: &Positions<f64>, model: &mut Model) {
         let (pos, mat) = fixed_pose(model, &model.params, pose0, c);
         let p = &mut model.params;
         p.cam_pos0.push(pos - pose0.xpos[camera.body]);
-        (p.cam_poscom0).push(pos - pose0.subtree_com[camera.body]);
+        let from = match camera.mode {
+            CameraMode::TrackCom(Some(body)) => body,
+            _ => camera.body,
+        };
+        p.cam_poscom0.push(pos - pose0.subtree_com[from]);
         let mut rows = [0.0; 9];
         for (to, row) in rows.chunks_exact_mut(3).zip(mat.rows) {
             row.write(to);

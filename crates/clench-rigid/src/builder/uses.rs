@@ -48,9 +48,10 @@ impl<'a> GeomUses<'a> {
         geom.contype != 0 || geom.conaffinity != 0 || has(&self.paired, geom)
     }
 
-    /// Whether it is left out of the model.
+    /// Whether it is left out of the model: nothing meets it or names it, and no medium acts on it by itself.
     pub(super) fn is_discarded(&self, geom: &GeomSpec) -> bool {
-        self.discardvisual && !self.collides(geom) && !has(&self.named, geom)
+        let acts = self.collides(geom) || geom.fluid_ellipsoid;
+        self.discardvisual && !acts && !has(&self.named, geom)
     }
 }
 

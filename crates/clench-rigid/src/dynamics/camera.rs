@@ -35,7 +35,7 @@ pub(crate) fn camera_pose<T: Real>(
     match model.cameras[camera].mode {
         CameraMode::Fixed => fixed(),
         CameraMode::Track => (pos.xpos[body] + params.cam_pos0[camera], kept()),
-        CameraMode::TrackCom => {
+        CameraMode::TrackCom(_) => {
             let place = pos.subtree_com[body] + params.cam_poscom0[camera];
             (place, kept())
         }

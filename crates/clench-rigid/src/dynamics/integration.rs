@@ -22,6 +22,8 @@ pub struct Integration<T> {
     pub offset: T,
     /// Runge–Kutta: the state at the start of the step.
     pub start: Rates<T>,
+    /// Runge–Kutta: the velocities of actuators (nout) at the start of the step.
+    pub actuator_velocity: Vec<T>,
     /// Runge–Kutta: the rates of the present stage.
     pub stage: Rates<T>,
     /// Runge–Kutta: the weighted mean of all stages' rates.
@@ -64,6 +66,7 @@ impl<T: Real> Integration<T> {
             qacc: vec![T::ZERO; model.nv],
             offset: T::ZERO,
             start: Rates::new(model, model.nq),
+            actuator_velocity: vec![T::ZERO; model.nout()],
             stage: Rates::new(model, model.nv),
             mean: Rates::new(model, model.nv),
         }

@@ -63,6 +63,8 @@ pub fn rk4<T: Real>(
         collect(model, state, step, weight, ws);
     }
     restore(&ws.integration.start, state);
+    // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with.
+    (ws.velocity.actuator_velocity).copy_from_slice(&ws.integration.actuator_velocity);
     let mean = &ws.integration.mean;
     let (at, act) = ((&ws.position, &ws.velocity), &mut state.act);
     advance_activations(model, params, at, &mean.activation, act);
@@ -75,8 +77,13 @@ pub fn rk4<T: Real>(
 #[kernel]
 fn begin<T: Real>(state: &State<T>, ws: &mut Workspace<T>) {
     let Integration {
-        start, stage, mean, ..
+        start,
+        actuator_velocity,
+        stage,
+        mean,
+        ..
     } = &mut ws.integration;
+    actuator_velocity.copy_from_slice(&ws.velocity.actuator_velocity);
     start.position.copy_from_slice(&state.qpos);
     start.velocity.copy_from_slice(&state.qvel);
     start.activation.copy_from_slice(&state.act);

@@ -15,7 +15,7 @@ fn cameras() -> impl Iterator<Item = CameraSpec> {
     let modes = [
         ("fixed", CameraTracking::Fixed),
         ("track", CameraTracking::Track),
-        ("trackcom", CameraTracking::TrackCom),
+        ("trackcom", CameraTracking::TrackCom("hand".into())),
         ("target", CameraTracking::TargetBody("hand".into())),
         ("targetcom", CameraTracking::TargetBodyCom("arm".into())),
     ];

@@ -306,7 +306,7 @@ fn write_camera(model: &Model, c: usize, xml: &mut Xml) -> Result<(), SaveError>
     let (mode, target) = match *mode {
         CameraMode::Fixed => ("fixed", None),
         CameraMode::Track => ("track", None),
-        CameraMode::TrackCom => ("trackcom", None),
+        CameraMode::TrackCom(b) => ("trackcom", b),
         CameraMode::TargetBody(b) => ("targetbody", Some(b)),
         CameraMode::TargetBodyCom(b) => ("targetbodycom", Some(b)),
     };

@@ -7,8 +7,9 @@ pub enum CameraMode {
     Fixed,
     /// At a constant offset from its body, with a constant orientation, both in world axes and as they are at `qpos0`.
     Track,
-    /// The same at an offset from the centre of mass of its body and all below it.
-    TrackCom,
+    /// The same at an offset from the centre of mass of its body and all below it. If it names a body, the offset is the one from that
+    /// body's centre of mass at `qpos0`, as in MuJoCo.
+    TrackCom(Option<usize>),
     /// Placed as one that is fixed, turned towards a body.
     TargetBody(usize),
     /// Turned towards the centre of mass of a body and all below it.
