@@ -42,5 +42,5 @@ pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullSurface, convex_hull};
 pub use narrow::{SeparatingAxis, collide, collide_again, multiccd_matters, supported};
-pub use ray::{TriangleMesh, TriangleMeshError, ray};
+pub use ray::{TriangleMesh, TriangleMeshError, UnitRay, ray};
 pub use shape::{Asset, Pose, Shape, ShapeKind, bounding_radius};

@@ -4,7 +4,7 @@
 mod common;
 
 use clench_collide::{
-    HeightField, Hit, Hull, Pose, Ray, Shape, ShapeKind, TriangleMesh, convex_hull, ray,
+    HeightField, Hit, Hull, Pose, Ray, Shape, ShapeKind, TriangleMesh, UnitRay, convex_hull, ray,
 };
 use clench_math::{Lanes, Mat3, Real, Vec3};
 use common::{Random, V, convert_pose, off_surface};
@@ -179,6 +179,45 @@ fn lanes_are_scalars_and_single_precision_is_near() {
             }
         }
     }
+}
+
+#[test]
+fn a_ray_meets_the_bounding_sphere_of_what_it_hits_before_the_hit() {
+    let mut random = Random(53);
+    let (mut hits, mut proofs) = (0, 0);
+    for k in 0..20_000 {
+        // Tiny and huge, near and far, and directions of any length.
+        let scale = 10_f64.powi(k % 9 - 4);
+        let radius = scale * random.range(0.1, 1.0);
+        let ball = Shape::new(ShapeKind::Sphere, Vec3::new(radius, 0.0, 0.0));
+        let center = random.vector() * 10_f64.powi(k % 7 - 3);
+        let pose = Pose {
+            position: center,
+            rotation: Mat3::IDENTITY,
+        };
+        let origin = random.vector() * 10_f64.powi(k % 5);
+        // Most graze the ball.
+        let across = random.direction().cross(center - origin).normalize().0;
+        let beside = across * (radius * random.range(0.99, 1.01));
+        let direction = (center + beside - origin) * 10_f64.powi(k % 11 - 5);
+        let line = Ray { origin, direction };
+        let unit = UnitRay::of(&line);
+        let hit = ray(&ball, &pose, &line).distance;
+        if hit.is_finite() {
+            hits += 1;
+            assert!(unit.may_meet(center, radius, hit), "{line:?}");
+            assert!(unit.may_meet(center, radius, f64::INFINITY), "{line:?}");
+        } else {
+            proofs += usize::from(!unit.may_meet(center, radius, f64::INFINITY));
+        }
+        let nearest = (center - origin).norm() - radius;
+        // From afar the proof is sharp.
+        if nearest > 100.0 * radius {
+            let within = 0.99 * nearest / direction.norm();
+            assert!(!unit.may_meet(center, radius, within), "{line:?}");
+        }
+    }
+    assert!(hits > 2000 && proofs > 2000, "{hits} hits, {proofs} proofs");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use crate::contact::shape;
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
-use clench_collide::{Asset, Hit, Pose, Ray, Shape, ShapeKind, allowance, ray};
-use clench_math::{Mask, Real, Scalar, Vec3, kernel};
+use clench_collide::{Asset, Hit, Pose, Ray, Shape, ShapeKind, UnitRay, ray};
+use clench_math::{Mask, Real, Vec3, kernel};
 
 /// The geoms of a configuration.
 #[derive(Clone, Copy)]
@@ -47,12 +47,17 @@ impl<'a, T: Real> Geoms<'a, T> {
                 normal: Vec3::ZERO,
             },
         );
+        let unit = UnitRay::of(line);
         for geom in 0..self.model.geoms.len() {
-            if !self.is_hit_by(geom, filter) || !self.may_hit(geom, line).any() {
+            if !self.is_hit_by(geom, filter) {
+                continue;
+            }
+            let may_hit = self.may_hit(geom, &unit, best.1.distance);
+            if !may_hit.any() {
                 continue;
             }
             let hit = self.hit(geom, line);
-            let nearer = hit.distance.lt(best.1.distance);
+            let nearer = may_hit & hit.distance.lt(best.1.distance);
             best.0 = T::select(nearer, T::new(geom as f64), best.0);
             best.1.distance = T::select(nearer, hit.distance, best.1.distance);
             best.1.normal = Vec3::select(nearer, hit.normal, best.1.normal);
@@ -70,22 +75,17 @@ impl<'a, T: Real> Geoms<'a, T> {
             && filter.excluded_body != Some(geom.body)
     }
 
-    /// Where a ray meets a geom's bounding sphere.
-    #[kernel]
-    fn may_hit(&self, geom: usize, line: &Ray<T>) -> T::Mask {
+    /// Where a ray may meet a geom's bounding sphere before it has gone `within`.
+    #[inline(always)]
+    fn may_hit(&self, geom: usize, ray: &UnitRay<T>, within: T) -> T::Mask {
         if self.model.geoms[geom].kind == ShapeKind::Plane {
             return T::Mask::splat(true);
         }
-        let pose = self.pose(geom);
-        // The distance from far away is known to this rounding only.
-        let epsilon = T::splat(T::Scalar::EPSILON) * T::new(8.0);
-        let rounding = (pose.position - line.origin).norm() * epsilon;
-        let radius = self.params.geom_rbound[geom] * allowance::<T>() + rounding;
-        let sphere = Shape::new(ShapeKind::Sphere, Vec3::new(radius, T::ZERO, T::ZERO));
-        let infinite = T::new(f64::INFINITY);
-        ray(&sphere, &pose, line).distance.lt(infinite)
+        let center = self.position.geom_xpos[geom];
+        ray.may_meet(center, self.params.geom_rbound[geom], within)
     }
 
+    #[inline(always)]
     fn hit(&self, geom: usize, line: &Ray<T>) -> Hit<T> {
         let pose = self.pose(geom);
         match self.model.geoms[geom].mesh {

@@ -33,8 +33,8 @@ impl<T: Real> Line<T> {
 #[derive(Clone, Copy)]
 pub(super) struct Unit<T: Real> {
     /// The largest part of the direction, and its length in units of that.
-    largest: T,
-    length: T,
+    pub(super) largest: T,
+    pub(super) length: T,
     /// Where the direction has a length.
     leads: T::Mask,
 }
@@ -42,7 +42,7 @@ pub(super) struct Unit<T: Real> {
 impl<T: Real> Unit<T> {
     /// A direction in units of its largest part; up, where it has none.
     #[inline(always)]
-    fn of(d: Vec3<T>) -> (Vec3<T>, Self) {
+    pub(super) fn of(d: Vec3<T>) -> (Vec3<T>, Self) {
         let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
         let leads = largest.ge(T::splat(T::Scalar::MIN_POSITIVE))
             & d.x.is_finite()

@@ -9,10 +9,12 @@ mod line;
 mod round;
 mod terrain;
 mod triangles;
+mod unit_ray;
 
 use line::Line;
 pub use line::{Hit, Ray};
 pub use triangles::{TriangleMesh, TriangleMeshError};
+pub use unit_ray::UnitRay;
 
 use crate::{Asset, Pose, Shape, ShapeKind};
 use clench_math::{Real, Scalar, Vec3, kernel};
