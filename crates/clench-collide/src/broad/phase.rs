@@ -84,18 +84,11 @@ impl BroadPhase {
             self.boxes.push(aabb(shape));
         }
         pairs.clear();
-        let most = T::new(most as f64);
-        let (mut count, mut over) = (T::ZERO, T::Mask::splat(false));
+        let mut counter = Counter::new(most);
         let mut check = |i: u32, j: u32| {
             let (i, j) = (i.min(j), i.max(j));
             let (a, b) = (i as usize, j as usize);
-            if !allowed(i, j) {
-                return;
-            }
-            let found = near(&bounds[a], &bounds[b], margins[a] + margins[b]) & !over;
-            if found.any() {
-                count += T::select(found, T::ONE, T::ZERO);
-                over |= count.gt(most);
+            if allowed(i, j) && counter.admits(&bounds[a], &bounds[b], margins[a] + margins[b]) {
                 pairs.push((i, j));
             }
         };
@@ -112,6 +105,33 @@ impl BroadPhase {
             (self.tree).overlapping(&self.boxes[index], |shape| check(mobile[index], shape));
         }
         pairs.sort_unstable();
-        over
+        counter.over
+    }
+}
+
+/// Counts the near pairs of each environment.
+struct Counter<T: Real> {
+    most: T,
+    count: T,
+    /// The environments that have more than the most.
+    over: T::Mask,
+}
+
+impl<T: Real> Counter<T> {
+    fn new(most: u64) -> Self {
+        Counter {
+            most: T::new(most as f64),
+            count: T::ZERO,
+            over: T::Mask::splat(false),
+        }
+    }
+
+    /// Whether two shapes are near in an environment that may have another pair.
+    #[kernel]
+    fn admits(&mut self, a: &Bound<T>, b: &Bound<T>, margin: T) -> bool {
+        let found = near(a, b, margin) & !self.over;
+        self.count += T::select(found, T::ONE, T::ZERO);
+        self.over |= self.count.gt(self.most);
+        found.any()
     }
 }

@@ -54,8 +54,10 @@ pub(super) fn boxes_near<T: Real>(
 fn box_near<T: Real>(shape: Placed<T>, point: Vec3<T>, reach: T) -> T::Mask {
     let (place, half) = (shape.pose.local(point), half_lengths(shape));
     // What is no number stays none and is near nothing.
-    let beyond = |k: usize| T::ZERO.max(place[k].abs() - half[k] * allowance());
-    let gap = Vec3::new(beyond(0), beyond(1), beyond(2));
+    let mut gap = Vec3::ZERO;
+    for k in 0..3 {
+        gap[k] = T::ZERO.max(place[k].abs() - half[k] * allowance());
+    }
     let reach = T::ZERO.max(reach * allowance());
     gap.norm_squared().le(reach * reach)
 }

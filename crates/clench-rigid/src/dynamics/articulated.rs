@@ -77,16 +77,9 @@ impl<T: Real> ArticulatedInertia<T> {
     /// rotational' = rotational − coupling r× + r× coupling'ᵀ.
     #[inline(always)]
     fn add_shifted(&mut self, other: &Self, offset: Vec3<T>) {
-        let moment = |m: &Mat3<T>| {
-            Mat3::from_columns(
-                offset.cross(m.column(0)),
-                offset.cross(m.column(1)),
-                offset.cross(m.column(2)),
-            )
-        };
-        let lever = moment(&other.mass);
+        let lever = crossed(offset, &other.mass);
         // −coupling r× is the transpose of r× couplingᵀ.
-        let turned = moment(&other.coupling.transpose()).transpose();
+        let turned = crossed(offset, &other.coupling.transpose()).transpose();
         for i in 0..3 {
             self.mass.rows[i] += other.mass.rows[i];
             self.coupling.rows[i] += other.coupling.rows[i] + lever.rows[i];
@@ -96,11 +89,21 @@ impl<T: Real> ArticulatedInertia<T> {
             other.coupling.rows[1] + lever.rows[1],
             other.coupling.rows[2] + lever.rows[2],
         );
-        let carried = moment(&whole.transpose());
+        let carried = crossed(offset, &whole.transpose());
         for i in 0..3 {
             self.rotational.rows[i] += other.rotational.rows[i] + turned.rows[i] + carried.rows[i];
         }
     }
+}
+
+/// The cross products of a vector with the columns of a matrix.
+#[inline(always)]
+fn crossed<T: Real>(vector: Vec3<T>, m: &Mat3<T>) -> Mat3<T> {
+    Mat3::from_columns(
+        vector.cross(m.column(0)),
+        vector.cross(m.column(1)),
+        vector.cross(m.column(2)),
+    )
 }
 
 /// More dofs than this on a path from a root are too many for the factor to be computed from M in single precision: rounding

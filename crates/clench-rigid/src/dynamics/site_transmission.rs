@@ -78,12 +78,19 @@ pub fn relative_pose<T: Real>(
     let axes = &pos.site_xmat[reference];
     let shift = axes.transpose_mul(pos.site_xpos[site] - pos.site_xpos[reference]);
     let turn = relative_turn(model, params, pos, [site, reference]);
-    let pull = |site: usize, sign: T| Pull {
-        site,
-        force: *axes * (along * sign),
-        couple: *axes * (about * sign),
-    };
-    let pulls = [pull(site, T::ONE), pull(reference, -T::ONE)];
+    let (force, couple) = (*axes * along, *axes * about);
+    let pulls = [
+        Pull {
+            site,
+            force,
+            couple,
+        },
+        Pull {
+            site: reference,
+            force: -force,
+            couple: -couple,
+        },
+    ];
     relative_arms(model, pos, pulls, row);
     shift.dot(along) + turn.dot(about)
 }
@@ -96,9 +103,10 @@ pub fn relative_turn<T: Real>(
     pos: &Positions<T>,
     sites: [usize; 2],
 ) -> Vec3<T> {
-    let orientation =
-        |site: usize| -> Quat<T> { pos.xquat[model.sites[site].body] * params.site_quat[site] };
-    orientation(sites[0]).difference(orientation(sites[1]))
+    let [own, other] = [sites[0], sites[1]];
+    let own: Quat<T> = pos.xquat[model.sites[own].body] * params.site_quat[own];
+    let other: Quat<T> = pos.xquat[model.sites[other].body] * params.site_quat[other];
+    own.difference(other)
 }
 
 /// Moment arms of a couple about an axis of a site, against another site.

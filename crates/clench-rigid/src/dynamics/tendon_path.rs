@@ -192,15 +192,18 @@ pub fn bias_acceleration<T: Real>(
         |span| {
             let ends: [BodyPoint<T>; 2] =
                 [0, 1].map(|i| BodyPoint::new(model, pos, span.bodies[i], span.points[i]));
-            let acceleration = |i: usize| ends[i].bias_acceleration(model, vel, qvel).linear;
-            let velocity = |i: usize| vel.cvel[span.bodies[i]].velocity_at(ends[i].offset);
-            let apart = velocity(1) - velocity(0);
+            let (mut velocity, mut acceleration) = ([Vec3::ZERO; 2], [Vec3::ZERO; 2]);
+            for (i, end) in ends.iter().enumerate() {
+                velocity[i] = vel.cvel[span.bodies[i]].velocity_at(end.offset);
+                acceleration[i] = end.bias_acceleration(model, vel, qvel).linear;
+            }
+            let apart = velocity[1] - velocity[0];
             let (unit, distance) = (span.points[1] - span.points[0]).normalize();
             let none = distance.lt(T::new(MIN_DISTANCE));
             let inverse = T::ONE / T::select(none, T::ONE, distance);
             let across = (apart.norm_squared() - unit.dot(apart).squared()) * inverse;
             let share = span.pull.dot(unit);
-            let along = unit.dot(acceleration(1) - acceleration(0));
+            let along = unit.dot(acceleration[1] - acceleration[0]);
             sum += share * (along + T::select(none, T::ZERO, across));
         },
     );

@@ -157,16 +157,15 @@ pub fn wrap<T: Real>(ends: [Vec3<T>; 2], obstacle: &Obstacle<T>) -> Wrapped<T> {
     };
     let rise = heights[1] - heights[0];
     let axis = Mat3::IDENTITY.rows[2];
-    let world = |point: Planar<T>, height: T| {
-        let point = plane[0] * point.x + plane[1] * point.y + axis * height;
-        obstacle.centre + obstacle.axes * point
-    };
+    let mut points = [Vec3::ZERO; 2];
+    for i in 0..2 {
+        let point = found.points[i];
+        let point = plane[0] * point.x + plane[1] * point.y + axis * heights[i];
+        points[i] = obstacle.centre + obstacle.axes * point;
+    }
     Wrapped {
         touches: found.touches,
-        points: [
-            world(found.points[0], heights[0]),
-            world(found.points[1], heights[1]),
-        ],
+        points,
         length: match obstacle.shape {
             WrapShape::Sphere => found.arc_length,
             WrapShape::Cylinder => (found.arc_length.squared() + rise.squared()).sqrt(),
@@ -216,14 +215,15 @@ fn around<T: Real>(ends: [Planar<T>; 2], side: Option<Planar<T>>, radius: T) -> 
         & radius.ge(T::new(MIN_LENGTH))
         & apart.dot(apart).ge(T::new(MIN_LENGTH))
         & arc.gt(T::ZERO);
-    let tangent_point = |i: usize, sign: T| {
+    let mut points = ends;
+    for (i, sign) in [sign, -sign].into_iter().enumerate() {
         let inverse = T::ONE / T::select(touches, squared[i], T::ONE);
         let across = sign * radius * tangents[i] * inverse;
-        ends[i].turned(squared_radius * inverse, across)
-    };
+        points[i] = ends[i].turned(squared_radius * inverse, across);
+    }
     PlanarWrap {
         touches,
-        points: [tangent_point(0, sign), tangent_point(1, -sign)],
+        points,
         arc_length: radius * arc,
     }
 }
@@ -266,21 +266,28 @@ fn meets_circle<T: Real>([first, second]: [Planar<T>; 2], radius: T) -> T::Mask 
     apart & between & nearest.dot(nearest).sqrt().le(radius)
 }
 
+/// f(β) and its slope.
+#[inline(always)]
+fn turned_by<T: Real>(ratios: [T; 2], angle: T, beta: T) -> (T, T) {
+    let (two, least) = (T::new(2.0), T::new(MIN_LENGTH));
+    let (sine, cosine) = beta.sin_cos();
+    let (mut value, mut slope) = (T::ZERO, T::ZERO);
+    for ratio in ratios {
+        let a = ratio * sine;
+        value += asin(a);
+        slope += ratio * cosine / (T::ONE - a * a).max(least).sqrt();
+    }
+    (value - two * beta + angle, slope - two)
+}
+
 /// β, and where it was found. Each lane stops by itself.
 #[inline(always)]
 fn reflect<T: Real>(ratios: [T; 2], angle: T) -> (T, T::Mask) {
     let rounding = T::splat(T::Scalar::EPSILON) * T::new(TOLERANCE_ROUNDINGS);
     let tolerance = T::new(TOLERANCE).max(rounding);
-    let (two, least) = (T::new(2.0), T::new(MIN_LENGTH));
-    let evaluate = |beta: T| {
-        let (sine, cosine) = beta.sin_cos();
-        let [a, b] = ratios.map(|ratio| ratio * sine);
-        let slope = |ratio: T, a: T| ratio * cosine / (T::ONE - a * a).max(least).sqrt();
-        let value = asin(a) + asin(b) - two * beta + angle;
-        (value, slope(ratios[0], a) + slope(ratios[1], b) - two)
-    };
+    let least = T::new(MIN_LENGTH);
     let mut beta = T::new(std::f64::consts::FRAC_PI_2);
-    let (mut value, mut slope) = evaluate(beta);
+    let (mut value, mut slope) = turned_by(ratios, angle, beta);
     let mut failed = value.gt(T::ZERO) | angle.lt(least);
     let mut busy = !failed & value.abs().gt(tolerance);
     for _ in 0..MAX_ITERATIONS {
@@ -290,7 +297,7 @@ fn reflect<T: Real>(ratios: [T; 2], angle: T) -> (T, T::Mask) {
         let next = T::select(busy, beta - value / slope, beta);
         failed |= busy & next.gt(beta);
         beta = next;
-        let (new_value, new_slope) = evaluate(beta);
+        let (new_value, new_slope) = turned_by(ratios, angle, beta);
         value = T::select(busy, new_value, value);
         slope = T::select(busy, new_slope, slope);
         busy &= !failed & value.abs().gt(tolerance);

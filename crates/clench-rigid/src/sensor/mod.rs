@@ -59,6 +59,7 @@ pub(crate) fn evaluate<T: Real>(
 }
 
 /// Keeps what was measured, and puts what was measured before in the place of what is told late, or not measured now.
+#[kernel]
 fn delay<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -94,6 +95,7 @@ fn is_clipped(kind: SensorKind) -> bool {
 }
 
 /// Holds numbers within the cutoff.
+#[kernel]
 fn clip<T: Real>(sensor: &Sensor, out: &mut [T]) {
     let cutoff = T::new(sensor.cutoff);
     for x in out {
