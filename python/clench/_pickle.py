@@ -1,4 +1,4 @@
-"""Models, simulations and batches as pickles: so they are copied, and sent to other processes.
+"""Models, simulations, batches and targets of inverse kinematics as pickles: so they are copied, and sent to other processes.
 
 A pickle of a model holds how it was loaded: the text and the files in memory, or the path of its file, which must then be there; a
 checksum tells where it has changed. A pickle of a simulation or batch holds its model, its options, the parameters that it changed, and
@@ -13,11 +13,21 @@ from typing import Any
 
 import numpy as np
 
-from clench._core import PARAMETERS, Batch, Model, RigidOptions, Sim
+from clench._core import PARAMETERS, Batch, ComTarget, FrameTarget, Model, PostureTarget, RigidOptions, Sim
 from clench._state import State
 
 # What is computed from others and cannot be set.
 _FOLLOWING = ("body_subtreemass", "geom_rbound")
+
+Target = FrameTarget | ComTarget | PostureTarget
+
+# What targets of inverse kinematics are made of.
+_OBJECTS = ("body", "body_com", "geom", "site", "camera")
+_TARGETS: dict[Any, tuple[str, ...]] = {
+    FrameTarget: (*_OBJECTS, "position", "quat", "position_cost", "orientation_cost"),
+    ComTarget: ("position", "body", "cost"),
+    PostureTarget: ("qpos", "cost"),
+}
 
 
 def _checksum(model: Model) -> int:
@@ -53,30 +63,47 @@ def _changed(own: Sim | Batch) -> dict[str, Any]:
 
 
 def _reduce_sim(sim: Sim) -> tuple[Any, ...]:
-    return _sim, (sim.model, sim.options, sim.precision, _changed(sim), sim.state)
+    return _sim, (sim.model, sim.options, sim.precision, _changed(sim), sim.state, sim._last_serial)
 
 
-def _sim(model: Model, options: RigidOptions, precision: Any, changed: dict[str, Any], state: State) -> Sim:
+def _sim(model: Model, options: RigidOptions, precision: Any, changed: dict[str, Any], state: State, last_serial: int) -> Sim:
     sim = Sim(model, options, precision=precision)
     for name, values in changed.items():
         sim.set_param(name, values)
     sim.state = state
+    sim._last_serial = last_serial
     return sim
 
 
 def _reduce_batch(batch: Batch) -> tuple[Any, ...]:
     how = (batch.n_envs, batch.precision, batch.threads, batch.options, batch.outputs)
-    return _batch, (batch.model, how, _changed(batch), batch.state)
+    return _batch, (batch.model, how, _changed(batch), batch.state, batch._last_serials)
 
 
-def _batch(model: Model, how: tuple[Any, ...], changed: dict[str, Any], state: State) -> Batch:
+def _batch(model: Model, how: tuple[Any, ...], changed: dict[str, Any], state: State, last_serials: list[int]) -> Batch:
     n_envs, precision, threads, options, outputs = how
     batch = Batch(model, n_envs, precision, threads, options=options, record=outputs)
     for name, values in changed.items():
         batch.randomize(name, values)
     batch.state = state
+    batch._last_serials = last_serials
     return batch
+
+
+def target_fields(target: Target) -> dict[str, Any]:
+    """The arguments of which a target of inverse kinematics is made."""
+    return {name: getattr(target, name) for name in _TARGETS[type(target)]}
+
+
+def _reduce_target(target: Target) -> tuple[Any, ...]:
+    return _target, (type(target), target_fields(target))
+
+
+def _target(kind: Any, fields: dict[str, Any]) -> Any:
+    return kind(**fields)
 
 
 copyreg.pickle(Sim, _reduce_sim)
 copyreg.pickle(Batch, _reduce_batch)
+for _kind in _TARGETS:
+    copyreg.pickle(_kind, _reduce_target)

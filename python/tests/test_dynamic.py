@@ -112,3 +112,17 @@ def test_an_equality_of_the_file_holds_the_present_pose() -> None:
     batch.step(100)
     np.testing.assert_array_equal(batch.qpos[1], sim.qpos)
     assert batch.qpos[2, 4] != sim.qpos[4]
+
+
+def test_copies_never_give_the_number_of_what_was_removed() -> None:
+    model = example("suction_gripper")
+    sim, batch = clench.Sim(model), clench.Batch(model, 2)
+    gone = sim.add_weld("cup", "box")
+    sim.remove(gone)
+    (also_gone,) = batch.add_weld("cup", "box", envs=[1])
+    batch.remove([also_gone], envs=[1])
+    twin, twins = (pickle.loads(pickle.dumps(own)) for own in (sim, batch))
+    assert twin.add_weld("cup", "box") == sim.add_weld("cup", "box") != gone
+    np.testing.assert_array_equal(twins.add_weld("cup", "box"), batch.add_weld("cup", "box"))
+    with pytest.raises(ValueError, match="not there"):
+        twins.remove([also_gone], envs=[1])

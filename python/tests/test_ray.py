@@ -164,6 +164,61 @@ def test_questions_are_answered_as_by_a_batch_alone() -> None:
         np.testing.assert_array_equal(spread.params.gravity, alone.params.gravity)
 
 
+def test_objects_move_and_terrain_lies_as_in_a_batch_alone() -> None:
+    alone, spread = pair()
+    with spread:
+        for batch in (alone, spread):
+            drive(batch, 2, np.random.default_rng(5))
+        x = np.random.default_rng(6).normal(size=(N, alone.model.nv))
+        np.testing.assert_array_equal(spread.velocity(body=2, local=True), alone.velocity(body=2, local=True))
+        np.testing.assert_array_equal(spread.acceleration(body=2), alone.acceleration(body=2))
+        np.testing.assert_array_equal(spread.mul_mass(x), alone.mul_mass(x))
+        np.testing.assert_array_equal(spread.solve_mass(x[0]), alone.solve_mass(x[0]))
+        np.testing.assert_array_equal(spread.distance(0, 1), alone.distance(0, 1))
+        origins = alone.xpos[:, 1:2] + [0, 0, 3]
+        for start in (origins, origins[0]):
+            expected, found = (batch.rays(start, [[0, 0, -1.0]], exclude_body=2) for batch in (alone, spread))
+            assert (found.geom >= 0).any()
+            for field in ("geom", "distance", "normal"):
+                np.testing.assert_array_equal(getattr(found, field), getattr(expected, field))
+        goal = clench.FrameTarget(body=1, position=alone.xpos[:, 1] + [0.1, 0, 0], quat=[1, 0, 0, 0])
+        targets: list[clench.FrameTarget | clench.PostureTarget] = [goal, clench.PostureTarget(alone.qpos[0], cost=1e-3)]
+        for start in (None, alone.qpos[0]):
+            best, same = (batch.ik(targets, start=start, iterations=7) for batch in (alone, spread))
+            for field in ("qpos", "errors", "iterations", "status", "reached"):
+                np.testing.assert_array_equal(getattr(same, field), getattr(best, field))
+        with pytest.raises(ValueError, match="origins has shape"):
+            spread.rays(origins[:2], [[0, 0, -1.0]])
+
+
+@pytest.mark.parametrize("snapshot_every", [1, 1000])
+def test_what_is_tied_at_run_time_survives_a_death(snapshot_every: int) -> None:
+    alone, spread = pair("pinch", snapshot_every=snapshot_every)
+    first, second = alone.model.nbody - 1, alone.model.nbody - 2
+    with spread:
+        held = []
+        for batch in (alone, spread):
+            batch.step(3)
+            early = batch.add_weld(first, second, envs=[6, 1])
+            batch.remove(early, envs=[6, 1])
+            batch.step(3)
+            held.append(batch.add_connect(first, second, [0, 0, 0.01]))
+            batch.step(3)
+        np.testing.assert_array_equal(held[0], held[1])
+        kill(spread, 0)
+        kill(spread, 1)
+        for batch in (alone, spread):
+            batch.remove(held[0][[5, 0]], envs=[5, 0])
+            held.append(batch.add_weld(first, second, envs=[0, 5]))
+            batch.step(4)
+        np.testing.assert_array_equal(held[2], held[3])
+        assert spread.state == alone.state and spread.replaced == 2
+        with pytest.raises(ValueError, match="not there"):
+            spread.remove(held[0][[5]], envs=[5])
+        with pytest.raises(IndexError, match="environments go from"):
+            spread.add_weld(first, second, envs=[7])
+
+
 def test_what_is_wrong_is_told_and_changes_nothing() -> None:
     alone, spread = pair()
     with spread:

@@ -15,10 +15,12 @@
 dies is replaced: the new one begins with the last snapshot of the lost one and does again what came after it, so that the run ends
 with the same bits as without the death.
 
-What stands here: the driver's side (`batch.py`, and one worker as the driver sees it in `worker.py`), what a worker runs
-(`shard.py`), and arrays that are kept here and there (`mirror.py`). No physics, and nothing that imports ``ray`` before it is used.
+What stands here: the driver's side (`batch.py`, with what is asked in `asked.py` and what is tied at run time in `tied.py`; one
+worker as the driver sees it in `worker.py`), what a worker runs (`shard.py`), arrays that are kept here and there (`mirror.py`), and
+answers that travel (`answers.py`). No physics, and nothing that imports ``ray`` before it is used.
 """
 
+from clench.ray.answers import IkResult, RayHits
 from clench.ray.batch import Batch
 
-__all__ = ["Batch"]
+__all__ = ["Batch", "IkResult", "RayHits"]

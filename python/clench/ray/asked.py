@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, SupportsIndex
+from collections.abc import Iterable, Sequence
+from typing import Any, SupportsFloat, SupportsIndex
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import clench
+from clench._pickle import Target, target_fields
+from clench.ray.answers import IkResult, RayHits
 
 Array = NDArray[Any]
 
@@ -17,13 +20,21 @@ class Asked:
 
     model: clench.Model
 
-    def _query(self, method: str, *arguments: Any) -> list[Any]:
+    def _query(self, method: str, *arguments: Any, **chosen: Any) -> list[Any]:
         """What each worker answers."""
         raise NotImplementedError
 
-    def _gather(self, method: str, *arguments: Any) -> Array:
+    def _gather(self, method: str, *arguments: Any, **chosen: Any) -> Array:
         """The same as rows, those of one worker below those of the other."""
-        return np.concatenate(self._query(method, *arguments))
+        return np.concatenate(self._query(method, *arguments, **chosen))
+
+    def _query_each(self, method: str, arguments: Sequence[tuple[Any, ...]], chosen: dict[str, Any]) -> list[Any]:
+        """What each worker answers to arguments of its own, and keywords that all share."""
+        raise NotImplementedError
+
+    def _split(self, values: ArrayLike | None, dimensions: int, name: str) -> list[Array | None]:
+        """Rows for each worker, where there is one an environment; else the same for all."""
+        raise NotImplementedError
 
     def param(self, field: str) -> Array:
         """The numbers of a parameter as each environment has them: a copy, after an axis over environments."""
@@ -44,11 +55,87 @@ class Asked:
 
     def jacobian(self, **chosen: str | SupportsIndex) -> Array:
         """Jacobians of an object, (n, 2, 3, nv); see `clench.Batch.jacobian`."""
-        return self._gather("jacobian", chosen)
+        return self._gather("jacobian", **chosen)
 
     def subtree_jacobian(self, body: str | SupportsIndex) -> Array:
         """Jacobians of the centre of mass of a body and all below it, (n, 3, nv)."""
         return self._gather("subtree_jacobian", body)
+
+    def velocity(self, *, local: bool = False, **chosen: str | SupportsIndex) -> Array:
+        """Velocities of an object, (n, 2, 3), m/s and rad/s; see `clench.Batch.velocity`."""
+        return self._gather("velocity", local=local, **chosen)
+
+    def acceleration(self, *, local: bool = False, **chosen: str | SupportsIndex) -> Array:
+        """Accelerations of an object, (n, 2, 3), m/s² and rad/s²; see `clench.Batch.acceleration`."""
+        return self._gather("acceleration", local=local, **chosen)
+
+    def mul_mass(self, x: ArrayLike) -> Array:
+        """Products M x (n, nv) of the mass matrices with vectors (n, nv), or with one (nv,)."""
+        return self._gather_rows("mul_mass", [(x, 2, "x")])
+
+    def solve_mass(self, x: ArrayLike) -> Array:
+        """Products M⁻¹ x (n, nv), of vectors (n, nv), or of one (nv,)."""
+        return self._gather_rows("solve_mass", [(x, 2, "x")])
+
+    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> Array:
+        """Forces along dofs (n, nv) that cause accelerations (n, nv); see `clench.Batch.inverse`."""
+        return self._gather_rows("inverse", [(qacc, 2, "qacc")], discrete=discrete)
+
+    def distance(
+        self, geom1: str | SupportsIndex, geom2: str | SupportsIndex, limit: SupportsFloat | None = None
+    ) -> Array:
+        """How far apart two geoms are in each environment (n), m; see `clench.Batch.distance`."""
+        return self._gather("distance", geom1, geom2, limit)
+
+    def rays(self, origins: ArrayLike, directions: ArrayLike, **chosen: Any) -> RayHits:
+        """What rays hit first, in each environment; see `clench.Batch.rays`.
+
+        Parameters
+        ----------
+        origins, directions : array_like
+            For all environments (k, 3), or for each (n, k, 3), m.
+        **chosen
+            The keywords of `clench.Batch.rays`.
+        """
+        rows = self._rows([(origins, 3, "origins"), (directions, 3, "directions")])
+        return RayHits.joined(self._query_each("rays", rows, chosen))
+
+    def heights(self, hfield: str | SupportsIndex, places: ArrayLike, **chosen: str | SupportsIndex) -> Array:
+        """Heights of terrain (n, k), m, at places for all environments (k, 2) or each (n, k, 2); see `clench.Batch.heights`."""
+        rows = [(hfield, *places) for places in self._rows([(places, 3, "places")])]
+        return np.concatenate(self._query_each("heights", rows, dict(chosen)))
+
+    def ik(self, targets: Iterable[Target], *, start: ArrayLike | None = None, **search: Any) -> IkResult:
+        """Positions that bring objects to their goals; see `clench.Batch.ik`.
+
+        Parameters
+        ----------
+        targets : iterable of FrameTarget, ComTarget or PostureTarget
+            Goals, for all environments or each.
+        start : array_like, optional
+            Where the search begins, for all (nq) or each (n, nq) environment; by default in the present positions.
+        **search
+            The other keywords of `clench.Batch.ik`.
+        """
+        goals = [self._goals_of_parts(target) for target in targets]
+        starts = self._split(start, 2, "start")
+        rows = [([goal[part] for goal in goals], start) for part, start in enumerate(starts)]
+        return IkResult.joined(self._query_each("ik", rows, search))
+
+    def _goals_of_parts(self, target: Target) -> list[Target]:
+        """A goal for each worker, with the rows of its environments."""
+        fields = target_fields(target)
+        of_environments = {name: fields[name] for name in ("position", "quat", "qpos") if fields.get(name) is not None}
+        rows = {name: self._split(values, 2, name) for name, values in of_environments.items()}
+        parts = range(len(self._split(None, 2, "")))
+        return [type(target)(**fields | {name: values[part] for name, values in rows.items()}) for part in parts]
+
+    def _rows(self, arguments: Sequence[tuple[ArrayLike, int, str]]) -> list[tuple[Array | None, ...]]:
+        """Arguments for each worker, of which each may have a row an environment."""
+        return list(zip(*(self._split(*argument) for argument in arguments)))
+
+    def _gather_rows(self, method: str, arguments: Sequence[tuple[ArrayLike, int, str]], **chosen: Any) -> Array:
+        return np.concatenate(self._query_each(method, self._rows(arguments), chosen))
 
     @property
     def status(self) -> NDArray[np.int8]:
@@ -88,6 +175,18 @@ class Asked:
     def site(self, which: str | SupportsIndex) -> clench.SiteView:
         """A site, by name or index."""
         return clench.SiteView(self, which)  # type: ignore[arg-type]
+
+    def tendon(self, which: str | SupportsIndex) -> clench.TendonView:
+        """A tendon, by name or index."""
+        return clench.TendonView(self, which)  # type: ignore[arg-type]
+
+    def camera(self, which: str | SupportsIndex) -> clench.CameraView:
+        """A camera, by name or index."""
+        return clench.CameraView(self, which)  # type: ignore[arg-type]
+
+    def equality(self, which: str | SupportsIndex) -> clench.EqualityView:
+        """An equality, by name or index."""
+        return clench.EqualityView(self, which)  # type: ignore[arg-type]
 
     def actuator(self, which: str | SupportsIndex) -> clench.ActuatorView:
         """An actuator, by name or index."""

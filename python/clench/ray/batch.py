@@ -15,6 +15,7 @@ from typing_extensions import Self
 import clench
 from clench.ray.asked import Asked
 from clench.ray.mirror import Mirror
+from clench.ray.tied import Tied
 from clench.ray.worker import Worker, ray_module
 
 Array = NDArray[Any]
@@ -22,7 +23,7 @@ Array = NDArray[Any]
 _STATE = tuple(field.name for field in dataclasses.fields(clench.State))
 
 
-class Batch(Asked):
+class Batch(Asked, Tied):
     """Many environments of one model, on the machines of a Ray cluster.
 
     The face is that of `clench.Batch`. Arrays of the state (``qpos``, ``ctrl``, ...) can be read and written as there: what is
@@ -178,11 +179,7 @@ class Batch(Asked):
         envs : array_like of int, optional
             Which environments; by default all.
         """
-        chosen = np.arange(self.n_envs) if envs is None else np.asarray(envs)
-        if chosen.ndim != 1 or chosen.dtype.kind not in "iu":
-            raise ValueError("envs must be a list of indices")
-        if chosen.size and not 0 <= int(chosen.min()) <= int(chosen.max()) < self.n_envs:
-            raise IndexError(f"environments go from 0 to {self.n_envs}, without it")
+        chosen = self._chosen(envs)
         rows = np.asarray(values)
         if rows.shape[:1] != chosen.shape:
             raise ValueError(f"{field} has shape {rows.shape}, but must have a row for each of {chosen.size} environments")
@@ -241,12 +238,6 @@ class Batch(Asked):
     def outputs(self) -> tuple[str, ...]:
         """The outputs that are recorded."""
         return self._one.outputs
-
-    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> Array:
-        """Forces along dofs (n, nv) that cause accelerations (n, nv); see `clench.Batch.inverse`."""
-        rows = self._split(qacc, 2, "qacc")
-        calls = self._ask(lambda worker, part: worker.send("inverse", rows[part], discrete))
-        return np.concatenate(calls)
 
     def fault(self, env: SupportsIndex) -> str | None:
         """Why an environment cannot go on; None if it runs."""
@@ -333,9 +324,13 @@ class Batch(Asked):
                 raise result
         return results
 
-    def _query(self, method: str, *arguments: Any) -> list[Any]:
+    def _query(self, method: str, *arguments: Any, **chosen: Any) -> list[Any]:
         """Asks what changes nothing."""
-        return self._ask(lambda worker, _: worker.send(method, *arguments))
+        return self._query_each(method, [arguments] * len(self._parts), chosen)
+
+    def _query_each(self, method: str, arguments: Sequence[tuple[Any, ...]], chosen: dict[str, Any]) -> list[Any]:
+        """The same, with arguments for each worker."""
+        return self._ask(lambda worker, part: worker.send(method, *arguments[part], chosen=chosen))
 
     def _change(self, method: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Lets each worker do something that changes it."""

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import clench
+from clench.ray.answers import IkResult, RayHits
 
 Array = NDArray[Any]
 
@@ -26,7 +27,9 @@ class Shard:
     _batch: clench.Batch
     _resets: NDArray[np.int64] | int = 0
 
-    def run(self, method: str, arguments: tuple[Any, ...], watched: Sequence[str]) -> tuple[Any, dict[str, Array]]:
+    def run(
+        self, method: str, arguments: tuple[Any, ...], chosen: dict[str, Any], watched: Sequence[str]
+    ) -> tuple[Any, dict[str, Array]]:
         """Does a call.
 
         Parameters
@@ -35,6 +38,8 @@ class Shard:
             One of this class, or else of the batch.
         arguments : tuple
             What it takes.
+        chosen : dict
+            The keywords that it takes.
         watched : sequence of str
             Fields of the state that are wanted as they are afterwards.
 
@@ -47,7 +52,7 @@ class Shard:
         """
         try:
             own = getattr(self, f"_{method}", None)
-            result = (own or getattr(self._batch, method))(*arguments)
+            result = (own or getattr(self._batch, method))(*arguments, **chosen)
         except Exception as error:  # It belongs to whoever asked, on another machine.
             return error, {}
         return result, {name: getattr(self._batch, name).copy() for name in watched}
@@ -91,11 +96,11 @@ class Shard:
         resets: NDArray[np.int64] = self._batch.resets + self._resets
         return resets
 
-    def _jacobian(self, chosen: dict[str, Any]) -> Array:
-        return self._batch.jacobian(**chosen)
+    def _rays(self, *arguments: Any, **chosen: Any) -> RayHits:
+        return RayHits.of(self._batch.rays(*arguments, **chosen))
 
-    def _inverse(self, qacc: Array, discrete: bool | None) -> Array:
-        return self._batch.inverse(qacc, discrete=discrete)
+    def _ik(self, targets: Sequence[Any], start: Array | None, **search: Any) -> IkResult:
+        return IkResult.of(self._batch.ik(targets, start=start, **search))
 
     def _where(self) -> tuple[str, int]:
         return socket.gethostname(), os.getpid()

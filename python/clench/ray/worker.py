@@ -7,8 +7,9 @@ made anew on whatever machine has room: the new one takes the snapshot, and does
 from __future__ import annotations
 
 import importlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from clench.errors import ClenchError
@@ -38,6 +39,7 @@ class Call:
 
     method: str
     arguments: tuple[Any, ...]
+    chosen: Mapping[str, Any]
     watched: Sequence[str]
     answer: Any = None
     """Where Ray puts what it returns; another place when it is done again."""
@@ -74,7 +76,14 @@ class Worker:
         self._actor = self._new_actor()
         self.receive(self.send("start", packed, changes=True))
 
-    def send(self, method: str, *arguments: Any, changes: bool = False, watched: Sequence[str] = ()) -> Call:
+    def send(
+        self,
+        method: str,
+        *arguments: Any,
+        chosen: Mapping[str, Any] = MappingProxyType({}),
+        changes: bool = False,
+        watched: Sequence[str] = (),
+    ) -> Call:
         """Asks for something, without waiting for it.
 
         Parameters
@@ -83,12 +92,14 @@ class Worker:
             See `Shard.run`.
         *arguments
             What it takes.
+        chosen : mapping
+            The keywords that it takes.
         changes : bool
             Whether it leaves the part different, so that it must be done again after a death.
         watched : sequence of str
             See `Shard.run`.
         """
-        call = Call(method, arguments, watched)
+        call = Call(method, arguments, chosen, watched)
         if changes:
             self.journal.append(call)
         call.answer = self._submit(call)
@@ -146,7 +157,7 @@ class Worker:
         packed, _ = self._ray.get(answer)
         if isinstance(packed, bytes):
             since = next(place for place, other in enumerate(self.journal) if other is call)
-            self.journal[:since] = [Call("restore", (packed,), ())]
+            self.journal[:since] = [Call("restore", (packed,), {}, ())]
 
     def _replace(self, call: Call) -> None:
         """Puts another in the place of one that died."""
@@ -165,7 +176,7 @@ class Worker:
         return remote.remote()
 
     def _submit(self, call: Call) -> Any:
-        return self._actor.run.remote(call.method, call.arguments, tuple(call.watched))
+        return self._actor.run.remote(call.method, call.arguments, dict(call.chosen), tuple(call.watched))
 
     def _deaths(self) -> tuple[type[BaseException], ...]:
         """What Ray raises where a worker, or the machine with its results, is no more."""

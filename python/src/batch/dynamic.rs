@@ -144,4 +144,18 @@ impl Batch {
         let mut guard = lock(&self.inner, "batch")?;
         each!(&mut *guard, batch => batch.weld_here(&envs, equality)).map_err(sim_error)
     }
+
+    /// list of int : For each environment the serial number of the last constraint that was added at run time; for pickles, see
+    /// `clench._pickle`.
+    #[getter(_last_serials)]
+    fn last_serials(&self) -> PyResult<Vec<u32>> {
+        let guard = lock(&self.inner, "batch")?;
+        Ok(each!(&*guard, batch => batch.last_serials().to_vec()))
+    }
+
+    #[setter(_last_serials)]
+    fn set_last_serials(&self, serials: Vec<u32>) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "batch")?;
+        each!(&mut *guard, batch => batch.set_last_serials(&serials)).map_err(sim_error)
+    }
 }

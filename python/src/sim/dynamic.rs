@@ -128,4 +128,18 @@ impl Sim {
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => change(own, |sim| sim.weld_here(equality)))
     }
+
+    /// int : The serial number of the last constraint that was added at run time; for pickles, see `clench._pickle`.
+    #[getter(_last_serial)]
+    fn last_serial(&self) -> PyResult<u32> {
+        let guard = lock(&self.inner, "simulation")?;
+        Ok(each_sim!(&*guard, own => own.sim.last_serial()))
+    }
+
+    #[setter(_last_serial)]
+    fn set_last_serial(&self, serial: u32) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => own.sim.set_last_serial(serial));
+        Ok(())
+    }
 }

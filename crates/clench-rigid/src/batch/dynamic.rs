@@ -1,6 +1,7 @@
 //! Constraints at run time in environments of a batch: each as a simulation of that environment does it.
 
 use super::{Batch, Precision};
+use crate::check::check_length;
 use crate::error::SimError;
 use crate::sim::{DynamicConstraint, Sim};
 use clench_math::Vec3;
@@ -62,6 +63,21 @@ impl<S: Precision> Batch<S> {
             }
             self.state.write(env, &sim.state)?;
         }
+        Ok(())
+    }
+
+    /// For each environment the serial number of the last constraint that was added at run time, as [`Sim::last_serial`].
+    pub fn last_serials(&self) -> &[u32] {
+        &self.serials
+    }
+
+    /// As [`Sim::set_last_serial`], for each environment.
+    ///
+    /// # Errors
+    /// Another number of them than of environments.
+    pub fn set_last_serials(&mut self, serials: &[u32]) -> Result<(), SimError> {
+        check_length("serials", serials.len(), self.serials.len())?;
+        self.serials.copy_from_slice(serials);
         Ok(())
     }
 

@@ -109,6 +109,17 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
+    /// The serial number of the last constraint that was added at run time. No state has it, so that what is restored gives no number
+    /// that a program may still hold; a copy of the whole simulation takes it along.
+    pub fn last_serial(&self) -> u32 {
+        self.last_serial
+    }
+
+    /// Lets serial numbers of constraints go on after this one, as those of the simulation do that this is a copy of.
+    pub fn set_last_serial(&mut self, serial: u32) {
+        self.last_serial = serial;
+    }
+
     /// The constraints that were added at run time and are there, in the order of their slots.
     pub fn dynamic_constraints(&self) -> impl Iterator<Item = DynamicConstraint> {
         let slots = 0..self.state.dynamic_kind.len();
