@@ -29,6 +29,7 @@ use std::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, Div, DivAssign, Mul, MulAssign, Neg,
     Not, Sub, SubAssign,
 };
+use std::slice::{from_mut, from_ref};
 
 /// One number for each of `N` environments, in the registers of the instruction set `I`.
 #[derive(Copy)]
@@ -165,13 +166,12 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
     }
     #[inline(always)]
     fn lane(self, i: usize) -> S {
-        self.to_array()[i]
+        Self::as_scalars(from_ref(&self))[i]
     }
     #[inline(always)]
     fn set_lane(&mut self, i: usize, value: S) {
-        let mut values = self.to_array();
-        values[i] = value;
-        *self = Self::from_array(values);
+        // One store, where an array would be copied there and back.
+        Self::as_scalars_mut(from_mut(self))[i] = value;
     }
     #[inline(always)]
     fn as_scalars(values: &[Self]) -> &[S] {
