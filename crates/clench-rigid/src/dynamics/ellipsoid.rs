@@ -22,7 +22,7 @@ use clench_collide::ShapeKind;
 use clench_math::{Force, Motion, Real, Vec3};
 use std::f64::consts::PI;
 
-/// Least denominator (MuJoCo's `mjMINVAL`).
+/// Least mass of a body that feels the medium, kg (MuJoCo's `mjMINVAL`).
 const TINY: f64 = 1e-15;
 
 /// Half the lengths of the ellipsoid that stands for a shape of size `size`.
@@ -200,15 +200,15 @@ impl<T: Real> Ellipsoid<T> {
 
     #[inline(always)]
     fn flow(&self) -> Flow<T> {
-        let (v, least) = (self.velocity.linear, T::new(TINY));
+        let v = self.velocity.linear;
         let normal = v.scale_by(self.areas);
         let (along, squared, speed) = (v.dot(normal), normal.norm_squared(), v.norm());
-        let area = T::new(PI) * (squared / along.max(least)).sqrt();
+        let area = T::new(PI) * (squared / positive(along)).sqrt();
         Flow {
             speed,
             normal,
             area,
-            lift: area * along / (speed * squared).max(least),
+            lift: area * along / positive(speed * squared),
         }
     }
 

@@ -10,11 +10,13 @@
 //! ```
 //!
 //! The force acts along the joint's translations, the moment t + s×f about its rotations. (M − h D + h ∂bias/∂v) a = τ is
-//! then a 6 × 6 system apart from all others.
+//! then a 6 × 6 system apart from all others. It need not be symmetric, so it has what a medium adds to D that is not.
 
+use crate::dynamics::ellipsoid::ellipsoid_rates;
+use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
 use crate::model::{JointKind, Model, Params};
-use crate::workspace::{Positions, Workspace};
-use clench_math::{Real, Vec3, kernel};
+use crate::workspace::{Positions, Velocities, Workspace};
+use clench_math::{Force, Real, Vec3, kernel};
 
 /// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
 #[inline(always)]
@@ -44,11 +46,12 @@ pub fn solve_gyroscopic<T: Real>(
         row[6] = ws.force.qfrc_smooth[dof + r] + ws.qfrc_constraint[dof + r];
     }
     add_bias_derivative(model, params, j, qvel, &ws.position, &mut rows);
+    subtract_skew_drag(model, params, j, (&ws.position, &ws.velocity), &mut rows);
     let x = solve6(rows);
     ws.integration.qacc[dof..dof + 6].copy_from_slice(&x);
 }
 
-/// Adds h ∂bias/∂v times the joint's part of `ws.qacc` to that of `integration.qacc`.
+/// Adds h ∂bias/∂v, less what of h D is not symmetric, times the joint's part of `ws.qacc` to that of `integration.qacc`.
 #[inline(always)]
 pub(crate) fn add_gyroscopic_product<T: Real>(
     model: &Model,
@@ -60,6 +63,7 @@ pub(crate) fn add_gyroscopic_product<T: Real>(
     let dof = model.joints[j].dof;
     let mut rows = [[T::ZERO; 7]; 6];
     add_bias_derivative(model, params, j, qvel, &ws.position, &mut rows);
+    subtract_skew_drag(model, params, j, (&ws.position, &ws.velocity), &mut rows);
     for (r, row) in rows.iter().enumerate() {
         for (&entry, &x) in row[..6].iter().zip(&ws.qacc[dof..]) {
             ws.integration.qacc[dof + r] += entry * x;
@@ -91,6 +95,38 @@ fn add_bias_derivative<T: Real>(
         for r in 0..3 {
             rows[r][3 + k] += h * df[r];
             rows[3 + r][3 + k] += h * moment[r];
+        }
+    }
+}
+
+/// Subtracts h times the skew part of D, which ellipsoids in a medium have.
+#[inline(always)]
+fn subtract_skew_drag<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    j: usize,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
+    rows: &mut [[T; 7]; 6],
+) {
+    if !fluid_acts(model, params) {
+        return;
+    }
+    let joint = &model.joints[j];
+    let axes = &pos.cdof[joint.dof..joint.dof + 6];
+    let welded = |b: &usize| model.bodies[*b].weld == joint.body;
+    for b in (joint.body..model.nbody()).filter(welded) {
+        if !model.bodies[b].fluid_ellipsoids {
+            continue;
+        }
+        let [_, skew] = symmetric_and_skew(ellipsoid_rates(model, params, pos, vel, b));
+        for (c, axis) in axes.iter().enumerate() {
+            let mut change = Force::ZERO;
+            for (x, column) in axis.to_array().into_iter().zip(skew) {
+                change += column * x;
+            }
+            for (row, other) in rows.iter_mut().zip(axes) {
+                row[c] -= params.timestep * other.dot(change);
+            }
         }
     }
 }
