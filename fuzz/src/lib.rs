@@ -5,6 +5,7 @@
 
 mod checksums;
 mod contacts;
+mod dictionary;
 mod files;
 mod mjcf;
 mod npy;
@@ -13,6 +14,7 @@ mod states;
 mod trial;
 
 pub use contacts::contacts;
+pub use dictionary::dictionary;
 pub use mjcf::{mjcf, urdf};
 pub use npy::npy;
 pub use shapes::{grid, msh, obj, png, stl};

@@ -5,7 +5,7 @@ use crate::field::{Field, NONE, Numbers, Reader, codes, first, flags, id, id_or_
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::rigid::model::{
-    BiasKind, DynamicsKind, EqualityTarget, GainKind, JointKind, Keyframe, ParamField,
+    BiasKind, Coupled, DynamicsKind, EqualityTarget, GainKind, JointKind, Keyframe, ParamField,
     Transmission, Wrap,
 };
 
@@ -287,10 +287,11 @@ fn wrap(model: &Model, wrap: Wrap) -> (i32, i32, i32) {
 
 /// Type, and what is held.
 fn equality(target: EqualityTarget) -> (i32, i32, i32) {
-    match target {
-        EqualityTarget::Connect { body1, body2 } => (0, id(body1), id(body2)),
-        EqualityTarget::Weld { body1, body2 } => (1, id(body1), id(body2)),
-        EqualityTarget::Joint { joint1, joint2 } => (2, id(joint1), id_or_none(joint2)),
-        EqualityTarget::Tendon { tendon1, tendon2 } => (3, id(tendon1), id_or_none(tendon2)),
-    }
+    let (first, second) = match target.coupled() {
+        Coupled::Bodies([first, second]) => (first, Some(second)),
+        Coupled::Joints(follower, leader) | Coupled::Tendons(follower, leader) => {
+            (follower, leader)
+        }
+    };
+    (target.code(), id(first), id_or_none(second))
 }

@@ -1,6 +1,6 @@
 //! Many environments of one model on a graphics device.
 
-use crate::check::{Subject, check};
+use crate::check::{Simulation, check};
 use crate::device::{Device, DeviceInfo};
 use crate::error::{GpuError, GpuFault};
 use crate::fields::{self, Fields};
@@ -85,7 +85,7 @@ impl GpuBatch {
         } else {
             Vec::new()
         };
-        check(&Subject {
+        check(&Simulation {
             model: &model,
             settings: &settings,
             candidates: &pairs,

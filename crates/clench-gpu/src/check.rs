@@ -3,7 +3,9 @@
 use crate::error::{GpuError, Refusal};
 use clench_collide::ShapeKind;
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{BiasKind, DynamicsKind, GainKind, Integrator, Model, Transmission};
+use clench_rigid::model::{
+    BiasKind, DynamicsKind, EqualityTarget, GainKind, Integrator, Model, Transmission,
+};
 use clench_rigid::settings::StepSettings;
 use clench_solver::ConstraintSolver;
 
@@ -11,8 +13,8 @@ use clench_solver::ConstraintSolver;
 /// rounding takes grows with the cube of their number. So many, in the humanoid of dm-control's suite, keep forces to 2e-4.
 const MAX_PATH: usize = 26;
 
-/// What rules look at.
-pub(crate) struct Subject<'a> {
+/// What a batch is asked to step.
+pub(crate) struct Simulation<'a> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
     /// The pairs of geoms that may collide.
@@ -22,7 +24,7 @@ pub(crate) struct Subject<'a> {
 /// One thing that cannot be done, and how to find the first element that needs it.
 struct Rule {
     reason: &'static str,
-    find: fn(&Subject) -> Option<String>,
+    find: fn(&Simulation) -> Option<String>,
 }
 
 macro_rules! rules {
@@ -52,6 +54,13 @@ rules! {
         let long = |&i: &usize| s.model.tree.row(i).len() > MAX_PATH;
         let dof = (0..s.model.nv).find(long)?;
         Some(joint(s.model, s.model.dofs[dof].joint))
+    };
+    "equalities of this kind are not there yet": |s| {
+        use EqualityTarget::{Connect, Joint, Tendon, Weld};
+        let known = |target| matches!(target, Connect { .. } | Weld { .. } | Joint { .. } | Tendon { .. });
+        let e = s.model.equalities.iter().position(|equality| !known(equality.target))?;
+        let equality = &s.model.equalities[e];
+        Some(named(equality.target.kind(), &equality.name, e))
     };
     "tendons around or through geoms are not there yet": |s| tendon(s.model, |m, t| m.tendons[t].has_obstacles());
     "tendons with inertia are not there yet": |s| tendon(s.model, |m, t| {
@@ -145,9 +154,9 @@ pub(crate) fn points_of_pair(kinds: [ShapeKind; 2]) -> usize {
 ///
 /// # Errors
 /// The first element of each rule that is not kept.
-pub(crate) fn check(subject: &Subject) -> Result<(), GpuError> {
+pub(crate) fn check(simulation: &Simulation) -> Result<(), GpuError> {
     let refuse = |rule: &Rule| {
-        let element = (rule.find)(subject)?;
+        let element = (rule.find)(simulation)?;
         let reason = rule.reason;
         Some(Refusal { element, reason })
     };

@@ -1,11 +1,46 @@
-//! `<equality>`: connect, weld, joint and tendon.
+//! `<equality>`: connect, weld, joint and tendon; what each may say, how it is read, and how it is written.
 
 use super::document::Element;
+use super::rules::rule::{NONE, Rule, section};
+use super::write::names::{SaveError, body_name, label, named};
+use super::write::xml::{Tag, Xml};
 use crate::LoadError;
 use clench_math::{Quat, Vec3};
+use clench_rigid::Model;
 use clench_rigid::builder::{
     ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind, EqualitySpec,
 };
+use clench_rigid::model::{Equality, EqualityTarget};
+
+/// What the section and its elements may have.
+pub(super) const RULES: &[Rule] = &[
+    section("equality", "connect weld joint tendon", "flex flexstrain"),
+    Rule {
+        element: "connect",
+        read: "name class active solref solimp body1 body2 anchor site1 site2",
+        ..NONE
+    },
+    Rule {
+        element: "weld",
+        read: "name class active solref solimp body1 body2 anchor relpose site1 site2 torquescale",
+        ..NONE
+    },
+    Rule {
+        element: "equality/joint",
+        read: "name class active solref solimp joint1 joint2 polycoef",
+        ..NONE
+    },
+    Rule {
+        element: "equality/tendon",
+        read: "name class active solref solimp tendon1 tendon2 polycoef",
+        ..NONE
+    },
+    Rule {
+        element: "default/equality",
+        read: "active solref solimp",
+        ..NONE
+    },
+];
 
 /// What all kinds of equality share, and what a default class has of them.
 #[derive(Clone, Debug)]
@@ -85,7 +120,7 @@ fn read_sites(element: &Element, of_bodies: &[&str]) -> Result<Option<ConnectAnc
     }
 }
 
-fn bodies(element: &Element, anchor: [f64; 3]) -> Result<ConnectAnchor, LoadError> {
+fn read_bodies(element: &Element, anchor: [f64; 3]) -> Result<ConnectAnchor, LoadError> {
     let either = || element.error("either body1 or site1 and site2 must be given");
     Ok(ConnectAnchor::Bodies {
         body1: element.text("body1").ok_or_else(either)?.to_owned(),
@@ -98,15 +133,15 @@ fn read_connect(element: &Element) -> Result<ConnectAnchor, LoadError> {
     if let Some(sites) = read_sites(element, &["body1", "body2", "anchor"])? {
         return Ok(sites);
     }
-    bodies(element, [0.0; 3])?;
-    bodies(element, element.required_numbers("anchor")?)
+    read_bodies(element, [0.0; 3])?;
+    read_bodies(element, element.required_numbers("anchor")?)
 }
 
 fn read_weld(element: &Element) -> Result<EqualityKind, LoadError> {
     let sites = read_sites(element, &["body1", "body2", "anchor", "relpose"])?;
     let anchor = match sites {
         Some(sites) => sites,
-        None => bodies(element, element.numbers("anchor")?.unwrap_or_default())?,
+        None => read_bodies(element, element.numbers("anchor")?.unwrap_or_default())?,
     };
     // A zero quaternion, also the default, asks for the relative pose of the initial configuration.
     let relpose = element
@@ -120,4 +155,92 @@ fn read_weld(element: &Element) -> Result<EqualityKind, LoadError> {
         relpose,
         torquescale,
     })
+}
+
+/// Writes all constraints of a model.
+///
+/// # Errors
+/// Elements without a name that a constraint refers to.
+pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
+    for (k, equality) in model.equalities.iter().enumerate() {
+        write_equality(model, k, equality, xml)?;
+    }
+    Ok(())
+}
+
+fn write_equality(
+    model: &Model,
+    k: usize,
+    equality: &Equality,
+    xml: &mut Xml,
+) -> Result<(), SaveError> {
+    let Equality {
+        name,
+        target,
+        sites,
+        active0,
+    } = equality;
+    let p = &model.params;
+    let mut tag = xml.tag(target.kind()).name(name);
+    tag = match (*target, sites) {
+        (EqualityTarget::Connect { .. } | EqualityTarget::Weld { .. }, Some([site1, site2])) => {
+            let site = |s: usize| named("site", &model.sites[s].name, s);
+            tag.text("site1", site(*site1)?)
+                .text("site2", site(*site2)?)
+        }
+        (EqualityTarget::Connect { body1, body2 }, None) => {
+            write_bodies(model, [body1, body2], tag)?.numbers("anchor", &p.eq_anchor1[k].to_array())
+        }
+        (EqualityTarget::Weld { body1, body2 }, None) => {
+            let tag = write_bodies(model, [body1, body2], tag)?;
+            write_weld(p.eq_anchor1[k], p.eq_anchor2[k], p.eq_quat1[k], tag)
+        }
+        (EqualityTarget::Joint { joint1, joint2 }, _) => {
+            let joint = |j: usize| named("joint", &model.joints[j].name, j);
+            let tag = tag.text("joint1", joint(joint1)?);
+            let tag = match joint2 {
+                Some(joint2) => tag.text("joint2", joint(joint2)?),
+                None => tag,
+            };
+            tag.numbers("polycoef", &p.eq_polycoef[k])
+        }
+        (EqualityTarget::Tendon { tendon1, tendon2 }, _) => {
+            let tendon = |t: usize| named("tendon", &model.tendons[t].name, t);
+            let tag = tag.text("tendon1", tendon(tendon1)?);
+            let tag = match tendon2 {
+                Some(tendon2) => tag.text("tendon2", tendon(tendon2)?),
+                None => tag,
+            };
+            tag.numbers("polycoef", &p.eq_polycoef[k])
+        }
+        (target, _) => {
+            let element = label(target.kind(), name, k);
+            return Err(SaveError::new(element, "MJCF has no word for it"));
+        }
+    };
+    if let EqualityTarget::Weld { .. } = target {
+        tag = tag.number_unless("torquescale", p.eq_torquescale[k], 1.0);
+    }
+    if !*active0 {
+        tag = tag.boolean("active", false);
+    }
+    tag.numbers_unless("solref", &p.eq_solref[k], &DEFAULT_SOLREF)
+        .numbers_unless("solimp", &p.eq_solimp[k], &DEFAULT_SOLIMP)
+        .end();
+    Ok(())
+}
+
+fn write_bodies<'a>(model: &Model, pair: [usize; 2], tag: Tag<'a>) -> Result<Tag<'a>, SaveError> {
+    let [body1, body2] = pair;
+    Ok(tag
+        .text("body1", body_name(model, body1)?)
+        .text("body2", body_name(model, body2)?))
+}
+
+/// The anchor is a point of the second body; the relative pose says where the first body holds it, and how turned.
+fn write_weld<'a>(held: Vec3<f64>, anchor: Vec3<f64>, turn: Quat<f64>, tag: Tag<'a>) -> Tag<'a> {
+    let [x, y, z] = held.to_array();
+    let [w, a, b, c] = turn.to_array();
+    tag.numbers("anchor", &anchor.to_array())
+        .numbers("relpose", &[x, y, z, w, a, b, c])
 }

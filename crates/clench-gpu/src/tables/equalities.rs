@@ -1,7 +1,7 @@
 //! Equalities: which two frames or coordinates each holds together, and how softly.
 
 use super::{Capacity, NONE, Tables};
-use clench_rigid::model::{EqualityTarget, Model};
+use clench_rigid::model::{Coupled, Model};
 use clench_rigid::settings::StepSettings;
 
 /// Numbers of an equality of frames: both anchors, both orientations, the length that scales rotations, the bodies' inverse weights
@@ -22,16 +22,18 @@ impl Tables {
             // Frames that nothing moves are no constraint.
             let moving =
                 |bodies: [usize; 2]| bodies.iter().any(|&b| m.bodies[b].last_dof.is_some());
-            let frames = |rows: usize, bodies| (if moving(bodies) { rows } else { 0 }, bodies);
-            let (rows, pair) = match equality.target {
-                EqualityTarget::Connect { body1, body2 } => frames(3, [body1, body2]),
-                EqualityTarget::Weld { body1, body2 } => frames(6, [body1, body2]),
-                EqualityTarget::Joint { joint1, joint2 } => {
-                    (1, [joint1, joint2.unwrap_or(NONE as usize)])
+            let rows = equality.target.rows();
+            let (rows, pair) = match equality.target.coupled() {
+                Coupled::Bodies(bodies) => (if moving(bodies) { rows } else { 0 }, bodies),
+                Coupled::Joints(follower, leader) => {
+                    (rows, [follower, leader.unwrap_or(NONE as usize)])
                 }
-                EqualityTarget::Tendon { tendon1, tendon2 } => {
+                Coupled::Tendons(follower, leader) => {
                     let tendon = |t: usize| m.joints.len() + t;
-                    (1, [tendon(tendon1), tendon2.map_or(NONE as usize, tendon)])
+                    (
+                        rows,
+                        [tendon(follower), leader.map_or(NONE as usize, tendon)],
+                    )
                 }
             };
             kinds.push(rows);

@@ -4,7 +4,7 @@ use super::BuildError;
 use super::element::Element;
 use super::model_builder::ModelBuilder;
 use crate::budget::RAISE;
-use crate::model::{EqualityTarget, Model};
+use crate::model::{Coupled, Model};
 
 /// The matrices of a model whose dofs are known.
 ///
@@ -32,15 +32,14 @@ pub(super) fn equalities(builder: &ModelBuilder, model: &Model) -> Result<(), Bu
         let last = model.bodies[body].last_dof;
         last.map_or(0, |dof| model.tree.row(dof).len() as u64)
     };
-    let rows = model
-        .equalities
-        .iter()
-        .map(|equality| match equality.target {
-            EqualityTarget::Connect { body1, body2 } => 3 * (path(body1) + path(body2)),
-            EqualityTarget::Weld { body1, body2 } => 6 * (path(body1) + path(body2)),
-            EqualityTarget::Joint { .. } => 2,
-            EqualityTarget::Tendon { .. } => 2 * model.nv as u64,
-        });
+    let rows = model.equalities.iter().map(|equality| {
+        let dofs = match equality.target.coupled() {
+            Coupled::Bodies(bodies) => bodies.map(path).iter().sum(),
+            Coupled::Joints(..) => 2,
+            Coupled::Tendons(..) => 2 * model.nv as u64,
+        };
+        equality.target.rows() as u64 * dofs
+    });
     admit(builder, "Jacobian of equalities", rows.sum())
 }
 

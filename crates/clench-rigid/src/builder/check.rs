@@ -1,19 +1,14 @@
 //! What can be said of each element alone, before anything is computed: NaN and infinity are refused, and so are
 //! numbers that must be positive.
 
-use super::element::Element;
+use super::element::{Element, check_pose};
 use super::model_builder::ModelBuilder;
 use super::{
-    ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, EqualityKind, EqualitySpec,
-    GeomMass, GeomSpec, InertiaSpec, JointSpec, KeyframeSpec, PairSpec, SiteSpec, TendonSpec,
-    WrapSpec,
+    ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, EqualitySpec, GeomMass, GeomSpec,
+    InertiaSpec, JointSpec, KeyframeSpec, PairSpec, SiteSpec, TendonSpec, WrapSpec, equalities,
 };
 use crate::model::Integrator;
 use clench_collide::ShapeKind;
-use clench_math::{Quat, Vec3};
-
-/// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
-const MIN_QUAT_LENGTH: f64 = 1e-7;
 
 /// Looks at every element.
 ///
@@ -100,17 +95,6 @@ fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
         require(finite(&numbers), "every contact override", "finite")?;
     }
     Ok(())
-}
-
-/// A finite position and an orientation that is one.
-fn check_pose(element: &impl Element, pos: Vec3<f64>, quat: Quat<f64>) -> Result<(), BuildError> {
-    element.require_finite("pos", &pos.to_array())?;
-    let quat = quat.to_array();
-    element.require_finite("quat", &quat)?;
-    match quat.iter().map(|q| q * q).sum::<f64>().sqrt() < MIN_QUAT_LENGTH {
-        true => Err(element.error("quat is zero")),
-        false => Ok(()),
-    }
 }
 
 fn check_body(body: &BodySpec, body_name: &str) -> Result<(), BuildError> {
@@ -256,22 +240,7 @@ fn check_actuator(a: &ActuatorSpec) -> Result<(), BuildError> {
 }
 
 fn check_equality(e: &EqualitySpec) -> Result<(), BuildError> {
-    match &e.kind {
-        EqualityKind::Connect(_) => {}
-        EqualityKind::Weld {
-            relpose,
-            torquescale,
-            ..
-        } => {
-            e.require_not_negative("torquescale", &[*torquescale])?;
-            if let Some((pos, quat)) = relpose {
-                check_pose(e, *pos, *quat)?;
-            }
-        }
-        EqualityKind::Joint { polycoef, .. } | EqualityKind::Tendon { polycoef, .. } => {
-            e.require_finite("polycoef", polycoef)?;
-        }
-    }
+    equalities::check(e)?;
     check_softness(e, &[e.solref], &[e.solimp])
 }
 

@@ -5,6 +5,7 @@ use super::{
     HeightFieldSpec, JointSpec, KeyframeSpec, MeshSpec, Origin, PairSpec, SensorSpec, SiteSpec,
     TendonSpec,
 };
+use clench_math::{Quat, Vec3};
 
 /// An element of the author's description, as error messages see it.
 pub(super) trait Element {
@@ -122,4 +123,22 @@ pub(super) fn resolve_range(
         return Err(element.error(format!("{what}range must rise, but is {low} to {high}")));
     }
     Ok(limited)
+}
+
+/// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
+pub(super) const MIN_QUAT_LENGTH: f64 = 1e-7;
+
+/// A finite position and an orientation that is one.
+pub(super) fn check_pose(
+    element: &impl Element,
+    pos: Vec3<f64>,
+    quat: Quat<f64>,
+) -> Result<(), BuildError> {
+    element.require_finite("pos", &pos.to_array())?;
+    let quat = quat.to_array();
+    element.require_finite("quat", &quat)?;
+    match quat.iter().map(|q| q * q).sum::<f64>().sqrt() < MIN_QUAT_LENGTH {
+        true => Err(element.error("quat is zero")),
+        false => Ok(()),
+    }
 }

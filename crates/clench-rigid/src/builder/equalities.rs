@@ -1,6 +1,6 @@
 //! Equality constraints: what they hold together, and where in the initial configuration.
 
-use super::element::Element;
+use super::element::{Element, check_pose};
 use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
@@ -43,6 +43,30 @@ pub(super) fn add_all(
         p.eq_solimp.push(spec.solimp);
     }
     Ok(())
+}
+
+/// Looks at the numbers of a constraint.
+///
+/// # Errors
+/// Numbers that its kind cannot have.
+pub(super) fn check(e: &EqualitySpec) -> Result<(), BuildError> {
+    match &e.kind {
+        EqualityKind::Connect(_) => Ok(()),
+        EqualityKind::Weld {
+            relpose,
+            torquescale,
+            ..
+        } => {
+            e.require_not_negative("torquescale", &[*torquescale])?;
+            match relpose {
+                Some((pos, quat)) => check_pose(e, *pos, *quat),
+                None => Ok(()),
+            }
+        }
+        EqualityKind::Joint { polycoef, .. } | EqualityKind::Tendon { polycoef, .. } => {
+            e.require_finite("polycoef", polycoef)
+        }
+    }
 }
 
 /// The numbers of a constraint; a kind leaves those that it does not use at their defaults.

@@ -10,9 +10,9 @@ use super::inertia::{MassProperties, combine, mass_properties, unbounded_mass_pr
 use super::model_builder::ModelBuilder;
 use super::placed::Assets;
 use super::{
-    BodySpec, BuildError, CameraSpec, CameraTracking, ConnectAnchor, ContactSideName, EqualityKind,
-    FrameKind, FrameName, GeomSpec, GeomsName, InertiaFromGeom, InertiaSpec, InertialSpec,
-    SensorSubject, SiteSpec, TransmissionSpec,
+    BodySpec, BuildError, CameraSpec, CameraTracking, ConnectAnchor, ContactSideName, FrameKind,
+    FrameName, GeomSpec, GeomsName, InertiaFromGeom, InertiaSpec, InertialSpec, SensorSubject,
+    SiteSpec, TransmissionSpec,
 };
 use crate::model::{Attachment, SensorKind};
 use clench_math::{Quat, Vec3};
@@ -220,10 +220,7 @@ impl<'a> Named<'a> {
     fn new(builder: &'a ModelBuilder) -> Self {
         let (mut bodies, mut sites) = (HashSet::new(), HashSet::new());
         for equality in &builder.equalities {
-            if let EqualityKind::Connect(anchor) | EqualityKind::Weld { anchor, .. } =
-                &equality.kind
-                && let ConnectAnchor::Bodies { body1, body2, .. } = anchor
-            {
+            if let Some(ConnectAnchor::Bodies { body1, body2, .. }) = equality.kind.anchor() {
                 bodies.extend([&body1[..], &body2[..]]);
             }
         }

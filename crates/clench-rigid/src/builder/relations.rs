@@ -247,6 +247,16 @@ pub enum EqualityKind {
     },
 }
 
+impl EqualityKind {
+    /// The two bodies or sites, where it holds such.
+    pub(super) fn anchor(&self) -> Option<&ConnectAnchor> {
+        match self {
+            EqualityKind::Connect(anchor) | EqualityKind::Weld { anchor, .. } => Some(anchor),
+            EqualityKind::Joint { .. } | EqualityKind::Tendon { .. } => None,
+        }
+    }
+}
+
 /// An equality constraint.
 #[derive(Clone, Debug)]
 pub struct EqualitySpec {

@@ -4,7 +4,7 @@ use super::assembly::{BlockRecord, ConstraintSource};
 use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
 use super::softness::Softness;
-use crate::model::EqualityTarget;
+use crate::model::Coupled;
 use clench_math::{Mask, Real};
 
 impl<T: Real> ConstraintContext<'_, T> {
@@ -15,16 +15,14 @@ impl<T: Real> ConstraintContext<'_, T> {
         if !self.settings.flags.sleep {
             return active;
         }
-        let awake = match self.model.equalities[equality].target {
-            EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 } => {
-                self.sleep.is_either_awake([body1, body2])
-            }
-            EqualityTarget::Joint { joint1, joint2 } => {
-                let joints = [Some(joint1), joint2].into_iter().flatten();
+        let awake = match self.model.equalities[equality].target.coupled() {
+            Coupled::Bodies(bodies) => self.sleep.is_either_awake(bodies),
+            Coupled::Joints(follower, leader) => {
+                let joints = [Some(follower), leader].into_iter().flatten();
                 self.awake(joints.map(Coordinate::Joint))
             }
-            EqualityTarget::Tendon { tendon1, tendon2 } => {
-                let tendons = [Some(tendon1), tendon2].into_iter().flatten();
+            Coupled::Tendons(follower, leader) => {
+                let tendons = [Some(follower), leader].into_iter().flatten();
                 self.awake(tendons.map(Coordinate::Tendon))
             }
         };

@@ -22,10 +22,10 @@ pub use sensor_target::{
     SensorTarget,
 };
 pub use structure::{
-    Actuator, Appearance, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates, Dof,
-    DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField, History,
-    Integrator, Interpolation, Joint, JointKind, Keyframe, KinematicTree, Material, Mesh, Pair,
-    RowPattern, Section, Site, SleepPolicy, Tendon, Texture, TextureMark, TexturePattern,
+    Actuator, Appearance, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates,
+    Coupled, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField,
+    History, Integrator, Interpolation, Joint, JointKind, Keyframe, KinematicTree, Material, Mesh,
+    Pair, RowPattern, Section, Site, SleepPolicy, Tendon, Texture, TextureMark, TexturePattern,
     Transmission, Visuals, Wrap,
 };
 

@@ -151,7 +151,7 @@ impl<T: Precision> Sim<T> {
             EqualityTarget::Connect { body1, body2 } => {
                 self.params.eq_anchor2[equality] = self.carry([body1, body2], anchor1);
             }
-            EqualityTarget::Joint { .. } | EqualityTarget::Tendon { .. } => {
+            _ => {
                 return Err(SimError::CannotHold {
                     what: format!("equality \"{}\"", self.model.equalities[equality].name),
                     reason: "only welds and connects hold a pose",

@@ -5,7 +5,7 @@
 
 use super::{AWAKE, Sleep, is_blank, mocap_pose};
 use crate::constraint::dynamic::each_tie;
-use crate::model::{EqualityTarget, KinematicTree, Model, Params, SleepPolicy};
+use crate::model::{Coupled, KinematicTree, Model, Params, SleepPolicy};
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -193,17 +193,15 @@ pub(crate) fn wake_coupled<T: Real>(
             continue;
         }
         let of_joint = |joint: usize| Some(model.tree.tree_of(model.joints[joint].dof));
-        match equality.target {
-            EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 } => {
-                woke |= wake_bodies(model, sleep, [body1, body2], active);
-            }
-            EqualityTarget::Joint { joint1, joint2 } => {
-                if let [Some(one), Some(other)] = [of_joint(joint1), joint2.and_then(of_joint)] {
+        match equality.target.coupled() {
+            Coupled::Bodies(bodies) => woke |= wake_bodies(model, sleep, bodies, active),
+            Coupled::Joints(follower, leader) => {
+                if let [Some(one), Some(other)] = [of_joint(follower), leader.and_then(of_joint)] {
                     woke |= wake_couple(sleep, [one, other], active);
                 }
             }
-            EqualityTarget::Tendon { tendon1, tendon2 } => {
-                let tendons = [Some(tendon1), tendon2].into_iter().flatten();
+            Coupled::Tendons(follower, leader) => {
+                let tendons = [Some(follower), leader].into_iter().flatten();
                 let mut dofs = tendons.flat_map(|tendon| model.tendon_dofs.dofs(tendon));
                 if let Some(&first) = dofs.next() {
                     let tree_of = |dof: u32| model.tree.tree_of(dof as usize);

@@ -5,10 +5,12 @@
 
 pub(crate) use rule::{NONE, Rule};
 
+use super::equality;
+
 mod actuators;
 mod assets;
 mod relations;
-mod rule;
+pub(super) mod rule;
 mod top;
 mod tree;
 mod visual;
@@ -19,6 +21,7 @@ pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
         top::RULES,
         tree::RULES,
         relations::RULES,
+        equality::RULES,
         actuators::RULES,
         assets::RULES,
         visual::RULES,

@@ -14,32 +14,6 @@ pub(super) const RULES: &[Rule] = &[
         read: "name body1 body2",
         ..NONE
     },
-    section("equality", "connect weld joint tendon", "flex flexstrain"),
-    Rule {
-        element: "connect",
-        read: "name class active solref solimp body1 body2 anchor site1 site2",
-        ..NONE
-    },
-    Rule {
-        element: "weld",
-        read: "name class active solref solimp body1 body2 anchor relpose site1 site2 torquescale",
-        ..NONE
-    },
-    Rule {
-        element: "equality/joint",
-        read: "name class active solref solimp joint1 joint2 polycoef",
-        ..NONE
-    },
-    Rule {
-        element: "equality/tendon",
-        read: "name class active solref solimp tendon1 tendon2 polycoef",
-        ..NONE
-    },
-    Rule {
-        element: "default/equality",
-        read: "active solref solimp",
-        ..NONE
-    },
     section("tendon", "spatial fixed", ""),
     Rule {
         element: "spatial",

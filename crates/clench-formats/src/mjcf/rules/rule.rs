@@ -29,7 +29,7 @@ pub(crate) const NONE: Rule = Rule {
 };
 
 /// An element that only matters to the eye, to memory or to a user's program.
-pub(super) const fn ignored(
+pub(in crate::mjcf) const fn ignored(
     element: &'static str,
     attributes: &'static str,
     children: &'static str,
@@ -43,7 +43,7 @@ pub(super) const fn ignored(
 }
 
 /// A section: it holds elements and has no attributes.
-pub(super) const fn section(
+pub(in crate::mjcf) const fn section(
     element: &'static str,
     children: &'static str,
     later_children: &'static str,

@@ -7,16 +7,17 @@
 
 mod actuator;
 mod assets;
-mod names;
+pub(super) mod names;
 mod option;
 mod relations;
 mod sensor;
 mod tree;
-mod xml;
+pub(super) mod xml;
 
 #[cfg(test)]
 mod tests;
 
+use super::equality;
 use clench_rigid::Model;
 use clench_rigid::model::{Custom, Keyframe, TupleEntry};
 pub use names::SaveError;
@@ -52,7 +53,7 @@ impl SaveModel for Model {
         xml.section("asset", |xml| assets::write(self, xml))?;
         tree::write(self, &mut xml)?;
         xml.section("contact", |xml| relations::write_contacts(self, xml))?;
-        xml.section("equality", |xml| relations::write_equalities(self, xml))?;
+        xml.section("equality", |xml| equality::write(self, xml))?;
         xml.section("tendon", |xml| relations::write_tendons(self, xml))?;
         xml.section("actuator", |xml| actuator::write(self, xml))?;
         xml.section("sensor", |xml| sensor::write(self, xml))?;

@@ -14,7 +14,7 @@ pub struct SaveError {
 }
 
 impl SaveError {
-    pub(super) fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
+    pub(in crate::mjcf) fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
         SaveError {
             element: element.into(),
             reason: reason.into(),
@@ -23,7 +23,7 @@ impl SaveError {
 }
 
 /// How errors call an element.
-pub(super) fn label(kind: &str, name: &str, index: usize) -> String {
+pub(in crate::mjcf) fn label(kind: &str, name: &str, index: usize) -> String {
     match name {
         "" => format!("{kind} {index}"),
         name => format!("{kind} \"{name}\""),
@@ -31,7 +31,11 @@ pub(super) fn label(kind: &str, name: &str, index: usize) -> String {
 }
 
 /// The name by which another element refers to one.
-pub(super) fn named<'a>(kind: &str, name: &'a str, index: usize) -> Result<&'a str, SaveError> {
+pub(in crate::mjcf) fn named<'a>(
+    kind: &str,
+    name: &'a str,
+    index: usize,
+) -> Result<&'a str, SaveError> {
     match name {
         "" => Err(SaveError::new(
             label(kind, name, index),
@@ -42,7 +46,7 @@ pub(super) fn named<'a>(kind: &str, name: &'a str, index: usize) -> Result<&'a s
 }
 
 /// The name of a body; the world has one whatever else it is called.
-pub(super) fn body_name(model: &Model, index: usize) -> Result<&str, SaveError> {
+pub(in crate::mjcf) fn body_name(model: &Model, index: usize) -> Result<&str, SaveError> {
     let Body { name, .. } = &model.bodies[index];
     match index {
         0 => Ok("world"),

@@ -1,11 +1,10 @@
-//! Contacts, equalities and tendons.
+//! Contacts and tendons.
 
 use super::names::{SaveError, body_name, label, named};
-use super::xml::{Tag, Xml};
-use clench_math::{Quat, Vec3};
+use super::xml::Xml;
 use clench_rigid::Model;
 use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use clench_rigid::model::{Equality, EqualityTarget, Pair, Tendon, Wrap};
+use clench_rigid::model::{Pair, Tendon, Wrap};
 
 /// Pairs that collide whatever their masks say, and bodies that never collide.
 pub(super) fn write_contacts(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
@@ -40,86 +39,6 @@ pub(super) fn write_contacts(model: &Model, xml: &mut Xml) -> Result<(), SaveErr
             .end();
     }
     Ok(())
-}
-
-pub(super) fn write_equalities(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
-    for (k, equality) in model.equalities.iter().enumerate() {
-        write_equality(model, k, equality, xml)?;
-    }
-    Ok(())
-}
-
-fn write_equality(
-    model: &Model,
-    k: usize,
-    equality: &Equality,
-    xml: &mut Xml,
-) -> Result<(), SaveError> {
-    let Equality {
-        name,
-        target,
-        sites,
-        active0,
-    } = equality;
-    let p = &model.params;
-    let mut tag = xml.tag(target.kind()).name(name);
-    tag = match (*target, sites) {
-        (EqualityTarget::Connect { .. } | EqualityTarget::Weld { .. }, Some([site1, site2])) => {
-            let site = |s: usize| named("site", &model.sites[s].name, s);
-            tag.text("site1", site(*site1)?)
-                .text("site2", site(*site2)?)
-        }
-        (EqualityTarget::Connect { body1, body2 }, None) => {
-            bodies(model, [body1, body2], tag)?.numbers("anchor", &p.eq_anchor1[k].to_array())
-        }
-        (EqualityTarget::Weld { body1, body2 }, None) => {
-            let tag = bodies(model, [body1, body2], tag)?;
-            weld(p.eq_anchor1[k], p.eq_anchor2[k], p.eq_quat1[k], tag)
-        }
-        (EqualityTarget::Joint { joint1, joint2 }, _) => {
-            let joint = |j: usize| named("joint", &model.joints[j].name, j);
-            let tag = tag.text("joint1", joint(joint1)?);
-            let tag = match joint2 {
-                Some(joint2) => tag.text("joint2", joint(joint2)?),
-                None => tag,
-            };
-            tag.numbers("polycoef", &p.eq_polycoef[k])
-        }
-        (EqualityTarget::Tendon { tendon1, tendon2 }, _) => {
-            let tendon = |t: usize| named("tendon", &model.tendons[t].name, t);
-            let tag = tag.text("tendon1", tendon(tendon1)?);
-            let tag = match tendon2 {
-                Some(tendon2) => tag.text("tendon2", tendon(tendon2)?),
-                None => tag,
-            };
-            tag.numbers("polycoef", &p.eq_polycoef[k])
-        }
-    };
-    if let EqualityTarget::Weld { .. } = target {
-        tag = tag.number_unless("torquescale", p.eq_torquescale[k], 1.0);
-    }
-    if !*active0 {
-        tag = tag.boolean("active", false);
-    }
-    tag.numbers_unless("solref", &p.eq_solref[k], &DEFAULT_SOLREF)
-        .numbers_unless("solimp", &p.eq_solimp[k], &DEFAULT_SOLIMP)
-        .end();
-    Ok(())
-}
-
-fn bodies<'a>(model: &Model, pair: [usize; 2], tag: Tag<'a>) -> Result<Tag<'a>, SaveError> {
-    let [body1, body2] = pair;
-    Ok(tag
-        .text("body1", body_name(model, body1)?)
-        .text("body2", body_name(model, body2)?))
-}
-
-/// The anchor is a point of the second body; the relative pose says where the first body holds it, and how turned.
-fn weld<'a>(held: Vec3<f64>, anchor: Vec3<f64>, turn: Quat<f64>, tag: Tag<'a>) -> Tag<'a> {
-    let [x, y, z] = held.to_array();
-    let [w, a, b, c] = turn.to_array();
-    tag.numbers("anchor", &anchor.to_array())
-        .numbers("relpose", &[x, y, z, w, a, b, c])
 }
 
 pub(super) fn write_tendons(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {

@@ -4,20 +4,20 @@ use std::fmt::Write;
 
 /// The text so far, and how deep its end is.
 #[derive(Default)]
-pub(super) struct Xml {
+pub(in crate::mjcf) struct Xml {
     text: String,
     open: Vec<&'static str>,
 }
 
 /// An element that is being written: its attributes come next.
-pub(super) struct Tag<'a> {
+pub(in crate::mjcf) struct Tag<'a> {
     xml: &'a mut Xml,
     name: &'static str,
 }
 
 impl Xml {
     /// Begins an element.
-    pub(super) fn tag(&mut self, name: &'static str) -> Tag<'_> {
+    pub(in crate::mjcf) fn tag(&mut self, name: &'static str) -> Tag<'_> {
         self.indent();
         self.text.push('<');
         self.text.push_str(name);
@@ -25,7 +25,7 @@ impl Xml {
     }
 
     /// Ends the innermost element that has children.
-    pub(super) fn close(&mut self) {
+    pub(in crate::mjcf) fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.indent();
             self.text.push_str("</");
@@ -35,12 +35,12 @@ impl Xml {
     }
 
     /// How many elements are open.
-    pub(super) fn depth(&self) -> usize {
+    pub(in crate::mjcf) fn depth(&self) -> usize {
         self.open.len()
     }
 
     /// The whole text, with every element ended.
-    pub(super) fn finish(mut self) -> String {
+    pub(in crate::mjcf) fn finish(mut self) -> String {
         while !self.open.is_empty() {
             self.close();
         }
@@ -48,7 +48,7 @@ impl Xml {
     }
 
     /// Writes a section with what `write` puts into it, or nothing where that is nothing.
-    pub(super) fn section<E>(
+    pub(in crate::mjcf) fn section<E>(
         &mut self,
         name: &'static str,
         write: impl FnOnce(&mut Xml) -> Result<(), E>,
@@ -74,18 +74,18 @@ impl Xml {
 
 impl Tag<'_> {
     /// Ends an element without children.
-    pub(super) fn end(self) {
+    pub(in crate::mjcf) fn end(self) {
         self.xml.text.push_str("/>\n");
     }
 
     /// Ends the attributes of an element that has children.
-    pub(super) fn open(self) {
+    pub(in crate::mjcf) fn open(self) {
         self.xml.text.push_str(">\n");
         self.xml.open.push(self.name);
     }
 
     /// An attribute.
-    pub(super) fn text(self, name: &str, value: &str) -> Self {
+    pub(in crate::mjcf) fn text(self, name: &str, value: &str) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
         for c in value.chars() {
@@ -105,7 +105,7 @@ impl Tag<'_> {
     }
 
     /// A name, where there is one.
-    pub(super) fn name(self, name: &str) -> Self {
+    pub(in crate::mjcf) fn name(self, name: &str) -> Self {
         match name {
             "" => self,
             name => self.text("name", name),
@@ -113,18 +113,18 @@ impl Tag<'_> {
     }
 
     /// `true` or `false`.
-    pub(super) fn boolean(self, name: &str, value: bool) -> Self {
+    pub(in crate::mjcf) fn boolean(self, name: &str, value: bool) -> Self {
         self.text(name, if value { "true" } else { "false" })
     }
 
     /// An integer.
-    pub(super) fn integer(self, name: &str, value: impl Into<i64>) -> Self {
+    pub(in crate::mjcf) fn integer(self, name: &str, value: impl Into<i64>) -> Self {
         let value: i64 = value.into();
         self.text(name, &value.to_string())
     }
 
     /// An integer, unless it is what the format means where nothing is said.
-    pub(super) fn integer_unless(self, name: &str, value: i64, default: i64) -> Self {
+    pub(in crate::mjcf) fn integer_unless(self, name: &str, value: i64, default: i64) -> Self {
         match value == default {
             true => self,
             false => self.integer(name, value),
@@ -132,7 +132,7 @@ impl Tag<'_> {
     }
 
     /// Numbers, each with as many digits as tell it from all others.
-    pub(super) fn numbers(self, name: &str, values: &[f64]) -> Self {
+    pub(in crate::mjcf) fn numbers(self, name: &str, values: &[f64]) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
         for (k, value) in values.iter().enumerate() {
@@ -149,7 +149,7 @@ impl Tag<'_> {
     }
 
     /// Numbers of single precision, likewise.
-    pub(super) fn singles(self, name: &str, values: impl Iterator<Item = f64>) -> Self {
+    pub(in crate::mjcf) fn singles(self, name: &str, values: impl Iterator<Item = f64>) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
         for (k, value) in values.enumerate() {
@@ -166,7 +166,12 @@ impl Tag<'_> {
     }
 
     /// Numbers, unless they are what the format means where nothing is said.
-    pub(super) fn numbers_unless(self, name: &str, values: &[f64], default: &[f64]) -> Self {
+    pub(in crate::mjcf) fn numbers_unless(
+        self,
+        name: &str,
+        values: &[f64],
+        default: &[f64],
+    ) -> Self {
         match values == default {
             true => self,
             false => self.numbers(name, values),
@@ -174,18 +179,22 @@ impl Tag<'_> {
     }
 
     /// Coefficients of a polynomial, the linear one first, without those that are zero at the end.
-    pub(super) fn polynomial(self, name: &str, coefficients: [f64; 3]) -> Self {
+    pub(in crate::mjcf) fn polynomial(self, name: &str, coefficients: [f64; 3]) -> Self {
         let used = coefficients.iter().rposition(|&c| c != 0.0);
         self.numbers_unless(name, &coefficients[..used.map_or(0, |last| last + 1)], &[])
     }
 
     /// A number, likewise.
-    pub(super) fn number_unless(self, name: &str, value: f64, default: f64) -> Self {
+    pub(in crate::mjcf) fn number_unless(self, name: &str, value: f64, default: f64) -> Self {
         self.numbers_unless(name, &[value], &[default])
     }
 
     /// Words, if there are any.
-    pub(super) fn words<'w>(self, name: &str, words: impl Iterator<Item = &'w str>) -> Self {
+    pub(in crate::mjcf) fn words<'w>(
+        self,
+        name: &str,
+        words: impl Iterator<Item = &'w str>,
+    ) -> Self {
         let words: Vec<&str> = words.collect();
         match words.is_empty() {
             true => self,
@@ -194,7 +203,7 @@ impl Tag<'_> {
     }
 
     /// Integers, one after the other.
-    pub(super) fn integers(self, name: &str, values: impl Iterator<Item = i64>) -> Self {
+    pub(in crate::mjcf) fn integers(self, name: &str, values: impl Iterator<Item = i64>) -> Self {
         let words: Vec<String> = values.map(|value| value.to_string()).collect();
         self.text(name, &words.join(" "))
     }

@@ -18,7 +18,7 @@ pub use actuator::{
 };
 pub use body::{Body, Dof, Joint, JointKind, Site};
 pub use camera::{Camera, CameraMode};
-pub use equality::{Equality, EqualityTarget};
+pub use equality::{Coupled, Equality, EqualityTarget};
 pub use geom::{Geom, HeightField, Mesh, Pair};
 pub use history::{History, Interpolation};
 pub use keyframe::Keyframe;

@@ -1,0 +1,37 @@
+//! The words of MJCF for the fuzzer.
+
+use clench::formats::supported;
+
+/// The elements and attributes of MJCF as libFuzzer reads words, a line each: in the text that they have in a file.
+pub fn dictionary() -> String {
+    let mut words: Vec<String> = Vec::new();
+    for support in supported() {
+        let tags = support.children.iter();
+        words.extend(tags.flat_map(|tag| [format!("<{tag}"), format!("</{tag}>")]));
+        for attribute in [support.read, support.ignored, support.refused].concat() {
+            let (name, value) = attribute.split_once('=').unwrap_or((attribute, ""));
+            words.push(format!(" {name}='{value}"));
+        }
+    }
+    words.sort_unstable();
+    words.dedup();
+    (words.iter().map(|word| format!("\"{word}\"\n"))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dictionary_has_elements_and_attributes_as_they_are_written() {
+        let dictionary = dictionary();
+        for word in [
+            "\"<joint\"",
+            "\"</worldbody>\"",
+            "\" condim='\"",
+            "\" springyield='0\"",
+        ] {
+            assert!(dictionary.lines().any(|line| line == word), "{word}");
+        }
+    }
+}
