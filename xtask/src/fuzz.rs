@@ -166,7 +166,9 @@ fn search(name: &str, program: &Path, dictionary: &Path, seconds: u64) -> Result
 /// The words of MJCF as libFuzzer reads them, from the reader's own rules.
 fn mjcf_dictionary() -> Result<String, String> {
     let mut print = cargo(&["run", "--quiet", "--package", "clench-fuzz"]);
-    print.args(["--example", "dictionary"]).stderr(Stdio::inherit());
+    print
+        .args(["--example", "dictionary"])
+        .stderr(Stdio::inherit());
     let printed = print
         .output()
         .map_err(|error| format!("cannot run {}: {error}", shown(&print)))?;

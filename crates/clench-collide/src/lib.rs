@@ -33,14 +33,12 @@ mod narrow;
 mod ray;
 mod shape;
 
-pub use crate::hull::HullError;
-pub use crate::ray::{Hit, Ray};
 pub use broad::{Bound, BroadPhase, Mobility, allowance, near};
 pub use contact::{ContactPoint, Contacts, MAX_POINTS, PATCH_POINTS};
 pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
-pub use hull::{Hull, HullSurface, convex_hull};
+pub use hull::{Hull, HullError, HullSurface, convex_hull};
 pub use narrow::{SeparatingAxis, collide, collide_again, multiccd_matters, supported};
-pub use ray::{TriangleMesh, TriangleMeshError, UnitRay, ray};
+pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, UnitRay, ray};
 pub use shape::{Asset, Pose, Shape, ShapeKind, bounding_radius};

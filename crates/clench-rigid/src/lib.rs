@@ -45,9 +45,11 @@ pub use settings::{Acceleration, StepSettings};
 // The rows of the solver in the table of options.
 #[doc(hidden)]
 pub use clench_solver::solver_options;
+pub use dynamics::frames::Axes;
+pub use geometry::{RayFilter, RayHit};
 pub use model::{Model, Params};
 pub use output::Output;
-pub use query::{Anchor, Axes, RayFilter, RayHit};
+pub use query::Anchor;
 pub use sim::{DynamicConstraint, Sim};
 pub use state::State;
 pub use workspace::Workspace;

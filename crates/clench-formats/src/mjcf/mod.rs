@@ -41,10 +41,9 @@ mod transmission;
 mod visual;
 mod write;
 
-pub use crate::mjcf::write::SaveError;
 use sections::sections;
 pub use support::{Support, supported};
-pub use write::SaveModel;
+pub use write::{SaveError, SaveModel};
 
 use crate::LoadError;
 use crate::document::{self, Element};

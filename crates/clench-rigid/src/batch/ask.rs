@@ -10,10 +10,11 @@ use super::run::spread;
 use super::{Batch, Precision, Rows};
 use crate::check::{check_length, check_values};
 use crate::error::SimError;
+use crate::geometry::RayFilter;
 use crate::ik::{Ik, IkSolution};
 use crate::model::FrameObject;
 use crate::query::{
-    HIT, RAY, RayFilter, check_acceleration, check_body, check_object, check_places, check_rays,
+    HIT, RAY, check_acceleration, check_body, check_object, check_places, check_rays,
 };
 use crate::settings::Acceleration;
 

@@ -1,8 +1,7 @@
 //! What many rays hit, and heights of terrain at many places, of an environment in lanes.
 
-use super::RayFilter;
 use crate::dynamics::frames::Frames;
-use crate::geometry::Geoms;
+use crate::geometry::{Geoms, RayFilter};
 use crate::model::FrameObject;
 use clench_collide::{Asset, Ray};
 use clench_math::{Real, Scalar, Vec3, kernel};

@@ -10,9 +10,6 @@ mod inertia;
 mod inverse;
 mod scan;
 
-pub use crate::dynamics::frames::Axes;
-pub(crate) use crate::dynamics::frames::along;
-pub use crate::geometry::{RayFilter, RayHit};
 pub(crate) use cast::{HIT, RAY, cast, sample};
 pub use frames::Anchor;
 pub(crate) use inverse::check_acceleration;

@@ -2,8 +2,8 @@
 
 use super::reading::Reading;
 use crate::dynamics::camera::camera_pose;
+use crate::geometry::RayFilter;
 use crate::model::{RayField, RaySource};
-use crate::query::RayFilter;
 use clench_collide::Ray;
 use clench_math::{Real, Vec3, kernel};
 
