@@ -98,7 +98,7 @@ impl<T: Real> Solver<T> {
             &[]
         }
     }
-    /// Where the time of solves goes once it runs, by [`SolvePart`].
+    /// Where the time of solves goes once it runs, by [`SolvePart`](crate::stopwatch::SolvePart).
     pub fn clock(&mut self) -> &mut SolveClock {
         &mut self.whole.state.clock
     }

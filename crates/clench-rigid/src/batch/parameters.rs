@@ -10,7 +10,7 @@ use crate::settings::StepSettings;
 
 impl<S: Precision> Batch<S> {
     /// Gives environments numbers of their own in place of the model's. `field` is a field of
-    /// [`Params`], by its name; `values` are, for each of `envs` in turn, all numbers of the field,
+    /// [`Params`](crate::model::Params), by its name; `values` are, for each of `envs` in turn, all numbers of the field,
     /// element after element.
     ///
     /// What follows directly is computed with it: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`.

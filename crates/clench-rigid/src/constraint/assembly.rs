@@ -80,8 +80,9 @@ impl<T: Real> Assembly<'_, T> {
     }
 
     /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` gets them and
-    /// writes its Jacobian (rows × dofs, row-major, zeros before). A single row that nothing can change is no constraint, as in
-    /// MuJoCo, but for contacts: so a string that misses the only geom that moves is neither limited nor held.
+    /// writes its Jacobian (rows × dofs, row-major, zeros before). What nothing can change is no constraint, but for contacts, as in
+    /// MuJoCo with dense Jacobians: so a string that misses the only geom that moves is neither limited nor held, nor a point on
+    /// the axis about which alone it turns.
     #[inline(always)]
     pub(super) fn push(
         &mut self,
@@ -99,7 +100,7 @@ impl<T: Real> Assembly<'_, T> {
         let target = self.problem.push(cost, rows.len(), dofs);
         fill(dofs, target.jacobian);
         let is_contact = matches!(block.source, ConstraintSource::Contact(_));
-        if rows.len() == 1 && !is_contact {
+        if !is_contact {
             block.active &= any_nonzero(target.jacobian);
         }
         blocks.push(block);
