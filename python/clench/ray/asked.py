@@ -19,6 +19,7 @@ class Asked:
     """Questions whose answers are rows of environments, and views of elements."""
 
     model: clench.Model
+    _parts: list[slice]
 
     def _query(self, method: str, *arguments: Any, **chosen: Any) -> list[Any]:
         """What each worker answers."""
@@ -127,7 +128,7 @@ class Asked:
         fields = target_fields(target)
         of_environments = {name: fields[name] for name in ("position", "quat", "qpos") if fields.get(name) is not None}
         rows = {name: self._split(values, 2, name) for name, values in of_environments.items()}
-        parts = range(len(self._split(None, 2, "")))
+        parts = range(len(self._parts))
         return [type(target)(**fields | {name: values[part] for name, values in rows.items()}) for part in parts]
 
     def _rows(self, arguments: Sequence[tuple[ArrayLike, int, str]]) -> list[tuple[Array | None, ...]]:

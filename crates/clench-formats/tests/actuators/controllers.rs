@@ -1,0 +1,120 @@
+//! PID controllers and DC motors: what their attributes stand for, and what other elements take over from their classes.
+
+use super::{actuator, rejected, servo};
+use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
+
+#[test]
+fn a_pid_is_a_servo_with_an_integral_and_setpoints_of_its_own() {
+    let plain = actuator("", "<pid joint='j'/>");
+    let kinds = (plain.dynamics, plain.gain, plain.bias);
+    assert_eq!(kinds, (DynamicsKind::None, GainKind::Pid, BiasKind::Affine));
+    assert_eq!((servo(&plain), plain.inputs), ([0.0, -1.0, 0.0], None));
+    let whole = actuator(
+        "<pid kp='3' velrange='-1 1' input='pos ff'/>",
+        "<pid joint='j' kv='2' ki='4' imax='5' slewmax='6' posrange='-7 7' ctrlrange='-8 8'/>",
+    );
+    assert_eq!(whole.dynamics, DynamicsKind::Pid);
+    assert_eq!(servo(&whole), [4.0, -3.0, -2.0]);
+    assert_eq!(whole.dynprm[..2], [5.0, 6.0]);
+    assert_eq!(
+        (whole.ctrlrange, whole.velrange),
+        ([-7.0, 7.0], [-1.0, 1.0])
+    );
+    assert_eq!(
+        whole.inputs,
+        Some(vec![ControlInput::Position, ControlInput::Feedforward])
+    );
+    assert_eq!(actuator("", "<pid joint='j' imax='5'/>").dynprm[0], 0.0);
+    assert!(rejected("<pid joint='j' input='vel pos'/>").contains("order"));
+    assert!(rejected("<pid joint='j' posrange='0 1' inheritrange='1'/>").contains("both"));
+}
+
+/// The numbers are MuJoCo's.
+#[test]
+fn a_dc_motor_finds_its_constants() {
+    let constants = |element: &str| {
+        let motor = actuator("", &format!("<dcmotor joint='j' {element}/>"));
+        [motor.gainprm[0], motor.gainprm[1]].map(|x| (1e6 * x).round() / 1e6)
+    };
+    assert_eq!(
+        constants("resistance='2' motorconst='.5 .4'"),
+        [2.0, 0.447214]
+    );
+    assert_eq!(constants("resistance='2' motorconst='.5'"), [2.0, 0.5]);
+    assert_eq!(constants("nominal='12 3 100'"), [0.48, 0.12]);
+    assert_eq!(
+        constants("nominal='12 3 100' damping='.001'"),
+        [0.464, 0.116]
+    );
+    let damped = "nominal='12 3 100' damping='.001' resistance='2'";
+    assert_eq!(constants(damped), [2.0, 0.1]);
+    let half = "nominal='12 3 100' motorconst='.3 0'";
+    assert_eq!(constants(half), [0.758947, 0.189737]);
+    assert!(rejected("<dcmotor joint='j'/>").contains("motor constant"));
+    assert!(rejected("<dcmotor joint='j' motorconst='1'/>").contains("resistance"));
+    assert!(rejected("<dcmotor joint='j' motorconst='-1 1' resistance='1'/>").contains("negative"));
+    assert_eq!(constants("resistance='1' input='none'"), [1.0, 0.0]);
+}
+
+#[test]
+fn the_options_of_a_dc_motor_overwrite_those_of_its_class() {
+    let class = "<dcmotor resistance='2' motorconst='.5 .4' inductance='.1' saturation='1 3 5' \
+        thermal='1 2 0 .004 20 30' lugre='1 2 3 4 5' cogging='1 2 3' input='pos' controller='1 2 3 4 5 6'/>";
+    let motor = actuator(class, "<dcmotor joint='j'/>");
+    assert_eq!(
+        motor.dynprm,
+        [0.05, 5.0, 1.0, 2.0, 30.0, 1.0, 2.0, 4.0, 5.0, 0.0]
+    );
+    assert_eq!(motor.gainprm[2..8], [0.004, 20.0, 1.0, 2.0, 3.0, 6.0]);
+    assert_eq!(motor.biasprm[..6], [1.0, 2.0, 3.0, 3.0, 4.0, 5.0]);
+    assert_eq!((motor.forcerange, motor.actearly), ([-1.0, 1.0], true));
+    let other = "<dcmotor joint='j' inductance='0' saturation='0 2' thermal='4 3 2' lugre='0' cogging='5' controller='7'/>";
+    let other = actuator(class, other);
+    assert_eq!(
+        other.dynprm,
+        [0.0, 5.0, 4.0, 0.5, 30.0, 0.0, 0.0, 4.0, 5.0, 0.0]
+    );
+    assert_eq!(other.gainprm[4..8], [7.0, 2.0, 3.0, 6.0]);
+    assert_eq!(other.biasprm[..6], [5.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
+    assert!((other.forcerange[1] - 2.0 * other.gainprm[1]).abs() < 1e-15);
+    let free = actuator(class, "<dcmotor joint='j' saturation='0'/>");
+    assert_eq!((free.forcerange, free.forcelimited), ([0.0; 2], None));
+}
+
+#[test]
+fn an_input_only_says_what_it_is_where_the_gain_scales_it() {
+    assert_eq!(
+        actuator("", "<general joint='j' input='pos'/>")
+            .inputs
+            .map(|inputs| inputs.len()),
+        Some(1)
+    );
+    assert!(rejected("<general joint='j' input='ff'/>").contains("does not go"));
+    assert!(rejected("<general joint='j' gaintype='user' input='pos'/>").contains("does not go"));
+    let class = "<pid input='pos'/>";
+    let changed = actuator(
+        class,
+        "<general joint='j' gaintype='fixed' biastype='none'/>",
+    );
+    assert_eq!(changed.inputs, None);
+}
+
+#[test]
+fn a_general_of_a_motors_class_has_its_activations_and_no_range_of_them() {
+    let class = "<default class='c'><dcmotor motorconst='.1' resistance='1' lugre='9 .1 .2 .3 .4'/></default>";
+    let user =
+        "class='c' joint='j' dyntype='user' gaintype='user' biastype='affine' actrange='-1 1'";
+    let general = actuator(class, &format!("<general {user}/>"));
+    assert_eq!((general.actdim, general.actlimited), (Some(1), Some(false)));
+    assert!(general.actearly);
+    let class = "<default class='c'><dcmotor motorconst='.1' resistance='1'/></default>";
+    let pid = "class='c' joint='j' dyntype='pid' gaintype='pid' biastype='affine' dynprm='0 2'";
+    assert_eq!(actuator(class, &format!("<general {pid}/>")).actdim, None);
+    // Other shortcuts begin anew, but for the range.
+    let range = "<general actlimited='true' actrange='-1 1' dyntype='filter'/>";
+    let cylinder = actuator(range, "<cylinder joint='j'/>");
+    assert_eq!(
+        (cylinder.actlimited, cylinder.actrange),
+        (None, [-1.0, 1.0])
+    );
+}
