@@ -4,6 +4,7 @@ import { spawn, type ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { after, before } from "node:test";
 import { chromium, type Browser, type Page } from "playwright-core";
 
 /** npm runs scripts in the folder of its package. */
@@ -13,10 +14,20 @@ const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 /** Where pictures go that a person may want to look at. */
 export const PICTURES = process.env.PICTURES ?? mkdtempSync(join(tmpdir(), "clench-view-"));
 
-/** Why tests cannot run here, if they cannot. */
-export const missing = [CHROMIUM, PROGRAM].find((path) => !existsSync(path));
+const missing = [CHROMIUM, PROGRAM].find((path) => !existsSync(path));
+/** Why tests cannot run here, or false. */
+export const skip = missing ? `${missing} is not here` : false;
+/** The browser that all tests of a file look through. */
+export let browser: Browser;
 
-export function launch(): Promise<Browser> {
+before(async () => {
+  if (!skip) browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+});
+
+function launch(): Promise<Browser> {
   return chromium.launch({
     executablePath: CHROMIUM,
     args: [

@@ -1,9 +1,8 @@
 // The page of a viewer that a loop in Python feeds.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import type { Browser } from "playwright-core";
-import { launch, missing, open, started, until } from "./browser.ts";
+import { test } from "node:test";
+import { browser, open, skip, started, until } from "./browser.ts";
 
 const PYTHON = process.env.PYTHON ?? "python3";
 const LOOP = `
@@ -17,16 +16,6 @@ with clench.view(sim, open_browser=False) as viewer:
             viewer.draw_sphere([0, 0, 1], 0.1, lifetime=1e9)
         viewer.sync()
 `;
-
-const skip = missing ? `${missing} is not here` : false;
-let browser: Browser;
-
-before(async () => {
-  if (!skip) browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-});
 
 interface Seen {
   frame: { time: number; paused: boolean; rows: Record<string, { count: number; data: Float32Array }> };

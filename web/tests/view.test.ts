@@ -5,19 +5,9 @@ import { spawnSync } from "node:child_process";
 import { mkdtempSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import type { Browser, Page } from "playwright-core";
-import { PICTURES, PROGRAM, ROOT, launch, missing, open, started, until, view } from "./browser.ts";
-
-const skip = missing ? `${missing} is not here` : false;
-let browser: Browser;
-
-before(async () => {
-  if (!skip) browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-});
+import { test } from "node:test";
+import type { Page } from "playwright-core";
+import { PICTURES, PROGRAM, ROOT, browser, open, skip, started, until, view } from "./browser.ts";
 
 /** What the page last drew, as its console sees it. */
 interface Seen {
