@@ -54,6 +54,29 @@ fn runge_kutta_is_of_fourth_order_in_orientations_too() {
     assert!((13.0..20.0).contains(&ratio), "{ratio}");
 }
 
+/// As in MuJoCo, which keeps what the last stage computed.
+#[test]
+fn after_runge_kutta_an_actuator_moves_as_its_joint_did_in_the_last_stage() {
+    let mut builder = world("bob");
+    builder.physics.integrator = Integrator::Rk4;
+    let bob = GeomSpec::capsule(0.02, 0.2).at([0.3, 0.0, 0.0]).mass(1.0);
+    let joint = JointSpec::hinge("swing", [0.0, 1.0, 0.0]);
+    builder.add_body(
+        ModelBuilder::WORLD,
+        BodySpec::new("bob").joint(joint).geom(bob),
+    );
+    let target = TransmissionSpec::Joint("swing".into());
+    builder
+        .actuators
+        .push(ActuatorSpec::motor("motor", target, 3.0));
+    let mut sim = sim(&builder);
+    sim.step().expect("a good state");
+    // The body's velocity about the world's y axis, which is the joint's.
+    let spin = sim.workspace().velocity.cvel[1].angular.y;
+    let found = sim.workspace().velocity.actuator_velocity[0];
+    assert!(spin != 0.0 && (found - 3.0 * spin).abs() < 1e-12 * spin.abs());
+}
+
 #[test]
 fn euler_and_implicit_are_of_first_order() {
     for integrator in [

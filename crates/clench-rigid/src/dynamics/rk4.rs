@@ -18,6 +18,7 @@ use crate::profile::Stage;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Real, Vec3, kernel};
+use std::mem::swap;
 
 /// Where stages 1, 2 and 3 lie, in time steps.
 const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
@@ -63,11 +64,15 @@ pub fn rk4<T: Real>(
         collect(model, state, step, weight, ws);
     }
     restore(&ws.integration.start, state);
-    // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with.
-    (ws.velocity.actuator_velocity).copy_from_slice(&ws.integration.actuator_velocity);
+    // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with; what users read is that of
+    // the last stage.
+    let first = &mut ws.integration.actuator_velocity;
+    swap(first, &mut ws.velocity.actuator_velocity);
     let mean = &ws.integration.mean;
     let (at, act) = ((&ws.position, &ws.velocity), &mut state.act);
     advance_activations(model, params, at, &mean.activation, act);
+    let first = &mut ws.integration.actuator_velocity;
+    swap(first, &mut ws.velocity.actuator_velocity);
     add_scaled(&mut state.qvel, &mean.velocity, h);
     integrate_positions(model, &mut state.qpos, &mean.position, h);
     advance_time(model, params, &ws.sensors.measured, state);
