@@ -31,9 +31,10 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         SimError::Fault(_) => classes::SimulationError::new_err(text),
         SimError::NoSuchElement { .. } => PyIndexError::new_err(text),
         SimError::OutOfMemory { .. } => PyMemoryError::new_err(text),
-        SimError::Instructions(_) | SimError::Threads(_) | SimError::Forked => {
-            classes::ClenchError::new_err(text)
-        }
+        SimError::Instructions(_)
+        | SimError::Threads(_)
+        | SimError::Forked
+        | SimError::Backend(_) => classes::ClenchError::new_err(text),
         SimError::Option(_)
         | SimError::UnsupportedPair(_)
         | SimError::WrongLength { .. }

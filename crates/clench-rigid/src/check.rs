@@ -90,6 +90,14 @@ macro_rules! declare_inputs {
     ($($group:ident { $(
         $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
     )* })*) => {
+        /// Whether some numbers of a field of the state are beyond its bound.
+        pub(crate) fn beyond_bounds<T: Scalar>(field: &str, values: &[T]) -> bool {
+            $($(if field == stringify!($name) {
+                return first_beyond(values, 0, Bound::$bound).is_some();
+            })*)*
+            false
+        }
+
         /// Shows every number of a state but its time to `look`: field, its bound, index of the first number in the field, numbers.
         #[inline(always)]
         fn each_input<T: Real>(

@@ -89,6 +89,9 @@ pub enum SimError {
     /// Threads that cannot be started.
     #[error("threads cannot be started: {0}")]
     Threads(String),
+    /// What a device that steps a batch cannot do, or that it failed.
+    #[error("{0}")]
+    Backend(String),
     /// A batch of several threads in a process that was forked from the one that made it: a fork does not copy threads.
     #[error(
         "the threads of this batch are of the process that it was made in, which forked: make a batch in each process"

@@ -47,6 +47,11 @@ impl<'a, S: Shared> Cells<'a, S> {
         }
     }
 
+    /// All numbers, row after row.
+    pub fn all(&self) -> impl ExactSizeIterator<Item = S> {
+        self.cells.iter().map(S::load)
+    }
+
     /// Whether all bits of an environment's row are zero.
     #[inline(always)]
     pub fn is_blank(&self, env: usize) -> bool {

@@ -2,17 +2,20 @@
 //!
 //! What users see is in rows, one an environment ([`Rows`], [`StateRows`]). A call (`run.rs`) puts running environments of like
 //! contacts into groups; each thread has a stepper (`stepper.rs`), scratch in lanes, that claims a group, gathers its rows,
-//! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status.
+//! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status. A device with
+//! memory of its own ([`Backend`]) may step in place of the threads (`mirror.rs`).
 
 mod answer;
 mod ask;
 mod ask_motion;
+mod backend;
 mod cells;
 mod divergence;
 mod dynamic;
 mod env_rows;
 mod group;
 mod job;
+mod mirror;
 mod options;
 mod parameters;
 mod precision;
@@ -30,9 +33,11 @@ mod summary;
 mod targets;
 
 pub use answer::Given;
+pub use backend::{Backend, Outcome, Trouble};
 pub use divergence::Divergence;
 use env_rows::ParamRows;
 use job::Stepper;
+use mirror::Mirror;
 pub use options::BatchOptions;
 pub use precision::Precision;
 pub(crate) use quality::Place;
@@ -97,6 +102,8 @@ pub struct Batch<S: Precision = f64> {
     order: Vec<u32>,
     steppers: Vec<Box<dyn Stepper<S>>>,
     pool: Option<Arc<ThreadPool>>,
+    /// The device that steps in place of the threads, if there is one.
+    mirror: Option<Mirror<S>>,
     /// The process that the threads are of.
     process: u32,
     divergence: Divergence,
@@ -171,6 +178,7 @@ impl<S: Precision> Batch<S> {
             order: per_env(count, || 0)?,
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
             pool,
+            mirror: None,
             process: std::process::id(),
             divergence: Divergence::default(),
             quality: Quality::default(),
@@ -199,21 +207,24 @@ impl<S: Precision> Batch<S> {
         self.state.check_shapes(&self.model, self.count())
     }
 
-    /// Without its threads a call would wait for ever.
+    /// Without its threads, or its device, a call would wait for ever.
     fn check_threads(&self) -> Result<(), SimError> {
-        match self.pool {
-            Some(_) if self.process != std::process::id() => Err(SimError::Forked),
-            _ => Ok(()),
+        let elsewhere = self.pool.is_some() || self.mirror.is_some();
+        if elsewhere && self.process != std::process::id() {
+            return Err(SimError::Forked);
         }
+        Ok(())
     }
 
     /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept and for which state they
-    /// hold, whether it runs, and its place in groups.
+    /// hold, whether it runs, and its place in groups; on a device, what it takes there.
     pub fn bytes_per_env(&self) -> usize {
+        let device = self.mirror.as_ref();
+        let device = device.map_or(0, |mirror| mirror.bytes_per_env(&self.model));
         let state = StateRows::<S>::row_bytes(&self.model);
         let params: usize = self.params.iter().map(ParamRows::row_bytes).sum();
         let seen = self.seen.as_ref().map_or(0, Seen::row_bytes);
-        state + params + row_bytes(&self.outputs) + seen + BESIDES
+        state + params + row_bytes(&self.outputs) + seen + BESIDES + device
     }
 
     /// How many environments there are.

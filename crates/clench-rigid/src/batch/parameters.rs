@@ -23,6 +23,7 @@ impl<S: Precision> Batch<S> {
     /// number of numbers, or numbers that the field cannot have. All parameters are then as before.
     pub fn randomize(&mut self, field: &str, envs: &[usize], values: &[S]) -> Result<(), SimError> {
         let field = ParamField::settable(field)?;
+        self.check_changeable("the parameters")?;
         self.check_envs(envs)?;
         let width = self.model.params.width(field);
         check_length(field.name(), values.len(), width * envs.len())?;
@@ -73,6 +74,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// Options out of range; shapes that may meet and cannot be collided. The options are then as before.
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
+        self.check_changeable("the options")?;
         self.settings = StepSettings::supported::<S>(&self.model, options)?;
         self.options.options = options;
         if let Some(seen) = &mut self.seen {

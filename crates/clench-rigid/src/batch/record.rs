@@ -56,6 +56,7 @@ impl<S: Precision> Batch<S> {
         let wanted = each_once(names)?;
         let mut new = wanted.clone();
         new.retain(|output| self.outputs.iter().all(|own| own.output != *output));
+        self.want(&new)?;
         let mut new = self.tables(&new, 1, S::ZERO)?;
         if !new.is_empty() {
             // What is new is computed at once and by itself: what was kept before stays as it is, and holds for what it held.
@@ -181,7 +182,7 @@ impl<S: Precision> Batch<S> {
 
     /// Room for what a rollout records, once its controls are as many as they must be.
     fn recorder(
-        &self,
+        &mut self,
         steps: usize,
         controls: Controls<S>,
         record: &[&str],
@@ -192,7 +193,17 @@ impl<S: Precision> Batch<S> {
             Controls::Shared(values) => check_length("ctrl", values.len(), row)?,
             Controls::Each(values) => check_length("ctrl", values.len(), n.saturating_mul(row))?,
         }
-        self.tables(&each_once(record)?, steps, S::new(f64::NAN))
+        let record = each_once(record)?;
+        self.want(&record)?;
+        self.tables(&record, steps, S::new(f64::NAN))
+    }
+
+    /// Lets the device of this batch, if it has one, compute these outputs.
+    ///
+    /// # Errors
+    /// Outputs that it does not compute.
+    fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
+        (self.mirror.as_mut()).map_or(Ok(()), |mirror| mirror.want(outputs))
     }
 
     /// Tables for outputs, where a row has room for `steps` steps.

@@ -2,6 +2,7 @@
 
 use super::env_rows::EnvRows;
 use super::job::{Job, Pass, Stepper};
+use super::mirror::Call;
 use super::seen::Seen;
 use super::summary::Summary;
 use super::targets::{OutputRows, targets};
@@ -94,6 +95,18 @@ impl<S: Precision> Batch<S> {
     ) -> Result<Summary, SimError> {
         self.check_state()?;
         self.check_threads()?;
+        if let Some(mut mirror) = self.mirror.take() {
+            let call = Call {
+                pass,
+                range,
+                steps,
+                controls,
+                mask,
+            };
+            let done = self.run_on_device(&mut mirror, &call, trace);
+            self.mirror = Some(mirror);
+            return done;
+        }
         // All groupings of a call run inside the pool, so that its threads need not be woken for each.
         Ok(match self.pool.clone() {
             None => self.run_here(pass, range, steps, controls, mask, trace),

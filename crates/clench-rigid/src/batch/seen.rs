@@ -45,6 +45,14 @@ impl<S: Scalar + Shared> Seen<S> {
             && self.mocap_quat.row(env) == state.mocap_quat.row(env)
     }
 
+    /// Notes that what was recorded of environment `env` holds for the state in its rows.
+    pub(super) fn note_row(&mut self, env: usize, state: &StateRows<S>) {
+        self.qpos.row_mut(env).copy_from_slice(state.qpos.row(env));
+        self.qvel.row_mut(env).copy_from_slice(state.qvel.row(env));
+        (self.mocap_pos.row_mut(env)).copy_from_slice(state.mocap_pos.row(env));
+        (self.mocap_quat.row_mut(env)).copy_from_slice(state.mocap_quat.row(env));
+    }
+
     /// What was recorded of environment `env` holds no longer.
     pub(super) fn forget(&mut self, env: usize) {
         self.qpos.row_mut(env).fill(S::new(f64::NAN));

@@ -86,6 +86,33 @@ macro_rules! declare_rows {
                 $(self.$occasional.row_mut(to).copy_from_slice(other.$occasional.row(from));)*
             }
 
+            /// Puts the numbers of a field of [`FIELDS`], row after row, into `out`.
+            pub(super) fn read_field(&mut self, name: &str, out: &mut Vec<S>) {
+                let (motion, inputs) = self.share();
+                out.clear();
+                $(if name == stringify!($moving) {
+                    return out.extend(motion.$moving.all().map(kind::$moving_kind::number::<S>));
+                })*
+                $(if name == stringify!($input) {
+                    return out.extend(inputs.$input.all().map(kind::$input_kind::number::<S>));
+                })*
+                $(if name == stringify!($occasional) {
+                    return out.extend(inputs.$occasional.all().map(kind::$occasional_kind::number::<S>));
+                })*
+            }
+
+            /// Replaces the row of an environment in a field that steps move.
+            pub(super) fn write_field(&mut self, name: &str, env: usize, row: &[S]) {
+                let (motion, _) = self.share();
+                $(if name == stringify!($moving) {
+                    let cells = row.iter().map(|&x| kind::$moving_kind::from_number::<S>(x));
+                    return motion.$moving.put(env, cells);
+                })*
+            }
+
+            /// The names of the fields that steps move.
+            pub(super) const MOVING: &[&str] = &[$(stringify!($moving)),*];
+
             /// The tables as a step sees them.
             pub(super) fn share(&mut self) -> (MovingRows<'_, S>, Inputs<'_, S>) {
                 let motion = MovingRows {

@@ -162,6 +162,14 @@ impl Output {
         self.shape(model).iter().product()
     }
 
+    /// Whether it lies in the state.
+    pub(crate) fn is_state(self) -> bool {
+        matches!(
+            self,
+            Output::time | Output::qpos | Output::qvel | Output::act
+        )
+    }
+
     /// The output of that name.
     ///
     /// # Errors

@@ -26,6 +26,10 @@ pub trait Kind {
         lane: usize,
         cell: Self::Cell<T::Scalar>,
     );
+    /// A cell as a number.
+    fn number<S: Scalar>(cell: Self::Cell<S>) -> S;
+    /// The cell of a number.
+    fn from_number<S: Scalar>(number: S) -> Self::Cell<S>;
     /// Shows the numbers of elements to `look`, with the index of the first: many at once, or an element at a time.
     fn numbers<T: Real>(elements: &[Self::Of<T>], look: impl FnMut(usize, &[T]));
     /// Whether two elements are the same, bit by bit.
@@ -65,6 +69,14 @@ impl Kind for Number {
         T::as_scalars_mut(from_mut(number))[lane] = cell;
     }
     #[inline(always)]
+    fn number<S: Scalar>(cell: S) -> S {
+        cell
+    }
+    #[inline(always)]
+    fn from_number<S: Scalar>(number: S) -> S {
+        number
+    }
+    #[inline(always)]
     fn numbers<T: Real>(numbers: &[T], mut look: impl FnMut(usize, &[T])) {
         look(0, numbers);
     }
@@ -95,6 +107,14 @@ impl Kind for Integer {
     #[inline(always)]
     fn set_cell<T: Real>(number: &mut T, _: usize, lane: usize, cell: i32) {
         number.set_lane(lane, T::Scalar::new(f64::from(cell)));
+    }
+    #[inline(always)]
+    fn number<S: Scalar>(cell: i32) -> S {
+        S::new(f64::from(cell))
+    }
+    #[inline(always)]
+    fn from_number<S: Scalar>(number: S) -> i32 {
+        number.to_f64() as i32
     }
     #[inline(always)]
     fn numbers<T: Real>(numbers: &[T], mut look: impl FnMut(usize, &[T])) {
@@ -134,6 +154,14 @@ macro_rules! compound {
                 if let Some(part) = parts.into_iter().nth(part) {
                     Number::set_cell(part, 0, lane, cell);
                 }
+            }
+            #[inline(always)]
+            fn number<S: Scalar>(cell: S) -> S {
+                cell
+            }
+            #[inline(always)]
+            fn from_number<S: Scalar>(number: S) -> S {
+                number
             }
             #[inline(always)]
             fn numbers<T: Real>(elements: &[$of<T>], mut look: impl FnMut(usize, &[T])) {
@@ -179,6 +207,17 @@ impl Kind for Truth {
     #[inline(always)]
     fn set_cell<T: Real>(truth: &mut T::Mask, _: usize, lane: usize, cell: u8) {
         truth.set_lane(lane, cell != 0);
+    }
+    #[inline(always)]
+    fn number<S: Scalar>(cell: u8) -> S {
+        match cell {
+            0 => S::ZERO,
+            _ => S::ONE,
+        }
+    }
+    #[inline(always)]
+    fn from_number<S: Scalar>(number: S) -> u8 {
+        u8::from(number != S::ZERO)
     }
     #[inline(always)]
     fn numbers<T: Real>(_: &[T::Mask], _: impl FnMut(usize, &[T])) {}
