@@ -4,7 +4,7 @@ use crate::check::{Simulation, check};
 use crate::device::{Device, DeviceInfo};
 use crate::error::{GpuError, GpuFault};
 use crate::fields::{self, Fields};
-use crate::kernels::{Memory, constants};
+use crate::kernels::{ASIDE, Memory, constants};
 use crate::pipelines::{Arrays, Pipelines, layout};
 use crate::tables::{Capacity, Tables};
 use clench_rigid::contact::candidates;
@@ -178,6 +178,36 @@ impl GpuBatch {
         })
     }
 
+    /// Lets only those take part in what follows that are `running`, from step 0 on.
+    pub(crate) fn choose(&mut self, running: &[bool]) {
+        let code = |&runs: &bool| if runs { 0 } else { ASIDE };
+        let codes = Vec::from_iter(running.iter().map(code));
+        self.write_report("status", &codes);
+        self.write_report("steps", &vec![0; self.count]);
+    }
+
+    /// As [`forward`](Self::forward), and notes in `trouble` what went wrong.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub(crate) fn forward_with_verdict(&mut self) -> Result<(), GpuError> {
+        self.submit(|batch, encoder| {
+            batch.clear_trouble(encoder);
+            let pipelines = &batch.pipelines;
+            let observed = pipelines.body_forces.iter().chain(&pipelines.sensors);
+            let forward = pipelines.forward.iter().chain(observed);
+            batch.encode(encoder, forward.chain([&pipelines.verdict]));
+        })
+    }
+
+    /// Replaces a word of all environments.
+    fn write_report(&self, name: &str, words: &[u32]) {
+        if let Some(field) = self.reports.find(name) {
+            let start = 4 * (field.place * self.count) as u64;
+            (self.device.queue).write_buffer(&self.arrays.reports, start, words.as_bytes());
+        }
+    }
+
     /// Computes as [`forward`](Self::forward) does, one kernel after the other: how long the host waited for each, s. That is more
     /// than the kernel alone took, by the time of a call to the device.
     ///
@@ -215,11 +245,7 @@ impl GpuBatch {
             self.check_env(env)?;
             asked[env] = 1;
         }
-        let Some(field) = self.reports.find("restart") else {
-            return Ok(());
-        };
-        let start = 4 * (field.place * self.count) as u64;
-        (self.device.queue).write_buffer(&self.arrays.reports, start, asked.as_bytes());
+        self.write_report("restart", &asked);
         self.submit(|batch, encoder| batch.encode(encoder, [&batch.pipelines.restart].into_iter()))
     }
 
@@ -251,9 +277,24 @@ impl GpuBatch {
 
     fn encode_step(&self, encoder: &mut wgpu::CommandEncoder) {
         self.clear_trouble(encoder);
-        for advance in &self.pipelines.advance {
-            self.encode(encoder, self.pipelines.forward.iter().chain([advance]));
+        let pipelines = &self.pipelines;
+        let last = pipelines.advance.len() - 1;
+        for (stage, advance) in pipelines.advance.iter().enumerate() {
+            // Sensors measure at the start of a step; all else is as the last forward pass leaves it.
+            let measured = pipelines.sensors.iter().filter(|_| stage == 0);
+            let shown = stage == last || measured.clone().count() > 0;
+            let bodies = pipelines.body_forces.iter().filter(|_| shown);
+            let forward = pipelines.forward.iter().chain(bodies).chain(measured);
+            self.encode(encoder, forward.chain([advance]));
         }
+    }
+
+    /// Computes accelerations of bodies and forces between them in every step from now on, and perhaps sensors.
+    ///
+    /// # Errors
+    /// That the device or its driver refuses a kernel.
+    pub(crate) fn observe(&mut self, sensors: bool) -> Result<(), GpuError> {
+        self.pipelines.observe(&self.device, self.count, sensors)
     }
 
     /// Forgets what went wrong in a forward pass that was no step.
@@ -281,14 +322,19 @@ impl GpuBatch {
     /// # Errors
     /// That the device was lost.
     pub fn statuses(&self) -> Result<Vec<Option<GpuFault>>, GpuError> {
+        self.faults("status")
+    }
+
+    /// The faults that the codes of a word stand for.
+    pub(crate) fn faults(&self, word: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
         let limit = self.capacity.contacts;
         let fault = |&code: &u32| match code {
-            0 => None,
+            0 | ASIDE => None,
             1 => Some(GpuFault::Singular),
             3 => Some(GpuFault::ContactOverflow { limit }),
             _ => Some(GpuFault::Diverged),
         };
-        Ok(self.report("status")?.iter().map(fault).collect())
+        Ok(self.report(word)?.iter().map(fault).collect())
     }
 
     /// How many steps each environment has made since its last reset.

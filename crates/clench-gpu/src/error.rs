@@ -1,5 +1,6 @@
 //! What can go wrong with environments on a graphics device, and what to do about it.
 
+use clench_rigid::SimError;
 use clench_rigid::options::OptionError;
 use std::fmt;
 
@@ -73,6 +74,9 @@ pub enum GpuError {
     /// An option outside its range.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// What the batch on this side of the bus refuses.
+    #[error(transparent)]
+    Sim(#[from] SimError),
     /// Numbers of the wrong count.
     #[error("{field} has {found} numbers where {expected} are needed")]
     WrongLength {
@@ -117,6 +121,12 @@ pub enum GpuError {
         /// How many there are.
         count: usize,
     },
+}
+
+impl From<GpuError> for SimError {
+    fn from(error: GpuError) -> Self {
+        SimError::Backend(error.to_string())
+    }
 }
 
 fn at_most(most: Option<usize>) -> String {

@@ -86,7 +86,15 @@ fields! {
     cdof: 6 * m.nv;
     cdof_dot: 6 * m.nv;
     cvel: 6 * m.nbody();
+    /// Accelerations of bodies that no joint's acceleration causes.
+    cacc_bias: 6 * m.nbody();
+    /// Those that joints cause.
+    cacc_joints: 6 * m.nbody();
     cacc: 6 * m.nbody();
+    cfrc_int: 6 * m.nbody();
+    cfrc_ext: 6 * m.nbody();
+    contact_force: 6 * m.nbody();
+    sensordata: m.nsensordata();
     /// Spatial forces of bodies, used up when they are projected.
     cfrc: 6 * m.nbody();
     /// The mass matrix, in the pattern of the tree.
@@ -156,6 +164,10 @@ fields! {
     status: 1;
     /// What went wrong in the present step.
     trouble: 1;
+    /// Of a number that diverged: of which field, where in it, its bits.
+    fault_field: 1;
+    fault_index: 1;
+    fault_value: 1;
     /// Whether to start over.
     restart: 1;
     /// Steps since the last reset.

@@ -67,13 +67,19 @@ kernels! {
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "newton";
+    /// Accelerations of bodies and forces between them, where somebody asks.
+    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "external", "body_forces";
+    /// What sensors measure, where somebody asks.
+    SENSORS = "sensors", Thread: "chains", "site_volume", "sensors";
+    /// Whether what they found is within bounds.
+    VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Thread: "tree", "activation", "integrate", "euler";
+    EULER = "euler", Thread: "tree", "activation", "verdict", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
-    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "chains", "muscle", "activation", "gain", "integrate", "derivatives",
+    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "chains", "muscle", "activation", "gain", "verdict", "integrate", "derivatives",
         "gyroscopic", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "activation", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "activation", "verdict", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.
@@ -85,8 +91,18 @@ pub(crate) struct Memory<'a> {
     pub reports: &'a Fields,
 }
 
-/// The codes of `reports`, in the order of [`GpuFault`](crate::GpuFault).
-const FAULTS: [&str; 4] = ["RUNNING", "SINGULAR", "DIVERGED", "CONTACT_OVERFLOW"];
+/// The codes of `reports`, in the order of [`GpuFault`](crate::GpuFault); what is aside does not take part in a call.
+const FAULTS: [&str; 5] = [
+    "RUNNING",
+    "SINGULAR",
+    "DIVERGED",
+    "CONTACT_OVERFLOW",
+    "ASIDE",
+];
+/// The code of an environment that does not take part in a call.
+pub(crate) const ASIDE: u32 = 4;
+/// What a number that diverged can be of, in the order of their codes.
+pub(crate) const DIVERGED_FIELDS: [&str; 5] = ["qacc", "qfrc_constraint", "qvel", "qpos", "act"];
 /// The codes of `clench_solver::Status`, in its order.
 const SOLVE_STATUS: [&str; 6] = [
     "SOLVE_UNCONSTRAINED",
@@ -113,6 +129,9 @@ pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
         for (code, name) in names.iter().enumerate() {
             declare(name, code);
         }
+    }
+    for (code, name) in DIVERGED_FIELDS.iter().enumerate() {
+        declare(&format!("OF_{}", name.to_uppercase()), code);
     }
     for fields in [memory.state, memory.work, memory.rows, memory.reports] {
         for field in &fields.list {

@@ -15,9 +15,19 @@ pub(crate) struct Pipeline {
 
 /// All that a step runs.
 pub(crate) struct Pipelines {
+    /// What all are given.
+    layout: wgpu::PipelineLayout,
+    /// What stands before each text.
+    constants: String,
+    /// Accelerations of bodies and forces between them, once somebody asked.
+    pub body_forces: Option<Pipeline>,
+    /// What sensors measure, once somebody asked.
+    pub sensors: Option<Pipeline>,
     pub restart: Pipeline,
     /// Everything that follows from the state.
     pub forward: Vec<Pipeline>,
+    /// Looks at what a forward pass that is no step left.
+    pub verdict: Pipeline,
     /// The integrator: one for each forward pass of a step.
     pub advance: Vec<Pipeline>,
 }
@@ -123,11 +133,37 @@ impl Pipelines {
             _ => vec![compile(&kernels::EULER, &[])?],
         };
         let forward = forward.iter().map(|kernel| compile(kernel, &[]));
+        let forward = forward.collect::<Result<_, _>>()?;
         Ok(Pipelines {
+            body_forces: None,
+            sensors: None,
             restart: compile(&kernels::RESTART, &[])?,
-            forward: forward.collect::<Result<_, _>>()?,
+            verdict: compile(&kernels::VERDICT, &[])?,
+            forward,
             advance,
+            constants: constants.to_owned(),
+            layout,
         })
+    }
+
+    /// Compiles what outputs need, if that has not been done.
+    ///
+    /// # Errors
+    /// That the device or its driver refuses a kernel.
+    pub fn observe(
+        &mut self,
+        device: &Device,
+        count: usize,
+        sensors: bool,
+    ) -> Result<(), GpuError> {
+        let compile = |kernel| compile(device, &self.layout, &self.constants, count, kernel, &[]);
+        if self.body_forces.is_none() {
+            self.body_forces = Some(compile(&kernels::BODY_FORCES)?);
+        }
+        if sensors && self.sensors.is_none() {
+            self.sensors = Some(compile(&kernels::SENSORS)?);
+        }
+        Ok(())
     }
 }
 

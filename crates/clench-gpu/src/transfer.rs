@@ -49,10 +49,25 @@ impl GpuBatch {
         for (env, row) in values.chunks_exact(field.width).enumerate() {
             check_row(name, env, row)?;
         }
+        self.upload(field, values);
+        Ok(())
+    }
+
+    /// Writes a field of the state of all environments, of which only those with good numbers will be stepped.
+    ///
+    /// # Errors
+    /// A name that no field of the state has; a wrong count.
+    pub(crate) fn write_unchecked(&mut self, name: &str, values: &[f32]) -> Result<(), GpuError> {
+        let field = self.writable(name)?;
+        check_length(name, values.len(), field.width * self.count)?;
+        self.upload(field, values);
+        Ok(())
+    }
+
+    fn upload(&self, field: Field, values: &[f32]) {
         let turned = transpose(values, self.count, field.width);
         let start = 4 * (field.place * self.count) as u64;
         (self.device.queue).write_buffer(&self.arrays.state, start, turned.as_bytes());
-        Ok(())
     }
 
     /// Writes a field of the state of one environment.
@@ -165,10 +180,22 @@ fn decode<E: FromBytes + Copy>(bytes: &[u8]) -> Vec<E> {
         .collect()
 }
 
-/// Turns `height` rows of `width` numbers into `width` rows of `height`.
+/// Turns `height` rows of `width` numbers into `width` rows of `height`, by squares that a cache holds.
 fn transpose(values: &[f32], height: usize, width: usize) -> Vec<f32> {
-    let entry = |i: usize| values[(i % height) * width + i / height];
-    (0..height * width).map(entry).collect()
+    const SIDE: usize = 32;
+    let mut turned = vec![0.0; height * width];
+    for top in (0..height).step_by(SIDE) {
+        for left in (0..width).step_by(SIDE) {
+            for column in left..width.min(left + SIDE) {
+                let bottom = height.min(top + SIDE);
+                let to = &mut turned[column * height..][top..bottom];
+                for (row, to) in (top..bottom).zip(to) {
+                    *to = values[row * width + column];
+                }
+            }
+        }
+    }
+    turned
 }
 
 fn check_length(field: &str, found: usize, expected: usize) -> Result<(), GpuError> {

@@ -27,8 +27,3 @@ fn total(x: vec4f) -> vec4f {
     workgroupBarrier();
     return sum;
 }
-
-// What a block is made of.
-fn block(b: u32, field: u32) -> u32 {
-    return u32(row(BLOCKS + BLOCK_SIZE * b + field));
-}

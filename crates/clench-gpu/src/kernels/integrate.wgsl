@@ -67,25 +67,11 @@ fn advance_activations(rates: u32) {
     }
 }
 
-fn is_far(x: f32) -> bool {
-    return is_wild(x) || abs(x) > 1e10;
-}
-
 // Lets the step count, or takes it back where it led nowhere.
 fn finish_step() {
-    var far = false;
+    judge_results();
     for (var i = 0u; i < bound(NV); i++) {
-        far = far || is_far(fetch(QACC + i)) || is_wild(fetch(QFRC_CONSTRAINT + i)) || is_far(given(QVEL + i));
         keep(QACC_WARMSTART + i, fetch(QACC + i));
-    }
-    for (var i = 0u; i < bound(NQ); i++) {
-        far = far || is_far(given(QPOS + i));
-    }
-    for (var a = 0u; a < NA; a++) {
-        far = far || is_wild(given(ACT + a));
-    }
-    if (far) {
-        trouble(DIVERGED);
     }
     let fault = reports[TROUBLE * N + env];
     if (fault == RUNNING) {

@@ -109,6 +109,11 @@ fn put_row(place: u32, x: f32) {
     rows[env * ROWS + place] = x;
 }
 
+// What a block is made of.
+fn block(b: u32, field: u32) -> u32 {
+    return u32(row(BLOCKS + BLOCK_SIZE * b + field));
+}
+
 // The end of a loop, told in a way that no compiler knows before: it would write the loop out, and take ten times as long.
 fn bound(n: u32) -> u32 {
     return n + words[ZERO];

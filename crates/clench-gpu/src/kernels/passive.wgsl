@@ -2,11 +2,6 @@
 //
 // A spring pulls with −(a x + b x² + c x³), a damper with −(a v + b v |v| + c v³).
 
-// a + b x + c x².
-fn stiffness(coefficients: vec3f, x: f32) -> f32 {
-    return coefficients.x + x * (coefficients.y + x * coefficients.z);
-}
-
 // Adds the force of a spring that is stretched along `stretch` to three dofs.
 fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
     let k = stiffness(law, length(stretch));

@@ -16,12 +16,22 @@ fn tendon_stretch(t: u32) -> f32 {
     return length - clamp(length, numbers[TENDON_SPRING + 5u * t], numbers[TENDON_SPRING + 5u * t + 1u]);
 }
 
+// a + b x + c x².
+fn stiffness(coefficients: vec3f, x: f32) -> f32 {
+    return coefficients.x + x * (coefficients.y + x * coefficients.z);
+}
+
+// What its spring and its damper do along a tendon.
+fn tendon_passive_force(t: u32) -> f32 {
+    let x = tendon_stretch(t);
+    let v = fetch(TEN_VELOCITY + t);
+    let spring = x * stiffness(number3(TENDON_SPRING + 5u * t + 2u), x);
+    return -spring - v * stiffness(number3(TENDON_DAMPER + 3u * t), abs(v));
+}
+
 fn tendon_forces() {
     for (var t = 0u; t < NTENDON; t++) {
-        let x = tendon_stretch(t);
-        let v = fetch(TEN_VELOCITY + t);
-        let spring = x * stiffness(number3(TENDON_SPRING + 5u * t + 2u), x);
-        let force = -spring - v * stiffness(number3(TENDON_DAMPER + 3u * t), abs(v));
+        let force = tendon_passive_force(t);
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
             add(QFRC_PASSIVE + words[TENDON_DOF + k], fetch(TEN_JACOBIAN + k) * force);
         }

@@ -53,16 +53,16 @@ fn clear_dofs(qfrc: u32) {
 }
 
 fn bias_forces() {
-    put_spatial(CACC, Spatial(vec3f(), -number3(GRAVITY)));
+    put_spatial(CACC_BIAS, Spatial(vec3f(), -number3(GRAVITY)));
     put_spatial(CFRC, Spatial(vec3f(), vec3f()));
     for (var b = 1u; b < bound(NBODY); b++) {
-        var cacc = fetch_spatial(CACC + 6u * words[BODY_PARENT + b]);
+        var cacc = fetch_spatial(CACC_BIAS + 6u * words[BODY_PARENT + b]);
         for (var i = words[BODY_DOF + b]; i < words[BODY_DOF + b + 1u]; i++) {
             cacc = plus(cacc, times(fetch_spatial(CDOF_DOT + 6u * i), given(QVEL + i)));
         }
         let cvel = fetch_spatial(CVEL + 6u * b);
         let inertial = momentum(CINERT + 10u * b, cacc);
-        put_spatial(CACC + 6u * b, cacc);
+        put_spatial(CACC_BIAS + 6u * b, cacc);
         put_spatial(CFRC + 6u * b, plus(inertial, cross_force(cvel, momentum(CINERT + 10u * b, cvel))));
     }
     clear_dofs(QFRC_BIAS);

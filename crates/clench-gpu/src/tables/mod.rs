@@ -7,10 +7,12 @@ mod constraints;
 mod contacts;
 mod equalities;
 mod forces;
+mod sensors;
 mod tendons;
 
 pub(crate) use constraints::BLOCK_SIZE;
 pub(crate) use contacts::CONTACT_SIZE;
+pub(crate) use sensors::unread;
 
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::Model;
@@ -65,6 +67,7 @@ impl Tables {
         tables.tendons(model);
         tables.forces(model);
         tables.actuators(model);
+        tables.sensors(model);
         tables.settings(model, settings);
         let mut capacity = Capacity::default();
         tables.equalities(model, settings, &mut capacity);

@@ -1,0 +1,214 @@
+//! A batch of `clench-rigid` that a graphics device steps.
+
+use crate::batch::{GpuBatch, GpuOptions};
+use crate::error::{GpuError, GpuFault};
+use crate::kernels::DIVERGED_FIELDS;
+use crate::tables::unread;
+use clench_rigid::batch::{Backend, Outcome, Trouble};
+use clench_rigid::model::{Model, RowPattern};
+use clench_rigid::{Batch, BatchOptions, Output, SimError};
+use std::sync::Arc;
+
+/// `count` environments in the model's initial state that a graphics device steps. What users write into rows goes up before a
+/// call, and the states come down after it: once a call, however many steps it has.
+///
+/// Outputs are computed on the device and come down where they are recorded; those that it does not compute are refused.
+/// Questions (Jacobians, rays, inverse kinematics, ...) are answered on the processor, from the rows. `device` is a part of the
+/// name of the device to use; by default it is the first of [`devices`](crate::devices).
+///
+/// # Errors
+/// As [`GpuBatch::new`].
+///
+/// ```no_run
+/// use clench_rigid::BatchOptions;
+/// # fn model() -> std::sync::Arc<clench_rigid::Model> { unimplemented!() }
+/// let mut batch = clench_gpu::batch(model(), 4096, BatchOptions::default(), None)?;
+/// batch.record(&["xpos"])?;
+/// batch.state.ctrl.row_mut(7).fill(0.1);
+/// batch.step_n(10)?;
+/// println!("{:?} {:?}", batch.state.qpos.row(7), batch.output("xpos"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn batch(
+    model: Arc<Model>,
+    count: usize,
+    options: BatchOptions,
+    device: Option<&str>,
+) -> Result<Batch<f32>, GpuError> {
+    let on_device = GpuOptions {
+        // Who starts over is decided on this side.
+        options: options.options.autoreset(false),
+        device: device.map(str::to_owned),
+    };
+    let on_device = GpuBatch::new(Arc::clone(&model), count, on_device)?;
+    Ok(Batch::with_backend(
+        model,
+        count,
+        options,
+        Box::new(on_device),
+    )?)
+}
+
+/// The word of the reports that an output is, if it is one.
+fn word(output: Output) -> Option<&'static str> {
+    match output {
+        Output::contact_count => Some("ncon"),
+        Output::solver_iterations => Some("niter"),
+        _ => None,
+    }
+}
+
+/// Rows of sparse numbers of each environment, each over all `nv` dofs.
+fn spread(nv: usize, (pattern, rows): (&RowPattern, usize), sparse: &[f32], dense: &mut [f32]) {
+    dense.fill(0.0);
+    let envs = dense.chunks_exact_mut((rows * nv).max(1));
+    for (out, values) in envs.zip(sparse.chunks_exact(pattern.len().max(1))) {
+        for row in 0..rows {
+            for (&dof, &value) in pattern.dofs(row).iter().zip(&values[pattern.range(row)]) {
+                out[row * nv + dof as usize] = value;
+            }
+        }
+    }
+}
+
+impl GpuBatch {
+    /// What became of each environment that took part in a call, by the words of the field `verdict`.
+    fn outcomes(
+        &self,
+        verdict: &str,
+        running: &[bool],
+        outcomes: &mut [Outcome],
+    ) -> Result<(), GpuError> {
+        let (steps, faults) = (self.report("steps")?, self.faults(verdict)?);
+        let none = faults.iter().all(Option::is_none);
+        let details = match none {
+            true => None,
+            false => Some([
+                self.report("fault_field")?,
+                self.report("fault_index")?,
+                self.report("fault_value")?,
+            ]),
+        };
+        for env in (0..self.count).filter(|&env| running[env]) {
+            let trouble = faults[env].map(|fault| match fault {
+                GpuFault::Singular => Trouble::Singular,
+                GpuFault::ContactOverflow { limit } => Trouble::ContactOverflow { limit },
+                GpuFault::Diverged => {
+                    let detail = |k: usize| details.as_ref().map_or(0, |all| all[k][env]);
+                    let field = DIVERGED_FIELDS.get(detail(0) as usize);
+                    Trouble::Diverged {
+                        field: field.copied().unwrap_or(DIVERGED_FIELDS[0]),
+                        index: detail(1) as usize,
+                        value: f64::from(f32::from_bits(detail(2))),
+                    }
+                }
+            });
+            outcomes[env] = Outcome {
+                steps: steps[env] as usize,
+                trouble,
+            };
+        }
+        Ok(())
+    }
+}
+
+impl Backend<f32> for GpuBatch {
+    fn name(&self) -> String {
+        self.device.info.name.clone()
+    }
+
+    fn bytes_per_env(&self) -> usize {
+        GpuBatch::bytes_per_env(self)
+    }
+
+    fn holds(&self, field: &str) -> bool {
+        self.state.find(field).is_some()
+    }
+
+    fn computes(&self, output: Output) -> bool {
+        match output {
+            Output::ten_J | Output::actuator_moment | Output::actuator_power => true,
+            output => word(output).is_some() || self.work.find(output.name()).is_some(),
+        }
+    }
+
+    fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
+        let sensors = outputs.contains(&Output::sensordata);
+        if let Some(sensor) = unread(self.model()).filter(|_| sensors) {
+            return Err(SimError::Backend(format!(
+                "{} cannot read {} sensor \"{}\" yet: sensordata cannot be recorded",
+                self.name(),
+                sensor.kind.name(),
+                sensor.name
+            )));
+        }
+        let of_bodies = |output: &Output| {
+            use Output::{cacc, cfrc_ext, cfrc_int, contact_force};
+            matches!(output, cacc | cfrc_int | cfrc_ext | contact_force)
+        };
+        if sensors || outputs.iter().any(of_bodies) {
+            self.observe(sensors)?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, field: &'static str, rows: &[f32]) -> Result<(), SimError> {
+        Ok(self.write_unchecked(field, rows)?)
+    }
+
+    fn read(&mut self, field: &'static str, rows: &mut [f32]) -> Result<(), SimError> {
+        rows.copy_from_slice(&GpuBatch::read(self, field)?);
+        Ok(())
+    }
+
+    fn read_output(&mut self, output: Output, rows: &mut [f32]) -> Result<(), SimError> {
+        if let Some(word) = word(output) {
+            let words = self.report(word)?;
+            let counts = rows.iter_mut().zip(words);
+            counts.for_each(|(row, count)| *row = count as f32);
+            return Ok(());
+        }
+        match output {
+            Output::ten_J => {
+                let sparse = GpuBatch::read(self, "ten_jacobian")?;
+                let model = self.model();
+                let pattern = (&model.tendon_dofs, model.tendons.len());
+                spread(model.nv, pattern, &sparse, rows);
+            }
+            Output::actuator_moment => {
+                let sparse = GpuBatch::read(self, "actuator_moment")?;
+                let model = self.model();
+                let pattern = (&model.actuator_dofs, model.actuators.len());
+                spread(model.nv, pattern, &sparse, rows);
+            }
+            Output::actuator_power => {
+                let forces = GpuBatch::read(self, "actuator_force")?;
+                let velocities = GpuBatch::read(self, "actuator_velocity")?;
+                let powers = Vec::from_iter(forces.iter().zip(velocities).map(|(f, v)| f * v));
+                let each = powers.chunks(self.model().actuators.len().max(1));
+                for (row, powers) in rows.iter_mut().zip(each) {
+                    *row = powers.iter().filter(|&&power| power > 0.0).sum();
+                }
+            }
+            output => rows.copy_from_slice(&GpuBatch::read(self, output.name())?),
+        }
+        Ok(())
+    }
+
+    fn step(
+        &mut self,
+        steps: usize,
+        running: &[bool],
+        outcomes: &mut [Outcome],
+    ) -> Result<(), SimError> {
+        self.choose(running);
+        GpuBatch::step(self, steps)?;
+        Ok(self.outcomes("status", running, outcomes)?)
+    }
+
+    fn forward(&mut self, running: &[bool], outcomes: &mut [Outcome]) -> Result<(), SimError> {
+        self.choose(running);
+        self.forward_with_verdict()?;
+        Ok(self.outcomes("trouble", running, outcomes)?)
+    }
+}

@@ -1,0 +1,121 @@
+// Forces on bodies from outside their tree of joints: applied ones, contacts, connects, welds and strings. Sisters of
+// `output/forces.rs` and `output/tendon_forces.rs` of clench-rigid, where signs are explained.
+
+// Adds a force, and a couple, that act on a body at a point.
+fn push(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f) {
+    if (body == 0u) {
+        return;
+    }
+    let place = CFRC_EXT + 6u * body;
+    let torque = couple + cross(offset_of(body, at), force);
+    put_spatial(place, plus(fetch_spatial(place), times(Spatial(torque, force), sign)));
+}
+
+// The same in the sum of contacts: the force, then the torque at the centre of mass of the body.
+fn push_by_contact(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f) {
+    let place = CONTACT_FORCE + 6u * body;
+    let torque = couple + cross(at - fetch3(XIPOS + 3u * body), force);
+    put3(place, fetch3(place) + force * sign);
+    put3(place + 3u, fetch3(place + 3u) + torque * sign);
+    push(body, sign, force, couple, at);
+}
+
+// The three numbers of rows from `first` on, zero beyond the block's end.
+fn three_forces(first: u32, end: u32) -> vec3f {
+    var f = vec3f();
+    for (var k = 0u; k < 3u; k++) {
+        if (first + k < end) {
+            f[k] = row(FORCE + first + k);
+        }
+    }
+    return f;
+}
+
+fn push_contact(source: u32, f: vec3f, t: vec3f) {
+    let place = CONTACTS + CONTACT_SIZE * source;
+    let pair = u32(fetch(place));
+    let at = fetch3(place + 2u);
+    let axes = mat3x3f(fetch3(place + 5u), fetch3(place + 8u), fetch3(place + 11u));
+    push_by_contact(words[PAIR_BODY + 2u * pair], -1.0, axes * f, axes * t, at);
+    push_by_contact(words[PAIR_BODY + 2u * pair + 1u], 1.0, axes * f, axes * t, at);
+}
+
+fn push_held(equality: u32, force: vec3f, turn: vec3f) {
+    // Zero for a connect.
+    let rho = relative_quat(equality);
+    let turned = (turn * rho.x + cross(rho.yzw, turn)) * (0.5 * torquescale(equality));
+    let couple = quat_rotate(held_quat(equality, 1u), turned);
+    push(words[EQ_PAIR + 2u * equality], 1.0, force, couple, held_point(equality, 0u));
+    push(words[EQ_PAIR + 2u * equality + 1u], -1.0, force, couple, held_point(equality, 1u));
+}
+
+// What constraints do along tendon `t`.
+fn tendon_constraint_force(t: u32) -> f32 {
+    let c = NJNT + t;
+    var sum = 0.0;
+    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+        let source = block(b, BLOCK_SOURCE);
+        let first = block(b, BLOCK_ROW);
+        let force = row(FORCE + first);
+        switch block(b, BLOCK_KIND) {
+            case DRY_FRICTION: {
+                sum += select(0.0, force, source == NV + t);
+            }
+            case LIMIT: {
+                let along = select(force, -force, (source & 1u) == 1u);
+                sum += select(0.0, along, (source >> 1u) == c);
+            }
+            case COUPLING: {
+                sum += select(0.0, force, words[EQ_PAIR + 2u * source] == c);
+                sum -= select(0.0, row(SHAPE + first) * force, words[EQ_PAIR + 2u * source + 1u] == c);
+            }
+            default: {
+            }
+        }
+    }
+    return sum;
+}
+
+fn push_strings() {
+    for (var t = 0u; t < NTENDON; t++) {
+        if (words[TENDON_SECTION + t] == words[TENDON_SECTION + t + 1u]) {
+            continue;
+        }
+        var force = tendon_passive_force(t) + tendon_constraint_force(t);
+        for (var k = words[TENDON_PULL + t]; k < words[TENDON_PULL + t + 1u]; k++) {
+            force += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]) * numbers[PULL_GEAR + k];
+        }
+        for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
+            let start = words[SECTION_SITES + 2u * s];
+            let to = words[SECTION_SITES + 2u * s + 1u];
+            let p = fetch3(SITE_XPOS + 3u * start);
+            let q = fetch3(SITE_XPOS + 3u * to);
+            let pull = direction(q - p).xyz * (numbers[SECTION_SHARE + s] * force);
+            push(words[SITE_BODY + start], -1.0, pull, vec3f(), p);
+            push(words[SITE_BODY + to], 1.0, pull, vec3f(), q);
+        }
+    }
+}
+
+fn external_forces() {
+    for (var b = 0u; b < bound(NBODY); b++) {
+        let place = XFRC_APPLIED + 6u * b;
+        put3(CONTACT_FORCE + 6u * b, vec3f());
+        put3(CONTACT_FORCE + 6u * b + 3u, vec3f());
+        put_spatial(CFRC_EXT + 6u * b, Spatial(vec3f(), vec3f()));
+        push(b, 1.0, given3(place), given3(place + 3u), fetch3(XIPOS + 3u * b));
+    }
+    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+        let kind = block(b, BLOCK_KIND);
+        let first = block(b, BLOCK_ROW);
+        let end = first + block(b, BLOCK_DIM);
+        let forces = three_forces(first, end);
+        let torques = three_forces(first + 3u, end);
+        if (kind >= CONTACT_NORMAL) {
+            push_contact(block(b, BLOCK_SOURCE), forces, torques);
+        } else if (kind == HELD) {
+            push_held(block(b, BLOCK_SOURCE), forces, torques);
+        }
+    }
+    push_strings();
+}

@@ -1,0 +1,339 @@
+// What sensors measure: one thread an environment, and only where somebody asks. Sisters of `sensor/reading.rs`, `frame.rs`,
+// `limit.rs` and `volume.rs`. A sensor is a row of SENSOR_SIZE words, and one of as many numbers as SENSOR_PRM_SIZE says.
+
+// Where an object is.
+fn object_position(kind: u32, o: u32) -> vec3f {
+    switch kind {
+        case INERTIAL_FRAME: {
+            return fetch3(XIPOS + 3u * o);
+        }
+        case GEOM_FRAME: {
+            return fetch3(GEOM_XPOS + 3u * o);
+        }
+        case SITE_FRAME: {
+            return fetch3(SITE_XPOS + 3u * o);
+        }
+        default: {
+            return fetch3(XPOS + 3u * o);
+        }
+    }
+}
+
+// Its axes as columns.
+fn object_axes(kind: u32, o: u32) -> mat3x3f {
+    switch kind {
+        case INERTIAL_FRAME: {
+            return fetch_matrix(XIMAT + 9u * o);
+        }
+        case GEOM_FRAME: {
+            return fetch_matrix(GEOM_XMAT + 9u * o);
+        }
+        case SITE_FRAME: {
+            return fetch_matrix(SITE_XMAT + 9u * o);
+        }
+        default: {
+            return fetch_matrix(XMAT + 9u * o);
+        }
+    }
+}
+
+// Its orientation, with the sign that its body's has.
+fn object_quat(kind: u32, o: u32, body: u32) -> vec4f {
+    let q = fetch4(XQUAT + 4u * body);
+    switch kind {
+        case INERTIAL_FRAME: {
+            return quat_product(q, number4(BODY_IQUAT + 4u * o));
+        }
+        case GEOM_FRAME: {
+            return quat_product(q, number4(GEOM_QUAT + 4u * o));
+        }
+        case SITE_FRAME: {
+            return quat_product(q, number4(SITE_QUAT + 4u * o));
+        }
+        default: {
+            return q;
+        }
+    }
+}
+
+// The acceleration of the body point at a place, with gravity's upward reaction.
+fn acceleration_at(b: u32, point: vec3f) -> Spatial {
+    let cacc = fetch_spatial(CACC + 6u * b);
+    let velocity = velocity_at(b, point);
+    let linear = cacc.linear + cross(cacc.angular, offset_of(b, point));
+    return Spatial(cacc.angular, linear + cross(velocity.angular, velocity.linear));
+}
+
+// Two frames, and what is measured of the first relative to the second, if there is one.
+fn read_frame(kind: u32, s: u32, out: u32) {
+    let object_kind = words[s + SENSOR_OBJECT_KIND];
+    let o = words[s + SENSOR_OBJECT];
+    let body = words[s + SENSOR_BODY];
+    let other_kind = words[s + SENSOR_REFERENCE_KIND];
+    let other = words[s + SENSOR_REFERENCE];
+    let other_body = words[s + SENSOR_REFERENCE_BODY];
+    let p = object_position(object_kind, o);
+    var axes = mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    var origin = vec3f();
+    var carried = Spatial(vec3f(), vec3f());
+    if (other_kind != NO_FRAME) {
+        axes = object_axes(other_kind, other);
+        origin = object_position(other_kind, other);
+        let own = velocity_at(other_body, origin);
+        carried = Spatial(own.angular, own.linear + cross(own.angular, p - origin));
+    }
+    switch kind {
+        case SENSE_FRAMEPOS: {
+            put3(out, (p - origin) * axes);
+        }
+        case SENSE_FRAMEQUAT: {
+            var q = object_quat(object_kind, o, body);
+            if (other_kind != NO_FRAME) {
+                let reference = object_quat(other_kind, other, other_body);
+                q = quat_product(vec4f(reference.x, -reference.yzw), q);
+            }
+            put4(out, q);
+        }
+        case SENSE_FRAMEXAXIS: {
+            put3(out, object_axes(object_kind, o)[0] * axes);
+        }
+        case SENSE_FRAMEYAXIS: {
+            put3(out, object_axes(object_kind, o)[1] * axes);
+        }
+        case SENSE_FRAMEZAXIS: {
+            put3(out, object_axes(object_kind, o)[2] * axes);
+        }
+        case SENSE_FRAMELINVEL: {
+            put3(out, (velocity_at(body, p).linear - carried.linear) * axes);
+        }
+        case SENSE_FRAMEANGVEL: {
+            put3(out, (velocity_at(body, p).angular - carried.angular) * axes);
+        }
+        case SENSE_FRAMELINACC: {
+            put3(out, acceleration_at(body, p).linear);
+        }
+        default: {
+            put3(out, acceleration_at(body, p).angular);
+        }
+    }
+}
+
+// What a site's body carries through its joints, about the site.
+fn carried_force(site: u32) -> Spatial {
+    let body = words[SITE_BODY + site];
+    let force = fetch_spatial(CFRC_INT + 6u * body);
+    let arm = offset_of(body, fetch3(SITE_XPOS + 3u * site));
+    return Spatial(force.angular - cross(arm, force.linear), force.linear);
+}
+
+fn read_site(kind: u32, site: u32, out: u32) {
+    let axes = fetch_matrix(SITE_XMAT + 9u * site);
+    let p = fetch3(SITE_XPOS + 3u * site);
+    let body = words[SITE_BODY + site];
+    switch kind {
+        case SENSE_ACCELEROMETER: {
+            put3(out, acceleration_at(body, p).linear * axes);
+        }
+        case SENSE_VELOCIMETER: {
+            put3(out, velocity_at(body, p).linear * axes);
+        }
+        case SENSE_GYRO: {
+            put3(out, velocity_at(body, p).angular * axes);
+        }
+        case SENSE_FORCE: {
+            put3(out, carried_force(site).linear * axes);
+        }
+        case SENSE_TORQUE: {
+            put3(out, carried_force(site).angular * axes);
+        }
+        default: {
+            put3(out, number3(MAGNETIC) * axes);
+        }
+    }
+}
+
+// Whether a point is inside a site's volume.
+fn is_inside(s: u32, prm: u32, p: vec3f) -> bool {
+    let site = words[s + SENSOR_REFERENCE];
+    let local = (p - fetch3(SITE_XPOS + 3u * site)) * fetch_matrix(SITE_XMAT + 9u * site);
+    return is_in_volume(words[s + SENSOR_SHAPE], number3(prm + 2u), local);
+}
+
+// The sum of the normal forces of those contacts of the site's body whose line of force meets the site's volume.
+fn touch(s: u32, prm: u32) -> f32 {
+    let site = words[s + SENSOR_OBJECT];
+    let own = words[SITE_BODY + site];
+    let axes = fetch_matrix(SITE_XMAT + 9u * site);
+    let centre = fetch3(SITE_XPOS + 3u * site);
+    var sum = 0.0;
+    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+        if (block(b, BLOCK_KIND) < CONTACT_NORMAL) {
+            continue;
+        }
+        let place = CONTACTS + CONTACT_SIZE * block(b, BLOCK_SOURCE);
+        let pair = u32(fetch(place));
+        let second = words[PAIR_BODY + 2u * pair + 1u];
+        let normal = row(FORCE + block(b, BLOCK_ROW));
+        if ((own != second && own != words[PAIR_BODY + 2u * pair]) || normal <= 0.0) {
+            continue;
+        }
+        let o = (fetch3(place + 2u) - centre) * axes;
+        let d = (fetch3(place + 5u) * select(-1.0, 1.0, own == second)) * axes;
+        sum += select(0.0, normal, meets_volume(words[s + SENSOR_SHAPE], number3(prm + 2u), o, d));
+    }
+    return sum;
+}
+
+// Distance, rate or force of the first limit of a coordinate that acts.
+fn limit(c: u32, margin: f32, part: u32) -> f32 {
+    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+        if (block(b, BLOCK_KIND) != LIMIT || (block(b, BLOCK_SOURCE) >> 1u) != c) {
+            continue;
+        }
+        let a = block(b, BLOCK_ROW);
+        switch part {
+            case 0u: {
+                return row(POSITION + a) - margin;
+            }
+            case 1u: {
+                return row(VELOCITY + a);
+            }
+            default: {
+                return row(FORCE + a);
+            }
+        }
+    }
+    return 0.0;
+}
+
+// The momentum of a body and all below it about the world's origin.
+fn subtree_momentum(s: u32) -> Spatial {
+    var sum = Spatial(vec3f(), vec3f());
+    for (var b = words[s + SENSOR_OBJECT]; b < words[s + SENSOR_REFERENCE]; b++) {
+        let own = momentum(CINERT + 10u * b, fetch_spatial(CVEL + 6u * b));
+        let root = fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
+        sum = plus(sum, Spatial(own.angular + cross(root, own.linear), own.linear));
+    }
+    return sum;
+}
+
+fn read_subtree(kind: u32, s: u32, out: u32) {
+    let body = words[s + SENSOR_OBJECT];
+    let com = fetch3(SUBTREE_COM + 3u * body);
+    if (kind == SENSE_SUBTREECOM) {
+        put3(out, com);
+        return;
+    }
+    let all = subtree_momentum(s);
+    if (kind == SENSE_SUBTREEANGMOM) {
+        put3(out, all.angular - cross(com, all.linear));
+        return;
+    }
+    let mass = numbers[BODY_SUBTREEMASS + body];
+    put3(out, select(all.linear / mass, vec3f(), mass <= 0.0));
+}
+
+fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
+    let e = words[s + SENSOR_OBJECT];
+    switch kind {
+        case SENSE_TOUCH: {
+            return touch(s, prm);
+        }
+        case SENSE_INSIDESITE: {
+            let inside = is_inside(s, prm, object_position(words[s + SENSOR_OBJECT_KIND], e));
+            return select(0.0, 1.0, inside);
+        }
+        case SENSE_JOINTPOS: {
+            return given(QPOS + words[JNT_QPOS + e]);
+        }
+        case SENSE_JOINTVEL: {
+            return given(QVEL + words[JNT_DOF + e]);
+        }
+        case SENSE_JOINTACTUATORFRC: {
+            return fetch(QFRC_ACTUATOR + words[JNT_DOF + e]);
+        }
+        case SENSE_JOINTLIMITPOS, SENSE_TENDONLIMITPOS: {
+            return limit(e, numbers[prm + 1u], 0u);
+        }
+        case SENSE_JOINTLIMITVEL, SENSE_TENDONLIMITVEL: {
+            return limit(e, numbers[prm + 1u], 1u);
+        }
+        case SENSE_JOINTLIMITFRC, SENSE_TENDONLIMITFRC: {
+            return limit(e, numbers[prm + 1u], 2u);
+        }
+        case SENSE_TENDONPOS: {
+            return fetch(TEN_LENGTH + e);
+        }
+        case SENSE_TENDONVEL: {
+            return fetch(TEN_VELOCITY + e);
+        }
+        case SENSE_TENDONACTUATORFRC: {
+            var sum = 0.0;
+            for (var k = words[TENDON_PULL + e]; k < words[TENDON_PULL + e + 1u]; k++) {
+                sum += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]);
+            }
+            return sum;
+        }
+        case SENSE_ACTUATORPOS: {
+            return fetch(ACTUATOR_LENGTH + e);
+        }
+        case SENSE_ACTUATORVEL: {
+            return fetch(ACTUATOR_VELOCITY + e);
+        }
+        case SENSE_ACTUATORFRC: {
+            return fetch(ACTUATOR_FORCE + e);
+        }
+        default: {
+            return 0.0;
+        }
+    }
+}
+
+fn read_sensor(s: u32, prm: u32, out: u32) {
+    let kind = words[s + SENSOR_KIND];
+    let e = words[s + SENSOR_OBJECT];
+    switch words[s + SENSOR_WAY] {
+        case OF_FRAME: {
+            read_frame(kind, s, out);
+        }
+        case OF_SITE: {
+            read_site(kind, e, out);
+        }
+        case OF_SUBTREE: {
+            read_subtree(kind, s, out);
+        }
+        case OF_BALL: {
+            if (kind == SENSE_BALLQUAT) {
+                put4(out, quat_normalize(given4(QPOS + words[JNT_QPOS + e])));
+            } else {
+                put3(out, given3(QVEL + words[JNT_DOF + e]));
+            }
+        }
+        case OF_NOTHING: {
+            for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
+                put(out + k, 0.0);
+            }
+        }
+        default: {
+            put(out, read_scalar(kind, s, prm));
+        }
+    }
+}
+
+@compute @workgroup_size(GROUP)
+fn sensors(@builtin(global_invocation_id) id: vec3u) {
+    if (!begin(id.x)) {
+        return;
+    }
+    for (var i = 0u; i < bound(NSENSOR); i++) {
+        let s = SENSORS + SENSOR_SIZE * i;
+        let prm = SENSOR_PRM + SENSOR_PRM_SIZE * i;
+        let out = SENSORDATA + words[s + SENSOR_PLACE];
+        read_sensor(s, prm, out);
+        let clip = words[s + SENSOR_CLIP];
+        for (var k = 0u; k < words[s + SENSOR_DIM] && clip != 0u; k++) {
+            let least = select(-3e38, -numbers[prm], clip == 1u);
+            put(out + k, max(min(fetch(out + k), numbers[prm]), least));
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Sensors: how each is read, of what, and within which cutoff; and the actuators of each tendon.
+
+use super::{Tables, starts};
+use clench_rigid::model::{
+    FrameObject, Model, Sensor, SensorData, SensorKind, SensorTarget, Transmission,
+};
+
+/// The words of a sensor.
+const SENSOR_FIELDS: [&str; 12] = [
+    "SENSOR_WAY",
+    "SENSOR_KIND",
+    "SENSOR_PLACE",
+    "SENSOR_DIM",
+    "SENSOR_CLIP",
+    "SENSOR_OBJECT_KIND",
+    "SENSOR_OBJECT",
+    "SENSOR_BODY",
+    "SENSOR_REFERENCE_KIND",
+    "SENSOR_REFERENCE",
+    "SENSOR_REFERENCE_BODY",
+    "SENSOR_SHAPE",
+];
+/// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site.
+const SENSOR_PRM_SIZE: usize = 5;
+/// How a sensor is read.
+const WAYS: [&str; 6] = [
+    "OF_SCALAR",
+    "OF_FRAME",
+    "OF_SITE",
+    "OF_SUBTREE",
+    "OF_BALL",
+    "OF_NOTHING",
+];
+/// Kinds of object that have a frame.
+const FRAMES: [&str; 5] = [
+    "NO_FRAME",
+    "INERTIAL_FRAME",
+    "BODY_FRAME",
+    "GEOM_FRAME",
+    "SITE_FRAME",
+];
+
+/// What a row of words says of a frame: the kind of its object, which it is, and the body that it is of.
+fn frame(m: &Model, object: FrameObject) -> Option<[usize; 3]> {
+    let (kind, index, body) = match object {
+        FrameObject::Inertial(b) => (1, b, b),
+        FrameObject::Body(b) => (2, b, b),
+        FrameObject::Geom(g) => (3, g, m.geoms[g].body),
+        FrameObject::Site(s) => (4, s, m.sites[s].body),
+        FrameObject::Camera(_) => return None,
+    };
+    Some([kind, index, body])
+}
+
+/// How a sensor is read on a device, if it can be: the way, the object and the reference, as [`SENSOR_FIELDS`] has them.
+fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])> {
+    use SensorKind as Kind;
+    let none = [0; 3];
+    if sensor.history.is_some() {
+        return None;
+    }
+    Some(match &sensor.target {
+        SensorTarget::Frame { object, reference } => {
+            let reference = reference.map_or(Some(none), |other| frame(m, other))?;
+            (1, frame(m, *object)?, reference)
+        }
+        SensorTarget::Inside { site, object } => (0, frame(m, *object)?, [4, *site, 0]),
+        SensorTarget::Element(e) => match sensor.kind {
+            Kind::Accelerometer
+            | Kind::Velocimeter
+            | Kind::Gyro
+            | Kind::Force
+            | Kind::Torque
+            | Kind::Magnetometer => (2, [4, *e, 0], none),
+            Kind::SubtreeCom | Kind::SubtreeLinVel | Kind::SubtreeAngMom => {
+                (3, [2, *e, 0], [0, m.subtree(*e).end, 0])
+            }
+            Kind::BallQuat | Kind::BallAngVel => (4, [0, *e, 0], none),
+            // Limits are known by coordinates: joints, then tendons.
+            Kind::TendonLimitPos | Kind::TendonLimitVel | Kind::TendonLimitFrc => {
+                (0, [0, m.joints.len() + e, 0], none)
+            }
+            _ => (0, [0, *e, 0], none),
+        },
+        SensorTarget::Nothing if sensor.kind == Kind::User => (5, none, none),
+        _ => return None,
+    })
+}
+
+/// The first sensor that a device cannot read yet.
+pub(crate) fn unread(m: &Model) -> Option<&Sensor> {
+    m.sensors.iter().find(|sensor| target(m, sensor).is_none())
+}
+
+impl Tables {
+    pub(super) fn sensors(&mut self, m: &Model) {
+        for names in [&SENSOR_FIELDS[..], &WAYS, &FRAMES] {
+            for (code, name) in names.iter().enumerate() {
+                self.count(name, code);
+            }
+        }
+        for &kind in SensorKind::ALL {
+            self.count(
+                &format!("SENSE_{}", kind.name().to_uppercase()),
+                kind as usize,
+            );
+        }
+        self.count("SENSOR_SIZE", SENSOR_FIELDS.len());
+        self.count("SENSOR_PRM_SIZE", SENSOR_PRM_SIZE);
+        let p = &m.params;
+        let (mut words, mut numbers) = (Vec::new(), Vec::new());
+        let readable = m.sensors.iter().filter_map(|s| Some((s, target(m, s)?)));
+        let mut count = 0;
+        for (sensor, (way, object, reference)) in readable {
+            let element = object[1];
+            let site = match &sensor.target {
+                SensorTarget::Inside { site, .. } => Some(*site),
+                SensorTarget::Element(site) if sensor.kind == SensorKind::Touch => Some(*site),
+                _ => None,
+            };
+            let clips = sensor.cutoff > 0.0;
+            let clip = match sensor.data {
+                SensorData::Real if clips => 1,
+                SensorData::Positive if clips => 2,
+                _ => 0,
+            };
+            let shape = site.map_or(0, |site| m.sites[site].kind as usize);
+            let (place, dim) = (sensor.numbers.start, sensor.numbers.len());
+            words.extend([way, sensor.kind as usize, place, dim, clip]);
+            words.extend(object.into_iter().chain(reference).chain([shape]));
+            let margin = match sensor.kind {
+                SensorKind::JointLimitPos => p.jnt_margin[element],
+                SensorKind::TendonLimitPos => p.tendon_margin[element - m.joints.len()],
+                _ => 0.0,
+            };
+            let size = site.map_or([0.0; 3], |site| p.site_size[site].to_array());
+            numbers.extend([sensor.cutoff, margin].into_iter().chain(size));
+            count += 1;
+        }
+        self.count("NSENSOR", count);
+        self.words("SENSORS", words);
+        self.numbers("SENSOR_PRM", numbers);
+        self.numbers("MAGNETIC", p.magnetic.to_array());
+        self.pulls(m);
+    }
+
+    /// The actuators that pull at each tendon, and their gears.
+    fn pulls(&mut self, m: &Model) {
+        let of = |t: usize| {
+            let each = m.actuators.iter().enumerate();
+            let pulls = each.filter(move |(_, a)| a.transmission == Transmission::Tendon(t));
+            Vec::from_iter(pulls.map(|(u, _)| u))
+        };
+        let all = Vec::from_iter((0..m.tendons.len()).map(of));
+        self.words("TENDON_PULL", starts(all.iter().map(Vec::len)));
+        self.words("PULL_ACTUATOR", all.iter().flatten().copied());
+        let gear = |&u: &usize| m.params.actuator_gear[u][0];
+        self.numbers("PULL_GEAR", all.iter().flatten().map(gear));
+    }
+}

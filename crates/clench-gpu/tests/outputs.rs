@@ -1,0 +1,148 @@
+//! Every output that a device computes is what the processor computes, after a forward pass and after a step.
+
+mod common;
+
+use clench_rigid::model::{Model, Sensor};
+use clench_rigid::{Batch, BatchOptions, Output};
+use common::{Random, difference, own, random_state, text};
+use std::ops::Range;
+use std::sync::Arc;
+
+const COUNT: usize = 60;
+/// What rounding leaves of forces that nearly cancel, over their largest.
+const TOLERANCE: f64 = 1e-3;
+
+/// Both batches in the same random states, recording all that the device computes; none where there is no device.
+fn both(model: &Arc<Model>) -> Option<[Batch<f32>; 2]> {
+    common::batch(model, 1)?;
+    let options = BatchOptions::default();
+    let device = clench_gpu::batch(model.clone(), COUNT, options, None).expect("a device");
+    let processor = Batch::with_options(model.clone(), COUNT, options).expect("a good model");
+    let mut batches = [device, processor];
+    let mut random = Random::new(3);
+    for env in 0..COUNT {
+        let state = random_state(model, &mut random, 0.3);
+        for batch in &mut batches {
+            batch.state.write(env, &state).expect("a row");
+        }
+    }
+    Some(batches)
+}
+
+/// Records the same outputs in both, those that the device computes.
+fn record(batches: &mut [Batch<f32>; 2]) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for output in Output::ALL {
+        let mut wanted = names.clone();
+        wanted.push(output.name());
+        match batches[0].record(&wanted) {
+            Ok(()) => names = wanted,
+            Err(_) => println!("not compared: {}", output.name()),
+        }
+    }
+    batches[1]
+        .record(&names)
+        .expect("the processor computes all");
+    names
+}
+
+/// Of a part of an output: the share of environments in which the device's is not the processor's.
+fn share_that_differs(batches: &[Batch<f32>; 2], name: &str, part: Range<usize>) -> f64 {
+    let row = |k: usize, env: usize| -> Vec<f64> {
+        let rows = batches[k].output(name).expect("it is kept");
+        let numbers = rows.row(env)[part.clone()].iter();
+        numbers.map(|&x| f64::from(x)).collect()
+    };
+    // Against more than what rounding leaves of nothing.
+    let differs = |&env: &usize| {
+        let (found, expected) = (row(0, env), row(1, env));
+        let tiny = |x: &Vec<f64>| x.iter().all(|x| x.abs() < 1e-5);
+        !(tiny(&found) && tiny(&expected)) && difference(&found, &expected) > TOLERANCE
+    };
+    (0..COUNT).filter(differs).count() as f64 / COUNT as f64
+}
+
+/// The parts of an output that are compared by themselves: sensors one by one.
+fn parts(model: &Model, name: &str) -> Vec<(String, Range<usize>)> {
+    let whole = Output::find(name).expect("an output").width(model);
+    if name != "sensordata" {
+        return vec![(name.to_owned(), 0..whole)];
+    }
+    let sensor = |s: &Sensor| (s.kind.name().to_owned(), s.numbers.clone());
+    model.sensors.iter().map(sensor).collect()
+}
+
+fn agree(file: &str) {
+    let model = text(file);
+    let Some(mut batches) = both(&model) else {
+        return;
+    };
+    let names = record(&mut batches);
+    assert!(
+        names.contains(&"sensordata") && names.contains(&"cfrc_int"),
+        "{names:?}"
+    );
+    for stage in ["forward", "step"] {
+        for batch in &mut batches {
+            let summary = match stage {
+                "forward" => batch.forward(),
+                _ => batch.step(),
+            };
+            assert_eq!(summary.expect("good states").running, COUNT);
+        }
+        let mut wrong = Vec::new();
+        // How soon a solve ends is decided by rounding.
+        for name in names.iter().filter(|name| **name != "solver_iterations") {
+            for (what, part) in parts(&model, name) {
+                // A contact that is there for one and not for the other is no error of either.
+                let share = share_that_differs(&batches, name, part);
+                if share > 0.05 {
+                    wrong.push(format!("{what} in {share:.2} of the states"));
+                }
+            }
+        }
+        assert!(wrong.is_empty(), "{stage}: {wrong:?} differ");
+    }
+}
+
+#[test]
+fn those_of_sensors() {
+    agree(&own("sensors"));
+}
+
+#[test]
+fn those_of_sensors_by_runge_kutta() {
+    agree(&own("sensors").replace("implicitfast", "RK4"));
+}
+
+#[test]
+fn those_of_a_linkage() {
+    agree(&own("linkage"));
+}
+
+#[test]
+fn those_of_a_runner() {
+    agree(&own("runner"));
+}
+
+#[test]
+fn a_sensor_that_is_not_read_yet_is_named() {
+    let file = own("sensors").replace(
+        "<user dim=\"2\"/>",
+        "<rangefinder name=\"eye\" site=\"imu\"/>",
+    );
+    let model = text(&file);
+    if common::batch(&model, 1).is_none() {
+        return;
+    }
+    let batch = clench_gpu::batch(model, 1, BatchOptions::default(), None);
+    let error = batch
+        .expect("a device")
+        .record(&["sensordata"])
+        .expect_err("rays")
+        .to_string();
+    assert!(
+        error.contains("cannot read rangefinder sensor \"eye\" yet"),
+        "{error}"
+    );
+}
