@@ -50,6 +50,7 @@ from clench._core import (
     StateViews,
     Viewer,
     __version__,
+    devices,
     solve,
 )
 from clench._named import (
@@ -115,6 +116,7 @@ __all__ = [
     "TendonView",
     "Viewer",
     "__version__",
+    "devices",
     "solve",
     "view",
 ]

@@ -47,6 +47,7 @@ __all__ = [
     "StateViews",
     "Viewer",
     "__version__",
+    "devices",
     "solve",
 ]
 
@@ -935,11 +936,12 @@ class Batch(_Outputs):
         cls,
         model: Model,
         n_envs: SupportsIndex,
-        precision: _Precision = "64",
+        precision: _Precision | None = None,
         threads: SupportsIndex | None = None,
         *,
         options: RigidOptions | None = None,
         record: Sequence[str] = (),
+        device: str = "cpu",  # or "gpu", "gpu:NAME"
     ) -> Self: ...
     @property
     def model(self) -> Model: ...
@@ -951,6 +953,8 @@ class Batch(_Outputs):
     def n_envs(self) -> int: ...
     @property
     def precision(self) -> _Precision: ...
+    @property
+    def device(self) -> str: ...
     @property
     def threads(self) -> int: ...
     @property
@@ -1370,6 +1374,7 @@ class Solution:
     @property
     def stats(self) -> SolverStats: ...
 
+def devices() -> list[str]: ...
 def solve(
     M: ArrayLike, a_unc: ArrayLike, blocks: Iterable[Block], options: RigidOptions | None = None
 ) -> Solution: ...

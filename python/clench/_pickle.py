@@ -76,13 +76,13 @@ def _sim(model: Model, options: RigidOptions, precision: Any, changed: dict[str,
 
 
 def _reduce_batch(batch: Batch) -> tuple[Any, ...]:
-    how = (batch.n_envs, batch.precision, batch.threads, batch.options, batch.outputs)
+    how = (batch.n_envs, batch.precision, batch.threads, batch.options, batch.outputs, batch.device)
     return _batch, (batch.model, how, _changed(batch), batch.state, batch._last_serials)
 
 
 def _batch(model: Model, how: tuple[Any, ...], changed: dict[str, Any], state: State, last_serials: list[int]) -> Batch:
-    n_envs, precision, threads, options, outputs = how
-    batch = Batch(model, n_envs, precision, threads, options=options, record=outputs)
+    n_envs, precision, threads, options, outputs, device = how
+    batch = Batch(model, n_envs, precision, threads, options=options, record=outputs, device=device)
     for name, values in changed.items():
         batch.randomize(name, values)
     batch.state = state

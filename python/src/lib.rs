@@ -12,6 +12,7 @@ mod constraints;
 mod contact;
 mod contacts;
 mod count;
+mod device;
 mod element;
 mod error;
 mod field;
@@ -64,6 +65,8 @@ mod _core {
     use crate::contact::Contact;
     #[pymodule_export]
     use crate::contacts::Contacts;
+    #[pymodule_export]
+    use crate::device::devices;
     #[pymodule_export]
     use crate::element::Element;
     #[pymodule_export]

@@ -14,7 +14,7 @@ their copies live in one :class:`clench.Batch`::
 
 Observations, rewards, infos, random initial states and keyword arguments are gymnasium's. The model files are read from
 the installed gymnasium package; its own ``mujoco`` extra is not needed. Beyond gymnasium's arguments each task takes
-those of :class:`BatchEnv`: ``precision``, ``threads``, ``options`` and ``autoreset_mode``. With ``render_mode="rgb_array"``
+those of :class:`BatchEnv`: ``precision``, ``device``, ``threads``, ``options`` and ``autoreset_mode``. With ``render_mode="rgb_array"``
 ``render`` gives pictures, drawn without a window; there is no other mode.
 
 A task of your own is a class that says over all environments at once what is observed, what it is worth, and when it is

@@ -45,8 +45,11 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         After how many steps an episode is truncated; None or -1 for no such limit.
     outputs : sequence of str
         Derived quantities that the task reads from :attr:`batch`, such as ``"xpos"``: see ``clench.OUTPUTS``.
-    precision : {"64", "32"}
-        Bits of the numbers that the simulator computes with.
+    precision : {"64", "32"}, optional
+        Bits of the numbers that the simulator computes with: "64" on the processor and "32" on a graphics device unless given.
+    device : str
+        What steps: "cpu", "gpu", or "gpu:" and a part of a name that ``clench.devices()`` lists. All of :attr:`outputs` must be such
+        as the device computes.
     threads : int, optional
         Threads that the environments are spread over; as many as the machine has unless given.
     options : clench.RigidOptions, optional
@@ -92,7 +95,8 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     frame_skip: int = 1
     max_episode_steps: int | None = None
     outputs: Sequence[str] = ()
-    precision: Literal["64", "32"] = "64"
+    precision: Literal["64", "32"] | None = None
+    device: str = "cpu"
     threads: int | None = None
     options: RigidOptions | None = None
     autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP
@@ -107,6 +111,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         max_episode_steps: int | None = None,
         outputs: Sequence[str] | None = None,
         precision: Literal["64", "32"] | None = None,
+        device: str | None = None,
         threads: int | None = None,
         options: RigidOptions | None = None,
         autoreset_mode: AutoresetMode | str | None = None,
@@ -122,6 +127,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
             "max_episode_steps": max_episode_steps,
             "outputs": outputs,
             "precision": precision,
+            "device": device,
             "threads": threads,
             "options": options,
             "autoreset_mode": autoreset_mode,
@@ -150,6 +156,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
             self.threads,
             options=self.options,
             record=self.outputs,
+            device=self.device,
         )
         self.timestep = float(self.batch.model.timestep)
         self.dt = self.timestep * self.frame_skip

@@ -3,6 +3,7 @@
 use crate::arrays::mask;
 use crate::busy::lock;
 use crate::count::Count;
+use crate::device::{self, Device};
 use crate::error::sim_error;
 use crate::model::Model;
 use crate::names::{Names, no_attribute};
@@ -14,7 +15,7 @@ use crate::sim::Sim;
 use crate::state_views::StateViews;
 use crate::view::Keeper;
 use clench::{BatchOptions, Output};
-use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError};
+use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -56,19 +57,26 @@ mod status;
 ///     The model of all environments.
 /// n_envs : int
 ///     How many environments.
-/// precision : {"64", "32"}
-///     Bits of every number.
+/// precision : {"64", "32"}, optional
+///     Bits of every number: "64" on the processor and "32" on a graphics device unless given.
 /// threads : int, optional
 ///     How many threads step; by default as many as there are processors. Results do not depend on it.
 /// options : RigidOptions, optional
 ///     Options that go before those of the model.
 /// record : sequence of str
 ///     Outputs to keep, see `record`.
+/// device : str
+///     What steps: "cpu"; "gpu", the first graphics device of this machine, or "gpu:" and a part of the name of one that
+///     `devices` lists. A device steps in single precision and computes the outputs that are recorded. What is written into arrays
+///     goes to it before a call, and the states come back after it; parameters and options stay what they are. Questions, such as
+///     Jacobians, are answered by the processor.
 ///
 /// Raises
 /// ------
+/// RuntimeError
+///     No graphics device, or one that cannot be used.
 /// ValueError
-///     Options out of range, shapes that may meet and cannot be collided, names that no output has.
+///     What of the model a graphics device cannot step yet; options out of range, shapes that may meet and cannot be collided, names that no output has.
 /// MemoryError
 ///     More environments than memory holds.
 #[pyclass(frozen, extends = StateViews, module = "clench")]
@@ -86,15 +94,16 @@ pub(crate) struct Batch {
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (model, n_envs, precision = Bits::B64, threads = None, *, options = None, record = Names(Vec::new())),
-           text_signature = "(model, n_envs, precision='64', threads=None, *, options=None, record=())")]
+    #[pyo3(signature = (model, n_envs, precision = None, threads = None, *, options = None, record = Names(Vec::new()), device = Device::Processor),
+           text_signature = "(model, n_envs, precision=None, threads=None, *, options=None, record=(), device='cpu')")]
     fn new(
         model: &Bound<'_, Model>,
         n_envs: Count,
-        precision: Bits,
+        precision: Option<Bits>,
         threads: Option<Count>,
         options: Option<&RigidOptions>,
         record: Names,
+        device: Device,
     ) -> PyResult<PyClassInitializer<Self>> {
         let py = model.py();
         let options = options.copied().unwrap_or_default();
@@ -104,13 +113,19 @@ impl Batch {
             ..BatchOptions::default()
         };
         let make = Arc::clone(model.get().inner());
-        let inner = py.detach(|| {
-            Ok(match precision {
-                Bits::B64 => AnyBatch::F64(clench::Batch::with_options(make, n_envs.0, own)?),
-                Bits::B32 => AnyBatch::F32(clench::Batch::with_options(make, n_envs.0, own)?),
-            })
+        let precision = precision_on(&device, precision)?;
+        let inner = py.detach(|| match (device, precision) {
+            (Device::Graphics { name }, _) => {
+                device::batch(make, n_envs.0, own, name).map(AnyBatch::F32)
+            }
+            (_, Bits::B64) => clench::Batch::with_options(make, n_envs.0, own)
+                .map(AnyBatch::F64)
+                .map_err(sim_error),
+            (_, Bits::B32) => clench::Batch::with_options(make, n_envs.0, own)
+                .map(AnyBatch::F32)
+                .map_err(sim_error),
         });
-        let inner = Arc::new(Mutex::new(inner.map_err(sim_error)?));
+        let inner = Arc::new(Mutex::new(inner?));
         let keeper = Keeper::new(py, inner.clone())?;
         let batch = {
             let mut guard = lock(&inner, "batch")?;
@@ -223,6 +238,14 @@ impl Batch {
         self.precision.name()
     }
 
+    /// str : What steps: "cpu", or "gpu:" and the name of a graphics device.
+    #[getter]
+    fn device(&self) -> PyResult<String> {
+        let guard = lock(&self.inner, "batch")?;
+        let name = each!(&*guard, batch => batch.device());
+        Ok(name.map_or_else(|| "cpu".to_owned(), |name| format!("gpu:{name}")))
+    }
+
     /// int : How many threads step.
     #[getter]
     fn threads(&self) -> usize {
@@ -246,15 +269,27 @@ impl Batch {
         self.n_envs
     }
 
-    fn __repr__(&self) -> String {
+    fn __repr__(&self) -> PyResult<String> {
         let name = &self.model.get().inner().name;
-        format!(
-            "<clench.Batch of {} x {name:?}, {} bits, {} lanes, {} threads>",
-            self.n_envs,
-            self.precision.name(),
-            self.lanes,
-            self.threads
-        )
+        let how = match self.device()?.as_str() {
+            "cpu" => format!("{} lanes, {} threads", self.lanes, self.threads),
+            device => format!("on {device}"),
+        };
+        let (count, bits) = (self.n_envs, self.precision.name());
+        Ok(format!(
+            "<clench.Batch of {count} x {name:?}, {bits} bits, {how}>"
+        ))
+    }
+}
+
+/// The precision in which a device computes.
+fn precision_on(device: &Device, asked: Option<Bits>) -> PyResult<Bits> {
+    match (device, asked) {
+        (Device::Processor, asked) => Ok(asked.unwrap_or(Bits::B64)),
+        (Device::Graphics { .. }, Some(Bits::B64)) => Err(PyValueError::new_err(
+            "precision is \"64\", but graphics devices compute with \"32\"",
+        )),
+        (Device::Graphics { .. }, _) => Ok(Bits::B32),
     }
 }
 
