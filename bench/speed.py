@@ -7,7 +7,8 @@ read the same file with its integrator, tolerance and iterations; where the file
 which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
 vector environments beside gymnasium's (vector.py), heaps of bodies (heaps.py), collision pair by pair (pairs.py), and what the
 viewer's frames cost (view.py).
-`--only public` goes through all models of the public packages (public_models.py); it takes a while, so the whole run leaves it out.
+`--only public` goes through all models of the public packages (public_models.py), and `--only gpu` measures a graphics device (gpu.py):
+these take a while, or a card, so the whole run leaves them out.
 """
 
 import argparse
@@ -19,6 +20,7 @@ import sys
 import alone
 import batch
 import calls
+import gpu
 import heaps
 import pairs
 import public_models
@@ -27,6 +29,8 @@ import view
 from scene import Unmeasured, find
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
+# Comparisons that are run only if they are asked for.
+ALONE = ["gpu", "public"]
 DEFAULT_TASKS = ["HalfCheetah-v5", "Humanoid-v5"]
 
 
@@ -45,9 +49,10 @@ def main():
         "heaps": (heaps.compare, heaps.SCENES),
         "pairs": (pairs.compare, ["all pairs"]),
         "view": (view.compare, ["the viewer"]),
+        "gpu": (gpu.compare, models),
         "public": (public_models.compare, ["all models"]),
     }.items():
-        if name == args.only or (args.only is None and name != "public"):
+        if name == args.only or (args.only is None and name not in ALONE):
             try:
                 results += [row for subject in subjects for row in compare(subject, args)]
             except Unmeasured as reason:
@@ -64,13 +69,14 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "public"], help="one of the comparisons")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "gpu", "public"], help="one of the comparisons")
     parser.add_argument("--filter", default="", metavar="TEXT", help="public models whose file has this in its name")
     parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
     parser.add_argument("--batch-steps", type=int, default=500, help="steps a run of the batch (default: %(default)s)")
     parser.add_argument("--tasks", nargs="*", default=DEFAULT_TASKS, help="vector environments (default: %(default)s)")
     parser.add_argument("--vector-steps", type=int, default=100, help="steps a run of these (default: %(default)s)")
+    parser.add_argument("--gpu-envs", type=int, default=65536, help="most environments on a graphics device (default: %(default)s)")
     parser.add_argument("--heap-steps", type=int, default=1500, help="steps a run of a heap (default: %(default)s)")
     parser.add_argument("--noise", type=float, default=0.1, help="how far starts are moved apart (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=min(2, batch.processors()), help="threads of Clench's batch beside one")

@@ -144,12 +144,14 @@ pub fn bench(args: &[String]) -> Result<(), String> {
     compile(profile, "clench", ["--example", "batch_step"])?;
     compile(profile, "clench-collide", ["--example", "pairs"])?;
     compile(profile, "clench-view", ["--example", "frames"])?;
+    compile(profile, "clench-gpu", ["--example", "speed"])?;
     package::install(profile)?;
     let mut script = command(python::interpreter(), &["bench/speed.py"]);
     script.args(args).env("CLENCH", profile.program("clench"));
     script.env("BATCH_STEP", profile.program("examples/batch_step"));
     script.env("PAIRS", profile.program("examples/pairs"));
     script.env("FRAMES", profile.program("examples/frames"));
+    script.env("SPEED", profile.program("examples/speed"));
     run(script)
 }
 

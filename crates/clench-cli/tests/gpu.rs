@@ -41,3 +41,22 @@ fn a_run_on_a_device_is_told_as_one_on_the_processor_is() {
         assert_eq!(device[same], processor[same], "{same}");
     }
 }
+
+#[test]
+#[cfg(feature = "gpu")]
+fn a_run_on_a_device_is_recorded() {
+    if std::env::var("CLENCH_GPU").as_deref() != Ok("require") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("run.npz");
+    let record = path.to_string_lossy();
+    let output = clench(&[
+        "--envs", "3", "--steps", "20", "--device", "gpu", "--every", "5", "--record", &record,
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(told.contains("4 rows are recorded"), "{told}");
+    assert!(path.metadata().expect("a record").len() > 0);
+}

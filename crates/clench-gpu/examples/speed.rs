@@ -1,7 +1,7 @@
 //! Steps a second by number of environments, on the device and in the processor's lanes (single precision, all threads) in the
-//! same run, and the time of each stage: `speed MODEL [MOST ENVIRONMENTS] [DEVICE]`.
+//! same run, and the time of each stage in µs an environment, as lines of JSON: `speed MODEL [MOST ENVIRONMENTS] [DEVICE]`.
 
-use clench_gpu::{GpuBatch, GpuOptions};
+use clench_gpu::{GpuBatch, GpuError, GpuOptions};
 use clench_rigid::Batch;
 use std::error::Error;
 use std::sync::Arc;
@@ -20,14 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let most = arguments.next().map_or(Ok(65_536), |n| n.parse())?;
     let device = arguments.next();
     let model = Arc::new(clench_formats::load(&path)?);
-    println!("{path}, steps a second:");
-    println!(
-        "{:>8} {:>12} {:>12} {:>8}",
-        "envs", "device", "processor", "ratio"
-    );
-    let counts = (0..17)
-        .map(|k| 1usize << k)
-        .filter(|n| n % 4 == 0 || *n == 1);
+    let counts = (0..9).map(|k| 1usize << (2 * k));
     for count in counts.take_while(|&count| count <= most) {
         let options = GpuOptions {
             device: device.clone(),
@@ -35,34 +28,26 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let mut gpu = match GpuBatch::new(model.clone(), count, options) {
             Ok(gpu) => gpu,
-            Err(e) => {
-                println!("{count:>8} {e}");
+            // More than the device holds.
+            Err(e @ GpuError::OutOfMemory { .. }) => {
+                eprintln!("{e}");
                 break;
             }
+            Err(e) => return Err(e.into()),
         };
         let mut cpu = Batch::<f32>::new(model.clone(), count)?;
         let gpu_speed = speed(count, |steps| Ok(gpu.step(steps)?))?;
-        let cpu_speed = speed(count, |steps| {
-            (0..steps).try_for_each(|_| cpu.step().map(|_| ()))?;
-            Ok(())
-        })?;
+        let cpu_speed = speed(count, |steps| Ok(cpu.step_n(steps).map(drop)?))?;
+        let stages = gpu.time_stages()?.into_iter();
+        let stages = stages
+            .map(|(stage, seconds)| format!("\"{stage}\": {:.4}", 1e6 * seconds / count as f64));
         println!(
-            "{count:>8} {gpu_speed:>12.0} {cpu_speed:>12.0} {:>8.3}",
-            gpu_speed / cpu_speed
+            "{{\"envs\": {count}, \"device\": {gpu_speed:.0}, \"processor\": {cpu_speed:.0}, \"bytes_per_env\": {}, \
+             \"name\": {:?}, \"stages\": {{{}}}}}",
+            gpu.bytes_per_env(),
+            gpu.device().name,
+            Vec::from_iter(stages).join(", ")
         );
-        if count * 4 > most {
-            println!(
-                "{}, {} bytes an environment",
-                gpu.device(),
-                gpu.bytes_per_env()
-            );
-            for (stage, seconds) in gpu.time_stages()? {
-                println!(
-                    "{stage:>12} {:8.3} µs an environment",
-                    1e6 * seconds / count as f64
-                );
-            }
-        }
     }
     Ok(())
 }

@@ -1,11 +1,15 @@
 //! A run of many environments on a graphics device.
 
 use super::arguments::Arguments;
+use super::energy::next_steps;
+use super::record::{BATCH_OUTPUTS, BatchRecorder};
 use super::report::Failure;
 use super::run::Run;
+use super::start::narrow;
 use anyhow::{Result, bail, ensure};
-use clench::{Batch, BatchOptions, RigidOptions};
-use clench_gpu::{GpuBatch, GpuError, GpuOptions, GpuSolve};
+use clench::rigid::batch::Controls;
+use clench::{Batch, BatchOptions, EnvStatus, RigidOptions};
+use clench_gpu::GpuError;
 use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
@@ -35,6 +39,8 @@ pub struct GpuReport {
     /// Over environments, of the last solve.
     iterations_mean: f64,
     contacts_mean: f64,
+    /// Rows of the record, if there is one.
+    recorded_rows: Option<usize>,
     failed_envs: usize,
     /// The first of them.
     failures: Vec<Failure>,
@@ -73,71 +79,68 @@ pub(super) fn run(
     if let Some(flag) = arguments.batch.of_processor() {
         bail!("{flag} is not for --device gpu");
     }
-    ensure!(run.record.is_none(), "--record is not for --device gpu yet");
     ensure!(!arguments.profile, "--profile is not for --device gpu yet");
-    let mut batch = begin(run, envs, options)?;
-    let mut spent = Duration::ZERO;
-    let mut steps = 0;
-    while steps < run.steps && run.interrupt.signal().is_none() {
-        let mut now = STEPS_A_CALL.min(run.steps - steps);
-        if let Some(rows) = &run.controls {
-            let row = Vec::from_iter(rows.row(steps).iter().map(|&u| u as f32));
-            batch.write("ctrl", &row.repeat(envs))?;
-            now = 1;
-        }
-        let start = Instant::now();
-        batch.step(now)?;
-        spent += start.elapsed();
-        steps += now;
-    }
-    report(&batch, run, steps, spent.as_secs_f64())
-}
-
-/// A batch at the states that the arguments ask for.
-fn begin(run: &Run, envs: usize, options: RigidOptions) -> Result<GpuBatch> {
-    let device = GpuOptions {
-        options,
-        device: None,
-    };
-    let mut batch = GpuBatch::new(Arc::clone(&run.model), envs, device)?;
     let rows = BatchOptions {
         options,
         threads: Some(1),
         ..BatchOptions::default()
     };
-    let mut starts = Batch::<f32>::with_options(Arc::clone(&run.model), envs, rows)?;
-    run.starts.start_all(&mut starts)?;
-    let state = &starts.state;
-    for (name, rows) in [
-        ("qpos", &state.qpos),
-        ("qvel", &state.qvel),
-        ("ctrl", &state.ctrl),
-        ("mocap_pos", &state.mocap_pos),
-        ("mocap_quat", &state.mocap_quat),
-    ] {
-        batch.write(name, rows.as_slice())?;
+    let mut batch = clench_gpu::batch(Arc::clone(&run.model), envs, rows, None)?;
+    run.starts.start_all(&mut batch)?;
+    batch.record(&BATCH_OUTPUTS)?;
+    let mut recorder = (run.record.as_ref())
+        .map(|options| BatchRecorder::create(options, &run.model, envs))
+        .transpose()?;
+    let every = recorder.as_ref().map(|_| arguments.every);
+    let controls = run.controls.as_ref().map(|rows| narrow(rows.values()));
+    let nu = run.model.nu();
+    let progress = run.progress();
+    let mut spent = Duration::ZERO;
+    let (mut steps, mut running) = (0, envs);
+    while steps < run.steps && running > 0 && run.interrupt.signal().is_none() {
+        let range = next_steps(steps, run.steps, every, STEPS_A_CALL);
+        let end = range.end;
+        let ctrl = controls.as_ref().map(|rows| &rows[steps * nu..end * nu]);
+        let controls = ctrl.map_or(Controls::Held, Controls::Shared);
+        let start = Instant::now();
+        let done = batch.rollout(range.len(), controls, &[])?;
+        spent += start.elapsed();
+        (steps, running) = (end, done.summary.running);
+        if let Some(recorder) = &mut recorder {
+            let held = batch.state.ctrl.row(0);
+            let last = ctrl.map_or(held, |rows| &rows[rows.len() - nu..]);
+            recorder.after_steps(steps, &batch, last);
+        }
+        progress.set_position(steps as u64);
     }
-    Ok(batch)
+    progress.finish_and_clear();
+    let recorded_rows = recorder.map(BatchRecorder::write).transpose()?;
+    Ok(GpuReport {
+        recorded_rows,
+        ..report(&batch, run, steps, spent.as_secs_f64())
+    })
 }
 
-fn report(batch: &GpuBatch, run: &Run, steps: usize, seconds: f64) -> Result<GpuReport> {
+fn report(batch: &Batch<f32>, run: &Run, steps: usize, seconds: f64) -> GpuReport {
     let envs = batch.count();
-    let statuses = batch.statuses()?;
-    let faults = statuses.iter().enumerate();
-    let faults = faults.filter_map(|(env, fault)| fault.map(|fault| (env, fault.to_string())));
-    let failures = Vec::from_iter(faults.map(|(env, reason)| Failure { env, reason }));
+    let faults = batch.statuses().iter().enumerate();
+    let failures = faults.filter_map(|(env, status)| match status {
+        EnvStatus::Running => None,
+        EnvStatus::Failed(fault) => Some((env, fault.to_string())),
+    });
+    let failures = Vec::from_iter(failures.map(|(env, reason)| Failure { env, reason }));
     let failed_envs = failures.len();
-    let solves = batch.solves()?;
-    let mean = |pick: fn(&GpuSolve) -> usize| {
-        solves.iter().map(pick).sum::<usize>() as f64 / envs.max(1) as f64
+    let mean = |name: &str| {
+        let rows = batch.output(name).map_or(&[][..], |rows| rows.as_slice());
+        rows.iter().map(|&x| f64::from(x)).sum::<f64>() / envs.max(1) as f64
     };
-    Ok(GpuReport {
+    GpuReport {
         status: match failed_envs {
             0 if steps < run.steps => "interrupted",
             0 => "ok",
             _ => "failed",
         },
-        device: batch.device().to_string(),
+        device: batch.device().unwrap_or_default(),
         seconds,
         steps,
         envs,
@@ -146,12 +149,13 @@ fn report(batch: &GpuBatch, run: &Run, steps: usize, seconds: f64) -> Result<Gpu
         simulated_time: steps as f64 * run.model.params.timestep,
         steps_per_second: (steps * envs) as f64 / seconds.max(f64::MIN_POSITIVE),
         bytes_per_env: batch.bytes_per_env(),
-        iterations_mean: mean(|solve| solve.iterations),
-        contacts_mean: mean(|solve| solve.contacts),
+        iterations_mean: mean("solver_iterations"),
+        contacts_mean: mean("contact_count"),
+        recorded_rows: None,
         failed_envs,
         failures: failures.into_iter().take(NAMED_FAILURES).collect(),
-        qpos: batch.read("qpos")?[..run.model.nq].to_vec(),
-    })
+        qpos: batch.state.qpos.row(0).to_vec(),
+    }
 }
 
 impl fmt::Display for GpuReport {
@@ -171,6 +175,9 @@ impl fmt::Display for GpuReport {
             "last solve: {:.2} iterations, {:.2} contacts on average; {} bytes an environment",
             self.iterations_mean, self.contacts_mean, self.bytes_per_env
         )?;
+        if let Some(rows) = self.recorded_rows {
+            writeln!(f, "{rows} rows are recorded")?;
+        }
         for Failure { env, reason } in &self.failures {
             writeln!(f, "environment {env} failed: {reason}")?;
         }
