@@ -102,10 +102,21 @@ def test_what_cannot_be_is_said(how: dict[str, Any], error: type[Exception], wor
         clench.Batch(ball(), 2, **how)
 
 
-def test_parameters_stay() -> None:
+def test_environments_have_parameters_of_their_own() -> None:
+    device, processor = pair()
+    masses = device.param("body_mass") * np.linspace(0.5, 2, 12, dtype=np.float32)[:, None]
+    for batch in (device, processor):
+        batch.randomize("body_mass", masses)
+        batch.step(10)
+    np.testing.assert_allclose(device.qpos, processor.qpos, atol=1e-4)
+
+
+def test_options_and_constraints_stay() -> None:
     device, _ = pair()
     with pytest.raises(clench.ClenchError, match="cannot be changed yet"):
-        device.randomize("body_mass", device.param("body_mass"))
+        device.options = clench.RigidOptions(iterations=3)
+    with pytest.raises(clench.ClenchError, match="cannot be changed yet"):
+        device.add_weld("torso", "pelvis")
 
 
 def test_environments_train_on_a_device() -> None:

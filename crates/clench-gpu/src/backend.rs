@@ -152,6 +152,14 @@ impl Backend<f32> for GpuBatch {
         Ok(())
     }
 
+    fn parameters_of(&self, model: &Model) -> Result<Vec<f32>, SimError> {
+        Ok(GpuBatch::parameters_of(self, model)?)
+    }
+
+    fn set_parameters(&mut self, envs: &[usize], rows: &[Vec<f32>]) -> Result<(), SimError> {
+        Ok(self.give_parameters(envs, rows)?)
+    }
+
     fn write(&mut self, field: &'static str, rows: &[f32]) -> Result<(), SimError> {
         Ok(self.write_unchecked(field, rows)?)
     }

@@ -5,6 +5,7 @@ use crate::device::{Device, DeviceInfo};
 use crate::error::{GpuError, GpuFault};
 use crate::fields::{self, Fields};
 use crate::kernels::{ASIDE, Memory, constants};
+use crate::parameters::Base;
 use crate::pipelines::{Arrays, Pipelines, layout};
 use crate::tables::{Capacity, Tables};
 use clench_rigid::contact::candidates;
@@ -55,10 +56,14 @@ pub struct GpuBatch {
     pub(crate) rows: Fields,
     pub(crate) reports: Fields,
     pub(crate) count: usize,
-    bindings: wgpu::BindGroup,
+    pub(crate) layout: wgpu::BindGroupLayout,
+    pub(crate) bindings: wgpu::BindGroup,
+    /// Parameters of environments, parameter by parameter, environment next to environment; none while all have the model's.
+    pub(crate) own: Vec<f32>,
+    pub(crate) base: Base,
     pipelines: Pipelines,
     capacity: Capacity,
-    settings: StepSettings,
+    pub(crate) settings: StepSettings,
     model: Arc<Model>,
 }
 
@@ -92,6 +97,7 @@ impl GpuBatch {
         })?;
         let device = Device::open(options.device.as_deref())?;
         let (mut tables, capacity) = Tables::new(&model, &settings, &pairs);
+        let base = Base::new(&tables, pairs);
         let state = fields::state_fields(&model, capacity);
         let work = fields::work_fields(&model, capacity);
         let rows = fields::row_fields(&model, capacity);
@@ -112,6 +118,7 @@ impl GpuBatch {
             work: array("work", work.size),
             rows: array("rows", rows.size),
             reports: array("reports", reports.size),
+            own: device.array("own", 4),
         };
         if pollster::block_on(scope.pop()).is_some() {
             return Err(GpuError::OutOfMemory {
@@ -136,6 +143,9 @@ impl GpuBatch {
         queue.write_buffer(&arrays.numbers, 0, tables.numbers.as_bytes());
         let mut batch = GpuBatch {
             bindings: arrays.bind(&device, &layout),
+            layout,
+            own: Vec::new(),
+            base,
             device,
             arrays,
             state,

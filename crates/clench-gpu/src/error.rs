@@ -74,6 +74,11 @@ pub enum GpuError {
     /// An option outside its range.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// Parameters that would make other kernels.
+    #[error(
+        "these parameters cannot differ between environments on a graphics device: they decide what its kernels are made of"
+    )]
+    Structure,
     /// What the batch on this side of the bus refuses.
     #[error(transparent)]
     Sim(#[from] SimError),

@@ -16,6 +16,7 @@ mod device;
 mod error;
 mod fields;
 mod kernels;
+mod parameters;
 mod pipelines;
 mod tables;
 mod transfer;

@@ -32,7 +32,7 @@ pub(crate) struct Pipelines {
     pub advance: Vec<Pipeline>,
 }
 
-/// The six arrays, in the order of the kernels' bindings.
+/// The arrays, in the order of the kernels' bindings.
 pub(crate) struct Arrays {
     pub words: wgpu::Buffer,
     pub numbers: wgpu::Buffer,
@@ -40,10 +40,11 @@ pub(crate) struct Arrays {
     pub work: wgpu::Buffer,
     pub rows: wgpu::Buffer,
     pub reports: wgpu::Buffer,
+    pub own: wgpu::Buffer,
 }
 
 impl Arrays {
-    fn all(&self) -> [&wgpu::Buffer; 6] {
+    fn all(&self) -> [&wgpu::Buffer; 7] {
         let Arrays {
             words,
             numbers,
@@ -51,8 +52,9 @@ impl Arrays {
             work,
             rows,
             reports,
+            own,
         } = self;
-        [words, numbers, state, work, rows, reports]
+        [words, numbers, state, work, rows, reports, own]
     }
 
     /// What the kernels are given.
@@ -72,14 +74,14 @@ impl Arrays {
     }
 }
 
-/// What all kernels are given: the first two arrays to read, the others to write as well.
+/// What all kernels are given: the model and the parameters of environments to read, the others to write as well.
 pub(crate) fn layout(device: &Device) -> wgpu::BindGroupLayout {
     let entry = |binding| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Storage {
-                read_only: binding < 2,
+                read_only: binding < 2 || binding == 6,
             },
             has_dynamic_offset: false,
             min_binding_size: None,
@@ -90,7 +92,7 @@ pub(crate) fn layout(device: &Device) -> wgpu::BindGroupLayout {
         .device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("arrays"),
-            entries: &[0, 1, 2, 3, 4, 5].map(entry),
+            entries: &[0, 1, 2, 3, 4, 5, 6].map(entry),
         })
 }
 

@@ -225,3 +225,80 @@ fn the_pool_and_what_is_not_computed_are_told() {
     let jacobian = batch.subtree_jacobian(1).expect("a body");
     assert!(jacobian.row(0).iter().all(|x| x.is_finite()));
 }
+
+#[test]
+fn environments_have_parameters_of_their_own() {
+    let implicit = own("medley").replace("<option ", "<option integrator=\"implicitfast\" ");
+    let model = text(&implicit);
+    let Some((mut device, _)) = both(&model) else {
+        return;
+    };
+    let mut processor = Batch::with_options(model.clone(), COUNT, BatchOptions::default());
+    let processor = processor.as_mut().expect("a good model");
+    processor
+        .restore(&device.save().expect("rows"))
+        .expect("the same model");
+    let start = device.save().expect("rows");
+    let envs = [3, 8, 21];
+    let mut random = Random::new(9);
+    for field in [
+        "body_mass",
+        "geom_friction",
+        "gravity",
+        "dof_damping",
+        "actuator_gear",
+        "jnt_range",
+    ] {
+        let mut values = Vec::new();
+        for _ in envs {
+            let row = processor.param(field, 0).expect("a field").into_iter();
+            values.extend(row.map(|x| x * (1.0 + 0.3 * random.signed() as f32)));
+        }
+        for batch in [&mut device, &mut *processor] {
+            batch.randomize(field, &envs, &values).expect("good values");
+        }
+    }
+    let mut plain = clench_gpu::batch(model.clone(), COUNT, BatchOptions::default(), None);
+    let plain = plain.as_mut().expect("a device");
+    plain.restore(&start).expect("the same model");
+    for batch in [&mut device, &mut *processor, &mut *plain] {
+        assert_eq!(batch.step_n(3).expect("good states").running, COUNT);
+    }
+    for env in 0..COUNT {
+        let (found, without) = (device.state.qvel.row(env), plain.state.qvel.row(env));
+        if !envs.contains(&env) {
+            assert_bits(found, without, "one that has the model's");
+            continue;
+        }
+        let gap = |other: &[f32]| {
+            let gaps = found.iter().zip(other).map(|(a, b)| (a - b).abs());
+            gaps.fold(0.0, f32::max)
+        };
+        let (here, there) = (gap(processor.state.qvel.row(env)), gap(without));
+        assert!(here < 0.02 * there, "environment {env}: {here} and {there}");
+    }
+    // They stay when an environment begins anew.
+    let masses = device.param("body_mass", 8).expect("masses");
+    device.reset(8).expect("an environment");
+    assert_eq!(device.param("body_mass", 8).expect("masses"), masses);
+}
+
+#[test]
+fn parameters_that_would_make_other_kernels_are_refused() {
+    let model = text(&own("runner"));
+    let Some((mut batch, _)) = both(&model) else {
+        return;
+    };
+    let mut stiffness = batch.param("jnt_stiffness", 0).expect("a field");
+    let before = stiffness.clone();
+    stiffness[0] = 4.0;
+    let error = batch.randomize("jnt_stiffness", &[2], &stiffness);
+    let error = error
+        .expect_err("a spring where there was none")
+        .to_string();
+    assert!(
+        error.contains("they decide what its kernels are made of"),
+        "{error}"
+    );
+    assert_eq!(batch.param("jnt_stiffness", 2).expect("a field"), before);
+}

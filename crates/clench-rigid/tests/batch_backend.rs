@@ -7,6 +7,7 @@ use batches::*;
 use clench_math::{Force, Vec3};
 use clench_rigid::batch::{Backend, Controls, Outcome, Trouble};
 use clench_rigid::builder::ModelBuilder;
+use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, Fault, Output, Sim, SimError, State};
 use std::sync::Arc;
@@ -96,6 +97,12 @@ impl Backend<f64> for Played {
         output == Output::qacc
     }
     fn want(&mut self, _: &[Output]) -> Result<(), SimError> {
+        Ok(())
+    }
+    fn parameters_of(&self, _: &Model) -> Result<Vec<f64>, SimError> {
+        Err(SimError::Backend("they are the model's".to_owned()))
+    }
+    fn set_parameters(&mut self, _: &[usize], _: &[Vec<f64>]) -> Result<(), SimError> {
         Ok(())
     }
     fn write(&mut self, field: &'static str, rows: &[f64]) -> Result<(), SimError> {
@@ -300,12 +307,12 @@ fn what_the_device_does_not_do_is_said() {
         told(played.record(&["sensordata"])),
         "a played device does not compute sensordata yet; it computes time, qpos, qvel, act, qacc"
     );
-    let parameters = "the parameters of a batch on a played device cannot be changed yet: they are as it was made";
     let masses = vec![1.0; played.model().nbody()];
     assert_eq!(
         told(played.randomize("body_mass", &[0], &masses)),
-        parameters
+        "they are the model's"
     );
+    assert!(played.param("body_mass", 0).expect("masses") != masses);
     assert!(played.set_options(RigidOptions::new()).is_err());
     assert!(played.add_weld(&[0], 1, 2).is_err());
     assert!(played.bytes_per_env() > 1_000_000);

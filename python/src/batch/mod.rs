@@ -68,8 +68,8 @@ mod status;
 /// device : str
 ///     What steps: "cpu"; "gpu", the first graphics device of this machine, or "gpu:" and a part of the name of one that
 ///     `devices` lists. A device steps in single precision and computes the outputs that are recorded. What is written into arrays
-///     goes to it before a call, and the states come back after it; parameters and options stay what they are. Questions, such as
-///     Jacobians, are answered by the processor.
+///     goes to it before a call, and the states come back after it; options stay what they are. Questions, such as Jacobians, are
+///     answered by the processor.
 ///
 /// Raises
 /// ------

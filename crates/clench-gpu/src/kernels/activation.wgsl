@@ -2,7 +2,7 @@
 
 // The setpoint of a servo on a circle, moved by whole turns to the one nearest to `near`; other inputs pass unchanged.
 fn nearest_setpoint(u: u32, input: f32, near: f32) -> f32 {
-    let turn = numbers[ACTUATOR_TURN + u];
+    let turn = parameter(ACTUATOR_TURN + u);
     if (turn == 0.0) {
         return input;
     }
@@ -10,7 +10,7 @@ fn nearest_setpoint(u: u32, input: f32, near: f32) -> f32 {
 }
 
 fn time_constant(u: u32) -> f32 {
-    return max(numbers[DYNAMICS_PRM + 3u * u], TINY);
+    return max(parameter(DYNAMICS_PRM + 3u * u), TINY);
 }
 
 // e^x − 1, without the digits that a device's own power loses where x is small.
@@ -28,5 +28,5 @@ fn next_activation(u: u32, act: f32, rate: f32) -> f32 {
         let tau = time_constant(u);
         time = -tau * exp_less_one(-TIMESTEP / tau);
     }
-    return clamp(act + rate * time, numbers[ACT_RANGE + 2u * u], numbers[ACT_RANGE + 2u * u + 1u]);
+    return clamp(act + rate * time, parameter(ACT_RANGE + 2u * u), parameter(ACT_RANGE + 2u * u + 1u));
 }

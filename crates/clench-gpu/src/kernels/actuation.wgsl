@@ -19,8 +19,8 @@ fn limit_tendon_forces() {
                 total += fetch(ACTUATOR_FORCE + u);
             }
         }
-        let low = numbers[TENDON_FORCE_RANGE + 2u * t];
-        let high = numbers[TENDON_FORCE_RANGE + 2u * t + 1u];
+        let low = parameter(TENDON_FORCE_RANGE + 2u * t);
+        let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
         if (total == 0.0 || (total >= low && total <= high)) {
             continue;
         }
@@ -45,7 +45,7 @@ fn actuation() {
     limit_tendon_forces();
     for (var u = 0u; u < NU; u++) {
         let range = FORCE_RANGE + 2u * u;
-        let force = clamp(fetch(ACTUATOR_FORCE + u), numbers[range], numbers[range + 1u]);
+        let force = clamp(fetch(ACTUATOR_FORCE + u), parameter(range), parameter(range + 1u));
         put(ACTUATOR_FORCE + u, force);
         for (var k = words[ACTUATOR_ROW + u]; k < words[ACTUATOR_ROW + u + 1u]; k++) {
             add(QFRC_ACTUATOR + words[ACTUATOR_DOF + k], fetch(ACTUATOR_MOMENT + k) * force);
@@ -56,6 +56,6 @@ fn actuation() {
             add(QFRC_ACTUATOR + i, fetch(QFRC_GRAVCOMP + i));
         }
         let range = DOF_FORCE_RANGE + 2u * i;
-        put(QFRC_ACTUATOR + i, clamp(fetch(QFRC_ACTUATOR + i), numbers[range], numbers[range + 1u]));
+        put(QFRC_ACTUATOR + i, clamp(fetch(QFRC_ACTUATOR + i), parameter(range), parameter(range + 1u)));
     }
 }

@@ -102,7 +102,7 @@ fn finish_row(a: u32) {
     for (var i = 0u; i < bound(NV); i++) {
         let j = row(JACOBIAN + a * NV + i);
         velocity += j * given(QVEL + i);
-        inertia += j * j * numbers[DOF_INVWEIGHT0 + i];
+        inertia += j * j * parameter(DOF_INVWEIGHT0 + i);
     }
     put_row(VELOCITY + a, velocity);
     put_row(AREF + a, row(AREF + a) - row(DAMPING + a) * velocity);
@@ -153,7 +153,7 @@ fn finish_block(b: u32) {
 
 @compute @workgroup_size(GROUP)
 fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
-    env = environment_of(workgroup);
+    take_up(environment_of(workgroup));
     lane = index;
     if (env >= N) {
         return;

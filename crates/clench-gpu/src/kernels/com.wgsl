@@ -2,14 +2,14 @@
 
 fn subtree_com() {
     for (var b = 0u; b < bound(NBODY); b++) {
-        put3(SUBTREE_COM + 3u * b, fetch3(XIPOS + 3u * b) * numbers[BODY_MASS + b]);
+        put3(SUBTREE_COM + 3u * b, fetch3(XIPOS + 3u * b) * parameter(BODY_MASS + b));
     }
     for (var b = NBODY - 1u; b > 0u; b--) {
         let parent = words[BODY_PARENT + b];
         put3(SUBTREE_COM + 3u * parent, fetch3(SUBTREE_COM + 3u * parent) + fetch3(SUBTREE_COM + 3u * b));
     }
     for (var b = 0u; b < bound(NBODY); b++) {
-        let mass = numbers[BODY_SUBTREEMASS + b];
+        let mass = parameter(BODY_SUBTREEMASS + b);
         var com = fetch3(XIPOS + 3u * b);
         if (mass >= TINY) {
             com = fetch3(SUBTREE_COM + 3u * b) * (1.0 / mass);
@@ -21,8 +21,8 @@ fn subtree_com() {
 // The inertia of a body about the centre of mass of its tree.
 fn body_inertia(b: u32) {
     let axes = fetch_matrix(XIMAT + 9u * b);
-    let diagonal = number3(BODY_INERTIA + 3u * b);
-    let mass = numbers[BODY_MASS + b];
+    let diagonal = parameter3(BODY_INERTIA + 3u * b);
+    let mass = parameter(BODY_MASS + b);
     let o = fetch3(XIPOS + 3u * b) - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
     let r = transpose(axes);
     let x = r[0] * diagonal;

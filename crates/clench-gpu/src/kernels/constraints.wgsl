@@ -30,20 +30,20 @@ fn push_friction() {
         let prm = FRICTION_PRM + 9u * k;
         let soft = soften(prm + 2u, 0.0);
         begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k]);
-        add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, numbers[prm + 1u]), numbers[prm]);
+        add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, parameter(prm + 1u)), parameter(prm));
     }
 }
 
 // One end of the range of a coordinate. `source` is twice the coordinate, one more at the upper end.
 fn push_limit(prm: u32, distance: f32, source: u32) {
-    let margin = numbers[prm + 2u];
+    let margin = parameter(prm + 2u);
     if (distance >= margin) {
         return;
     }
     let soft = soften(prm + 4u, distance - margin);
     begin_block(LIMIT, 1u, source);
     let aref = -soft.stiffness * (distance - margin);
-    add_row(distance, aref, soft.damping, regularization(soft.impedance, numbers[prm + 3u]), 0.0);
+    add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + 3u)), 0.0);
 }
 
 fn push_limits() {
@@ -53,20 +53,20 @@ fn push_limits() {
         if (is_ball(c)) {
             let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
             let angle = length(quat_rotation_vector(turn));
-            push_limit(prm, max(numbers[prm], numbers[prm + 1u]) - angle, 2u * c);
+            push_limit(prm, max(parameter(prm), parameter(prm + 1u)) - angle, 2u * c);
             continue;
         }
         let value = coordinate_value(c);
-        push_limit(prm, value - numbers[prm], 2u * c);
-        push_limit(prm, numbers[prm + 1u] - value, 2u * c + 1u);
+        push_limit(prm, value - parameter(prm), 2u * c);
+        push_limit(prm, parameter(prm + 1u) - value, 2u * c + 1u);
     }
 }
 
 // The rows of a contact with friction, after the normal's.
 fn push_tangents(dim: u32, friction: u32, normal_r: f32, damping: f32, friction_damping: f32) {
-    let mu1 = numbers[friction];
+    let mu1 = parameter(friction);
     for (var k = 1u; k < dim; k++) {
-        let mu = numbers[friction + k - 1u];
+        let mu = parameter(friction + k - 1u);
         if (ELLIPTIC_CONES) {
             let r = normal_r / IMPRATIO * mu1 * mu1 / (mu * mu);
             add_row(0.0, 0.0, friction_damping, r, mu);
@@ -81,11 +81,11 @@ fn push_contact(contact: u32) {
     let pair = u32(fetch(place));
     let prm = PAIR_PRM + PAIR_PRM_SIZE * pair;
     let distance = fetch(place + 1u);
-    let margin = numbers[prm];
+    let margin = parameter(prm);
     if (distance >= margin) {
         return;
     }
-    let a0 = numbers[prm + 1u];
+    let a0 = parameter(prm + 1u);
     let friction = prm + 2u;
     let soft = soften(prm + 7u, distance - margin);
     let aref = -soft.stiffness * (distance - margin);
@@ -96,14 +96,14 @@ fn push_contact(contact: u32) {
         add_row(distance, aref, soft.damping, plain, 0.0);
         return;
     }
-    let mu = numbers[friction];
+    let mu = parameter(friction);
     if (ELLIPTIC_CONES) {
         begin_block(CONTACT_ELLIPTIC, dim, contact);
         add_row(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO));
         var damping = soft.damping;
-        let solref = vec2f(numbers[prm + 14u], numbers[prm + 15u]);
+        let solref = vec2f(parameter(prm + 14u), parameter(prm + 15u));
         if (any(solref != vec2f()) && !is_mixed(solref)) {
-            damping = spring_damper(solref, numbers[prm + 10u]).y;
+            damping = spring_damper(solref, parameter(prm + 10u)).y;
         }
         push_tangents(dim, friction, plain, soft.damping, damping);
         return;

@@ -19,7 +19,7 @@ fn add_outer(dofs: u32, entries: u32, start: u32, end: u32, scale: f32) {
 }
 
 fn is_saturated(x: f32, range: u32) -> bool {
-    return x <= numbers[range] || x >= numbers[range + 1u];
+    return x <= parameter(range) || x >= parameter(range + 1u);
 }
 
 // Whether the actuators of a tendon pull with as much as it bears.
@@ -30,8 +30,8 @@ fn tendon_is_saturated(t: u32) -> bool {
             total += fetch(ACTUATOR_FORCE + u);
         }
     }
-    let low = numbers[TENDON_FORCE_RANGE + 2u * t];
-    let high = numbers[TENDON_FORCE_RANGE + 2u * t + 1u];
+    let low = parameter(TENDON_FORCE_RANGE + 2u * t);
+    let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
     return total <= low + abs(low) * SUM_ROUNDING || total >= high - abs(high) * SUM_ROUNDING;
 }
 
@@ -79,15 +79,15 @@ fn add_fluid(b: u32) {
     let at = fetch3(XIPOS + 3u * b);
     let velocity = velocity_at(b, at);
     let angular = back * velocity.angular;
-    let linear = back * (velocity.linear - number3(WIND));
+    let linear = back * (velocity.linear - parameter3(WIND));
     let drag = BODY_DRAG + 12u * b;
     for (var i = 0u; i < bound(NV); i++) {
         if (!moves(b, i)) {
             continue;
         }
         let motion = motion_at(b, i, at);
-        let torque = axes * resistance_change(number3(drag), number3(drag + 6u), angular, back * motion.angular);
-        let force = axes * resistance_change(number3(drag + 3u), number3(drag + 9u), linear, back * motion.linear);
+        let torque = axes * resistance_change(parameter3(drag), parameter3(drag + 6u), angular, back * motion.angular);
+        let force = axes * resistance_change(parameter3(drag + 3u), parameter3(drag + 9u), linear, back * motion.linear);
         let spatial = Spatial(torque + cross(offset_of(b, at), force), force);
         for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
             add(QLD + p, -TIMESTEP * spatial_dot(fetch_spatial(CDOF + 6u * words[TREE_DOF + p]), spatial));

@@ -9,12 +9,12 @@ struct Placed {
 }
 
 fn placed(geom: u32) -> Placed {
-    return Placed(fetch3(GEOM_XPOS + 3u * geom), fetch_matrix(GEOM_XMAT + 9u * geom), number3(GEOM_SIZE + 3u * geom));
+    return Placed(fetch3(GEOM_XPOS + 3u * geom), fetch_matrix(GEOM_XMAT + 9u * geom), parameter3(GEOM_SIZE + 3u * geom));
 }
 
 // Whether the bounding spheres of a pair meet; a plane has none.
 fn may_touch(pair: u32, a: u32, b: u32) -> bool {
-    let reach = numbers[PAIR_REACH + pair];
+    let reach = parameter(PAIR_REACH + pair);
     let offset = fetch3(GEOM_XPOS + 3u * b) - fetch3(GEOM_XPOS + 3u * a);
     if (words[GEOM_KIND + a] == PLANE) {
         let place = GEOM_XMAT + 9u * a;
@@ -45,7 +45,7 @@ fn on_plane(pair: u32, plane: Placed, b: Placed, kind: u32, range: f32) {
 fn collide(pair: u32, a: u32, b: u32) {
     let first = placed(a);
     let second = placed(b);
-    let range = numbers[PAIR_RANGE + pair];
+    let range = parameter(PAIR_RANGE + pair);
     let method = words[PAIR_METHOD + pair];
     var rest = FOUND;
     if (ANY_ON_PLANE && method == ON_PLANE) {

@@ -4,21 +4,21 @@
 fn push_coupling(equality: u32, prm: u32) {
     let follower = words[EQ_PAIR + 2u * equality];
     let leader = words[EQ_PAIR + 2u * equality + 1u];
-    var value = numbers[prm + 2u];
+    var value = parameter(prm + 2u);
     var slope = 0.0;
     if (leader != NONE) {
-        let e = coordinate_value(leader) - numbers[prm + 1u];
-        value = numbers[prm + 6u];
+        let e = coordinate_value(leader) - parameter(prm + 1u);
+        value = parameter(prm + 6u);
         for (var k = 4u; k > 0u; k--) {
             slope = slope * e + value;
-            value = value * e + numbers[prm + 1u + k];
+            value = value * e + parameter(prm + 1u + k);
         }
     }
-    let violation = coordinate_value(follower) - numbers[prm] - value;
+    let violation = coordinate_value(follower) - parameter(prm) - value;
     let soft = soften(prm + 8u, violation);
     begin_block(COUPLING, 1u, equality);
     // The slope stands where costs have their shape: this one needs none.
-    add_row(violation, -soft.stiffness * violation, soft.damping, regularization(soft.impedance, numbers[prm + 7u]), slope);
+    add_row(violation, -soft.stiffness * violation, soft.damping, regularization(soft.impedance, parameter(prm + 7u)), slope);
 }
 
 // J̇ v of the last three rows of a weld, for bias accelerations whose difference is `alpha`.
@@ -53,9 +53,9 @@ fn push_held(equality: u32, prm: u32, dim: u32) {
     }
     let soft = soften(prm + 17u, sqrt(dot(apart, apart) + dot(turned, turned)));
     begin_block(HELD, dim, equality);
-    add_held_rows(apart, first.linear - second.linear, soft, numbers[prm + 15u]);
+    add_held_rows(apart, first.linear - second.linear, soft, parameter(prm + 15u));
     if (dim == 6u) {
-        add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, numbers[prm + 16u]);
+        add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + 16u));
     }
 }
 

@@ -83,14 +83,14 @@ fn push_strings() {
         }
         var force = tendon_passive_force(t) + tendon_constraint_force(t);
         for (var k = words[TENDON_PULL + t]; k < words[TENDON_PULL + t + 1u]; k++) {
-            force += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]) * numbers[PULL_GEAR + k];
+            force += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]) * parameter(PULL_GEAR + k);
         }
         for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
             let start = words[SECTION_SITES + 2u * s];
             let to = words[SECTION_SITES + 2u * s + 1u];
             let p = fetch3(SITE_XPOS + 3u * start);
             let q = fetch3(SITE_XPOS + 3u * to);
-            let pull = direction(q - p).xyz * (numbers[SECTION_SHARE + s] * force);
+            let pull = direction(q - p).xyz * (parameter(SECTION_SHARE + s) * force);
             push(words[SITE_BODY + start], -1.0, pull, vec3f(), p);
             push(words[SITE_BODY + to], 1.0, pull, vec3f(), q);
         }

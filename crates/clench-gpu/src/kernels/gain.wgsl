@@ -4,12 +4,12 @@
 // coefficient.
 
 fn affine(place: u32, length: f32, velocity: f32) -> f32 {
-    return numbers[place] + numbers[place + 1u] * length + numbers[place + 2u] * velocity;
+    return parameter(place) + parameter(place + 1u) * length + parameter(place + 2u) * velocity;
 }
 
 fn acting_control(u: u32) -> f32 {
     let ctrl = given(CTRL + words[ACTUATOR_CTRL + u]);
-    return clamp(ctrl, numbers[CTRL_RANGE + 2u * u], numbers[CTRL_RANGE + 2u * u + 1u]);
+    return clamp(ctrl, parameter(CTRL_RANGE + 2u * u), parameter(CTRL_RANGE + 2u * u + 1u));
 }
 
 fn activation_rate(u: u32, ctrl: f32, act: f32) -> f32 {
@@ -24,7 +24,7 @@ fn activation_rate(u: u32, ctrl: f32, act: f32) -> f32 {
             if (!ANY_MUSCLE) {
                 return 0.0;
             }
-            return muscle_rate(ctrl, act, number3(DYNAMICS_PRM + 3u * u));
+            return muscle_rate(ctrl, act, parameter3(DYNAMICS_PRM + 3u * u));
         }
         default: {
             return 0.0;
@@ -73,7 +73,7 @@ fn unlimited_force(u: u32) -> f32 {
 fn unlimited_slope(u: u32) -> f32 {
     let length = fetch(ACTUATOR_LENGTH + u);
     let gain_at = ACTUATOR_GAIN + LAW_SIZE * u;
-    var slope = numbers[gain_at + 2u];
+    var slope = parameter(gain_at + 2u);
     if (ANY_MUSCLE && words[GAIN_LAW + u] == LAW_MUSCLE) {
         slope = muscle_gain_slope(gain_at, length, fetch(ACTUATOR_VELOCITY + u));
     }
@@ -83,5 +83,5 @@ fn unlimited_slope(u: u32) -> f32 {
     if (ANY_MUSCLE && words[BIAS_LAW + u] == LAW_MUSCLE) {
         return slope;
     }
-    return slope + numbers[ACTUATOR_BIAS + LAW_SIZE * u + 2u];
+    return slope + parameter(ACTUATOR_BIAS + LAW_SIZE * u + 2u);
 }

@@ -4,14 +4,14 @@
 // The origin of the first or second frame of an equality, in the world.
 fn held_point(equality: u32, side: u32) -> vec3f {
     let b = words[EQ_PAIR + 2u * equality + side];
-    let anchor = number3(words[EQ_PRM + equality] + 3u * side);
+    let anchor = parameter3(words[EQ_PRM + equality] + 3u * side);
     return fetch3(XPOS + 3u * b) + fetch_matrix(XMAT + 9u * b) * anchor;
 }
 
 // The orientation of a frame.
 fn held_quat(equality: u32, side: u32) -> vec4f {
     let b = words[EQ_PAIR + 2u * equality + side];
-    return quat_product(fetch4(XQUAT + 4u * b), number4(words[EQ_PRM + equality] + 6u + 4u * side));
+    return quat_product(fetch4(XQUAT + 4u * b), parameter4(words[EQ_PRM + equality] + 6u + 4u * side));
 }
 
 // The inverse of the second frame's orientation.
@@ -26,7 +26,7 @@ fn relative_quat(equality: u32) -> vec4f {
 }
 
 fn torquescale(equality: u32) -> f32 {
-    return numbers[words[EQ_PRM + equality] + 14u];
+    return parameter(words[EQ_PRM + equality] + 14u);
 }
 
 // The imaginary part of ½ (0, u) q.

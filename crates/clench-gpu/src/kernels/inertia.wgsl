@@ -18,7 +18,7 @@ fn composite_inertia() {
         for (var p = words[TREE_START + i]; p < end; p++) {
             put(QM + p, spatial_dot(fetch_spatial(CDOF + 6u * words[TREE_DOF + p]), carried));
         }
-        add(QM + end - 1u, numbers[DOF_ARMATURE + i]);
+        add(QM + end - 1u, parameter(DOF_ARMATURE + i));
     }
 }
 

@@ -88,7 +88,7 @@ fn finish_step() {
 // Minus the change of a damper's force with its velocity.
 fn damping_slope(law: u32, velocity: f32) -> f32 {
     let v = abs(velocity);
-    return numbers[law] + v * (2.0 * numbers[law + 1u] + v * 3.0 * numbers[law + 2u]);
+    return parameter(law) + v * (2.0 * parameter(law + 1u) + v * 3.0 * parameter(law + 2u));
 }
 
 // The acceleration that advances the velocity: damping is implicit, so it solves (M + h B) a = τ + Jᵀf.

@@ -3,8 +3,8 @@
 // The rotation by a joint from its position at qpos0; the whole orientation of a ball or free joint.
 fn joint_turn(joint: u32, kind: u32, q: u32) -> vec4f {
     if (kind == HINGE) {
-        let angle = given(QPOS + q) - numbers[QPOS0 + q];
-        return quat_from_axis_angle(number3(JNT_AXIS + 3u * joint), angle);
+        let angle = given(QPOS + q) - parameter(QPOS0 + q);
+        return quat_from_axis_angle(parameter3(JNT_AXIS + 3u * joint), angle);
     }
     if (kind == BALL) {
         return quat_normalize(given4(QPOS + q));
@@ -13,8 +13,8 @@ fn joint_turn(joint: u32, kind: u32, q: u32) -> vec4f {
 }
 
 fn body_pose(b: u32) {
-    var xpos = number3(BODY_POS + 3u * b);
-    var xquat = number4(BODY_QUAT + 4u * b);
+    var xpos = parameter3(BODY_POS + 3u * b);
+    var xquat = parameter4(BODY_QUAT + 4u * b);
     let mocap = words[BODY_MOCAP + b];
     if (mocap != NONE) {
         xpos = given3(MOCAP_POS + 3u * mocap);
@@ -29,8 +29,8 @@ fn body_pose(b: u32) {
     for (var j = words[BODY_JNT + b]; j < last; j++) {
         let kind = words[JNT_KIND + j];
         let q = words[JNT_QPOS + j];
-        let anchor = number3(JNT_POS + 3u * j);
-        let axis = number3(JNT_AXIS + 3u * j);
+        let anchor = parameter3(JNT_POS + 3u * j);
+        let axis = parameter3(JNT_AXIS + 3u * j);
         if (kind == FREE) {
             xpos = given3(QPOS + q);
             xquat = joint_turn(j, kind, q);
@@ -41,7 +41,7 @@ fn body_pose(b: u32) {
         let xanchor = xpos + quat_rotate(xquat, anchor);
         let xaxis = quat_rotate(xquat, axis);
         if (kind == SLIDE) {
-            xpos += xaxis * (given(QPOS + q) - numbers[QPOS0 + q]);
+            xpos += xaxis * (given(QPOS + q) - parameter(QPOS0 + q));
         } else {
             xquat = quat_product(xquat, joint_turn(j, kind, q));
             xpos = xanchor - quat_rotate(xquat, anchor);
@@ -59,17 +59,17 @@ fn attached_poses(b: u32) {
     let xpos = fetch3(XPOS + 3u * b);
     let xquat = fetch4(XQUAT + 4u * b);
     let xmat = quat_matrix(xquat);
-    put3(XIPOS + 3u * b, xpos + xmat * number3(BODY_IPOS + 3u * b));
-    put_matrix(XIMAT + 9u * b, quat_matrix(quat_product(xquat, number4(BODY_IQUAT + 4u * b))));
+    put3(XIPOS + 3u * b, xpos + xmat * parameter3(BODY_IPOS + 3u * b));
+    put_matrix(XIMAT + 9u * b, quat_matrix(quat_product(xquat, parameter4(BODY_IQUAT + 4u * b))));
     let last = words[BODY_GEOM + b + 1u];
     for (var g = words[BODY_GEOM + b]; g < last; g++) {
-        put3(GEOM_XPOS + 3u * g, xpos + xmat * number3(GEOM_POS + 3u * g));
-        put_matrix(GEOM_XMAT + 9u * g, quat_matrix(quat_product(xquat, number4(GEOM_QUAT + 4u * g))));
+        put3(GEOM_XPOS + 3u * g, xpos + xmat * parameter3(GEOM_POS + 3u * g));
+        put_matrix(GEOM_XMAT + 9u * g, quat_matrix(quat_product(xquat, parameter4(GEOM_QUAT + 4u * g))));
     }
     let last_site = words[BODY_SITE + b + 1u];
     for (var s = words[BODY_SITE + b]; s < last_site; s++) {
-        put3(SITE_XPOS + 3u * s, xpos + xmat * number3(SITE_POS + 3u * s));
-        put_matrix(SITE_XMAT + 9u * s, quat_matrix(quat_product(xquat, number4(SITE_QUAT + 4u * s))));
+        put3(SITE_XPOS + 3u * s, xpos + xmat * parameter3(SITE_POS + 3u * s));
+        put_matrix(SITE_XMAT + 9u * s, quat_matrix(quat_product(xquat, parameter4(SITE_QUAT + 4u * s))));
     }
 }
 

@@ -8,13 +8,38 @@
 @group(0) @binding(3) var<storage, read_write> work: array<f32>;
 @group(0) @binding(4) var<storage, read_write> rows: array<f32>;
 @group(0) @binding(5) var<storage, read_write> reports: array<u32>;
+// The parameters of each environment, where some have parameters of their own: the first PARAMETERS of `numbers` for each.
+@group(0) @binding(6) var<storage, read> own: array<f32>;
 
 // The environment of this thread.
 var<private> env: u32;
+// Whether environments have parameters of their own.
+var<private> has_own: bool;
+
+fn take_up(index: u32) {
+    env = index;
+    has_own = words[OWN_PARAMETERS] == 1u;
+}
+
+// A number of the model as this environment has it.
+fn parameter(place: u32) -> f32 {
+    if (has_own) {
+        return own[place * N + env];
+    }
+    return numbers[place];
+}
+
+fn parameter3(place: u32) -> vec3f {
+    return vec3f(parameter(place), parameter(place + 1u), parameter(place + 2u));
+}
+
+fn parameter4(place: u32) -> vec4f {
+    return vec4f(parameter3(place), parameter(place + 3u));
+}
 
 // Takes up an environment; false where there is none, or where it has failed and stands still.
 fn begin(index: u32) -> bool {
-    env = index;
+    take_up(index);
     if (index >= N) {
         return false;
     }
@@ -90,14 +115,6 @@ fn given4(place: u32) -> vec4f {
 
 fn keep(place: u32, x: f32) {
     state[place * N + env] = x;
-}
-
-fn number3(place: u32) -> vec3f {
-    return vec3f(numbers[place], numbers[place + 1u], numbers[place + 2u]);
-}
-
-fn number4(place: u32) -> vec4f {
-    return vec4f(number3(place), numbers[place + 3u]);
 }
 
 // A row of the block of this environment.

@@ -18,7 +18,7 @@ fn muscle_rate(ctrl: f32, act: f32, prm: vec3f) -> f32 {
 }
 
 fn muscle_length(prm: u32, length: f32) -> f32 {
-    return numbers[prm + 2u] + length / numbers[prm + 1u];
+    return parameter(prm + 2u) + length / parameter(prm + 1u);
 }
 
 // The active force by length.
@@ -58,16 +58,16 @@ fn active_by_velocity(v: f32, fvmax: f32) -> f32 {
 // What the activation is multiplied by.
 fn muscle_gain(prm: u32, length: f32, velocity: f32) -> f32 {
     let l = muscle_length(prm, length);
-    let v = velocity / divisor(numbers[prm + 1u] * numbers[prm + 5u]);
-    let by_length = active_by_length(l, numbers[prm + 3u], numbers[prm + 4u]);
-    return -numbers[prm] * by_length * active_by_velocity(v, numbers[prm + 7u]);
+    let v = velocity / divisor(parameter(prm + 1u) * parameter(prm + 5u));
+    let by_length = active_by_length(l, parameter(prm + 3u), parameter(prm + 4u));
+    return -parameter(prm) * by_length * active_by_velocity(v, parameter(prm + 7u));
 }
 
 // How that changes with the velocity.
 fn muscle_gain_slope(prm: u32, length: f32, velocity: f32) -> f32 {
-    let scale = divisor(numbers[prm + 1u] * numbers[prm + 5u]);
+    let scale = divisor(parameter(prm + 1u) * parameter(prm + 5u));
     let v = velocity / scale;
-    let above = numbers[prm + 7u] - 1.0;
+    let above = parameter(prm + 7u) - 1.0;
     var slope = 0.0;
     if (v > -1.0 && v <= 0.0) {
         slope = 2.0 * (v + 1.0);
@@ -75,7 +75,7 @@ fn muscle_gain_slope(prm: u32, length: f32, velocity: f32) -> f32 {
         slope = 2.0 * (above - v) / divisor(above);
     }
     let l = muscle_length(prm, length);
-    return -numbers[prm] * active_by_length(l, numbers[prm + 3u], numbers[prm + 4u]) * slope / scale;
+    return -parameter(prm) * active_by_length(l, parameter(prm + 3u), parameter(prm + 4u)) * slope / scale;
 }
 
 // The passive force.
@@ -84,9 +84,9 @@ fn muscle_bias(prm: u32, length: f32) -> f32 {
     if (l <= 1.0) {
         return 0.0;
     }
-    let bend = 0.5 * (1.0 + numbers[prm + 4u]);
+    let bend = 0.5 * (1.0 + parameter(prm + 4u));
     let width = divisor(bend - 1.0);
     let bent = (l - 1.0) / width;
     let force = select(0.5 + (l - bend) / width, 0.5 * bent * bent, l <= bend);
-    return -numbers[prm] * numbers[prm + 6u] * force;
+    return -parameter(prm) * parameter(prm + 6u) * force;
 }

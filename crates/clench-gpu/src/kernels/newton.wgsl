@@ -162,7 +162,7 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
 
 @compute @workgroup_size(GROUP)
 fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
-    env = environment_of(workgroup);
+    take_up(environment_of(workgroup));
     lane = index;
     if (env >= N) {
         return;

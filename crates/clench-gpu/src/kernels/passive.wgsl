@@ -11,22 +11,22 @@ fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
 fn springs() {
     for (var s = 0u; s < NSPRING; s++) {
         let j = words[SPRING_JNT + s];
-        let law = number3(SPRING_LAW + 3u * s);
+        let law = parameter3(SPRING_LAW + 3u * s);
         let q = words[JNT_QPOS + j];
         let kind = words[JNT_KIND + j];
         var qfrc = QFRC_PASSIVE + words[JNT_DOF + j];
         if (kind == SLIDE || kind == HINGE) {
-            let x = given(QPOS + q) - numbers[QPOS_SPRING + q];
+            let x = given(QPOS + q) - parameter(QPOS_SPRING + q);
             add(qfrc, -x * stiffness(law, x));
             continue;
         }
         var turn = q;
         if (kind == FREE) {
-            pull_back(law, given3(QPOS + q) - number3(QPOS_SPRING + q), qfrc);
+            pull_back(law, given3(QPOS + q) - parameter3(QPOS_SPRING + q), qfrc);
             turn += 3u;
             qfrc += 3u;
         }
-        let rest = number4(QPOS_SPRING + turn);
+        let rest = parameter4(QPOS_SPRING + turn);
         pull_back(law, quat_difference(quat_normalize(given4(QPOS + turn)), rest), qfrc);
     }
 }
@@ -34,7 +34,7 @@ fn springs() {
 fn dampers() {
     for (var i = 0u; i < bound(NV); i++) {
         let v = given(QVEL + i);
-        add(QFRC_PASSIVE + i, -v * stiffness(number3(DOF_DAMPER + 3u * i), abs(v)));
+        add(QFRC_PASSIVE + i, -v * stiffness(parameter3(DOF_DAMPER + 3u * i), abs(v)));
     }
 }
 
@@ -51,10 +51,10 @@ fn fluid_forces() {
         let arm = fetch3(XIPOS + 3u * b) - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
         let cvel = fetch_spatial(CVEL + 6u * b);
         let angular = back * cvel.angular;
-        let linear = back * (cvel.linear + cross(cvel.angular, arm) - number3(WIND));
+        let linear = back * (cvel.linear + cross(cvel.angular, arm) - parameter3(WIND));
         let drag = BODY_DRAG + 12u * b;
-        let torque = resistance(number3(drag), number3(drag + 6u), angular);
-        let force = resistance(number3(drag + 3u), number3(drag + 9u), linear);
+        let torque = resistance(parameter3(drag), parameter3(drag + 6u), angular);
+        let force = resistance(parameter3(drag + 3u), parameter3(drag + 9u), linear);
         put_spatial(CFRC + 6u * b, force_at_com(b, axes * force, axes * torque));
     }
     project_forces(QFRC_PASSIVE);
@@ -64,7 +64,7 @@ fn fluid_forces() {
 fn gravity_compensation() {
     clear_dofs(QFRC_GRAVCOMP);
     for (var b = 0u; b < bound(NBODY); b++) {
-        let lift = number3(GRAVITY) * -numbers[BODY_LIFT + b];
+        let lift = parameter3(GRAVITY) * -parameter(BODY_LIFT + b);
         put_spatial(CFRC + 6u * b, force_at_com(b, lift, vec3f()));
     }
     project_forces(QFRC_GRAVCOMP);

@@ -42,13 +42,13 @@ fn object_quat(kind: u32, o: u32, body: u32) -> vec4f {
     let q = fetch4(XQUAT + 4u * body);
     switch kind {
         case INERTIAL_FRAME: {
-            return quat_product(q, number4(BODY_IQUAT + 4u * o));
+            return quat_product(q, parameter4(BODY_IQUAT + 4u * o));
         }
         case GEOM_FRAME: {
-            return quat_product(q, number4(GEOM_QUAT + 4u * o));
+            return quat_product(q, parameter4(GEOM_QUAT + 4u * o));
         }
         case SITE_FRAME: {
-            return quat_product(q, number4(SITE_QUAT + 4u * o));
+            return quat_product(q, parameter4(SITE_QUAT + 4u * o));
         }
         default: {
             return q;
@@ -147,7 +147,7 @@ fn read_site(kind: u32, site: u32, out: u32) {
             put3(out, carried_force(site).angular * axes);
         }
         default: {
-            put3(out, number3(MAGNETIC) * axes);
+            put3(out, parameter3(MAGNETIC) * axes);
         }
     }
 }
@@ -156,7 +156,7 @@ fn read_site(kind: u32, site: u32, out: u32) {
 fn is_inside(s: u32, prm: u32, p: vec3f) -> bool {
     let site = words[s + SENSOR_REFERENCE];
     let local = (p - fetch3(SITE_XPOS + 3u * site)) * fetch_matrix(SITE_XMAT + 9u * site);
-    return is_in_volume(words[s + SENSOR_SHAPE], number3(prm + 2u), local);
+    return is_in_volume(words[s + SENSOR_SHAPE], parameter3(prm + 2u), local);
 }
 
 // The sum of the normal forces of those contacts of the site's body whose line of force meets the site's volume.
@@ -179,7 +179,7 @@ fn touch(s: u32, prm: u32) -> f32 {
         }
         let o = (fetch3(place + 2u) - centre) * axes;
         let d = (fetch3(place + 5u) * select(-1.0, 1.0, own == second)) * axes;
-        sum += select(0.0, normal, meets_volume(words[s + SENSOR_SHAPE], number3(prm + 2u), o, d));
+        sum += select(0.0, normal, meets_volume(words[s + SENSOR_SHAPE], parameter3(prm + 2u), o, d));
     }
     return sum;
 }
@@ -229,7 +229,7 @@ fn read_subtree(kind: u32, s: u32, out: u32) {
         put3(out, all.angular - cross(com, all.linear));
         return;
     }
-    let mass = numbers[BODY_SUBTREEMASS + body];
+    let mass = parameter(BODY_SUBTREEMASS + body);
     put3(out, select(all.linear / mass, vec3f(), mass <= 0.0));
 }
 
@@ -253,13 +253,13 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
             return fetch(QFRC_ACTUATOR + words[JNT_DOF + e]);
         }
         case SENSE_JOINTLIMITPOS, SENSE_TENDONLIMITPOS: {
-            return limit(e, numbers[prm + 1u], 0u);
+            return limit(e, parameter(prm + 1u), 0u);
         }
         case SENSE_JOINTLIMITVEL, SENSE_TENDONLIMITVEL: {
-            return limit(e, numbers[prm + 1u], 1u);
+            return limit(e, parameter(prm + 1u), 1u);
         }
         case SENSE_JOINTLIMITFRC, SENSE_TENDONLIMITFRC: {
-            return limit(e, numbers[prm + 1u], 2u);
+            return limit(e, parameter(prm + 1u), 2u);
         }
         case SENSE_TENDONPOS: {
             return fetch(TEN_LENGTH + e);
@@ -332,8 +332,8 @@ fn sensors(@builtin(global_invocation_id) id: vec3u) {
         read_sensor(s, prm, out);
         let clip = words[s + SENSOR_CLIP];
         for (var k = 0u; k < words[s + SENSOR_DIM] && clip != 0u; k++) {
-            let least = select(-3e38, -numbers[prm], clip == 1u);
-            put(out + k, max(min(fetch(out + k), numbers[prm]), least));
+            let least = select(-3e38, -parameter(prm), clip == 1u);
+            put(out + k, max(min(fetch(out + k), parameter(prm)), least));
         }
     }
 }

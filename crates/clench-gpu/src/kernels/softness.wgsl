@@ -54,9 +54,9 @@ fn spline(x: f32, midpoint: f32, power: f32) -> f32 {
 
 // The impedance at the violation `r`; solimp stands at `place`.
 fn impedance(place: u32, r: f32) -> f32 {
-    let dmin = clamp_impedance(numbers[place]);
-    let dmax = clamp_impedance(numbers[place + 1u]);
-    let width = numbers[place + 2u];
+    let dmin = clamp_impedance(parameter(place));
+    let dmax = clamp_impedance(parameter(place + 1u));
+    let width = parameter(place + 2u);
     if (dmin == dmax || width <= LEAST) {
         return 0.5 * (dmin + dmax);
     }
@@ -67,17 +67,17 @@ fn impedance(place: u32, r: f32) -> f32 {
     if (x <= 0.0) {
         return dmin;
     }
-    let midpoint = clamp_impedance(numbers[place + 3u]);
-    return dmin + spline(x, midpoint, max(numbers[place + 4u], 1.0)) * (dmax - dmin);
+    let midpoint = clamp_impedance(parameter(place + 3u));
+    return dmin + spline(x, midpoint, max(parameter(place + 4u), 1.0)) * (dmax - dmin);
 }
 
 // solref stands at `place`, then solimp.
 fn soften(place: u32, r: f32) -> Softness {
-    var solref = vec2f(numbers[place], numbers[place + 1u]);
+    var solref = vec2f(parameter(place), parameter(place + 1u));
     if (is_mixed(solref)) {
         solref = vec2f(0.02, 1.0);
     }
-    let law = spring_damper(solref, numbers[place + 3u]);
+    let law = spring_damper(solref, parameter(place + 3u));
     let d = impedance(place + 2u, r);
     return Softness(d, law.x * d, law.y);
 }

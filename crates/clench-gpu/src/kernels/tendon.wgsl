@@ -4,7 +4,7 @@
 fn fixed_tendon(t: u32) -> f32 {
     var length = 0.0;
     for (var k = words[TENDON_TERM + t]; k < words[TENDON_TERM + t + 1u]; k++) {
-        let coef = numbers[TERM_COEF + k];
+        let coef = parameter(TERM_COEF + k);
         length += coef * given(QPOS + words[TERM_QPOS + k]);
         put(TEN_JACOBIAN + words[TERM_ENTRY + k], coef);
     }
@@ -29,7 +29,7 @@ fn spatial_tendon(t: u32) -> f32 {
     for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
         let start = words[SECTION_SITES + 2u * s];
         let to = words[SECTION_SITES + 2u * s + 1u];
-        let share = numbers[SECTION_SHARE + s];
+        let share = parameter(SECTION_SHARE + s);
         let p = fetch3(SITE_XPOS + 3u * start);
         let q = fetch3(SITE_XPOS + 3u * to);
         let apart = direction(q - p);

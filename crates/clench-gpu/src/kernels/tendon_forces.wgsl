@@ -13,7 +13,7 @@ fn tendon_velocities() {
 // How far a tendon is outside the dead band of its spring.
 fn tendon_stretch(t: u32) -> f32 {
     let length = fetch(TEN_LENGTH + t);
-    return length - clamp(length, numbers[TENDON_SPRING + 5u * t], numbers[TENDON_SPRING + 5u * t + 1u]);
+    return length - clamp(length, parameter(TENDON_SPRING + 5u * t), parameter(TENDON_SPRING + 5u * t + 1u));
 }
 
 // a + b x + c x².
@@ -25,8 +25,8 @@ fn stiffness(coefficients: vec3f, x: f32) -> f32 {
 fn tendon_passive_force(t: u32) -> f32 {
     let x = tendon_stretch(t);
     let v = fetch(TEN_VELOCITY + t);
-    let spring = x * stiffness(number3(TENDON_SPRING + 5u * t + 2u), x);
-    return -spring - v * stiffness(number3(TENDON_DAMPER + 3u * t), abs(v));
+    let spring = x * stiffness(parameter3(TENDON_SPRING + 5u * t + 2u), x);
+    return -spring - v * stiffness(parameter3(TENDON_DAMPER + 3u * t), abs(v));
 }
 
 fn tendon_forces() {

@@ -34,22 +34,22 @@ fn on_joint(u: u32, j: u32) -> f32 {
     let q = QPOS + words[JNT_QPOS + j];
     let kind = words[ACTUATOR_ON + u];
     if (!ANY_ON_ROTATION || kind == ON_SCALAR) {
-        put(arms, numbers[gear]);
-        return given(q) * numbers[gear];
+        put(arms, parameter(gear));
+        return given(q) * parameter(gear);
     }
     if (kind == ON_BALL) {
         let turn = quat_normalize(given4(q));
-        let axis = to_child(u, turn, number3(gear));
+        let axis = to_child(u, turn, parameter3(gear));
         put3(arms, axis);
         return dot(quat_rotation_vector(turn), axis);
     }
-    put3(arms, number3(gear));
-    put3(arms + 3u, to_child(u, quat_normalize(given4(q + 3u)), number3(gear + 3u)));
+    put3(arms, parameter3(gear));
+    put3(arms + 3u, to_child(u, quat_normalize(given4(q + 3u)), parameter3(gear + 3u)));
     return 0.0;
 }
 
 fn on_tendon(u: u32, t: u32) -> f32 {
-    let gear = numbers[ACTUATOR_GEAR + 6u * u];
+    let gear = parameter(ACTUATOR_GEAR + 6u * u);
     let start = words[TENDON_ROW + t];
     for (var k = start; k < words[TENDON_ROW + t + 1u]; k++) {
         put(ACTUATOR_MOMENT + words[ACTUATOR_ROW + u] + k - start, fetch(TEN_JACOBIAN + k) * gear);
@@ -61,19 +61,19 @@ fn on_tendon(u: u32, t: u32) -> f32 {
 fn on_site(u: u32, site: u32) -> f32 {
     let axes = fetch_matrix(SITE_XMAT + 9u * site);
     let gear = ACTUATOR_GEAR + 6u * u;
-    let pull = pull_at(site, axes * number3(gear), axes * number3(gear + 3u));
+    let pull = pull_at(site, axes * parameter3(gear), axes * parameter3(gear + 3u));
     write_arms(u, site, pull, site, pull);
     return 0.0;
 }
 
 fn site_quat(site: u32) -> vec4f {
-    return quat_product(fetch4(XQUAT + 4u * words[SITE_BODY + site]), number4(SITE_QUAT + 4u * site));
+    return quat_product(fetch4(XQUAT + 4u * words[SITE_BODY + site]), parameter4(SITE_QUAT + 4u * site));
 }
 
 // The pose of a site in the frame of another: its position along the first three gears, and its rotation vector along the others.
 fn on_site_in_frame(u: u32, site: u32, frame: u32) -> f32 {
-    let along = number3(ACTUATOR_GEAR + 6u * u);
-    let about = number3(ACTUATOR_GEAR + 6u * u + 3u);
+    let along = parameter3(ACTUATOR_GEAR + 6u * u);
+    let about = parameter3(ACTUATOR_GEAR + 6u * u + 3u);
     let axes = fetch_matrix(SITE_XMAT + 9u * frame);
     let shift = transpose(axes) * (fetch3(SITE_XPOS + 3u * site) - fetch3(SITE_XPOS + 3u * frame));
     let turn = quat_difference(site_quat(site), site_quat(frame));
@@ -83,8 +83,8 @@ fn on_site_in_frame(u: u32, site: u32, frame: u32) -> f32 {
 }
 
 fn on_slider_crank(u: u32, crank: u32, slider: u32) -> f32 {
-    let gear = numbers[ACTUATOR_GEAR + 6u * u];
-    let rod = numbers[ACTUATOR_ROD + u];
+    let gear = parameter(ACTUATOR_GEAR + 6u * u);
+    let rod = parameter(ACTUATOR_ROD + u);
     let axis = fetch_matrix(SITE_XMAT + 9u * slider)[2];
     let offset = fetch3(SITE_XPOS + 3u * crank) - fetch3(SITE_XPOS + 3u * slider);
     let along = dot(offset, axis);

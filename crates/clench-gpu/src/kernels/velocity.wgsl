@@ -53,7 +53,7 @@ fn clear_dofs(qfrc: u32) {
 }
 
 fn bias_forces() {
-    put_spatial(CACC_BIAS, Spatial(vec3f(), -number3(GRAVITY)));
+    put_spatial(CACC_BIAS, Spatial(vec3f(), -parameter3(GRAVITY)));
     put_spatial(CFRC, Spatial(vec3f(), vec3f()));
     for (var b = 1u; b < bound(NBODY); b++) {
         var cacc = fetch_spatial(CACC_BIAS + 6u * words[BODY_PARENT + b]);

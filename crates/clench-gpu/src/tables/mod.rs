@@ -21,6 +21,8 @@ use std::fmt::Write;
 
 /// No element.
 pub(crate) const NONE: u32 = u32::MAX;
+/// The word that tells whether environments have parameters of their own: the one behind the first.
+pub(crate) const OWN_PARAMETERS: usize = 1;
 /// What stands for a range without an end: a device may have no infinity.
 const ENDLESS: f64 = 3e38;
 
@@ -48,7 +50,8 @@ pub(crate) struct Capacity {
 }
 
 impl Tables {
-    /// The tables of a model, and how large its constraints can become.
+    /// The tables of a model, and how large its constraints can become. Numbers that environments may have for themselves; what they
+    /// share comes after them.
     pub fn new(
         model: &Model,
         settings: &StepSettings,
@@ -60,6 +63,7 @@ impl Tables {
             constants: String::new(),
         };
         tables.words("ZERO", [0]);
+        tables.words("OWN_PARAMETERS", [0]);
         tables.bodies(model);
         tables.joints(model);
         tables.dofs(model);

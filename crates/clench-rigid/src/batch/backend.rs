@@ -2,6 +2,7 @@
 //! go up, steps are done there, states and outputs come down. [`mirror`](super::mirror) keeps both sides alike.
 
 use crate::error::SimError;
+use crate::model::Model;
 use crate::output::Output;
 
 /// A device that steps all environments of a batch in memory of its own.
@@ -22,6 +23,16 @@ pub trait Backend<S>: Send {
     /// # Errors
     /// What of the model it cannot compute them of; that the device failed.
     fn want(&mut self, outputs: &[Output]) -> Result<(), SimError>;
+    /// The parameters of a model, which differs from that of the batch in its parameters alone, as the device takes them.
+    ///
+    /// # Errors
+    /// Parameters that the device cannot have for an environment alone.
+    fn parameters_of(&self, model: &Model) -> Result<Vec<S>, SimError>;
+    /// Gives these environments such parameters in place of the model's.
+    ///
+    /// # Errors
+    /// That the device has no room for them, or failed.
+    fn set_parameters(&mut self, envs: &[usize], rows: &[Vec<S>]) -> Result<(), SimError>;
     /// Replaces a field of the state of all environments.
     ///
     /// # Errors

@@ -2,13 +2,15 @@
 //! is asked (resets, snapshots, queries) it answers from its rows, as ever.
 
 use super::backend::{Backend, Outcome, Trouble};
+use super::env_rows::ParamRows;
 use super::job::Pass;
 use super::rows::per_env;
+use super::shared::Shared;
 use super::targets::OutputRows;
 use super::{Batch, BatchOptions, Controls, EnvStatus, Precision, StateRows, Summary};
 use crate::check::{beyond_bounds, input_fault};
 use crate::error::{Fault, SimError};
-use crate::model::Model;
+use crate::model::{Model, ParamField};
 use crate::output::Output;
 use crate::place::joint_of;
 use crate::state::FIELDS;
@@ -76,10 +78,48 @@ pub(super) struct Call<'a, S> {
     pub(super) mask: Option<&'a [bool]>,
 }
 
+impl<S: Scalar + Shared> Mirror<S> {
+    /// What the device takes as the parameters of environments of which `field` will have these rows.
+    ///
+    /// # Errors
+    /// Parameters that it cannot have for an environment alone.
+    pub(super) fn parameters(
+        &self,
+        model: &Model,
+        own: &[ParamRows<S>],
+        field: ParamField,
+        rows: impl Iterator<Item = (usize, Vec<f64>)>,
+    ) -> Result<Vec<Vec<S>>, SimError> {
+        let mut changed = model.clone();
+        let one = |(env, row): (usize, Vec<f64>)| {
+            changed.params.clone_from(&model.params);
+            for other in own {
+                let numbers = other.rows.row(env).iter().map(|x| x.to_f64());
+                changed
+                    .params
+                    .write_lane(other.field, 0, &Vec::from_iter(numbers));
+            }
+            changed.params.write_lane(field, 0, &row);
+            changed.params.derive(model, field);
+            self.backend.parameters_of(&changed)
+        };
+        rows.map(one).collect()
+    }
+
+    /// Gives environments parameters that [`parameters`](Self::parameters) made.
+    pub(super) fn set_parameters(
+        &mut self,
+        envs: &[usize],
+        rows: &[Vec<S>],
+    ) -> Result<(), SimError> {
+        self.backend.set_parameters(envs, rows)
+    }
+}
+
 impl<S: Precision> Batch<S> {
     /// `count` environments in the model's initial state that `backend` steps, whose environments are in any state. Outputs that
-    /// it does not compute cannot be recorded; parameters and options are the model's and those that `backend` was made with,
-    /// constraints at run time cannot be added.
+    /// it does not compute cannot be recorded; options are those that `backend` was made with, and constraints at run time cannot be
+    /// added.
     ///
     /// # Errors
     /// As [`with_options`](Self::with_options).

@@ -23,14 +23,14 @@ impl<S: Precision> Batch<S> {
     /// number of numbers, or numbers that the field cannot have. All parameters are then as before.
     pub fn randomize(&mut self, field: &str, envs: &[usize], values: &[S]) -> Result<(), SimError> {
         let field = ParamField::settable(field)?;
-        self.check_changeable("the parameters")?;
         self.check_envs(envs)?;
         let width = self.model.params.width(field);
         check_length(field.name(), values.len(), width * envs.len())?;
         let mut values = values.to_vec();
         let mut rows = values.chunks_mut(width.max(1));
         rows.try_for_each(|row| field.check_row(&self.model, row))?;
-        // What may run out of memory comes before the first change.
+        let on_device = self.device_parameters(field, envs, &values)?;
+        // What may run out of memory, or cannot be, comes before the first change.
         self.param_rows(field)?;
         let mut follower = None;
         if let Some(field) = field.follower() {
@@ -52,7 +52,27 @@ impl<S: Precision> Batch<S> {
                     .copy_from_slice(&row);
             }
         }
-        Ok(())
+        match &mut self.mirror {
+            Some(mirror) => mirror.set_parameters(envs, &on_device),
+            None => Ok(()),
+        }
+    }
+
+    /// What the device, if there is one, takes as the parameters of environments whose `field` will have these values.
+    fn device_parameters(
+        &self,
+        field: ParamField,
+        envs: &[usize],
+        values: &[S],
+    ) -> Result<Vec<Vec<S>>, SimError> {
+        let Some(mirror) = &self.mirror else {
+            return Ok(Vec::new());
+        };
+        let width = self.model.params.width(field).max(1);
+        let numbers = |row: &[S]| Vec::from_iter(row.iter().map(|x| x.to_f64()));
+        let rows = values.chunks(width).map(numbers);
+        let rows = envs.iter().copied().zip(rows);
+        mirror.parameters(&self.model, &self.params, field, rows)
     }
 
     /// The numbers of a field of the parameters, by its name, as environment `env` has them.

@@ -1,0 +1,81 @@
+//! Parameters that environments have for themselves: the numbers of a model that differs from the batch's in its parameters alone.
+
+use crate::batch::GpuBatch;
+use crate::error::GpuError;
+use crate::tables::{OWN_PARAMETERS, Tables};
+use clench_rigid::contact::Candidate;
+use clench_rigid::model::Model;
+use std::iter::repeat_n;
+use zerocopy::IntoBytes;
+
+/// What the kernels were made of, to which all environments must keep.
+pub(crate) struct Base {
+    words: Vec<u32>,
+    constants: String,
+    parameters: Vec<f32>,
+    candidates: Vec<Candidate>,
+}
+
+impl Base {
+    pub fn new(tables: &Tables, candidates: Vec<Candidate>) -> Self {
+        Base {
+            words: tables.words.clone(),
+            constants: tables.constants.clone(),
+            parameters: tables.numbers.clone(),
+            candidates,
+        }
+    }
+}
+
+impl GpuBatch {
+    /// The parameters of a model that differs from that of this batch in its parameters alone.
+    ///
+    /// # Errors
+    /// Parameters by which kernels would have to be others: a spring where there was none, a value that is compiled into them.
+    pub(crate) fn parameters_of(&self, model: &Model) -> Result<Vec<f32>, GpuError> {
+        let (tables, _) = Tables::new(model, &self.settings, &self.base.candidates);
+        let base = &self.base;
+        // Hulls are made of sizes, once.
+        let resized = model.params.geom_size != self.model().params.geom_size;
+        if resized || tables.constants != base.constants || tables.words != base.words {
+            return Err(GpuError::Structure);
+        }
+        Ok(tables.numbers)
+    }
+
+    /// Gives environments parameters of their own.
+    ///
+    /// # Errors
+    /// More than the device has room for.
+    pub(crate) fn give_parameters(
+        &mut self,
+        envs: &[usize],
+        rows: &[Vec<f32>],
+    ) -> Result<(), GpuError> {
+        let count = self.count;
+        let bytes = 4 * (count * self.base.parameters.len()) as u64;
+        if bytes > self.device.max_buffer() {
+            return Err(GpuError::OutOfMemory {
+                device: self.device.info.name.clone(),
+                count,
+                bytes: 4 * self.base.parameters.len() as u64,
+                most: usize::try_from(self.device.max_buffer() / 4).ok(),
+            });
+        }
+        if self.own.is_empty() {
+            let each = self.base.parameters.iter();
+            self.own = each.flat_map(|&x| repeat_n(x, count)).collect();
+            self.arrays.own = self.device.array("own", bytes);
+            self.bindings = self.arrays.bind(&self.device, &self.layout);
+            let place = 4 * OWN_PARAMETERS as u64;
+            (self.device.queue).write_buffer(&self.arrays.words, place, [1u32].as_bytes());
+        }
+        for (&env, row) in envs.iter().zip(rows) {
+            for (k, &x) in row.iter().enumerate() {
+                self.own[k * count + env] = x;
+            }
+        }
+        (self.device.queue).write_buffer(&self.arrays.own, 0, self.own.as_bytes());
+        Ok(())
+    }
+}
