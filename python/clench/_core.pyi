@@ -924,6 +924,7 @@ class Sim(_Outputs):
         max_step: float | None = None,
         limits: bool = True,
         dofs: ArrayLike | None = None,  # (nv,)
+        restarts: SupportsIndex = 0,
     ) -> IkResult: ...
 
     actuator_power: Final[float]  # Power that actuators put in, W; those that brake do not count.
@@ -1102,6 +1103,7 @@ class Batch(_Outputs):
         max_step: float | None = None,
         limits: bool = True,
         dofs: ArrayLike | None = None,  # (nv,)
+        restarts: SupportsIndex = 0,
     ) -> IkResult: ...
     def __len__(self) -> int: ...
 

@@ -139,7 +139,7 @@ impl<S: Precision + Element> Goals<S> {
 /// How the search goes on.
 fn search(
     model: &Model,
-    iterations: Count,
+    (iterations, restarts): (Count, Count),
     (tolerance, damping, max_step): (f64, f64, Option<f64>),
     limits: bool,
     dofs: Choice,
@@ -147,6 +147,7 @@ fn search(
     let dofs = dofs.map(|dofs| mask("dofs", dofs, model.nv)).transpose()?;
     Ok(IkOptions {
         iterations: iterations.0,
+        restarts: restarts.0,
         tolerance,
         damping,
         max_step: max_step.unwrap_or(f64::INFINITY),
@@ -170,7 +171,7 @@ impl Sim {
     /// start : array_like, optional
     ///     Positions to begin with (nq,); by default those of the present state.
     /// iterations : int
-    ///     The most iterations.
+    ///     The most iterations from one start.
     /// tolerance : float
     ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
     /// damping : float
@@ -182,6 +183,9 @@ impl Sim {
     ///     Whether joints are kept in their ranges; a start outside is moved in.
     /// dofs : array_like of bool, optional
     ///     Which dofs may move (nv,); by default all.
+    /// restarts : int
+    ///     How often a search that did not reach its goals begins anew, from postures spread evenly over the ranges of the joints; the
+    ///     best of all ends comes out.
     ///
     /// Returns
     /// -------
@@ -193,8 +197,8 @@ impl Sim {
     /// ValueError
     ///     Objects that the model does not have, wrong shapes, numbers that are not finite.
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
-                        max_step = None, limits = true, dofs = None),
-           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None)")]
+                        max_step = None, limits = true, dofs = None, restarts = Count(0)),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None, restarts=0)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn ik<'py>(
         &self,
@@ -207,11 +211,12 @@ impl Sim {
         max_step: Option<f64>,
         limits: bool,
         dofs: Choice<'_, 'py>,
+        restarts: Count,
     ) -> PyResult<IkResult> {
         let model = self.described();
         let options = search(
             model,
-            iterations,
+            (iterations, restarts),
             (tolerance, damping, max_step),
             limits,
             dofs,
@@ -249,7 +254,7 @@ impl Batch {
     /// start : array_like, optional
     ///     Positions to begin with, (nq,) or (n, nq); by default those of the present states.
     /// iterations : int
-    ///     The most iterations.
+    ///     The most iterations from one start.
     /// tolerance : float
     ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
     /// damping : float
@@ -261,14 +266,17 @@ impl Batch {
     ///     Whether joints are kept in their ranges; a start outside is moved in.
     /// dofs : array_like of bool, optional
     ///     Which dofs may move (nv,); by default all.
+    /// restarts : int
+    ///     How often a search that did not reach its goals begins anew, from postures spread evenly over the ranges of the joints; the
+    ///     best of all ends comes out.
     ///
     /// Returns
     /// -------
     /// IkResult
     ///     With the environments as first axis.
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
-                        max_step = None, limits = true, dofs = None),
-           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None)")]
+                        max_step = None, limits = true, dofs = None, restarts = Count(0)),
+           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None, restarts=0)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn ik<'py>(
         &self,
@@ -281,11 +289,12 @@ impl Batch {
         max_step: Option<f64>,
         limits: bool,
         dofs: Choice<'_, 'py>,
+        restarts: Count,
     ) -> PyResult<IkResult> {
         let (model, n) = (self.described(), self.count());
         let options = search(
             model,
-            iterations,
+            (iterations, restarts),
             (tolerance, damping, max_step),
             limits,
             dofs,

@@ -164,6 +164,21 @@ def test_questions_are_answered_as_by_a_batch_alone() -> None:
         np.testing.assert_array_equal(spread.params.gravity, alone.params.gravity)
 
 
+def test_contacts_and_rows_of_an_environment_are_those_of_a_batch_alone() -> None:
+    alone, spread = pair()
+    with spread:
+        for batch in (alone, spread):
+            drive(batch, 40, np.random.default_rng(3))
+        touching = [env for env in range(len(alone)) if len(alone.contacts(env))]
+        assert touching
+        for env in (touching[0], touching[-1]):
+            for found, expected in ((spread.contacts(env), alone.contacts(env)), (spread.constraints(env), alone.constraints(env))):
+                np.testing.assert_array_equal(found.force, expected.force)
+                np.testing.assert_array_equal(found.pos, expected.pos)
+        with pytest.raises(IndexError):
+            spread.contacts(len(alone))
+
+
 def test_objects_move_and_terrain_lies_as_in_a_batch_alone() -> None:
     alone, spread = pair()
     with spread:

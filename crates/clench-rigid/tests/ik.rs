@@ -3,10 +3,13 @@
 mod machines;
 
 use clench_math::{Quat, Vec3};
+use clench_rigid::batch::Given;
 use clench_rigid::builder::{BodySpec, GeomSpec, JointSpec, ModelBuilder};
 use clench_rigid::dynamics::integrate::integrate_positions;
 use clench_rigid::model::{FrameObject, JointKind};
-use clench_rigid::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Sim, SimError};
+use clench_rigid::{
+    Batch, Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Sim, SimError,
+};
 use machines::{Numbers, distance, floating};
 use std::sync::Arc;
 
@@ -79,6 +82,51 @@ fn an_arm_reaches_poses_that_it_can_take() {
         }
     }
     assert!(reached >= 80, "{reached} of 100");
+}
+
+/// From one start every seventh search or so ends against limits that the goal's own posture does not touch.
+#[test]
+fn other_starts_reach_what_one_did_not() {
+    let model = arm(1.2);
+    let mut numbers = Numbers(11);
+    let goals = Vec::from_iter((0..40).map(|_| {
+        let posture = Vec::from_iter((0..model.nq).map(|_| 1.1 * numbers.next()));
+        goal(&model, &posture)
+    }));
+    let search = |restarts| {
+        let options = IkOptions {
+            restarts,
+            ..IkOptions::default()
+        };
+        let ik = Ik::new(&model, pose_of_tip(&model), options).unwrap();
+        let mut sim = Sim::new(Arc::clone(&model)).unwrap();
+        let found = goals.iter().map(|goal| sim.ik(&ik, goal, None).unwrap());
+        Vec::from_iter(found)
+    };
+    let reached = |found: &[IkSolution<f64>]| {
+        let ends = found.iter().filter(|end| end.status == IkStatus::Reached);
+        ends.count()
+    };
+    let (once, often) = (search(0), search(12));
+    assert!(reached(&once) < 36, "the goals are too easy");
+    assert!(reached(&often) >= 39, "{} of 40", reached(&often));
+    for (first, best) in once.iter().zip(&often) {
+        // What was reached at once is left as it was.
+        if first.status == IkStatus::Reached {
+            assert_eq!(first, best);
+        }
+        assert!(best.iterations >= first.iterations);
+        assert!(best.qpos.iter().all(|q| q.abs() <= 1.2));
+    }
+    // The same in lanes.
+    let options = IkOptions {
+        restarts: 12,
+        ..IkOptions::default()
+    };
+    let ik = Ik::new(&model, pose_of_tip(&model), options).unwrap();
+    let mut batch = Batch::<f64>::new(Arc::clone(&model), goals.len()).unwrap();
+    let together = batch.ik(&ik, Given::Each(&goals.concat()), None).unwrap();
+    assert_eq!(together, often);
 }
 
 #[test]

@@ -138,6 +138,29 @@ class Asked:
     def _gather_rows(self, method: str, arguments: Sequence[tuple[ArrayLike, int, str]], **chosen: Any) -> Array:
         return np.concatenate(self._query_each(method, self._rows(arguments), chosen))
 
+    # What one environment answers, from its state, on this machine.
+
+    def sim(self, env: SupportsIndex) -> clench.Sim:
+        """A simulation of one environment, in its state and with its parameters; it goes its own way."""
+        raise NotImplementedError
+
+    def contacts(self, env: SupportsIndex) -> clench.Contacts:
+        """The contacts of an environment in its present state, see `clench.Batch.contacts`."""
+        return self._computed(env).contacts
+
+    def constraints(self, env: SupportsIndex) -> clench.Constraints:
+        """The constraint rows of an environment in its present state, see `clench.Batch.constraints`."""
+        return self._computed(env).constraints
+
+    def render(self, env: SupportsIndex, width: SupportsIndex = 640, height: SupportsIndex = 480, **how: Any) -> Array:
+        """A picture of an environment in its present state, see `clench.Batch.render`."""
+        return self.sim(env).render(width, height, **how)
+
+    def _computed(self, env: SupportsIndex) -> clench.Sim:
+        sim = self.sim(env)
+        sim.forward()
+        return sim
+
     @property
     def status(self) -> NDArray[np.int8]:
         """Whether each environment runs (n), and if not why: codes of `clench.EnvStatus`."""

@@ -7,13 +7,15 @@
 //! ```
 //!
 //! by the method of Levenberg and Marquardt with projection onto the limits (Kanzow, Yamashita & Fukushima 2004), see `search`.
-//! Like every method that goes downhill it ends in the minimum of the valley where it began: other starts may end elsewhere.
+//! Like every method that goes downhill it ends in the minimum of the valley where it began: other starts may end elsewhere, and
+//! `restarts` tries some (`spread`).
 //!
-//! What lives here: the tasks (this file), the linear equations of an iteration (`equations`), the iterations (`search`). Poses
+//! What lives here: the tasks (this file), the linear equations of an iteration (`equations`), the iterations (`search`), other starts (`spread`). Poses
 //! and Jacobians come from `dynamics`. Loops of equality constraints, tendon limits and collisions are not looked at.
 
 mod equations;
 mod search;
+mod spread;
 
 pub(crate) use search::Search;
 
@@ -79,7 +81,7 @@ impl IkTask {
 /// How inverse kinematics are computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IkOptions {
-    /// The most iterations.
+    /// The most iterations from one start.
     pub iterations: usize,
     /// The error, m or rad, below which a task that counts is done. A posture is never waited for unless there is nothing else.
     pub tolerance: f64,
@@ -87,6 +89,9 @@ pub struct IkOptions {
     pub damping: f64,
     /// The most that any dof moves in an iteration, m or rad: longer steps are shortened as a whole.
     pub max_step: f64,
+    /// How often the search begins anew where it did not reach the goals, from postures spread evenly over the ranges of joints. The
+    /// best of all ends is what comes out, and iterations are those of all together.
+    pub restarts: usize,
     /// Whether the limits of joints are kept: the start is moved within them, and no iterate leaves them.
     pub limits: bool,
     /// The dofs that may move (nv); all if it is empty.
@@ -101,6 +106,7 @@ impl Default for IkOptions {
             tolerance: 1e-6,
             damping: 1e-3,
             max_step: f64::INFINITY,
+            restarts: 0,
             limits: true,
             dofs: Vec::new(),
         }

@@ -12,6 +12,7 @@
 //! ½ s δ·((2 − s) g + s μ δ). Dofs at a limit against which g presses are held; a step that passes a limit ends there.
 
 use super::equations::{Equations, Scratch};
+use super::spread::spread;
 use super::{Ik, IkSolution, IkStatus, IkTarget};
 use crate::dynamics::com::com_positions;
 use crate::dynamics::frames::Frames;
@@ -62,6 +63,13 @@ pub struct Search<T: Real> {
     qpos: Vec<T>,
 }
 
+/// The best end of several searches.
+struct Best<T: Real> {
+    qpos: Vec<T>,
+    here: Equations<T>,
+    status: T,
+}
+
 impl<T: Real> Search<T> {
     pub fn new(model: &Model, ik: &Ik) -> Self {
         let n = ik.dofs.len();
@@ -94,20 +102,52 @@ impl<T: Real> Search<T> {
     /// Searches from the positions of `state` and leaves what it found there.
     #[kernel]
     pub fn run(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
-        let tolerance = T::new(ik.options.tolerance);
-        let negligible = T::new(NEGLIGIBLE).max(T::splat(T::Scalar::EPSILON));
         if ik.options.limits {
             project(model, params, ik, &mut self.state.qpos);
         }
+        self.iterations = T::ZERO;
+        self.descend(model, params, ik, T::Mask::splat(true));
+        if ik.options.restarts == 0 {
+            return;
+        }
+        let mut best = Best {
+            qpos: self.qpos.clone(),
+            here: self.here.clone(),
+            status: self.status,
+        };
+        for index in 1..=ik.options.restarts {
+            let reached = best.status.eq(IkStatus::Reached.code());
+            let again = !(reached | best.status.eq(IkStatus::NonFinite.code()));
+            if !again.any() {
+                break;
+            }
+            self.state.qpos.copy_from_slice(&best.qpos);
+            spread(model, params, ik, index, &mut self.state.qpos);
+            self.descend(model, params, ik, again);
+            let better = again & self.here.cost.lt(best.here.cost);
+            best.here.blend(better, &self.here);
+            best.status = T::select(better, self.status, best.status);
+            for (best, &found) in best.qpos.iter_mut().zip(&self.qpos) {
+                *best = T::select(better, found, *best);
+            }
+        }
+        self.state.qpos.copy_from_slice(&best.qpos);
+        self.here = best.here;
+        self.status = best.status;
+    }
+
+    /// Searches from the positions of `state` in the lanes of `live`, and leaves what it found there.
+    #[inline(always)]
+    fn descend(&mut self, model: &Model, params: &Params<T>, ik: &Ik, mut live: T::Mask) {
+        let tolerance = T::new(ik.options.tolerance);
+        let negligible = T::new(NEGLIGIBLE).max(T::splat(T::Scalar::EPSILON));
         self.evaluate(model, params, ik);
         std::mem::swap(&mut self.here, &mut self.there);
         self.qpos.copy_from_slice(&self.state.qpos);
         self.held.fill(T::Mask::splat(false));
-        self.iterations = T::ZERO;
         self.status = IkStatus::IterationLimit.code();
         let mut lambda = T::new(ik.options.damping);
         let mut failures = T::ZERO;
-        let mut live = T::Mask::splat(true);
         let finite = self.here.cost.is_finite();
         self.end(&mut live, !finite, IkStatus::NonFinite);
         let reached = self.is_reached(ik, tolerance);
