@@ -52,6 +52,13 @@ impl<'a, S: Shared> Cells<'a, S> {
         self.cells.iter().map(S::load)
     }
 
+    /// Replaces all rows by as many values.
+    pub fn put_all(&self, values: impl Iterator<Item = S>) {
+        for (cell, value) in self.cells.iter().zip(values) {
+            S::store(cell, value);
+        }
+    }
+
     /// Whether all bits of an environment's row are zero.
     #[inline(always)]
     pub fn is_blank(&self, env: usize) -> bool {

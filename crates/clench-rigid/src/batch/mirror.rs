@@ -178,6 +178,7 @@ impl<S: Precision> Batch<S> {
             running: 0,
             resets: 0,
         };
+        mirror.restarted.fill(false);
         for (env, runs) in mirror.running.iter_mut().enumerate() {
             let chosen = call.mask.is_none_or(|mask| mask[env]);
             *runs = chosen && self.status[env] == EnvStatus::Running;
@@ -392,10 +393,7 @@ impl<S: Precision> Batch<S> {
                 continue;
             }
             mirror.backend.read(field.name, held)?;
-            let width = field.numbers(&self.model);
-            for (env, row) in held.chunks_exact(width).enumerate() {
-                self.state.write_field(field.name, env, row);
-            }
+            self.state.write_field(field.name, held);
         }
         Ok(())
     }

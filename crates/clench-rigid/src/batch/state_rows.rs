@@ -101,12 +101,12 @@ macro_rules! declare_rows {
                 })*
             }
 
-            /// Replaces the row of an environment in a field that steps move.
-            pub(super) fn write_field(&mut self, name: &str, env: usize, row: &[S]) {
+            /// Replaces all rows of a field that steps move.
+            pub(super) fn write_field(&mut self, name: &str, values: &[S]) {
                 let (motion, _) = self.share();
                 $(if name == stringify!($moving) {
-                    let cells = row.iter().map(|&x| kind::$moving_kind::from_number::<S>(x));
-                    return motion.$moving.put(env, cells);
+                    let cells = values.iter().map(|&x| kind::$moving_kind::from_number::<S>(x));
+                    return motion.$moving.put_all(cells);
                 })*
             }
 
