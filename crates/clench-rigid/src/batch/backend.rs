@@ -1,5 +1,5 @@
 //! What a batch asks of a device that steps its environments in memory of its own, such as a graphics card: fields of the state
-//! go up, steps are done there, states and outputs come down. [`mirror`](super::mirror) keeps both sides alike.
+//! go up, steps are done there, states and outputs come down. `on_device.rs` keeps both sides alike.
 
 use crate::error::SimError;
 use crate::model::Model;

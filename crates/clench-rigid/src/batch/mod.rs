@@ -3,7 +3,7 @@
 //! What users see is in rows, one an environment ([`Rows`], [`StateRows`]). A call (`run.rs`) puts running environments of like
 //! contacts into groups; each thread has a stepper (`stepper.rs`), scratch in lanes, that claims a group, gathers its rows,
 //! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status. A device with
-//! memory of its own ([`Backend`]) may step in place of the threads (`mirror.rs`).
+//! memory of its own ([`Backend`]) may step in place of the threads (`on_device.rs`).
 
 mod answer;
 mod ask;
@@ -16,6 +16,7 @@ mod env_rows;
 mod group;
 mod job;
 mod mirror;
+mod on_device;
 mod options;
 mod parameters;
 mod precision;

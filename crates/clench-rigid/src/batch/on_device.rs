@@ -1,0 +1,345 @@
+//! Steps on a device: what was written into rows since the last call goes up, what steps moved comes down, and what the device reports
+//! becomes statuses, times and new starts. Whatever else a batch is asked (resets, snapshots, queries) it answers from its rows, as ever.
+
+use super::backend::{Backend, Outcome, Trouble};
+use super::job::Pass;
+use super::mirror::{Call, Mirror};
+use super::rows::per_env;
+use super::targets::OutputRows;
+use super::{Batch, BatchOptions, Controls, EnvStatus, Precision, StateRows, Summary};
+use crate::check::{beyond_bounds, input_fault};
+use crate::error::{Fault, SimError};
+use crate::model::Model;
+use crate::output::Output;
+use crate::place::joint_of;
+use crate::state::FIELDS;
+use std::mem::{swap, take};
+use std::sync::Arc;
+
+impl<S: Precision> Batch<S> {
+    /// `count` environments in the model's initial state that `backend` steps, whose environments are in any state. Outputs that
+    /// it does not compute cannot be recorded; options are those that `backend` was made with, and constraints at run time cannot be
+    /// added.
+    ///
+    /// # Errors
+    /// As [`with_options`](Self::with_options).
+    pub fn with_backend(
+        model: Arc<Model>,
+        count: usize,
+        options: BatchOptions,
+        backend: Box<dyn Backend<S>>,
+    ) -> Result<Self, SimError> {
+        let mut batch = Batch::with_options(model, count, options)?;
+        let mut mirror = Mirror {
+            backend,
+            held: Vec::new(),
+            running: per_env(count, || false)?,
+            restarted: per_env(count, || false)?,
+            outcomes: per_env(count, Outcome::default)?,
+            numbers: Vec::new(),
+        };
+        for field in FIELDS {
+            let mut numbers = Vec::new();
+            batch.state.read_field(field.name, &mut numbers);
+            if mirror.backend.holds(field.name) {
+                mirror.backend.write(field.name, &numbers)?;
+            }
+            mirror.held.push(numbers);
+        }
+        batch.mirror = Some(mirror);
+        Ok(batch)
+    }
+
+    /// The name of the device that steps the environments, if it is not the processor.
+    pub fn device(&self) -> Option<String> {
+        self.mirror.as_ref().map(Mirror::name)
+    }
+
+    /// Refuses what a device takes from the model once and for all.
+    pub(super) fn check_changeable(&self, what: &'static str) -> Result<(), SimError> {
+        match &self.mirror {
+            None => Ok(()),
+            Some(mirror) => Err(SimError::Backend(format!(
+                "{what} of a batch on {} cannot be changed yet: they are as it was made",
+                mirror.name()
+            ))),
+        }
+    }
+
+    /// Does a call on the device.
+    pub(super) fn run_on_device(
+        &mut self,
+        mirror: &mut Mirror<S>,
+        call: &Call<S>,
+        trace: &mut [OutputRows<S>],
+    ) -> Result<Summary, SimError> {
+        let mut summary = Summary {
+            failed: 0,
+            running: 0,
+            resets: 0,
+        };
+        mirror.restarted.fill(false);
+        for (env, runs) in mirror.running.iter_mut().enumerate() {
+            let chosen = call.mask.is_none_or(|mask| mask[env]);
+            *runs = chosen && self.status[env] == EnvStatus::Running;
+        }
+        let may_restart = self.settings.autoreset && call.pass == Pass::Step;
+        self.upload(mirror, call.pass, may_restart, &mut summary)?;
+        let held = matches!(call.controls, Controls::Held);
+        let alike = held && trace.is_empty() && !may_restart;
+        let mut step = call.range.start;
+        while step < call.range.end
+            && (mirror.running.contains(&true) || mirror.restarted.contains(&true))
+        {
+            let count = if alike { call.range.end - step } else { 1 };
+            self.control(mirror, call, step)?;
+            self.advance(mirror, call.pass, count, may_restart, &mut summary)?;
+            if mirror.restarted.contains(&true) {
+                self.start_over(mirror, call, step, &mut summary)?;
+            }
+            step += count;
+            if !trace.is_empty() {
+                self.download(mirror, call.pass)?;
+            }
+            for own in trace.iter_mut() {
+                self.fetch(mirror, own, step - 1)?;
+            }
+        }
+        self.download(mirror, call.pass)?;
+        if step == call.steps {
+            self.fetch_kept(mirror)?;
+        }
+        let running = |status: &&EnvStatus| **status == EnvStatus::Running;
+        summary.running = self.status.iter().filter(running).count();
+        Ok(summary)
+    }
+
+    /// Brings up what was written since the last call. An environment whose state no step can start from fails.
+    fn upload(
+        &mut self,
+        mirror: &mut Mirror<S>,
+        pass: Pass,
+        may_restart: bool,
+        summary: &mut Summary,
+    ) -> Result<(), SimError> {
+        for env in 0..mirror.running.len() {
+            if mirror.running[env] && !self.state.time.row(env)[0].is_finite() {
+                self.refuse(mirror, env, pass, may_restart, summary)?;
+            }
+        }
+        for (k, field) in FIELDS.iter().enumerate() {
+            self.state.read_field(field.name, &mut mirror.numbers);
+            if mirror.numbers == mirror.held[k] {
+                continue;
+            }
+            if !mirror.backend.holds(field.name) {
+                return Err(SimError::Backend(format!(
+                    "{} cannot have {} of its own yet: an environment was given some",
+                    mirror.name(),
+                    field.name
+                )));
+            }
+            swap(&mut mirror.numbers, &mut mirror.held[k]);
+            let width = field.numbers(&self.model);
+            for env in 0..mirror.running.len() {
+                let row = &mirror.held[k][env * width..][..width];
+                if mirror.running[env] && beyond_bounds(field.name, row) {
+                    self.refuse(mirror, env, pass, may_restart, summary)?;
+                }
+            }
+            mirror.backend.write(field.name, &mirror.held[k])?;
+        }
+        Ok(())
+    }
+
+    /// Lets an environment fail whose state no step can start from.
+    fn refuse(
+        &mut self,
+        mirror: &mut Mirror<S>,
+        env: usize,
+        pass: Pass,
+        may_restart: bool,
+        summary: &mut Summary,
+    ) -> Result<(), SimError> {
+        self.state.read(env, &mut self.scratch)?;
+        let fault = input_fault(&self.model, &self.scratch, 0);
+        mirror.running[env] = false;
+        if may_restart {
+            mirror.restarted[env] = true;
+        } else if pass != Pass::Query {
+            self.status[env] = EnvStatus::Failed(fault);
+            summary.failed += 1;
+        }
+        Ok(())
+    }
+
+    /// Brings the controls of a rollout's step up.
+    fn control(
+        &mut self,
+        mirror: &mut Mirror<S>,
+        call: &Call<S>,
+        step: usize,
+    ) -> Result<(), SimError> {
+        let nu = self.model.nu();
+        let Some(place) = FIELDS.iter().position(|field| field.name == "ctrl") else {
+            return Ok(());
+        };
+        let held = &mut mirror.held[place];
+        for env in 0..self.status.len() {
+            match call.controls.row(env, step, call.steps, nu) {
+                Some(row) => held[env * nu..][..nu].copy_from_slice(row),
+                None => return Ok(()),
+            }
+        }
+        mirror.backend.write("ctrl", held)
+    }
+
+    /// Does so many steps, or a forward pass, and notes who failed, or is to start over.
+    fn advance(
+        &mut self,
+        mirror: &mut Mirror<S>,
+        pass: Pass,
+        count: usize,
+        may_restart: bool,
+        summary: &mut Summary,
+    ) -> Result<(), SimError> {
+        let (running, outcomes) = (&mirror.running, &mut mirror.outcomes);
+        match pass {
+            Pass::Step => mirror.backend.step(count, running, outcomes)?,
+            Pass::Forward | Pass::Query => mirror.backend.forward(running, outcomes)?,
+        }
+        for env in 0..mirror.running.len() {
+            if !mirror.running[env] {
+                continue;
+            }
+            let outcome = mirror.outcomes[env];
+            let clock = &mut self.state.time.row_mut(env)[0];
+            // As rounded as the processor adds it up.
+            let timestep = S::new(self.model.params.timestep).to_f64();
+            (0..outcome.steps).for_each(|_| *clock += timestep);
+            let time = *clock;
+            let Some(trouble) = outcome.trouble else {
+                continue;
+            };
+            mirror.running[env] = false;
+            let bounded = matches!(trouble, Trouble::ContactOverflow { .. });
+            if may_restart && !bounded {
+                mirror.restarted[env] = true;
+            } else if pass != Pass::Query {
+                self.status[env] = EnvStatus::Failed(self.fault(trouble, time));
+                summary.failed += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn fault(&self, trouble: Trouble, time: f64) -> Fault {
+        match trouble {
+            Trouble::Singular => Fault::Singular { time, place: None },
+            Trouble::ContactOverflow { limit } => Fault::ContactOverflow { time, limit },
+            Trouble::Diverged {
+                field,
+                index,
+                value,
+            } => Fault::Diverged {
+                time,
+                field,
+                index,
+                value,
+                place: joint_of(&self.model, field, index),
+            },
+        }
+    }
+
+    /// Lets those whose step failed do it from the initial state.
+    fn start_over(
+        &mut self,
+        mirror: &mut Mirror<S>,
+        call: &Call<S>,
+        step: usize,
+        summary: &mut Summary,
+    ) -> Result<(), SimError> {
+        // What the others did is not on this side yet.
+        self.download(mirror, Pass::Step)?;
+        let others = mirror.running.clone();
+        swap(&mut mirror.running, &mut mirror.restarted);
+        for env in 0..others.len() {
+            if mirror.running[env] {
+                self.state.write(env, &self.initial)?;
+            }
+        }
+        self.upload(mirror, Pass::Step, false, summary)?;
+        self.control(mirror, call, step)?;
+        self.advance(mirror, Pass::Step, 1, false, summary)?;
+        mirror.restarted.fill(false);
+        for (env, other) in others.into_iter().enumerate() {
+            if mirror.running[env] {
+                self.resets[env] += 1;
+                summary.resets += 1;
+            }
+            mirror.running[env] |= other;
+        }
+        Ok(())
+    }
+
+    /// Brings down what steps moved.
+    fn download(&mut self, mirror: &mut Mirror<S>, pass: Pass) -> Result<(), SimError> {
+        if pass != Pass::Step {
+            return Ok(());
+        }
+        for (field, held) in FIELDS.iter().zip(&mut mirror.held) {
+            let moves = StateRows::<S>::MOVING.contains(&field.name);
+            if !moves || held.is_empty() || !mirror.backend.holds(field.name) {
+                continue;
+            }
+            mirror.backend.read(field.name, held)?;
+            self.state.write_field(field.name, held);
+        }
+        Ok(())
+    }
+
+    /// Copies the outputs that are kept.
+    fn fetch_kept(&mut self, mirror: &mut Mirror<S>) -> Result<(), SimError> {
+        let mut outputs = take(&mut self.outputs);
+        let mut kept = outputs.iter_mut();
+        let fetched = kept.try_for_each(|own| self.fetch(mirror, own, 0));
+        self.outputs = outputs;
+        if let Some(seen) = &mut self.seen {
+            let ran = mirror.running.iter().enumerate().filter(|(_, runs)| **runs);
+            ran.for_each(|(env, _)| seen.note_row(env, &self.state));
+        }
+        fetched
+    }
+
+    /// Copies an output of those that run into its rows, as step `step` of what they hold.
+    fn fetch(
+        &mut self,
+        mirror: &mut Mirror<S>,
+        own: &mut OutputRows<S>,
+        step: usize,
+    ) -> Result<(), SimError> {
+        let width = own.output.width(&self.model);
+        mirror.numbers.clear();
+        mirror.numbers.resize(width * self.status.len(), S::ZERO);
+        match own.output {
+            Output::time => {
+                let times = self.state.time.as_slice().iter();
+                let rounded = times.map(|&time| S::new(time));
+                mirror
+                    .numbers
+                    .iter_mut()
+                    .zip(rounded)
+                    .for_each(|(to, time)| *to = time);
+            }
+            output if output.is_state() => {
+                self.state.read_field(output.name(), &mut mirror.numbers);
+            }
+            output => mirror.backend.read_output(output, &mut mirror.numbers)?,
+        }
+        let rows = mirror.numbers.chunks_exact(width.max(1)).enumerate();
+        for (env, row) in rows.filter(|&(env, _)| mirror.running[env]) {
+            own.rows.row_mut(env)[step * width..][..width].copy_from_slice(row);
+        }
+        Ok(())
+    }
+}
