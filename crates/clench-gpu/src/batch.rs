@@ -98,6 +98,7 @@ impl GpuBatch {
         let device = Device::open(options.device.as_deref())?;
         let (mut tables, capacity) = Tables::new(&model, &settings, &pairs);
         let base = Base::new(&tables, pairs);
+        tables.shapes(&model, &base.candidates);
         let state = fields::state_fields(&model, capacity);
         let work = fields::work_fields(&model, capacity);
         let rows = fields::row_fields(&model, capacity);

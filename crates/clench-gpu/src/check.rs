@@ -117,11 +117,12 @@ pub(crate) const METHODS: [&str; 10] = [
 /// How the contacts of a pair of shapes are found, in the order of [`METHODS`], and how many there are at most; none where that is
 /// not there yet. The order of the shapes is that of [`ShapeKind`].
 fn method(kinds: [ShapeKind; 2]) -> Option<(usize, usize)> {
-    use ShapeKind::{Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere};
+    use ShapeKind::{Box, Capsule, Cylinder, Ellipsoid, Mesh, Plane, Sphere};
     Some(match kinds {
         [Plane, Sphere | Ellipsoid] => (0, 1),
         [Plane, Capsule] => (0, 2),
         [Plane, Cylinder | Box] => (0, 4),
+        [Plane, Mesh] => (0, 8),
         [Sphere, Sphere] => (1, 1),
         [Sphere, Capsule] => (2, 1),
         [Sphere, Cylinder] => (3, 1),
@@ -130,7 +131,11 @@ fn method(kinds: [ShapeKind; 2]) -> Option<(usize, usize)> {
         [Sphere, Box] => (6, 1),
         [Capsule, Box] => (7, 2),
         [Box, Box] => (8, 8),
-        [Sphere | Capsule | Ellipsoid, Ellipsoid] | [Ellipsoid, Cylinder | Box] => (9, 1),
+        [Sphere | Capsule | Ellipsoid, Ellipsoid]
+        | [Ellipsoid, Cylinder | Box | Mesh]
+        | [Sphere, Mesh] => (9, 1),
+        [Capsule, Mesh] => (9, 3),
+        [Cylinder, Cylinder | Box | Mesh] | [Box | Mesh, Mesh] => (9, 8),
         _ => return None,
     })
 }

@@ -56,8 +56,8 @@ kernels! {
     POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "tendon",
         "transmission", "inertia";
     /// Contacts.
-    CONTACTS = "contacts", Thread: "contact_pool", "plane", "round", "cylinder", "penetration", "box_round",
-        "convex/body", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/convex", "box_box", "detect";
+    CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
+        "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
     FORCES = "forces", Thread: "tree", "velocity", "passive", "tendon_forces", "muscle", "activation", "gain",
         "actuation", "forces";

@@ -13,7 +13,7 @@ pub(crate) struct Base {
     words: Vec<u32>,
     constants: String,
     parameters: Vec<f32>,
-    candidates: Vec<Candidate>,
+    pub candidates: Vec<Candidate>,
 }
 
 impl Base {

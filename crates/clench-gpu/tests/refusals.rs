@@ -27,8 +27,8 @@ fn what_is_not_there_yet_is_refused_by_name() {
         let open = "<body pos='0 0 0.1'><joint/><geom size='0.01' contype='0' conaffinity='0'/>";
         open.repeat(n) + &"</body>".repeat(n)
     };
-    let can_and_box = "<body pos='3 0 1'><freejoint/><geom name='can' type='cylinder' size='0.1 0.1'/></body>
-                       <body pos='4 0 1'><freejoint/><geom name='box' type='box' size='0.1 0.1 0.1'/></body>";
+    let terrain = "<asset><hfield name='hills' nrow='2' ncol='2' size='1 1 1 1'/></asset>";
+    let hills = "<geom name='hills' type='hfield' hfield='hills'/>";
     for (text_of_model, words) in [
         (
             model("<option integrator='implicit'/>", "", "", ""),
@@ -91,7 +91,10 @@ fn what_is_not_there_yet_is_refused_by_name() {
             ),
             "actuator \"motor\": controllers and motors",
         ),
-        (model("", "", can_and_box, ""), "cylinder geom \"can\" and"),
+        (
+            model("", "", hills, terrain),
+            "heightfield geom \"hills\" and",
+        ),
         (model("", "", &chain(27), ""), "a path of more than 26 dofs"),
         (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),

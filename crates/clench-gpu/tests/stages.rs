@@ -45,15 +45,38 @@ fn one_of_each_tendon_equality_transmission_and_activation() {
     agree(&text(&own("linkage")), 100, 0.5);
 }
 
-/// Where curved shapes overlap the depth hardly changes with the direction, which rounding decides: the processor's precisions differ
-/// by as much.
-#[test]
-fn a_heap_of_all_shapes() {
-    let model = text(&own("shapes"));
-    if let Some(batch) = common::agree_within(1e-3, &model, 100, 1.0) {
+/// A heap agrees but for so many of 100 states, and has many contacts. Where curved shapes overlap the depth hardly changes with the
+/// direction, which rounding decides: the processor's precisions differ by as much. In a stray a point of bodies that are apart is listed twice, or
+/// so deep a heap is not solved.
+fn heap(model: &str, strays: usize) {
+    if let Some(batch) = common::agree_within(1e-3, strays, &text(model), 100, 1.0) {
         let solves = batch.solves().expect("a device");
         assert!(solves.iter().map(|s| s.contacts).sum::<usize>() > 500);
     }
+}
+
+#[test]
+fn a_heap_of_all_shapes() {
+    heap(&own("shapes"), 0);
+}
+
+#[test]
+fn a_heap_of_cylinders_and_boxes() {
+    heap(&own("cans"), 2);
+}
+
+#[test]
+fn a_heap_of_hulls_and_all_that_they_meet() {
+    heap(&own("hulls"), 2);
+}
+
+#[test]
+fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
+    let one = own("cans").replace(
+        "timestep=\"0.004\"/>",
+        "timestep=\"0.004\"><flag multiccd=\"disable\"/></option>",
+    );
+    heap(&one, 2);
 }
 
 #[test]

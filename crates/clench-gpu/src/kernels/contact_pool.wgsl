@@ -1,10 +1,17 @@
 // The contacts of an environment: a pool of MAX_CONTACTS, in canonical order. Frames are those of `clench-collide/src/frame.rs`.
 
-// How many there are so far.
+// How many there are so far, and how many before the present pair.
 var<private> found: u32;
+var<private> first_of_pair: u32;
 
-// Adds a contact of a pair; `tangent` is the first of the two.
+// Adds a contact of a pair; `tangent` is the first of the two. Of a pair that is to have but one contact, the first of the deepest stays.
 fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent: vec3f) {
+    if (DEEPEST_ALONE && found > first_of_pair && words[PAIR_DEEPEST + pair] == 1u) {
+        if (distance >= fetch(CONTACTS + CONTACT_SIZE * first_of_pair + 1u)) {
+            return;
+        }
+        found = first_of_pair;
+    }
     if (found == MAX_CONTACTS) {
         trouble(CONTACT_OVERFLOW);
         return;

@@ -24,10 +24,13 @@ fn may_touch(pair: u32, a: u32, b: u32) -> bool {
     return dot(offset, offset) <= reach * max(reach, 0.0);
 }
 
-fn on_plane(pair: u32, plane: Placed, b: Placed, kind: u32, range: f32) {
+fn on_plane(pair: u32, plane: Placed, b: Placed, geom: u32, range: f32) {
+    let kind = words[GEOM_KIND + geom];
     let normal = plane.axes[2];
     let above = dot(normal, b.center - plane.center);
-    if (kind == SPHERE) {
+    if (MESH_ON_PLANE && kind == MESH) {
+        plane_mesh(pair, normal, above, b, words[GEOM_HULL + geom], range);
+    } else if (kind == SPHERE) {
         plane_sphere(pair, normal, above, b.center, b.size, range);
     } else if (kind == CAPSULE) {
         plane_capsule(pair, normal, above, b.center, b.axes[2], b.size, range);
@@ -49,7 +52,7 @@ fn collide(pair: u32, a: u32, b: u32) {
     let method = words[PAIR_METHOD + pair];
     var rest = FOUND;
     if (ANY_ON_PLANE && method == ON_PLANE) {
-        on_plane(pair, first, second, words[GEOM_KIND + b], range);
+        on_plane(pair, first, second, b, range);
     } else if (ANY_SPHERE_SPHERE && method == SPHERE_SPHERE) {
         sphere_sphere(pair, first, second, range);
     } else if (ANY_SPHERE_CAPSULE && method == SPHERE_CAPSULE) {
@@ -85,6 +88,7 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
         let a = words[PAIR_GEOM + 2u * pair];
         let b = words[PAIR_GEOM + 2u * pair + 1u];
         if (may_touch(pair, a, b)) {
+            first_of_pair = found;
             collide(pair, a, b);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Capacity, Tables};
 use crate::check::{METHODS, may_be_general, method_of_pair, points_of_pair};
-use clench_collide::{ShapeKind, allowance};
+use clench_collide::{Asset, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
 use clench_rigid::contact::{Candidate, contact_params, contact_range};
 use clench_rigid::model::Model;
 use clench_rigid::options::MaxContacts;
@@ -13,6 +13,12 @@ use clench_rigid::settings::StepSettings;
 const POOL: usize = 48;
 /// Vertices of the polytope of overlapping shapes. Single precision has no use for the 128 that the processor has room for.
 const POLYTOPE_VERTICES: usize = 64;
+/// Corners that stand for the round cap of a cylinder.
+const CAP_CORNERS: usize = 16;
+/// Corners of a face of a hull that are looked at, at most, as on the processor.
+const MAX_FACE_CORNERS: usize = 24;
+/// Corners of a box's face.
+const BOX_CORNERS: usize = 4;
 /// Numbers of a contact: pair, distance, position, normal, two tangents.
 pub(crate) const CONTACT_SIZE: usize = 14;
 
@@ -33,6 +39,12 @@ fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
 
 /// Within what distance of their centres (of a plane: of the second's to it) two geoms may touch.
 fn reach(m: &Model, pair: &Candidate) -> f64 {
+    let is_empty = |&g: &u32| {
+        m.geoms[g as usize].kind == ShapeKind::Mesh && m.asset(g as usize) == Asset::None
+    };
+    if pair.geoms.iter().any(is_empty) {
+        return f64::from(f32::MIN);
+    }
     let radius = |g: u32| m.params.geom_rbound[g as usize];
     let (_, range) = contact_range::<f64>(m, &m.params, pair);
     let radii = radius(pair.geoms[0]) + radius(pair.geoms[1]);
@@ -54,6 +66,7 @@ impl Tables {
             ("ELLIPSOID", ShapeKind::Ellipsoid),
             ("CYLINDER", ShapeKind::Cylinder),
             ("BOX", ShapeKind::Box),
+            ("MESH", ShapeKind::Mesh),
         ] {
             self.count(name, kind as usize);
         }
@@ -75,19 +88,15 @@ impl Tables {
                 used || (general && *name == "CONVEX"),
             );
         }
-        // What kinds of shape general pairs have.
-        let has = |kind: ShapeKind| {
-            let mut all = candidates.iter().filter(|c| may_be_general(c.kinds));
-            all.any(|c| c.kinds.contains(&kind))
+        let deepest = |c: &Candidate| {
+            let [a, b] = c.kinds;
+            !s.flags.multiccd && multiccd_matters(a, b)
         };
-        let flat = |c: &Candidate| may_be_general(c.kinds) && method(c) + 1 < METHODS.len();
-        self.flag("ANY_ELLIPSOID", has(ShapeKind::Ellipsoid));
-        self.flag("ANY_CYLINDER", has(ShapeKind::Cylinder));
-        self.flag(
-            "CURVED_PAIRS",
-            has(ShapeKind::Ellipsoid) || has(ShapeKind::Cylinder),
+        self.flag("DEEPEST_ALONE", candidates.iter().any(deepest));
+        self.words(
+            "PAIR_DEEPEST",
+            candidates.iter().map(|c| usize::from(deepest(c))),
         );
-        self.flag("FLAT_PAIRS", candidates.iter().any(flat));
         let vertices = if general { POLYTOPE_VERTICES } else { 4 };
         let faces = 2 * vertices - 4;
         self.count("POLYTOPE_VERTICES", vertices);
@@ -116,5 +125,48 @@ impl Tables {
         capacity.rows += capacity.contacts * widest;
         self.count("MAX_CONTACTS", capacity.contacts);
         self.count("CONTACT_SIZE", CONTACT_SIZE);
+    }
+
+    /// What general pairs have: hulls, curved shapes, faces that may lie on each other, and room for their corners. The data of shapes,
+    /// which no environment has of its own, stand behind all parameters.
+    pub(crate) fn shapes(&mut self, m: &Model, candidates: &[Candidate]) {
+        use ShapeKind::{Box, Cylinder, Ellipsoid, Mesh, Plane, Sphere};
+        let hull_corners = self.hulls(m, candidates);
+        let general = || candidates.iter().filter(|c| may_be_general(c.kinds));
+        let has = |kind: ShapeKind| general().any(|c| c.kinds.contains(&kind));
+        // Both have edges.
+        let flat = |c: &&Candidate| c.kinds.iter().all(|k| !matches!(k, Sphere | Ellipsoid));
+        let flat_with = |kind| general().filter(flat).any(|c| c.kinds.contains(&kind));
+        self.flag("ANY_MESH", has(Mesh));
+        self.flag("ANY_ELLIPSOID", has(Ellipsoid));
+        self.flag("ANY_CYLINDER", has(Cylinder));
+        self.flag("CURVED_PAIRS", has(Ellipsoid) || has(Cylinder));
+        self.flag("FLAT_PAIRS", general().any(|c| flat(&c)));
+        self.flag("ANY_CAP_PATCHES", flat_with(Cylinder));
+        let polyhedral = |c: &Candidate| c.kinds[0] == Cylinder && matches!(c.kinds[1], Box | Mesh);
+        self.flag("ANY_CYLINDER_POLYHEDRON", candidates.iter().any(polyhedral));
+        let cylinders = |c: &Candidate| c.kinds == [Cylinder, Cylinder];
+        self.flag("ANY_CYLINDER_PAIR", candidates.iter().any(cylinders));
+        let on_plane = |c: &Candidate| c.kinds == [Plane, Mesh];
+        self.flag("MESH_ON_PLANE", candidates.iter().any(on_plane));
+        self.flag("LARGE_FACES", hull_corners > PATCH_POINTS);
+
+        let mut corners = BOX_CORNERS;
+        if flat_with(Cylinder) {
+            corners = corners.max(CAP_CORNERS);
+        }
+        corners = corners.max(hull_corners.min(MAX_FACE_CORNERS));
+        self.count("PATCH_POINTS", PATCH_POINTS);
+        self.count("CAP_CORNERS", CAP_CORNERS);
+        self.count("MAX_FACE_CORNERS", MAX_FACE_CORNERS);
+        self.count("FEATURE_CORNERS", corners);
+        self.flag("MANY_CORNERS", corners > BOX_CORNERS);
+        // Two polygons overlap in one of at most all their corners; on a round cap lie both ends of a chord for each side, too.
+        let most = if flat_with(Cylinder) {
+            3 * corners + CAP_CORNERS
+        } else {
+            2 * corners + BOX_CORNERS
+        };
+        self.count("POLYGON_CORNERS", most);
     }
 }

@@ -7,6 +7,7 @@ mod constraints;
 mod contacts;
 mod equalities;
 mod forces;
+mod hulls;
 mod sensors;
 mod tendons;
 

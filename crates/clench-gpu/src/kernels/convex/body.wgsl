@@ -13,26 +13,31 @@ struct Body {
     radius: f32,
     // Of a sphere about the origin that holds the body.
     reach: f32,
+    // Of a mesh.
+    hull: u32,
 }
 
-fn body_of(kind: u32, size: vec3f) -> Body {
+fn body_of(geom: u32) -> Body {
+    let kind = words[GEOM_KIND + geom];
+    let size = parameter3(GEOM_SIZE + 3u * geom);
+    let hull = words[GEOM_HULL + geom];
     let least = min(size.x, min(size.y, size.z));
     let most = max(size.x, max(size.y, size.z));
     switch kind {
         case SPHERE: {
-            return Body(kind, size, size.x, size.x);
+            return Body(kind, size, size.x, size.x, hull);
         }
         case CAPSULE: {
-            return Body(kind, size, size.x, size.x + size.y);
+            return Body(kind, size, size.x, size.x + size.y, hull);
         }
         case ELLIPSOID: {
-            return Body(kind, size, least * (least / max(most, LEAST_NORMAL)), most);
+            return Body(kind, size, least * (least / max(most, LEAST_NORMAL)), most, hull);
         }
         case CYLINDER: {
-            return Body(kind, size, 0.0, length(size.xy));
+            return Body(kind, size, 0.0, length(size.xy), hull);
         }
         default: {
-            return Body(kind, size, 0.0, length(size));
+            return Body(kind, size, 0.0, length(size), hull);
         }
     }
 }
@@ -57,6 +62,14 @@ fn radial_direction(d: vec3f) -> vec2f {
 
 // The point of the core that is furthest along `d`. Of several corners or ends that are, the one further along `side`.
 fn support(body: Body, d: vec3f, side: vec3f) -> vec3f {
+    if (ANY_MESH && body.kind == MESH) {
+        return vertex_of_hull(body.hull, furthest_of_hull(body.hull, side));
+    }
+    return support_without_hull(body, d, side);
+}
+
+// The same for all but meshes.
+fn support_without_hull(body: Body, d: vec3f, side: vec3f) -> vec3f {
     let s = body.size;
     switch body.kind {
         case CAPSULE: {

@@ -4,25 +4,40 @@
 // Edges at less than this angle lie side by side; others cross.
 const PARALLEL: f32 = 1e-3;
 
-// A polygon, or a segment (two corners). Two faces of four corners overlap in one of at most eight.
-var<private> polygon: array<vec3f, 12>;
+// A polygon, or a segment (two corners).
+var<private> polygon: array<vec3f, POLYGON_CORNERS>;
 var<private> polygon_count: u32;
 
-// A projected edge or face: where its corners stand, how many there are, and the slope of its height.
+// A projected edge or face: where its corners stand, how many there are, and the slope of its height. Of a round cap its radius (else
+// nothing), two axes in its plane, and a point that has its middle's coordinates along them.
 struct Projected {
     place: u32,
     count: u32,
     slope: vec2f,
+    radius: f32,
+    x: vec3f,
+    y: vec3f,
+    center: vec3f,
 }
 
-// The projection of a feature, whose corners from `place` on it replaces; `normal` is that of a face, projected.
-fn project_feature(place: u32, count: u32, normal: vec3f) -> Projected {
+// The projection of a feature whose corners, from `place` on, are projected already; the columns of `axes` are its body's.
+fn project_feature(place: u32, f: Feature, axes: mat3x3f, center: vec3f) -> Projected {
+    let normal = axes * f.normal;
     var slope = -normal.xy / normal.z;
-    if (count == 2u) {
+    if (f.count == 2u) {
         let apart = feature_corners[place + 1u] - feature_corners[place];
         slope = apart.xy * (apart.z / max(dot(apart.xy, apart.xy), LEAST_NORMAL));
     }
-    return Projected(place, count, slope);
+    return Projected(place, f.count, slope, f.radius, axes[0], axes[1], center);
+}
+
+fn is_cap(f: Projected) -> bool {
+    return ANY_CAP_PATCHES && f.radius > 0.0;
+}
+
+// A corner, those after the last being the first again.
+fn corner_of_feature(f: Projected, k: u32) -> vec3f {
+    return feature_corners[f.place + select(k, 0u, k == f.count)];
 }
 
 // The height of a feature's plane at a point of the projection.
@@ -35,10 +50,25 @@ fn turn_of(u: vec2f, v: vec2f) -> f32 {
     return u.x * v.y - u.y * v.x;
 }
 
+// Only rounding could make more corners than there is room for, and then they coincide with others.
+fn push_corner(p: vec3f) {
+    if (polygon_count < POLYGON_CORNERS) {
+        polygon[polygon_count] = p;
+        polygon_count++;
+    }
+}
+
 // Leaves the part of the polygon where `outward` · p is at most `limit` (Sutherland–Hodgman).
 fn clip_polygon(outward: vec2f, limit: f32) {
-    var whole = polygon;
     let count = polygon_count;
+    var beyond = false;
+    for (var k = 0u; k < count; k++) {
+        beyond = beyond || dot(outward, polygon[k].xy) > limit;
+    }
+    if (!beyond) {
+        return;
+    }
+    var whole = polygon;
     // The way back along a segment would meet the line a second time.
     let sides = select(count, 1u, count == 2u);
     polygon_count = 0u;
@@ -47,14 +77,12 @@ fn clip_polygon(outward: vec2f, limit: f32) {
         let q = whole[select(k + 1u, 0u, k + 1u == count)];
         let dp = dot(outward, p.xy) - limit;
         let dq = dot(outward, q.xy) - limit;
-        if (dp <= 0.0 && polygon_count < 12u) {
-            polygon[polygon_count] = p;
-            polygon_count++;
+        if (dp <= 0.0) {
+            push_corner(p);
         }
         let crosses = (dp < 0.0 && dq > 0.0) || (dp > 0.0 && dq < 0.0);
-        if (crosses && k < sides && polygon_count < 12u) {
-            polygon[polygon_count] = p + (q - p) * (dp / (dp - dq));
-            polygon_count++;
+        if (crosses && k < sides) {
+            push_corner(p + (q - p) * (dp / (dp - dq)));
         }
     }
 }
@@ -78,28 +106,123 @@ fn is_parallel(a: Projected, b: Projected) -> bool {
     return turn * turn <= dot(u, u) * dot(v, v) * PARALLEL * PARALLEL;
 }
 
-// Fills the polygon with where two features overlap in the projection, or are at most `slack` from it.
-fn overlap(a: Projected, b: Projected, slack: f32) {
-    if (a.count == 2u && b.count == 2u && !is_parallel(a, b)) {
-        polygon[0] = crossing(a, b);
-        polygon_count = 1u;
+// The coordinates, in the plane of a cap and from its middle, of the point above or below a point of the projection.
+fn in_cap_plane(cap: Projected, p: vec2f) -> vec2f {
+    let arm = vec3f(p, height_of(cap, p)) - cap.center;
+    return vec2f(dot(cap.x, arm), dot(cap.y, arm));
+}
+
+// Whether a point of the projection lies in a face.
+fn covers(f: Projected, p: vec2f, slack: f32) -> bool {
+    if (is_cap(f)) {
+        let at = in_cap_plane(f, p);
+        return dot(at, at) <= (f.radius + slack) * (f.radius + slack);
+    }
+    for (var k = 0u; k < f.count; k++) {
+        let start = corner_of_feature(f, k).xy;
+        let side = corner_of_feature(f, k + 1u).xy - start;
+        if (turn_of(side, p - start) < -slack * length(side)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Where along a segment it enters and leaves a cap's circle, its ends being 0 and 1; both where it is nearest to the middle if it
+// misses the circle.
+fn chord(cap: Projected, p: vec2f, q: vec2f) -> vec2f {
+    let start = in_cap_plane(cap, p);
+    let along = in_cap_plane(cap, q) - start;
+    let square = max(dot(along, along), LEAST_NORMAL);
+    let nearest = -dot(start, along) / square;
+    let miss = turn_of(start, along);
+    let half = sqrt(max(cap.radius * cap.radius * square - miss * miss, 0.0)) / square;
+    return vec2f(nearest - half, nearest + half);
+}
+
+// Fills the polygon with the part of an edge or a face within a round cap.
+fn clip_to_cap(cap: Projected, cut: Projected, slack: f32) {
+    if (cut.count == 2u) {
+        let p = feature_corners[cut.place];
+        let way = feature_corners[cut.place + 1u] - p;
+        let ends = clamp(chord(cap, p.xy, (p + way).xy), vec2f(0.0), vec2f(1.0));
+        push_corner(p + way * ends.x);
+        push_corner(p + way * ends.y);
         return;
     }
-    // An edge is cut by a face, many sides by few.
+    for (var k = 0u; k < cut.count; k++) {
+        let p = corner_of_feature(cut, k);
+        if (covers(cap, p.xy, slack)) {
+            push_corner(p);
+        }
+        let q = corner_of_feature(cut, k + 1u);
+        let ends = chord(cap, p.xy, q.xy);
+        for (var end = 0u; end < bound(2u); end++) {
+            let t = ends[end];
+            if (ends.x < ends.y && t > 0.0 && t < 1.0) {
+                push_corner(p + (q - p) * t);
+            }
+        }
+    }
+    for (var k = 0u; k < cap.count; k++) {
+        let p = corner_of_feature(cap, k);
+        if (covers(cut, p.xy, slack)) {
+            push_corner(p);
+        }
+    }
+    sort_around();
+}
+
+// Puts the corners of the polygon in order around their middle, beginning with the first. Their heights are lost.
+fn sort_around() {
+    var sum = vec3f();
+    for (var k = 0u; k < polygon_count; k++) {
+        sum += polygon[k];
+    }
+    let center = sum.xy / f32(max(polygon_count, 1u));
+    let start = polygon[0].xy - center;
+    for (var k = 0u; k < polygon_count; k++) {
+        let arm = polygon[k].xy - center;
+        let along = dot(start, arm);
+        let aside = turn_of(start, arm);
+        let size = max(abs(along) + abs(aside), LEAST_NORMAL);
+        let turn = 1.0 - along / size;
+        // Grows with the angle from the first corner, 0 to 4. Corners next to the first come with it.
+        let corner = vec3f(polygon[k].xy, select(turn, 4.0 - turn, aside < -size * (ROUNDING * 1e3)));
+        var place = k;
+        while (place > 0u && polygon[max(place, 1u) - 1u].z > corner.z) {
+            polygon[place] = polygon[place - 1u];
+            place--;
+        }
+        polygon[place] = corner;
+    }
+}
+
+// Fills the polygon with where two features overlap in the projection, or are at most `slack` from it. The heights of its corners are
+// open.
+fn overlap(a: Projected, b: Projected, slack: f32) {
+    polygon_count = 0u;
+    if (a.count == 2u && b.count == 2u && !is_parallel(a, b)) {
+        push_corner(crossing(a, b));
+        return;
+    }
+    // An edge is cut by a face, a polygon by a circle, many sides by few.
     var cut = b;
     var by = a;
-    if (a.count == 2u || (b.count != 2u && a.count >= b.count)) {
+    if (a.count == 2u || (b.count != 2u && (is_cap(b) || (!is_cap(a) && a.count >= b.count)))) {
         cut = a;
         by = b;
     }
-    for (var k = 0u; k < cut.count; k++) {
-        polygon[k] = feature_corners[cut.place + k];
+    if (is_cap(by)) {
+        clip_to_cap(by, cut, slack);
+        return;
     }
-    polygon_count = cut.count;
+    for (var k = 0u; k < cut.count; k++) {
+        push_corner(corner_of_feature(cut, k));
+    }
     for (var k = 0u; k < by.count; k++) {
-        let p = feature_corners[by.place + k].xy;
-        let q = feature_corners[by.place + select(k + 1u, 0u, k + 1u == by.count)].xy;
-        let side = q - p;
+        let p = corner_of_feature(by, k).xy;
+        let side = corner_of_feature(by, k + 1u).xy - p;
         let outward = select(vec2f(side.y, -side.x), -side, by.count == 2u);
         clip_polygon(outward, dot(outward, p) + length(side) * slack);
     }

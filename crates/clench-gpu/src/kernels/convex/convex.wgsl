@@ -40,20 +40,42 @@ fn find_largest_gap(range: f32) -> bool {
 
 // The contacts of a pair; `given_gap` where the largest gap is in `best` already, its normal in the first shape's frame.
 fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
-    let kind_a = words[GEOM_KIND + words[PAIR_GEOM + 2u * pair]];
-    let kind_b = words[GEOM_KIND + words[PAIR_GEOM + 2u * pair + 1u]];
+    let first = body_of(words[PAIR_GEOM + 2u * pair]);
+    let second = body_of(words[PAIR_GEOM + 2u * pair + 1u]);
     let back = transpose(a.axes);
     var turn = back * b.axes;
     var offset = back * (b.center - a.center);
-    if (kind_a == SPHERE) {
+    if (first.kind == SPHERE) {
         turn = b.axes;
         offset = b.center - a.center;
     }
-    begin_pair(body_of(kind_a, a.size), body_of(kind_b, b.size), turn, offset);
-    if (given_gap) {
-        begin_simplex(vertex_along(best.normal));
-    } else if (!find_largest_gap(range)) {
+    begin_pair(first, second, turn, offset);
+    var certain = given_gap;
+    var direct = Gap(vec3f(), -UNMOVABLE, false);
+    if (ANY_CYLINDER_POLYHEDRON && has_creases(first, second)) {
+        direct = polyhedron_gap(range);
+    } else if (ANY_CYLINDER_PAIR && first.kind == CYLINDER && second.kind == CYLINDER) {
+        direct = cylinders_gap();
+    }
+    if (direct.gap > range) {
         return;
+    }
+    // For bodies that are apart it gives no distance.
+    if (direct.settled && direct.gap <= 0.0) {
+        certain = true;
+        best = direct;
+    }
+    if (!certain) {
+        if (!find_largest_gap(range)) {
+            return;
+        }
+        certain = direct.gap > best.gap + exactness;
+        if (certain) {
+            best = direct;
+        }
+    }
+    if (certain) {
+        begin_simplex(vertex_along(best.normal));
     }
     add_contacts(pair, a, range);
 }

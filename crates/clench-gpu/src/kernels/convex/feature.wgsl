@@ -3,14 +3,19 @@
 // Faces and edges count as lying against the plane up to a tilt of 5°.
 const FACE_COSINE: f32 = 0.996;
 const EDGE_SINE: f32 = 0.087;
+// A cap tilted by less is level to rounding: all its corners are equally deep.
+const TILT: f32 = 5e-6;
+// The angle between the corners that stand for a round cap.
+const CAP_ANGLE: f32 = 6.2831855 / f32(CAP_CORNERS);
 // The corners of a feature of the first body, then those of one of the second, each in its body's frame.
-const MOST_CORNERS: u32 = 4u;
-var<private> feature_corners: array<vec3f, 8>;
+var<private> feature_corners: array<vec3f, 2 * FEATURE_CORNERS>;
 
-// How many corners a feature has, and the outward normal of a face. A round cap has more corners than there is room for.
+// How many corners a feature has, the outward normal of a face, and the radius of a round cap, for which its corners only stand (else
+// nothing).
 struct Feature {
     count: u32,
     normal: vec3f,
+    radius: f32,
 }
 
 // The edge along `axis` through a corner.
@@ -20,7 +25,7 @@ fn edge_feature(corner: vec3f, axis: u32, d: vec3f, place: u32) -> Feature {
         end[axis] = select(abs(corner[axis]), -abs(corner[axis]), k == 0u);
         feature_corners[place + k] = end;
     }
-    return Feature(2u, d);
+    return Feature(2u, d, 0.0);
 }
 
 fn box_feature(size: vec3f, corner: vec3f, d: vec3f, place: u32) -> Feature {
@@ -37,7 +42,7 @@ fn box_feature(size: vec3f, corner: vec3f, d: vec3f, place: u32) -> Feature {
                 found[last] = size[last] * select(-1.0, 1.0, k >= 2u);
                 feature_corners[place + k] = found;
             }
-            return Feature(4u, normal);
+            return Feature(4u, normal, 0.0);
         }
     }
     for (var axis = 0u; axis < bound(3u); axis++) {
@@ -46,12 +51,34 @@ fn box_feature(size: vec3f, corner: vec3f, d: vec3f, place: u32) -> Feature {
         }
     }
     feature_corners[place] = corner;
-    return Feature(1u, d);
+    return Feature(1u, d, 0.0);
+}
+
+// The cap of a cylinder: corners at equal angles, the first at the deepest point of the circle. They do not turn with a tilt that
+// nobody can tell, so that a standing cylinder stands still.
+fn cap_feature(size: vec3f, d: vec3f, place: u32) -> Feature {
+    let up = signed(1.0, d.z);
+    var first = vec2f(size.x, 0.0);
+    if (length(d.xy) > TILT) {
+        first = radial_direction(d) * size.x;
+    }
+    for (var k = 0u; k < bound(CAP_CORNERS); k++) {
+        let turned = sin_cos(f32(k) * CAP_ANGLE * up);
+        let corner = vec2f(first.x * turned.y - first.y * turned.x, first.y * turned.y + first.x * turned.x);
+        feature_corners[place + k] = vec3f(corner, size.y * up);
+    }
+    return Feature(CAP_CORNERS, vec3f(0.0, 0.0, up), size.x);
 }
 
 // The feature of a body that is furthest along the unit direction `d`; its corners are stored from `place` on.
 fn feature_of(body: Body, d: vec3f, place: u32) -> Feature {
-    let corner = support(body, d, d);
+    if (ANY_MESH && body.kind == MESH) {
+        return feature_of_hull(body, d, place);
+    }
+    if (ANY_CAP_PATCHES && body.kind == CYLINDER && abs(d.z) >= FACE_COSINE) {
+        return cap_feature(body.size, d, place);
+    }
+    let corner = support_without_hull(body, d, d);
     if (body.kind == BOX) {
         return box_feature(body.size, corner, d, place);
     }
@@ -60,6 +87,7 @@ fn feature_of(body: Body, d: vec3f, place: u32) -> Feature {
         return edge_feature(corner, 2u, d, place);
     }
     feature_corners[place] = corner;
+    // Where no cap meets more than a corner, any other number will do.
     let is_cap = body.kind == CYLINDER && abs(d.z) >= FACE_COSINE;
-    return Feature(select(1u, MOST_CORNERS + 1u, is_cap), d);
+    return Feature(select(1u, CAP_CORNERS, is_cap), d, 0.0);
 }

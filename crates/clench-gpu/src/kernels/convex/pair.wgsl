@@ -53,9 +53,20 @@ fn start_direction() -> vec3f {
 // The vertex along `n`, a direction of any length; where there are several, the one furthest against `side`.
 fn vertex_beside(n: vec3f, side: vec3f) -> Vertex {
     let back = transpose(turn_b);
-    let a = support(body_a, n, side);
-    let b = support(body_b, -(back * n), -(back * side));
-    return Vertex(offset_b + turn_b * b - a, a, b);
+    var points = array<vec3f, 2>();
+    // The text of a support function is long where there are hulls: it has one place.
+    for (var k = 0u; k < bound(2u); k++) {
+        var body = body_a;
+        var along = n;
+        var beside = side;
+        if (k == 1u) {
+            body = body_b;
+            along = -(back * n);
+            beside = -(back * side);
+        }
+        points[k] = support(body, along, beside);
+    }
+    return Vertex(offset_b + turn_b * points[1] - points[0], points[0], points[1]);
 }
 
 fn vertex_along(n: vec3f) -> Vertex {

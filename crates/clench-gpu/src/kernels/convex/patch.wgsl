@@ -6,7 +6,7 @@ const SAME_SPOT: f32 = 1e-5;
 const MISSED: f32 = 1e-6;
 
 // Contacts in the projection: where each is across the normal, and the heights of both surfaces.
-var<private> spots: array<vec4f, 13>;
+var<private> spots: array<vec4f, POLYGON_CORNERS + 1>;
 var<private> spot_count: u32;
 
 fn spot_distance(spot: vec4f) -> f32 {
@@ -42,19 +42,71 @@ fn witness(view: mat3x3f, n: vec3f) -> vec4f {
     return at_distance(vec4f(level.xy, level.z, level.z), best.gap);
 }
 
+// The contact at a point of the projection of two features.
+fn spot_at(a: Projected, b: Projected, p: vec2f) -> vec4f {
+    let on_a = height_of(a, p);
+    // Just beyond a corner the features' planes go on, but the bodies do not.
+    return vec4f(p, on_a, max(height_of(b, p), on_a + best.gap));
+}
+
+fn least_distance() -> f32 {
+    var least = UNMOVABLE;
+    for (var k = 0u; k < spot_count; k++) {
+        least = min(least, spot_distance(spots[k]));
+    }
+    return least;
+}
+
 // Fills the spots with the corners of the overlap of two features, and gives the deepest distance among them.
 fn find_spots(a: Projected, b: Projected, beyond: f32) -> f32 {
     overlap(a, b, beyond);
-    var least = UNMOVABLE;
-    for (var k = 0u; k < polygon_count; k++) {
-        let on_a = height_of(a, polygon[k].xy);
-        // Just beyond a corner the features' planes go on, but the bodies do not.
-        let on_b = max(height_of(b, polygon[k].xy), on_a + best.gap);
-        spots[k] = vec4f(polygon[k].xy, on_a, on_b);
-        least = min(least, on_b - on_a);
-    }
     spot_count = polygon_count;
-    return least;
+    for (var k = 0u; k < spot_count; k++) {
+        spots[k] = spot_at(a, b, polygon[k].xy);
+    }
+    return least_distance();
+}
+
+// Puts points of the outline in the place of many spots, `first` being the direction of the first: all corners if they are no more
+// than a patch has points. If these miss the lowest spot by more than `slack` they are seen from its direction, and it is one of them.
+fn sample_spots(a: Projected, b: Projected, first: vec2f, lowest: vec4f, slack: f32) {
+    let same = smallest * SAME_SPOT;
+    make_convex(same);
+    find_moments();
+    let few = polygon_count <= PATCH_POINTS;
+    var toward = first;
+    for (var attempt = 0u; attempt < bound(2u); attempt++) {
+        if (few && attempt == 0u) {
+            sampled_count = polygon_count;
+            for (var k = 0u; k < sampled_count; k++) {
+                sampled[k] = polygon[k].xy;
+            }
+        } else {
+            sample_outline(toward, same);
+        }
+        spot_count = sampled_count;
+        for (var k = 0u; k < spot_count; k++) {
+            spots[k] = spot_at(a, b, sampled[k]);
+        }
+        if (attempt == 1u) {
+            spots[0] = lowest;
+        } else if (least_distance() - spot_distance(lowest) <= slack) {
+            break;
+        } else if (few && spot_count < PATCH_POINTS) {
+            spots[spot_count] = lowest;
+            spot_count++;
+            break;
+        }
+        toward = lowest.xy - outline_middle;
+    }
+    // What is left of the difference is too little to move a point, not to be told.
+    let least = least_distance();
+    for (var k = 0u; k < spot_count; k++) {
+        if (spot_distance(spots[k]) <= least) {
+            spots[k] = at_distance(spots[k], min(least, spot_distance(lowest)));
+            break;
+        }
+    }
 }
 
 // Leaves one of spots that coincide, the deepest, of those that are within reach.
@@ -88,6 +140,21 @@ fn add_in_frame(pair: u32, a: Placed, middle_of_contact: vec3f, normal: vec3f, d
     add_contact(pair, distance, a.center + a.axes * middle_of_contact, normal, tangent);
 }
 
+// The direction in which many spots begin, which turns with a body: to the first corner of a round cap, or along the first edge.
+fn first_direction(a: Projected, b: Projected) -> vec2f {
+    var cap = a;
+    if (is_cap(b) && !is_cap(a)) {
+        cap = b;
+    }
+    if (is_cap(cap)) {
+        // From the corner across to the first; of the second body they come in reverse.
+        let start = cap.place + select(0u, CAP_CORNERS - 1u, cap.place > 0u);
+        let opposite = cap.place + select(CAP_CORNERS / 2u, CAP_CORNERS / 2u - 1u, cap.place > 0u);
+        return (feature_corners[start] - feature_corners[opposite]).xy;
+    }
+    return (feature_corners[a.place + 1u] - feature_corners[a.place]).xy;
+}
+
 // The contacts of two features that are both more than a corner.
 fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range: f32) {
     let frame = across(n);
@@ -96,15 +163,16 @@ fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range
         feature_corners[k] = view * feature_corners[k];
     }
     // The normal points out of the second body's feature, which turns the order of its corners round.
-    var turned = array<vec3f, 4>();
-    for (var k = 0u; k < of_b.count; k++) {
-        turned[of_b.count - 1u - k] = view * (offset_b + turn_b * feature_corners[MOST_CORNERS + k]);
+    let first_of_b = FEATURE_CORNERS;
+    let last_of_b = FEATURE_CORNERS + of_b.count - 1u;
+    for (var k = 0u; 2u * k < of_b.count; k++) {
+        let p = feature_corners[first_of_b + k];
+        let q = feature_corners[last_of_b - k];
+        feature_corners[first_of_b + k] = view * (offset_b + turn_b * q);
+        feature_corners[last_of_b - k] = view * (offset_b + turn_b * p);
     }
-    for (var k = 0u; k < of_b.count; k++) {
-        feature_corners[MOST_CORNERS + k] = turned[k];
-    }
-    let first = project_feature(0u, of_a.count, view * of_a.normal);
-    let second = project_feature(MOST_CORNERS, of_b.count, view * (turn_b * of_b.normal));
+    let first = project_feature(0u, of_a, view, vec3f());
+    let second = project_feature(FEATURE_CORNERS, of_b, view * turn_b, view * offset_b);
 
     let slack = max(smallest * MISSED, exactness);
     var least = UNMOVABLE;
@@ -123,14 +191,19 @@ fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range
         }
         spots[0] = witness(view, n);
         spot_count++;
-    } else if (least > reach) {
+        least = spot_distance(spots[0]);
+    }
+    var deepest = 0u;
+    while (deepest + 1u < spot_count && spot_distance(spots[deepest]) > least + exactness) {
+        deepest++;
+    }
+    let lowest = spots[deepest];
+    if (spot_distance(lowest) > reach) {
         // They touch by less than the features tell.
-        var deepest = 0u;
-        while (deepest + 1u < spot_count && spot_distance(spots[deepest]) > least + exactness) {
-            deepest++;
-        }
-        spots[0] = at_distance(spots[deepest], best.gap);
+        spots[0] = at_distance(lowest, best.gap);
         spot_count = 1u;
+    } else if (MANY_CORNERS && spot_count > PATCH_POINTS) {
+        sample_spots(first, second, first_direction(first, second), lowest, slack);
     }
     merge_spots(reach);
     let normal = a.axes * n;
@@ -156,9 +229,19 @@ fn add_contacts(pair: u32, a: Placed, range: f32) {
     }
     let normal = a.axes * n;
     let tangent = tangent_from_normal(normal);
-    let of_a = feature_of(body_a, n, 0u);
-    let of_b = feature_of(body_b, -(transpose(turn_b) * n), MOST_CORNERS);
-    let q = offset_b + turn_b * feature_corners[MOST_CORNERS];
+    var features = array<Feature, 2>();
+    for (var k = 0u; k < bound(2u); k++) {
+        var body = body_a;
+        var outward = n;
+        if (k == 1u) {
+            body = body_b;
+            outward = -(transpose(turn_b) * n);
+        }
+        features[k] = feature_of(body, outward, FEATURE_CORNERS * k);
+    }
+    let of_a = features[0];
+    let of_b = features[1];
+    let q = offset_b + turn_b * feature_corners[FEATURE_CORNERS];
     var level = q - n * half;
     if (of_a.count == 1u) {
         level = feature_corners[0] + n * half;

@@ -1,0 +1,186 @@
+// The largest gap of a cylinder and a polyhedron of few faces, which overlap or else are apart along the direction found. Sister of
+// `clench-collide/src/narrow/convex/cylinder_polyhedron.rs`, where the directions that can have it are derived, and of `ellipse.rs`.
+
+// Newton's method on an ellipse stops after so many steps, converged or not.
+const ELLIPSE_STEPS: u32 = 16u;
+
+// A cylinder in the frame of a polyhedron.
+struct Cylinder {
+    axis: vec3f,
+    center: vec3f,
+    size: vec3f,
+}
+
+// How far a cylinder has to go to leave across a face, and the point of it that is furthest against the face's normal, as its cross
+// product with that.
+struct Crossed {
+    depth: f32,
+    moment: vec3f,
+}
+
+// The largest gap so far, from the cylinder to the polyhedron, and what the gap along another direction must exceed.
+var<private> largest_gap: Gap;
+var<private> bar: f32;
+
+fn has_creases(a: Body, b: Body) -> bool {
+    return a.kind == CYLINDER && b.hull != NONE && words[b.hull + HULL_CREASE_COUNT] > 0u;
+}
+
+fn offer(gap: f32, normal: vec3f) {
+    if (gap > bar) {
+        largest_gap = Gap(normal, gap, true);
+        bar = gap + exactness;
+    }
+}
+
+fn cross_face(c: Cylinder, plane: vec4f) -> Crossed {
+    let along = dot(c.axis, plane.xyz);
+    let sideways = cross(c.axis, plane.xyz);
+    let level = length(sideways);
+    let reach = c.size.x * level + c.size.y * abs(along);
+    let arm = c.size.x * along / max(level, LEAST_NORMAL) - signed(c.size.y, along);
+    return Crossed(reach + plane.w - dot(plane.xyz, c.center), cross(c.center, plane.xyz) + sideways * arm);
+}
+
+// The caps, and the corner nearest to the axis against the side.
+fn offer_corners(c: Cylinder, hull: u32) {
+    let count = words[hull + HULL_VERTEX_COUNT];
+    var low = UNMOVABLE;
+    var high = -UNMOVABLE;
+    var least = UNMOVABLE;
+    var corner = vec3f();
+    for (var k = 0u; k < count; k++) {
+        let arm = vertex_of_hull(hull, k) - c.center;
+        let along = dot(c.axis, arm);
+        low = min(low, along);
+        high = max(high, along);
+        let square = dot(arm, arm) - along * along;
+        if (square < least) {
+            least = square;
+            corner = arm;
+        }
+    }
+    offer(low - c.size.y, c.axis);
+    offer(-high - c.size.y, -c.axis);
+    let away = direction(cross(cross(c.axis, corner), c.axis));
+    var normal = away.xyz;
+    if (away.w <= TINY) {
+        // A corner on the axis is as far from all of the side.
+        normal = across(c.axis).e;
+    }
+    if (away.w - c.size.x > largest_gap.gap) {
+        var nearest = UNMOVABLE;
+        for (var k = 0u; k < count; k++) {
+            nearest = min(nearest, dot(normal, vertex_of_hull(hull, k)));
+        }
+        offer(nearest - dot(normal, c.center) - c.size.x, normal);
+    }
+}
+
+// The unit normal of an ellipse, in its first quarter, that goes through a point with x ≥ 0 and along which the gap is the largest
+// around; nothing where there is none. The ellipse is a circle of radius 1 seen aslant.
+fn ellipse_normal(cosine: f32, sine: f32, p: vec2f) -> vec2f {
+    let square = sine * sine;
+    let height = cosine * p.y;
+    var at = vec2f(p.x, square + height);
+    for (var step = 0u; step < bound(ELLIPSE_STEPS); step++) {
+        if (at.y <= 0.0) {
+            return vec2f();
+        }
+        at = at / length(at);
+        let value = square * at.y * at.x - p.x * at.y + height * at.x;
+        let fall = p.x * at.x + height * at.y - square * (at.x * at.x - at.y * at.y);
+        if (fall <= 0.0) {
+            return vec2f();
+        }
+        let turn = at.x * at.x * cosine * cosine + at.y * at.y;
+        at = vec2f(at.x * fall - at.y * value, at.y * fall + at.x * value);
+        if (value * value <= fall * fall * turn * ROUNDING) {
+            break;
+        }
+    }
+    return normalize(vec2f(cosine * at.x, at.y));
+}
+
+// An edge against the side and the cap circles, along directions that do not point out of either of its faces, whose normals are m
+// and n.
+fn offer_edge(c: Cylinder, start: vec3f, edge: vec3f, m: vec3f, n: vec3f) {
+    let crossed = cross(edge, c.axis);
+    let cosine = abs(dot(edge, c.axis));
+    let sine = length(crossed);
+    if (sine <= ROUNDING) {
+        return;
+    }
+    let sideways = crossed / sine;
+    let within_m = cross(m, edge);
+    let within_n = cross(edge, n);
+    let arm = start - c.center;
+    // Seen along the edge, with x across the axis, the edge is where x is positive.
+    let side = signed(1.0, dot(sideways, arm));
+    let x = abs(dot(sideways, arm));
+    let out = vec2f(dot(sideways, within_m), dot(sideways, within_n)) * side;
+    if (min(out.x, out.y) >= 0.0) {
+        offer(x - c.size.x, sideways * side);
+    } else if (max(out.x, out.y) <= 0.0) {
+        offer(-x - c.size.x, sideways * -side);
+    }
+    if (cosine <= ROUNDING || c.size.x <= 0.0) {
+        return;
+    }
+    let along = cross(sideways, edge);
+    let up = vec2f(dot(along, within_m), dot(along, within_n));
+    for (var k = 0u; k < bound(2u); k++) {
+        let sign = select(-1.0, 1.0, k == 0u);
+        if ((out.x < 0.0 && up.x * sign < 0.0) || (out.y < 0.0 && up.y * sign < 0.0)) {
+            continue;
+        }
+        let found = ellipse_normal(cosine, sine, vec2f(x, dot(along, arm) * sign - c.size.y * sine) / c.size.x);
+        let normal = sideways * (found.x * side) + along * (found.y * sign);
+        if (any(found != vec2f()) && dot(normal, within_m) >= 0.0 && dot(normal, within_n) >= 0.0) {
+            let reach = c.size.y * abs(dot(c.axis, normal)) + c.size.x * length(cross(c.axis, normal));
+            offer(dot(normal, arm) - reach, normal);
+        }
+    }
+}
+
+// How far within an edge of the polyhedron a cylinder touches a face beside it must not be more than this for the gap through the
+// edge to be as large as it gets, and no deeper than `depth`, between its faces.
+fn may_touch_edge(within: f32, crossed: Crossed, turn: vec2f, depth: f32) -> bool {
+    return within * turn.y <= depth - crossed.depth * turn.x;
+}
+
+// The largest gap of the pair's cylinder and polyhedron if it is not positive, else one that is; one beyond `limit` will do.
+fn polyhedron_gap(limit: f32) -> Gap {
+    let hull = body_b.hull;
+    let back = transpose(turn_b);
+    let c = Cylinder(back * vec3f(0.0, 0.0, 1.0), -(back * offset_b), body_a.size);
+    largest_gap = Gap(vec3f(0.0, 0.0, 1.0), -UNMOVABLE, false);
+    bar = -UNMOVABLE;
+    for (var face = 0u; face < words[hull + HULL_FACE_COUNT] && largest_gap.gap <= limit; face++) {
+        let plane = plane_of_hull(hull, face);
+        offer(-cross_face(c, plane).depth, -plane.xyz);
+    }
+    if (largest_gap.gap <= limit) {
+        offer_corners(c, hull);
+        for (var k = 0u; k < words[hull + HULL_CREASE_COUNT]; k++) {
+            let place = words[hull + HULL_CREASES] + 8u * k;
+            let start = shape3(place);
+            let edge = shape3(place + 3u);
+            let turn = vec2f(numbers[place + 6u], numbers[place + 7u]);
+            let moment = cross(start, edge);
+            let faces = words[hull + HULL_CREASE_FACES] + 2u * k;
+            let m = plane_of_hull(hull, words[faces]);
+            let n = plane_of_hull(hull, words[faces + 1u]);
+            let across_m = cross_face(c, m);
+            let across_n = cross_face(c, n);
+            // How far within the edge the cylinder touches each face.
+            let within_m = dot(edge, across_m.moment) + dot(m.xyz, moment);
+            let within_n = -dot(edge, across_n.moment) - dot(n.xyz, moment);
+            let depth = max(-bar, 0.0);
+            if (may_touch_edge(within_m, across_m, turn, depth) && may_touch_edge(within_n, across_n, turn, depth)) {
+                offer_edge(c, start, edge, m.xyz, n.xyz);
+            }
+        }
+    }
+    return Gap(turn_b * largest_gap.normal, largest_gap.gap, true);
+}

@@ -1,0 +1,118 @@
+// Hulls of meshes: the furthest vertex, and what of a hull lies against a plane. Sister of `clench-collide/src/hull/mod.rs` and of
+// `clench-collide/src/narrow/convex/feature.rs`. A hull is a place in the words, where its parts are told.
+
+// Numbers that all environments share.
+fn shape3(place: u32) -> vec3f {
+    return vec3f(numbers[place], numbers[place + 1u], numbers[place + 2u]);
+}
+
+fn shape4(place: u32) -> vec4f {
+    return vec4f(shape3(place), numbers[place + 3u]);
+}
+
+// A hull's vertex.
+fn vertex_of_hull(hull: u32, vertex: u32) -> vec3f {
+    return shape3(words[hull + HULL_VERTICES] + 3u * vertex);
+}
+
+// The outward normal of a face; in w where its plane is along it.
+fn plane_of_hull(hull: u32, face: u32) -> vec4f {
+    return shape4(words[hull + HULL_PLANES] + 4u * face);
+}
+
+// The number of the vertex that is furthest along `d`, climbing from one that the signs of `d` choose, from neighbour to neighbour.
+fn furthest_of_hull(hull: u32, d: vec3f) -> u32 {
+    let neighbors = words[hull + HULL_NEIGHBORS];
+    let octant = select(0u, 1u, d.x < 0.0) | select(0u, 2u, d.y < 0.0) | select(0u, 4u, d.z < 0.0);
+    var vertex = words[hull + HULL_FIRST + octant];
+    var reach = dot(vertex_of_hull(hull, vertex), d);
+    var before = NONE;
+    while (vertex != before) {
+        before = vertex;
+        let end = words[neighbors + before + 1u];
+        for (var k = words[neighbors + before]; k < end; k++) {
+            let further = dot(vertex_of_hull(hull, words[k]), d);
+            if (further > reach) {
+                reach = further;
+                vertex = words[k];
+            }
+        }
+    }
+    return vertex;
+}
+
+// Of the faces at a vertex the one that lies most nearly across `d`; NONE if all are tilted by more than 5°.
+fn face_across(hull: u32, vertex: u32, d: vec3f) -> u32 {
+    let faces = words[hull + HULL_VERTEX_FACES];
+    var cosine = FACE_COSINE;
+    var best_face = NONE;
+    for (var k = words[faces + vertex]; k < words[faces + vertex + 1u]; k++) {
+        let other = dot(plane_of_hull(hull, words[k]).xyz, d);
+        if (other >= cosine) {
+            cosine = other;
+            best_face = words[k];
+        }
+    }
+    return best_face;
+}
+
+// How much further than the others, as a share of its body, a corner must be to count, which would not be among those looked at.
+const NOTICEABLE: f32 = 1e-7;
+// Faces tilted by less are level.
+const LEVEL: f32 = 2e-3;
+
+// The corners of a face, of many every second, third and so on. Then the furthest vertex is kept too, but for a level face only if it
+// is noticeably further than the others.
+fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, place: u32) -> Feature {
+    let corners = words[body.hull + HULL_FACE_CORNERS] + face;
+    let begin = words[corners];
+    let count = words[corners + 1u] - begin;
+    let stride = (count + MAX_FACE_CORNERS - 2u) / (MAX_FACE_CORNERS - 1u);
+    let normal = plane_of_hull(body.hull, face).xyz;
+    var furthest = -UNMOVABLE;
+    for (var k = 0u; k < count; k += stride) {
+        furthest = max(furthest, dot(vertex_of_hull(body.hull, words[begin + k]), d));
+    }
+    let level = dot(d - normal, d - normal) <= LEVEL * LEVEL;
+    let needed = !level || dot(vertex_of_hull(body.hull, vertex), d) > furthest + body.reach * NOTICEABLE;
+    var kept = 0u;
+    for (var k = 0u; k < count; k++) {
+        let corner = words[begin + k];
+        if (k % stride == 0u || (needed && corner == vertex)) {
+            feature_corners[place + kept] = vertex_of_hull(body.hull, corner);
+            kept++;
+        }
+    }
+    return Feature(kept, normal, 0.0);
+}
+
+// Of the faces and edges at the furthest vertex the one that is most nearly level, if one is level enough.
+fn feature_of_hull(body: Body, d: vec3f, place: u32) -> Feature {
+    let vertex = furthest_of_hull(body.hull, d);
+    let face = face_across(body.hull, vertex, d);
+    if (face != NONE) {
+        return face_of_hull(body, face, vertex, d, place);
+    }
+    let corner = vertex_of_hull(body.hull, vertex);
+    let neighbors = words[body.hull + HULL_NEIGHBORS] + vertex;
+    // The rise and the length of the best edge, squared.
+    var best_edge = vec2f(EDGE_SINE * EDGE_SINE, 1.0);
+    var neighbor = NONE;
+    for (var k = words[neighbors]; k < words[neighbors + 1u]; k++) {
+        let edge = vertex_of_hull(body.hull, words[k]) - corner;
+        let rise = dot(edge, d) * dot(edge, d);
+        let square = dot(edge, edge);
+        if (rise * best_edge.y <= best_edge.x * square) {
+            best_edge = vec2f(rise, square);
+            neighbor = words[k];
+        }
+    }
+    feature_corners[place] = corner;
+    if (neighbor == NONE) {
+        return Feature(1u, d, 0.0);
+    }
+    let is_first = vertex < neighbor;
+    feature_corners[place + select(0u, 1u, is_first)] = vertex_of_hull(body.hull, neighbor);
+    feature_corners[place + select(1u, 0u, is_first)] = corner;
+    return Feature(2u, d, 0.0);
+}

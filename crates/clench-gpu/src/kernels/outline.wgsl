@@ -1,0 +1,191 @@
+// At most eight points on the outline of a convex polygon of contacts. Sister of `clench-collide/src/narrow/outline.rs`, where the
+// integral over a sector is derived.
+
+// Half the angle of the sector of directions that a point stands for.
+const HALF_SECTOR: f32 = 3.1415927 / f32(PATCH_POINTS);
+
+// The middle of the polygon's area, and the inverse root of its second moments: xx, xy, yy.
+var<private> outline_middle: vec2f;
+var<private> outline_round: vec3f;
+// The points that stand for the outline.
+var<private> sampled: array<vec2f, PATCH_POINTS>;
+var<private> sampled_count: u32;
+
+fn is_near(p: vec2f, q: vec2f, same: f32) -> bool {
+    return dot(p - q, p - q) <= same * same;
+}
+
+// Drops corners from the end where the way to the next turns right, or not at all.
+fn straighten(next: vec2f) {
+    while (polygon_count >= 2u) {
+        let p = polygon[polygon_count - 2u].xy;
+        let q = polygon[polygon_count - 1u].xy;
+        if (turn_of(q - p, next - q) > 0.0) {
+            break;
+        }
+        polygon_count--;
+    }
+}
+
+// Leaves the corners of the convex hull of the polygon, which is star-shaped (Graham 1972); corners nearer than `same` to the one before
+// are left out.
+fn make_convex(same: f32) {
+    var whole = polygon;
+    let count = polygon_count;
+    var first = 0u;
+    for (var k = 1u; k < count; k++) {
+        let p = whole[k];
+        let q = whole[first];
+        if (p.x < q.x || (p.x == q.x && p.y < q.y)) {
+            first = k;
+        }
+    }
+    polygon_count = 0u;
+    // The first comes once more at the end, to straighten the way back to it.
+    for (var k = 0u; k <= count; k++) {
+        let next = whole[(first + k) % count].xy;
+        if (k == count) {
+            while (polygon_count > 1u && is_near(polygon[polygon_count - 1u].xy, next, same)) {
+                polygon_count--;
+            }
+        } else if (polygon_count > 0u && is_near(polygon[max(polygon_count, 1u) - 1u].xy, next, same)) {
+            continue;
+        }
+        straighten(next);
+        if (k < count) {
+            push_corner(vec3f(next, 0.0));
+        }
+    }
+}
+
+// Finds the middle and the moments of the polygon; of one without area, numbers that do no harm.
+fn find_moments() {
+    let origin = polygon[0].xy;
+    var area = 0.0;
+    var first = vec2f();
+    var second = vec3f();
+    for (var k = 1u; k + 1u < polygon_count; k++) {
+        let p = polygon[k].xy - origin;
+        let q = polygon[k + 1u].xy - origin;
+        let twice = turn_of(p, q);
+        area += twice;
+        first += (p + q) * twice;
+        second += vec3f(
+            p.x * p.x + p.x * q.x + q.x * q.x,
+            p.x * p.y + q.x * q.y + (p.x * q.y + q.x * p.y) * 0.5,
+            p.y * p.y + p.y * q.y + q.y * q.y,
+        ) * twice;
+    }
+    let inverse = 1.0 / max(area, LEAST_NORMAL);
+    let mean = first * (inverse / 3.0);
+    second *= inverse / 6.0;
+    let xy = second.y - mean.x * mean.y;
+    // A very thin polygon counts as a little wider.
+    var squares = second.xz - mean * mean;
+    squares = max(squares, vec2f()) + (squares.x + squares.y) * ROOT_OF_ROUNDING;
+    let root = sqrt(max(squares.x * squares.y - xy * xy, LEAST_NORMAL));
+    let scale = 1.0 / (root * sqrt(squares.x + squares.y + root * 2.0));
+    outline_middle = origin + mean;
+    outline_round = vec3f(squares.y + root, -xy, squares.x + root) * scale;
+    if (is_wild(scale)) {
+        outline_round = vec3f(1.0, 0.0, 1.0);
+    }
+}
+
+fn rounded(v: vec2f) -> vec2f {
+    return vec2f(dot(outline_round.xy, v), dot(outline_round.yz, v));
+}
+
+// The first corner that is furthest along a direction.
+fn furthest_corner(d: vec2f) -> u32 {
+    var furthest = 0u;
+    var height = -UNMOVABLE;
+    for (var k = 0u; k < polygon_count; k++) {
+        let other = dot(polygon[k].xy, d);
+        if (other > height) {
+            height = other;
+            furthest = k;
+        }
+    }
+    return furthest;
+}
+
+fn next_corner(k: u32) -> u32 {
+    return select(k + 1u, 0u, k + 1u >= polygon_count);
+}
+
+// The point of the sector between two directions; `begin` is the corner that supports the first, and z the one that supports the
+// second.
+fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
+    var corner = begin;
+    var mean = vec2f();
+    var passed = 0.0;
+    var edge_total = 0u;
+    while (edge_total < polygon_count) {
+        let p = polygon[corner].xy;
+        let way = polygon[next_corner(corner)].xy - p;
+        let at_start = dot(way, start);
+        let at_end = dot(way, to);
+        if (at_end <= 0.0) {
+            break;
+        }
+        // Along this share of the way the next corner takes over.
+        var share = passed;
+        if (at_start < 0.0) {
+            share = max(at_start / (at_start - at_end), passed);
+        }
+        mean += p * (share - passed);
+        passed = share;
+        corner = next_corner(corner);
+        edge_total++;
+    }
+    mean += polygon[corner].xy * (1.0 - passed);
+    // Outward from the middle, to the edge between those corners that is met first.
+    let outward = mean - outline_middle;
+    var reach = UNMOVABLE;
+    var at = begin;
+    for (var k = 0u; k < edge_total; k++) {
+        let p = polygon[at].xy;
+        at = next_corner(at);
+        let side = polygon[at].xy - p;
+        let across_side = vec2f(side.y, -side.x);
+        let rise = dot(across_side, outward);
+        if (rise > 0.0) {
+            reach = min(reach, dot(across_side, p - outline_middle) / rise);
+        }
+    }
+    if (reach < UNMOVABLE && reach > 1.0) {
+        mean = outline_middle + outward * reach;
+    }
+    return vec3f(mean, f32(corner));
+}
+
+// Samples the polygon's outline: a point for each sector, the first about the direction `first`; of those that coincide one.
+fn sample_outline(first: vec2f, same: f32) {
+    let toward = rounded(first);
+    let size = length(toward);
+    var x = vec2f(1.0, 0.0);
+    if (size > 0.0) {
+        x = toward / size;
+    }
+    sampled_count = 0u;
+    var corner = 0u;
+    var to = vec2f();
+    for (var k = 0u; k <= bound(PATCH_POINTS); k++) {
+        let start = to;
+        let turn = sin_cos(f32(2u * (k % PATCH_POINTS)) * HALF_SECTOR - HALF_SECTOR);
+        to = rounded(vec2f(x.x * turn.y - x.y * turn.x, x.x * turn.x + x.y * turn.y));
+        if (k == 0u) {
+            corner = furthest_corner(to);
+            continue;
+        }
+        let point = sector_point(start, to, corner);
+        corner = u32(point.z);
+        let coincides = sampled_count > 0u
+            && (is_near(sampled[max(sampled_count, 1u) - 1u], point.xy, same) || is_near(sampled[0], point.xy, same));
+        if (!coincides) {
+            sampled[sampled_count] = point.xy;
+            sampled_count++;
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Convex polyhedra: the hulls of meshes that may touch, once each, and boxes that cylinders may touch.
+
+use super::{Tables, starts};
+use clench_collide::{Asset, Hull, ShapeKind, convex_hull};
+use clench_math::Vec3;
+use clench_rigid::contact::Candidate;
+use clench_rigid::model::Model;
+
+/// Where the parts of a polyhedron are, in the order in which kernels find them behind its place.
+const PARTS: [&str; 11] = [
+    "HULL_VERTEX_COUNT",
+    "HULL_FACE_COUNT",
+    "HULL_CREASE_COUNT",
+    "HULL_VERTICES",
+    "HULL_PLANES",
+    "HULL_CREASES",
+    "HULL_CREASE_FACES",
+    "HULL_NEIGHBORS",
+    "HULL_VERTEX_FACES",
+    "HULL_FACE_CORNERS",
+    "HULL_FIRST",
+];
+/// Directions from which a climb to the furthest vertex begins: an octant each.
+const OCTANTS: usize = 8;
+
+/// Hulls of at most this many faces are searched face by face, as on the processor.
+const FEW_FACES: usize = 64;
+
+/// An edge between two faces: its ends, the face that goes along it, and the one that comes back.
+struct Crease {
+    ends: [usize; 2],
+    faces: [usize; 2],
+}
+
+impl Crease {
+    /// A point of it, its direction, and the cosine and the sine of the angle between the normals of its faces.
+    fn numbers(&self, hull: &Hull) -> [f64; 8] {
+        let [start, end] = self.ends.map(|v| hull.vertices()[v]);
+        let [m, n] = self.faces.map(|face| hull.normal(face));
+        let (along, _) = (end - start).normalize();
+        let turn = [m.dot(n), m.cross(n).norm()];
+        let [a, b] = [start, along].map(Vec3::to_array);
+        [a[0], a[1], a[2], b[0], b[1], b[2], turn[0], turn[1]]
+    }
+}
+
+/// The edges between the faces of a hull; none where it has many faces.
+fn creases(hull: &Hull) -> Vec<Crease> {
+    if hull.face_count() > FEW_FACES {
+        return Vec::new();
+    }
+    let sides = |face: usize| {
+        let corners = hull.corners(face);
+        let next = corners.iter().cycle().skip(1);
+        let sides = corners.iter().zip(next);
+        sides.map(|(&from, &to)| [from as usize, to as usize])
+    };
+    let all = || (0..hull.face_count()).flat_map(|face| sides(face).map(move |side| (face, side)));
+    let forward = all().filter(|(_, [from, to])| from < to);
+    let crease = |(face, [from, to]): (usize, [usize; 2])| {
+        let (back, _) = all().find(|(_, side)| *side == [to, from])?;
+        Some(Crease {
+            ends: [from, to],
+            faces: [face, back],
+        })
+    };
+    forward.filter_map(crease).collect()
+}
+
+impl Tables {
+    /// The polyhedra of a model's pairs, and which of them each geom is: `NONE` where it is none. Gives the most corners of a face.
+    pub(super) fn hulls(&mut self, m: &Model, candidates: &[Candidate]) -> usize {
+        for (offset, name) in PARTS.iter().enumerate() {
+            self.count(name, offset);
+        }
+        let mut most_corners = 0;
+        let mut of_mesh = vec![None; m.meshes.len()];
+        let mut of_geom = vec![super::NONE as usize; m.geoms.len()];
+        for (candidate, &g) in candidates
+            .iter()
+            .flat_map(|c| c.geoms.iter().map(move |g| (c, g)))
+        {
+            let g = g as usize;
+            let geom = &m.geoms[g];
+            let beside_cylinder = candidate.kinds == [ShapeKind::Cylinder, ShapeKind::Box];
+            if of_geom[g] != super::NONE as usize {
+                continue;
+            }
+            match (geom.kind, m.asset(g)) {
+                (ShapeKind::Mesh, Asset::Hull(hull)) => {
+                    let place = geom.mesh.and_then(|mesh| of_mesh[mesh]);
+                    let place = place.unwrap_or_else(|| self.hull(hull));
+                    if let Some(mesh) = geom.mesh {
+                        of_mesh[mesh] = Some(place);
+                    }
+                    let corners = (0..hull.face_count()).map(|face| hull.corners(face).len());
+                    most_corners = corners.fold(most_corners, usize::max);
+                    of_geom[g] = place;
+                }
+                (ShapeKind::Box, _) if beside_cylinder => {
+                    if let Some(hull) = hull_of_box(m.params.geom_size[g]) {
+                        of_geom[g] = self.hull(&hull);
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.words("GEOM_HULL", of_geom);
+        most_corners
+    }
+
+    /// Adds a polyhedron; where it is.
+    fn hull(&mut self, hull: &Hull) -> usize {
+        let (vertices, faces) = (0..hull.vertices().len(), 0..hull.face_count());
+        let creases = creases(hull);
+        let mut parts = vec![vertices.len(), faces.len(), creases.len()];
+        parts.push(self.add_numbers(hull.vertices().iter().flat_map(|v| v.to_array())));
+        parts.push(self.add_numbers(faces.clone().flat_map(|face| {
+            let Vec3 { x, y, z } = hull.normal(face);
+            [x, y, z, hull.offset(face)]
+        })));
+        parts.push(self.add_numbers(creases.iter().flat_map(|crease| crease.numbers(hull))));
+        parts.push(self.add_words(creases.iter().flat_map(|crease| crease.faces)));
+        parts.push(self.lists(vertices.clone().map(|v| hull.neighbors(v))));
+        parts.push(self.lists(vertices.map(|v| hull.faces_at(v))));
+        parts.push(self.lists(faces.map(|face| hull.corners(face))));
+        // The last part is not a place but the vertices themselves.
+        parts.extend((0..OCTANTS).map(|octant| {
+            let sign = |axis: usize| if octant >> axis & 1 == 1 { -1.0 } else { 1.0 };
+            hull.support(Vec3::new(sign(0), sign(1), sign(2)))
+        }));
+        self.add_words(parts)
+    }
+
+    /// Adds lists of numbers: where each begins and the last ends, then all of them.
+    fn lists<'a>(&mut self, lists: impl Iterator<Item = &'a [u32]> + Clone) -> usize {
+        let begins = starts(lists.clone().map(<[u32]>::len));
+        let items = self.words.len() + begins.len();
+        let place = self.add_words(begins.into_iter().map(|begin| items + begin));
+        self.add_words(lists.flatten().map(|&item| item as usize));
+        place
+    }
+
+    fn add_words(&mut self, values: impl IntoIterator<Item = usize>) -> usize {
+        let place = self.words.len();
+        self.words.extend(values.into_iter().map(|v| v as u32));
+        place
+    }
+
+    fn add_numbers(&mut self, values: impl IntoIterator<Item = f64>) -> usize {
+        let place = self.numbers.len();
+        self.numbers.extend(values.into_iter().map(|v| v as f32));
+        place
+    }
+}
+
+/// A box as a polyhedron; none where it is flat.
+fn hull_of_box(size: Vec3<f64>) -> Option<Hull> {
+    let sign = |k: usize, axis: usize| if k >> axis & 1 == 1 { -1.0 } else { 1.0 };
+    let corner = |k| size.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2)));
+    let corners: Vec<_> = (0..8).map(corner).collect();
+    let surface = convex_hull(&corners, None).ok()?;
+    Some(Hull::new(&surface, &corners))
+}
