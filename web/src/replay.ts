@@ -25,7 +25,7 @@ export class Replay {
 
   /** The recording that a page carries, if it carries one. */
   static inPage(): Replay | null {
-    const carried = document.getElementById("recording")?.textContent;
+    const carried = document.getElementById("recording")!.textContent;
     return carried ? new Replay(JSON.parse(carried) as Recording) : null;
   }
 

@@ -47,12 +47,8 @@ export class Tape {
     }
     const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: kept.map(({ bytes }) => letters(bytes)) });
     const page = new DOMParser().parseFromString(await reply.text(), "text/html");
-    const script = page.createElement("script");
-    script.id = "recording";
-    script.type = "application/json";
     // A script ends at `</`, wherever that stands.
-    script.textContent = data.replaceAll("</", "<\\/");
-    page.body.prepend(script);
+    page.getElementById("recording")!.textContent = data.replaceAll("</", "<\\/");
     const text = `<!doctype html>\n${page.documentElement.outerHTML}`;
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([text], { type: "text/html" }));

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdtempSync } from "node:fs";
+import { mkdtempSync, symlinkSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
@@ -262,6 +262,27 @@ test("limits and equalities push with arrows, and islands have colours", { skip 
   }
 });
 
+test("the bar is one line, and hides no button", { skip }, async () => {
+  const program = await view("models/humanoid.xml", "--paused");
+  try {
+    const page = await open(browser, program.url);
+    for (const width of [1000, 1100, 1400]) {
+      await page.setViewportSize({ width, height: 600 });
+      const [height, right, panel] = await page.evaluate(() => {
+        const bar = document.getElementById("bar")!;
+        const ends = [...bar.children].map((part) => part.getBoundingClientRect().right);
+        return [bar.clientHeight, Math.max(...ends), document.getElementById("panel")!.getBoundingClientRect().left];
+      });
+      assert.ok(height < 50, `${height} px high at ${width}`);
+      assert.ok(right < panel, `the bar ends at ${right}, the panel begins at ${panel}`);
+      await page.screenshot({ path: join(PICTURES, `bar-${width}.png`) });
+    }
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
 test("what was seen last is saved as a page that replays it", { skip }, async () => {
   const program = await view("models/box_stack.xml");
   const file = join(mkdtempSync(join(tmpdir(), "clench-saved-")), "saved.html");
@@ -277,6 +298,29 @@ test("what was seen last is saved as a page that replays it", { skip }, async ()
   const page = await open(browser, `file://${file}`);
   await until(page, () => window.clench.frame.time > 0.1);
   await page.close();
+});
+
+test("a recording that has all its memory keeps what it has, and the run goes on", { skip }, async () => {
+  const file = join(mkdtempSync(join(tmpdir(), "clench-recording-")), "full.html");
+  const words = ["simulate", "models/box_stack.xml", "--steps", "400", "--json", "--max-memory", "2e-5", "--record", file];
+  const done = spawnSync(PROGRAM, words, { cwd: ROOT, encoding: "utf8" });
+  assert.match(done.stderr, /--max-memory; what was recorded is kept, the run goes on/);
+  const report = JSON.parse(done.stdout) as { status: string; steps: number };
+  assert.deepEqual([done.status === 0, report.status, report.steps], [false, "record_failed", 400]);
+  const page = await open(browser, `file://${file}`);
+  const last = Number(await page.locator("#time").getAttribute("max"));
+  assert.ok(last > 3 && last < 100, `${last}`);
+  await page.close();
+});
+
+test("a page that the disk has no room for is an error after the run", { skip }, async () => {
+  const file = join(mkdtempSync(join(tmpdir(), "clench-recording-")), "full.html");
+  symlinkSync("/dev/full", file);
+  const words = ["simulate", "models/pendulum.xml", "--steps", "40", "--json", "--record", file];
+  const done = spawnSync(PROGRAM, words, { cwd: ROOT, encoding: "utf8" });
+  const report = JSON.parse(done.stdout) as { status: string; steps: number };
+  assert.deepEqual([report.status, report.steps], ["record_failed", 40]);
+  assert.match(done.stderr, /full.html.*No space left/);
 });
 
 test("a recording opens from a disk and replays", { skip }, async () => {

@@ -12,8 +12,9 @@ const EMBEDDED: &str = include_str!(concat!(env!("OUT_DIR"), "/page.html"));
 /// The folder of its source.
 const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web");
 
-/// What data in a page begins with.
-const DATA: &str = "<script id=\"recording\" type=\"application/json\">";
+/// Where data stand in a page: between these, and nothing in the page itself.
+const BEFORE_DATA: &str = "<script id=\"recording\" type=\"application/json\">";
+const AFTER_DATA: &str = "</script>";
 
 /// The page.
 #[derive(Clone, Debug)]
@@ -36,6 +37,11 @@ pub enum PageError {
     /// A program that builds it failed.
     #[error("`{0}` failed in {1}:\n{2}")]
     Failed(String, PathBuf, String),
+    /// What was built has no place for the data of a recording: its source was another version's.
+    #[error(
+        "the viewer's page was built by another version: build it with `npm ci && npm run build` in web/ and compile again"
+    )]
+    Version,
     /// What was built cannot be read.
     #[error("{0}: {1}")]
     Unreadable(PathBuf, io::Error),
@@ -48,7 +54,7 @@ impl Page {
     /// That there is none, and what to do about it.
     pub fn find(tell: impl Fn(&str)) -> Result<Self, PageError> {
         if !EMBEDDED.is_empty() {
-            return Ok(Page(EMBEDDED.to_owned()));
+            return Page::of(EMBEDDED);
         }
         let source = Path::new(SOURCE);
         if !source.join("package.json").is_file() {
@@ -63,13 +69,20 @@ impl Page {
             npm(source, &["run", "build"])?;
         }
         let text = fs::read_to_string(&built);
-        text.map(Page)
-            .map_err(|error| PageError::Unreadable(built, error))
+        Page::of(text.map_err(|error| PageError::Unreadable(built, error))?)
     }
 
-    /// A page of this text, for tests.
-    pub fn of(text: impl Into<String>) -> Self {
-        Page(text.into())
+    /// The page of this text.
+    ///
+    /// # Errors
+    /// A text without a place for data.
+    pub fn of(text: impl Into<String>) -> Result<Self, PageError> {
+        let text = text.into();
+        let place = format!("{BEFORE_DATA}{AFTER_DATA}");
+        match text.contains(&place) {
+            true => Ok(Page(text)),
+            false => Err(PageError::Version),
+        }
     }
 
     /// Its HTML.
@@ -81,15 +94,15 @@ impl Page {
     pub(crate) fn with_data(&self, json: &str) -> String {
         // A script ends at `</`, wherever that stands.
         let data = json.replace("</", "<\\/");
-        let script = format!("{DATA}{data}</script>");
-        self.0.replacen("<body>", &format!("<body>{script}"), 1)
+        (self.0).replacen(BEFORE_DATA, &format!("{BEFORE_DATA}{data}"), 1)
     }
 
     /// The data that such a page has.
     pub(crate) fn data(html: &str) -> Option<&str> {
-        let (_, rest) = html.split_once(&format!("<body>{DATA}"))?;
+        let (_, rest) = html.split_once(BEFORE_DATA)?;
         // JSON may hold `<\/` wherever it holds `</`.
-        rest.split_once("</script>").map(|(data, _)| data)
+        let (data, _) = rest.split_once(AFTER_DATA)?;
+        (!data.is_empty()).then_some(data)
     }
 }
 

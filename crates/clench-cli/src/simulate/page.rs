@@ -4,10 +4,10 @@ use super::messages::{self, MessageRecorder};
 use super::record::{RecordOptions, Recorder};
 use crate::message::tell;
 use crate::replacement::Replacement;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clench::rigid::Precision;
 use clench::{Model, Sim};
-use clench_view::{Marks, Page, Recording, Scene};
+use clench_view::{Marks, Page, RecordError, Recording, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -67,6 +67,8 @@ pub struct PageRecorder {
     page: Page,
     recording: Recording,
     every: usize,
+    /// Why no more is recorded, if so.
+    full: Option<String>,
 }
 
 fn context(path: &Path) -> String {
@@ -81,17 +83,30 @@ impl PageRecorder {
             page: Page::find(|text| tell(text)).with_context(|| context(&path))?,
             recording: Recording::new(Scene::new(model), options.limit.bytes()),
             every: options.every,
+            full: None,
             path,
             file,
         })
     }
 
+    /// Records what `steps` steps led to, if it is wanted. Where the record has all the memory that it may, that is told once and the
+    /// run goes on.
     fn after_steps<T: Precision>(&mut self, steps: usize, sim: &mut Sim<T>) -> Result<()> {
-        if !steps.is_multiple_of(self.every) {
+        if !steps.is_multiple_of(self.every) || self.full.is_some() {
             return Ok(());
         }
-        (self.recording.append(sim, &mut Marks::default()))
-            .with_context(|| format!("{} (see --every and --max-memory)", context(&self.path)))
+        match self.recording.append(sim, &mut Marks::default()) {
+            Ok(()) => Ok(()),
+            Err(error @ RecordError::Sim(_)) => Err(error).with_context(|| context(&self.path)),
+            Err(error @ RecordError::Full(..)) => {
+                let context = context(&self.path);
+                tell(format_args!(
+                    "warning: {context}: {error}, or raise --max-memory; what was recorded is kept, the run goes on"
+                ));
+                self.full = Some(error.to_string());
+                Ok(())
+            }
+        }
     }
 
     fn write(self) -> Result<usize> {
@@ -101,6 +116,9 @@ impl PageRecorder {
             self.file.finish()
         };
         write().with_context(|| context(&self.path))?;
-        Ok(self.recording.len())
+        match self.full {
+            Some(error) => bail!("{}: {error}", context(&self.path)),
+            None => Ok(self.recording.len()),
+        }
     }
 }
