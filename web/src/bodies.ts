@@ -132,7 +132,7 @@ export class Bodies {
   update(copies: Copy[]): void {
     const place = new THREE.Matrix4();
     for (const drawn of this.geoms) {
-      const { body, group, rgba } = drawn.placed as Geom;
+      const { body, group, rgba } = drawn.placed;
       const { poses, fails, asleep, islands, chosen } = copies[drawn.place];
       const visible = this.sight.groups[group] ?? true;
       place.multiplyMatrices(poses[body], drawn.local);
@@ -146,8 +146,9 @@ export class Bodies {
       drawn.mesh.setColorAt(drawn.slot, colour);
     }
     for (const drawn of this.sites) {
-      place.multiplyMatrices(copies[drawn.place].poses[drawn.placed.body], drawn.local);
-      drawn.mesh.setMatrixAt(drawn.slot, this.sight.sites ? place : NOWHERE);
+      const { body, group } = drawn.placed;
+      place.multiplyMatrices(copies[drawn.place].poses[body], drawn.local);
+      drawn.mesh.setMatrixAt(drawn.slot, this.sight.sites && (this.sight.groups[group] ?? true) ? place : NOWHERE);
     }
     for (const mesh of this.group.children as THREE.InstancedMesh[]) {
       mesh.instanceMatrix.needsUpdate = true;

@@ -235,7 +235,7 @@ export class Panel {
     };
     box.append(check("transparent", this.sight.transparent, anew("transparent")));
     if (this.scene.meshes.length > 0) box.append(check("collision hulls", this.sight.hulls, anew("hulls")));
-    const used = new Set(this.scene.geoms.map((geom) => geom.group));
+    const used = new Set([...this.scene.geoms, ...this.scene.sites].map(({ group }) => group));
     if (used.size > 1) {
       [...used].sort().forEach((group) => {
         box.append(check(`group ${group}`, this.sight.groups[group], (on) => (this.sight.groups[group] = on)));

@@ -6,16 +6,18 @@ export type Numbers4 = [number, number, number, number];
 export interface Placed {
   name: string;
   body: number;
+  group: number;
   kind: string;
   pos: Numbers3;
   quat: Numbers4;
   size: Numbers3;
   rgba: Numbers4;
   material: number | null;
+  /** What coordinates are multiplied by to find their place in a texture; see crates/clench-view/src/surfaces.rs. */
+  scale: Numbers3;
 }
 
 export interface Geom extends Placed {
-  group: number;
   mesh: number | null;
   hfield: number | null;
   friction: Numbers3;
@@ -43,6 +45,19 @@ export interface Joint {
   axis: Numbers3;
 }
 
+/** A light of the model; where it is stands in frames. */
+export interface Light {
+  name: string;
+  kind: "spot" | "directional" | "point";
+  active: boolean;
+  castshadow: boolean;
+  attenuation: Numbers3;
+  cutoff: number;
+  exponent: number;
+  ambient: Numbers3;
+  diffuse: Numbers3;
+}
+
 export interface Surface {
   vertices: string;
   faces: string;
@@ -62,24 +77,19 @@ export interface Scene {
   sensors: { name: string; start: number; count: number }[];
   keyframes: string[];
   cameras: { name: string; orthographic: boolean; fovy: number }[];
-  meshes: (Surface & { name: string; hull: Surface | null })[];
+  lights: Light[];
+  headlight: { active: boolean; ambient: Numbers3; diffuse: Numbers3 };
+  meshes: (Surface & { name: string; texcoords: string | null; hull: Surface | null })[];
   height_fields: { rows: number; columns: number; size: Numbers4; heights: string }[];
   materials: {
     texture: number | null;
-    repeat: [number, number];
-    uniform: boolean;
     emission: number;
     specular: number;
     shininess: number;
     reflectance: number;
   }[];
-  textures: {
-    pattern: "gradient" | "checker" | "flat";
-    mark: "none" | "edge" | "cross";
-    rgb1: Numbers3;
-    rgb2: Numbers3;
-    markrgb: Numbers3;
-  }[];
+  /** Pictures as PNG in base 64; those of cubes have their sides below each other. */
+  textures: { kind: "plane" | "cube" | "sky"; png: string }[];
   trees: (number | null)[];
   active: boolean;
   /** Whether the simulation keeps where it has been. */

@@ -2,6 +2,7 @@
 
 import * as THREE from "three";
 import { bytesOf, type Geom, type Placed, type Scene, type Surface } from "./scene.ts";
+import { cover, paint, textureOf } from "./textures.ts";
 
 /** Half the side of a plane without one, m. */
 const FAR = 60;
@@ -13,6 +14,13 @@ function upright(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
 
 /** A shape by its own measure; instances are scaled where their sizes differ alone. */
 export function shapeOf(scene: Scene, placed: Placed & Partial<Geom>, hulls: boolean): THREE.BufferGeometry {
+  const made = shape(scene, placed, hulls);
+  const found = textureOf(scene, placed);
+  if (found) cover(made, placed, found.kind);
+  return made;
+}
+
+function shape(scene: Scene, placed: Placed & Partial<Geom>, hulls: boolean): THREE.BufferGeometry {
   const [x, y, z] = placed.size;
   switch (placed.kind) {
     case "plane":
@@ -29,7 +37,7 @@ export function shapeOf(scene: Scene, placed: Placed & Partial<Geom>, hulls: boo
       return new THREE.BoxGeometry(2 * x, 2 * y, 2 * z);
     case "mesh": {
       const mesh = scene.meshes[placed.mesh!];
-      return surface((hulls && mesh.hull) || mesh);
+      return hulls && mesh.hull ? surface(mesh.hull, null) : surface(mesh, mesh.texcoords);
     }
     default:
       return terrain(scene, placed.hfield!);
@@ -37,12 +45,13 @@ export function shapeOf(scene: Scene, placed: Placed & Partial<Geom>, hulls: boo
 }
 
 /** Triangles with a normal each, so that edges stay sharp; smooth where the mesh is fine. */
-function surface({ vertices, faces }: Surface): THREE.BufferGeometry {
+function surface({ vertices, faces }: Surface, texcoords: string | null): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytesOf(vertices)), 3));
   geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(faces)), 1));
   const flat = geometry.toNonIndexed();
   flat.computeVertexNormals();
+  if (texcoords) flat.setAttribute("uv", new THREE.BufferAttribute(new Float32Array(bytesOf(texcoords)), 2));
   return flat;
 }
 
@@ -74,70 +83,13 @@ function terrain(scene: Scene, index: number): THREE.BufferGeometry {
   return geometry;
 }
 
-const drawn = new Map<string, THREE.Texture>();
-
-/** Paints a computed texture. */
-function paint(scene: Scene, index: number): THREE.CanvasTexture {
-  const { pattern, mark, rgb1, rgb2, markrgb } = scene.textures[index];
-  const side = 256;
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = side;
-  const pen = canvas.getContext("2d")!;
-  const css = (rgb: number[]) => `rgb(${rgb.map((part) => Math.round(255 * part)).join(" ")})`;
-  pen.fillStyle = css(rgb1);
-  pen.fillRect(0, 0, side, side);
-  if (pattern === "checker") {
-    pen.fillStyle = css(rgb2);
-    pen.fillRect(side / 2, 0, side / 2, side / 2);
-    pen.fillRect(0, side / 2, side / 2, side / 2);
-  } else if (pattern === "gradient") {
-    const half = side / 2;
-    const fill = pen.createRadialGradient(half, half, 0, half, half, side * 0.7);
-    fill.addColorStop(0, css(rgb2));
-    fill.addColorStop(1, css(rgb1));
-    pen.fillStyle = fill;
-    pen.fillRect(0, 0, side, side);
-  }
-  pen.strokeStyle = css(markrgb);
-  pen.lineWidth = 2;
-  if (mark === "edge") pen.strokeRect(0, 0, side, side);
-  if (mark === "cross") {
-    pen.beginPath();
-    pen.moveTo(side / 2, 0);
-    pen.lineTo(side / 2, side);
-    pen.moveTo(0, side / 2);
-    pen.lineTo(side, side / 2);
-    pen.stroke();
-  }
-  return new THREE.CanvasTexture(canvas);
-}
-
-function textureOf(scene: Scene, placed: Placed): THREE.Texture | null {
-  const material = placed.material === null ? null : scene.materials[placed.material];
-  if (!material || material.texture === null) return null;
-  const key = `${placed.material} ${material.uniform ? placed.size.join() : ""} ${placed.kind}`;
-  let texture = drawn.get(key);
-  if (!texture) {
-    texture = paint(scene, material.texture);
-    texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-    texture.colorSpace = THREE.SRGBColorSpace;
-    texture.anisotropy = 8;
-    const [x, y] = placed.size;
-    const metres = material.uniform ? [2 * (x || FAR), 2 * (y || FAR)] : [1, 1];
-    texture.repeat.set(material.repeat[0] * metres[0], material.repeat[1] * metres[1]);
-    drawn.set(key, texture);
-  }
-  return texture;
-}
-
 /** How a geom or site reflects light. Colours of models are what a screen shows, sRGB. */
 export function materialOf(scene: Scene, placed: Placed): THREE.MeshStandardMaterial {
   const [red, green, blue, alpha] = placed.rgba;
   const said = placed.material === null ? null : scene.materials[placed.material];
   const colour = new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace);
-  return new THREE.MeshStandardMaterial({
+  const surface = new THREE.MeshStandardMaterial({
     color: colour,
-    map: textureOf(scene, placed),
     emissive: colour,
     emissiveIntensity: said?.emission ?? 0,
     roughness: 1 - 0.65 * (said?.shininess ?? 0.5),
@@ -147,4 +99,6 @@ export function materialOf(scene: Scene, placed: Placed): THREE.MeshStandardMate
     depthWrite: alpha >= 1,
     side: placed.kind === "plane" || placed.kind === "hfield" ? THREE.DoubleSide : THREE.FrontSide,
   });
+  void paint(scene, placed, surface);
+  return surface;
 }

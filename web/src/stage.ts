@@ -6,6 +6,7 @@ import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
 import { Bodies, type Copy, type Hit, type Sight } from "./bodies.ts";
 import { envsOf, type Env, type Frame } from "./frame.ts";
 import { Labels } from "./labels.ts";
+import { Lights } from "./lights.ts";
 import { Overlays, type Layers } from "./overlays.ts";
 import { localPose, readPoses, readPosesOf } from "./poses.ts";
 import type { Scene } from "./scene.ts";
@@ -26,7 +27,7 @@ export class Stage {
   followed: number | null = null;
   private renderer: THREE.WebGLRenderer;
   private world = new THREE.Scene();
-  private sun = new THREE.DirectionalLight(0xffffff, 2.8);
+  readonly lights: Lights;
   private centre = new THREE.Vector3();
   private followedAt: THREE.Vector3 | null = null;
   /** The environments that are seen, in the order of their places. */
@@ -59,10 +60,16 @@ export class Stage {
     this.extent = this.measure(scene);
     this.world.background = new THREE.Color(SKY);
     this.world.fog = new THREE.Fog(SKY, 9 * this.extent, 34 * this.extent);
-    const surroundings = new THREE.PMREMGenerator(this.renderer);
-    this.world.environment = surroundings.fromScene(new RoomEnvironment(), 0.04).texture;
-    this.world.environmentIntensity = 0.42;
-    this.light();
+    this.lights = new Lights(scene, this.extent, this.camera);
+    this.world.add(this.lights.group, this.camera);
+    if (this.lights.own) {
+      // Light that an author chose stays as it is.
+      this.renderer.toneMapping = THREE.NoToneMapping;
+    } else {
+      const surroundings = new THREE.PMREMGenerator(this.renderer);
+      this.world.environment = surroundings.fromScene(new RoomEnvironment(), 0.04).texture;
+      this.world.environmentIntensity = 0.42;
+    }
     this.bodies = new Bodies(scene, sight, 1);
     this.overlays = new Overlays(scene, layers, this.extent, Math.min(this.extent, usualSize(scene)));
     this.world.add(this.bodies.group, this.overlays.group, this.faults.group, this.ground(scene));
@@ -115,27 +122,6 @@ export class Stage {
     return new Set(distances.flatMap((distance, k) => (distance > 8 * usual + 1 ? [k + 1] : [])));
   }
 
-  private light(): void {
-    this.world.add(new THREE.HemisphereLight(0xffffff, 0xb9b4ac, 0.7));
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.bias = -0.0002;
-    this.sun.shadow.normalBias = 0.004 * this.extent;
-    this.sun.shadow.radius = 3;
-    this.world.add(this.sun, this.sun.target);
-  }
-
-  /** Lets the sun reach all environments side by side. */
-  private shade(reach: number): void {
-    const camera = this.sun.shadow.camera;
-    const half = 2.4 * reach * this.extent;
-    camera.left = camera.bottom = -half;
-    camera.right = camera.top = half;
-    camera.near = 0.1 * this.extent;
-    camera.far = 14 * reach * this.extent;
-    camera.updateProjectionMatrix();
-  }
-
   /** Lines on the lowest plane, a metre or a tenth of the model apart. */
   private ground(scene: Scene): THREE.Object3D {
     const planes = scene.geoms.filter((geom) => geom.kind === "plane" && geom.body === 0);
@@ -157,7 +143,7 @@ export class Stage {
     const side = this.side();
     const reach = 1 + 0.66 * (side - 1);
     this.reach = reach;
-    this.shade(reach);
+    this.lights.shade(reach);
     const away = new THREE.Vector3(1.35, -1.55, side > 1 ? 1.1 : 0.62).multiplyScalar(1.55 * reach * this.extent);
     // The plots cover more of the lower edge than the bar of the upper: what matters stands a little higher.
     this.controls.target.copy(this.centre).addScaledVector(this.camera.up, -0.09 * this.extent);
@@ -233,9 +219,7 @@ export class Stage {
     this.follow();
     this.controls.update();
     if (this.through !== null) this.lookThrough(frame, this.through);
-    const target = this.controls.target;
-    this.sun.target.position.copy(target);
-    this.sun.position.copy(target).add(new THREE.Vector3(2.2, -1.6, 4.6).multiplyScalar(this.reach * this.extent));
+    this.lights.update(frame, this.controls.target, this.offset, this.reach);
     this.renderer.render(this.world, this.camera);
   }
 

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, symlinkSync } from "node:fs";
+import { mkdtempSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
@@ -260,6 +260,72 @@ test("limits and equalities push with arrows, and islands have colours", { skip 
   } finally {
     await program.end();
   }
+});
+
+/** Two by two pixels: red, green, blue, white. */
+const FOUR = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEklEQVR4nGP4z8DAAMIM/4EAAB/uBfsL2WiLAAAAAElFTkSuQmCC";
+
+/** A model with a picture on a box and on a sphere, under a light of its own, seen from above. */
+function pictured(): string {
+  const folder = mkdtempSync(join(tmpdir(), "clench-pictured-"));
+  writeFileSync(join(folder, "four.png"), Buffer.from(FOUR, "base64"));
+  const path = join(folder, "pictured.xml");
+  writeFileSync(
+    path,
+    `<mujoco><visual><headlight active="0"/></visual>
+       <asset><texture name="four" type="2d" file="four.png"/><texture name="around" type="cube" file="four.png"/>
+         <material name="four" texture="four"/><material name="around" texture="around"/></asset>
+       <worldbody><light type="directional" diffuse="1 1 1"/><camera name="above" pos="0 0 3" fovy="45"/>
+         <geom type="box" size=".5 .5 .1" material="four"/><geom pos="1 0 0" size=".2" material="around"/></worldbody></mujoco>`,
+  );
+  return path;
+}
+
+/** The colours around the middle of the picture: upper left, upper right, lower left, lower right. */
+function quarters(page: Page): Promise<number[][]> {
+  return page.evaluate(() => {
+    const canvas = document.querySelector("#view canvas") as HTMLCanvasElement;
+    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
+    const pen = copy.getContext("2d")!;
+    pen.drawImage(canvas, 0, 0);
+    const [x, y, far] = [copy.width / 2, copy.height / 2, copy.height / 20];
+    return [[-1, -1], [1, -1], [-1, 1], [1, 1]].map(([a, b]) => [...pen.getImageData(x + a * far, y + b * far, 1, 1).data.slice(0, 3)]);
+  });
+}
+
+async function seesPicture(page: Page, name: string): Promise<void> {
+  await page.locator("#bar select").filter({ hasText: "above" }).selectOption({ label: "above" });
+  // Highlights add white to all of them.
+  const parts = (colours: number[][]) => colours.map((rgb) => rgb.map((part) => part > 0.85 * Math.max(...rgb)));
+  const expected = [[true, false, false], [false, true, false], [false, false, true], [true, true, true]];
+  for (let k = 0; JSON.stringify(parts(await quarters(page))) !== JSON.stringify(expected); k++) {
+    assert.ok(k < 40, `${await quarters(page)}`);
+    await page.waitForTimeout(250);
+  }
+  // Its light comes from straight above: white is as bright as it is.
+  assert.ok(Math.min(...(await quarters(page))[3]) > 200, `${await quarters(page)}`);
+  await page.screenshot({ path: join(PICTURES, name) });
+}
+
+test("pictures of files lie on things, under the light of the file", { skip }, async () => {
+  const model = pictured();
+  const program = await view(model, "--paused");
+  try {
+    const page = await open(browser, program.url);
+    await seesPicture(page, "pictured.png");
+    await page.close();
+  } finally {
+    await program.end();
+  }
+  // A recording has them in it, once.
+  const file = join(mkdtempSync(join(tmpdir(), "clench-recording-")), "pictured.html");
+  const done = spawnSync(PROGRAM, ["simulate", model, "--steps", "3", "--record", file], { cwd: ROOT, encoding: "utf8" });
+  assert.equal(done.status, 0, done.stderr);
+  const scene = readFileSync(file, "utf8").match(/"png":"(\w|[+/=])+"/g) ?? [];
+  assert.equal(scene.length, 2);
+  const page = await open(browser, `file://${file}`);
+  await seesPicture(page, "pictured-recording.png");
+  await page.close();
 });
 
 test("the bar is one line, and hides no button", { skip }, async () => {

@@ -1,7 +1,7 @@
 //! Files of heights: PNG images and MuJoCo's binary grids.
 
+use crate::image::Image;
 use crate::spending::Spending;
-use std::io::Cursor;
 
 /// Rows of heights, along y from the negative end.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,26 +19,11 @@ pub(crate) const HEIGHT: u64 = 24;
 /// # Errors
 /// What is wrong with the bytes.
 pub(crate) fn read_png(bytes: &[u8], spending: &mut Spending) -> Result<Elevation, String> {
-    let wrong = |error: png::DecodingError| format!("not a valid PNG image: {error}");
-    let mut decoder = png::Decoder::new(Cursor::new(bytes));
-    decoder.set_transformations(png::Transformations::normalize_to_color8());
-    let mut reader = decoder.read_info().map_err(wrong)?;
-    let (width, height) = reader.info().size();
-    let pixels = u64::from(width).saturating_mul(u64::from(height));
-    spending
-        .bytes(pixels.saturating_mul(HEIGHT))
-        .map_err(|excess| format!("an image of {width} x {height} pixels: {excess}"))?;
-    let size = reader.output_buffer_size();
-    let mut pixels = vec![0; size.ok_or("the PNG image is too large")?];
-    let frame = reader.next_frame(&mut pixels).map_err(wrong)?;
-    let (rows, columns) = (frame.height as usize, frame.width as usize);
-    let lines = pixels.chunks_exact(frame.line_size).take(rows).rev();
-    let samples = frame.color_type.samples();
+    let image = Image::read(bytes, HEIGHT, spending)?;
     Ok(Elevation {
-        rows,
-        columns,
-        heights: lines
-            .flat_map(|line| line.chunks_exact(samples).take(columns))
+        rows: image.height,
+        columns: image.width,
+        heights: (image.rows().rev().flatten())
             .map(|pixel| f64::from(pixel[0]))
             .collect(),
     })

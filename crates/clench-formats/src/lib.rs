@@ -13,6 +13,7 @@ mod attributes;
 mod document;
 mod elevation;
 mod error;
+mod image;
 mod loader;
 mod mesh;
 mod mjcf;

@@ -2,6 +2,9 @@
 
 use clench::rigid::{Precision, Sim};
 
+/// How far about its middle a plane is looked at, where there is nothing else, m.
+const PLANE: f64 = 1.0;
+
 /// A camera that belongs to no model: it looks at a point from a distance and a direction, MuJoCo's free camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeCamera {
@@ -32,6 +35,7 @@ impl FreeCamera {
                 if moving && (model.geoms[g].body == 0 || radius <= 0.0) {
                     continue;
                 }
+                let radius = if radius > 0.0 { radius } else { PLANE };
                 for k in 0..3 {
                     low[k] = low[k].min(place[k].to_f64() - 0.7 * radius);
                     high[k] = high[k].max(place[k].to_f64() + 0.7 * radius);

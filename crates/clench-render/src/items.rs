@@ -1,9 +1,10 @@
-//! What is drawn now: geoms and tendons, each with its pose, colour and surface, as the shader reads them.
+//! What is drawn now: geoms, sites and tendons, each with its pose, colour and surface, as the shader reads them.
 
 use clench::Model;
-use clench::rigid::model::{Appearance, TextureMark, TexturePattern};
+use clench::rigid::model::{Appearance, TextureKind};
 use clench::rigid::{Precision, Sim};
 use clench_view::frame::tendon_spans;
+use clench_view::surfaces::texture;
 
 /// Numbers of one thing that is drawn; see the shader.
 #[repr(C)]
@@ -12,82 +13,59 @@ pub struct Item {
     pub pose: [[f32; 4]; 4],
     pub color: [f32; 4],
     pub surface: [f32; 4],
-    pub first: [f32; 4],
-    pub second: [f32; 4],
-    pub mark: [f32; 4],
-    pub repeat: [f32; 4],
+    pub texture: [f32; 4],
 }
 
-/// The looks of every geom of a model, at no place yet.
-pub fn of_geoms(model: &Model, far: f32) -> Vec<Item> {
-    let looks = |g: usize| {
-        let size = model.params.geom_size[g].to_array().map(|x| x as f32);
-        let plane = model.geoms[g].kind == clench::collide::ShapeKind::Plane;
-        let mut item = look(
-            model,
-            model.visuals.geoms[g],
-            plane.then_some([size[0], size[1]]),
-            far,
-        );
+/// The looks of every geom of a model and then of every site, at no place yet.
+pub fn of_model(model: &Model) -> Vec<Item> {
+    let visuals = &model.visuals;
+    let geoms = visuals.geoms.iter().enumerate().map(|(g, &appearance)| {
+        let mut item = look(model, appearance);
         item.surface[3] = g as f32;
         item
-    };
-    (0..model.geoms.len()).map(looks).collect()
+    });
+    let sites = visuals
+        .sites
+        .iter()
+        .map(|&appearance| look(model, appearance));
+    geoms.chain(sites).collect()
 }
 
-/// How something looks; computed textures lie on planes, whose half sizes are given, and colour other things evenly.
-fn look(model: &Model, appearance: Appearance, plane: Option<[f32; 2]>, far: f32) -> Item {
+/// How something looks. Where it has no material it shines as MuJoCo lets it.
+fn look(model: &Model, appearance: Appearance) -> Item {
     let visuals = &model.visuals;
     let material = appearance.material.and_then(|m| visuals.materials.get(m));
-    let texture = material
-        .and_then(|m| m.texture)
-        .and_then(|t| visuals.textures.get(t));
-    let mut item = Item {
+    let kind = match texture(model, appearance).map(|t| visuals.textures[t].kind) {
+        Some(TextureKind::Plane) => 1.0,
+        Some(TextureKind::Cube) => 2.0,
+        _ => 0.0,
+    };
+    Item {
         pose: [[0.0; 4]; 4],
         color: visuals.rgba(appearance),
-        surface: material.map_or([0.3, 0.3, 0.0, -1.0], |m| {
+        surface: material.map_or([0.5, 0.5, 0.0, -1.0], |m| {
             [m.specular, m.shininess, m.emission, -1.0]
         }),
-        first: [0.0; 4],
-        second: [0.0; 4],
-        mark: [0.0; 4],
-        repeat: [0.0; 4],
-    };
-    let (Some(material), Some(texture)) = (material, texture) else {
-        return item;
-    };
-    let with = |[r, g, b]: [f32; 3], w: f32| [r, g, b, w];
-    let kind = match texture.pattern {
-        TexturePattern::Checker => 1.0,
-        TexturePattern::Flat => 2.0,
-        TexturePattern::Gradient => 3.0,
-    };
-    let over = match texture.mark {
-        TextureMark::None => 0.0,
-        TextureMark::Edge => 1.0,
-        TextureMark::Cross => 2.0,
-    };
-    let Some(half) = plane else {
-        // One colour for all sides.
-        item.first = with(texture.rgb1, 2.0);
-        return item;
-    };
-    let half = half.map(|half| if half > 0.0 { half } else { far });
-    let times = |k: usize| match material.texuniform {
-        true => material.texrepeat[k],
-        false => material.texrepeat[k] / (2.0 * half[k]),
-    };
-    item.first = with(texture.rgb1, kind);
-    item.second = with(texture.rgb2, over);
-    item.mark = with(texture.markrgb, 0.0);
-    item.repeat = [times(0), times(1), half[0], half[1]];
-    item
+        texture: [kind, 0.0, 0.0, 0.0],
+    }
 }
 
-/// The poses of all geoms now, column by column.
+/// The poses of all geoms now, then of all sites, column by column.
 pub fn poses<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<[[f32; 4]; 4]>, clench::SimError> {
-    let places = sim.output("geom_xpos")?;
-    let turns = sim.output("geom_xmat")?;
+    let mut poses = poses_of(sim, "geom_xpos", "geom_xmat")?;
+    if !sim.model().sites.is_empty() {
+        poses.extend(poses_of(sim, "site_xpos", "site_xmat")?);
+    }
+    Ok(poses)
+}
+
+fn poses_of<T: Precision>(
+    sim: &mut Sim<T>,
+    places: &str,
+    turns: &str,
+) -> Result<Vec<[[f32; 4]; 4]>, clench::SimError> {
+    let places = sim.output(places)?;
+    let turns = sim.output(turns)?;
     let number = |x: T| x.to_f64() as f32;
     let pose = |(place, turn): (&[T], &[T])| {
         let column = |k: usize| {
@@ -116,7 +94,9 @@ pub fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, clench::S
     let model = sim.model();
     let item = |row: &[f32]| {
         let tendon = row[0] as usize;
-        let mut item = look(model, model.visuals.tendons[tendon], None, 1.0);
+        let mut item = look(model, model.visuals.tendons[tendon]);
+        // Pictures do not lie on strings.
+        item.texture = [0.0; 4];
         let radius = model.visuals.tendon_width[tendon] as f32;
         let along = [0, 1, 2].map(|k| 0.5 * (row[4 + k] - row[1 + k]));
         let half = along.iter().map(|x| x * x).sum::<f32>().sqrt();

@@ -13,6 +13,7 @@ mod items;
 mod light;
 mod passes;
 mod renderer;
+mod textures;
 mod triangles;
 
 pub use camera::{FreeCamera, View};

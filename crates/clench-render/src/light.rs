@@ -1,8 +1,9 @@
-//! What the shader is told of the camera and the light, and the sun's shadow.
+//! What the shader is told of the camera and the light, and the shadow of the sun or of a light.
 
 use crate::camera::Placed;
 use crate::device::Gpu;
 use crate::passes::Passes;
+use clench::rigid::model::{Light, LightKind, Visuals};
 use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, TextureView};
 use zerocopy::IntoBytes;
 
@@ -12,6 +13,8 @@ pub const SHADOW: u32 = 2048;
 const NEAR: f32 = 0.003;
 /// How far a plane without end reaches, over the size of the model.
 pub const FAR: f32 = 300.0;
+/// How far shadows reach from the middle, over the size of the model.
+pub const REACH: f32 = 2.2;
 /// Towards the sun.
 const TO_SUN: [f32; 3] = [0.150, -0.551, 0.821];
 /// Behind everything, as on the viewer's page.
@@ -28,17 +31,125 @@ pub struct Uniforms {
     to_sun: [f32; 4],
     sky: [f32; 4],
     fog: [f32; 4],
+    ambient: [f32; 4],
+    head: [f32; 4],
+    head_specular: [f32; 4],
+}
+
+/// A light as the shader reads it.
+#[repr(C)]
+#[derive(Clone, Copy, IntoBytes, zerocopy::Immutable)]
+pub struct Lamp {
+    place: [f32; 4],
+    dir: [f32; 4],
+    ambient: [f32; 4],
+    diffuse: [f32; 4],
+    specular: [f32; 4],
+    attenuation: [f32; 4],
+}
+
+/// What lights a picture.
+pub struct Lighting {
+    pub lamps: Vec<Lamp>,
+    /// What the light that casts the shadow sees, if one of the model's does.
+    shadow: Option<Placed>,
+    /// From everywhere, from the camera, and the highlights of that.
+    head: [[f32; 3]; 3],
+    /// Whether the model has lights; else it is day.
+    own: bool,
+}
+
+impl Lighting {
+    /// Of the lights of a model where they are now: place and direction of each. Of those that cast shadows the first does; what is
+    /// around `centre`, within `reach`, is in it.
+    pub fn new(visuals: &Visuals, places: &[[[f64; 3]; 2]], centre: [f32; 3], reach: f32) -> Self {
+        let all = visuals.lights.iter().zip(places);
+        let active: Vec<_> = all.filter(|(light, _)| light.look.active).collect();
+        let casting = active.iter().position(|(light, _)| light.look.castshadow);
+        let head = &visuals.headlight;
+        let head = [head.ambient, head.diffuse, head.specular]
+            .map(|color| if head.active { color } else { [0.0; 3] });
+        Lighting {
+            lamps: (active.iter().enumerate())
+                .map(|(index, &(light, place))| lamp(light, place, casting == Some(index)))
+                .collect(),
+            shadow: casting.map(|index| sight(active[index].0, active[index].1, centre, reach)),
+            head: head.map(narrow),
+            own: !visuals.lights.is_empty(),
+        }
+    }
+}
+
+fn narrow(v: [f64; 3]) -> [f32; 3] {
+    v.map(|x| x as f32)
+}
+
+fn with([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
+    [x, y, z, w]
+}
+
+fn lamp(light: &Light, place: &[[f64; 3]; 2], casts: bool) -> Lamp {
+    let look = &light.look;
+    let kind = match look.kind {
+        LightKind::Spot => 0.0,
+        LightKind::Directional => 1.0,
+        LightKind::Point => 2.0,
+    };
+    let [pos, dir] = place.map(narrow);
+    Lamp {
+        place: with(pos, kind),
+        dir: with(dir, look.cutoff.to_radians().cos() as f32),
+        ambient: with(narrow(look.ambient), look.exponent as f32),
+        diffuse: with(narrow(look.diffuse), f32::from(u8::from(casts))),
+        specular: with(narrow(look.specular), 0.0),
+        attenuation: with(narrow(look.attenuation), 0.0),
+    }
+}
+
+/// What a light sees of the things around a centre.
+fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> Placed {
+    let [pos, dir] = place.map(narrow);
+    let away = [0, 1, 2].map(|k| centre[k] - pos[k]);
+    match light.look.kind {
+        LightKind::Directional => far_away(centre, dir.map(|x| -x), reach),
+        // A cone of a right angle and more would not be seen at once.
+        LightKind::Spot => Placed {
+            eye: pos,
+            axes: axes(dir.map(|x| -x)),
+            half: light.look.cutoff.clamp(1.0, 75.0).to_radians().tan() as f32,
+            parallel: false,
+        },
+        LightKind::Point => Placed {
+            eye: pos,
+            axes: axes(unit(away.map(|x| -x))),
+            half: (reach / length(away).max(1e-6)).clamp(0.1, 3.0),
+            parallel: false,
+        },
+    }
 }
 
 impl Uniforms {
     /// Of a picture of things of a size around a centre, m.
-    pub fn new(camera: &Placed, aspect: f32, extent: f32, centre: [f32; 3]) -> Self {
+    pub fn new(
+        camera: &Placed,
+        aspect: f32,
+        extent: f32,
+        centre: [f32; 3],
+        lighting: &Lighting,
+    ) -> Self {
         let far = FAR * extent;
         let ahead = camera.axes[2].map(|x| -x);
-        let reach = 2.2 * extent;
+        let reach = REACH * extent;
         Uniforms {
             camera: camera.matrix(aspect, NEAR * extent, far),
-            sun: sun_matrix(centre, reach),
+            sun: match &lighting.shadow {
+                Some(sight) if !sight.parallel => sight.matrix(1.0, NEAR * extent, far),
+                sight => (sight.unwrap_or_else(|| far_away(centre, TO_SUN, reach))).matrix(
+                    1.0,
+                    0.1 * reach,
+                    6.0 * reach,
+                ),
+            },
             eye: [camera.eye[0], camera.eye[1], camera.eye[2], 1.0],
             ahead: [
                 ahead[0],
@@ -52,8 +163,11 @@ impl Uniforms {
                 9.0 * extent,
                 60.0 * extent,
                 3.0 * reach / SHADOW as f32,
-                0.0,
+                f32::from(u8::from(lighting.own)),
             ],
+            ambient: with(lighting.head[0], lighting.lamps.len() as f32),
+            head: with(lighting.head[1], 0.0),
+            head_specular: with(lighting.head[2], 0.0),
         }
     }
 }
@@ -82,17 +196,40 @@ pub fn light_group(gpu: &Gpu, passes: &Passes, shadow: &TextureView) -> BindGrou
     })
 }
 
-/// From the world to the picture that the sun sees around a point.
-fn sun_matrix(centre: [f32; 3], reach: f32) -> [[f32; 4]; 4] {
-    let [x, y, z] = TO_SUN;
-    let flat = (x * x + y * y).sqrt();
-    let right = [-y / flat, x / flat, 0.0];
-    let up = [-z * x / flat, -z * y / flat, flat];
-    let sun = Placed {
-        eye: [0, 1, 2].map(|k| centre[k] + 3.0 * reach * TO_SUN[k]),
-        axes: [right, up, TO_SUN],
+/// What a light far away sees around a point, of which this is the direction towards the light.
+fn far_away(centre: [f32; 3], to_light: [f32; 3], reach: f32) -> Placed {
+    Placed {
+        eye: [0, 1, 2].map(|k| centre[k] + 3.0 * reach * to_light[k]),
+        axes: axes(to_light),
         half: reach,
         parallel: true,
+    }
+}
+
+/// To the right, upwards and backwards.
+fn axes(back: [f32; 3]) -> [[f32; 3]; 3] {
+    let [x, y, z] = back;
+    let flat = (x * x + y * y).sqrt();
+    // Straight up or down any direction is to the right.
+    let right = match flat > 1e-6 {
+        true => [-y / flat, x / flat, 0.0],
+        false => [1.0, 0.0, 0.0],
     };
-    sun.matrix(1.0, 0.1 * reach, 6.0 * reach)
+    let up = [
+        y * right[2] - z * right[1],
+        z * right[0] - x * right[2],
+        x * right[1] - y * right[0],
+    ];
+    [right, up, back]
+}
+
+fn length(v: [f32; 3]) -> f32 {
+    v.iter().map(|x| x * x).sum::<f32>().sqrt()
+}
+
+fn unit(v: [f32; 3]) -> [f32; 3] {
+    match length(v) {
+        size if size > 0.0 => v.map(|x| x / size),
+        _ => [0.0, 0.0, 1.0],
+    }
 }

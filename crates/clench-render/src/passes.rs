@@ -20,6 +20,7 @@ pub const SAMPLES: u32 = 4;
 pub struct Passes {
     pub scene: BindGroupLayout,
     pub light: BindGroupLayout,
+    pub texture: BindGroupLayout,
     pub shadow: RenderPipeline,
     pub opaque: RenderPipeline,
     pub transparent: RenderPipeline,
@@ -48,13 +49,14 @@ impl Passes {
                 write_mask: ColorWrites::ALL,
             })
         };
-        let both = [Some(&scene), Some(&light)];
+        let texture = texture_layout(device);
+        let all = [Some(&scene), Some(&light), Some(&texture)];
         let picture = |blend, writes_depth| {
             let way = Way {
                 vertex: "corner",
                 fragment: Some("picture"),
                 targets: &[target(PICTURE, blend)],
-                layouts: &both,
+                layouts: &all,
                 samples: SAMPLES,
                 writes_depth,
             };
@@ -64,7 +66,7 @@ impl Passes {
             vertex: "corner",
             fragment: Some("facts"),
             targets: &[target(GEOMS, None), target(DISTANCES, None)],
-            layouts: &both[..1],
+            layouts: &all[..1],
             samples: 1,
             writes_depth: true,
         };
@@ -72,7 +74,7 @@ impl Passes {
             vertex: "shadow_corner",
             fragment: None,
             targets: &[],
-            layouts: &both[..1],
+            layouts: &all[..1],
             samples: 1,
             writes_depth: true,
         };
@@ -83,6 +85,7 @@ impl Passes {
             facts: pipeline(device, &module, &facts),
             scene,
             light,
+            texture,
         }
     }
 }
@@ -103,6 +106,7 @@ fn scene_layout(device: &Device) -> BindGroupLayout {
         entries: &[
             buffer(0, BufferBindingType::Uniform),
             buffer(1, BufferBindingType::Storage { read_only: true }),
+            buffer(2, BufferBindingType::Storage { read_only: true }),
         ],
     })
 }
@@ -128,6 +132,30 @@ fn light_layout(device: &Device) -> BindGroupLayout {
     })
 }
 
+/// A picture on a plane, one on a cube, and how they are read.
+fn texture_layout(device: &Device) -> BindGroupLayout {
+    let picture = |view_dimension| BindingType::Texture {
+        sample_type: TextureSampleType::Float { filterable: true },
+        view_dimension,
+        multisampled: false,
+    };
+    let kinds = [
+        picture(TextureViewDimension::D2),
+        picture(TextureViewDimension::Cube),
+        BindingType::Sampler(SamplerBindingType::Filtering),
+    ];
+    let entry = |(binding, ty)| BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("texture"),
+        entries: &(0..).zip(kinds).map(entry).collect::<Vec<_>>(),
+    })
+}
+
 fn pipeline(device: &Device, module: &ShaderModule, way: &Way) -> RenderPipeline {
     let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
         label: None,
@@ -144,7 +172,7 @@ fn pipeline(device: &Device, module: &ShaderModule, way: &Way) -> RenderPipeline
             buffers: &[Some(VertexBufferLayout {
                 array_stride: size_of::<Vertex>() as u64,
                 step_mode: VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3],
             })],
         },
         // Meshes of files have their corners in any order: both sides are drawn.

@@ -10,8 +10,25 @@ struct View {
     // Towards the sun; in w the size of a texel of its shadow, in the shadow's picture.
     to_sun: vec4<f32>,
     sky: vec4<f32>,
-    // Distances between which things fade into the sky.
+    // Distances between which things fade into the sky, and how far what is shaded is from what shades it; 1 in w if the model has lights.
     fog: vec4<f32>,
+    // What all lights of the model give everywhere, the headlight's diffuse light and its highlights.
+    ambient: vec4<f32>,
+    head: vec4<f32>,
+    head_specular: vec4<f32>,
+}
+
+// A light of the model.
+struct Light {
+    // Where it is; 0 in w for a spot, 1 for a directional one, 2 for a point.
+    place: vec4<f32>,
+    // Where it shines; in w the cosine of the angle to which a spot shines.
+    dir: vec4<f32>,
+    // Of each of three colours in w: the exponent of a spot, whether this one casts the shadow, nothing.
+    ambient: vec4<f32>,
+    diffuse: vec4<f32>,
+    specular: vec4<f32>,
+    attenuation: vec4<f32>,
 }
 
 struct Item {
@@ -19,25 +36,24 @@ struct Item {
     color: vec4<f32>,
     // Strength and sharpness of highlights, emission, number of the geom.
     surface: vec4<f32>,
-    // The two colours of a computed texture, and of what is drawn over it; in w of the first its pattern (0 none, 1 checker, 2 flat,
-    // 3 gradient), of the second what is drawn over it (0 nothing, 1 edges, 2 a cross).
-    first: vec4<f32>,
-    second: vec4<f32>,
-    mark: vec4<f32>,
-    // How often the picture repeats along x and y, on the unit of length in which z and w give the half size.
-    repeat: vec4<f32>,
+    // The kind of its texture: 0 none, 1 a plane's, 2 a cube's.
+    texture: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var<storage, read> items: array<Item>;
+@group(0) @binding(2) var<storage, read> lights: array<Light>;
 @group(1) @binding(0) var shadow: texture_depth_2d;
 @group(1) @binding(1) var shadow_sampler: sampler_comparison;
+@group(2) @binding(0) var plane: texture_2d<f32>;
+@group(2) @binding(1) var cube: texture_cube<f32>;
+@group(2) @binding(2) var picture_sampler: sampler;
 
 struct Corner {
     @builtin(position) position: vec4<f32>,
     @location(0) place: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    @location(2) local: vec3<f32>,
+    @location(2) texcoord: vec3<f32>,
     @location(3) @interpolate(flat) item: u32,
 }
 
@@ -45,13 +61,14 @@ struct Corner {
 fn corner(
     @location(0) place: vec3<f32>,
     @location(1) normal: vec3<f32>,
+    @location(2) texcoord: vec3<f32>,
     @builtin(instance_index) item: u32,
 ) -> Corner {
     let pose = items[item].pose;
     var out: Corner;
     out.place = (pose * vec4(place, 1.0)).xyz;
     out.normal = (pose * vec4(normal, 0.0)).xyz;
-    out.local = place;
+    out.texcoord = texcoord;
     out.item = item;
     out.position = view.camera * vec4(out.place, 1.0);
     return out;
@@ -67,35 +84,28 @@ fn linear(color: vec3<f32>) -> vec3<f32> {
     return pow(color, vec3(2.2));
 }
 
-fn pattern(item: Item, local: vec3<f32>) -> vec3<f32> {
-    let kind = i32(item.first.w);
-    if (kind == 0) {
-        return vec3(1.0);
-    }
-    let at = (local.xy + item.repeat.zw) * item.repeat.xy;
-    let cell = fract(at);
-    var color = item.first.rgb;
-    if (kind == 1 && (cell.x < 0.5) != (cell.y < 0.5)) {
-        color = item.second.rgb;
-    }
-    if (kind == 3) {
-        color = mix(item.second.rgb, item.first.rgb, saturate(length(cell - 0.5) * 1.4));
-    }
-    let over = i32(item.second.w);
-    let middle = min(abs(cell.x - 0.5), abs(cell.y - 0.5));
-    let edge = 0.5 - max(abs(cell.x - 0.5), abs(cell.y - 0.5));
-    if ((over == 1 && edge < 0.006) || (over == 2 && middle < 0.006)) {
-        color = item.mark.rgb;
-    }
-    return color;
+fn shown(color: vec3<f32>) -> vec3<f32> {
+    return pow(color, vec3(1.0 / 2.2));
 }
 
-// The share of the sun's light that comes through, from nine places beside each other.
+// The color of a texture, in linear numbers.
+fn painted(kind: f32, at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
+    if (kind == 1.0) {
+        return textureSampleGrad(plane, picture_sampler, at.xy, across.xy, down.xy).rgb;
+    }
+    if (kind == 2.0) {
+        return textureSampleGrad(cube, picture_sampler, at, across, down).rgb;
+    }
+    return vec3(1.0);
+}
+
+// The share that comes through of the light that casts the shadow, from nine places beside each other.
 fn sunlight(place: vec3<f32>, normal: vec3<f32>) -> f32 {
     let texel = view.to_sun.w;
-    let at = view.sun * vec4(place + normal * view.fog.z, 1.0);
+    let seen = view.sun * vec4(place + normal * view.fog.z, 1.0);
+    let at = seen.xyz / seen.w;
     let uv = at.xy * vec2(0.5, -0.5) + 0.5;
-    if (any(uv < vec2(0.0)) || any(uv > vec2(1.0)) || at.z < 0.0) {
+    if (any(uv < vec2(0.0)) || any(uv > vec2(1.0)) || at.z < 0.0 || seen.w <= 0.0) {
         return 1.0;
     }
     var sum = 0.0;
@@ -108,31 +118,83 @@ fn sunlight(place: vec3<f32>, normal: vec3<f32>) -> f32 {
     return sum / 9.0;
 }
 
+// The light of a model that has none of its own: a sun, a sky and a little from the camera.
+fn daylight(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let to_sun = view.to_sun.xyz;
+    let facing = max(dot(normal, to_sun), 0.0);
+    var sun = 0.0;
+    if (facing > 0.0) {
+        sun = sunlight(place, normal);
+    }
+    let sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.42, 0.44, 0.47), 0.5 + 0.5 * normal.z);
+    let front_light = 0.16 * max(dot(normal, to_eye), 0.0);
+    let middle = normalize(to_sun + to_eye);
+    let shine = surface.x * pow(max(dot(normal, middle), 0.0), 4.0 + 120.0 * surface.y) * facing;
+    let light = color * (sky + front_light + 0.72 * facing * sun + surface.z) + vec3(0.24 * shine * sun);
+    // Bright parts become white by and by.
+    return light / (1.0 + 0.18 * max(light.r, max(light.g, light.b)));
+}
+
+// How bright the highlight of a light is (Blinn and Phong).
+fn highlight(surface: vec4<f32>, normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
+    let middle = normalize(to_light + to_eye);
+    return surface.x * pow(max(dot(normal, middle), 0.0), max(128.0 * surface.y, 1.0));
+}
+
+// The light of a model's own lights, which add up in the numbers that a screen shows, as in OpenGL and so in MuJoCo.
+fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    var matte = view.ambient.rgb + surface.z;
+    var shine = vec3(0.0);
+    let to_head = -view.ahead.xyz;
+    let head = max(dot(normal, to_head), 0.0);
+    matte += view.head.rgb * head;
+    if (head > 0.0) {
+        shine += view.head_specular.rgb * highlight(surface, normal, to_head, to_eye);
+    }
+    for (var k = 0u; k < u32(view.ambient.w); k++) {
+        let light = lights[k];
+        var to_light = -light.dir.xyz;
+        var strength = 1.0;
+        if (light.place.w != 1.0) {
+            let way = light.place.xyz - place;
+            let distance = length(way);
+            to_light = way / max(distance, 1e-9);
+            let parts = light.attenuation.xyz * vec3(1.0, distance, distance * distance);
+            strength = 1.0 / max(parts.x + parts.y + parts.z, 1e-9);
+        }
+        if (light.place.w == 0.0) {
+            let along = dot(-to_light, light.dir.xyz);
+            strength *= select(0.0, pow(max(along, 0.0), light.ambient.w), along >= light.dir.w);
+        }
+        matte += strength * light.ambient.rgb;
+        let facing = dot(normal, to_light);
+        if (facing > 0.0 && strength > 0.0) {
+            if (light.diffuse.w > 0.0) {
+                strength *= sunlight(place, normal);
+            }
+            matte += strength * facing * light.diffuse.rgb;
+            shine += strength * light.specular.rgb * highlight(surface, normal, to_light, to_eye);
+        }
+    }
+    return linear(saturate(color * matte + shine));
+}
+
 @fragment
 fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let item = items[in.item];
+    let texel = painted(item.texture.x, in.texcoord, dpdx(in.texcoord), dpdy(in.texcoord));
     var to_eye = view.eye.xyz - in.place;
     let distance = length(to_eye);
     to_eye = select(to_eye / distance, -view.ahead.xyz, view.ahead.w > 0.0);
     var normal = normalize(in.normal);
     // Whatever way its corners are in order: what is seen is outside.
     normal = select(normal, -normal, dot(normal, to_eye) < 0.0);
-    let color = linear(item.color.rgb * pattern(item, in.local));
-
-    let to_sun = view.to_sun.xyz;
-    let facing = max(dot(normal, to_sun), 0.0);
-    var sun = 0.0;
-    if (facing > 0.0) {
-        sun = sunlight(in.place, normal);
+    var light = vec3(0.0);
+    if (view.fog.w > 0.0) {
+        light = lit(item.color.rgb * shown(texel), item.surface, in.place, normal, to_eye);
+    } else {
+        light = daylight(linear(item.color.rgb) * texel, item.surface, in.place, normal, to_eye);
     }
-    let sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.42, 0.44, 0.47), 0.5 + 0.5 * normal.z);
-    let front_light = 0.16 * max(dot(normal, to_eye), 0.0);
-    let middle = normalize(to_sun + to_eye);
-    let shine = item.surface.x * pow(max(dot(normal, middle), 0.0), 4.0 + 120.0 * item.surface.y) * facing;
-    var light = color * (sky + front_light + 0.72 * facing * sun) + vec3(0.4 * shine * sun);
-    light += color * item.surface.z;
-    // Bright parts become white by and by.
-    light = light / (1.0 + 0.18 * max(light.r, max(light.g, light.b)));
     let fog = smoothstep(view.fog.x, view.fog.y, distance);
     return vec4(mix(light, linear(view.sky.rgb), fog), item.color.a);
 }

@@ -2,7 +2,8 @@
 
 use clench::Model;
 use clench::collide::ShapeKind;
-use clench::rigid::model::{Mesh, Params};
+use clench::rigid::model::{Mesh, Params, TextureKind};
+use clench_view::surfaces::{texture, texture_scale};
 use std::f32::consts::PI;
 
 /// Parts of a circle.
@@ -16,19 +17,27 @@ const UPWARDS: usize = 18;
 pub struct Vertex {
     pub place: [f32; 3],
     pub normal: [f32; 3],
+    /// The place in a picture that lies on the shape: x across and y down, or a direction in a cube of pictures.
+    pub texcoord: [f32; 3],
+}
+
+impl Vertex {
+    /// A corner without a place in a picture yet.
+    fn new(place: [f32; 3], normal: [f32; 3]) -> Self {
+        Vertex {
+            place,
+            normal,
+            texcoord: [0.0; 3],
+        }
+    }
 }
 
 /// The triangles of a geom; an infinite plane is so large.
 pub fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Vec<Vertex> {
-    let size = params.geom_size[geom].to_array().map(|x| x as f32);
     let described = &model.geoms[geom];
-    match described.kind {
-        ShapeKind::Plane => plane(size, far),
-        ShapeKind::Sphere => round([size[0]; 3], 0.0),
-        ShapeKind::Ellipsoid => round(size, 0.0),
-        ShapeKind::Capsule => round([size[0]; 3], size[1]),
-        ShapeKind::Cylinder => cylinder(size[0], size[1]),
-        ShapeKind::Box => block(size),
+    let size = params.geom_size[geom];
+    let appearance = model.visuals.geoms[geom];
+    let mut shape = match described.kind {
         ShapeKind::Mesh => (described.mesh.and_then(|m| model.meshes.get(m)))
             .map(|found| mesh(found))
             .unwrap_or_default(),
@@ -36,6 +45,50 @@ pub fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Ve
             .and_then(|f| model.height_fields.get(f))
             .map(|field| terrain(&field.shape))
             .unwrap_or_default(),
+        kind => primitive(kind, size.to_array().map(|x| x as f32), far),
+    };
+    let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
+    let mesh = described.mesh.and_then(|m| model.meshes.get(m));
+    let brought = mesh.is_some_and(|mesh| !mesh.texcoords.is_empty());
+    if texture != Some(TextureKind::Plane) || !brought {
+        let scale = texture_scale(model, appearance, described.kind, size);
+        cover(&mut shape, scale.map(|x| x as f32), texture);
+    }
+    shape
+}
+
+/// The triangles of a site.
+pub fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<Vertex> {
+    let (kind, size) = (model.sites[site].kind, params.site_size[site]);
+    let appearance = model.visuals.sites[site];
+    let mut shape = primitive(kind, size.to_array().map(|x| x as f32), 0.0);
+    let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
+    let scale = texture_scale(model, appearance, kind, size);
+    cover(&mut shape, scale.map(|x| x as f32), texture);
+    shape
+}
+
+/// The triangles of what has no asset; an infinite plane is so large.
+fn primitive(kind: ShapeKind, size: [f32; 3], far: f32) -> Vec<Vertex> {
+    match kind {
+        ShapeKind::Plane => plane(size, far),
+        ShapeKind::Sphere => round([size[0]; 3], 0.0),
+        ShapeKind::Ellipsoid => round(size, 0.0),
+        ShapeKind::Capsule => round([size[0]; 3], size[1]),
+        ShapeKind::Cylinder => cylinder(size[0], size[1]),
+        ShapeKind::Box => block(size),
+        ShapeKind::Mesh | ShapeKind::HeightField => Vec::new(),
+    }
+}
+
+/// Gives each corner its place in a texture; see [`texture_scale`].
+fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
+    for vertex in shape {
+        let [x, y, z] = [0, 1, 2].map(|k| scale[k] * vertex.place[k]);
+        vertex.texcoord = match texture {
+            Some(TextureKind::Plane) => [x - 0.5, -y - 0.5, 0.0],
+            _ => [x, y, z],
+        };
     }
 }
 
@@ -52,7 +105,7 @@ fn quad(out: &mut Vec<Vertex>, corners: [Vertex; 4]) {
 
 fn flat_quad(out: &mut Vec<Vertex>, places: [[f32; 3]; 4]) {
     let normal = normal_of([places[0], places[1], places[2]]);
-    quad(out, places.map(|place| Vertex { place, normal }));
+    quad(out, places.map(|place| Vertex::new(place, normal)));
 }
 
 fn normal_of([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
@@ -102,7 +155,7 @@ fn round(axes: [f32; 3], half: f32) -> Vec<Vertex> {
         ];
         let place = [axes[0] * on[0], axes[1] * on[1], axes[2] * on[2] + shift];
         let normal = unit([on[0] / axes[0], on[1] / axes[1], on[2] / axes[2]]);
-        Vertex { place, normal }
+        Vertex::new(place, normal)
     };
     let mut out = Vec::new();
     for pair in rows.windows(2) {
@@ -127,10 +180,8 @@ fn cylinder(radius: f32, half: f32) -> Vec<Vertex> {
     };
     for k in 0..AROUND {
         let (a, b) = (on(k), on(k + 1));
-        let side = |(x, y): (f32, f32), z: f32| Vertex {
-            place: [radius * x, radius * y, z],
-            normal: [x, y, 0.0],
-        };
+        let side =
+            |(x, y): (f32, f32), z: f32| Vertex::new([radius * x, radius * y, z], [x, y, 0.0]);
         quad(
             &mut out,
             [side(a, -half), side(b, -half), side(b, half), side(a, half)],
@@ -138,10 +189,8 @@ fn cylinder(radius: f32, half: f32) -> Vec<Vertex> {
         for (z, [first, second]) in [(half, [a, b]), (-half, [b, a])] {
             let normal = [0.0, 0.0, z.signum()];
             let places = [(0.0, 0.0), first, second];
-            out.extend(places.map(|(x, y)| Vertex {
-                place: [radius * x, radius * y, z],
-                normal,
-            }));
+            let on = |(x, y): (f32, f32)| [radius * x, radius * y, z];
+            out.extend(places.map(|at| Vertex::new(on(at), normal)));
         }
     }
     out
@@ -175,12 +224,19 @@ fn block(half: [f32; 3]) -> Vec<Vertex> {
 
 fn mesh(mesh: &Mesh) -> Vec<Vertex> {
     let place = |&corner: &u32| mesh.vertices[corner as usize].to_array().map(|x| x as f32);
-    let triangle = |corners: &[u32; 3]| {
-        let places = [0, 1, 2].map(|k| place(&corners[k]));
+    let triangle = |(index, corners): (usize, &[u32; 3])| {
+        let places = corners.each_ref().map(place);
         let normal = normal_of(places);
-        places.map(|place| Vertex { place, normal })
+        let mut triangle = places.map(|place| Vertex::new(place, normal));
+        if let Some(corners) = mesh.face_texcoords.get(index) {
+            for (vertex, &corner) in triangle.iter_mut().zip(corners) {
+                let [across, down] = mesh.texcoords[corner as usize];
+                vertex.texcoord = [across, down, 0.0];
+            }
+        }
+        triangle
     };
-    mesh.faces.iter().flat_map(triangle).collect()
+    mesh.faces.iter().enumerate().flat_map(triangle).collect()
 }
 
 /// The ground of a height field with the sides and the bottom of its base.
@@ -210,7 +266,7 @@ fn terrain(field: &clench::collide::HeightField) -> Vec<Vertex> {
             for triangle in [[0, 1, 2], [0, 2, 3]] {
                 let places = triangle.map(|k| corners[k]);
                 let normal = normal_of(places);
-                out.extend(places.map(|place| Vertex { place, normal }));
+                out.extend(places.map(|place| Vertex::new(place, normal)));
             }
         }
     }

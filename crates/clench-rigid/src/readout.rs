@@ -2,8 +2,10 @@
 //! matrices. For looking at, not for stepping: everything here allocates.
 
 mod blocks;
+mod light;
 mod push;
 
+pub use light::light_places;
 pub use push::Push;
 pub(crate) use push::pushes;
 

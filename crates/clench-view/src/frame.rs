@@ -9,7 +9,7 @@ use clench::SimError;
 use clench::math::{Mask, Scalar, Vec3};
 use clench::rigid::constraint::ConstraintSource;
 use clench::rigid::dynamics::tendon_path::each_span;
-use clench::rigid::readout::{ContactRow, Push, contact_rows, islands};
+use clench::rigid::readout::{ContactRow, Push, contact_rows, islands, light_places};
 use clench::rigid::{Precision, Sim, Workspace};
 use std::time::Duration;
 
@@ -120,6 +120,8 @@ sections! {
     islands: 1 => out.extend(islands(s.sim.workspace(), 0).iter().map(|first| first.map_or(-1.0, |tree| tree as f32)));
     /// Cameras: position, and as columns the axes to the right, upwards and backwards.
     cameras: 12 => s.cameras.iter().for_each(|row| out.extend(row));
+    /// Lights: position, and the direction along which each shines.
+    lights: 6 => out.extend(light_places(s.sim.model(), s.sim.workspace()).as_flattened().as_flattened().iter().map(|&x| x as f32));
     /// Straight parts of tendons: the tendon, both ends.
     spans: 7 => tendon_spans(s.sim, out);
     /// Position coordinates of the state.

@@ -1,7 +1,7 @@
 //! The viewer: a page in the browser that shows a simulation and lets users touch it.
 //!
-//! [`scene`] says what there is to draw, [`frame`] where it is now and what pushes on what; viewers, recordings and films share
-//! both. [`Server`] hands a page, a scene and frames to browsers, and their [`Command`]s to whoever steps the simulation:
+//! [`scene`] says what there is to draw, [`surfaces`] how pictures lie on it, [`frame`] where it is now and what pushes on what;
+//! viewers, recordings and films share them. [`Server`] hands a page, a scene and frames to browsers, and their [`Command`]s to whoever steps the simulation:
 //! [`Player`], which steps it itself in real time, or a loop of the user's with a [`PassiveViewer`]. What commands do is the same
 //! in both, in [`interaction`]. The page itself stands in `web/`.
 //!
@@ -22,6 +22,7 @@ pub mod scene;
 mod server;
 mod shared;
 mod socket;
+pub mod surfaces;
 pub mod viewed;
 
 pub use command::Command;

@@ -1,15 +1,17 @@
 //! What there is to draw: everything of a model that stays as it is while it moves. The page reads it as JSON.
 
 use crate::frame::SECTIONS;
+use crate::surfaces;
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::math::{Quat, Vec3};
 use clench::rigid::model::{
-    Appearance, Joint, JointKind, Mesh, TextureMark, TexturePattern, Visuals,
+    Appearance, Joint, JointKind, Light, LightKind, Mesh, Texture, TextureKind, Visuals,
 };
 use data_encoding::BASE64;
 use serde::Serialize;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
 /// What there is to draw. Poses are relative to bodies, quaternions have w first, lengths are in metres.
 #[derive(Clone, Debug, Serialize)]
@@ -28,6 +30,8 @@ pub struct Scene {
     sensors: Vec<Value>,
     keyframes: Vec<String>,
     cameras: Vec<Value>,
+    lights: Vec<Value>,
+    headlight: Value,
     meshes: Vec<Value>,
     height_fields: Vec<Value>,
     materials: Vec<Value>,
@@ -71,6 +75,8 @@ impl Scene {
                     json!({"name": camera.name, "orthographic": camera.orthographic, "fovy": fovy})
                 })
                 .collect(),
+            lights: model.visuals.lights.iter().map(light).collect(),
+            headlight: headlight(&model.visuals),
             meshes: model.meshes.iter().map(|mesh| surface(mesh)).collect(),
             height_fields: (model.height_fields.iter())
                 .map(|field| {
@@ -84,7 +90,7 @@ impl Scene {
                 })
                 .collect(),
             materials: materials(&model.visuals),
-            textures: textures(&model.visuals),
+            textures: textures(model),
             trees: (0..model.nbody()).map(|b| model.tree_of_body(b)).collect(),
             active: true,
             rewinds: true,
@@ -152,12 +158,21 @@ fn shape(kind: ShapeKind) -> &'static str {
     }
 }
 
-fn placed(pos: Vec3<f64>, quat: Quat<f64>, appearance: Appearance, visuals: &Visuals) -> Value {
+fn placed(
+    model: &Model,
+    pose: (Vec3<f64>, Quat<f64>),
+    appearance: Appearance,
+    (kind, size): (ShapeKind, Vec3<f64>),
+) -> Value {
     json!({
-        "pos": pos.to_array(),
-        "quat": quat.to_array(),
-        "rgba": visuals.rgba(appearance),
+        "pos": pose.0.to_array(),
+        "quat": pose.1.to_array(),
+        "kind": shape(kind),
+        "size": size.to_array(),
+        "rgba": model.visuals.rgba(appearance),
         "material": appearance.material,
+        // How coordinates become places in a texture.
+        "scale": surfaces::texture_scale(model, appearance, kind, size),
     })
 }
 
@@ -172,17 +187,15 @@ fn merged(mut first: Value, second: Value) -> Value {
 fn geom(model: &Model, g: usize) -> Value {
     let (geom, p) = (&model.geoms[g], &model.params);
     let place = placed(
-        p.geom_pos[g],
-        p.geom_quat[g],
+        model,
+        (p.geom_pos[g], p.geom_quat[g]),
         model.visuals.geoms[g],
-        &model.visuals,
+        (geom.kind, p.geom_size[g]),
     );
     let own = json!({
         "name": geom.name,
-        "kind": shape(geom.kind),
         "body": geom.body,
         "group": geom.group,
-        "size": p.geom_size[g].to_array(),
         "mesh": geom.mesh,
         "hfield": geom.height_field,
         "friction": p.geom_friction[g],
@@ -194,16 +207,15 @@ fn geom(model: &Model, g: usize) -> Value {
 fn site(model: &Model, s: usize) -> Value {
     let (site, p) = (&model.sites[s], &model.params);
     let place = placed(
-        p.site_pos[s],
-        p.site_quat[s],
+        model,
+        (p.site_pos[s], p.site_quat[s]),
         model.visuals.sites[s],
-        &model.visuals,
+        (site.kind, p.site_size[s]),
     );
     let own = json!({
         "name": site.name,
-        "kind": shape(site.kind),
         "body": site.body,
-        "size": p.site_size[s].to_array(),
+        "group": site.group,
     });
     merged(place, own)
 }
@@ -254,6 +266,30 @@ fn controls(model: &Model) -> Vec<Value> {
     model.actuators.iter().flat_map(of_actuator).collect()
 }
 
+fn light(light: &Light) -> Value {
+    let look = &light.look;
+    json!({
+        "name": light.name,
+        "kind": match look.kind {
+            LightKind::Spot => "spot",
+            LightKind::Directional => "directional",
+            LightKind::Point => "point",
+        },
+        "active": look.active,
+        "castshadow": look.castshadow,
+        "attenuation": look.attenuation,
+        "cutoff": look.cutoff,
+        "exponent": look.exponent,
+        "ambient": look.ambient,
+        "diffuse": look.diffuse,
+    })
+}
+
+fn headlight(visuals: &Visuals) -> Value {
+    let head = &visuals.headlight;
+    json!({"active": head.active, "ambient": head.ambient, "diffuse": head.diffuse})
+}
+
 fn tendon(model: &Model, t: usize) -> Value {
     let visuals = &model.visuals;
     json!({
@@ -284,8 +320,16 @@ fn surface(mesh: &Mesh) -> Value {
         "name": mesh.name,
         "vertices": numbers(&mesh.vertices),
         "faces": corners(&mesh.faces),
+        "texcoords": texcoords(mesh),
         "hull": hull,
     })
+}
+
+/// The texture coordinates of each corner of each triangle, where a mesh has any.
+fn texcoords(mesh: &Mesh) -> Option<String> {
+    let corners = mesh.face_texcoords.as_flattened().iter();
+    let places = corners.flat_map(|&corner| mesh.texcoords[corner as usize]);
+    (!mesh.texcoords.is_empty()).then(|| packed(places.map(f32::to_le_bytes)))
 }
 
 /// Numbers of four bytes each, in base 64.
@@ -297,8 +341,6 @@ fn materials(visuals: &Visuals) -> Vec<Value> {
     let material = |material: &clench::rigid::model::Material| {
         json!({
             "texture": material.texture,
-            "repeat": material.texrepeat,
-            "uniform": material.texuniform,
             "emission": material.emission,
             "specular": material.specular,
             "shininess": material.shininess,
@@ -308,23 +350,21 @@ fn materials(visuals: &Visuals) -> Vec<Value> {
     visuals.materials.iter().map(material).collect()
 }
 
-fn textures(visuals: &Visuals) -> Vec<Value> {
-    let texture = |texture: &clench::rigid::model::Texture| {
+/// The pictures of textures that something has; others are empty.
+fn textures(model: &Model) -> Vec<Value> {
+    let visuals = &model.visuals;
+    let seen = visuals.geoms.iter().chain(&visuals.sites);
+    let used: BTreeSet<usize> = seen.filter_map(|&a| surfaces::texture(model, a)).collect();
+    let texture = |(index, texture): (usize, &Texture)| {
+        let shown = used.contains(&index);
         json!({
-            "pattern": match texture.pattern {
-                TexturePattern::Gradient => "gradient",
-                TexturePattern::Checker => "checker",
-                TexturePattern::Flat => "flat",
+            "kind": match texture.kind {
+                TextureKind::Plane => "plane",
+                TextureKind::Cube => "cube",
+                TextureKind::Sky => "sky",
             },
-            "mark": match texture.mark {
-                TextureMark::None => "none",
-                TextureMark::Edge => "edge",
-                TextureMark::Cross => "cross",
-            },
-            "rgb1": texture.rgb1,
-            "rgb2": texture.rgb2,
-            "markrgb": texture.markrgb,
+            "png": if shown { BASE64.encode(&surfaces::png(texture)) } else { String::new() },
         })
     };
-    visuals.textures.iter().map(texture).collect()
+    visuals.textures.iter().enumerate().map(texture).collect()
 }

@@ -160,6 +160,7 @@ fn sphere(subdivisions: usize) -> Triangles {
     Triangles {
         vertices: vertices.into_iter().map(exact).collect(),
         faces,
+        ..Triangles::default()
     }
 }
 
@@ -207,7 +208,11 @@ fn hemisphere(resolution: usize) -> Triangles {
     for step in 0..4 * rows {
         faces.push([corner(rows, 0, step), middle, corner(rows, 0, step + 1)]);
     }
-    Triangles { vertices, faces }
+    Triangles {
+        vertices,
+        faces,
+        ..Triangles::default()
+    }
 }
 
 /// A regular polygon at z = −1 and another, of this radius, at z = 1; or a point there.
@@ -226,7 +231,7 @@ fn cone(corners: usize, radius: f64) -> Triangles {
     }
     Triangles {
         vertices,
-        faces: Vec::new(),
+        ..Triangles::default()
     }
 }
 
@@ -266,7 +271,11 @@ fn supersphere(resolution: usize, e: f64, n: f64) -> Triangles {
     }
     let last = resolution - 2;
     faces.extend((0..resolution).map(|k| [at(last, k), at(last, k + 1), north]));
-    Triangles { vertices, faces }
+    Triangles {
+        vertices,
+        faces,
+        ..Triangles::default()
+    }
 }
 
 /// A supertoroid about a circle of radius one.
@@ -288,7 +297,11 @@ fn supertorus(resolution: usize, radius: f64, s: f64, t: f64) -> Triangles {
             faces.extend([[here, next, above], [next, beyond, above]]);
         }
     }
-    Triangles { vertices, faces }
+    Triangles {
+        vertices,
+        faces,
+        ..Triangles::default()
+    }
 }
 
 /// Edges of equal bins from −1 to 1.
@@ -324,7 +337,7 @@ fn wedge(bins: [usize; 2], angles: [f64; 2], fovea: f64) -> Triangles {
     };
     Triangles {
         vertices: middles(0).into_iter().flat_map(row).collect(),
-        faces: Vec::new(),
+        ..Triangles::default()
     }
 }
 
@@ -344,7 +357,11 @@ fn plate(cells: [usize; 2]) -> Triangles {
             }
         }
     }
-    Triangles { vertices, faces }
+    Triangles {
+        vertices,
+        faces,
+        ..Triangles::default()
+    }
 }
 
 #[cfg(test)]

@@ -13,8 +13,14 @@ use clench_math::Vec3;
 pub(crate) use triangles::Triangles;
 
 /// What a mesh takes in all, bytes: in the builder, in the model, as a hull, and in a tree for rays.
-pub(crate) fn bytes(vertices: usize, faces: usize) -> u64 {
+fn bytes(vertices: usize, faces: usize) -> u64 {
     (vertices as u64).saturating_mul(200) + (faces as u64).saturating_mul(150)
+}
+
+/// What a mesh that was read takes in all, bytes: its texture coordinates stand in the builder and in the model too.
+pub(crate) fn cost(mesh: &Triangles) -> u64 {
+    let seen = 24 * mesh.texcoords.len() + 36 * mesh.face_texcoords.len();
+    bytes(mesh.vertices.len(), mesh.faces.len()) + seen as u64
 }
 
 /// A format of mesh files.
@@ -74,6 +80,9 @@ fn check(found: &Triangles) -> Result<(), String> {
                 "face {number} names vertex {vertex}, which is not there"
             ));
         }
+    }
+    if let Some(bad) = (found.texcoords.as_flattened().iter()).position(|x| !x.is_finite()) {
+        return Err(format!("texture coordinate {} is not finite", bad / 2));
     }
     Ok(())
 }

@@ -40,5 +40,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     Ok(Triangles {
         vertices: points(floats(&bytes[HEADER as usize..end])),
         faces: faces.iter().map(|face| face.map(|c| c as u32)).collect(),
+        texcoords: {
+            let numbers: Vec<f32> = floats(&bytes[start - 8 * texcoords as usize..start]).collect();
+            numbers.as_chunks::<2>().0.to_vec()
+        },
+        face_texcoords: Vec::new(),
     })
 }

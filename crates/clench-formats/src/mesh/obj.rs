@@ -13,17 +13,19 @@ const MAX_CORNERS: usize = 1000;
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     let text = String::from_utf8_lossy(bytes);
     let mut vertices = Vec::new();
-    let mut polygons: Vec<(usize, Vec<u32>)> = Vec::new();
+    let mut texcoords = Vec::new();
+    let mut polygons: Vec<Polygon> = Vec::new();
     let mut first_object = true;
     for (index, line) in text.lines().enumerate() {
         let number = index + 1;
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => vertices.push(vertex(words, number)?),
+            Some("vt") => texcoords.push(texcoord(words, number)?),
             Some("f") if first_object => {
                 let corners = words
-                    .map(|word| corner(word, vertices.len(), number))
-                    .collect::<Result<Vec<u32>, String>>()?;
+                    .map(|word| corner(word, [vertices.len(), texcoords.len()], number))
+                    .collect::<Result<Vec<Corner>, String>>()?;
                 if corners.len() > MAX_CORNERS {
                     return Err(format!(
                         "line {number}: a face has more than {MAX_CORNERS} corners"
@@ -31,7 +33,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
                 }
                 // What has no area is dropped, as in MuJoCo.
                 if corners.len() >= 3 {
-                    polygons.push((number, corners));
+                    polygons.push(Polygon { number, corners });
                 }
             }
             Some("o" | "g") if !polygons.is_empty() => first_object = false,
@@ -41,15 +43,58 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     if vertices.is_empty() {
         return Err("not an OBJ file, or one without vertices".to_owned());
     }
-    let mut faces = Vec::new();
-    for (number, corners) in polygons {
-        if let Some(missing) = corners.iter().find(|&&c| c as usize >= vertices.len()) {
-            let vertex = u64::from(*missing) + 1;
+    triangles(vertices, texcoords, &polygons)
+}
+
+/// A face of the file, and the line it is in.
+struct Polygon {
+    number: usize,
+    corners: Vec<Corner>,
+}
+
+/// A corner of a face: a vertex and, where it has one, a texture coordinate.
+#[derive(Clone, Copy)]
+struct Corner {
+    vertex: u32,
+    texcoord: Option<u32>,
+}
+
+/// The triangles of all faces. As in MuJoCo texture coordinates count only where all corners have one.
+fn triangles(
+    vertices: Vec<Vec3<f64>>,
+    texcoords: Vec<[f32; 2]>,
+    polygons: &[Polygon],
+) -> Result<Triangles, String> {
+    let (mut faces, mut face_texcoords) = (Vec::new(), Vec::new());
+    for Polygon { number, corners } in polygons {
+        let missing = |corner: &&Corner| corner.vertex as usize >= vertices.len();
+        if let Some(corner) = corners.iter().find(missing) {
+            let vertex = u64::from(corner.vertex) + 1;
             return Err(format!("line {number}: there is no vertex {vertex}"));
         }
-        split(&corners, &vertices, &mut faces);
+        let places: Vec<_> = corners
+            .iter()
+            .map(|c| vertices[c.vertex as usize])
+            .collect();
+        for triangle in split(&places) {
+            let triangle = triangle.map(|corner| corners[corner]);
+            faces.push(triangle.map(|corner| corner.vertex));
+            let known = |c: Corner| (c.texcoord).filter(|&at| (at as usize) < texcoords.len());
+            if let [Some(a), Some(b), Some(c)] = triangle.map(known) {
+                face_texcoords.push([a, b, c]);
+            }
+        }
     }
-    Ok(Triangles { vertices, faces })
+    let (texcoords, face_texcoords) = match face_texcoords.len() == faces.len() {
+        true => (texcoords, face_texcoords),
+        false => Default::default(),
+    };
+    Ok(Triangles {
+        vertices,
+        faces,
+        texcoords,
+        face_texcoords,
+    })
 }
 
 /// Three coordinates, kept with the 24 bits that MuJoCo keeps.
@@ -69,36 +114,55 @@ fn vertex<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Vec3<
     }
 }
 
-/// The vertex of a corner, such as `7`, `7/1/2` or, counted back from the last, `-1`.
-fn corner(word: &str, vertices: usize, line: usize) -> Result<u32, String> {
-    let (index, _) = word.split_once('/').unwrap_or((word, ""));
-    let wrong = || format!("line {line}: \"{word}\" is no corner of a face");
-    let index = match index.parse::<i64>().map_err(|_| wrong())? {
-        0 => return Err(wrong()),
-        forwards if forwards > 0 => forwards - 1,
-        backwards => vertices as i64 + backwards,
+/// A place in a picture, which OBJ counts upwards.
+fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<[f32; 2], String> {
+    let mut number = || match words.next() {
+        None => Ok(0.0),
+        Some(word) => {
+            (word.parse::<f32>()).map_err(|_| format!("line {line}: \"{word}\" is not a number"))
+        }
     };
-    u32::try_from(index).map_err(|_| wrong())
+    Ok([number()?, 1.0 - number()?])
 }
 
-/// Triangles of a polygon.
-fn split(corners: &[u32], vertices: &[Vec3<f64>], faces: &mut Vec<[u32; 3]>) {
-    let at = |c: u32| vertices[c as usize];
-    match *corners {
-        [a, b, c] => faces.push([a, b, c]),
-        [a, b, c, d] => match (at(c) - at(a)).norm_squared() < (at(d) - at(b)).norm_squared() {
-            true => faces.extend([[a, b, c], [a, c, d]]),
-            false => faces.extend([[a, b, d], [b, c, d]]),
+/// A corner, such as `7`, `7/1/2` or, counted back from the last, `-1`; so many vertices and texture coordinates came before.
+fn corner(word: &str, before: [usize; 2], line: usize) -> Result<Corner, String> {
+    let wrong = || format!("line {line}: \"{word}\" is no corner of a face");
+    let mut parts = word.split('/');
+    let mut index = |before: usize| {
+        let index = match parts.next().unwrap_or_default() {
+            "" => return None,
+            part => part.parse::<i64>().ok()?,
+        };
+        let index = match index {
+            0 => return None,
+            forwards if forwards > 0 => forwards - 1,
+            backwards => before as i64 + backwards,
+        };
+        u32::try_from(index).ok()
+    };
+    Ok(Corner {
+        vertex: index(before[0]).ok_or_else(wrong)?,
+        texcoord: index(before[1]),
+    })
+}
+
+/// Triangles of a polygon, as numbers of its corners.
+fn split(places: &[Vec3<f64>]) -> Vec<[usize; 3]> {
+    match *places {
+        [_, _, _] => vec![[0, 1, 2]],
+        [a, b, c, d] => match (c - a).norm_squared() < (d - b).norm_squared() {
+            true => vec![[0, 1, 2], [0, 2, 3]],
+            false => vec![[0, 1, 3], [1, 2, 3]],
         },
         _ => {
-            let points: Vec<[f64; 3]> = corners.iter().map(|&c| at(c).to_array()).collect();
-            let (mut flat, mut found) = (Vec::new(), Vec::<u32>::new());
+            let points: Vec<[f64; 3]> = places.iter().map(|place| place.to_array()).collect();
+            let (mut flat, mut found) = (Vec::new(), Vec::<usize>::new());
             // A polygon without area has no plane, and adds nothing.
             if project3d_to_2d(&points, points.len(), &mut flat) {
                 Earcut::new().earcut(flat, &[], &mut found);
             }
-            let ears = found.as_chunks::<3>().0.iter();
-            faces.extend(ears.map(|ear| ear.map(|corner| corners[corner as usize])));
+            found.as_chunks::<3>().0.to_vec()
         }
     }
 }

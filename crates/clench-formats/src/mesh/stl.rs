@@ -23,6 +23,7 @@ pub(super) fn read(mut bytes: Vec<u8>) -> Result<Triangles, String> {
         faces: (mesh.faces.iter())
             .map(|face| face.vertices.map(|v| v as u32))
             .collect(),
+        ..Triangles::default()
     })
 }
 

@@ -9,6 +9,10 @@ pub(crate) struct Triangles {
     pub vertices: Vec<Vec3<f64>>,
     /// Triangles; none for a cloud of points.
     pub faces: Vec<[u32; 3]>,
+    /// Places in a picture, across and down: one a vertex, or those that `face_texcoords` names; or none.
+    pub texcoords: Vec<[f32; 2]>,
+    /// Which of these each corner of each triangle has; none stands for those of the vertices.
+    pub face_texcoords: Vec<[u32; 3]>,
 }
 
 /// The numbers of a run of little-endian bytes.

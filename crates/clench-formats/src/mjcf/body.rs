@@ -11,7 +11,8 @@ use crate::LoadError;
 use crate::spending::Spending;
 use clench_math::{Mat3, Quat, Vec3};
 use clench_rigid::builder::{
-    BodySpec, CameraSpec, CompilerSpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, SiteSpec,
+    BodySpec, CameraSpec, CompilerSpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, LightSpec,
+    SiteSpec,
 };
 use clench_rigid::model::SleepPolicy;
 use std::sync::Arc;
@@ -199,6 +200,7 @@ impl<'a> BodyReader<'a> {
             "geom" => self.read_geom(element, place)?,
             "site" => self.read_site(element, place)?,
             "camera" => self.read_camera(element, place)?,
+            "light" => self.read_light(element, place)?,
             // Lights; the schema lets nothing else through.
             _ => {}
         }
@@ -301,6 +303,17 @@ impl<'a> BodyReader<'a> {
         let site = site.finish(element, self.compiler(element), &place.frame)?;
         self.charge(element, size_of::<SiteSpec>(), &[&site.name])?;
         self.bodies[place.body].sites.push(site);
+        Ok(())
+    }
+
+    fn read_light(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+        let mut light = self.classes(element)[self.class(element, place)?]
+            .light
+            .clone();
+        light.read(element)?;
+        let light = light.finish(element, &place.frame);
+        self.charge(element, size_of::<LightSpec>(), &[&light.name])?;
+        self.bodies[place.body].lights.push(light);
         Ok(())
     }
 

@@ -21,8 +21,9 @@ pub(crate) struct CameraDraft {
     principal: Lengths,
 }
 
+/// How a camera or light follows bodies.
 #[derive(Clone, Copy, Debug)]
-enum Mode {
+pub(super) enum Mode {
     Fixed,
     Track,
     TrackCom,
@@ -56,14 +57,7 @@ impl Default for CameraDraft {
 impl CameraDraft {
     /// Overwrites what the element gives.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
-        let modes = [
-            ("fixed", Mode::Fixed),
-            ("track", Mode::Track),
-            ("trackcom", Mode::TrackCom),
-            ("targetbody", Mode::TargetBody),
-            ("targetbodycom", Mode::TargetBodyCom),
-        ];
-        element.set_keyword("mode", &modes, &mut self.mode)?;
+        self.mode.read(element)?;
         element.set_numbers("pos", &mut self.pos)?;
         self.orientation.read(element)?;
         let projections = [("perspective", false), ("orthographic", true)];
@@ -93,18 +87,11 @@ impl CameraDraft {
             pos: Vec3::from_array(self.pos),
             quat: self.orientation.resolve(compiler, element)?,
         });
-        let target = || element.string("target");
         Ok(CameraSpec {
             name: element.string("name"),
             pos: pose.pos,
             quat: pose.quat,
-            tracking: match self.mode {
-                Mode::Fixed => CameraTracking::Fixed,
-                Mode::Track => CameraTracking::Track,
-                Mode::TrackCom => CameraTracking::TrackCom(target()),
-                Mode::TargetBody => CameraTracking::TargetBody(target()),
-                Mode::TargetBodyCom => CameraTracking::TargetBodyCom(target()),
-            },
+            tracking: tracking(self.mode, element),
             orthographic: self.orthographic,
             lens: self.lens(element)?,
             resolution: self.resolution.map(|n| usize::try_from(n).unwrap_or(0)),
@@ -138,6 +125,32 @@ impl CameraDraft {
             let pixel = self.sensorsize[i] / f64::from(self.resolution[i]);
             stored(lengths.pixels[i] * pixel)
         })
+    }
+}
+
+impl Mode {
+    /// Overwrites what the element gives.
+    pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+        let modes = [
+            ("fixed", Mode::Fixed),
+            ("track", Mode::Track),
+            ("trackcom", Mode::TrackCom),
+            ("targetbody", Mode::TargetBody),
+            ("targetbodycom", Mode::TargetBodyCom),
+        ];
+        element.set_keyword("mode", &modes, self)
+    }
+}
+
+/// How an element follows bodies, with the target that it names.
+pub(super) fn tracking(mode: Mode, element: &Element) -> CameraTracking {
+    let target = || element.string("target");
+    match mode {
+        Mode::Fixed => CameraTracking::Fixed,
+        Mode::Track => CameraTracking::Track,
+        Mode::TrackCom => CameraTracking::TrackCom(target()),
+        Mode::TargetBody => CameraTracking::TargetBody(target()),
+        Mode::TargetBodyCom => CameraTracking::TargetBodyCom(target()),
     }
 }
 

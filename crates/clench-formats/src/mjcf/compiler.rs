@@ -24,6 +24,8 @@ pub(crate) struct CompilerOptions {
     pub eulerseq: [char; 3],
     /// Where files of meshes and height fields are, seen from the model.
     pub meshdir: String,
+    /// Where files of textures are.
+    pub texturedir: String,
     /// Only the last part of a file's path counts.
     pub strippath: bool,
     /// What becomes of options of attached models.
@@ -36,6 +38,7 @@ impl Default for CompilerOptions {
             degrees: true,
             eulerseq: ['x', 'y', 'z'],
             meshdir: String::new(),
+            texturedir: String::new(),
             strippath: false,
             conflict: Conflict::Warning,
         }
@@ -77,8 +80,13 @@ impl CompilerOptions {
             &[("radian", false), ("degree", true)],
             &mut self.degrees,
         )?;
-        if let Some(directory) = element.text("meshdir").or(element.text("assetdir")) {
-            directory.clone_into(&mut self.meshdir);
+        for (name, target) in [
+            ("meshdir", &mut self.meshdir),
+            ("texturedir", &mut self.texturedir),
+        ] {
+            if let Some(directory) = element.text(name).or(element.text("assetdir")) {
+                directory.clone_into(target);
+            }
         }
         element.set_boolean("strippath", &mut self.strippath)?;
         let conflicts = [

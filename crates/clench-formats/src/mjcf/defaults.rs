@@ -11,6 +11,7 @@ use super::document::Element;
 use super::equality::EqualityDraft;
 use super::geom::GeomDraft;
 use super::joint;
+use super::light::LightDraft;
 use super::mesh::MeshDraft;
 use super::shortcut::{ActuatorParams, Shortcut};
 use super::site::SiteDraft;
@@ -31,6 +32,7 @@ pub(crate) struct Class {
     pub geom: GeomDraft,
     pub site: SiteDraft,
     pub camera: CameraDraft,
+    pub light: LightDraft,
     pub pair: PairSpec,
     pub equality: EqualityDraft,
     pub tendon: TendonSpec,
@@ -58,6 +60,7 @@ impl Default for Classes {
             geom: GeomDraft::default(),
             site: SiteDraft::default(),
             camera: CameraDraft::default(),
+            light: LightDraft::default(),
             pair: contact::default_pair(),
             equality: EqualityDraft::default(),
             tendon: TendonSpec::default(),
@@ -157,6 +160,7 @@ impl Classes {
             "geom" => class.geom.read(element),
             "site" => class.site.read(element),
             "camera" => class.camera.read(element),
+            "light" => class.light.read(element),
             "pair" => contact::read_pair(element, &mut class.pair),
             "equality" => class.equality.read(element),
             "tendon" => tendon::read_common(element, &mut class.tendon),

@@ -1,7 +1,7 @@
-//! Files that a model names: meshes and height fields.
+//! Files that a model names: meshes, height fields and textures.
 //!
-//! As in MuJoCo, a path is relative to `meshdir`, which is relative to the model's directory; what is not there, and named in an
-//! included file, is looked for in `meshdir` along the path from the model to that file.
+//! As in MuJoCo, a path is relative to `meshdir` (of a texture `texturedir`), which is relative to the model's directory; what is not
+//! there, and named in an included file, is looked for in `meshdir` along the path from the model to that file.
 
 use super::compiler::CompilerOptions;
 use super::document::Element;
@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Files {
     pub model_directory: PathBuf,
     meshes: PathBuf,
+    textures: PathBuf,
     strippath: bool,
 }
 
@@ -33,17 +34,38 @@ impl Files {
         Files {
             model_directory: model_directory.to_owned(),
             meshes: model_directory.join(slashes(&compiler.meshdir)),
+            textures: model_directory.join(slashes(&compiler.texturedir)),
             strippath: compiler.strippath,
         }
     }
 
-    /// Reads the file that an element names, if it names one.
+    /// Reads the file of a mesh or height field, if the element names one.
     pub(crate) fn read(
         &self,
         element: &Element,
         spending: &mut Spending,
     ) -> Result<Option<Content>, LoadError> {
-        let Some(name) = element.text("file").filter(|name| !name.is_empty()) else {
+        self.find(&self.meshes, element, "file", spending)
+    }
+
+    /// Reads the file of a texture that an attribute names, if it names one.
+    pub(crate) fn texture(
+        &self,
+        element: &Element,
+        attribute: &str,
+        spending: &mut Spending,
+    ) -> Result<Option<Content>, LoadError> {
+        self.find(&self.textures, element, attribute, spending)
+    }
+
+    fn find(
+        &self,
+        folder: &Path,
+        element: &Element,
+        attribute: &str,
+        spending: &mut Spending,
+    ) -> Result<Option<Content>, LoadError> {
+        let Some(name) = element.text(attribute).filter(|name| !name.is_empty()) else {
             return Ok(None);
         };
         let name = slashes(name);
@@ -51,10 +73,10 @@ impl Files {
             (true, Some(last)) => PathBuf::from(last),
             _ => PathBuf::from(&name),
         };
-        let mut places = vec![self.meshes.join(&name)];
+        let mut places = vec![folder.join(&name)];
         let written = Path::new(&*element.origin.file).parent();
         let below = written.and_then(|file| file.strip_prefix(&self.model_directory).ok());
-        places.extend(below.map(|below| self.meshes.join(below).join(&name)));
+        places.extend(below.map(|below| folder.join(below).join(&name)));
         let found = places.iter().find(|path| spending.has_file(path));
         let path = found.ok_or_else(|| {
             element.error(format!("cannot find the file \"{}\"", places[0].display()))

@@ -60,7 +60,7 @@ impl MeshDraft {
             }
             None => {
                 let found = read_or_written(element, files, &mut mesh.name, spending)?;
-                let taken = spending.bytes(mesh::bytes(found.vertices.len(), found.faces.len()));
+                let taken = spending.bytes(mesh::cost(&found));
                 taken.map_err(|excess| element.error(excess))?;
                 found
             }
@@ -71,6 +71,8 @@ impl MeshDraft {
         Ok(MeshSpec {
             vertices: found.vertices,
             faces: found.faces,
+            texcoords: found.texcoords,
+            face_texcoords: found.face_texcoords,
             origin: Some(element.origin.clone()),
             ..mesh
         })
@@ -99,6 +101,8 @@ fn read_or_written(
     let written = Triangles {
         vertices: read_vertices(element)?,
         faces: read_faces(element)?,
+        texcoords: read_texcoords(element)?,
+        face_texcoords: Vec::new(),
     };
     let Some(mut file) = files.read(element, spending)? else {
         return Ok(written);
@@ -124,11 +128,23 @@ fn merge(file: Triangles, written: Triangles, element: &Element) -> Result<Trian
     if !file.faces.is_empty() && !written.faces.is_empty() {
         return Err(element.error("the file has faces: face cannot be given too"));
     }
+    if !file.texcoords.is_empty() && !written.texcoords.is_empty() {
+        let message = "the file has texture coordinates: texcoord cannot be given too";
+        return Err(element.error(message));
+    }
     let faces = match file.faces.is_empty() {
         true => written.faces,
         false => file.faces,
     };
-    Ok(Triangles { faces, ..file })
+    let texcoords = match file.texcoords.is_empty() {
+        true => written.texcoords,
+        false => file.texcoords,
+    };
+    Ok(Triangles {
+        faces,
+        texcoords,
+        ..file
+    })
 }
 
 /// Vertices with the 24 bits a coordinate that MuJoCo keeps.
@@ -140,6 +156,15 @@ fn read_vertices(element: &Element) -> Result<Vec<Vec3<f64>>, LoadError> {
     }
     let short = |point: [f64; 3]| Vec3::from_array(point.map(|x| f64::from(x as f32)));
     Ok(points.iter().copied().map(short).collect())
+}
+
+fn read_texcoords(element: &Element) -> Result<Vec<[f32; 2]>, LoadError> {
+    let numbers = element.list("texcoord")?.unwrap_or_default();
+    let (places, rest) = numbers.as_chunks::<2>();
+    match rest.is_empty() {
+        true => Ok(places.iter().map(|place| place.map(|x| x as f32)).collect()),
+        false => Err(element.error("texcoord needs two numbers a vertex")),
+    }
 }
 
 fn read_faces(element: &Element) -> Result<Vec<[u32; 3]>, LoadError> {

@@ -1,13 +1,15 @@
-//! What is only seen: the materials of a file, and textures that are computed.
+//! What is only seen: the materials and textures of a file.
 
-use super::appearance::{read_material, set};
+use super::appearance::read_material;
 use super::document::Element;
 use super::sections::entries;
 use super::source::Sources;
+use super::{light, schema, texture};
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_rigid::builder::{MaterialSpec, ModelBuilder};
-use clench_rigid::model::{Material, Texture, TextureMark, TexturePattern};
+use clench_rigid::model::{Material, Texture};
+use std::collections::BTreeSet;
 
 /// Reads the materials and textures.
 pub(crate) fn read(
@@ -16,6 +18,7 @@ pub(crate) fn read(
     builder: &mut ModelBuilder,
     spending: &mut Spending,
 ) -> Result<(), LoadError> {
+    let discarded = sources.main().spec.discardvisual;
     for element in entries(root, "asset") {
         let size = match element.tag.as_str() {
             "material" => {
@@ -23,8 +26,16 @@ pub(crate) fn read(
                 builder.materials.push(finish_material(element, draft)?);
                 size_of::<MaterialSpec>() + size_of::<Material>()
             }
+            // As in MuJoCo, what is discarded is not read.
+            "texture" if discarded => continue,
             "texture" => {
-                builder.textures.extend(read_texture(element)?);
+                let files = &sources.of(element).files;
+                let found = texture::read(element, files, spending)?;
+                if found.is_none() {
+                    let note = "is not drawn: of textures only PNG images are read";
+                    builder.notes.push(element.error(note).to_string());
+                }
+                builder.textures.extend(found);
                 2 * size_of::<Texture>()
             }
             _ => continue,
@@ -32,6 +43,32 @@ pub(crate) fn read(
         spending
             .bytes(size as u64)
             .map_err(|excess| element.error(excess))?;
+    }
+    for element in entries(root, "visual").filter(|element| element.tag == "headlight") {
+        light::read_headlight(element, &mut builder.headlight)?;
+    }
+    match discarded {
+        true => Ok(()),
+        false => check_textures(root, builder),
+    }
+}
+
+/// Checks that every texture that a material names exists.
+fn check_textures(root: &Element, builder: &ModelBuilder) -> Result<(), LoadError> {
+    let textures = entries(root, "asset").filter(|asset| asset.tag == "texture");
+    let known: BTreeSet<&str> = (textures.filter_map(|texture| texture.text("name")))
+        .chain(builder.textures.iter().map(|texture| texture.name.as_str()))
+        .collect();
+    let materials = entries(root, "asset").filter(|asset| asset.tag == "material");
+    for element in materials {
+        let layers = element.children.iter().filter(|child| child.tag == "layer");
+        for part in layers.chain([element]) {
+            let named = part.text("texture").filter(|name| !name.is_empty());
+            if let Some(name) = named.filter(|name| !known.contains(name)) {
+                let hint = schema::suggestion(name, known.iter().copied());
+                return Err(part.error(format!("there is no texture \"{name}\"{hint}")));
+            }
+        }
     }
     Ok(())
 }
@@ -43,45 +80,4 @@ fn finish_material(
     read_material(element, &mut material)?;
     material.surface.name = element.string("name");
     Ok(material)
-}
-
-/// The largest width or height of a computed texture, pixels.
-const MAX_PIXELS: i32 = 4096;
-
-/// A texture that is computed; those of files and those of skies are not kept.
-fn read_texture(element: &Element) -> Result<Option<Texture>, LoadError> {
-    let patterns = [
-        ("none", None),
-        ("gradient", Some(TexturePattern::Gradient)),
-        ("checker", Some(TexturePattern::Checker)),
-        ("flat", Some(TexturePattern::Flat)),
-    ];
-    let pattern = element.keyword("builtin", &patterns)?.flatten();
-    let sky = matches!(element.text("type"), Some("skybox"));
-    let Some(pattern) = pattern.filter(|_| !sky) else {
-        return Ok(None);
-    };
-    let marks = [
-        ("none", TextureMark::None),
-        ("edge", TextureMark::Edge),
-        ("cross", TextureMark::Cross),
-        ("random", TextureMark::None),
-    ];
-    let mut texture = Texture {
-        name: element.string("name"),
-        pattern,
-        rgb1: [0.8; 3],
-        rgb2: [0.5; 3],
-        mark: (element.keyword("mark", &marks)?).unwrap_or(TextureMark::None),
-        markrgb: [0.0; 3],
-        size: [0; 2],
-    };
-    set(element, "rgb1", &mut texture.rgb1)?;
-    set(element, "rgb2", &mut texture.rgb2)?;
-    set(element, "markrgb", &mut texture.markrgb)?;
-    for (name, pixels) in ["width", "height"].into_iter().zip(&mut texture.size) {
-        let given = element.integer(name)?.unwrap_or(0);
-        *pixels = given.clamp(0, MAX_PIXELS) as u32;
-    }
-    Ok(Some(texture))
 }

@@ -67,9 +67,8 @@ impl<'a> Meshes<'a> {
             ))
         })?;
         let triangles = file.parse(element, |bytes| mesh::read(bytes, format))?;
-        let bytes = mesh::bytes(triangles.vertices.len(), triangles.faces.len());
         spending
-            .bytes(bytes)
+            .bytes(mesh::cost(&triangles))
             .map_err(|excess| element.error(excess))?;
         let name = self.name(&file.stem);
         self.known.insert(key, name.clone());
@@ -77,6 +76,8 @@ impl<'a> Meshes<'a> {
             name: name.clone(),
             vertices: triangles.vertices,
             faces: triangles.faces,
+            texcoords: triangles.texcoords,
+            face_texcoords: triangles.face_texcoords,
             scale: Vec3::from_array(scale),
             origin: Some(element.origin.clone()),
             ..MeshSpec::default()

@@ -3,13 +3,14 @@
 use super::{Draw, Renderer};
 use crate::canvas::Canvas;
 use crate::light::SKY;
+use clench::rigid::model::Appearance;
 use wgpu::{
-    Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    BindGroup, Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureView,
 };
 
 impl Renderer {
-    /// Draws what the sun sees.
+    /// Draws what the sun sees, or the light of the model that casts the shadow.
     pub fn shade(&self, encoder: &mut CommandEncoder, draw: &Draw) {
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("shadow"),
@@ -18,10 +19,11 @@ impl Renderer {
         });
         self.begin(&mut pass, draw);
         pass.set_pipeline(&self.passes.shadow);
-        // A plane shades nothing that is seen, and would shade itself.
-        let plane = |g: &usize| self.model.geoms[*g].kind == clench::collide::ShapeKind::Plane;
-        let casting = draw.opaque.iter().filter(|g| !plane(g));
-        casting.for_each(|&g| self.draw_geom(&mut pass, g));
+        // A plane shades nothing that is seen, and would shade itself. Sites are marks.
+        let plane = clench::collide::ShapeKind::Plane;
+        let casts = |&&k: &&usize| (self.model.geoms.get(k)).is_some_and(|geom| geom.kind != plane);
+        let casting = draw.opaque.iter().filter(casts);
+        casting.for_each(|&g| self.draw_one(&mut pass, g));
         self.draw_strings(&mut pass, draw);
     }
 
@@ -46,14 +48,17 @@ impl Renderer {
         self.begin(&mut pass, draw);
         pass.set_bind_group(1, &self.light, &[]);
         pass.set_pipeline(&self.passes.opaque);
-        draw.opaque
-            .iter()
-            .for_each(|&g| self.draw_geom(&mut pass, g));
+        for &k in draw.opaque {
+            pass.set_bind_group(2, self.texture_of(k), &[]);
+            self.draw_one(&mut pass, k);
+        }
+        pass.set_bind_group(2, self.textures.of(&self.model, Appearance::default()), &[]);
         self.draw_strings(&mut pass, draw);
         pass.set_pipeline(&self.passes.transparent);
-        draw.transparent
-            .iter()
-            .for_each(|&g| self.draw_geom(&mut pass, g));
+        for &k in draw.transparent {
+            pass.set_bind_group(2, self.texture_of(k), &[]);
+            self.draw_one(&mut pass, k);
+        }
     }
 
     /// Draws distances and numbers of geoms.
@@ -84,8 +89,9 @@ impl Renderer {
         });
         self.begin(&mut pass, draw);
         pass.set_pipeline(&self.passes.facts);
-        let geoms = draw.opaque.iter().chain(draw.transparent);
-        geoms.for_each(|&g| self.draw_geom(&mut pass, g));
+        let all = draw.opaque.iter().chain(draw.transparent);
+        let geoms = all.filter(|&&k| k < self.model.geoms.len());
+        geoms.for_each(|&g| self.draw_one(&mut pass, g));
         self.draw_strings(&mut pass, draw);
     }
 
@@ -94,8 +100,18 @@ impl Renderer {
         pass.set_vertex_buffer(0, self.corners.slice(..));
     }
 
-    fn draw_geom(&self, pass: &mut RenderPass, geom: usize) {
-        pass.draw(self.shapes[geom].clone(), geom as u32..geom as u32 + 1);
+    /// Draws a geom or, by a number after those of geoms, a site.
+    fn draw_one(&self, pass: &mut RenderPass, item: usize) {
+        pass.draw(self.shapes[item].clone(), item as u32..item as u32 + 1);
+    }
+
+    fn texture_of(&self, item: usize) -> &BindGroup {
+        let visuals = &self.model.visuals;
+        let appearance = match item.checked_sub(visuals.geoms.len()) {
+            None => visuals.geoms[item],
+            Some(site) => visuals.sites[site],
+        };
+        self.textures.of(&self.model, appearance)
     }
 
     fn draw_strings(&self, pass: &mut RenderPass, draw: &Draw) {

@@ -7,10 +7,12 @@ use crate::canvas::{Canvas, copy, read, texture};
 use crate::device::{Gpu, RenderError};
 use crate::image::Image;
 use crate::items::{self, Item};
-use crate::light::{FAR, SHADOW, Uniforms, light_group};
+use crate::light::{FAR, Lighting, REACH, SHADOW, Uniforms, light_group};
 use crate::passes::{DEPTH, Passes};
+use crate::textures::Textures;
 use crate::triangles::{self, Vertex};
 use clench::Model;
+use clench::rigid::readout::light_places;
 use clench::rigid::{Precision, Sim};
 use std::ops::Range;
 use std::sync::Arc;
@@ -33,7 +35,7 @@ pub struct Picture {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Which groups of geoms are seen.
+    /// Which groups of geoms and sites are seen.
     pub groups: Vec<usize>,
     /// Whether colours are wanted.
     pub colors: bool,
@@ -61,9 +63,10 @@ pub struct Renderer {
     passes: Passes,
     model: Arc<Model>,
     corners: Buffer,
-    /// The corners of each geom, and of a part of a tendon.
+    /// The corners of each geom, of each site, and of a part of a tendon.
     shapes: Vec<Range<u32>>,
     looks: Vec<Item>,
+    textures: Textures,
     /// The size of what moves at first, m.
     extent: f32,
     shadow: TextureView,
@@ -85,7 +88,8 @@ impl Renderer {
         let mut shapes = Vec::new();
         let geoms = (0..model.geoms.len())
             .map(|g| triangles::of_geom(model, &model.params, g, FAR * extent));
-        for shape in geoms.chain([triangles::string()]) {
+        let sites = (0..model.sites.len()).map(|s| triangles::of_site(model, &model.params, s));
+        for shape in geoms.chain(sites).chain([triangles::string()]) {
             let start = corners.len() as u32;
             corners.extend(shape);
             shapes.push(start..corners.len() as u32);
@@ -99,7 +103,8 @@ impl Renderer {
         let shadow = shadow.create_view(&Default::default());
         let light = light_group(&gpu, &passes, &shadow);
         Ok(Renderer {
-            looks: items::of_geoms(model, FAR * extent),
+            looks: items::of_model(model),
+            textures: Textures::new(&gpu, &passes, model),
             model: Arc::clone(model),
             gpu,
             passes,
@@ -147,10 +152,14 @@ impl Renderer {
         }
         let shown = self.shown(&items, &camera, wanted);
         items.extend(items::of_tendons(sim)?);
-        let strings = shown.geoms..items.len();
+        let strings = self.looks.len()..items.len();
         let aspect = width as f32 / height as f32;
-        let told = Uniforms::new(&camera, aspect, self.extent, self.centre(&items));
-        let scene = self.scene_group(&told, &items);
+        let centre = self.centre(&items);
+        let places = light_places(&self.model, sim.workspace());
+        let lighting = Lighting::new(&self.model.visuals, &places, centre, REACH * self.extent);
+        let told = Uniforms::new(&camera, aspect, self.extent, centre, &lighting);
+        let scene =
+            self.scene_group(&[told.as_bytes(), items.as_bytes(), lighting.lamps.as_bytes()]);
         let size = [width, height];
         if self
             .canvas
@@ -168,14 +177,14 @@ impl Renderer {
         self.submit(&draw, wanted)
     }
 
-    /// Which geoms are drawn, and in which order.
+    /// Which geoms and sites are drawn, and in which order.
     fn shown(&self, items: &[Item], camera: &Placed, wanted: &Picture) -> Shown {
-        let seen = |&g: &usize| {
-            wanted
-                .groups
-                .contains(&(self.model.geoms[g].group as usize))
-                && items[g].color[3] > 0.0
-        };
+        let groups = self.model.geoms.iter().map(|geom| geom.group);
+        let groups: Vec<i32> = groups
+            .chain(self.model.sites.iter().map(|site| site.group))
+            .collect();
+        let seen =
+            |&k: &usize| wanted.groups.contains(&(groups[k] as usize)) && items[k].color[3] > 0.0;
         let all = (0..items.len()).filter(seen);
         let (opaque, mut transparent): (Vec<_>, Vec<_>) =
             all.partition(|&g| items[g].color[3] >= 1.0);
@@ -188,7 +197,6 @@ impl Renderer {
         };
         transparent.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         Shown {
-            geoms: items.len(),
             opaque,
             transparent,
         }
@@ -196,7 +204,7 @@ impl Renderer {
 
     /// The middle of what moves, around which the sun casts shadows.
     fn centre(&self, items: &[Item]) -> [f32; 3] {
-        let moving = (0..self.looks.len()).filter(|&g| self.model.geoms[g].body > 0);
+        let moving = (0..self.model.geoms.len()).filter(|&g| self.model.geoms[g].body > 0);
         let mut count = 0.0;
         let mut sum = [0.0; 3];
         for g in moving {
@@ -206,37 +214,37 @@ impl Renderer {
         sum.map(|x| if count > 0.0 { x / count } else { 0.0 })
     }
 
-    fn scene_group(&self, told: &Uniforms, items: &[Item]) -> BindGroup {
+    /// What is told of a picture: the view, the items and the lights.
+    fn scene_group(&self, contents: &[&[u8]; 3]) -> BindGroup {
         let device = &self.gpu.device;
-        let told = device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("view"),
-            contents: told.as_bytes(),
-            usage: BufferUsages::UNIFORM,
-        });
         // A buffer without anything in it cannot be bound.
-        let nothing = [0; size_of::<Item>()];
-        let items = device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("items"),
-            contents: if items.is_empty() {
-                &nothing
-            } else {
-                items.as_bytes()
-            },
-            usage: BufferUsages::STORAGE,
-        });
+        let nothing = [0; 256];
+        let buffer = |(index, contents): (usize, &&[u8])| {
+            device.create_buffer_init(&BufferInitDescriptor {
+                label: Some("scene"),
+                contents: if contents.is_empty() {
+                    &nothing
+                } else {
+                    contents
+                },
+                usage: match index {
+                    0 => BufferUsages::UNIFORM,
+                    _ => BufferUsages::STORAGE,
+                },
+            })
+        };
+        let buffers: Vec<Buffer> = contents.iter().enumerate().map(buffer).collect();
+        let entries: Vec<_> = (0..)
+            .zip(&buffers)
+            .map(|(binding, buffer)| BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
         device.create_bind_group(&BindGroupDescriptor {
             label: Some("scene"),
             layout: &self.passes.scene,
-            entries: &[
-                BindGroupEntry {
-                    binding: 0,
-                    resource: told.as_entire_binding(),
-                },
-                BindGroupEntry {
-                    binding: 1,
-                    resource: items.as_entire_binding(),
-                },
-            ],
+            entries: &entries,
         })
     }
 
@@ -285,9 +293,8 @@ impl Renderer {
     }
 }
 
-/// The geoms of a picture, out of so many.
+/// The geoms and sites of a picture, by their numbers among the items.
 struct Shown {
-    geoms: usize,
     opaque: Vec<usize>,
     transparent: Vec<usize>,
 }

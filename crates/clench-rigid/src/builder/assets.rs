@@ -29,6 +29,10 @@ pub struct MeshSpec {
     pub vertices: Vec<Vec3<f64>>,
     /// Triangles, counter-clockwise seen from outside; none stands for the convex hull.
     pub faces: Vec<[u32; 3]>,
+    /// Places in a picture that lies on the mesh, across and down: one a vertex, or those that `face_texcoords` names.
+    pub texcoords: Vec<[f32; 2]>,
+    /// Which of these each corner of each triangle has; none stands for those of the vertices.
+    pub face_texcoords: Vec<[u32; 3]>,
     /// Subtracted from the vertices.
     pub refpos: Vec3<f64>,
     /// Turned back from the vertices.
@@ -49,6 +53,8 @@ impl Default for MeshSpec {
             name: String::new(),
             vertices: Vec::new(),
             faces: Vec::new(),
+            texcoords: Vec::new(),
+            face_texcoords: Vec::new(),
             refpos: Vec3::ZERO,
             refquat: Quat::IDENTITY,
             scale: Vec3::new(1.0, 1.0, 1.0),

@@ -7,7 +7,7 @@ use super::model_builder::ModelBuilder;
 use super::placed::Assets;
 use super::{
     BodySpec, BuildError, CompilerSpec, GeomMass, GeomSpec, InertiaFromGeom, JointSpec, cameras,
-    geoms, joints,
+    geoms, joints, lights,
 };
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
@@ -144,6 +144,9 @@ fn add(
         cameras::add(camera, b, frame.moved, model);
     }
     model.bodies[b].cameras.end = model.cameras.len();
+    for light in &spec.lights {
+        lights::add(light, b, frame.moved, model);
+    }
     Ok(())
 }
 

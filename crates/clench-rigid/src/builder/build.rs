@@ -5,7 +5,7 @@ use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
     BuildError, DEFAULT_DYNAMIC_CONSTRAINTS, actuators, bodies, budget, cameras, check, contacts,
-    equalities, fuse, invweight0, keyframes, length_range, sensors, sleep, tendons,
+    equalities, fuse, invweight0, keyframes, length_range, lights, sensors, sleep, tendons,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -63,6 +63,7 @@ impl ModelBuilder {
         tendons::add_all(self, &names, &palette, &mut model)?;
         actuators::add_all(self, &names, &mut model)?;
         cameras::aim_all(self, &order, &names, &mut model)?;
+        lights::aim_all(self, &order, &names, &mut model)?;
         sensors::add_all(self, &names, &mut model)?;
         sleep::add_trees(self, &order, &mut model)?;
 
@@ -70,6 +71,7 @@ impl ModelBuilder {
         let rest = |model: &Model| pose(model, &model.params.qpos_spring);
         tendons::lengths(self, &pose0, rest, &mut model);
         cameras::set_initial_frames(&pose0, &mut model);
+        lights::set_initial_places(&pose0, &mut model);
         sleep::dof_lengths(&pose0, &mut model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
         budget::equalities(self, &model)?;

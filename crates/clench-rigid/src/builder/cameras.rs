@@ -55,22 +55,33 @@ pub(super) fn aim_all(
 ) -> Result<(), BuildError> {
     let specs = order.iter().flat_map(|&b| &builder.bodies[b].cameras);
     for (camera, spec) in model.cameras.iter_mut().zip(specs) {
-        let named = |name: &String| match name.is_empty() {
-            true => Ok(None),
-            false => names.bodies.find(name, spec).map(Some),
-        };
-        let target = |name: &String, mode: fn(usize) -> CameraMode| {
-            named(name).map(|body| body.map_or(CameraMode::Fixed, mode))
-        };
-        camera.mode = match &spec.tracking {
-            CameraTracking::Fixed => CameraMode::Fixed,
-            CameraTracking::Track => CameraMode::Track,
-            CameraTracking::TrackCom(name) => CameraMode::TrackCom(named(name)?),
-            CameraTracking::TargetBody(name) => target(name, CameraMode::TargetBody)?,
-            CameraTracking::TargetBodyCom(name) => target(name, CameraMode::TargetBodyCom)?,
-        };
+        camera.mode = mode(&spec.tracking, |name| names.bodies.find(name, spec))?;
     }
     Ok(())
+}
+
+/// How a camera or light follows bodies, which `find` finds by their names.
+///
+/// # Errors
+/// A body that is not there.
+pub(super) fn mode(
+    tracking: &CameraTracking,
+    find: impl Fn(&str) -> Result<usize, BuildError>,
+) -> Result<CameraMode, BuildError> {
+    let named = |name: &String| match name.is_empty() {
+        true => Ok(None),
+        false => find(name).map(Some),
+    };
+    let target = |name: &String, mode: fn(usize) -> CameraMode| {
+        named(name).map(|body| body.map_or(CameraMode::Fixed, mode))
+    };
+    Ok(match tracking {
+        CameraTracking::Fixed => CameraMode::Fixed,
+        CameraTracking::Track => CameraMode::Track,
+        CameraTracking::TrackCom(name) => CameraMode::TrackCom(named(name)?),
+        CameraTracking::TargetBody(name) => target(name, CameraMode::TargetBody)?,
+        CameraTracking::TargetBodyCom(name) => target(name, CameraMode::TargetBodyCom)?,
+    })
 }
 
 /// Notes the frames in the initial configuration, which cameras that track keep.

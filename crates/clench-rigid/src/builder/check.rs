@@ -6,6 +6,7 @@ use super::model_builder::ModelBuilder;
 use super::{
     ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, EqualitySpec, GeomMass, GeomSpec,
     InertiaSpec, JointSpec, KeyframeSpec, PairSpec, SiteSpec, TendonSpec, WrapSpec, equalities,
+    lights,
 };
 use crate::model::Integrator;
 use clench_collide::ShapeKind;
@@ -28,6 +29,9 @@ pub(super) fn check(builder: &ModelBuilder) -> Result<(), BuildError> {
         body.sites.iter().try_for_each(check_site).map_err(within)?;
         (body.cameras.iter())
             .try_for_each(check_camera)
+            .map_err(within)?;
+        (body.lights.iter())
+            .try_for_each(lights::check)
             .map_err(within)?;
     }
     builder.tendons.iter().try_for_each(check_tendon)?;

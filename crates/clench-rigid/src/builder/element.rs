@@ -2,8 +2,8 @@
 
 use super::{
     ActuatorSpec, BodySpec, BuildError, CameraSpec, EqualitySpec, ExcludeSpec, GeomSpec,
-    HeightFieldSpec, JointSpec, KeyframeSpec, MeshSpec, Origin, PairSpec, SensorSpec, SiteSpec,
-    TendonSpec,
+    HeightFieldSpec, JointSpec, KeyframeSpec, LightSpec, MeshSpec, Origin, PairSpec, SensorSpec,
+    SiteSpec, TendonSpec,
 };
 use clench_math::{Quat, Vec3};
 
@@ -74,6 +74,7 @@ elements! {
     GeomSpec => "geom",
     SiteSpec => "site",
     CameraSpec => "camera",
+    LightSpec => "light",
     MeshSpec => "mesh",
     HeightFieldSpec => "height field",
     TendonSpec => "tendon",

@@ -1,7 +1,7 @@
 //! Bodies and what stands on them, with MuJoCo's defaults.
 
 use super::constraint_defaults::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use super::{AppearanceSpec, CameraSpec, CompilerSpec, Origin};
+use super::{AppearanceSpec, CameraSpec, CompilerSpec, LightSpec, Origin};
 use crate::model::{Interpolation, JointKind, SleepPolicy};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
@@ -44,6 +44,8 @@ pub struct BodySpec {
     pub sites: Vec<SiteSpec>,
     /// Cameras.
     pub cameras: Vec<CameraSpec>,
+    /// Lights.
+    pub lights: Vec<LightSpec>,
     /// The settings of the model that it was attached from, which decide about its inertia and its frame; `None` for those of
     /// the builder.
     pub compiler: Option<Arc<CompilerSpec>>,

@@ -11,8 +11,8 @@ use super::model_builder::ModelBuilder;
 use super::placed::Assets;
 use super::{
     BodySpec, BuildError, CameraSpec, CameraTracking, ConnectAnchor, ContactSideName, FrameKind,
-    FrameName, GeomSpec, GeomsName, InertiaFromGeom, InertiaSpec, InertialSpec, SensorSubject,
-    SiteSpec, TransmissionSpec,
+    FrameName, GeomSpec, GeomsName, InertiaFromGeom, InertiaSpec, InertialSpec, LightSpec,
+    SensorSubject, SiteSpec, TransmissionSpec,
 };
 use crate::model::{Attachment, SensorKind};
 use clench_math::{Quat, Vec3};
@@ -67,6 +67,9 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
         target
             .cameras
             .extend(body.cameras.iter().map(|c| here.camera(c)));
+        target
+            .lights
+            .extend(body.lights.iter().map(|l| here.light(l)));
         stayed[here.body].1.push(here.mass(&masses[b].bounded));
     }
     for (body, (b, parts)) in fused.iter_mut().zip(&stayed).skip(1) {
@@ -200,6 +203,15 @@ impl Place {
         }
     }
 
+    fn light(&self, light: &LightSpec) -> LightSpec {
+        let at = self.then(light.pos, Quat::IDENTITY);
+        LightSpec {
+            pos: at.pos,
+            dir: at.quat.rotate(light.dir),
+            ..light.clone()
+        }
+    }
+
     fn mass(&self, mass: &MassProperties) -> MassProperties {
         let at = self.then(mass.pos, mass.quat);
         MassProperties {
@@ -224,10 +236,15 @@ impl<'a> Named<'a> {
                 bodies.extend([&body1[..], &body2[..]]);
             }
         }
-        for camera in builder.bodies.iter().flat_map(|body| &body.cameras) {
-            if let CameraTracking::TargetBody(name) | CameraTracking::TargetBodyCom(name) =
-                &camera.tracking
-            {
+        for body in &builder.bodies {
+            let cameras = body.cameras.iter().map(|camera| &camera.tracking);
+            let lights = body.lights.iter().map(|light| &light.tracking);
+            for tracking in cameras.chain(lights) {
+                let (CameraTracking::TargetBody(name) | CameraTracking::TargetBodyCom(name)) =
+                    tracking
+                else {
+                    continue;
+                };
                 bodies.insert(&name[..]);
             }
         }

@@ -95,6 +95,7 @@ pub(super) fn add_site(
         name: spec.name.clone(),
         body: b,
         kind: spec.kind,
+        group: spec.group,
     });
     model.params.site_size.push(Vec3::from_array(spec.size));
     let (pos, quat) = place(moved, spec.pos, spec.quat);

@@ -83,6 +83,8 @@ pub(super) fn process(spec: &MeshSpec, collides: bool) -> Result<Processed, Buil
             hull: surface
                 .filter(|_| collides)
                 .map(|s| Hull::new(&s, &vertices)),
+            texcoords: spec.texcoords.clone(),
+            face_texcoords: face_texcoords(spec, &faces),
             spec: spec.clone(),
             on_demand: Default::default(),
             vertices,
@@ -108,12 +110,43 @@ fn check(spec: &MeshSpec) -> Result<(), BuildError> {
             return Err(spec.error(message));
         }
     }
+    check_texcoords(spec)?;
     spec.require_finite("refpos", &spec.refpos.to_array())?;
     spec.require_finite("refquat", &spec.refquat.to_array())?;
     spec.require_finite("scale", &spec.scale.to_array())?;
     match spec.inertia {
         MeshInertia::Exact => check_sides(spec),
         _ => Ok(()),
+    }
+}
+
+fn check_texcoords(spec: &MeshSpec) -> Result<(), BuildError> {
+    let (places, corners) = (spec.texcoords.len(), spec.face_texcoords.len());
+    if corners == 0 && places > 0 && places != spec.vertices.len() {
+        let count = spec.vertices.len();
+        return Err(spec.error(format!(
+            "{places} texture coordinates do not fit {count} vertices"
+        )));
+    }
+    if corners > 0 && corners != spec.faces.len() {
+        let count = spec.faces.len();
+        return Err(spec.error(format!(
+            "texture coordinates of {corners} triangles do not fit {count} triangles"
+        )));
+    }
+    let missing = |&c: &u32| c as usize >= places;
+    if let Some(place) = spec
+        .face_texcoords
+        .as_flattened()
+        .iter()
+        .copied()
+        .find(missing)
+    {
+        return Err(spec.error(format!("there is no texture coordinate {place}")));
+    }
+    match spec.texcoords.as_flattened().iter().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(spec.error("a texture coordinate is not finite")),
     }
 }
 
@@ -149,6 +182,15 @@ fn faces(spec: &MeshSpec, surface: Option<&HullSurface>) -> Vec<[u32; 3]> {
     match surface {
         Some(surface) if spec.faces.is_empty() => oriented(spec, surface.triangles()),
         _ => oriented(spec, &spec.faces),
+    }
+}
+
+/// Which texture coordinates the corners of each triangle have.
+fn face_texcoords(spec: &MeshSpec, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    match (spec.texcoords.is_empty(), spec.face_texcoords.is_empty()) {
+        (true, _) => Vec::new(),
+        (_, true) => faces.to_vec(),
+        _ => oriented(spec, &spec.face_texcoords),
     }
 }
 

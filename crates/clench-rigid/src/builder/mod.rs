@@ -51,6 +51,7 @@ mod invweight0;
 mod joints;
 mod keyframes;
 mod length_range;
+mod lights;
 mod meshes;
 mod model_builder;
 mod physics;
@@ -75,6 +76,7 @@ pub use elements::{
     InertialSpec, JointSpec, SiteSpec,
 };
 pub use error::{BuildError, Origin, shorten};
+pub use lights::LightSpec;
 pub use model_builder::ModelBuilder;
 pub use physics::{
     CompilerSpec, ContactOverride, InertiaFromGeom, LengthRangeMode, LengthRangeSpec, PhysicsSpec,

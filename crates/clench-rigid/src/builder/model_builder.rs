@@ -9,7 +9,7 @@ use super::relations::{
 };
 use super::sensor_specs::SensorSpec;
 use crate::Budget;
-use crate::model::{Custom, Texture};
+use crate::model::{Custom, Headlight, Texture};
 use crate::options::RigidOptions;
 
 /// A model as its author wrote it.
@@ -35,6 +35,8 @@ pub struct ModelBuilder {
     pub materials: Vec<MaterialSpec>,
     /// Pictures that materials refer to by name.
     pub textures: Vec<Texture>,
+    /// The light that goes with the camera.
+    pub headlight: Headlight,
     /// Tendons.
     pub tendons: Vec<TendonSpec>,
     /// Actuators.
@@ -71,6 +73,7 @@ impl Default for ModelBuilder {
             height_fields: Vec::new(),
             materials: Vec::new(),
             textures: Vec::new(),
+            headlight: Headlight::default(),
             tendons: Vec::new(),
             actuators: Vec::new(),
             sensors: Vec::new(),

@@ -25,6 +25,7 @@ impl Palette {
             visuals: Visuals {
                 materials,
                 textures: builder.textures.clone(),
+                headlight: builder.headlight,
                 ..Visuals::default()
             },
         }

@@ -23,9 +23,10 @@ pub use sensor_target::{
 };
 pub use structure::{
     Actuator, Appearance, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates,
-    Coupled, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, HeightField,
-    History, Integrator, Interpolation, Joint, JointKind, Keyframe, KinematicTree, Material, Mesh,
-    Pair, RowPattern, Section, Site, SleepPolicy, Tendon, Texture, TextureMark, TexturePattern,
+    Coupled, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, Headlight,
+    HeightField, History, Integrator, Interpolation, Joint, JointKind, Keyframe, KinematicTree,
+    Light, LightKind, LightLook, Material, Mesh, Pair, Pattern, Pixels, RowPattern, Section, Site,
+    SleepPolicy, Tendon, Texture, TextureKind, TextureMark, TexturePattern, TexturePicture,
     Transmission, Visuals, Wrap,
 };
 

@@ -1,5 +1,6 @@
 //! Shapes of geoms as things of Foxglove's scenes, in the frames of their bodies.
 
+use crate::surfaces;
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::math::{Quat, Vec3};
@@ -50,15 +51,14 @@ pub fn of_body(model: &Model, body: usize) -> Map<String, Value> {
     things
 }
 
-/// A colour; one that is painted by a computed texture has the mean of the texture's.
+/// A colour; one that is painted by a texture has the mean of the texture's.
 fn seen_color(model: &Model, appearance: Appearance) -> [f32; 4] {
     let visuals = &model.visuals;
     let mut color = visuals.rgba(appearance);
-    let material = appearance.material.and_then(|m| visuals.materials.get(m));
-    let texture = material.and_then(|m| visuals.textures.get(m.texture?));
-    if let Some(texture) = texture {
-        for (k, part) in color[..3].iter_mut().enumerate() {
-            *part *= 0.5 * (texture.rgb1[k] + texture.rgb2[k]);
+    if let Some(texture) = surfaces::texture(model, appearance) {
+        let mean = visuals.textures[texture].mean();
+        for (part, share) in color.iter_mut().zip(mean) {
+            *part *= share as f32;
         }
     }
     color

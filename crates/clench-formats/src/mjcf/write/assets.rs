@@ -27,6 +27,9 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
         scale,
         inertia,
         max_hull_vertices,
+        // What is only seen is not in a saved model.
+        texcoords: _,
+        face_texcoords: _,
         origin: _,
     } = spec;
     let vertices: Vec<[f64; 3]> = vertices.iter().copied().map(Vec3::to_array).collect();

@@ -120,4 +120,6 @@ pub struct Site {
     pub body: usize,
     /// Shape of its volume.
     pub kind: ShapeKind,
+    /// Group.
+    pub group: i32,
 }

@@ -51,6 +51,10 @@ pub struct Mesh {
     pub vertices: Vec<Vec3<f64>>,
     /// Triangles, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
+    /// Places in a picture that lies on the mesh, across and down, each from 0 to 1; none where its author gave none.
+    pub texcoords: Vec<[f32; 2]>,
+    /// Which of these each corner of each triangle has; as many as `faces` where there are any.
+    pub face_texcoords: Vec<[u32; 3]>,
     /// What collides; `None` where no geom with this mesh does.
     pub hull: Option<Hull>,
     /// As its author gave it, which is what a saved model says.

@@ -7,10 +7,12 @@ mod equality;
 mod geom;
 mod history;
 mod keyframe;
+mod light;
 mod option;
 mod pattern;
 mod sleep;
 mod tendon;
+mod texture;
 mod visual;
 
 pub use actuator::{
@@ -22,8 +24,12 @@ pub use equality::{Coupled, Equality, EqualityTarget};
 pub use geom::{Geom, HeightField, Mesh, Pair};
 pub use history::{History, Interpolation};
 pub use keyframe::Keyframe;
+pub use light::{Headlight, Light, LightKind, LightLook};
 pub use option::{Flags, Integrator};
 pub use pattern::RowPattern;
 pub use sleep::{KinematicTree, SleepPolicy};
 pub use tendon::{Section, Tendon, Wrap};
-pub use visual::{Appearance, Material, Texture, TextureMark, TexturePattern, Visuals};
+pub use texture::{
+    Pattern, Pixels, Texture, TextureKind, TextureMark, TexturePattern, TexturePicture,
+};
+pub use visual::{Appearance, Material, Visuals};

@@ -1,5 +1,8 @@
 //! What is only seen. Physics never reads it; viewers do.
 
+use super::light::{Headlight, Light};
+use super::texture::Texture;
+
 /// How the elements of a model look: an entry for each of them, in their order.
 #[derive(Clone, Debug, Default)]
 pub struct Visuals {
@@ -15,6 +18,10 @@ pub struct Visuals {
     pub materials: Vec<Material>,
     /// Pictures on surfaces.
     pub textures: Vec<Texture>,
+    /// Lights, in the order of their bodies.
+    pub lights: Vec<Light>,
+    /// The light that goes with the camera.
+    pub headlight: Headlight,
 }
 
 /// How one element looks.
@@ -49,7 +56,7 @@ pub struct Material {
     pub rgba: [f32; 4],
     /// Its picture, a place in [`Visuals::textures`].
     pub texture: Option<usize>,
-    /// How often the picture repeats along x and y: on the whole surface or, with `texuniform`, on a metre.
+    /// How often a picture on a plane repeats along x and y: on the whole surface or, with `texuniform`, on two metres.
     pub texrepeat: [f32; 2],
     /// See `texrepeat`.
     pub texuniform: bool,
@@ -61,45 +68,4 @@ pub struct Material {
     pub shininess: f32,
     /// How much it mirrors, from 0 to 1.
     pub reflectance: f32,
-}
-
-/// A picture that is computed from a few numbers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Texture {
-    /// Name.
-    pub name: String,
-    /// What it shows.
-    pub pattern: TexturePattern,
-    /// First colour.
-    pub rgb1: [f32; 3],
-    /// Second colour.
-    pub rgb2: [f32; 3],
-    /// What is drawn over it.
-    pub mark: TextureMark,
-    /// Colour of that.
-    pub markrgb: [f32; 3],
-    /// Width and height, pixels.
-    pub size: [u32; 2],
-}
-
-/// What a computed texture shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TexturePattern {
-    /// The second colour in the middle, the first at the edges.
-    Gradient,
-    /// Two by two fields.
-    Checker,
-    /// The first colour.
-    Flat,
-}
-
-/// What is drawn over a computed texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TextureMark {
-    /// Nothing.
-    None,
-    /// Its edges.
-    Edge,
-    /// A cross in the middle.
-    Cross,
 }

@@ -1,0 +1,50 @@
+//! PNG images.
+
+use crate::spending::Spending;
+use std::io::Cursor;
+
+/// An image of 8 bits a sample.
+pub(crate) struct Image {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Of a pixel: grey or red, green, blue, either followed by opacity or not.
+    pub samples: usize,
+    line: usize,
+    bytes: Vec<u8>,
+}
+
+impl Image {
+    /// Reads a PNG image, of 16 bits a sample the upper 8. A pixel takes `cost` bytes in all, which are held against the budget first.
+    ///
+    /// # Errors
+    /// What is wrong with the bytes.
+    pub(crate) fn read(bytes: &[u8], cost: u64, spending: &mut Spending) -> Result<Self, String> {
+        let wrong = |error: png::DecodingError| format!("not a valid PNG image: {error}");
+        let mut decoder = png::Decoder::new(Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::normalize_to_color8());
+        let mut reader = decoder.read_info().map_err(wrong)?;
+        let (width, height) = reader.info().size();
+        let pixels = u64::from(width).saturating_mul(u64::from(height));
+        spending
+            .bytes(pixels.saturating_mul(cost))
+            .map_err(|excess| format!("an image of {width} x {height} pixels: {excess}"))?;
+        let size = reader.output_buffer_size();
+        let mut bytes = vec![0; size.ok_or("the PNG image is too large")?];
+        let frame = reader.next_frame(&mut bytes).map_err(wrong)?;
+        Ok(Image {
+            width: frame.width as usize,
+            height: frame.height as usize,
+            samples: frame.color_type.samples(),
+            line: frame.line_size,
+            bytes,
+        })
+    }
+
+    /// The pixels of each row, from above.
+    pub(crate) fn rows(&self) -> impl DoubleEndedIterator<Item = impl Iterator<Item = &[u8]>> {
+        let lines = self.bytes.chunks_exact(self.line).take(self.height);
+        lines.map(|line| line.chunks_exact(self.samples).take(self.width))
+    }
+}

@@ -1,0 +1,97 @@
+//! `<light>`, and the light that goes with the camera: only viewers ask.
+
+use super::camera::{Mode, tracking};
+use super::document::Element;
+use super::orientation::Pose;
+use crate::LoadError;
+use clench_math::{Quat, Vec3};
+use clench_rigid::builder::LightSpec;
+use clench_rigid::model::{Headlight, LightKind, LightLook};
+
+/// A light as it is written, or as a default class has it.
+#[derive(Clone, Debug)]
+pub(crate) struct LightDraft {
+    mode: Mode,
+    pos: [f64; 3],
+    dir: [f64; 3],
+    /// None for one that shines as an image does, which is not drawn.
+    kind: Option<LightKind>,
+    look: LightLook,
+}
+
+impl Default for LightDraft {
+    fn default() -> Self {
+        LightDraft {
+            mode: Mode::Fixed,
+            pos: [0.0; 3],
+            dir: [0.0, 0.0, -1.0],
+            kind: Some(LightKind::Spot),
+            look: LightLook::default(),
+        }
+    }
+}
+
+impl LightDraft {
+    /// Overwrites what the element gives.
+    pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
+        self.mode.read(element)?;
+        element.set_numbers("pos", &mut self.pos)?;
+        element.set_numbers("dir", &mut self.dir)?;
+        element.at_most_one(&["type", "directional"])?;
+        let kinds = [
+            ("spot", Some(LightKind::Spot)),
+            ("directional", Some(LightKind::Directional)),
+            ("point", Some(LightKind::Point)),
+            ("image", None),
+        ];
+        element.set_keyword("type", &kinds, &mut self.kind)?;
+        let directional = [
+            ("false", Some(LightKind::Spot)),
+            ("true", Some(LightKind::Directional)),
+        ];
+        element.set_keyword("directional", &directional, &mut self.kind)?;
+        let look = &mut self.look;
+        element.set_boolean("active", &mut look.active)?;
+        element.set_boolean("castshadow", &mut look.castshadow)?;
+        element.set_numbers("attenuation", &mut look.attenuation)?;
+        element.set_number("cutoff", &mut look.cutoff)?;
+        element.set_number("exponent", &mut look.exponent)?;
+        element.set_numbers("ambient", &mut look.ambient)?;
+        element.set_numbers("diffuse", &mut look.diffuse)?;
+        element.set_numbers("specular", &mut look.specular)
+    }
+
+    /// The light in its body, carried along with the frame that it is written in.
+    pub(super) fn finish(self, element: &Element, frame: &Pose) -> LightSpec {
+        let pose = frame.then(Pose {
+            pos: Vec3::from_array(self.pos),
+            quat: Quat::IDENTITY,
+        });
+        LightSpec {
+            name: element.string("name"),
+            pos: pose.pos,
+            dir: pose.quat.rotate(Vec3::from_array(self.dir)),
+            tracking: tracking(self.mode, element),
+            look: LightLook {
+                kind: self.kind.unwrap_or(LightKind::Point),
+                active: self.look.active && self.kind.is_some(),
+                ..self.look
+            },
+            origin: Some(element.origin.clone()),
+        }
+    }
+}
+
+/// Overwrites what a `<headlight>` gives.
+pub(super) fn read_headlight(
+    element: &Element,
+    headlight: &mut Headlight,
+) -> Result<(), LoadError> {
+    element.set_numbers("ambient", &mut headlight.ambient)?;
+    element.set_numbers("diffuse", &mut headlight.diffuse)?;
+    element.set_numbers("specular", &mut headlight.specular)?;
+    if let Some(active) = element.integer("active")? {
+        headlight.active = active != 0;
+    }
+    Ok(())
+}

@@ -1,0 +1,33 @@
+//! Where lights are.
+
+use crate::model::{CameraMode, Light, Model};
+use crate::workspace::Workspace;
+use clench_math::{Scalar, Vec3};
+
+/// Where each light of a model is, m, and the unit vector along which it shines, both in world axes, by the rules of MuJoCo's
+/// `mj_camlight`.
+pub fn light_places<T: Scalar>(model: &Model, ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
+    let place = |light: &Light| {
+        let (pos, dir) = light_place(light, ws);
+        [pos.to_array(), dir.to_array()]
+    };
+    model.visuals.lights.iter().map(place).collect()
+}
+
+fn light_place<T: Scalar>(light: &Light, ws: &Workspace<T>) -> (Vec3<f64>, Vec3<f64>) {
+    let wide = |v: Vec3<T>| Vec3::from_array(v.to_array().map(Scalar::to_f64));
+    let at = |body: usize| wide(ws.position.xpos[body]);
+    let com = |body: usize| wide(ws.position.subtree_com[body]);
+    let turned = |v: Vec3<f64>| {
+        let rows = ws.position.xmat[light.body].rows.map(wide);
+        Vec3::from_array(rows.map(|row| row.dot(v)))
+    };
+    let fixed = || at(light.body) + turned(light.pos);
+    match light.mode {
+        CameraMode::Fixed => (fixed(), turned(light.dir)),
+        CameraMode::Track => (at(light.body) + light.pos0, light.dir0),
+        CameraMode::TrackCom(_) => (com(light.body) + light.poscom0, light.dir0),
+        CameraMode::TargetBody(target) => (fixed(), (at(target) - fixed()).normalize().0),
+        CameraMode::TargetBodyCom(target) => (fixed(), (com(target) - fixed()).normalize().0),
+    }
+}

@@ -1,0 +1,128 @@
+// The lights of a model, or where it has none a sun and a sky.
+
+import * as THREE from "three";
+import type { Frame } from "./frame.ts";
+import type { Light, Numbers3, Scene } from "./scene.ts";
+
+/** What three divides the light of lamps by on what is matt. */
+const MATT = Math.PI;
+
+/** Colours of lights add up on screens. */
+function colour([red, green, blue]: Numbers3): THREE.Color {
+  return new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace);
+}
+
+interface Lamp {
+  told: Light;
+  /** Its number in frames. */
+  row: number;
+  lamp: THREE.DirectionalLight | THREE.SpotLight | THREE.PointLight;
+}
+
+/** What lights the picture. */
+export class Lights {
+  readonly group = new THREE.Group();
+  /** Whether the model has lights of its own. */
+  readonly own: boolean;
+  private lamps: Lamp[] = [];
+  private sun: THREE.DirectionalLight | null = null;
+
+  constructor(
+    scene: Scene,
+    private extent: number,
+    /** Light that goes with the camera is a part of it. */
+    camera: THREE.Camera,
+  ) {
+    this.own = scene.lights.length > 0;
+    if (this.own) this.ofModel(scene, camera);
+    else this.daylight();
+  }
+
+  private daylight(): void {
+    this.group.add(new THREE.HemisphereLight(0xffffff, 0xb9b4ac, 0.7));
+    this.sun = new THREE.DirectionalLight(0xffffff, 2.8);
+    this.add(this.sun, true);
+  }
+
+  private ofModel({ lights, headlight }: Scene, camera: THREE.Camera): void {
+    const everywhere = new THREE.Color(0);
+    if (headlight.active) {
+      everywhere.add(colour(headlight.ambient));
+      const head = new THREE.DirectionalLight(colour(headlight.diffuse), MATT);
+      head.position.set(0, 0, 1);
+      camera.add(head, head.target);
+    }
+    // One shadow is what a laptop draws sixty times a second.
+    const casting = lights.findIndex(({ active, castshadow }) => active && castshadow);
+    lights.forEach((told, row) => {
+      if (!told.active) return;
+      everywhere.add(colour(told.ambient));
+      const lamp = made(told);
+      this.lamps.push({ told, row, lamp });
+      this.add(lamp, row === casting);
+    });
+    this.group.add(new THREE.AmbientLight(everywhere, MATT));
+  }
+
+  private add(lamp: Lamp["lamp"], casts: boolean): void {
+    if (casts) {
+      lamp.castShadow = true;
+      lamp.shadow.mapSize.set(2048, 2048);
+      lamp.shadow.bias = -0.0002;
+      lamp.shadow.normalBias = 0.004 * this.extent;
+      lamp.shadow.radius = 3;
+    }
+    this.group.add(lamp);
+    if (!(lamp instanceof THREE.PointLight)) this.group.add(lamp.target);
+  }
+
+  /** Lets shadows reach all environments side by side. */
+  shade(reach: number): void {
+    const half = 2.4 * reach * this.extent;
+    for (const lamp of [this.sun, ...this.lamps.map(({ lamp }) => lamp)]) {
+      if (!lamp?.castShadow) continue;
+      const { camera } = lamp.shadow;
+      if (camera instanceof THREE.OrthographicCamera) {
+        camera.left = camera.bottom = -half;
+        camera.right = camera.top = half;
+      }
+      camera.near = 0.1 * this.extent;
+      camera.far = 14 * reach * this.extent;
+      camera.updateProjectionMatrix();
+    }
+  }
+
+  /** Puts lights where they are in a frame, seen from a point; `offset` is the origin of the environment that it is of. */
+  update(frame: Frame, target: THREE.Vector3, offset: THREE.Vector3, reach: number): void {
+    if (this.sun) {
+      this.sun.target.position.copy(target);
+      this.sun.position.copy(target).add(new THREE.Vector3(2.2, -1.6, 4.6).multiplyScalar(reach * this.extent));
+    }
+    for (const { told, row, lamp } of this.lamps) {
+      const { data } = frame.rows.lights;
+      const at = new THREE.Vector3().fromArray(data, 6 * row).add(offset);
+      const along = new THREE.Vector3().fromArray(data, 6 * row + 3);
+      if (lamp instanceof THREE.DirectionalLight) {
+        // It shines everywhere: what matters is that all shadows are within its picture.
+        lamp.target.position.copy(target);
+        lamp.position.copy(target).addScaledVector(along, -5 * reach * this.extent);
+      } else {
+        lamp.position.copy(at);
+        const distance = at.distanceTo(target);
+        const [constant, linear, square] = told.attenuation;
+        // As weak everywhere as in the middle of the picture.
+        lamp.intensity = MATT / Math.max(constant + linear * distance + square * distance * distance, 1e-9);
+        if (lamp instanceof THREE.SpotLight) lamp.target.position.copy(at).add(along);
+      }
+    }
+  }
+}
+
+function made({ kind, diffuse, cutoff, exponent }: Light): Lamp["lamp"] {
+  const shade = colour(diffuse);
+  if (kind === "directional") return new THREE.DirectionalLight(shade, MATT);
+  if (kind === "point") return new THREE.PointLight(shade, MATT, 0, 0);
+  const angle = Math.min(Math.max((cutoff * Math.PI) / 180, 0.01), Math.PI / 2);
+  // A spot without exponent has a sharp edge.
+  return new THREE.SpotLight(shade, MATT, 0, angle, exponent > 0 ? 1 : 0, 0);
+}
