@@ -15,11 +15,11 @@ FRAMES = os.environ.get("FRAMES", str(ROOT / "target/dist/examples/frames"))
 def compare(_, args):
     """Runs the example, prints a table and returns no rows: nothing is compared."""
     print("\na frame of the viewer, sixty of which are made in a second, every eighth step")
-    print(f"  {'scene':<24}{'bodies':>8}{'contacts':>10}{'bytes':>9}{'µs':>8}{'µs of the steps':>17}")
+    print(f"  {'scene':<24}{'bodies':>8}{'contacts':>10}{'bytes':>9}{'changed':>9}{'µs':>8}{'µs of the steps':>17}")
     lines = subprocess.run([FRAMES], capture_output=True, text=True, check=True).stdout.splitlines()
     for row in map(json.loads, lines):
         print(
-            f"  {row['model']:<24}{row['bodies']:>8}{row['contacts']:>10}{row['bytes']:>9}"
+            f"  {row['model']:<24}{row['bodies']:>8}{row['contacts']:>10}{row['bytes']:>9}{row['changed_bytes']:>9}"
             f"{row['frame_microseconds']:>8.0f}{row['steps_microseconds']:>17.0f}"
         )
     return []

@@ -3,6 +3,7 @@
 import type { Scene } from "./scene.ts";
 
 const MAGIC = 0x464e4c43; // "CLNF"
+const DELTA = 0x444e4c43; // "CLND"
 const HEAD = 20;
 
 /** Rows of numbers, all of one width. */
@@ -38,6 +39,42 @@ export function decode(scene: Scene, buffer: ArrayBuffer): Frame | null {
     paused: (view.getUint32(4, true) & 1) !== 0,
     rows,
   };
+}
+
+/** The whole frame that a message is: as it came, or what has changed since the last one; see crates/clench-view/src/delta.rs. */
+export function whole(scene: Scene, message: ArrayBuffer, last: ArrayBuffer | null): ArrayBuffer | null {
+  const view = new DataView(message);
+  if (message.byteLength < HEAD || view.getUint32(0, true) !== DELTA) return message;
+  const before = last && decode(scene, last);
+  if (!before || view.getUint32(16, true) !== scene.sections.length) return null;
+  const head = HEAD + 4 * scene.sections.length;
+  const counts = scene.sections.map((_, index) => view.getUint32(HEAD + 4 * index, true));
+  const numbers = scene.sections.reduce((sum, { width }, index) => sum + width * counts[index], 0);
+  const made = new ArrayBuffer(head + 4 * numbers);
+  new Uint8Array(made).set(new Uint8Array(message, 0, head));
+  new DataView(made).setUint32(0, MAGIC, true);
+  const out = new Float32Array(made, head);
+  let at = head;
+  let to = 0;
+  const copy = (count: number) => {
+    out.set(new Float32Array(message, at, count), to);
+    at += 4 * count;
+  };
+  scene.sections.forEach(({ name, width }, index) => {
+    const count = counts[index];
+    const kind = view.getUint32(at, true);
+    at += 4;
+    if (kind === 2) copy(width * count);
+    else out.set(before.rows[name].data, to);
+    if (kind === 1) {
+      const bits = new Uint32Array(message, at, Math.ceil(count / 32));
+      at += 4 * bits.length;
+      for (let row = 0; row < count; row++, to += width) if ((bits[row >> 5] >>> (row & 31)) & 1) copy(width);
+      to -= width * count;
+    }
+    to += width * count;
+  });
+  return made;
 }
 
 /** An environment of a batch that is seen. */

@@ -1,6 +1,6 @@
 // The connection to the server. A frame is asked for when the last one has been drawn.
 
-import { decode, type Frame } from "./frame.ts";
+import { decode, whole, type Frame } from "./frame.ts";
 import type { Scene } from "./scene.ts";
 
 export type Command = { do: string } & Record<string, unknown>;
@@ -18,6 +18,8 @@ const PAUSE = 1000;
 export class Link {
   private socket: WebSocket | null = null;
   private scene: Scene | null = null;
+  /** The last frame that came. */
+  private last: ArrayBuffer | null = null;
 
   constructor(private listener: Listener) {
     this.connect();
@@ -44,17 +46,19 @@ export class Link {
         return;
       }
       this.scene = said;
+      this.last = null;
       this.listener.scene(said);
       this.next();
     } else {
-      const frame = this.scene && decode(this.scene, data);
+      this.last = this.scene && whole(this.scene, data, this.last);
+      const frame = this.scene && this.last && decode(this.scene, this.last);
       if (frame) this.listener.frame(frame);
       requestAnimationFrame(() => this.next());
     }
   }
 
   private next(): void {
-    this.say({ do: "next" });
+    this.say({ do: "next", changes: this.last !== null });
   }
 
   private say(what: object): void {

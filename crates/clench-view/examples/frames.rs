@@ -1,10 +1,11 @@
 //! What a frame of the viewer costs its server: `cargo run --release -p clench-view --example frames [MODEL...]`.
 //!
 //! Each model, or the humanoid and a heap of a thousand bodies, is stepped; after every eighth step a frame is made, as `clench view`
-//! does sixty times a second. One JSON line a model: bodies, mean contacts, mean bytes of a frame, and the median time in µs that it
-//! takes to make one, beside that of the eight steps.
+//! does sixty times a second. One JSON line a model: bodies, mean contacts, mean bytes of a frame and of what of it has changed since the
+//! last one, and the median time in µs that it takes to make one, and to find what has changed, beside that of the eight steps.
 
 use clench::{Model, Sim, load, load_str};
+use clench_view::delta::delta;
 use clench_view::frame::{Besides, encode};
 use serde_json::json;
 use std::error::Error;
@@ -43,8 +44,9 @@ fn median(mut times: Vec<f64>) -> f64 {
 
 fn measure(model: Model) -> Result<(), Box<dyn Error>> {
     let mut sim = Sim::<f64>::new(Arc::new(model))?;
-    let (mut bytes, mut contacts) = (0, 0);
-    let (mut steps, mut frames) = (Vec::new(), Vec::new());
+    let (mut bytes, mut changed, mut contacts) = (0, 0, 0);
+    let (mut steps, mut frames, mut deltas) = (Vec::new(), Vec::new(), Vec::new());
+    let mut last = Vec::new();
     for _ in 0..FRAMES {
         let start = Instant::now();
         for _ in 0..STEPS {
@@ -54,7 +56,12 @@ fn measure(model: Model) -> Result<(), Box<dyn Error>> {
         let start = Instant::now();
         let frame = encode(&mut sim, &Besides::default())?;
         frames.push(1e6 * start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let delta = delta(&last, &frame);
+        deltas.push(1e6 * start.elapsed().as_secs_f64());
+        changed += delta.map_or(frame.len(), |delta| delta.len());
         bytes += frame.len();
+        last = frame;
         contacts += sim.contacts().len();
     }
     let row = json!({
@@ -62,6 +69,8 @@ fn measure(model: Model) -> Result<(), Box<dyn Error>> {
         "bodies": sim.model().nbody() - 1,
         "contacts": contacts / FRAMES,
         "bytes": bytes / FRAMES,
+        "changed_bytes": changed / FRAMES,
+        "delta_microseconds": median(deltas),
         "frame_microseconds": median(frames),
         "steps_microseconds": median(steps),
     });

@@ -8,6 +8,7 @@
 //! No physics here, and nothing of the page's looks.
 
 pub mod command;
+pub mod delta;
 mod drag;
 pub mod frame;
 mod http;

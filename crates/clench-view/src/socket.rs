@@ -2,6 +2,7 @@
 //! nobody.
 
 use crate::command::Command;
+use crate::delta::delta;
 use crate::shared::Shared;
 use serde::Deserialize;
 use serde_json::json;
@@ -11,7 +12,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::TrySendError;
 use std::time::Duration;
 use tungstenite::protocol::{Role, WebSocketConfig};
-use tungstenite::{Error, Message, WebSocket};
+use tungstenite::{Bytes, Error, Message, WebSocket};
 
 /// The longest message of a browser, bytes.
 const MAX_MESSAGE: usize = 16 * 1024;
@@ -24,8 +25,11 @@ const PATIENCE: Duration = Duration::from_secs(10);
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
 enum Request {
-    /// For the next frame.
-    Next {},
+    /// For the next frame, or for what has changed in it since the last one that came.
+    Next {
+        #[serde(default)]
+        changes: bool,
+    },
 }
 
 /// What a browser sends.
@@ -50,6 +54,8 @@ pub fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
     socket.send(Message::Text(shared.scene.clone()))?;
     let (mut seen, mut told) = (0, 0);
+    // What this browser has got last, whatever it missed before.
+    let mut last = Bytes::new();
     loop {
         let message = match socket.read() {
             Ok(message) => message,
@@ -63,14 +69,17 @@ pub fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
         };
         match message {
             Message::Text(text) => match serde_json::from_str(&text) {
-                Ok(Said::Request(Request::Next {})) => {
+                Ok(Said::Request(Request::Next { changes })) => {
                     let news = shared.newer_than(seen);
                     if news.said > told {
                         told = news.said;
                         socket.send(Message::Text(news.message))?;
                     }
                     seen = news.number;
-                    socket.send(Message::Binary(news.frame))?;
+                    let changed = delta(&last, &news.frame).filter(|_| changes);
+                    last = news.frame;
+                    let frame = changed.map_or_else(|| last.clone(), Bytes::from);
+                    socket.send(Message::Binary(frame))?;
                 }
                 Ok(Said::Command(command)) => match shared.commands.try_send(command) {
                     Ok(()) => {}

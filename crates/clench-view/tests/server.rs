@@ -134,6 +134,13 @@ fn frames_come_when_they_are_asked_for() {
     let frame = socket.read().unwrap().into_data();
     assert_eq!(&frame[..4], b"CLNF");
     assert_eq!(frame.as_ref(), player.frame().unwrap());
+    // Then what has changed, for those who ask for that.
+    say(&mut socket, r#"{"do": "next", "changes": true}"#);
+    let nothing = socket.read().unwrap().into_data();
+    assert_eq!(&nothing[..4], b"CLND");
+    assert!(nothing.len() < frame.len());
+    say(&mut socket, r#"{"do": "next"}"#);
+    assert_eq!(socket.read().unwrap().into_data(), frame);
 }
 
 #[test]
