@@ -1,4 +1,4 @@
-//! The tests of `clench-gpu` and `clench-render`, on a graphics device or on Mesa's software device.
+//! The tests of `clench-gpu`, of `clench-render` and of the films of the program, on a graphics device or on Mesa's software device.
 
 use crate::install::try_to_install;
 use crate::python;
@@ -14,7 +14,7 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// That a test failed.
 pub fn test() -> Result<(), String> {
     let mut tests = cargo(&["test", "--quiet", "--workspace"]);
-    tests.args(["--features", "clench-cli/gpu"]);
+    tests.args(["--features", "clench-cli/gpu,clench-cli/render"]);
     for test in [
         "stages",
         "steps",
@@ -23,6 +23,8 @@ pub fn test() -> Result<(), String> {
         "dm_control",
         "gpu",
         "silhouettes",
+        "surfaces",
+        "films",
     ] {
         tests.args(["--test", test]);
     }

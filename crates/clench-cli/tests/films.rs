@@ -1,0 +1,162 @@
+//! Pictures and films of a program that can draw. Without a device that draws, these tests say so and check nothing else.
+#![cfg(all(feature = "render", unix))]
+
+mod program;
+
+use program::{code, command, errors, folder};
+use std::fs::{self, File};
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A red ball that falls through the picture before a camera that stands still.
+const BALL: &str =
+    "<mujoco><worldbody><camera name='front' pos='0 -3 0' xyaxes='1 0 0 0 0 1' fovy='40'/>
+    <body pos='0 0 .8'><freejoint/><geom size='.2' rgba='1 0 0 1'/></body></worldbody></mujoco>";
+
+fn draw(folder: &Path, words: &str) -> Command {
+    let model = folder.join("ball.xml");
+    fs::write(&model, BALL).unwrap();
+    let mut command = command("render");
+    command.arg(model).current_dir(folder);
+    command.args("--width 60 --height 48 --camera front".split(' '));
+    command.args(words.split(' '));
+    command
+}
+
+/// What comes of it; none where nothing draws here.
+fn output(mut command: Command) -> Option<Output> {
+    let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
+    if wish == "skip" {
+        return None;
+    }
+    let done = command.output().unwrap();
+    if wish != "require" && errors(&done).contains("no device that draws") {
+        eprintln!("skipped: {}", errors(&done));
+        return None;
+    }
+    Some(done)
+}
+
+/// The mean row of what is red in a picture of 60 pixels a row.
+fn height(rgb: &[u8]) -> f64 {
+    let pixels = rgb.as_chunks::<3>().0.iter().enumerate();
+    let red = pixels.filter(|(_, pixel)| pixel[0] > 90 && pixel[1] < 60);
+    let rows: Vec<f64> = red.map(|(k, _)| (k / 60) as f64).collect();
+    rows.iter().sum::<f64>() / rows.len() as f64
+}
+
+/// In a second half the ball falls 4.905 t² metres; where that is in the picture.
+fn expected(time: f64) -> f64 {
+    let z = 0.8 - 4.905 * time * time;
+    24.0 - 24.0 * z / (3.0 * 20f64.to_radians().tan())
+}
+
+#[test]
+fn a_picture_is_taken_after_the_time_that_is_asked_for() {
+    let folder = folder();
+    let Some(done) = output(draw(folder.path(), "--time 0.4 --out ball.png")) else {
+        return;
+    };
+    assert_eq!(code(&done), 0, "{}", errors(&done));
+    let decoder = png::Decoder::new(std::io::BufReader::new(
+        File::open(folder.path().join("ball.png")).unwrap(),
+    ));
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!((frame.width, frame.height), (60, 48));
+    let found = height(&pixels);
+    assert!(
+        (found - expected(0.4)).abs() < 1.0,
+        "{found}, not {}",
+        expected(0.4)
+    );
+}
+
+#[test]
+fn a_gif_shows_the_motion_in_real_time() {
+    let folder = folder();
+    let Some(done) = output(draw(folder.path(), "--time 0.4 --out ball.gif")) else {
+        return;
+    };
+    assert_eq!(code(&done), 0, "{}", errors(&done));
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut film = options
+        .read_info(File::open(folder.path().join("ball.gif")).unwrap())
+        .unwrap();
+    assert_eq!((film.width(), film.height()), (60, 48));
+    let mut time = 0.0;
+    let mut frames = 0;
+    while let Some(frame) = film.read_next_frame().unwrap() {
+        let pixels = frame.buffer.as_chunks::<4>().0.iter();
+        let rgb: Vec<u8> = pixels.flat_map(|&[r, g, b, _]| [r, g, b]).collect();
+        let found = height(&rgb);
+        assert!(
+            (found - expected(time)).abs() < 1.5,
+            "{time} s: {found}, not {}",
+            expected(time)
+        );
+        time += 0.01 * f64::from(frame.delay);
+        frames += 1;
+    }
+    assert_eq!(frames, 11);
+}
+
+/// A program that stands for ffmpeg: it keeps its arguments, and what it gets instead of a film.
+fn stand_in(folder: &Path, script: &str) -> String {
+    let path = folder.join("ffmpeg");
+    fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    let others = std::env::var("PATH").unwrap_or_default();
+    format!("{}:{others}", folder.display())
+}
+
+#[test]
+fn an_encoder_gets_the_pictures_of_a_film() {
+    let folder = folder();
+    let script = "echo \"$@\" > arguments; for last; do :; done; cat > \"$last\"";
+    let mut film = draw(folder.path(), "--time 0.2 --out ball.mp4");
+    film.env("PATH", stand_in(folder.path(), script));
+    let Some(done) = output(film) else { return };
+    assert_eq!(code(&done), 0, "{}", errors(&done));
+    let arguments = fs::read_to_string(folder.path().join("arguments")).unwrap();
+    for words in ["-f rawvideo", "-pix_fmt rgb24", "-s 60x48", "-r 30", "-i -"] {
+        assert!(arguments.contains(words), "{arguments}");
+    }
+    let pictures = fs::read(folder.path().join("ball.mp4")).unwrap();
+    let pictures: Vec<&[u8]> = pictures.chunks(3 * 60 * 48).collect();
+    assert_eq!(pictures.len(), 7);
+    for (k, picture) in pictures.iter().enumerate() {
+        let time = k as f64 / 30.0;
+        let found = height(picture);
+        assert!((found - expected(time)).abs() < 1.0, "{time} s: {found}");
+    }
+}
+
+#[test]
+fn what_an_encoder_complains_of_is_said_and_leaves_the_old_film() {
+    let folder = folder();
+    fs::write(folder.path().join("ball.mp4"), "old").unwrap();
+    let mut film = draw(folder.path(), "--time 0.2 --out ball.mp4");
+    let script = "echo 'no such encoder' >&2; exit 1";
+    film.env("PATH", stand_in(folder.path(), script));
+    let Some(done) = output(film) else { return };
+    assert_ne!(code(&done), 0);
+    let said = errors(&done);
+    assert!(
+        said.contains("ball.mp4") && said.contains("no such encoder"),
+        "{said}"
+    );
+    assert_eq!(fs::read(folder.path().join("ball.mp4")).unwrap(), b"old");
+    // Without ffmpeg the message says what to install.
+    let mut film = draw(folder.path(), "--time 0.2 --out ball.mp4");
+    film.env("PATH", "/nowhere");
+    let done = output(film).unwrap();
+    assert!(
+        errors(&done).contains("apt-get install ffmpeg"),
+        "{}",
+        errors(&done)
+    );
+}
