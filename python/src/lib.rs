@@ -1,6 +1,8 @@
 //! The compiled part of the Python package `clench`: the classes and functions that `clench/__init__.py` offers. Numbers are
 //! computed in the crates; here they are only shown, checked and handed on.
 
+#![deny(unreachable_pub)]
+
 mod answer;
 mod arrays;
 mod assets;

@@ -7,7 +7,7 @@ use crate::run::{cargo, run};
 ///
 /// # Errors
 /// What `cargo deny` found, or that it is missing. A database that cannot be fetched is a remark.
-pub fn audit() -> Result<(), String> {
+pub(crate) fn audit() -> Result<(), String> {
     let deny = |args: &[&str]| {
         let mut deny = cargo(&["deny", "--workspace", "--all-features"]);
         deny.args(args);

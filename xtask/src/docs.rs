@@ -11,7 +11,7 @@ const FOLDER: &str = ".venv/docs";
 ///
 /// # Errors
 /// What could not be installed, a notebook that fails, a page that is missing or links to one that is.
-pub fn build() -> Result<(), String> {
+pub(crate) fn build() -> Result<(), String> {
     prepare()?;
     package::install(Profile::Release)?;
     install("docs.txt", &["--upgrade", "--target", FOLDER])?;

@@ -64,7 +64,7 @@ impl<'a> Plan<'a> {
 ///
 /// # Errors
 /// Arguments that mean nothing, a compiler that cannot do it, or the target that found something.
-pub fn fuzz(args: &[String]) -> Result<(), String> {
+pub(crate) fn fuzz(args: &[String]) -> Result<(), String> {
     let plan = Plan::of(args)?;
     let programs = build(plan.address)?;
     let dictionary = work().join("mjcf.dict");
@@ -85,7 +85,7 @@ fn work() -> PathBuf {
 }
 
 /// The triple that rustc builds for: named, so that build scripts and macros are built without instruments.
-pub fn host() -> Result<String, String> {
+pub(crate) fn host() -> Result<String, String> {
     let output = command("rustc", &["-vV"]).output();
     let text = output.map_err(|error| format!("cannot start rustc: {error}"))?;
     let text = String::from_utf8_lossy(&text.stdout).into_owned();

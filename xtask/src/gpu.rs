@@ -12,7 +12,7 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 ///
 /// # Errors
 /// That a test failed.
-pub fn test() -> Result<(), String> {
+pub(crate) fn test() -> Result<(), String> {
     let mut tests = cargo(&["test", "--quiet", "--workspace"]);
     tests.args(["--features", "clench-cli/gpu,clench-cli/render"]);
     for test in [
@@ -37,7 +37,7 @@ pub fn test() -> Result<(), String> {
 }
 
 /// Why they cannot run here, if they cannot. Where the tests may, they install Mesa's drivers.
-pub fn no_device() -> Option<String> {
+pub(crate) fn no_device() -> Option<String> {
     if !cfg!(target_os = "linux") || has_driver() {
         return None;
     }

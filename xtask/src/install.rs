@@ -9,7 +9,7 @@ fn may_install() -> bool {
 }
 
 /// Installs a package of Debian where the tests may. Whether it worked shows in what is there afterwards.
-pub fn try_to_install(package: &str) {
+pub(crate) fn try_to_install(package: &str) {
     if !may_install() {
         return;
     }

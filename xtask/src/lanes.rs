@@ -15,7 +15,7 @@ const FEW: usize = 8;
 ///
 /// # Errors
 /// The program cannot be built, or there is no `objdump`.
-pub fn list() -> Result<(), String> {
+pub(crate) fn list() -> Result<(), String> {
     if !cfg!(target_arch = "x86_64") {
         return Err("the list is made of instructions of x86-64".to_owned());
     }

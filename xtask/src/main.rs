@@ -1,6 +1,8 @@
 //! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed; `soak`, `fuzz`, `sanitize`
 //! and `audit` look long for what is rare.
 
+#![deny(unreachable_pub)]
+
 mod audit;
 mod docs;
 mod fuzz;

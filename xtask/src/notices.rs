@@ -25,7 +25,7 @@ struct Part {
 ///
 /// # Errors
 /// A package whose licence has no text, or what failed.
-pub fn build() -> Result<(), String> {
+pub(crate) fn build() -> Result<(), String> {
     let parts = parts()?;
     let sources = sources()?;
     let mut folders = Vec::from_iter(parts.iter().map(|part| (part, sources.find(&part.name))));

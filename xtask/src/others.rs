@@ -37,7 +37,7 @@ const GROUPS: [Group; 2] = [
 ///
 /// # Errors
 /// Names that mean nothing, what could not be installed, or that a test failed.
-pub fn test(args: &[String]) -> Result<(), String> {
+pub(crate) fn test(args: &[String]) -> Result<(), String> {
     let chosen: Vec<&Group> = match args {
         [] => GROUPS.iter().collect(),
         [only] => GROUPS.iter().filter(|group| group.name == only).collect(),

@@ -8,7 +8,7 @@ use crate::web;
 ///
 /// # Errors
 /// What failed, and what to check.
-pub fn check() -> Result<(), String> {
+pub(crate) fn check() -> Result<(), String> {
     install(Profile::Release)?;
     let mypy = ["-m", "mypy", "--config-file", "python/pyproject.toml"];
     let mut types = command(interpreter(), &mypy);
@@ -30,7 +30,7 @@ pub fn check() -> Result<(), String> {
 ///
 /// # Errors
 /// What failed, and what to check.
-pub fn install(profile: Profile) -> Result<(), String> {
+pub(crate) fn install(profile: Profile) -> Result<(), String> {
     prepare()?;
     println!("building the package and installing it in .venv");
     let mut install = command(
@@ -52,7 +52,7 @@ pub fn install(profile: Profile) -> Result<(), String> {
 ///
 /// # Errors
 /// What failed, and what to check.
-pub fn wheel() -> Result<(), String> {
+pub(crate) fn wheel() -> Result<(), String> {
     prepare()?;
     let mut build = command(
         interpreter(),
@@ -68,7 +68,7 @@ pub fn wheel() -> Result<(), String> {
 ///
 /// # Errors
 /// That a test failed.
-pub fn test() -> Result<(), String> {
+pub(crate) fn test() -> Result<(), String> {
     run(command(
         interpreter(),
         &["-m", "pytest", "--quiet", "-rs", "python/tests"],

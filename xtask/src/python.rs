@@ -18,14 +18,14 @@ const UNPACK_ONLY: &[&str] = &[
 ///
 /// # Errors
 /// What failed, and what to install or check.
-pub fn prepare() -> Result<(), String> {
+pub(crate) fn prepare() -> Result<(), String> {
     make_environment()?;
     install("requirements.txt", &[])?;
     install("model-packages.txt", UNPACK_ONLY)
 }
 
 /// The interpreter of `.venv`.
-pub fn interpreter() -> PathBuf {
+pub(crate) fn interpreter() -> PathBuf {
     root().join(if cfg!(windows) {
         ".venv/Scripts/python.exe"
     } else {
@@ -37,7 +37,7 @@ pub fn interpreter() -> PathBuf {
 ///
 /// # Errors
 /// That `.venv` does not have Gymnasium.
-pub fn gymnasium_assets() -> Result<PathBuf, String> {
+pub(crate) fn gymnasium_assets() -> Result<PathBuf, String> {
     let where_is = "import gymnasium, pathlib; print(pathlib.Path(gymnasium.__file__).parent)";
     let found = command(interpreter(), &["-c", where_is]).output();
     let found = found.map_err(|e| format!("{}: {e}", interpreter().display()))?;
@@ -49,7 +49,7 @@ pub fn gymnasium_assets() -> Result<PathBuf, String> {
 }
 
 /// The folder of the models of dm-control's suite.
-pub fn dm_control_suite() -> PathBuf {
+pub(crate) fn dm_control_suite() -> PathBuf {
     root().join(".venv/models/dm_control/suite")
 }
 
@@ -69,7 +69,7 @@ fn make_environment() -> Result<(), String> {
 ///
 /// # Errors
 /// What failed, and what to check.
-pub fn install(list: &str, options: &[&str]) -> Result<(), String> {
+pub(crate) fn install(list: &str, options: &[&str]) -> Result<(), String> {
     let wanted = read(&root().join("parity").join(list))?;
     let done = root().join(".venv").join(format!("installed-{list}"));
     if fs::read_to_string(&done).is_ok_and(|have| have == wanted) {

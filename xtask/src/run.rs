@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The workspace's root folder.
-pub fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap_or(here).to_path_buf()
 }
 
 /// The folder that cargo builds in.
-pub fn target() -> PathBuf {
+pub(crate) fn target() -> PathBuf {
     let chosen =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     root().join(chosen)
@@ -18,7 +18,7 @@ pub fn target() -> PathBuf {
 
 /// How cargo compiles what is not a test.
 #[derive(Clone, Copy)]
-pub enum Profile {
+pub(crate) enum Profile {
     /// Quick to build.
     Release,
     /// What is shipped and timed: slower to build, a few percent faster.
@@ -27,7 +27,7 @@ pub enum Profile {
 
 impl Profile {
     /// Its name in `Cargo.toml`, and that of its folder.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Profile::Release => "release",
             Profile::Dist => "dist",
@@ -35,21 +35,21 @@ impl Profile {
     }
 
     /// A program built with it, where cargo puts it.
-    pub fn program(self, name: &str) -> PathBuf {
+    pub(crate) fn program(self, name: &str) -> PathBuf {
         let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
         target().join(self.name()).join(name)
     }
 }
 
 /// A command that will run in the workspace's root.
-pub fn command(program: impl AsRef<std::ffi::OsStr>, args: &[&str]) -> Command {
+pub(crate) fn command(program: impl AsRef<std::ffi::OsStr>, args: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.args(args).current_dir(root());
     command
 }
 
 /// The cargo that runs this program, so that a chosen toolchain stays chosen.
-pub fn cargo(args: &[&str]) -> Command {
+pub(crate) fn cargo(args: &[&str]) -> Command {
     command(
         std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()),
         args,
@@ -60,7 +60,7 @@ pub fn cargo(args: &[&str]) -> Command {
 ///
 /// # Errors
 /// A line saying which command failed and how.
-pub fn run(mut command: Command) -> Result<(), String> {
+pub(crate) fn run(mut command: Command) -> Result<(), String> {
     let status = command
         .status()
         .map_err(|e| format!("cannot start {}: {e}", shown(&command)))?;
@@ -72,7 +72,7 @@ pub fn run(mut command: Command) -> Result<(), String> {
 }
 
 /// A command as one would type it.
-pub fn shown(command: &Command) -> String {
+pub(crate) fn shown(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words
         .map(|w| w.to_string_lossy().into_owned())

@@ -9,7 +9,7 @@ use crate::run::{cargo, run, target};
 ///
 /// # Errors
 /// A test that failed, a bad access to memory, or a compiler without the runtime.
-pub fn sanitize(args: &[String]) -> Result<(), String> {
+pub(crate) fn sanitize(args: &[String]) -> Result<(), String> {
     let mut test = cargo(&["test", "--target", &host()?]);
     match args {
         [] => test.args(["--workspace", "--exclude", "clench-python"]),

@@ -53,7 +53,7 @@ const MODELS: &str = "models";
 ///
 /// # Errors
 /// Arguments that mean nothing, or what a soak found.
-pub fn soak(args: &[String]) -> Result<(), String> {
+pub(crate) fn soak(args: &[String]) -> Result<(), String> {
     let (only, rest) = match args {
         [flag, only, rest @ ..] if flag == "--only" => (Some(only.as_str()), rest),
         _ => (None, args),

@@ -97,7 +97,7 @@ const STAGES: &[Stage] = &[
 ///
 /// # Errors
 /// The failing stage with its remedy, or a name that is no stage.
-pub fn test(names: &[String]) -> Result<(), String> {
+pub(crate) fn test(names: &[String]) -> Result<(), String> {
     if let Some(name) = names.iter().find(|n| STAGES.iter().all(|s| s.name != **n)) {
         return Err(format!("unknown stage `{name}`; see `cargo xtask --help`"));
     }
@@ -138,7 +138,7 @@ pub fn test(names: &[String]) -> Result<(), String> {
 ///
 /// # Errors
 /// What could not be built, installed or run.
-pub fn bench(args: &[String]) -> Result<(), String> {
+pub(crate) fn bench(args: &[String]) -> Result<(), String> {
     let profile = Profile::Dist;
     compile(profile, "clench-cli", ["--bin", "clench"])?;
     compile(profile, "clench", ["--example", "batch_step"])?;

@@ -9,7 +9,7 @@ use std::process::Command;
 ///
 /// # Errors
 /// What cannot be built, or that a test failed.
-pub fn test() -> Result<(), String> {
+pub(crate) fn test() -> Result<(), String> {
     let mut programs = 0;
     let mut build = cargo(&["test", "--workspace", "--no-run"]);
     build.env("CLENCH_GPU", "skip");

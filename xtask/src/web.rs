@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 ///
 /// # Errors
 /// That a package cannot be had, or that the page has errors of types.
-pub fn build() -> Result<(), String> {
+pub(crate) fn build() -> Result<(), String> {
     npm(&["ci", "--silent", "--no-audit", "--no-fund"]).map_err(|e| {
         format!("{e}\nA registry of npm must be reachable, on the first run at least.")
     })?;
@@ -22,7 +22,7 @@ pub fn build() -> Result<(), String> {
 ///
 /// # Errors
 /// That a test failed.
-pub fn test() -> Result<(), String> {
+pub(crate) fn test() -> Result<(), String> {
     drive("test")
 }
 
@@ -30,7 +30,7 @@ pub fn test() -> Result<(), String> {
 ///
 /// # Errors
 /// That a test failed.
-pub fn test_python() -> Result<(), String> {
+pub(crate) fn test_python() -> Result<(), String> {
     drive("test:python")
 }
 
@@ -43,7 +43,7 @@ fn drive(script: &str) -> Result<(), String> {
 }
 
 /// Why the page cannot be built here, if it cannot.
-pub fn no_node() -> Option<String> {
+pub(crate) fn no_node() -> Option<String> {
     let installed = in_web("npm", &["--version"]).stdout(Stdio::null()).status();
     match installed {
         Ok(status) if status.success() => None,
@@ -52,7 +52,7 @@ pub fn no_node() -> Option<String> {
 }
 
 /// Why the page cannot be driven here, if it cannot. Where the tests may, they install Debian's Chromium.
-pub fn no_browser() -> Option<String> {
+pub(crate) fn no_browser() -> Option<String> {
     no_node().or_else(|| {
         let path = chromium();
         if !path.is_file() {
