@@ -169,6 +169,7 @@ fn what_is_wrong_is_said() {
         let error = load(texture).err().unwrap_or_default();
         assert!(error.contains(words), "{texture}: {error}");
     }
+    load("<texture type='skybox' builtin='gradient' width='4'/>").unwrap();
     // What is discarded is not read.
     let unread = "<mujoco><compiler discardvisual='true'/><asset><texture type='2d' name='t' file='no.png'/></asset></mujoco>";
     assert!(

@@ -66,7 +66,8 @@ pub(super) fn read(
             None => TexturePicture::Pixels(Arc::new(six_files(element, files, spending)?)),
         },
     };
-    if name.is_empty() {
+    // As in MuJoCo a sky, which no material names, does without.
+    if name.is_empty() && kind != TextureKind::Sky {
         return Err(element.error("a texture needs a name or a file"));
     }
     Ok(Some(Texture {
