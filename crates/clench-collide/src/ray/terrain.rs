@@ -3,6 +3,9 @@
 //! Within one triangle of a cell the height of the ray over the surface changes linearly, so a ray that is above where it enters
 //! and below where it leaves has hit the surface in between; and since neighbours agree about their common edge, no ray slips
 //! through. A ray passes at most as many cells as there are rows and columns.
+//!
+//! As in MuJoCo 4.0 the terrain stands on its base as one solid on another: a ray that starts within one of them also meets the
+//! plane between the two.
 
 use super::chord::Chord;
 use super::line::Line;
@@ -19,10 +22,14 @@ pub(super) fn height_field(
 ) -> Option<(f64, Vec3<f64>)> {
     let line = Line { origin, along };
     let [half_x, half_y, elevation, base] = field.size();
-    let chord = Chord::whole()
-        .slab(&line, 0, -half_x, half_x)
-        .slab(&line, 1, -half_y, half_y)
-        .slab(&line, 2, -base, elevation * (1.0 + HEADROOM));
+    let top = elevation * (1.0 + HEADROOM);
+    let between = |low: f64, high: f64| {
+        let sides = Chord::whole().slab(&line, 0, -half_x, half_x);
+        sides
+            .slab(&line, 1, -half_y, half_y)
+            .slab(&line, 2, low, high)
+    };
+    let chord = between(-base, top);
     if !(chord.enter <= chord.leave && chord.leave >= 0.0) {
         return None;
     }
@@ -32,6 +39,12 @@ pub(super) fn height_field(
         // Through a side or the bottom.
         return Some((chord.enter, chord.entered));
     }
+    let in_terrain = !above && origin.z > 0.0;
+    let chord = match (above, in_terrain) {
+        (true, _) => chord,
+        (false, true) => between(0.0, top),
+        (false, false) => between(-base, 0.0),
+    };
     for _ in 0..field.rows() + field.columns() {
         let end = walk.next.0.min(walk.next.1).min(chord.leave);
         if let Some(hit) = walk.cross(end.max(walk.now), above) {
@@ -42,7 +55,13 @@ pub(super) fn height_field(
         }
         walk.advance();
     }
-    (!above).then_some((chord.leave, chord.left))
+    let through_base = in_terrain && chord.left.z < 0.0;
+    let normal = if through_base {
+        -chord.left
+    } else {
+        chord.left
+    };
+    (!above).then_some((chord.leave, normal))
 }
 
 /// A ray on its way over the cells.
