@@ -62,11 +62,6 @@ fn broken_files_are_refused_with_their_names() {
             obj().replace("v 0 0 1", "v 0 nan 1").into_bytes(),
             "not finite",
         ),
-        (
-            "round.obj",
-            format!("{}f{}\n", obj(), " 1".repeat(2000)).into_bytes(),
-            "line 22: a face has more than 1000 corners",
-        ),
         ("binary.obj", vec![0xff; 100], "not an OBJ"),
         (
             "three.obj",

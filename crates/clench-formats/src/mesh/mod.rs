@@ -4,6 +4,7 @@
 //! file claims are held against its length before anything is allocated.
 
 pub(crate) mod builtin;
+mod ears;
 mod msh;
 mod obj;
 mod stl;

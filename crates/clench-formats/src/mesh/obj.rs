@@ -1,14 +1,10 @@
 //! OBJ: the lines that matter to a shape, read as MuJoCo reads them.
 //!
-//! All vertices of the file count towards the hull, but only the faces of its first object or group. Quadrilaterals are split along
-//! their shorter diagonal, larger polygons by clipping ears.
+//! All vertices of the file count towards the hull, but only the faces of its first object or group.
 
+use super::ears::triangulate;
 use super::triangles::Triangles;
 use clench_math::Vec3;
-use earcut::{Earcut, utils3d::project3d_to_2d};
-
-/// Corners of a face, at most: ears of a polygon that crosses itself take a time that grows with the square of them.
-const MAX_CORNERS: usize = 1000;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     let text = String::from_utf8_lossy(bytes);
@@ -26,11 +22,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
                 let corners = words
                     .map(|word| corner(word, [vertices.len(), texcoords.len()], number))
                     .collect::<Result<Vec<Corner>, String>>()?;
-                if corners.len() > MAX_CORNERS {
-                    return Err(format!(
-                        "line {number}: a face has more than {MAX_CORNERS} corners"
-                    ));
-                }
                 // What has no area is dropped, as in MuJoCo.
                 if corners.len() >= 3 {
                     polygons.push(Polygon { number, corners });
@@ -76,7 +67,7 @@ fn triangles(
             .iter()
             .map(|c| vertices[c.vertex as usize])
             .collect();
-        for triangle in split(&places) {
+        for triangle in triangulate(&places) {
             let triangle = triangle.map(|corner| corners[corner]);
             faces.push(triangle.map(|corner| corner.vertex));
             let known = |c: Corner| (c.texcoord).filter(|&at| (at as usize) < texcoords.len());
@@ -145,24 +136,4 @@ fn corner(word: &str, before: [usize; 2], line: usize) -> Result<Corner, String>
         vertex: index(before[0]).ok_or_else(wrong)?,
         texcoord: index(before[1]),
     })
-}
-
-/// Triangles of a polygon, as numbers of its corners.
-fn split(places: &[Vec3<f64>]) -> Vec<[usize; 3]> {
-    match *places {
-        [_, _, _] => vec![[0, 1, 2]],
-        [a, b, c, d] => match (c - a).norm_squared() < (d - b).norm_squared() {
-            true => vec![[0, 1, 2], [0, 2, 3]],
-            false => vec![[0, 1, 3], [1, 2, 3]],
-        },
-        _ => {
-            let points: Vec<[f64; 3]> = places.iter().map(|place| place.to_array()).collect();
-            let (mut flat, mut found) = (Vec::new(), Vec::<usize>::new());
-            // A polygon without area has no plane, and adds nothing.
-            if project3d_to_2d(&points, points.len(), &mut flat) {
-                Earcut::new().earcut(flat, &[], &mut found);
-            }
-            found.as_chunks::<3>().0.to_vec()
-        }
-    }
 }
