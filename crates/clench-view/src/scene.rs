@@ -206,14 +206,22 @@ fn geom(model: &Model, g: usize) -> Value {
 
 fn site(model: &Model, s: usize) -> Value {
     let (site, p) = (&model.sites[s], &model.params);
+    let (mut pos, mut quat) = (p.site_pos[s], p.site_quat[s]);
+    if let Some(mesh) = site.mesh {
+        // The page has meshes about their centres of mass, a site has them in their author's coordinates.
+        let mesh = &model.meshes[mesh];
+        pos += quat.rotate(mesh.pos);
+        quat = quat * mesh.quat;
+    }
     let place = placed(
         model,
-        (p.site_pos[s], p.site_quat[s]),
+        (pos, quat),
         model.visuals.sites[s],
         (site.kind, p.site_size[s]),
     );
     let own = json!({
         "name": site.name,
+        "mesh": site.mesh,
         "body": site.body,
         "group": site.group,
     });

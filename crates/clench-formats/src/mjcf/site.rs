@@ -14,6 +14,7 @@ use clench_rigid::builder::{AppearanceSpec, SiteSpec};
 #[derive(Clone, Debug)]
 pub(crate) struct SiteDraft {
     kind: ShapeKind,
+    mesh: String,
     size: [f64; 3],
     pos: [f64; 3],
     orientation: Orientation,
@@ -26,6 +27,7 @@ impl Default for SiteDraft {
     fn default() -> Self {
         SiteDraft {
             kind: ShapeKind::Sphere,
+            mesh: String::new(),
             size: [0.005; 3],
             pos: [0.0; 3],
             orientation: Orientation::default(),
@@ -45,10 +47,10 @@ impl SiteDraft {
             ShapeKind::HeightField => {
                 return Err(element.error("a site cannot be a height field"));
             }
-            ShapeKind::Mesh => {
-                return Err(element.error("a site with a mesh is not supported yet"));
-            }
             _ => {}
+        }
+        if let Some(mesh) = element.text("mesh") {
+            mesh.clone_into(&mut self.mesh);
         }
         element.overlay("size", &mut self.size)?;
         element.set_numbers("pos", &mut self.pos)?;
@@ -78,6 +80,7 @@ impl SiteDraft {
             pos: pose.pos,
             quat: pose.quat,
             kind: self.kind,
+            mesh: self.mesh,
             size: self.size,
             group: self.group,
             appearance: self.appearance,

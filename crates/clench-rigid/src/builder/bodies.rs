@@ -137,7 +137,7 @@ fn add(
     }
     model.bodies[b].geoms.end = model.geoms.len();
     for site in &spec.sites {
-        geoms::add_site(site, b, frame.moved, assets, model);
+        geoms::add_site(site, b, frame.moved, assets, model).map_err(within)?;
     }
     model.bodies[b].sites.end = model.sites.len();
     for camera in &spec.cameras {

@@ -176,8 +176,9 @@ fn check_site(s: &SiteSpec) -> Result<(), BuildError> {
         ShapeKind::Sphere => 1,
         ShapeKind::Capsule | ShapeKind::Cylinder => 2,
         ShapeKind::Ellipsoid | ShapeKind::Box => 3,
-        ShapeKind::Plane | ShapeKind::HeightField | ShapeKind::Mesh => {
-            return Err(s.error("must be a sphere, capsule, ellipsoid, cylinder or box"));
+        ShapeKind::Mesh => 0,
+        ShapeKind::Plane | ShapeKind::HeightField => {
+            return Err(s.error("must be a sphere, capsule, ellipsoid, cylinder, box or mesh"));
         }
     };
     s.require_finite("size", &s.size)?;

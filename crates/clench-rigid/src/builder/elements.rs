@@ -275,9 +275,11 @@ pub struct SiteSpec {
     pub pos: Vec3<f64>,
     /// Orientation in the body frame.
     pub quat: Quat<f64>,
-    /// Shape of its volume: sphere, capsule, ellipsoid, cylinder or box.
+    /// Shape of its volume: sphere, capsule, ellipsoid, cylinder, box or mesh.
     pub kind: ShapeKind,
-    /// Size of that, as a geom's, m.
+    /// The mesh whose convex hull it is (`kind` is `Mesh`), in the coordinates of its author, or empty.
+    pub mesh: String,
+    /// Size of that, as a geom's, m; that of a mesh is ignored.
     pub size: [f64; 3],
     /// Group.
     pub group: i32,
@@ -295,6 +297,7 @@ impl Default for SiteSpec {
             pos: Vec3::ZERO,
             quat: Quat::IDENTITY,
             kind: ShapeKind::Sphere,
+            mesh: String::new(),
             size: [0.005; 3],
             group: 0,
             appearance: AppearanceSpec::default(),

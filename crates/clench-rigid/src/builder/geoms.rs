@@ -82,13 +82,17 @@ pub(super) fn add_geom(
 }
 
 /// Adds a site of body `b`.
+///
+/// # Errors
+/// A mesh that is not there.
 pub(super) fn add_site(
     spec: &SiteSpec,
     b: usize,
     moved: Moved,
     assets: &Assets,
     model: &mut Model,
-) {
+) -> Result<(), BuildError> {
+    let mesh = assets.mesh_of_site(spec)?;
     let appearance = assets.palette.resolve(&spec.appearance);
     model.visuals.sites.push(appearance);
     model.sites.push(Site {
@@ -96,9 +100,12 @@ pub(super) fn add_site(
         body: b,
         kind: spec.kind,
         group: spec.group,
+        mesh: mesh.map(|(index, _)| index),
     });
-    model.params.site_size.push(Vec3::from_array(spec.size));
+    let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| mesh.half_box);
+    model.params.site_size.push(size);
     let (pos, quat) = place(moved, spec.pos, spec.quat);
     model.params.site_pos.push(pos);
     model.params.site_quat.push(quat);
+    Ok(())
 }

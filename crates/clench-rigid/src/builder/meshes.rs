@@ -37,14 +37,14 @@ impl Processed {
     }
 }
 
-/// Turns a mesh into one that can be used. `collides` asks for its convex hull.
+/// Turns a mesh into one that can be used. `keeps_hull` asks for its convex hull.
 ///
 /// # Errors
 /// Too few vertices, indices of vertices that are not there, numbers that are not finite, no volume, triangles that do not agree
 /// on where outside is.
-pub(super) fn process(spec: &MeshSpec, collides: bool) -> Result<Processed, BuildError> {
+pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, BuildError> {
     check(spec)?;
-    let needs_hull = collides || spec.faces.is_empty() || spec.inertia == MeshInertia::Convex;
+    let needs_hull = keeps_hull || spec.faces.is_empty() || spec.inertia == MeshInertia::Convex;
     let surface = match needs_hull {
         true => {
             let found = convex_hull(&spec.vertices, spec.max_hull_vertices);
@@ -81,7 +81,7 @@ pub(super) fn process(spec: &MeshSpec, collides: bool) -> Result<Processed, Buil
             pos: mass.pos,
             quat: mass.quat,
             hull: surface
-                .filter(|_| collides)
+                .filter(|_| keeps_hull)
                 .map(|s| Hull::new(&s, &vertices)),
             texcoords: spec.texcoords.clone(),
             face_texcoords: face_texcoords(spec, &faces),

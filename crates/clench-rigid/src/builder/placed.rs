@@ -6,7 +6,7 @@ use super::model_builder::ModelBuilder;
 use super::resolve::Names;
 use super::uses::GeomUses;
 use super::visuals::Palette;
-use super::{BuildError, GeomSpec};
+use super::{BuildError, GeomSpec, SiteSpec};
 use crate::model::{HeightField, Model};
 use clench_collide::{Shape, ShapeKind, bounding_radius};
 use clench_math::{Motion, Quat, Vec3};
@@ -51,15 +51,21 @@ impl<'a> Assets<'a> {
     pub(super) fn new(builder: &'a ModelBuilder) -> Result<Self, BuildError> {
         let names = Names::new(&builder.meshes)?;
         let uses = GeomUses::of(builder);
-        let mut collides = vec![false; builder.meshes.len()];
+        // Contacts and volumes of sites are those of hulls.
+        let mut needs_hull = vec![false; builder.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
             let counts = geom.kind == ShapeKind::Mesh && uses.collides(geom);
             if counts && let Ok(mesh) = names.find(&geom.mesh, geom) {
-                collides[mesh] = true;
+                needs_hull[mesh] = true;
             }
         }
-        let meshes = (builder.meshes.iter().zip(collides))
-            .map(|(spec, collides)| process(spec, collides))
+        for site in builder.bodies.iter().flat_map(|body| &body.sites) {
+            if let Ok(mesh) = names.find(&site.mesh, site) {
+                needs_hull[mesh] = true;
+            }
+        }
+        let meshes = (builder.meshes.iter().zip(needs_hull))
+            .map(|(spec, needs_hull)| process(spec, needs_hull))
             .collect::<Result<_, _>>()?;
         let height_fields = (builder.height_fields.iter())
             .map(|spec| {
@@ -95,6 +101,11 @@ impl<'a> Assets<'a> {
                 used[mesh] = true;
             }
         }
+        for site in builder.bodies.iter().flat_map(|body| &body.sites) {
+            if let Ok(mesh) = self.names.find(&site.mesh, site) {
+                used[mesh] = true;
+            }
+        }
         let mut number = vec![0; used.len()];
         for (index, processed) in self.meshes.into_iter().enumerate() {
             number[index] = model.meshes.len();
@@ -102,10 +113,31 @@ impl<'a> Assets<'a> {
                 model.meshes.push(Arc::new(processed.mesh));
             }
         }
-        for mesh in model.geoms.iter_mut().filter_map(|geom| geom.mesh.as_mut()) {
+        let geoms = model.geoms.iter_mut().map(|geom| &mut geom.mesh);
+        let sites = model.sites.iter_mut().map(|site| &mut site.mesh);
+        for mesh in geoms.chain(sites).flatten() {
             *mesh = number[*mesh];
         }
         model.height_fields = self.height_fields;
+    }
+
+    /// The mesh whose hull is a site's volume.
+    ///
+    /// # Errors
+    /// A name that no mesh has, or none where one is needed; a mesh where the site is no mesh.
+    pub(super) fn mesh_of_site(
+        &self,
+        spec: &SiteSpec,
+    ) -> Result<Option<(usize, &Processed)>, BuildError> {
+        match (spec.kind == ShapeKind::Mesh, spec.mesh.is_empty()) {
+            (false, true) => Ok(None),
+            (false, false) => Err(spec.error("only a site of type mesh can refer to a mesh")),
+            (true, true) => Err(spec.error("a site of type mesh must refer to a mesh")),
+            (true, false) => {
+                let index = self.names.find(&spec.mesh, spec)?;
+                Ok(Some((index, &self.meshes[index])))
+            }
+        }
     }
 
     /// A geom with what it takes from its mesh or height field.

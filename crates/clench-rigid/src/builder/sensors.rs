@@ -9,8 +9,9 @@ use super::sensor_specs::{
 use super::{BuildError, histories};
 use crate::model::{
     Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, JointKind,
-    Model, RayField, RaySource, Sensor, SensorData, SensorTarget,
+    Model, RayField, RaySource, Sensor, SensorData, SensorKind, SensorTarget,
 };
+use clench_collide::ShapeKind;
 use std::ops::Range;
 
 /// A sensor has at most this many numbers.
@@ -29,6 +30,11 @@ pub(super) fn add_all(
         spec.require_not_negative("cutoff", &[spec.cutoff])?;
         spec.require_not_negative("noise", &[spec.noise])?;
         let target = target(spec, names, model)?;
+        if let (SensorKind::Touch, &SensorTarget::Element(site)) = (spec.kind, &target)
+            && model.sites[site].kind == ShapeKind::Mesh
+        {
+            return Err(spec.error("touch cannot be felt in the volume of a mesh"));
+        }
         let data = match spec.subject {
             SensorSubject::User(_, data) => data,
             _ => spec.kind.data(),

@@ -68,9 +68,8 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "site",
-        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis",
+        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis mesh",
         ignored: "material rgba user",
-        later: "mesh",
         ..NONE
     },
     Rule {

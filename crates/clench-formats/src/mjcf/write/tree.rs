@@ -285,16 +285,17 @@ fn write_site(model: &Model, s: usize, xml: &mut Xml) {
         body: _,
         kind,
         group,
+        mesh,
     } = &model.sites[s];
     let p = &model.params;
     let rgba = colour(&model.visuals, model.visuals.sites[s]);
     let tag = xml.tag("site").name(name).text("type", geom_type(*kind));
     let tag = placed(tag, p.site_pos[s], p.site_quat[s]);
-    let tag = (tag.numbers("size", &p.site_size[s].to_array())).integer_unless(
-        "group",
-        (*group).into(),
-        0,
-    );
+    let tag = match mesh {
+        Some(mesh) => tag.text("mesh", &model.meshes[*mesh].name),
+        None => tag.numbers("size", &p.site_size[s].to_array()),
+    };
+    let tag = tag.integer_unless("group", (*group).into(), 0);
     coloured(tag, rgba).end();
 }
 

@@ -122,4 +122,6 @@ pub struct Site {
     pub kind: ShapeKind,
     /// Group.
     pub group: i32,
+    /// The mesh whose convex hull it is, for `ShapeKind::Mesh`.
+    pub mesh: Option<usize>,
 }

@@ -55,7 +55,7 @@ pub struct Mesh {
     pub texcoords: Vec<[f32; 2]>,
     /// Which of these each corner of each triangle has; as many as `faces` where there are any.
     pub face_texcoords: Vec<[u32; 3]>,
-    /// What collides; `None` where no geom with this mesh does.
+    /// What collides, and the volume of sites; `None` where no geom with this mesh collides and no site is it.
     pub hull: Option<Hull>,
     /// As its author gave it, which is what a saved model says.
     pub spec: MeshSpec,
