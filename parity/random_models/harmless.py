@@ -11,6 +11,7 @@ SCENE = pathlib.Path(__file__).resolve().parent / "harmless.xml"
 
 POSE = {"pos": "0.1 0.2 0.3", "quat": "0.5 0.1 0.2 0.3", "axisangle": "1 0 0 20", "euler": "10 20 30", "xyaxes": "0 1 0 -1 0 0", "zaxis": "1 1 0"}
 USER = {"user": "1 2"}
+OF_BODIES = {**USER, "mocap": "true", "gravcomp": "1", "simple": "false", "fuse": "false", "sleep": "never"}
 TENDON = {"group": "2", "user": "1 2"}
 COLOUR = "0.1 0.2 0.3 0.4"
 
@@ -56,8 +57,8 @@ VALUES = {
     },
     "statistic": {"meaninertia": "2", "meanmass": "3", "meansize": "0.5", "extent": "2", "center": "1 2 3"},
     "body": {**USER, "fuse": "false"},
-    "frame": {"name": "named_frame"},
-    "replicate": {"name": "named_replicate", "prefix": "copy_"},
+    "frame": {**OF_BODIES, "name": "named_frame"},
+    "replicate": {**{name: value for name, value in POSE.items() if name != "euler"}, **OF_BODIES, "name": "named_replicate", "prefix": "copy_"},
     "joint": USER,
     "geom": {**USER, "castshadow": "false"},
     "site": {**USER, "material": "paint", "rgba": COLOUR},

@@ -43,7 +43,12 @@ fn height_fields_come_from_numbers_and_files() {
             [0.6, 0.8, 1.0, 0.0, 0.2, 0.4],
         ),
         ("file='h.bin'", [0.6, 0.8, 1.0, 0.0, 0.2, 0.4]),
+        (
+            "file='h.bin' nrow='7' ncol='-1' elevation='1' content_type=''",
+            [0.6, 0.8, 1.0, 0.0, 0.2, 0.4],
+        ),
         ("name='h' nrow='2' ncol='3'", [0.0; 6]),
+        ("name='h' nrow='2' ncol='3' elevation=''", [0.0; 6]),
         (
             "file='h.PNG'",
             [150.0, 200.0, 205.0, 0.0, 50.0, 100.0].map(|x| x / 205.0),
@@ -76,7 +81,6 @@ fn height_fields_come_from_numbers_and_files() {
         ("name='h' nrow='2000000000' ncol='2000000000'", "bytes"),
         ("name='h' nrow='10000' ncol='10000'", "bytes"),
         ("name='h'", "nrow"),
-        ("file='h.bin' nrow='2' ncol='3'", "with a file"),
         ("file='nowhere.png'", "nowhere.png"),
         ("name='h' file='short.bin'", "short.bin"),
         ("name='h' file='cut.png'", "cut.png"),

@@ -28,6 +28,27 @@ fn same_rotation(a: Quat<f64>, b: [f64; 4]) -> bool {
 }
 
 #[test]
+fn what_mujoco_makes_nothing_of_is_no_error() {
+    let model = read_str(
+        "<mujoco>
+           <compiler inertiagrouprange=''/>
+           <worldbody>
+             <frame mocap='true' gravcomp='1' sleep='never' fuse='false' simple='false' user='1'>
+               <replicate count='2' pos='1 2 3' quat='0 1 0 0' mocap='true' gravcomp='1'>
+                 <body><joint/><geom size='1' material=''/><site material=''/></body>
+               </replicate>
+             </frame>
+           </worldbody>
+         </mujoco>",
+    )
+    .unwrap();
+    assert_eq!(model.bodies.len(), 3);
+    for body in &model.bodies[1..] {
+        assert!(!body.mocap && body.gravcomp == 0.0 && body.pos == Vec3::ZERO);
+    }
+}
+
+#[test]
 fn bodies_stand_in_the_order_of_the_file_parents_first() {
     let model = world(
         "<body name='a'><body name='b'/></body><frame><body name='c'><body name='d'/></body></frame>",

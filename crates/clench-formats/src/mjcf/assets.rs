@@ -51,7 +51,7 @@ pub(crate) fn check_materials(root: &Element) -> Result<(), LoadError> {
 }
 
 fn check_material(element: &Element, known: &BTreeSet<&str>) -> Result<(), LoadError> {
-    let unknown = |name: &&str| !known.contains(name);
+    let unknown = |name: &&str| !name.is_empty() && !known.contains(name);
     match element.text("material").filter(unknown) {
         Some(name) => {
             let hint = schema::suggestion(name, known.iter().copied());

@@ -131,7 +131,8 @@ pub(crate) fn read(
         ("auto", InertiaFromGeom::Auto),
     ];
     element.set_keyword("inertiafromgeom", &sources, &mut spec.inertiafromgeom)?;
-    if element.text("inertiagrouprange").is_some() {
+    let groups = element.text("inertiagrouprange");
+    if groups.is_some_and(|groups| !groups.trim().is_empty()) {
         let groups = element.integers("inertiagrouprange")?;
         let wrong = |_| element.error("inertiagrouprange needs two integers");
         spec.inertiagrouprange = groups.try_into().map_err(wrong)?;

@@ -13,17 +13,14 @@ pub(crate) fn read(
     spending: &mut Spending,
 ) -> Result<HeightFieldSpec, LoadError> {
     let mut name = element.string("name");
-    let rows = element.count("nrow")?.unwrap_or(0);
-    let columns = element.count("ncol")?.unwrap_or(0);
     let found = match files.read(element, spending)? {
-        Some(_) if rows > 0 || columns > 0 => {
-            return Err(element.error("nrow and ncol cannot be given with a file"));
-        }
+        // As in MuJoCo, a file says how many rows and columns there are, whatever else does.
         Some(mut file) => {
             if name.is_empty() {
                 name.clone_from(&file.stem);
             }
-            let is_image = match element.text("content_type") {
+            let content = element.text("content_type");
+            let is_image = match content.filter(|content| !content.is_empty()) {
                 Some("image/png") => true,
                 Some("image/vnd.mujoco.hfield") => false,
                 Some(_) => {
@@ -36,7 +33,7 @@ pub(crate) fn read(
             let reader = if is_image { read_png } else { read_grid };
             file.parse(element, |bytes| reader(&bytes, spending))?
         }
-        None => written(element, rows, columns, spending)?,
+        None => written(element, spending)?,
     };
     if name.is_empty() {
         return Err(element.error("a height field needs a name or a file"));
@@ -52,19 +49,17 @@ pub(crate) fn read(
 }
 
 /// Heights in the model: rows from the positive end of y, as one sees them; flat where none are given.
-fn written(
-    element: &Element,
-    rows: usize,
-    columns: usize,
-    spending: &mut Spending,
-) -> Result<Elevation, LoadError> {
+fn written(element: &Element, spending: &mut Spending) -> Result<Elevation, LoadError> {
+    let rows = element.count("nrow")?.unwrap_or(0);
+    let columns = element.count("ncol")?.unwrap_or(0);
     let count = rows.saturating_mul(columns);
     if count == 0 {
         return Err(element.error("a height field needs a file, or nrow and ncol"));
     }
     let taken = spending.bytes(HEIGHT.saturating_mul(count as u64));
     taken.map_err(|excess| element.error(excess))?;
-    let heights = match element.list("elevation")? {
+    let given = element.list("elevation")?;
+    let heights = match given.filter(|heights| !heights.is_empty()) {
         Some(heights) if heights.len() == count => (heights.chunks_exact(columns).rev())
             .flatten()
             .map(|&height| f64::from(height as f32))

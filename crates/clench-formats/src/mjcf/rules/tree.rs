@@ -7,6 +7,9 @@ const IN_A_BODY: &str =
     "body frame replicate attach geom site camera light inertial joint freejoint";
 const IN_A_BODY_LATER: &str = "plugin flexcomp";
 
+/// Attributes of bodies that MuJoCo takes at frames too, and makes nothing of there; at replicas there are more of them.
+const OF_BODIES: &str = "mocap gravcomp simple fuse sleep user";
+
 pub(super) const RULES: &[Rule] = &[
     section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
     Rule {
@@ -20,6 +23,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "frame",
         read: "name class childclass pos quat axisangle euler xyaxes zaxis",
+        ignored: OF_BODIES,
         later: "scale=1 scaling massscale=1",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
@@ -28,7 +32,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "replicate",
         read: "class childclass count offset euler sep",
-        ignored: "name prefix",
+        ignored: "name prefix pos quat axisangle xyaxes zaxis mocap gravcomp simple fuse sleep user",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
         ..NONE
