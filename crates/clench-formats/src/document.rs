@@ -28,6 +28,8 @@ pub(crate) struct Element {
     pub origin: Origin,
     /// Which of the model's [`Sources`](super::source::Sources) it is read with.
     pub source: usize,
+    /// By what number keyframes of an attached model know it; 0 where none does.
+    pub number: u32,
 }
 
 impl Element {
@@ -39,6 +41,7 @@ impl Element {
             children: Vec::new(),
             origin: other.origin.clone(),
             source: other.source,
+            number: 0,
         }
     }
 
@@ -245,6 +248,7 @@ impl Converter<'_> {
                 line: 1 + self.newlines.partition_point(|&at| at < start) as u32,
             },
             source: 0,
+            number: 0,
         };
         if self.namespaces {
             return Ok(element);

@@ -136,7 +136,13 @@ impl Loader {
         let root = document::parse(bytes, file, spending)?;
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
         if root.tag == "mujoco" {
-            return mjcf::read(root, path, self.ignore_unsupported, spending);
+            return mjcf::read(
+                root,
+                path,
+                &self.packages,
+                self.ignore_unsupported,
+                spending,
+            );
         }
         if document::is_urdf(&root.tag) {
             return urdf::read(&root, directory, &self.packages, spending);

@@ -3,7 +3,7 @@
 mod files;
 
 use clench_formats::read_str;
-use clench_rigid::builder::ModelBuilder;
+use clench_rigid::builder::{KeyframeElement, KeyframePart, ModelBuilder};
 use files::Files;
 
 const ARM: &str = "<mujoco model='arm'>
@@ -152,6 +152,25 @@ fn what_acts_on_the_world_alone_follows_no_part_of_it() {
 }
 
 #[test]
+fn a_site_may_be_called_world() {
+    let model = read_str(
+        "<mujoco><worldbody>
+           <body name='b'><joint/><geom size='1'/><site name='world'/>
+             <body><joint/><geom size='1'/><site name='tip'/></body>
+           </body>
+           <attach body='b' prefix='c_'/>
+         </worldbody>
+         <tendon><spatial name='t'><site site='world'/><site site='tip'/></spatial></tendon>
+         <actuator><motor name='m' site='world'/></actuator></mujoco>",
+    )
+    .unwrap();
+    assert_eq!(names(&model.actuators, |a| &a.name), ["m", "c_m"]);
+    assert_eq!(names(&model.tendons, |t| &t.name), ["t", "c_t"]);
+    let path = format!("{:?}", model.tendons[1].path);
+    assert!(path.contains("c_world") && path.contains("c_tip"), "{path}");
+}
+
+#[test]
 fn files_of_attached_models_are_found_from_where_those_are() {
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     let files = Files::new(&[
@@ -292,4 +311,115 @@ fn options_that_cannot_be_merged_are_refused_by_name() {
         error.contains("timestep") && error.contains("flag constraint"),
         "{error}"
     );
+}
+
+/// The keyframes of a model after its own one, as (name, time, what they say of elements).
+fn keyframes(attach: &str) -> Vec<(String, f64, Vec<KeyframePart>)> {
+    let part = "<mujoco>
+      <default><default class='slides'><joint type='slide'/></default></default>
+      <worldbody>
+        <body name='A'><joint/><geom size='1'/><body><joint type='ball'/><geom size='1'/></body></body>
+        <body name='D'><joint name='d' class='slides'/><geom size='1'/></body>
+        <body name='M' mocap='true'/>
+      </worldbody>
+      <actuator><motor joint='d'/><general joint='d' dyntype='integrator'/></actuator>
+      <keyframe>
+        <key name='home' time='3' qpos='1 1 0 0 0 4' qvel='5 6 7 8 9' ctrl='.1 .2' act='.7' mpos='1 2 3'/>
+      </keyframe></mujoco>";
+    let main = format!(
+        "<mujoco><asset><model name='part' file='part.xml'/></asset>
+         <worldbody><body><joint/><geom size='1'/></body>{attach}</worldbody>
+         <keyframe><key name='own' qpos='2'/></keyframe></mujoco>"
+    );
+    let files = Files::new(&[("main.xml", main.as_str()), ("part.xml", part)]);
+    let model = files.read().unwrap();
+    assert!(model.notes.is_empty(), "{:?}", model.notes);
+    assert_eq!(model.keyframes[0].name, "own");
+    let attached = model.keyframes.into_iter().skip(1);
+    attached
+        .map(|key| (key.name, key.time, key.parts))
+        .collect()
+}
+
+fn part(element: KeyframeElement, first: &[f64], second: &[f64]) -> KeyframePart {
+    KeyframePart {
+        element,
+        first: first.to_vec(),
+        second: second.to_vec(),
+    }
+}
+
+#[test]
+fn keyframes_of_attached_models_say_what_they_say_of_what_is_attached() {
+    use KeyframeElement::{Actuator, Joint, Mocap};
+    let all = keyframes("<attach model='part' prefix='x_'/>");
+    let expected = vec![
+        part(Joint(1), &[1.0], &[5.0]),
+        part(Joint(2), &[1.0, 0.0, 0.0, 0.0], &[6.0, 7.0, 8.0]),
+        part(Joint(3), &[4.0], &[9.0]),
+        part(Actuator(0), &[0.1], &[]),
+        part(Actuator(1), &[0.2], &[0.7]),
+        part(Mocap(0), &[1.0, 2.0, 3.0], &[]),
+    ];
+    assert_eq!(all, [("x_home".to_owned(), 3.0, expected)]);
+    let slider = keyframes("<attach model='part' body='D' prefix='y_'/>");
+    let expected = vec![
+        part(Joint(1), &[4.0], &[9.0]),
+        part(Actuator(0), &[0.1], &[]),
+        part(Actuator(1), &[0.2], &[0.7]),
+    ];
+    assert_eq!(slider, [("y_home".to_owned(), 3.0, expected)]);
+}
+
+#[test]
+fn a_model_that_is_attached_twice_has_its_keyframes_twice_and_replicas_have_them_once() {
+    use KeyframeElement::Joint;
+    let twice = keyframes(
+        "<attach model='part' body='A' prefix='x_'/><attach model='part' body='A' prefix='y_'/>",
+    );
+    let names: Vec<&str> = twice.iter().map(|(name, ..)| name.as_str()).collect();
+    assert_eq!(names, ["x_home", "y_home"]);
+    assert_eq!(twice[1].2[0], part(Joint(3), &[1.0], &[5.0]));
+    let replicas =
+        keyframes("<replicate count='3'><attach model='part' body='A' prefix='x_'/></replicate>");
+    assert_eq!(replicas.len(), 1);
+    assert_eq!(replicas[0].2[0], part(Joint(1), &[1.0], &[5.0]));
+}
+
+#[test]
+fn urdf_can_be_attached_and_the_model_around_says_whether_it_is_fused() {
+    let robot = "<robot name='r'>
+      <link name='base'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>
+      <link name='arm'>
+        <inertial><mass value='2'/><inertia ixx='1' iyy='2' izz='2.5' ixy='.1' ixz='0' iyz='0'/></inertial>
+        <collision name='col'><geometry><sphere radius='.1'/></geometry></collision>
+        <visual><geometry><sphere radius='.2'/></geometry></visual>
+      </link>
+      <link name='tool'><inertial><mass value='.5'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>
+      <joint name='j' type='revolute'><parent link='base'/><child link='arm'/><origin xyz='0 0 1' rpy='.1 .2 .3'/>
+        <axis xyz='0 1 0'/><limit lower='-1' upper='1' effort='5' velocity='1'/><dynamics damping='.3' friction='.1'/></joint>
+      <joint name='f' type='fixed'><parent link='arm'/><child link='tool'/></joint>
+    </robot>";
+    let attached = |compiler: &str, attach: &str| {
+        let main = format!(
+            "<mujoco>{compiler}<asset><model name='r' file='r.urdf'/></asset>
+             <worldbody><body name='P'><freejoint/><geom size='1'/>{attach}</body></worldbody></mujoco>"
+        );
+        let files = Files::new(&[("main.xml", main.as_str()), ("r.urdf", robot)]);
+        let builder = files.read().unwrap();
+        assert!(builder.notes.is_empty(), "{:?}", builder.notes);
+        builder.build().unwrap()
+    };
+    let model = attached("", "<attach model='r' prefix='x_'/>");
+    let bodies = names(&model.bodies, |b| &b.name);
+    assert_eq!(bodies, ["world", "P", "x_base", "x_arm", "x_tool"]);
+    assert_eq!(names(&model.geoms, |g| &g.name), ["", "x_col"]);
+    assert_eq!(model.params.jnt_range[1], [-1.0, 1.0]);
+    assert_eq!(model.params.jnt_actfrcrange[1], [-5.0, 5.0]);
+    let fused = attached(
+        "<compiler fusestatic='true' angle='radian'/>",
+        "<attach model='r' body='arm' prefix='x_'/>",
+    );
+    assert_eq!(names(&fused.bodies, |b| &b.name), ["world", "P", "x_arm"]);
+    assert_eq!(fused.params.body_mass[2], 2.5);
 }

@@ -23,6 +23,17 @@ pub(crate) struct BodyReader<'a> {
     palette: &'a Palette,
     bodies: &'a mut Vec<BodySpec>,
     spending: &'a mut Spending,
+    /// The body and the number of each joint.
+    joints: Vec<(usize, u32)>,
+    /// The number of each mocap body.
+    mocaps: Vec<u32>,
+}
+
+/// By what numbers keyframes of attached models know the joints and mocap bodies of a model, in its order.
+#[derive(Debug, Default)]
+pub(crate) struct Numbers {
+    pub joints: Vec<u32>,
+    pub mocaps: Vec<u32>,
 }
 
 const SLEEP_POLICIES: [(&str, SleepPolicy); 4] = [
@@ -76,6 +87,17 @@ impl<'a> BodyReader<'a> {
             palette,
             bodies,
             spending,
+            joints: Vec::new(),
+            mocaps: Vec::new(),
+        }
+    }
+
+    /// The numbers of what was read.
+    pub(super) fn numbers(mut self) -> Numbers {
+        self.joints.sort_by_key(|&(body, _)| body);
+        Numbers {
+            joints: self.joints.into_iter().map(|(_, number)| number).collect(),
+            mocaps: self.mocaps,
         }
     }
 
@@ -162,6 +184,9 @@ impl<'a> BodyReader<'a> {
         body.never_fused = fused == Some(false);
         element.set_number("gravcomp", &mut body.gravcomp)?;
         self.charge(element, size_of::<BodySpec>(), &[&body.name])?;
+        if body.mocap {
+            self.mocaps.push(element.number);
+        }
         self.bodies.push(body);
         Ok(())
     }
@@ -275,6 +300,7 @@ impl<'a> BodyReader<'a> {
     ) -> Result<(), LoadError> {
         let name = element.string("name");
         self.charge(element, size_of::<JointSpec>(), &[&name])?;
+        self.joints.push((place.body, element.number));
         self.bodies[place.body].joints.push(JointSpec {
             name,
             origin: Some(element.origin.clone()),

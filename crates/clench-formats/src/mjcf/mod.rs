@@ -55,28 +55,34 @@ use clench_rigid::builder::ModelBuilder;
 use compose::Composed;
 use include::Includes;
 use option::OptionReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads the model below a root element, which came from a file or (`None`) from text, without what is not supported yet if that
-/// may be left out.
+/// may be left out. `packages` are folders for the URDF files that it attaches.
 ///
 /// # Errors
 /// What breaks a rule of the format, or asks for something that is not supported yet.
 pub(crate) fn read(
     mut root: Element,
     path: Option<&Path>,
+    packages: &[PathBuf],
     ignore_unsupported: bool,
     spending: &mut Spending,
 ) -> Result<ModelBuilder, LoadError> {
     let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
     Includes::new(path, spending).expand(&mut root, directory, spending)?;
-    let composed = compose::compose(root, path, ignore_unsupported, spending)?;
+    let composed = compose::compose(root, path, packages, ignore_unsupported, spending)?;
     assets::check_materials(&composed.root)?;
     read_model(&composed, spending)
 }
 
 fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuilder, LoadError> {
-    let Composed { root, sources, .. } = composed;
+    let Composed {
+        root,
+        sources,
+        keyframes,
+        ..
+    } = composed;
     let mut builder = ModelBuilder {
         budget: spending.budget,
         name: root.text("model").unwrap_or("MuJoCo Model").to_owned(),
@@ -99,7 +105,14 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }
+    let numbers = bodies.numbers();
     relations::read(root, sources, &mut builder)?;
+    builder
+        .keyframes
+        .extend(compose::keyframes::resolve(keyframes, root, numbers));
+    for size in sections(root, "size") {
+        keyframe::pad(size, &mut builder.keyframes)?;
+    }
     builder.custom = custom::read(root, spending)?;
     if builder.compiler.fusestatic {
         kept::keep_named(root, &mut builder.bodies);

@@ -2,7 +2,7 @@
 
 use super::defaults::MAIN;
 use super::document::Element;
-use super::sections::{entries, sections};
+use super::sections::entries;
 use super::shortcut::Shortcut;
 use super::source::Sources;
 use super::{contact, equality, keyframe, sensor, tendon};
@@ -43,9 +43,6 @@ pub(crate) fn read(
     for element in entries(root, "keyframe") {
         builder.keyframes.push(keyframe::read(element)?);
     }
-    for size in sections(root, "size") {
-        keyframe::pad(size, &mut builder.keyframes)?;
-    }
     Ok(())
 }
 
@@ -62,7 +59,11 @@ fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadE
     Ok(tendon)
 }
 
-fn read_actuator(element: &Element, sources: &Sources) -> Result<ActuatorSpec, LoadError> {
+/// Reads an actuator over what its class says.
+pub(crate) fn read_actuator(
+    element: &Element,
+    sources: &Sources,
+) -> Result<ActuatorSpec, LoadError> {
     let classes = &sources.of(element).classes;
     let class = classes.named_by(element, "class", MAIN)?;
     let shortcut = Shortcut::from_tag(&element.tag).unwrap_or_default();

@@ -52,7 +52,16 @@ fn add(
         _ => 1,
     };
     let controller = controller(spec, model.na)?;
-    let activations = activations(builder, spec, &controller, model)?;
+    let activations = activations(spec, &controller)?;
+    let (all, most) = (
+        model.na.saturating_add(activations),
+        builder.budget.elements,
+    );
+    if all as u64 > most {
+        return Err(spec.error(format!(
+            "with it there are {all} activations, more than {most}; {RAISE}"
+        )));
+    }
     let controls = model.nu()..model.nu() + controller.inputs.len();
     let ranges: Vec<_> = (controller.inputs.iter())
         .map(|&input| control_range(spec, input, ctrllimited))
@@ -138,13 +147,20 @@ fn control_range(spec: &ActuatorSpec, input: ControlInput, ctrllimited: bool) ->
     (own[0] < own[1], own)
 }
 
+impl ActuatorSpec {
+    /// How many controls and how many activations the actuator has.
+    ///
+    /// # Errors
+    /// Kinds of dynamics, gain and bias that do not go together, another `actdim` than they have.
+    pub fn counts(&self) -> Result<[usize; 2], BuildError> {
+        let controller = controller(self, 0)?;
+        let activations = activations(self, &controller)?;
+        Ok([controller.inputs.len(), activations])
+    }
+}
+
 /// How many activations the actuator has.
-fn activations(
-    builder: &ModelBuilder,
-    spec: &ActuatorSpec,
-    controller: &Controller,
-    model: &Model,
-) -> Result<usize, BuildError> {
+fn activations(spec: &ActuatorSpec, controller: &Controller) -> Result<usize, BuildError> {
     let own = match spec.dynamics {
         DynamicsKind::None => 0,
         DynamicsKind::Pid | DynamicsKind::DcMotor => controller.count,
@@ -156,13 +172,6 @@ fn activations(
     if actdim != own && !any {
         return Err(spec.error(format!(
             "actdim is {actdim}, but these dynamics have {own} activations"
-        )));
-    }
-    let most = builder.budget.elements;
-    if (model.na + actdim) as u64 > most {
-        return Err(spec.error(format!(
-            "with it there are {} activations, more than {most}; {RAISE}",
-            model.na + actdim
         )));
     }
     Ok(actdim)

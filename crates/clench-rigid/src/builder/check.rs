@@ -271,6 +271,10 @@ fn check_keyframe(k: &KeyframeSpec) -> Result<(), BuildError> {
     for (field, vector) in vectors {
         k.require_finite(field, vector.as_deref().unwrap_or_default())?;
     }
+    for part in &k.parts {
+        k.require_finite("a part", &part.first)?;
+        k.require_finite("a part", &part.second)?;
+    }
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::model_builder::ModelBuilder;
-use super::{BuildError, KeyframeSpec};
+use super::{BuildError, KeyframeElement, KeyframePart, KeyframeSpec};
 use crate::State;
 use crate::model::{JointKind, Keyframe, Model};
 use clench_math::{Quat, Vec3};
@@ -38,6 +38,9 @@ pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), B
                 mocap_quat.as_flattened(),
             )?,
         };
+        for part in &spec.parts {
+            insert(spec, part, model, &mut keyframe)?;
+        }
         normalize_quats(model, &mut keyframe);
         model.keyframes.push(keyframe);
     }
@@ -67,6 +70,51 @@ fn complete(
     }
     values.extend_from_slice(&initial[values.len()..]);
     Ok(values)
+}
+
+/// Writes what a keyframe says of one element.
+///
+/// # Errors
+/// An element that is not there, or another number of numbers than it has.
+fn insert(
+    spec: &KeyframeSpec,
+    part: &KeyframePart,
+    model: &Model,
+    keyframe: &mut Keyframe,
+) -> Result<(), BuildError> {
+    let unknown = || spec.error(format!("there is no {:?}", part.element));
+    let (into, ranges) = match part.element {
+        KeyframeElement::Joint(j) => {
+            let joint = model.joints.get(j).ok_or_else(unknown)?;
+            let (q, v) = (joint.qpos, joint.dof);
+            let ranges = [q..q + joint.kind.nq(), v..v + joint.kind.nv()];
+            ([&mut keyframe.qpos, &mut keyframe.qvel], ranges)
+        }
+        KeyframeElement::Actuator(a) => {
+            let actuator = model.actuators.get(a).ok_or_else(unknown)?;
+            let ranges = [actuator.controls.clone(), actuator.acts.clone()];
+            ([&mut keyframe.ctrl, &mut keyframe.act], ranges)
+        }
+        KeyframeElement::Mocap(k) if k < model.nmocap => {
+            let ranges = [3 * k..3 * k + 3, 4 * k..4 * k + 4];
+            let into = [&mut keyframe.mocap_pos, &mut keyframe.mocap_quat];
+            (into, ranges)
+        }
+        KeyframeElement::Mocap(_) => return Err(unknown()),
+    };
+    let given = [&part.first, &part.second];
+    for ((values, range), given) in into.into_iter().zip(ranges).zip(given) {
+        if given.is_empty() {
+            continue;
+        }
+        if given.len() != range.len() {
+            let (found, wanted) = (given.len(), range.len());
+            let message = format!("{:?} has {wanted} numbers, not {found}", part.element);
+            return Err(spec.error(message));
+        }
+        values[range].copy_from_slice(given);
+    }
+    Ok(())
 }
 
 fn normalize_quats(model: &Model, keyframe: &mut Keyframe) {

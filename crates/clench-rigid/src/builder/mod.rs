@@ -83,8 +83,8 @@ pub use physics::{
 };
 pub use placed::surfacevel_in_frame;
 pub use relations::{
-    ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec,
-    TendonSpec, TransmissionSpec, WrapSpec,
+    ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeElement,
+    KeyframePart, KeyframeSpec, PairSpec, TendonSpec, TransmissionSpec, WrapSpec,
 };
 
 pub use sensor_specs::{

@@ -316,6 +316,28 @@ pub struct ExcludeSpec {
     pub origin: Option<Origin>,
 }
 
+/// What a stored state says of one element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyframePart {
+    /// Which one.
+    pub element: KeyframeElement,
+    /// Its part of `qpos`, `ctrl` or `mocap_pos`; empty as in the initial state.
+    pub first: Vec<f64>,
+    /// Its part of `qvel`, `act` or `mocap_quat`; empty as in the initial state.
+    pub second: Vec<f64>,
+}
+
+/// An element that has a part of the state, by its number among those of the model, bodies being in the model's order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyframeElement {
+    /// A joint, with positions and velocities.
+    Joint(usize),
+    /// An actuator, with controls and activations.
+    Actuator(usize),
+    /// A mocap body, with a position and an orientation.
+    Mocap(usize),
+}
+
 /// A stored state; what is `None` is as in the initial state.
 #[derive(Clone, Debug, Default)]
 pub struct KeyframeSpec {
@@ -335,6 +357,8 @@ pub struct KeyframeSpec {
     pub mocap_pos: Option<Vec<f64>>,
     /// Mocap orientations (4 nmocap).
     pub mocap_quat: Option<Vec<f64>>,
+    /// What is said of single elements, over all that.
+    pub parts: Vec<KeyframePart>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

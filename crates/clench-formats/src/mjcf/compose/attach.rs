@@ -50,14 +50,13 @@ impl Composer<'_, '_> {
     fn attach_model(
         &mut self,
         element: &Element,
-        model: &Part,
+        part: &Part,
         wanted: Option<(&str, &str)>,
         namespace: &Namespace,
         depth: usize,
     ) -> Result<Element, LoadError> {
-        self.merge_options(element, &model.settings)?;
-        let model = &model.root;
-        self.note_keyframes(element, model);
+        self.merge_options(element, &part.settings)?;
+        let model = &part.root;
         let mut frame = Element::in_place_of(model, "frame");
         let class = match wanted {
             None => {
@@ -92,9 +91,11 @@ impl Composer<'_, '_> {
                 self.shared.spending,
             )
             .map_err(|excess| element.error(excess))?;
+        let own_actuators = self.list("actuator").len();
         for section in &model.children {
             self.copy_section(element, section, namespace)?;
         }
+        self.attach_keyframes(element, part, &mut frame, own_actuators, namespace)?;
         Ok(frame)
     }
 
@@ -156,16 +157,6 @@ impl Composer<'_, '_> {
             ),
         });
         Ok(())
-    }
-
-    /// A model's own keyframes count, and no other's.
-    fn note_keyframes(&mut self, element: &Element, model: &Element) {
-        let name = element.text("model").unwrap_or_default();
-        if sections(model, "keyframe").any(|section| !section.children.is_empty()) {
-            self.note(format!(
-                "the keyframes of the attached model \"{name}\" are left out; those of the model itself count"
-            ));
-        }
     }
 
     fn note(&mut self, note: String) {

@@ -1,5 +1,6 @@
 //! Expanding the body tree of one model.
 
+use super::keyframes::AttachedKeyframe;
 use super::models::Models;
 use super::names::{Names, Namespace};
 use super::relations;
@@ -19,6 +20,8 @@ pub(super) struct Composer<'a, 's> {
     pub lists: Vec<Element>,
     /// Those parts of the world that are expanded.
     pub worlds: Vec<Element>,
+    /// The keyframes of the models that are attached.
+    pub keyframes: Vec<AttachedKeyframe>,
     pub shared: &'a mut Shared<'s>,
 }
 

@@ -6,12 +6,14 @@
 
 mod attach;
 mod composer;
+pub(crate) mod keyframes;
 mod models;
 mod names;
 mod relations;
 mod replicate;
 mod settings;
 mod shared;
+mod urdf;
 
 use super::document::{self, Element};
 use super::include::Includes;
@@ -20,11 +22,12 @@ use crate::LoadError;
 use crate::mjcf::sections::sections;
 use crate::spending::Spending;
 use composer::Composer;
+use keyframes::AttachedKeyframe;
 use models::{Models, Part};
 use names::Names;
 use settings::Settings;
 use shared::Shared;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A model of several files made into one, and how to read its elements.
@@ -32,6 +35,8 @@ use std::sync::Arc;
 pub(crate) struct Composed {
     pub root: Element,
     pub sources: Sources,
+    /// The keyframes of attached models.
+    pub keyframes: Vec<AttachedKeyframe>,
     /// What a user should know of what was done.
     pub notes: Vec<String>,
     /// What was left out because it is not supported yet.
@@ -45,6 +50,7 @@ pub(crate) struct Composed {
 pub(crate) fn compose(
     mut root: Element,
     file: Option<&Path>,
+    packages: &[PathBuf],
     ignore_unsupported: bool,
     spending: &mut Spending,
 ) -> Result<Composed, LoadError> {
@@ -53,26 +59,30 @@ pub(crate) fn compose(
     let mut shared = Shared {
         sources: Sources::default(),
         spending,
+        packages,
         open: identity.into_iter().collect(),
+        last_number: 0,
         notes: Vec::new(),
         left_out: ignore_unsupported.then(Vec::new),
     };
     shared.check(&mut root)?;
-    compose_model(&mut root, directory, &mut shared)?;
+    let (_, keyframes) = compose_model(&mut root, directory, &mut shared)?;
     Ok(Composed {
         root,
         sources: shared.sources,
+        keyframes,
         notes: shared.notes,
         left_out: shared.left_out.unwrap_or_default(),
     })
 }
 
-/// Replaces every attachment and replication in a model. Returns its options, with what they took from attached models.
+/// Replaces every attachment and replication in a model. Returns its options, with what they took from attached models, and the
+/// keyframes of these.
 fn compose_model(
     root: &mut Element,
     directory: &Path,
     shared: &mut Shared,
-) -> Result<Settings, LoadError> {
+) -> Result<(Settings, Vec<AttachedKeyframe>), LoadError> {
     let source = shared.sources.add(root, directory, shared.spending)?;
     let models = read_models(root, shared)?;
     let (options, others) = std::mem::take(&mut root.children)
@@ -86,6 +96,7 @@ fn compose_model(
         settings: Settings(options),
         lists: take_lists(root),
         worlds: Vec::new(),
+        keyframes: Vec::new(),
         shared,
     };
     composer.add_list_names();
@@ -100,7 +111,7 @@ fn compose_model(
     root.children.append(&mut composer.lists);
     let settings = composer.settings;
     root.children.extend(settings.0.iter().cloned());
-    Ok(settings)
+    Ok((settings, composer.keyframes))
 }
 
 /// Reads the `<model>`s among the assets of a model.
@@ -159,18 +170,24 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError>
     }
     let bytes = shared.spending.read(&path).map_err(unreadable)?;
     let mut root = document::parse(&bytes, &Arc::from(path.to_string_lossy()), shared.spending)?;
-    match root.tag.as_str() {
-        "mujoco" => {}
-        "robot" => return Err(element.error("attaching URDF is not supported yet")),
-        _ => return Err(root.error("the root element of a model is <mujoco>")),
-    }
     let directory = path.parent().unwrap_or(Path::new(""));
+    if document::is_urdf(&root.tag) {
+        root = urdf::as_mjcf(element, &root, directory, shared)?;
+    }
+    if root.tag != "mujoco" {
+        return Err(root.error("the root element of a model is <mujoco> (MJCF) or <robot> (URDF)"));
+    }
     Includes::new(Some(&path), shared.spending).expand(&mut root, directory, shared.spending)?;
     shared.check(&mut root)?;
     shared.open.push(identity);
-    let settings = compose_model(&mut root, directory, shared)?;
+    let (settings, attached) = compose_model(&mut root, directory, shared)?;
     shared.open.pop();
-    Ok(Part { root, settings })
+    let keyframes = keyframes::cut(&mut root, attached, shared)?;
+    Ok(Part {
+        root,
+        settings,
+        keyframes,
+    })
 }
 
 /// Refuses what is no MJCF by what the element says of it, or by its name.

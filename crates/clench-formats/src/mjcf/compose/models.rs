@@ -1,12 +1,14 @@
 //! The models that a model can attach.
 
+use super::keyframes::AttachedKeyframe;
 use super::settings::Settings;
 use crate::mjcf::document::Element;
 
-/// A model that can be attached: all of it, and its options.
+/// A model that can be attached: all of it, its options, and its keyframes in parts.
 pub(super) struct Part {
     pub root: Element,
     pub settings: Settings,
+    pub keyframes: Vec<AttachedKeyframe>,
 }
 
 /// The models that a model can attach, by name, in the order in which they are written.

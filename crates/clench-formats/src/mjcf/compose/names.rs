@@ -61,7 +61,12 @@ const TYPES: &[(&str, Kind)] = &[
 ];
 
 /// The body that has the same name in every model.
-pub(super) const WORLD: &str = "world";
+const WORLD: &str = "world";
+
+/// Whether a name means that body; a site or a geom may have the same one.
+pub(super) fn is_world(kind: Kind, name: &str) -> bool {
+    kind == Kind::Body && name == WORLD
+}
 
 fn lookup<V: Copy>(table: &[(&str, V)], key: &str) -> Option<V> {
     let found = table.iter().find(|(name, _)| *name == key);
@@ -118,9 +123,9 @@ impl Namespace<'_> {
 
     /// As [`apply`](Self::apply), for a name that refers to an element.
     pub(super) fn refer(&self, kind: Kind, name: &str) -> String {
-        match (kind, name) {
-            (Kind::Body, WORLD) => name.to_owned(),
-            _ => self.apply(name),
+        match is_world(kind, name) {
+            true => name.to_owned(),
+            false => self.apply(name),
         }
     }
 
@@ -213,7 +218,7 @@ impl Names {
 
     /// Whether there is such an element.
     pub(super) fn has(&self, kind: Kind, name: &str) -> bool {
-        (kind, name) == (Kind::Body, WORLD) || self.0.contains_key(&(kind, name.to_owned()))
+        is_world(kind, name) || self.0.contains_key(&(kind, name.to_owned()))
     }
 }
 

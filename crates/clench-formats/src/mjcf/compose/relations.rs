@@ -4,7 +4,7 @@
 //! and a sensor with two objects one of them is enough, and of a tendon one element of its path: the rest is then looked for under
 //! its old name. What refers to nothing, such as a clock, is copied always; an actuator of the world never.
 
-use super::names::{Kind, Names, Namespace, Reference, WORLD, references};
+use super::names::{Kind, Names, Namespace, Reference, is_world, references};
 use crate::mjcf::document::Element;
 use std::collections::HashSet;
 
@@ -52,11 +52,12 @@ pub(super) fn copy(
         _ => {
             let parts = std::iter::once(element).chain(&element.children);
             // The world is everybody's, but what acts on it belongs to its own model.
-            let acts_on_world = |name: &str| section == "actuator" && name == WORLD;
+            let acts_on_world =
+                |kind: Kind, name: &str| section == "actuator" && is_world(kind, name);
             let renamed = |part: &Element| {
                 references(part).iter().all(|reference| {
                     let name = target(part, *reference, namespace);
-                    names.has(reference.kind, &name) && !acts_on_world(&name)
+                    names.has(reference.kind, &name) && !acts_on_world(reference.kind, &name)
                 })
             };
             if !parts.clone().all(renamed) {
@@ -98,7 +99,7 @@ fn follow(
     let old = |r: &Reference| (r.kind, element.attributes[r.attribute].1.clone());
     let is_new = |r: &Reference| {
         let (kind, name) = old(r);
-        name != WORLD && names.has(kind, &namespace.refer(kind, &name))
+        !is_world(kind, &name) && names.has(kind, &namespace.refer(kind, &name))
     };
     if group.iter().all(is_new) {
         for &reference in group {

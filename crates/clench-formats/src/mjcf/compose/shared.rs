@@ -12,8 +12,12 @@ use std::path::PathBuf;
 pub(super) struct Shared<'a> {
     pub sources: Sources,
     pub spending: &'a mut Spending,
+    /// Folders of packages, where URDF files look for meshes.
+    pub packages: &'a [PathBuf],
     /// The files of the models that are being read, the outermost first.
     pub open: Vec<PathBuf>,
+    /// The number that was last given to an element.
+    pub last_number: u32,
     pub notes: Vec<String>,
     /// What was left out because it is not supported yet, if it may be.
     pub left_out: Option<Vec<String>>,
@@ -26,6 +30,12 @@ impl Shared<'_> {
             leave_out(root, left_out);
         }
         schema::check(root)
+    }
+
+    /// A number that no element has.
+    pub(super) fn next_number(&mut self) -> u32 {
+        self.last_number += 1;
+        self.last_number
     }
 
     /// Takes copies of an element and all in it, before they are made.

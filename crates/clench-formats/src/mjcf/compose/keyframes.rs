@@ -1,0 +1,245 @@
+//! Keyframes of attached models.
+//!
+//! A keyframe is the numbers of a whole model, one after the other. Before a model is attached, its keyframes are cut into what each
+//! says of single joints, mocap bodies and actuators, and these elements are numbered; the number goes with an element wherever it is
+//! copied. In the end a keyframe says what it says of those elements that are there. As in MuJoCo 4.0 keyframes are named with the
+//! prefix of the attachment, and of replicas the first is meant.
+
+use super::composer::Composer;
+use super::models::Part;
+use super::names::Namespace;
+use super::shared::Shared;
+use crate::LoadError;
+use crate::document::Element;
+use crate::mjcf::appearance::Palette;
+use crate::mjcf::body::{self, BodyReader};
+use crate::mjcf::sections::{entries, sections};
+use crate::mjcf::{keyframe, relations};
+use clench_rigid::builder::{KeyframeElement, KeyframePart, KeyframeSpec};
+use std::collections::HashMap;
+
+/// A keyframe in parts.
+#[derive(Clone, Debug)]
+pub(crate) struct AttachedKeyframe {
+    /// Its name, time and place; it has no numbers of its own.
+    spec: KeyframeSpec,
+    parts: Vec<Fragment>,
+}
+
+/// What a keyframe says of an element.
+#[derive(Clone, Debug)]
+struct Fragment {
+    /// The number of the element.
+    number: u32,
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+/// Cuts the keyframes of a model that will be attached, and numbers its elements. Those of models that it attaches itself follow.
+///
+/// # Errors
+/// What cannot be read of the model; a vector that is longer than the model's.
+pub(super) fn cut(
+    root: &mut Element,
+    attached: Vec<AttachedKeyframe>,
+    shared: &mut Shared,
+) -> Result<Vec<AttachedKeyframe>, LoadError> {
+    if entries(root, "keyframe").next().is_none() {
+        return Ok(attached);
+    }
+    number(root, shared);
+    let layout = Layout::read(root, shared)?;
+    let own = entries(root, "keyframe").map(|key| layout.cut(key));
+    let mut keyframes = own.collect::<Result<Vec<_>, _>>()?;
+    keyframes.extend(attached);
+    Ok(keyframes)
+}
+
+/// Numbers what has a part of the state.
+fn number(root: &mut Element, shared: &mut Shared) {
+    let tree = root.children.iter_mut();
+    let mut pending: Vec<&mut Element> = tree
+        .filter(|section| ["worldbody", "actuator"].contains(&section.tag.as_str()))
+        .flat_map(|section| &mut section.children)
+        .collect();
+    while let Some(element) = pending.pop() {
+        if element.number == 0 {
+            element.number = shared.next_number();
+        }
+        pending.extend(&mut element.children);
+    }
+}
+
+/// Which numbers of a model's state belong to which element.
+struct Layout {
+    /// Number, positions and velocities of each joint.
+    joints: Vec<(u32, [usize; 2])>,
+    /// Number, controls and activations of each actuator.
+    actuators: Vec<(u32, [usize; 2])>,
+    /// Number of each mocap body.
+    mocaps: Vec<(u32, [usize; 2])>,
+}
+
+impl Layout {
+    fn read(root: &Element, shared: &mut Shared) -> Result<Self, LoadError> {
+        let palette = Palette::new(root, &[]);
+        let mut bodies = vec![body::world()];
+        let mut reader = BodyReader::new(&shared.sources, &palette, &mut bodies, shared.spending);
+        for section in sections(root, "worldbody") {
+            reader.read_world(section)?;
+        }
+        let numbers = reader.numbers();
+        let kinds = bodies.iter().flat_map(|body| &body.joints);
+        let sizes = kinds.map(|joint| [joint.kind.nq(), joint.kind.nv()]);
+        let mut actuators = Vec::new();
+        for element in entries(root, "actuator") {
+            let spec = relations::read_actuator(element, &shared.sources)?;
+            let counts = spec
+                .counts()
+                .map_err(|error| element.error(error.message))?;
+            actuators.push((element.number, counts));
+        }
+        Ok(Layout {
+            joints: numbers.joints.into_iter().zip(sizes).collect(),
+            actuators,
+            mocaps: numbers.mocaps.into_iter().map(|n| (n, [3, 4])).collect(),
+        })
+    }
+
+    fn cut(&self, element: &Element) -> Result<AttachedKeyframe, LoadError> {
+        let mut spec = keyframe::read(element)?;
+        let mut parts = Vec::new();
+        let vectors = [
+            (
+                &self.joints,
+                ["qpos", "qvel"],
+                [spec.qpos.take(), spec.qvel.take()],
+            ),
+            (
+                &self.actuators,
+                ["ctrl", "act"],
+                [spec.ctrl.take(), spec.act.take()],
+            ),
+            (
+                &self.mocaps,
+                ["mpos", "mquat"],
+                [spec.mocap_pos.take(), spec.mocap_quat.take()],
+            ),
+        ];
+        for (elements, names, given) in vectors {
+            let given = given.map(Option::unwrap_or_default);
+            for k in [0, 1] {
+                let mut end = 0;
+                let mut ends = elements.iter().map(|(_, counts)| {
+                    end += counts[k];
+                    end
+                });
+                let count = given[k].len();
+                if count > 0 && !ends.any(|end| end == count) {
+                    let what =
+                        "which is more than the model has, or ends within one of its elements";
+                    return Err(element.error(format!("{} has {count} numbers, {what}", names[k])));
+                }
+            }
+            let mut rest = given.each_ref().map(Vec::as_slice);
+            for &(number, counts) in elements {
+                let [first, second] = [0, 1].map(|k| take(&mut rest[k], counts[k]));
+                parts.push(Fragment {
+                    number,
+                    first,
+                    second,
+                });
+            }
+        }
+        Ok(AttachedKeyframe { spec, parts })
+    }
+}
+
+/// Takes the first numbers of a vector; none where it has fewer, as where a keyframe says only how the state begins.
+fn take(rest: &mut &[f64], count: usize) -> Vec<f64> {
+    match rest.split_at_checked(count) {
+        Some((taken, others)) => {
+            *rest = others;
+            taken.to_vec()
+        }
+        None => Vec::new(),
+    }
+}
+
+impl Composer<'_, '_> {
+    /// Adds the keyframes of a model of which this part of the tree and these last actuators are copies.
+    pub(super) fn attach_keyframes(
+        &mut self,
+        element: &Element,
+        model: &Part,
+        tree: &mut Element,
+        actuators_before: usize,
+        namespace: &Namespace,
+    ) -> Result<(), LoadError> {
+        if model.keyframes.is_empty() {
+            return Ok(());
+        }
+        let mut list = std::mem::take(self.list("actuator"));
+        let mut pending = vec![tree];
+        pending.extend(list.iter_mut().skip(actuators_before));
+        let mut renumbered = HashMap::new();
+        while let Some(copy) = pending.pop() {
+            if copy.number != 0 {
+                let new = renumbered.entry(copy.number);
+                copy.number = *new.or_insert_with(|| self.shared.next_number());
+            }
+            pending.extend(&mut copy.children);
+        }
+        *self.list("actuator") = list;
+        for keyframe in &model.keyframes {
+            let mut copy = keyframe.clone();
+            copy.parts
+                .retain_mut(|part| match renumbered.get(&part.number) {
+                    Some(&new) => {
+                        part.number = new;
+                        true
+                    }
+                    None => false,
+                });
+            if !copy.spec.name.is_empty() {
+                copy.spec.name = namespace.apply(&copy.spec.name);
+            }
+            let bytes = copy.parts.len() * size_of::<Fragment>();
+            let charged = self.shared.spending.bytes(bytes as u64);
+            charged.map_err(|excess| element.error(excess))?;
+            self.keyframes.push(copy);
+        }
+        Ok(())
+    }
+}
+
+/// What elements the numbers mean in a model that is read: joints and mocap bodies in order, and its actuators.
+pub(crate) fn resolve(
+    keyframes: &[AttachedKeyframe],
+    root: &Element,
+    numbers: body::Numbers,
+) -> Vec<KeyframeSpec> {
+    let mut meant = HashMap::new();
+    let mut mean = |numbers: Vec<u32>, element: fn(usize) -> KeyframeElement| {
+        for (index, number) in numbers.into_iter().enumerate() {
+            meant.entry(number).or_insert(element(index));
+        }
+    };
+    mean(numbers.joints, KeyframeElement::Joint);
+    mean(numbers.mocaps, KeyframeElement::Mocap);
+    let actuators = entries(root, "actuator").map(|actuator| actuator.number);
+    mean(actuators.collect(), KeyframeElement::Actuator);
+    let spec = |keyframe: &AttachedKeyframe| KeyframeSpec {
+        parts: (keyframe.parts.iter())
+            .filter_map(|part| {
+                Some(KeyframePart {
+                    element: *meant.get(&part.number)?,
+                    first: part.first.clone(),
+                    second: part.second.clone(),
+                })
+            })
+            .collect(),
+        ..keyframe.spec.clone()
+    };
+    keyframes.iter().map(spec).collect()
+}

@@ -1,0 +1,36 @@
+//! URDF files that are attached: read as a model, and written as the MJCF that means the same.
+
+use super::shared::Shared;
+use crate::LoadError;
+use crate::document::{self, Element};
+use crate::mjcf::SaveModel;
+use crate::mjcf::sections::entries;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The document of an MJCF model that means what a URDF file in a directory does.
+///
+/// As in MuJoCo 4.0, the model that it is attached to says whether links that no joint moves are fused, the file itself whether what is
+/// only seen is left out. Options are those that the file gives: a saved model has all of them.
+///
+/// # Errors
+/// What cannot be read or built, or not be said in MJCF.
+pub(super) fn as_mjcf(
+    element: &Element,
+    root: &Element,
+    directory: &Path,
+    shared: &mut Shared,
+) -> Result<Element, LoadError> {
+    let mut builder = crate::urdf::read(root, directory, shared.packages, shared.spending)?;
+    builder.compiler.fusestatic = false;
+    shared.notes.append(&mut builder.notes);
+    let text = builder.build()?.to_mjcf();
+    let text = text.map_err(|error| element.error(error.to_string()))?;
+    let file: Arc<str> = format!("{}, written as MJCF", root.origin.file).into();
+    let mut written = document::parse(text.as_bytes(), &file, shared.spending)?;
+    let has_options = entries(root, "mujoco").any(|section| section.tag == "option");
+    if !has_options {
+        written.children.retain(|section| section.tag != "option");
+    }
+    Ok(written)
+}
