@@ -9,6 +9,8 @@ from random_models import rules, search
 
 SEEDS = range(1, 1541)  # of these MuJoCo compiles a thousand
 MIN_COMPARED = 1000
+# MuJoCo ends the process where touch is felt in a mesh; `models/sensors.xml` has such a site.
+NEVER = {("site", "mesh")}
 
 
 @pytest.fixture(scope="module")
@@ -28,4 +30,5 @@ def test_every_attribute_that_is_read_occurs(findings):
     missing = [
         (element, name) for element, rule in rules.rules().items() for name in rule["read"] if not findings.used[element, name]
     ]
+    missing = [pair for pair in missing if pair not in NEVER]
     assert not missing, f"random models never have {missing}: see random_models/values.py"

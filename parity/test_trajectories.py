@@ -6,6 +6,8 @@ small enough to mean anything. The start is moved off the model's by a thousandt
 models begin with a contact at distance exactly zero, where the last bit decides whether it exists.
 """
 
+import shutil
+
 import mujoco
 import numpy as np
 import pytest
@@ -56,9 +58,10 @@ def prepare(model, folder):
     qpos, qvel = mjmodel.qpos0.copy(), 0.1 * rng.standard_normal(mjmodel.nv)
     mujoco.mj_integratePos(mjmodel, qpos, rng.standard_normal(mjmodel.nv), 1e-3)
     numbers = lambda array: " ".join(f"{x:.17g}" for x in array)
+    shutil.copytree(model.parent, folder, dirs_exist_ok=True)  # files are found from the file that includes
     path = folder / "start.xml"
     path.write_text(
-        f'<mujoco>\n  <include file="{model}"/>\n  <keyframe>\n'
+        f'<mujoco>\n  <include file="{model.name}"/>\n  <keyframe>\n'
         f'    <key name="start" qpos="{numbers(qpos)}" qvel="{numbers(qvel)}"/>\n  </keyframe>\n</mujoco>\n'
     )
     return path, controls.repeat(CONTROL_HOLD, axis=0)
