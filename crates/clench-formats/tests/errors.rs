@@ -311,11 +311,19 @@ fn errors_of_the_model_are_located_too() {
 }
 
 #[test]
+fn a_site_with_the_volume_of_a_mesh_needs_one() {
+    expect(
+        "<site type='mesh'/>",
+        "unnamed site of body \"world\"",
+        "must refer to a mesh",
+    );
+}
+
+#[test]
 fn what_is_not_supported_yet_is_an_error_that_says_so() {
     let later = "not supported yet";
     for (line, element) in [
         ("<geom type='sdf' mesh='m'/>", "geom"),
-        ("<site type='mesh'/>", "site"),
         ("<frame scale='2'/>", "frame"),
         ("<flexcomp/>", "flexcomp"),
         ("<body><joint springyield='1'/></body>", "joint"),

@@ -2,9 +2,9 @@
 
 use crate::check::{Simulation, check};
 use crate::device::{Device, DeviceInfo};
-use crate::error::{GpuError, GpuFault};
+use crate::error::GpuError;
 use crate::fields::{self, Fields};
-use crate::kernels::{ASIDE, Memory, constants};
+use crate::kernels::{Memory, constants};
 use crate::parameters::Base;
 use crate::pipelines::{Arrays, Pipelines, layout};
 use crate::tables::{Capacity, Tables};
@@ -12,7 +12,6 @@ use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
 use clench_rigid::settings::StepSettings;
-use clench_solver::Status;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -29,19 +28,6 @@ pub struct GpuOptions {
     pub options: RigidOptions,
     /// A part of the name of the device to use; by default the first of [`devices`](crate::devices).
     pub device: Option<String>,
-}
-
-/// How the last solve of an environment went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GpuSolve {
-    /// How it ended.
-    pub status: Status,
-    /// Newton iterations.
-    pub iterations: usize,
-    /// Contacts.
-    pub contacts: usize,
-    /// Rows of the convex problem.
-    pub rows: usize,
 }
 
 /// Many environments of one model on a graphics device, in single precision.
@@ -62,7 +48,7 @@ pub struct GpuBatch {
     pub(crate) own: Vec<f32>,
     pub(crate) base: Base,
     pipelines: Pipelines,
-    capacity: Capacity,
+    pub(crate) capacity: Capacity,
     pub(crate) settings: StepSettings,
     model: Arc<Model>,
 }
@@ -189,14 +175,6 @@ impl GpuBatch {
         })
     }
 
-    /// Lets only those take part in what follows that are `running`, from step 0 on.
-    pub(crate) fn choose(&mut self, running: &[bool]) {
-        let code = |&runs: &bool| if runs { 0 } else { ASIDE };
-        let codes = Vec::from_iter(running.iter().map(code));
-        self.write_report("status", &codes);
-        self.write_report("steps", &vec![0; self.count]);
-    }
-
     /// As [`forward`](Self::forward), and notes in `trouble` what went wrong.
     ///
     /// # Errors
@@ -209,14 +187,6 @@ impl GpuBatch {
             let forward = pipelines.forward.iter().chain(observed);
             batch.encode(encoder, forward.chain([&pipelines.verdict]));
         })
-    }
-
-    /// Replaces a word of all environments.
-    fn write_report(&self, name: &str, words: &[u32]) {
-        if let Some(field) = self.reports.find(name) {
-            let start = 4 * (field.place * self.count) as u64;
-            (self.device.queue).write_buffer(&self.arrays.reports, start, words.as_bytes());
-        }
     }
 
     /// Computes as [`forward`](Self::forward) does, one kernel after the other: how long the host waited for each, s. That is more
@@ -308,76 +278,12 @@ impl GpuBatch {
         self.pipelines.observe(&self.device, self.count, sensors)
     }
 
-    /// Forgets what went wrong in a forward pass that was no step.
-    fn clear_trouble(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some(field) = self.reports.find("trouble").filter(|_| self.count > 0) {
-            let bytes = 4 * self.count as u64;
-            encoder.clear_buffer(
-                &self.arrays.reports,
-                field.place as u64 * bytes,
-                Some(bytes),
-            );
-        }
-    }
-
     pub(crate) fn check_env(&self, env: usize) -> Result<(), GpuError> {
         let count = self.count;
         if env < count {
             return Ok(());
         }
         Err(GpuError::NoSuchEnvironment { env, count })
-    }
-
-    /// Why each environment stands still, if it does.
-    ///
-    /// # Errors
-    /// That the device was lost.
-    pub fn statuses(&self) -> Result<Vec<Option<GpuFault>>, GpuError> {
-        self.faults("status")
-    }
-
-    /// The faults that the codes of a word stand for.
-    pub(crate) fn faults(&self, word: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
-        let limit = self.capacity.contacts;
-        let fault = |&code: &u32| match code {
-            0 | ASIDE => None,
-            1 => Some(GpuFault::Singular),
-            3 => Some(GpuFault::ContactOverflow { limit }),
-            _ => Some(GpuFault::Diverged),
-        };
-        Ok(self.report(word)?.iter().map(fault).collect())
-    }
-
-    /// How many steps each environment has made since its last reset.
-    ///
-    /// # Errors
-    /// That the device was lost.
-    pub fn steps(&self) -> Result<Vec<u32>, GpuError> {
-        self.report("steps")
-    }
-
-    /// How the last solve of each environment went; of a step by Runge–Kutta, that of its last stage.
-    ///
-    /// # Errors
-    /// That the device was lost.
-    pub fn solves(&self) -> Result<Vec<GpuSolve>, GpuError> {
-        let status = |code: u32| match code {
-            0 => Status::Unconstrained,
-            2 => Status::Converged,
-            3 => Status::NoProgress,
-            4 => Status::IterationLimit,
-            _ => Status::NonFinite,
-        };
-        let [ended, niter, ncon, nrow] =
-            ["solve_status", "niter", "ncon", "nrow"].map(|name| self.report(name));
-        let (ended, niter, ncon, nrow) = (ended?, niter?, ncon?, nrow?);
-        let solve = |env: usize| GpuSolve {
-            status: status(ended[env]),
-            iterations: niter[env] as usize,
-            contacts: ncon[env] as usize,
-            rows: nrow[env] as usize,
-        };
-        Ok((0..self.count).map(solve).collect())
     }
 
     /// How many environments there are.

@@ -18,10 +18,12 @@ mod fields;
 mod kernels;
 mod parameters;
 mod pipelines;
+mod reports;
 mod tables;
 mod transfer;
 
 pub use backend::batch;
-pub use batch::{GpuBatch, GpuOptions, GpuSolve};
+pub use batch::{GpuBatch, GpuOptions};
 pub use device::{DeviceInfo, devices};
 pub use error::{GpuError, GpuFault, Refusal};
+pub use reports::GpuSolve;
