@@ -102,7 +102,7 @@ pub(super) fn add_site(
         group: spec.group,
         mesh: mesh.map(|(index, _)| index),
     });
-    let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| mesh.half_box);
+    let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| mesh.reach());
     model.params.site_size.push(size);
     let (pos, quat) = place(moved, spec.pos, spec.quat);
     model.params.site_pos.push(pos);
