@@ -4,6 +4,7 @@ use crate::batch::{AnyBatch, Batch};
 use crate::busy::lock;
 use crate::row_sim::{AnySim, RowSim};
 use crate::sim::Sim;
+use clench::rigid::profile::Profile;
 use clench::{Model, Precision, RigidOptions, SimError};
 use clench_view::Viewed;
 use pyo3::exceptions::PyTypeError;
@@ -56,6 +57,14 @@ impl<S: Precision> Viewed for RowSim<S> {
 
     fn fault(&self, _: usize) -> Option<String> {
         None
+    }
+
+    fn run_clocks(&mut self, running: bool) {
+        self.sim.run_clocks(running);
+    }
+
+    fn profile(&mut self) -> Profile {
+        self.sim.profile()
     }
 }
 

@@ -9,28 +9,36 @@ import { nameOf, type Scene } from "./scene.ts";
 /** Moments in a plot. */
 const ROOM = 600;
 const COLOURS = ["#2f7de1", "#f08a24", "#2eb872"];
+const STAGE_COLOURS = ["#8e9aa6", "#2f7de1", "#2eb872", "#e8b730", "#f0642f", "#9a6ad6"];
 
+/** What can be plotted: a number, or parts on top of each other. */
 interface Source {
   title: string;
-  read(frame: Frame): number;
+  /** Names of the parts, the lowest first; none of a single number. */
+  parts: string[];
+  read(frame: Frame): ArrayLike<number>;
 }
 
 function sources(scene: Scene): Source[] {
   const all: Source[] = PLOTS.map(({ name, unit }, index) => ({
     title: unit ? `${name} (${unit})` : name,
-    read: (frame) => frame.rows.plots.data[index],
+    parts: [],
+    read: (frame) => frame.rows.plots.data.subarray(index, index + 1),
   }));
+  all.push({ title: "time by stage (µs)", parts: scene.stages, read: (frame) => frame.rows.stages.data });
   scene.joints.forEach((joint, index) => {
     if (joint.kind !== "slide" && joint.kind !== "hinge") return;
     const name = nameOf("joint", index, joint.name);
-    all.push({ title: `${name}: position`, read: (frame) => frame.rows.qpos.data[joint.qpos] });
-    all.push({ title: `${name}: velocity`, read: (frame) => frame.rows.qvel.data[joint.dof] });
+    const { qpos, dof } = joint;
+    all.push({ title: `${name}: position`, parts: [], read: (frame) => frame.rows.qpos.data.subarray(qpos, qpos + 1) });
+    all.push({ title: `${name}: velocity`, parts: [], read: (frame) => frame.rows.qvel.data.subarray(dof, dof + 1) });
   });
   scene.sensors.forEach((sensor, index) => {
     for (let k = 0; k < sensor.count; k++) {
       const part = sensor.count > 1 ? ` [${k}]` : "";
       const title = `sensor ${nameOf("", index, sensor.name)}${part}`;
-      all.push({ title, read: (frame) => frame.rows.sensors.data[sensor.start + k] });
+      const at = sensor.start + k;
+      all.push({ title, parts: [], read: (frame) => frame.rows.sensors.data.subarray(at, at + 1) });
     }
   });
   return all;
@@ -39,41 +47,62 @@ function sources(scene: Scene): Source[] {
 class Plot {
   readonly box: HTMLElement;
   private times: number[] = [];
-  private values: number[] = [];
+  /** Of each part what it and those below it are together, the highest first: the lower ones are drawn over it. */
+  private values: number[][] = [];
   private plot: uPlot;
+  private names: HTMLElement;
 
   constructor(
     private all: Source[],
     private source: number,
-    colour: string,
+    private colour: string,
   ) {
     const options = all.map(({ title }, index): [string, string] => [`${index}`, title]);
     const list = choice(options, `${source}`, (value) => {
       this.source = Number(value);
       this.clear();
+      this.plot.destroy();
+      this.plot = this.made();
     });
-    this.box = element("div", { className: "plot" }, list);
-    this.plot = new uPlot(
+    this.names = element("div", { className: "parts" });
+    this.box = element("div", { className: "plot" }, list, this.names);
+    this.clear();
+    this.plot = this.made();
+  }
+
+  /** The plot of what is chosen. */
+  private made(): uPlot {
+    const { parts } = this.all[this.source];
+    const names = parts.map((name, k) => {
+      const label = element("span", {}, name);
+      label.style.color = STAGE_COLOURS[k];
+      return label;
+    });
+    this.names.replaceChildren(...names);
+    const stacked = parts.map((_, k) => ({ fill: STAGE_COLOURS[k], width: 0, points: { show: false } })).reverse();
+    const line = { stroke: this.colour, width: 1.5, points: { show: false } };
+    return new uPlot(
       {
         width: 250,
         height: 104,
         legend: { show: false },
         cursor: { show: false },
-        scales: { x: { time: false } },
+        // Areas that lie on each other begin at nothing.
+        scales: { x: { time: false }, y: parts.length > 0 ? { range: (_, __, most) => [0, most] } : {} },
         axes: [
           { size: 22, font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
           { size: 46, values: (_, ticks) => ticks.map(tick), font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
         ],
-        series: [{}, { stroke: colour, width: 1.5, points: { show: false } }],
+        series: [{}, ...(parts.length > 0 ? stacked : [line])],
       },
-      [[], []],
+      [this.times, ...this.values],
       this.box,
     );
   }
 
   clear(): void {
     this.times = [];
-    this.values = [];
+    this.values = Array.from({ length: Math.max(1, this.all[this.source].parts.length) }, () => []);
   }
 
   add(frame: Frame): void {
@@ -81,19 +110,26 @@ class Plot {
     if (last === frame.time) return;
     if (last !== undefined && frame.time < last) this.clear();
     this.times.push(frame.time);
-    this.values.push(this.all[this.source].read(frame));
-    if (this.times.length > ROOM) {
-      this.times.shift();
-      this.values.shift();
+    const numbers = this.all[this.source].read(frame);
+    let sum = 0;
+    for (let k = 0; k < this.values.length; k++) {
+      sum += numbers[k];
+      this.values[this.values.length - 1 - k].push(sum);
     }
+    if (this.times.length > ROOM) for (const row of [this.times, ...this.values]) row.shift();
   }
 
   draw(): void {
-    this.plot.setData([this.times, this.values]);
+    this.plot.setData([this.times, ...this.values]);
   }
 
   get count(): number {
     return this.times.length;
+  }
+
+  /** The last of what is drawn, the highest first. */
+  get last(): number[] {
+    return this.values.map((row) => row.at(-1) ?? NaN);
   }
 }
 
@@ -121,6 +157,11 @@ export class Plots {
   draw(): void {
     this.turn = (this.turn + 1) % this.plots.length;
     this.plots[this.turn].draw();
+  }
+
+  /** The last of what each draws, the highest first. */
+  lasts(): number[][] {
+    return this.plots.map((plot) => plot.last);
   }
 
   /** Moments in each. */

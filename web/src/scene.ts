@@ -67,6 +67,8 @@ export interface Scene {
   name: string;
   timestep: number;
   sections: { name: string; width: number }[];
+  /** Names of the stages of a step whose times are in frames. */
+  stages: string[];
   bodies: Body[];
   geoms: Geom[];
   sites: Placed[];

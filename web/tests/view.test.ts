@@ -18,7 +18,7 @@ interface Seen {
     camera: { projectionMatrix: unknown };
     poses: { elements: number[] }[];
   };
-  plots: { counts(): number[] };
+  plots: { counts(): number[]; lasts(): number[][] };
 }
 declare const window: { clench: Seen };
 
@@ -112,6 +112,32 @@ test("pause, step, reset and keys do what they say", { skip }, async () => {
     await until(page, () => window.clench.frame.paused && Math.abs(window.clench.frame.time - 0.1) < 0.02);
     await past.fill("0.3");
     await until(page, () => Math.abs(window.clench.frame.time - 0.3) < 0.02);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("the time of a step is told by stage", { skip }, async () => {
+  const program = await view("models/humanoid.xml");
+  try {
+    const page = await open(browser, program.url);
+    await page.locator(".plot select").first().selectOption({ label: "time by stage (µs)" });
+    await until(page, () => window.clench.plots.counts()[0] > 5);
+    assert.deepEqual(await page.locator(".plot").first().locator(".parts span").allTextContents(), [
+      "kinematics",
+      "collision",
+      "forces",
+      "assembly",
+      "solve",
+      "rest",
+    ]);
+    const [sums, step] = await page.evaluate(() => [
+      window.clench.plots.lasts()[0],
+      window.clench.frame.rows.plots.data[7],
+    ]);
+    for (let k = 1; k < sums.length; k++) assert.ok(sums[k - 1] > sums[k], `${sums}`);
+    assert.ok(sums.length === 6 && sums[5] > 0 && sums[0] <= step && sums[0] > 0.3 * step, `${sums} of ${step}`);
     await page.close();
   } finally {
     await program.end();

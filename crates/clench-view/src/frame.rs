@@ -5,6 +5,7 @@
 
 use crate::drag::{Drag, Turn};
 use crate::marks::Mark;
+use crate::stages::StageTimes;
 use clench::SimError;
 use clench::math::{Mask, Scalar, Vec3};
 use clench::rigid::constraint::ConstraintSource;
@@ -34,6 +35,8 @@ pub struct Timing {
     pub step: Duration,
     /// Simulated over real time.
     pub speed: f64,
+    /// How it splits over [`STAGES`](crate::stages::STAGES).
+    pub stages: StageTimes,
 }
 
 /// What a frame tells besides the simulation.
@@ -145,6 +148,8 @@ sections! {
     /// Plotted: iterations, log10 of the duality gap and of the gradient, deepest penetration (m), contacts, potential
     /// and kinetic energy (J), time of a step (µs), simulated over real time.
     plots: 9 => plots(s, out);
+    /// The time of each stage of a step (µs), in the order of `STAGES`.
+    stages: 1 => out.extend(s.besides.timing.stages.iter().map(|time| 1e6 * time.as_secs_f32()));
     /// What users draw: kind (0 sphere, 1 line, 2 arrow, 3 text), both ends, radius, colour and opacity.
     marks: 12 => s.besides.marks.iter().for_each(|mark| out.extend(mark.row()));
     /// The environment of a batch whose contacts these are, and the first of those that are seen.

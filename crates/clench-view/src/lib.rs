@@ -23,6 +23,7 @@ pub mod scene;
 mod server;
 mod shared;
 mod socket;
+pub mod stages;
 pub mod surfaces;
 pub mod viewed;
 

@@ -4,6 +4,7 @@ use crate::command::Command;
 use crate::frame::Timing;
 use crate::interaction::Interaction;
 use crate::marks::Marks;
+use crate::stages::StageClock;
 use crate::viewed::Viewed;
 use crate::{Page, Scene, ServeError, Server, ServerOptions};
 use clench::SimError;
@@ -35,6 +36,7 @@ pub struct PassiveViewer {
     /// When the loop went on, and its simulated time then.
     left: Option<(Instant, f64)>,
     timing: Timing,
+    stages: StageClock,
 }
 
 impl PassiveViewer {
@@ -48,6 +50,7 @@ impl PassiveViewer {
         interaction: Interaction,
         viewed: &mut V,
     ) -> Result<Self, ServeError> {
+        viewed.run_clocks(true);
         let scene = Scene::new(viewed.model())
             .of_envs(viewed.envs())
             .without_past();
@@ -60,6 +63,7 @@ impl PassiveViewer {
             published: None,
             left: None,
             timing: Timing::default(),
+            stages: StageClock::default(),
         };
         viewer.show(viewed);
         Ok(viewer)
@@ -77,7 +81,7 @@ impl PassiveViewer {
     /// A state that cannot be pulled at.
     pub fn sync<V: Viewed>(&mut self, viewed: &mut V) -> Result<Option<Duration>, SimError> {
         let env = self.interaction.selection.env;
-        self.measure(viewed.time(env), viewed.model().params.timestep);
+        self.measure(viewed, env);
         for command in self.server.commands() {
             self.take(viewed, command);
         }
@@ -96,6 +100,15 @@ impl PassiveViewer {
             self.left = Some((Instant::now(), viewed.time(env)));
         }
         Ok(wait)
+    }
+
+    /// Leaves what is viewed as it would be without a viewer: nothing pulls at it, and no clock runs.
+    ///
+    /// # Errors
+    /// An environment that is no longer there.
+    pub fn leave<V: Viewed>(&mut self, viewed: &mut V) -> Result<(), SimError> {
+        viewed.run_clocks(false);
+        self.interaction.release(viewed)
     }
 
     /// Shows what is now.
@@ -127,12 +140,16 @@ impl PassiveViewer {
     }
 
     /// How long the loop was away, and how far it came.
-    fn measure(&mut self, time: f64, timestep: f64) {
+    fn measure<V: Viewed>(&mut self, viewed: &mut V, env: usize) {
         let Some((when, before)) = self.left.take() else {
             return;
         };
-        let steps = ((time - before) / timestep).round().max(1.0);
+        let time = viewed.time(env);
+        let steps = ((time - before) / viewed.model().params.timestep)
+            .round()
+            .max(1.0);
         self.timing.step = when.elapsed().div_f64(steps);
+        self.timing.stages = self.stages.since_last(&viewed.profile(), steps as u32);
         if let Some((when, before)) = self.anchor {
             self.timing.speed = (time - before) / when.elapsed().as_secs_f64().max(1e-9);
         }

@@ -4,6 +4,7 @@ use crate::command::Command;
 use crate::frame::Timing;
 use crate::interaction::Interaction;
 use crate::marks::Marks;
+use crate::stages::StageClock;
 use crate::viewed::Stepped;
 use clench::{SimError, State};
 use std::collections::VecDeque;
@@ -24,11 +25,13 @@ pub struct Player<V: Stepped> {
     /// The remembered moment that is looked at: those after it are forgotten with the next step.
     at: Option<usize>,
     timing: Timing,
+    stages: StageClock,
 }
 
 impl<V: Stepped> Player<V> {
     /// A simulation that begins to move, or stands still at first.
-    pub fn new(viewed: V, paused: bool) -> Self {
+    pub fn new(mut viewed: V, paused: bool) -> Self {
+        viewed.run_clocks(true);
         Player {
             viewed,
             interaction: Interaction::new(paused),
@@ -36,6 +39,7 @@ impl<V: Stepped> Player<V> {
             past: VecDeque::new(),
             at: None,
             timing: Timing::default(),
+            stages: StageClock::default(),
         }
     }
 
@@ -87,6 +91,7 @@ impl<V: Stepped> Player<V> {
         }
         if steps > 0 {
             self.timing.step = start.elapsed() / steps;
+            self.timing.stages = self.stages.since_last(&self.viewed.profile(), steps);
         }
         // What could not be done in time is not made up for.
         self.due = self.due.clamp(0.0, timestep);

@@ -1,6 +1,7 @@
 //! What there is to draw: everything of a model that stays as it is while it moves. The page reads it as JSON.
 
 use crate::frame::SECTIONS;
+use crate::stages::STAGES;
 use crate::surfaces;
 use clench::Model;
 use clench::collide::ShapeKind;
@@ -20,6 +21,8 @@ pub struct Scene {
     timestep: f64,
     /// Names and widths of the sections of frames, in order.
     sections: Vec<Value>,
+    /// Names of the stages of a step whose times are in frames.
+    stages: [&'static str; STAGES.len()],
     bodies: Vec<Value>,
     geoms: Vec<Value>,
     sites: Vec<Value>,
@@ -55,6 +58,7 @@ impl Scene {
             sections: (SECTIONS.iter())
                 .map(|section| json!({"name": section.name, "width": section.width}))
                 .collect(),
+            stages: STAGES,
             bodies: (0..model.nbody()).map(|b| body(model, b)).collect(),
             geoms: (0..model.geoms.len()).map(|g| geom(model, g)).collect(),
             sites: (0..model.sites.len()).map(|s| site(model, s)).collect(),

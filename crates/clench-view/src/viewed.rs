@@ -1,5 +1,6 @@
 //! What can be looked at: a simulation, or the environments of a batch, each as a simulation of its own.
 
+use clench::rigid::profile::Profile;
 use clench::rigid::{Precision, Sim};
 use clench::{Batch, EnvStatus, Model, RigidOptions, SimError, State};
 use std::ops::Range;
@@ -69,6 +70,12 @@ pub trait Viewed {
 
     /// Why an environment cannot go on, if it cannot.
     fn fault(&self, env: usize) -> Option<String>;
+
+    /// Lets the clocks of a step's stages run, or not.
+    fn run_clocks(&mut self, running: bool);
+
+    /// Where the time of steps went while the clocks ran.
+    fn profile(&mut self) -> Profile;
 }
 
 /// What the viewer itself can step.
@@ -131,6 +138,14 @@ impl<S: Precision> Viewed for Sim<S> {
 
     fn fault(&self, _: usize) -> Option<String> {
         None
+    }
+
+    fn run_clocks(&mut self, running: bool) {
+        self.run_clocks(running);
+    }
+
+    fn profile(&mut self) -> Profile {
+        self.profile()
     }
 }
 
@@ -214,6 +229,14 @@ impl<S: Precision> Viewed for Batch<S> {
             EnvStatus::Running => None,
             EnvStatus::Failed(fault) => Some(fault.to_string()),
         }
+    }
+
+    fn run_clocks(&mut self, running: bool) {
+        self.run_clocks(running);
+    }
+
+    fn profile(&mut self) -> Profile {
+        self.profile()
     }
 }
 

@@ -168,10 +168,8 @@ impl Viewer {
         let Some(mut viewer) = self.lock()?.take() else {
             return Ok(());
         };
-        let released = (|| {
-            each_viewed!(&self.target, viewed => viewer.interaction.release(viewed))
-                .map_err(sim_error)
-        })();
+        let released =
+            (|| each_viewed!(&self.target, viewed => viewer.leave(viewed)).map_err(sim_error))();
         py.detach(|| drop(viewer));
         released
     }
