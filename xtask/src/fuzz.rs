@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
 /// The targets, by the names of their folders in `fuzz/seeds`.
-const TARGETS: [&str; 9] = [
-    "mjcf", "stl", "obj", "msh", "png", "grid", "npy", "states", "contacts",
+const TARGETS: [&str; 10] = [
+    "mjcf", "urdf", "stl", "obj", "msh", "png", "grid", "npy", "states", "contacts",
 ];
 
 /// What the compiler adds so that libFuzzer sees which code runs: its coverage pass is part of stable Rust.
@@ -96,7 +96,14 @@ pub(crate) fn host() -> Result<String, String> {
 
 fn build(address: bool) -> Result<PathBuf, String> {
     let host = host()?;
-    let mut build = cargo(&["build", "--package", "clench-fuzz", "--bins"]);
+    let mut build = cargo(&[
+        "build",
+        "--profile",
+        "fuzz",
+        "--package",
+        "clench-fuzz",
+        "--bins",
+    ]);
     build.args(["--features", "libfuzzer", "--target", &host]);
     let folder = if address {
         work().join("address")
@@ -111,7 +118,7 @@ fn build(address: bool) -> Result<PathBuf, String> {
     }
     build.env("RUSTFLAGS", flags);
     run(build)?;
-    Ok(folder.join(host).join("debug"))
+    Ok(folder.join(host).join("fuzz"))
 }
 
 /// Runs a target, and says how often its body ran.
@@ -187,8 +194,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_target_has_seeds() {
+    fn every_target_is_known_and_has_seeds() {
+        let programs = fs::read_dir(root().join("fuzz/fuzz_targets")).expect("the targets");
+        assert_eq!(programs.count(), TARGETS.len());
         for name in TARGETS {
+            let program = format!("fuzz/fuzz_targets/{name}.rs");
+            assert!(root().join(program).is_file(), "{name}");
             assert!(root().join("fuzz/seeds").join(name).is_dir(), "{name}");
         }
     }
