@@ -4,36 +4,50 @@ use crate::install::try_to_install;
 use crate::python;
 use crate::run::{cargo, run};
 use std::path::Path;
+use std::process::Command;
 
 /// Where drivers for Vulkan register on Linux.
 const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 
-/// Runs them. All packages are named, so that nothing is compiled anew for other features.
+/// Those that compute, and those that draw.
+const COMPUTING: [&str; 8] = [
+    "stages",
+    "steps",
+    "batch",
+    "outputs",
+    "refusals",
+    "gymnasium",
+    "dm_control",
+    "gpu",
+];
+const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
+
+/// Runs them.
 ///
 /// # Errors
 /// That a test failed.
 pub(crate) fn test() -> Result<(), String> {
+    let mut computing = tests(&COMPUTING);
+    // Mesa's software device would compile the kernels for longer than these tests run them.
+    computing.env("GALLIVM_PERF", "nopt");
+    computing.env("LP_NATIVE_VECTOR_WIDTH", "128");
+    computing.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
+    computing.env("CLENCH_DM_CONTROL", python::dm_control_suite());
+    run(computing)?;
+    run(tests(&DRAWING))
+}
+
+/// Runs the tests of these names. All packages are named, so that nothing is compiled anew for other features.
+fn tests(names: &[&str]) -> Command {
     let mut tests = cargo(&["test", "--quiet", "--workspace"]);
     tests.args(["--features", "clench-cli/gpu,clench-cli/render"]);
-    for test in [
-        "stages",
-        "steps",
-        "refusals",
-        "gymnasium",
-        "dm_control",
-        "gpu",
-        "silhouettes",
-        "surfaces",
-        "films",
-    ] {
-        tests.args(["--test", test]);
+    for name in names {
+        tests.args(["--test", name]);
     }
     tests.env("CLENCH_GPU", "require");
     // A part of Mesa that would choose the device complains on stderr where there is no display.
     tests.env("NODEVICE_SELECT", "1");
-    tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
-    tests.env("CLENCH_DM_CONTROL", python::dm_control_suite());
-    run(tests)
+    tests
 }
 
 /// Why they cannot run here, if they cannot. Where the tests may, they install Mesa's drivers.

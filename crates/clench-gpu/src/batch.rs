@@ -7,7 +7,7 @@ use crate::fields::{self, Fields};
 use crate::kernels::{Memory, constants};
 use crate::parameters::Base;
 use crate::pipelines::{Arrays, Pipelines, layout};
-use crate::tables::{Capacity, Tables};
+use crate::tables::{Capacity, ENVS, Tables};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -98,14 +98,15 @@ impl GpuBatch {
             .device
             .push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let array = |label, size: usize| device.array(label, 4 * (size * count) as u64);
+        let numbers = device.array("numbers", 4 * tables.numbers.len() as u64);
         let arrays = Arrays {
             words: device.array("words", 4 * tables.words.len() as u64),
-            numbers: device.array("numbers", 4 * tables.numbers.len() as u64),
+            parameters: numbers.clone(),
+            numbers,
             state: array("state", state.size),
             work: array("work", work.size),
             rows: array("rows", rows.size),
             reports: array("reports", reports.size),
-            own: device.array("own", 4),
         };
         if pollster::block_on(scope.pop()).is_some() {
             return Err(GpuError::OutOfMemory {
@@ -116,7 +117,6 @@ impl GpuBatch {
             });
         }
         let memory = Memory {
-            count,
             state: &state,
             work: &work,
             rows: &rows,
@@ -127,6 +127,7 @@ impl GpuBatch {
         let pipelines = Pipelines::new(&device, &layout, &text, count, model.integrator)?;
         let queue = &device.queue;
         queue.write_buffer(&arrays.words, 0, tables.words.as_bytes());
+        queue.write_buffer(&arrays.words, 4 * ENVS as u64, [count as u32].as_bytes());
         queue.write_buffer(&arrays.numbers, 0, tables.numbers.as_bytes());
         let mut batch = GpuBatch {
             bindings: arrays.bind(&device, &layout),

@@ -62,7 +62,6 @@ rules! {
         let equality = &s.model.equalities[e];
         Some(named(equality.target.kind(), &equality.name, e))
     };
-    "tendons around or through geoms are not there yet": |s| tendon(s.model, |m, t| m.tendons[t].has_obstacles());
     "tendons with inertia are not there yet": |s| tendon(s.model, |m, t| {
         let reflected = |&u: &usize| m.params.actuator_armature[u] != 0.0;
         m.params.tendon_armature[t] != 0.0 || m.tendons[t].reflecting.iter().any(reflected)
@@ -70,9 +69,6 @@ rules! {
     "servos of orientations are not there yet": |s| actuator(s.model, |m, u| {
         let transmission = m.actuators[u].transmission;
         matches!(transmission, Transmission::Rotation(_) | Transmission::RotationInFrame(_))
-    });
-    "actuators that make contacts adhere are not there yet": |s| actuator(s.model, |m, u| {
-        matches!(m.actuators[u].transmission, Transmission::Body(_))
     });
     "actuators with delays, or with several controls or activations, are not there yet": |s| actuator(s.model, |m, u| {
         let a = &m.actuators[u];

@@ -53,13 +53,13 @@ kernels! {
     /// Puts environments into the initial state.
     RESTART = "restart", Thread: "restart";
     /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
-    POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "tendon",
+    POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "wrap", "tendon",
         "transmission", "inertia";
     /// Contacts.
     CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "velocity", "passive", "tendon_forces", "muscle", "activation", "gain",
+    FORCES = "forces", Thread: "tree", "chains", "velocity", "adhesion", "passive", "tendon_forces", "muscle", "activation", "gain",
         "actuation", "forces";
     /// Which constraints act, and how soft they are.
     CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "constraints";
@@ -84,7 +84,6 @@ kernels! {
 
 /// What the constants before every kernel say, besides the tables.
 pub(crate) struct Memory<'a> {
-    pub count: usize,
     pub state: &'a Fields,
     pub work: &'a Fields,
     pub rows: &'a Fields,
@@ -113,13 +112,12 @@ const SOLVE_STATUS: [&str; 6] = [
     "SOLVE_NON_FINITE",
 ];
 
-/// The constants of a model and a number of environments, in WGSL.
+/// The constants of a model, in WGSL.
 pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
     let mut text = tables.constants.clone();
     let mut declare = |name: &str, value: usize| {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
     };
-    declare("N", memory.count);
     declare("GROUP", GROUP as usize);
     declare("GRID", GRID as usize);
     declare("NONE", NONE as usize);

@@ -65,7 +65,7 @@ impl GpuBatch {
         if self.own.is_empty() {
             let each = self.base.parameters.iter();
             self.own = each.flat_map(|&x| repeat_n(x, count)).collect();
-            self.arrays.own = self.device.array("own", bytes);
+            self.arrays.parameters = self.device.array("parameters", bytes);
             self.bindings = self.arrays.bind(&self.device, &self.layout);
             let place = 4 * OWN_PARAMETERS as u64;
             (self.device.queue).write_buffer(&self.arrays.words, place, [1u32].as_bytes());
@@ -75,7 +75,7 @@ impl GpuBatch {
                 self.own[k * count + env] = x;
             }
         }
-        (self.device.queue).write_buffer(&self.arrays.own, 0, self.own.as_bytes());
+        (self.device.queue).write_buffer(&self.arrays.parameters, 0, self.own.as_bytes());
         Ok(())
     }
 }

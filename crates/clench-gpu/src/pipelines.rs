@@ -40,7 +40,8 @@ pub(crate) struct Arrays {
     pub work: wgpu::Buffer,
     pub rows: wgpu::Buffer,
     pub reports: wgpu::Buffer,
-    pub own: wgpu::Buffer,
+    /// The numbers themselves while no environment has parameters of its own.
+    pub parameters: wgpu::Buffer,
 }
 
 impl Arrays {
@@ -52,9 +53,9 @@ impl Arrays {
             work,
             rows,
             reports,
-            own,
+            parameters,
         } = self;
-        [words, numbers, state, work, rows, reports, own]
+        [words, numbers, state, work, rows, reports, parameters]
     }
 
     /// What the kernels are given.

@@ -50,28 +50,10 @@ fn what_is_not_there_yet_is_refused_by_name() {
             model(
                 "",
                 "",
-                "<site name='a' pos='0 0 2'/><body pos='2 0 0'><joint/><geom name='post' size='0.1'/><site name='b' pos='0.3 0 0'/></body>",
-                "<tendon><spatial name='string'><site site='a'/><geom geom='post'/><site site='b'/></spatial></tendon>",
-            ),
-            "tendon \"string\": tendons around",
-        ),
-        (
-            model(
-                "",
-                "",
                 "",
                 "<tendon><fixed name='heavy' armature='0.1'><joint joint='hinge' coef='1'/></fixed></tendon>",
             ),
             "tendon \"heavy\": tendons with inertia",
-        ),
-        (
-            model(
-                "",
-                "",
-                "",
-                "<actuator><adhesion name='suck' body='bob' ctrlrange='0 1'/></actuator>",
-            ),
-            "actuator \"suck\": actuators that make",
         ),
         (
             model(

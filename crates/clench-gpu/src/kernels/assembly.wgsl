@@ -155,11 +155,11 @@ fn finish_block(b: u32) {
 fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
     take_up(environment_of(workgroup));
     lane = index;
-    if (env >= N) {
+    if (env >= envs) {
         return;
     }
-    let nrow = reports[NROW * N + env];
-    let nblock = reports[NBLOCK * N + env];
+    let nrow = reports[NROW * envs + env];
+    let nblock = reports[NBLOCK * envs + env];
     for (var k = lane; k < nrow * NV; k += GROUP) {
         put_row(JACOBIAN + k, entry(k / NV, k % NV));
     }

@@ -126,10 +126,10 @@ fn constraints(@builtin(global_invocation_id) id: vec3u) {
     push_equalities();
     push_friction();
     push_limits();
-    let ncon = reports[NCON * N + env];
+    let ncon = reports[NCON * envs + env];
     for (var contact = 0u; contact < ncon; contact++) {
         push_contact(contact);
     }
-    reports[NBLOCK * N + env] = nblock;
-    reports[NROW * N + env] = nrow;
+    reports[NBLOCK * envs + env] = nblock;
+    reports[NROW * envs + env] = nrow;
 }

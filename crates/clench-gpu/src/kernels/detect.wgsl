@@ -92,5 +92,5 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
             collide(pair, a, b);
         }
     }
-    reports[NCON * N + env] = found;
+    reports[NCON * envs + env] = found;
 }

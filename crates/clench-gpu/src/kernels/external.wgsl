@@ -53,7 +53,7 @@ fn push_held(equality: u32, force: vec3f, turn: vec3f) {
 fn tendon_constraint_force(t: u32) -> f32 {
     let c = NJNT + t;
     var sum = 0.0;
-    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+    for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         let source = block(b, BLOCK_SOURCE);
         let first = block(b, BLOCK_ROW);
         let force = row(FORCE + first);
@@ -105,7 +105,7 @@ fn external_forces() {
         put_spatial(CFRC_EXT + 6u * b, Spatial(vec3f(), vec3f()));
         push(b, 1.0, given3(place), given3(place + 3u), fetch3(XIPOS + 3u * b));
     }
-    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+    for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         let kind = block(b, BLOCK_KIND);
         let first = block(b, BLOCK_ROW);
         let end = first + block(b, BLOCK_DIM);

@@ -35,6 +35,9 @@ fn forces(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {
         return;
     }
+    if (ANY_ON_CONTACTS) {
+        adhesion();
+    }
     body_velocities();
     tendon_velocities();
     passive_forces();

@@ -73,12 +73,12 @@ fn finish_step() {
     for (var i = 0u; i < bound(NV); i++) {
         keep(QACC_WARMSTART + i, fetch(QACC + i));
     }
-    let fault = reports[TROUBLE * N + env];
+    let fault = reports[TROUBLE * envs + env];
     if (fault == RUNNING) {
-        reports[STEPS * N + env] += 1u;
+        reports[STEPS * envs + env] += 1u;
         return;
     }
-    reports[STATUS * N + env] = fault;
+    reports[STATUS * envs + env] = fault;
     restore_start();
     for (var i = 0u; i < bound(NV); i++) {
         keep(QACC_WARMSTART + i, fetch(START_WARMSTART + i));

@@ -1,5 +1,5 @@
-// Where everything lies. The sizes (N, NV, ...) and the offsets in capitals are constants written before this text, from
-// the model. State and work are arrays of fields, environment next to environment (`place * N + env`), so that neighbouring
+// Where everything lies. The sizes (NV, ...) and the offsets in capitals are constants written before this text, from
+// the model. State and work are arrays of fields, environment next to environment (`place * envs + env`), so that neighbouring
 // threads touch neighbouring numbers; `rows` holds what one workgroup solves, a block of ROWS numbers for each environment.
 
 @group(0) @binding(0) var<storage, read> words: array<u32>;
@@ -8,25 +8,27 @@
 @group(0) @binding(3) var<storage, read_write> work: array<f32>;
 @group(0) @binding(4) var<storage, read_write> rows: array<f32>;
 @group(0) @binding(5) var<storage, read_write> reports: array<u32>;
-// The parameters of each environment, where some have parameters of their own: the first PARAMETERS of `numbers` for each.
-@group(0) @binding(6) var<storage, read> own: array<f32>;
+// The parameters of each environment, the first PARAMETERS of `numbers`, where some have their own; else `numbers` itself.
+@group(0) @binding(6) var<storage, read> parameters: array<f32>;
 
-// The environment of this thread.
+// The environment of this thread, and how many there are.
 var<private> env: u32;
-// Whether environments have parameters of their own.
-var<private> has_own: bool;
+var<private> envs: u32;
+// Where the parameters of this environment begin, and how far one is from the next.
+var<private> parameter_start: u32;
+var<private> parameter_stride: u32;
 
 fn take_up(index: u32) {
     env = index;
-    has_own = words[OWN_PARAMETERS] == 1u;
+    envs = words[ENVS];
+    let has_own = words[OWN_PARAMETERS] == 1u;
+    parameter_start = select(0u, env, has_own);
+    parameter_stride = select(1u, envs, has_own);
 }
 
 // A number of the model as this environment has it.
 fn parameter(place: u32) -> f32 {
-    if (has_own) {
-        return own[place * N + env];
-    }
-    return numbers[place];
+    return parameters[place * parameter_stride + parameter_start];
 }
 
 fn parameter3(place: u32) -> vec3f {
@@ -40,16 +42,16 @@ fn parameter4(place: u32) -> vec4f {
 // Takes up an environment; false where there is none, or where it has failed and stands still.
 fn begin(index: u32) -> bool {
     take_up(index);
-    if (index >= N) {
+    if (index >= envs) {
         return false;
     }
-    return reports[STATUS * N + env] == RUNNING;
+    return reports[STATUS * envs + env] == RUNNING;
 }
 
 // Notes that this step cannot be; what was noted first stays.
 fn trouble(fault: u32) {
-    if (reports[TROUBLE * N + env] == RUNNING) {
-        reports[TROUBLE * N + env] = fault;
+    if (reports[TROUBLE * envs + env] == RUNNING) {
+        reports[TROUBLE * envs + env] = fault;
     }
 }
 
@@ -59,15 +61,15 @@ fn is_wild(x: f32) -> bool {
 }
 
 fn fetch(place: u32) -> f32 {
-    return work[place * N + env];
+    return work[place * envs + env];
 }
 
 fn put(place: u32, x: f32) {
-    work[place * N + env] = x;
+    work[place * envs + env] = x;
 }
 
 fn add(place: u32, x: f32) {
-    work[place * N + env] += x;
+    work[place * envs + env] += x;
 }
 
 fn fetch3(place: u32) -> vec3f {
@@ -102,7 +104,7 @@ fn put_matrix(place: u32, m: mat3x3f) {
 }
 
 fn given(place: u32) -> f32 {
-    return state[place * N + env];
+    return state[place * envs + env];
 }
 
 fn given3(place: u32) -> vec3f {
@@ -114,7 +116,7 @@ fn given4(place: u32) -> vec4f {
 }
 
 fn keep(place: u32, x: f32) {
-    state[place * N + env] = x;
+    state[place * envs + env] = x;
 }
 
 // A row of the block of this environment.

@@ -164,17 +164,17 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
 fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
     take_up(environment_of(workgroup));
     lane = index;
-    if (env >= N) {
+    if (env >= envs) {
         return;
     }
     let inertia = spread_mass();
-    let c = minimise(reports[NROW * N + env], reports[NBLOCK * N + env], inertia);
+    let c = minimise(reports[NROW * envs + env], reports[NBLOCK * envs + env], inertia);
     for (var i = lane; i < bound(NV); i += GROUP) {
         put(QACC + i, vectors[QACC_AT + i]);
         put(QFRC_CONSTRAINT + i, vectors[CONSTRAINT_AT + i]);
     }
     if (lane == 0u) {
-        reports[NITER * N + env] = c.iterations;
-        reports[SOLVE_STATUS * N + env] = c.status;
+        reports[NITER * envs + env] = c.iterations;
+        reports[SOLVE_STATUS * envs + env] = c.status;
     }
 }

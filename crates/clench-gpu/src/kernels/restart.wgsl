@@ -2,14 +2,14 @@
 
 @compute @workgroup_size(GROUP)
 fn restart(@builtin(global_invocation_id) id: vec3u) {
-    env = id.x;
-    if (env >= N || reports[RESTART * N + env] == 0u) {
+    take_up(id.x);
+    if (env >= envs || reports[RESTART * envs + env] == 0u) {
         return;
     }
     for (var k = 0u; k < STATE; k++) {
         keep(k, numbers[INITIAL_STATE + k]);
     }
-    reports[RESTART * N + env] = 0u;
-    reports[STATUS * N + env] = RUNNING;
-    reports[STEPS * N + env] = 0u;
+    reports[RESTART * envs + env] = 0u;
+    reports[STATUS * envs + env] = RUNNING;
+    reports[STEPS * envs + env] = 0u;
 }

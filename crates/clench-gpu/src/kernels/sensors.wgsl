@@ -166,7 +166,7 @@ fn touch(s: u32, prm: u32) -> f32 {
     let axes = fetch_matrix(SITE_XMAT + 9u * site);
     let centre = fetch3(SITE_XPOS + 3u * site);
     var sum = 0.0;
-    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+    for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         if (block(b, BLOCK_KIND) < CONTACT_NORMAL) {
             continue;
         }
@@ -186,7 +186,7 @@ fn touch(s: u32, prm: u32) -> f32 {
 
 // Distance, rate or force of the first limit of a coordinate that acts.
 fn limit(c: u32, margin: f32, part: u32) -> f32 {
-    for (var b = 0u; b < reports[NBLOCK * N + env]; b++) {
+    for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         if (block(b, BLOCK_KIND) != LIMIT || (block(b, BLOCK_SOURCE) >> 1u) != c) {
             continue;
         }

@@ -32,9 +32,28 @@ fn spatial_tendon(t: u32) -> f32 {
         let share = parameter(SECTION_SHARE + s);
         let p = fetch3(SITE_XPOS + 3u * start);
         let q = fetch3(SITE_XPOS + 3u * to);
-        let apart = direction(q - p);
-        length += share * apart.w;
-        add_span(t, words[SITE_BODY + start], p, words[SITE_BODY + to], q, apart.xyz * share);
+        let obstacle = words[SECTION_OBSTACLE + 2u * s];
+        var wrapped = Wrapped(false, p, q, 0.0);
+        if (ANY_OBSTACLE && obstacle != NONE) {
+            wrapped = wrap(p, q, obstacle, words[SECTION_OBSTACLE + 2u * s + 1u]);
+        }
+        // A straight string is one span; one that touches a geom has a span to either side of it.
+        for (var k = 0u; k < bound(select(1u, 2u, wrapped.touches)); k++) {
+            var bodies = vec2u(words[SITE_BODY + start], words[SITE_BODY + to]);
+            var first = p;
+            var last = q;
+            if (wrapped.touches && k == 0u) {
+                bodies.y = words[GEOM_BODY + obstacle];
+                last = wrapped.first;
+            } else if (wrapped.touches) {
+                bodies.x = words[GEOM_BODY + obstacle];
+                first = wrapped.last;
+                length += share * wrapped.length;
+            }
+            let apart = direction(last - first);
+            length += share * apart.w;
+            add_span(t, bodies.x, first, bodies.y, last, apart.xyz * share);
+        }
     }
     return length;
 }

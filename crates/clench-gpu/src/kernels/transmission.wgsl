@@ -120,6 +120,9 @@ fn transmissions() {
         var length = 0.0;
         if (ANY_ON_TENDON && kind == ON_TENDON) {
             length = on_tendon(u, element);
+        } else if (ANY_ON_CONTACTS && kind == ON_CONTACTS) {
+            // Its moment arms wait for the contacts.
+            length = 0.0;
         } else if (ANY_ON_SITE && kind > ON_TENDON) {
             length = on_sites(u, element, words[ACTUATOR_TARGET + 2u * u + 1u]);
         } else {

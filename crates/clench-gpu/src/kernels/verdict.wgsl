@@ -6,10 +6,10 @@ fn is_far(x: f32) -> bool {
 
 // Notes a number that is beyond its bounds, and where it is.
 fn judge(field: u32, index: u32, x: f32, beyond: bool) {
-    if (beyond && reports[TROUBLE * N + env] == RUNNING) {
-        reports[FAULT_FIELD * N + env] = field;
-        reports[FAULT_INDEX * N + env] = index;
-        reports[FAULT_VALUE * N + env] = bitcast<u32>(x);
+    if (beyond && reports[TROUBLE * envs + env] == RUNNING) {
+        reports[FAULT_FIELD * envs + env] = field;
+        reports[FAULT_INDEX * envs + env] = index;
+        reports[FAULT_VALUE * envs + env] = bitcast<u32>(x);
         trouble(DIVERGED);
     }
 }

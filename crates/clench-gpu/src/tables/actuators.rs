@@ -7,7 +7,7 @@ use clench_rigid::model::{
 use std::f64::consts::TAU;
 
 /// What an actuator acts on.
-const TRANSMISSIONS: [&str; 7] = [
+const TRANSMISSIONS: [&str; 8] = [
     "ON_SCALAR",
     "ON_BALL",
     "ON_FREE",
@@ -15,6 +15,7 @@ const TRANSMISSIONS: [&str; 7] = [
     "ON_SITE",
     "ON_SITE_IN_FRAME",
     "ON_SLIDER_CRANK",
+    "ON_CONTACTS",
 ];
 /// How its activation follows its control.
 const DYNAMICS: [&str; 5] = [
@@ -59,7 +60,8 @@ impl Tables {
         // What no actuator needs is left out of the kernels.
         self.flag("ANY_ON_ROTATION", each().any(|t| (1..3).contains(&t.kind)));
         self.flag("ANY_ON_TENDON", each().any(|t| t.kind == 3));
-        self.flag("ANY_ON_SITE", each().any(|t| t.kind > 3));
+        self.flag("ANY_ON_SITE", each().any(|t| (4..7).contains(&t.kind)));
+        self.flag("ANY_ON_CONTACTS", each().any(|t| t.kind == 7));
         self.words("ACTUATOR_ON", each().map(|t| t.kind));
         self.words("ACTUATOR_TARGET", each().flat_map(|t| t.elements));
         self.words(
@@ -203,10 +205,9 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
         Transmission::Site(site) => other(4, [site, 0]),
         Transmission::SiteInFrame(sites) => other(5, sites),
         Transmission::SliderCrank(sites) => other(6, sites),
+        Transmission::Body(body) => other(7, [body, 0]),
         // Refused, see `check.rs`.
-        Transmission::Body(_) | Transmission::Rotation(_) | Transmission::RotationInFrame(_) => {
-            other(0, [0, 0])
-        }
+        Transmission::Rotation(_) | Transmission::RotationInFrame(_) => other(0, [0, 0]),
     }
 }
 

@@ -85,5 +85,6 @@ impl Tables {
     pub(super) fn geoms(&mut self, m: &Model) {
         self.count("NGEOM", m.geoms.len());
         self.words("GEOM_KIND", m.geoms.iter().map(|g| g.kind as usize));
+        self.words("GEOM_BODY", m.geoms.iter().map(|g| g.body));
     }
 }

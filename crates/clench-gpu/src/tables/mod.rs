@@ -24,6 +24,8 @@ use std::fmt::Write;
 pub(crate) const NONE: u32 = u32::MAX;
 /// The word that tells whether environments have parameters of their own: the one behind the first.
 pub(crate) const OWN_PARAMETERS: usize = 1;
+/// The word that tells how many environments there are. It is no constant, so that batches of all sizes share their kernels.
+pub(crate) const ENVS: usize = 2;
 /// What stands for a range without an end: a device may have no infinity.
 const ENDLESS: f64 = 3e38;
 
@@ -65,6 +67,7 @@ impl Tables {
         };
         tables.words("ZERO", [0]);
         tables.words("OWN_PARAMETERS", [0]);
+        tables.words("ENVS", [0]);
         tables.bodies(model);
         tables.joints(model);
         tables.dofs(model);

@@ -58,6 +58,7 @@ impl Tables {
             None => [NONE as usize; 2],
         });
         self.words("SECTION_OBSTACLE", obstacle);
+        self.flag("ANY_OBSTACLE", each().any(|s| s.obstacle.is_some()));
     }
 
     /// The dead band and the coefficients of each spring, and those of each damper with its actuators'; none where the flags switch them off.

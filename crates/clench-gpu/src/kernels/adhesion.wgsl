@@ -1,0 +1,38 @@
+// Transmissions to contacts: a body is drawn to whatever it touches. Sister of `dynamics/adhesion.rs`.
+
+// Moment arms, over all dofs, of an actuator on the contacts of `body`: minus the mean rate at which the bodies come apart there.
+fn contact_arms(u: u32, body: u32) {
+    let arms = ACTUATOR_MOMENT + words[ACTUATOR_ROW + u];
+    clear_dofs(arms);
+    var count = 0.0;
+    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+        let place = CONTACTS + CONTACT_SIZE * c;
+        let pair = u32(fetch(place));
+        let a = words[PAIR_BODY + 2u * pair];
+        let b = words[PAIR_BODY + 2u * pair + 1u];
+        if (a != body && b != body) {
+            continue;
+        }
+        count += 1.0;
+        let position = fetch3(place + 2u);
+        let normal = fetch3(place + 5u);
+        for (var i = 0u; i < bound(NV); i++) {
+            let second = moves(b, i);
+            if (moves(a, i) != second) {
+                let motion = motion_at(select(a, b, second), i, position);
+                add(arms + i, dot(select(normal, -normal, second), motion.linear));
+            }
+        }
+    }
+    for (var i = 0u; count > 0.0 && i < bound(NV); i++) {
+        put(arms + i, fetch(arms + i) * (1.0 / count));
+    }
+}
+
+fn adhesion() {
+    for (var u = 0u; u < NU; u++) {
+        if (words[ACTUATOR_ON + u] == ON_CONTACTS) {
+            contact_arms(u, words[ACTUATOR_TARGET + 2u * u]);
+        }
+    }
+}

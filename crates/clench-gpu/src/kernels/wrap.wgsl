@@ -1,0 +1,179 @@
+// The shortest string between two points around, or through, a sphere or an infinite cylinder. Sister of `dynamics/wrap.rs`, where it
+// is derived. In the plane across the cylinder's axis, or through the sphere's centre and both ends, points have two coordinates.
+
+// Newton's method for a reflection: how far the angles may miss their sum, and how many steps there are at most.
+const REFLECTION_TOLERANCE: f32 = 16.0 * 1.1920929e-7;
+const REFLECTION_STEPS: u32 = 20u;
+
+// Whether a string touches its obstacle, where it meets and leaves it, and its length between.
+struct Wrapped {
+    touches: bool,
+    first: vec3f,
+    last: vec3f,
+    length: f32,
+}
+
+// The same in the plane.
+struct PlanarWrap {
+    touches: bool,
+    first: vec2f,
+    last: vec2f,
+    arc: f32,
+}
+
+fn planar_cross(a: vec2f, b: vec2f) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+// The angle from one point to another seen from the origin, in [−π, π].
+fn planar_angle(a: vec2f, b: vec2f) -> f32 {
+    let turn = planar_cross(a, b);
+    let angle = angle_of(abs(turn), dot(a, b));
+    return select(angle, -angle, turn < 0.0);
+}
+
+// `a` times the vector plus `b` times the vector turned by a quarter.
+fn turned(v: vec2f, a: f32, b: f32) -> vec2f {
+    return v * a + vec2f(-v.y, v.x) * b;
+}
+
+fn planar_unit(v: vec2f) -> vec2f {
+    let norm = length(v);
+    if (norm < TINY) {
+        return vec2f(1.0, 0.0);
+    }
+    return v * (1.0 / norm);
+}
+
+// Two axes of the plane through the origin and both points, the first towards the first point. Where all three lie on a line the
+// plane is the one that MuJoCo takes.
+fn plane_through(p: vec3f, q: vec3f) -> mat2x3f {
+    let axis = direction(p).xyz;
+    let normal = direction(cross(p, q));
+    let size = abs(axis);
+    var other = vec3f(0.0, 1.0, 1.0);
+    if (size.y > size.x && size.y > size.z) {
+        other = vec3f(1.0, 0.0, 1.0);
+    } else if (size.z > size.x && size.z > size.y) {
+        other = vec3f(1.0, 1.0, 0.0);
+    }
+    let across = select(normal.xyz, direction(cross(axis, other)).xyz, normal.w < TINY);
+    return mat2x3f(axis, direction(cross(across, axis)).xyz);
+}
+
+// The shortest string around a circle that turns by the angle `turn`.
+fn around(p: vec2f, q: vec2f, turn: f32, radius: f32) -> PlanarWrap {
+    let square = radius * radius;
+    let squares = vec2f(dot(p, p), dot(q, q));
+    let tangents = sqrt(max(squares - square, vec2f()));
+    let arc = abs(turn) - angle_of(tangents.x, radius) - angle_of(tangents.y, radius);
+    let touches = all(squares >= vec2f(square)) && radius >= TINY && dot(q - p, q - p) >= TINY && arc > 0.0;
+    if (!touches) {
+        return PlanarWrap(false, p, q, 0.0);
+    }
+    let across = tangents * (select(radius, -radius, turn < 0.0) / squares);
+    let along = square / squares;
+    return PlanarWrap(true, turned(p, along.x, across.x), turned(q, along.y, -across.y), radius * arc);
+}
+
+// Whether the interior of the segment comes to the circle.
+fn meets_circle(p: vec2f, q: vec2f, radius: f32) -> bool {
+    let along = q - p;
+    let square = dot(along, along);
+    let share = -dot(along, p) / max(square, TINY);
+    return square > TINY && share > 0.0 && share < 1.0 && length(p + along * share) <= radius;
+}
+
+// Arc sine of a number in [0, 1].
+fn arc_sine(x: f32) -> f32 {
+    return angle_of(x, sqrt(max(1.0 - x * x, 0.0)));
+}
+
+// The angle of incidence of a string that is reflected by the circle, and whether it was found (1).
+fn reflect_string(ratios: vec2f, angle: f32) -> vec2f {
+    var beta = 1.5707963;
+    if (angle < TINY) {
+        return vec2f(beta, 0.0);
+    }
+    for (var k = 0u; k <= bound(REFLECTION_STEPS); k++) {
+        let turn = sin_cos(beta);
+        let a = ratios * turn.x;
+        let value = arc_sine(a.x) + arc_sine(a.y) - 2.0 * beta + angle;
+        if (k == 0u && value > 0.0) {
+            break;
+        }
+        if (abs(value) <= REFLECTION_TOLERANCE) {
+            return vec2f(beta, 1.0);
+        }
+        let slopes = ratios * turn.y / sqrt(max(vec2f(1.0) - a * a, vec2f(TINY)));
+        let next = beta - value / (slopes.x + slopes.y - 2.0);
+        if (next > beta) {
+            break;
+        }
+        beta = next;
+    }
+    return vec2f(beta, 0.0);
+}
+
+// The string that passes through the circle, straight if it does so of itself.
+fn through(p: vec2f, q: vec2f, radius: f32) -> PlanarWrap {
+    let distances = vec2f(length(p), length(q));
+    if (any(distances <= vec2f(radius)) || radius < TINY || meets_circle(p, q, radius)) {
+        return PlanarWrap(false, p, q, 0.0);
+    }
+    let ratios = radius / distances;
+    let turn = planar_cross(p, q);
+    let found = reflect_string(ratios, angle_of(abs(turn), dot(p, q)));
+    var point = planar_unit(p + q);
+    if (found.y == 1.0) {
+        // From the end that comes first in the sense of rotation.
+        let ascending = turn > 0.0;
+        let ratio = select(ratios.y, ratios.x, ascending);
+        let rotation = sin_cos(found.x - arc_sine(ratio * sin_cos(found.x).x));
+        point = turned(planar_unit(select(q, p, ascending)), rotation.y, rotation.x);
+    }
+    return PlanarWrap(true, point * radius, point * radius, 0.0);
+}
+
+// The string between the points `p` and `q` in the presence of a geom; `side` is the site that it passes by, or NONE.
+fn wrap(p: vec3f, q: vec3f, geom: u32, side: u32) -> Wrapped {
+    let center = fetch3(GEOM_XPOS + 3u * geom);
+    let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
+    let radius = parameter(GEOM_SIZE + 3u * geom);
+    let is_cylinder = words[GEOM_KIND + geom] == CYLINDER;
+    let start = transpose(axes) * (p - center);
+    let end = transpose(axes) * (q - center);
+    var plane = mat2x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    if (!is_cylinder) {
+        plane = plane_through(start, end);
+    }
+    let flat_start = start * plane;
+    let flat_end = end * plane;
+    var found = PlanarWrap(false, flat_start, flat_end, 0.0);
+    var turn = planar_angle(flat_start, flat_end);
+    var inside = false;
+    if (side != NONE) {
+        let by = transpose(axes) * (fetch3(SITE_XPOS + 3u * side) - center);
+        inside = length(by) < radius;
+        let toward = planar_unit(by * plane);
+        turn = planar_angle(flat_start, toward) + planar_angle(toward, flat_end);
+    }
+    if (inside) {
+        found = through(flat_start, flat_end, radius);
+    } else {
+        found = around(flat_start, flat_end, turn, radius);
+    }
+    var heights = vec2f();
+    if (is_cylinder) {
+        // Unrolled, the string is straight.
+        let before = length(found.first - flat_start);
+        let until = before + found.arc;
+        let slope = (end.z - start.z) / max(until + length(found.last - flat_end), TINY);
+        heights = start.z + slope * vec2f(before, until);
+    }
+    let first = plane * found.first + vec3f(0.0, 0.0, heights.x);
+    let last = plane * found.last + vec3f(0.0, 0.0, heights.y);
+    let touches = found.touches && length(start) >= TINY && length(end) >= TINY;
+    let on_surface = length(vec2f(found.arc, heights.y - heights.x));
+    return Wrapped(touches, center + axes * first, center + axes * last, on_surface);
+}
