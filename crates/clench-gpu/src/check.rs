@@ -42,9 +42,6 @@ rules! {
         let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
         cg.then(|| "option constraint_solver".to_owned())
     };
-    "noslip sweeps are not there yet": |s| {
-        (s.settings.solver.noslip_iterations > 0).then(|| "option noslip_iterations".to_owned())
-    };
     "environments do not start over by themselves yet: look at the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };

@@ -66,7 +66,7 @@ kernels! {
     /// Their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
     /// The convex problem.
-    SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "newton";
+    SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "noslip", "newton";
     /// Accelerations of bodies and forces between them, where somebody asks.
     BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "external", "body_forces";
     /// What sensors measure, where somebody asks.

@@ -43,10 +43,6 @@ fn what_is_not_there_yet_is_refused_by_name() {
             "option autoreset",
         ),
         (
-            model("<option noslip_iterations='3'/>", "", "", ""),
-            "option noslip_iterations",
-        ),
-        (
             model(
                 "",
                 "",

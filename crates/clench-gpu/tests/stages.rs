@@ -89,6 +89,16 @@ fn elliptic_cones() {
     agree(&text(&elliptic), 100, 0.7);
 }
 
+/// Three sweeps, which still gain more than rounding.
+#[test]
+fn friction_that_does_not_slip() {
+    for cone in ["pyramidal", "elliptic"] {
+        let option =
+            format!("<option cone=\"{cone}\" noslip_iterations=\"3\" noslip_tolerance=\"0\" ");
+        agree(&text(&own("medley").replace("<option ", &option)), 100, 0.7);
+    }
+}
+
 #[test]
 fn applied_forces_and_mocap_bodies_count() {
     let model = text(

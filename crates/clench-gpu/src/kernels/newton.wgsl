@@ -169,6 +169,9 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     }
     let inertia = spread_mass();
     let c = minimise(reports[NROW * envs + env], reports[NBLOCK * envs + env], inertia);
+    if (NOSLIP_ITERATIONS > 0u) {
+        noslip(reports[NROW * envs + env], reports[NBLOCK * envs + env], 1.0 / inertia);
+    }
     for (var i = lane; i < bound(NV); i += GROUP) {
         put(QACC + i, vectors[QACC_AT + i]);
         put(QFRC_CONSTRAINT + i, vectors[CONSTRAINT_AT + i]);

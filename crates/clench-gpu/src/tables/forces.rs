@@ -76,6 +76,8 @@ impl Tables {
         self.count("LS_ITERATIONS", s.solver.ls_iterations);
         self.real("TOLERANCE", s.solver.tolerance);
         self.real("LS_TOLERANCE", s.solver.ls_tolerance);
+        self.count("NOSLIP_ITERATIONS", s.solver.noslip_iterations);
+        self.real("NOSLIP_TOLERANCE", s.solver.noslip_tolerance);
         for (name, kind) in [
             ("FREE", JointKind::Free),
             ("BALL", JointKind::Ball),

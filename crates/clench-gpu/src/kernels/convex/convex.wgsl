@@ -74,8 +74,9 @@ fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
             best = direct;
         }
     }
+    touching_vertex = vertex_along(best.normal);
     if (certain) {
-        begin_simplex(vertex_along(best.normal));
+        begin_simplex(touching_vertex);
     }
     add_contacts(pair, a, range);
 }

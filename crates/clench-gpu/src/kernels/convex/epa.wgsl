@@ -97,10 +97,10 @@ var<private> touching: vec3u;
 var<private> refined: bool;
 var<private> known: bool;
 
-// Begins with the depth along a direction.
+// Begins with the depth along the direction in which the search began.
 fn begin_expansion(start: vec3f) {
     begin_polytope();
-    best = Gap(start, dot(start, vertex_along(start).w), false);
+    best = Gap(start, first_gap, false);
     touching = corners_of(0u);
     refined = false;
     known = false;

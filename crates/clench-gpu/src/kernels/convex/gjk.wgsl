@@ -16,37 +16,49 @@ struct End {
     length: f32,
 }
 
-// Adds vertices until nothing is nearer.
+// The gap along the direction in which the first search began.
+var<private> first_gap: f32;
+
+// Adds vertices until nothing is nearer, from the one along the best direction on.
 fn search_nearest(limit: f32) -> End {
-    var v = simplex[0].w;
-    for (var round = 0u; round < bound(GJK_ROUNDS); round++) {
+    var v = best.normal;
+    var square = UNMOVABLE;
+    for (var round = 0u; round <= bound(GJK_ROUNDS); round++) {
+        let vertex = vertex_along(v);
+        if (round == 0u) {
+            begin_simplex(vertex);
+            if (best.gap == -UNMOVABLE) {
+                best.gap = dot(v, vertex.w);
+                first_gap = best.gap;
+            }
+            v = vertex.w;
+        } else {
+            let n = v / sqrt(square);
+            let gap = dot(n, vertex.w);
+            improve(Gap(n, gap, false));
+            if (sqrt(square) - gap <= exactness) {
+                return End(NEAREST, sqrt(square));
+            }
+            let nearest = add_vertex(vertex);
+            if (nearest.w == 0.0) {
+                return End(INSIDE, 0.0);
+            }
+            if (dot(nearest.xyz, nearest.xyz) >= square) {
+                // Rounding has the last word.
+                return End(NEAREST, sqrt(square));
+            }
+            v = nearest.xyz;
+        }
+        square = dot(v, v);
         if (best.gap > limit) {
             return End(BEYOND, 0.0);
         }
-        let square = dot(v, v);
-        let size = sqrt(square);
-        if (size <= smallest * TOUCHING) {
+        if (sqrt(square) <= smallest * TOUCHING) {
             return End(INSIDE, 0.0);
         }
-        if (size - best.gap <= exactness) {
-            return End(NEAREST, size);
+        if (sqrt(square) - best.gap <= exactness) {
+            return End(NEAREST, sqrt(square));
         }
-        let vertex = vertex_along(v);
-        let n = v / size;
-        let gap = dot(n, vertex.w);
-        improve(Gap(n, gap, false));
-        if (size - gap <= exactness) {
-            return End(NEAREST, size);
-        }
-        let nearest = add_vertex(vertex);
-        if (nearest.w == 0.0) {
-            return End(INSIDE, 0.0);
-        }
-        if (dot(nearest.xyz, nearest.xyz) >= square) {
-            // Rounding has the last word.
-            return End(NEAREST, size);
-        }
-        v = nearest.xyz;
     }
     return End(NEAREST, length(v));
 }
@@ -56,10 +68,6 @@ fn search_nearest(limit: f32) -> End {
 fn gjk(limit: f32) -> u32 {
     var end = End(NEAREST, 0.0);
     for (var attempt = 0u; attempt < bound(2u); attempt++) {
-        begin_simplex(vertex_along(best.normal));
-        if (attempt == 0u) {
-            best.gap = dot(best.normal, simplex[0].w);
-        }
         end = search_nearest(limit);
         let inside = end.how == INSIDE && best.gap > exactness;
         let short = end.how == NEAREST && end.length - best.gap > max(smallest * DOUBT, exactness);

@@ -20,8 +20,11 @@ fn at_distance(spot: vec4f, distance: f32) -> vec4f {
 }
 
 // The nearest points of the cores: those that support the normal if they face each other, else as the simplex has them.
+// The vertex along the normal of the largest gap.
+var<private> touching_vertex: Vertex;
+
 fn witness(view: mat3x3f, n: vec3f) -> vec4f {
-    let vertex = vertex_along(n);
+    let vertex = touching_vertex;
     var on_a = vertex.a;
     var on_b = vertex.b;
     if (length(vertex.w - n * best.gap) > smallest * MISSED) {

@@ -107,44 +107,6 @@ fn newton_step(at: Gap, w: vec3f) -> vec4f {
     return vec4f(turn, select(1.0, 2.0, mean - spread > -least));
 }
 
-// Newton's iteration; a step that loses is halved.
-fn climb(start: vec3f) -> Gap {
-    var w = vertex_along(start).w;
-    var at = Gap(start, dot(start, w), false);
-    for (var k = 0u; k < bound(NEWTON_STEPS); k++) {
-        let step = newton_step(at, w);
-        if (step.w == 0.0) {
-            return at;
-        }
-        var turn = step.xyz;
-        let size = length(turn);
-        if (size > MAX_TURN) {
-            turn = turn * (MAX_TURN / size);
-        }
-        let before = at.gap;
-        var lost = true;
-        for (var halving = 0u; lost && halving <= bound(NEWTON_HALVINGS); halving++) {
-            let tried = direction(at.normal + turn).xyz;
-            w = vertex_along(tried).w;
-            let gap = dot(tried, w);
-            if (gap >= before - exactness * 1e-3) {
-                at.normal = tried;
-                at.gap = gap;
-                lost = false;
-            }
-            turn = turn * 0.5;
-        }
-        if (lost) {
-            return at;
-        }
-        if (size <= CONVERGED_TURN && at.gap - before <= exactness) {
-            at.settled = step.w == 2.0 && edge_holds(at.normal);
-            return at;
-        }
-    }
-    return at;
-}
-
 // The best cap of a cylinder that faces `n` more or less, if the gap across it is larger than `gap`: settled if the cap touches;
 // else, where the gap grows beside it, a direction to start from. Without a gap, there is none.
 fn refine_cap(n: vec3f, gap: f32) -> Gap {
@@ -189,19 +151,59 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
     return found;
 }
 
-// The largest gap in the neighbourhood of a direction, across the edges.
+// The largest gap in the neighbourhood of a direction, across the edges, by Newton's method; a step that loses is halved.
 fn refine(n: vec3f) -> Gap {
-    let start = across_edges(n);
-    let gap = dot(start, vertex_along(start).w);
-    if (edge_count == 2u) {
-        return Gap(start, gap, false);
+    var tried = across_edges(n);
+    var at = Gap(tried, -UNMOVABLE, false);
+    // The present step, what it has to beat, and how often it was halved.
+    var step = vec4f();
+    var size = UNMOVABLE;
+    var before = -UNMOVABLE;
+    var halvings = 0u;
+    var steps = 0u;
+    var may_leave = ANY_CYLINDER && (body_a.kind == CYLINDER || body_b.kind == CYLINDER);
+    for (var round = 0u; round < bound(NEWTON_STEPS * (NEWTON_HALVINGS + 2u)); round++) {
+        let w = vertex_along(tried).w;
+        let gap = dot(tried, w);
+        if (!(gap >= before - exactness * 1e-3)) {
+            step = step * vec4f(0.5, 0.5, 0.5, 1.0);
+            halvings++;
+            if (halvings > NEWTON_HALVINGS) {
+                return at;
+            }
+            tried = direction(at.normal + step.xyz).xyz;
+            continue;
+        }
+        at = Gap(tried, gap, false);
+        if (edge_count == 2u || steps == NEWTON_STEPS) {
+            return at;
+        }
+        if (may_leave) {
+            // Once.
+            may_leave = false;
+            let from_cap = refine_cap(tried, gap);
+            if (from_cap.settled) {
+                return from_cap;
+            }
+            if (from_cap.gap > gap) {
+                tried = from_cap.normal;
+                continue;
+            }
+        }
+        if (size <= CONVERGED_TURN && gap - before <= exactness) {
+            at.settled = step.w == 2.0 && edge_holds(tried);
+            return at;
+        }
+        step = newton_step(at, w);
+        if (step.w == 0.0) {
+            return at;
+        }
+        size = length(step.xyz);
+        step = vec4f(step.xyz * min(1.0, MAX_TURN / max(size, LEAST_NORMAL)), step.w);
+        before = gap;
+        halvings = 0u;
+        steps++;
+        tried = direction(tried + step.xyz).xyz;
     }
-    var from_cap = Gap(start, gap, false);
-    if (ANY_CYLINDER && (body_a.kind == CYLINDER || body_b.kind == CYLINDER)) {
-        from_cap = refine_cap(start, gap);
-    }
-    if (from_cap.settled) {
-        return from_cap;
-    }
-    return climb(from_cap.normal);
+    return at;
 }

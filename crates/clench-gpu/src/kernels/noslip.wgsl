@@ -1,0 +1,259 @@
+// Removes the slow slip that soft friction allows: the friction forces alone are solved again without regularization, normal forces
+// fixed. Sister of `clench-solver/src/noslip.rs`, where it is derived. Of every friction row WEIGHED holds M⁻¹Jᵀ, and of a pyramid's RAY
+// the sum of its two edges' forces.
+
+// The most friction rows of a block.
+const MAX_FRICTIONS: u32 = 5u;
+// Newton steps for the multiplier of an ellipse.
+const MULTIPLIER_STEPS: u32 = 20u;
+
+// Of the block at hand A, row by row, then J a − aref of its friction rows.
+var<workgroup> friction: array<f32, 30>;
+const SLIP_AT: u32 = MAX_FRICTIONS * MAX_FRICTIONS;
+
+// The friction row where those of a block begin; NONE where it has none.
+fn first_friction(b: u32) -> u32 {
+    let first = block(b, BLOCK_ROW);
+    switch block(b, BLOCK_KIND) {
+        case DRY_FRICTION: {
+            return first;
+        }
+        case CONTACT_PYRAMID, CONTACT_ELLIPTIC: {
+            return first + 1u;
+        }
+        default: {
+            return NONE;
+        }
+    }
+}
+
+// Writes M⁻¹Jᵀ of a row. Sister of `solve_tree`.
+fn respond(a: u32) {
+    let x = WEIGHED + a * NV;
+    for (var i = 0u; i < bound(NV); i++) {
+        put_row(x + i, row(JACOBIAN + a * NV + i));
+    }
+    for (var up = 0u; up < bound(NV); up++) {
+        let i = NV - 1u - up;
+        let value = row(x + i);
+        for (var p = words[TREE_START + i]; p + 1u < words[TREE_START + i + 1u]; p++) {
+            let ancestor = x + words[TREE_DOF + p];
+            put_row(ancestor, row(ancestor) - fetch(QLD + p) * value);
+        }
+    }
+    for (var i = 0u; i < bound(NV); i++) {
+        var sum = row(x + i) * fetch(QLD_INVERSE + i);
+        for (var p = words[TREE_START + i]; p + 1u < words[TREE_START + i + 1u]; p++) {
+            sum -= fetch(QLD + p) * row(x + words[TREE_DOF + p]);
+        }
+        put_row(x + i, sum);
+    }
+}
+
+// The responses and edge sums of a block; what its regularization costs, twice.
+fn prepare_block(b: u32) -> f32 {
+    let first = block(b, BLOCK_ROW);
+    let end = first + block(b, BLOCK_DIM);
+    let is_pyramid = block(b, BLOCK_KIND) == CONTACT_PYRAMID;
+    let start = first_friction(b);
+    var cost = 0.0;
+    for (var a = first; a < end; a++) {
+        if (start != NONE && a >= start) {
+            respond(a);
+        }
+        if (!is_pyramid) {
+            cost += row(R + a) * row(FORCE + a) * row(FORCE + a);
+        } else if (a > first) {
+            let side = row(SHAPE + a) * row(RESIDUAL + a);
+            let edges = -row(D + first) * min(vec2f(row(RESIDUAL + first)) + vec2f(side, -side), vec2f());
+            put_row(RAY + a, edges.x + edges.y);
+            cost += row(R + first) * dot(edges, edges);
+        }
+    }
+    return cost;
+}
+
+// Fills A and the slip of a block, an entry for each thread.
+fn fill_friction(start: u32, count: u32) {
+    for (var k = lane; k < SLIP_AT + count; k += GROUP) {
+        let i = k % MAX_FRICTIONS;
+        let a = start + k / MAX_FRICTIONS;
+        if (k >= SLIP_AT) {
+            friction[k] = jacobian_times(start + k - SLIP_AT, QACC_AT) - row(AREF + start + k - SLIP_AT);
+        } else if (i < count && k / MAX_FRICTIONS < count) {
+            var sum = 0.0;
+            for (var j = 0u; j < bound(NV); j++) {
+                sum += row(JACOBIAN + a * NV + j) * row(WEIGHED + (start + i) * NV + j);
+            }
+            friction[k] = sum;
+        }
+    }
+    join();
+}
+
+// How the friction of a block changes, solved row by row, each seeing what those before it changed.
+fn change_rows(start: u32, count: u32, is_pyramid: bool) -> array<f32, MAX_FRICTIONS> {
+    var change = array<f32, MAX_FRICTIONS>();
+    for (var j = 0u; j < count; j++) {
+        let old = row(FORCE + start + j);
+        var most = row(SHAPE + start + j);
+        if (is_pyramid) {
+            most *= row(RAY + start + j);
+        }
+        var slip = friction[SLIP_AT + j];
+        for (var i = 0u; i < j; i++) {
+            slip += friction[MAX_FRICTIONS * j + i] * change[i];
+        }
+        let a = friction[(MAX_FRICTIONS + 1u) * j];
+        let free = select(0.0, old - slip / a, a > 0.0);
+        change[j] = clamp(free, -most, most) - old;
+    }
+    return change;
+}
+
+// With the multiplier λ of an ellipse: g = −(B + λ I)⁻¹ c, its square, and gᵀ(B + λ I)⁻¹g.
+struct Shifted {
+    g: array<f32, MAX_FRICTIONS>,
+    squared: f32,
+    slope: f32,
+}
+
+// By Cholesky; pivots that rounding has consumed are replaced by its size.
+fn shifted_minimum(b: array<f32, 25>, c: array<f32, MAX_FRICTIONS>, lambda: f32, least: f32, n: u32) -> Shifted {
+    var l = b;
+    var g = c;
+    for (var j = 0u; j < n; j++) {
+        for (var i = j; i < n; i++) {
+            var sum = l[MAX_FRICTIONS * i + j] + select(0.0, lambda, i == j);
+            for (var k = 0u; k < j; k++) {
+                sum -= l[MAX_FRICTIONS * i + k] * l[MAX_FRICTIONS * j + k];
+            }
+            l[MAX_FRICTIONS * i + j] = select(sum / l[(MAX_FRICTIONS + 1u) * j], sqrt(max(sum, least)), i == j);
+        }
+        g[j] = -g[j];
+    }
+    // Forward and back, then forward once more, for gᵀ(B + λ I)⁻¹g.
+    var found = Shifted(g, 0.0, 0.0);
+    for (var round = 0u; round < bound(3u); round++) {
+        for (var step = 0u; step < n; step++) {
+            let back = round == 1u;
+            let i = select(step, n - 1u - step, back);
+            var sum = g[i];
+            for (var before = 0u; before < step; before++) {
+                let k = select(before, n - 1u - before, back);
+                sum -= l[MAX_FRICTIONS * max(i, k) + min(i, k)] * g[k];
+            }
+            g[i] = sum / l[(MAX_FRICTIONS + 1u) * i];
+        }
+        var square = 0.0;
+        for (var i = 0u; i < n; i++) {
+            square += g[i] * g[i];
+        }
+        if (round == 1u) {
+            found.g = g;
+            found.squared = square;
+        }
+        found.slope = square;
+    }
+    return found;
+}
+
+// How the friction of a block changes that is best within Σ (f / μ)² ≤ normal²; its rows begin at `start`, behind the normal's.
+fn change_ellipse(start: u32, count: u32) -> array<f32, MAX_FRICTIONS> {
+    var change = array<f32, MAX_FRICTIONS>();
+    var b = array<f32, 25>();
+    var c = array<f32, MAX_FRICTIONS>();
+    var trace = 0.0;
+    for (var i = 0u; i < count; i++) {
+        let mu = row(SHAPE + start + i);
+        var linear = friction[SLIP_AT + i];
+        for (var j = 0u; j < count; j++) {
+            let a = friction[MAX_FRICTIONS * i + j];
+            linear -= a * row(FORCE + start + j);
+            b[MAX_FRICTIONS * i + j] = mu * a * row(SHAPE + start + j);
+        }
+        c[i] = mu * linear;
+        trace += b[(MAX_FRICTIONS + 1u) * i];
+        change[i] = -row(FORCE + start + i);
+    }
+    let radius = row(FORCE + start - 1u);
+    if (radius <= 0.0 || trace <= 0.0) {
+        return change;
+    }
+    var lambda = 0.0;
+    var found = Shifted();
+    for (var k = 0u; k < bound(MULTIPLIER_STEPS); k++) {
+        found = shifted_minimum(b, c, lambda, trace * EPSILON, count);
+        // Newton's step for 1/r − 1/|g(λ)|; λ only grows, so a step back means that the root is reached.
+        let step = found.squared / found.slope * (sqrt(found.squared) - radius) / radius;
+        if (!(step > lambda * EPSILON) || is_wild(step)) {
+            break;
+        }
+        lambda += step;
+    }
+    // Exactly onto the ellipse what rounding left outside.
+    let size = sqrt(found.squared);
+    let shrink = select(1.0, radius / size, size > radius);
+    for (var i = 0u; i < count; i++) {
+        change[i] += found.g[i] * shrink * row(SHAPE + start + i);
+    }
+    return change;
+}
+
+// Improves the friction of a block, from row `start` on; by how much the objective falls.
+fn improve_friction(b: u32, start: u32) -> f32 {
+    let count = block(b, BLOCK_ROW) + block(b, BLOCK_DIM) - start;
+    let kind = block(b, BLOCK_KIND);
+    fill_friction(start, count);
+    var change = array<f32, MAX_FRICTIONS>();
+    if (ELLIPTIC_CONES && kind == CONTACT_ELLIPTIC) {
+        change = change_ellipse(start, count);
+    } else {
+        change = change_rows(start, count, kind == CONTACT_PYRAMID);
+    }
+    var fall = 0.0;
+    for (var j = 0u; j < count; j++) {
+        var slip = friction[SLIP_AT + j];
+        for (var i = 0u; i < count; i++) {
+            slip += 0.5 * friction[MAX_FRICTIONS * j + i] * change[i];
+        }
+        fall -= change[j] * slip;
+    }
+    // All threads have read what some now write.
+    join();
+    for (var j = 0u; j < count; j++) {
+        for (var i = lane; i < bound(NV); i += GROUP) {
+            vectors[QACC_AT + i] += change[j] * row(WEIGHED + (start + j) * NV + i);
+        }
+        if (lane == 0u) {
+            put_row(FORCE + start + j, row(FORCE + start + j) + change[j]);
+        }
+    }
+    join();
+    return fall;
+}
+
+// Sweeps over dry friction, then over contacts, until they gain no more. `scale` turns costs into what the tolerance is of.
+fn noslip(nrow: u32, nblock: u32, scale: f32) {
+    var cost = 0.0;
+    for (var b = lane; b < nblock; b += GROUP) {
+        cost += prepare_block(b);
+    }
+    join();
+    var improvement = 0.5 * total(vec4f(cost, 0.0, 0.0, 0.0)).x;
+    for (var sweep = 0u; sweep < NOSLIP_ITERATIONS; sweep++) {
+        for (var k = 0u; k < 2u * nblock; k++) {
+            let b = k % nblock;
+            let start = first_friction(b);
+            let is_dry = block(b, BLOCK_KIND) == DRY_FRICTION;
+            if (start != NONE && is_dry == (k < nblock)) {
+                improvement += improve_friction(b, start);
+            }
+        }
+        if (!(scale * improvement >= NOSLIP_TOLERANCE)) {
+            break;
+        }
+        improvement = 0.0;
+    }
+    differentiate(nrow);
+}
