@@ -13,7 +13,7 @@ const BESIDE: [(&str, &[u8]); 6] = [
     ("part.xml", include_bytes!("../seeds/mjcf/part.xml")),
 ];
 /// An error is read by people: long values in it are cut. Paths, which users choose, come on top.
-const LONGEST_ERROR: usize = 4000;
+const MAX_ERROR_LENGTH: usize = 4000;
 
 /// Reads a model, and tries it where it is one.
 pub fn mjcf(data: &[u8]) -> bool {
@@ -42,7 +42,7 @@ fn model(file: &str, data: &[u8]) -> bool {
         }
         Err(error) => {
             let message = error.to_string();
-            assert!(message.len() < LONGEST_ERROR, "a long error: {message}");
+            assert!(message.len() < MAX_ERROR_LENGTH, "a long error: {message}");
             let named = message.contains(file) || message.contains("part.xml");
             assert!(named, "an error that names no file: {message}");
             false

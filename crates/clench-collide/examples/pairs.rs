@@ -75,7 +75,7 @@ impl Body<'_> {
         }
     }
     fn json(&self) -> String {
-        let (size, position) = (self.shape.size.to_array(), self.position.to_array());
+        let (size, position) = (self.shape.size().to_array(), self.position.to_array());
         let Quat { w, x, y, z } = self.rotation;
         let hull = self.hull;
         format!(
@@ -152,10 +152,10 @@ impl Random {
                 .0;
         }
         let mut beside = Vec3::ZERO;
-        if matches!(a.shape.kind, ShapeKind::Plane | ShapeKind::HeightField) {
+        if matches!(a.shape.kind(), ShapeKind::Plane | ShapeKind::HeightField) {
             direction = a.pose().axis();
         }
-        if a.shape.kind == ShapeKind::HeightField {
+        if a.shape.kind() == ShapeKind::HeightField {
             beside = a.pose().rotation * self.vector().scale_by(Vec3::new(0.7, 0.7, 0.0));
         }
         let (mut near, mut far) = (0.0, 0.6);

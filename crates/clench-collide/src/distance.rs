@@ -1,6 +1,6 @@
 //! How far apart two shapes are.
 
-use crate::{Asset, Contacts, Pose, Shape, bounding_radius, collide, supported};
+use crate::{Contacts, Pose, Shape, Terrain, collide, supported};
 use clench_math::{Real, Scalar, Vec3};
 
 /// The shortest way between two shapes.
@@ -42,7 +42,7 @@ pub fn distance<S: Scalar>(
     pose_b: &Pose<S>,
     limit: S,
 ) -> Option<Separation<S>> {
-    if a.kind > b.kind {
+    if a.kind() > b.kind() {
         let found = distance(b, pose_b, a, pose_a, limit)?;
         let [second, first] = found.points;
         return Some(Separation {
@@ -51,14 +51,17 @@ pub fn distance<S: Scalar>(
             ..found
         });
     }
-    if !supported(a.kind, b.kind) {
+    if !supported(a.kind(), b.kind()) {
         return None;
     }
     let mut contacts = Contacts::new();
     let mut reach = Real::max(limit, S::ZERO);
-    if let Asset::HeightField(field) = a.asset {
+    if let Shape::HeightField(Terrain {
+        field: Some(field), ..
+    }) = a
+    {
         // Near cells first. No point of the field is further away than the sum.
-        let size = bounding_radius(b);
+        let size = b.bounding_radius();
         let furthest = S::new(field.radius()) + size + (pose_b.position - pose_a.position).norm();
         let most = Real::min(reach, furthest);
         reach = Real::max(size, furthest * S::new(MIN_SEARCH_SHARE));

@@ -1,4 +1,4 @@
-//! Collision detection: shapes and poses in, contact points out. No joints, no masses.
+//! Collision detection: shapes and poses in, contact points out. No joints, no bodies.
 //!
 //! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`ray`] where a ray hits
 //! one, [`near`] and [`BroadPhase`] find the pairs worth asking about. Contacts and rays are generic over [`Real`](clench_math::Real):
@@ -30,6 +30,7 @@ mod frame;
 mod height_field;
 mod hull;
 mod narrow;
+mod pose;
 mod ray;
 mod shape;
 
@@ -40,5 +41,8 @@ pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};
 pub use narrow::{SeparatingAxis, collide, collide_again, multiccd_matters, supported};
+pub use pose::Pose;
 pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, UnitRay, ray};
-pub use shape::{Asset, Pose, Shape, ShapeKind, bounding_radius};
+pub use shape::{
+    Capsule, Cuboid, Cylinder, Ellipsoid, Mesh, Plane, Shape, ShapeKind, Sphere, Terrain,
+};

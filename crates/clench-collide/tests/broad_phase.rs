@@ -31,7 +31,7 @@ impl<T: Real> World<T> {
         };
         for _ in 0..count {
             let kind = KINDS[(random.unit() * 6.0) as usize];
-            let shape = Shape::new(kind, Vec3::from_f64(random.shape(kind).size.to_array()));
+            let shape = Shape::new(kind, Vec3::from_f64(random.shape(kind).size().to_array()));
             let mut pose = Pose::<T>::IDENTITY;
             for lane in 0..T::LANES {
                 let place = random.vector().scale_by(Vec3::new(5.0, 1.0, 1.0));
@@ -60,7 +60,7 @@ impl<T: Real> World<T> {
 
     /// Whether the narrow phase finds anything between two shapes.
     fn touch(&self, i: usize, j: usize) -> bool {
-        let (i, j) = if self.shapes[i].kind <= self.shapes[j].kind {
+        let (i, j) = if self.shapes[i].kind() <= self.shapes[j].kind() {
             (i, j)
         } else {
             (j, i)
@@ -103,7 +103,7 @@ fn nothing_is_missed<T: Real>(seed: u64) {
 
         for pair in &list {
             let (i, j) = (pair.0 as usize, pair.1 as usize);
-            if supported(world.shapes[i].kind, world.shapes[j].kind) && world.touch(i, j) {
+            if supported(world.shapes[i].kind(), world.shapes[j].kind()) && world.touch(i, j) {
                 found += 1;
                 assert!(pairs.binary_search(pair).is_ok(), "missed {i}, {j}");
             }

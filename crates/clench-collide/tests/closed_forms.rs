@@ -3,11 +3,12 @@
 
 mod common;
 
-use clench_collide::{Asset, Pose, Shape, ShapeKind, bounding_radius};
+use clench_collide::{Pose, Shape, ShapeKind};
 use clench_math::{Mat3, Quat};
 use common::{
     Random, Scene, V,
     hulls::{hull_of, round},
+    mesh_hull,
 };
 use std::collections::BTreeMap;
 
@@ -29,7 +30,7 @@ fn touch(scene: &Scene, n: V) -> Option<Touch> {
     let own = scene.pose_a.axis().dot(n).abs();
     let cosines = scene.pose_b.rotation.transpose_mul(n).to_array();
     let (one, zero) = (|x: f64| (1.0 - x.abs()) < 1e-12, |x: f64| x.abs() < 1e-12);
-    if let Asset::Hull(hull) = scene.b.asset {
+    if let Some(hull) = mesh_hull(&scene.b) {
         let d = -scene.pose_b.rotation.transpose_mul(n);
         let along = || hull.vertices().iter().map(|v| v.dot(d));
         let most = along().fold(f64::NEG_INFINITY, f64::max);
@@ -43,7 +44,7 @@ fn touch(scene: &Scene, n: V) -> Option<Touch> {
             _ => return None,
         });
     }
-    if scene.b.kind == ShapeKind::Cylinder {
+    if scene.b.kind() == ShapeKind::Cylinder {
         return Some(match (own, cosines[2]) {
             (z, u) if one(z) || one(u) => Touch::Cap,
             (z, u) if zero(z) && zero(u) => Touch::SideOnSide,
@@ -169,7 +170,7 @@ fn no_direction_has_a_larger_gap(kind: ShapeKind, seed: u64) -> BTreeMap<Touch, 
             for _ in 0..poses {
                 let scene = scene(&mut random, kind, sizes, turns);
                 let (truth, normal) = scene.optima(&mut random)[0];
-                let size = bounding_radius(&scene.a) + bounding_radius(&scene.b);
+                let size = scene.a.bounding_radius() + scene.b.bounding_radius();
                 let Some(c) = scene.deepest() else {
                     assert!(truth >= -2e-9 * size, "nothing at {truth} in {scene:?}");
                     continue;
@@ -212,7 +213,7 @@ fn a_cylinder_in_a_hull() {
     assert!(touches.len() == 5 && often, "{touches:?}");
 }
 
-/// Along all directions but those across two rims these overlap by less than a micrometre, and the search for a common point
+/// Along all directions but those across two cap circles these overlap by less than a micrometre, and the search for a common point
 /// believes so too.
 #[test]
 fn cylinders_apart_by_a_micrometre_do_not_touch() {

@@ -113,10 +113,8 @@ fn lanes<T: Real>(scenes: &[Scene]) -> (Shape<'static, T>, Pose<T>, Shape<'stati
             rows: [0, 1, 2].map(|i| vector(&|s| get(s).rotation.rows[i])),
         },
     };
-    let shape = |get: &dyn Fn(&Scene) -> Shape<'static, f64>| Shape {
-        kind: get(&scenes[0]).kind,
-        size: vector(&|s| get(s).size),
-        asset: get(&scenes[0]).asset,
+    let shape = |get: &dyn Fn(&Scene) -> Shape<'static, f64>| {
+        get(&scenes[0]).resized(vector(&|s| get(s).size()))
     };
     let (a, b) = (shape(&|s| s.a), shape(&|s| s.b));
     let mut margin = T::ZERO;
@@ -151,11 +149,17 @@ fn spoil_number(random: &mut Random, scene: &mut Scene) {
     let bad = bad[(random.unit() * 5.0) as usize];
     let axis = (random.unit() * 3.0) as usize;
     match (random.unit() * 4.0) as usize {
-        0 => scene.a.size[axis] = bad,
-        1 => scene.b.size[axis] = bad,
+        0 => spoil_size(&mut scene.a, axis, bad),
+        1 => spoil_size(&mut scene.b, axis, bad),
         2 => scene.pose_b.position[axis] = bad,
         _ => scene.pose_a.rotation.rows[axis].y = bad,
     }
+}
+
+fn spoil_size(shape: &mut Shape<'static, f64>, axis: usize, bad: f64) {
+    let mut size = shape.size();
+    size[axis] = bad;
+    *shape = shape.resized(size);
 }
 
 /// Each lane finds what it finds alone. With `spoil`, one lane of each call has a number that no model has, and the others do not
@@ -173,7 +177,7 @@ where
             let first = scenes[0];
             for scene in &mut scenes {
                 for (shape, other) in [(&mut scene.a, first.a), (&mut scene.b, first.b)] {
-                    if shape.kind == ShapeKind::Mesh {
+                    if shape.kind() == ShapeKind::Mesh {
                         *shape = other;
                     }
                 }

@@ -18,8 +18,8 @@ const ROUND: [ShapeKind; 5] = [
 ];
 
 fn inside(shape: &Shape<'static, f64>, pose: &Pose<f64>, point: V) -> bool {
-    let (p, s) = (pose.local(point), shape.size);
-    match shape.kind {
+    let (p, s) = (pose.local(point), shape.size());
+    match shape.kind() {
         ShapeKind::Sphere => p.norm() < s.x,
         ShapeKind::Capsule => (p - Vec3::new(0.0, 0.0, p.z.clamp(-s.y, s.y))).norm() < s.x,
         ShapeKind::Ellipsoid => Vec3::new(p.x / s.x, p.y / s.y, p.z / s.z).norm() < 1.0,
@@ -151,7 +151,7 @@ fn lanes_are_scalars_and_single_precision_is_near() {
                 }
                 out
             };
-            let shape = Shape::new(kind, gather(&|lane| shapes[lane].size));
+            let shape = Shape::new(kind, gather(&|lane| shapes[lane].size()));
             let wide = Ray {
                 origin: gather(&|lane| rays[lane].origin),
                 direction: gather(&|lane| rays[lane].direction),
@@ -167,7 +167,7 @@ fn lanes_are_scalars_and_single_precision_is_near() {
                 origin: of(rays[0].origin),
                 direction: of(rays[0].direction),
             };
-            let shape = Shape::new(kind, of(shapes[0].size));
+            let shape = Shape::new(kind, of(shapes[0].size()));
             let hit: Hit<f32> = ray(&shape, &convert_pose(&pose), &single);
             let alone = ray(&shapes[0], &pose, &rays[0]);
             let grazes = alone.normal.dot(rays[0].direction).abs() < 0.1;

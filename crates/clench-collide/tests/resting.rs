@@ -47,7 +47,7 @@ fn area(scene: &Scene) -> f64 {
 fn a_standing_cylinder_covers_its_cap() {
     let cylinder = shape(ShapeKind::Cylinder, [0.1, 0.2, 0.0]);
     let cap = std::f64::consts::PI * 0.01;
-    // An octagon in a circle has 0.9003 of its area; one that has to hold the deepest point of the rim a little less.
+    // An octagon in a circle has 0.9003 of its area; one that has to hold the deepest point of the circle a little less.
     for (tilt, share) in [(0.0, 0.9), (1e-7, 0.9), (1e-4, 0.87), (1e-3, 0.87)] {
         let turn = Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), tilt).to_matrix();
         let wide = shape(ShapeKind::Box, [0.3, 0.4, 0.1]);
@@ -156,7 +156,7 @@ fn a_hull_of_a_box_lies_as_the_box_does() {
 #[test]
 fn a_hull_of_a_cylinder_covers_its_cap() {
     let cylinder = shape(ShapeKind::Cylinder, [0.1, 0.2, 0.0]);
-    let prism = hull(&hulls::rims(0.1, 0.2, 40));
+    let prism = hull(&hulls::cap_circles(0.1, 0.2, 40));
     let cap = std::f64::consts::PI * 0.01;
     for tilt in TILTS {
         let turn = Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), tilt).to_matrix();
@@ -169,7 +169,7 @@ fn a_hull_of_a_cylinder_covers_its_cap() {
             let height = 0.3999 - 0.1 * tilt;
             let scene = on_top(below, prism, [0.0, 0.0, height], turn);
             let share = area(&scene) / cap;
-            assert!(share > 0.85, "{share} of {:?} at {tilt}", below.kind);
+            assert!(share > 0.85, "{share} of {:?} at {tilt}", below.kind());
         }
         let mut scene = on_top(
             cylinder,
@@ -194,7 +194,7 @@ fn a_hull_rests_on_a_plane_with_all_of_a_face() {
     }
     assert!((area(&scene) - 0.08).abs() < 1e-12);
     // Many corners: a regular octagon of them has 0.9003 of the circle.
-    let round = hull(&hulls::rims(0.1, 0.2, 64));
+    let round = hull(&hulls::cap_circles(0.1, 0.2, 64));
     for tilt in TILTS {
         let turn = Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), tilt).to_matrix();
         let scene = on_top(floor, round, [0.0, 0.0, 0.1999 - 0.1 * tilt], turn);

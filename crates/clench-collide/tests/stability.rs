@@ -15,7 +15,7 @@ fn cylinder() -> Shape<'static, f64> {
 }
 
 fn prism(corners: usize) -> Shape<'static, f64> {
-    Shape::mesh(hulls::hull_of(&hulls::rims(RADIUS, HALF, corners)))
+    Shape::mesh(hulls::hull_of(&hulls::cap_circles(RADIUS, HALF, corners)))
 }
 
 fn slab() -> Shape<'static, f64> {
@@ -30,7 +30,7 @@ fn scene(
     up: f64,
     turn: Quat<f64>,
 ) -> Scene {
-    let top = if below.kind == ShapeKind::Plane {
+    let top = if below.kind() == ShapeKind::Plane {
         0.0
     } else {
         HALF
@@ -40,7 +40,7 @@ fn scene(
         rotation: turn.to_matrix(),
     };
     let (lower, upper) = ((below, Pose::IDENTITY), (above, above_at));
-    let in_order = below.kind <= above.kind;
+    let in_order = below.kind() <= above.kind();
     let ((a, pose_a), (b, pose_b)) = if in_order {
         (lower, upper)
     } else {

@@ -288,11 +288,7 @@ fn contacts_move_with_both_and_are_the_same_in_lanes() {
 
         type L = Lanes<f64, 8>;
         let mut lanes = Contacts::<L>::new();
-        let wide = Shape {
-            kind,
-            size: Vec3::from_f64(shape.size.to_array()),
-            asset: shape.asset,
-        };
+        let wide = shape.resized(Vec3::from_f64(shape.size().to_array()));
         let mut pose_l = convert_pose::<L>(&pose);
         // Elsewhere in one lane.
         pose_l.position.z.set_lane(3, 9.0);
@@ -313,11 +309,7 @@ fn contacts_move_with_both_and_are_the_same_in_lanes() {
         }
 
         let mut single = Contacts::<f32>::new();
-        let shape = Shape {
-            kind,
-            size: Vec3::from_f64(shape.size.to_array()),
-            asset: shape.asset,
-        };
+        let shape = shape.resized(Vec3::from_f64(shape.size().to_array()));
         collide(
             &Shape::height_field(&ground),
             &Pose::IDENTITY,

@@ -23,12 +23,15 @@ const SCENE: &str = "<mujoco><visual><headlight ambient='.2 .2 .2' active='0'/><
 fn numbers_are_those_of_the_file_or_of_mujoco() {
     let model = load_str(SCENE).unwrap();
     let lights = &model.visuals.lights;
-    let kinds: Vec<_> = lights[..3].iter().map(|light| light.look.kind).collect();
+    let kinds: Vec<_> = lights[..3]
+        .iter()
+        .map(|light| light.properties.kind)
+        .collect();
     assert_eq!(
         kinds,
         [LightKind::Spot, LightKind::Directional, LightKind::Point]
     );
-    let (first, second) = (&lights[0].look, &lights[1].look);
+    let (first, second) = (&lights[0].properties, &lights[1].properties);
     assert_eq!(
         (first.cutoff, first.exponent, first.attenuation),
         (45.0, 10.0, [1.0, 0.0, 0.0])

@@ -1,20 +1,12 @@
 //! Textures: the pixels are those of MuJoCo, and what is wrong with a file is said.
 
+mod pictures;
+
 use clench_formats::Loader;
 use clench_rigid::Model;
 use clench_rigid::model::{Pixels, TextureKind};
+use pictures::png;
 use std::sync::Arc;
-
-/// A PNG image of colours with three parts.
-fn png(size: [u32; 2], pixels: &[[u8; 3]]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(pixels.as_flattened()).unwrap();
-    writer.finish().unwrap();
-    bytes
-}
 
 const R: [u8; 3] = [255, 0, 0];
 const G: [u8; 3] = [0, 255, 0];

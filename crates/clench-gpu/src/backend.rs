@@ -81,13 +81,14 @@ impl GpuBatch {
     ) -> Result<(), GpuError> {
         let (steps, faults) = (self.report("steps")?, self.faults(verdict)?);
         let none = faults.iter().all(Option::is_none);
-        let details = match none {
-            true => None,
-            false => Some([
+        let details = if none {
+            None
+        } else {
+            Some([
                 self.report("fault_field")?,
                 self.report("fault_index")?,
                 self.report("fault_value")?,
-            ]),
+            ])
         };
         for env in (0..self.count).filter(|&env| running[env]) {
             let trouble = faults[env].map(|fault| match fault {

@@ -98,7 +98,7 @@ impl Device {
     ///
     /// # Errors
     /// No such device, or one that cannot be had.
-    pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
+    pub(crate) fn open(name: Option<&str>) -> Result<Self, GpuError> {
         let found = adapters();
         if found.is_empty() {
             return Err(GpuError::NoDevice);
@@ -150,7 +150,7 @@ impl Device {
     }
 
     /// The largest array that a kernel can see, bytes.
-    pub fn max_buffer(&self) -> u64 {
+    pub(crate) fn max_buffer(&self) -> u64 {
         max_buffer(&self.limits)
     }
 
@@ -158,7 +158,7 @@ impl Device {
     ///
     /// # Errors
     /// That the device was lost, or refused something, since the last call.
-    pub fn wait(&self) -> Result<(), GpuError> {
+    pub(crate) fn wait(&self) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
         let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
         match (failure.take(), waited) {
@@ -168,13 +168,13 @@ impl Device {
         }
     }
 
-    pub fn lost(&self, reason: String) -> GpuError {
+    pub(crate) fn lost(&self, reason: String) -> GpuError {
         let device = self.info.name.clone();
         GpuError::Lost { device, reason }
     }
 
     /// An array of so many bytes, all zero, that kernels read and write.
-    pub fn array(&self, label: &str, bytes: u64) -> wgpu::Buffer {
+    pub(crate) fn array(&self, label: &str, bytes: u64) -> wgpu::Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: bytes.max(4),
@@ -189,7 +189,7 @@ impl Device {
     ///
     /// # Errors
     /// That the device was lost.
-    pub fn download(
+    pub(crate) fn download(
         &self,
         from: &wgpu::Buffer,
         start: u64,

@@ -32,7 +32,7 @@ impl Fields {
     }
 
     /// The field of a name.
-    pub fn find(&self, name: &str) -> Option<Field> {
+    pub(crate) fn find(&self, name: &str) -> Option<Field> {
         self.list.iter().copied().find(|field| field.name == name)
     }
 }
@@ -136,7 +136,7 @@ fields! {
     row_fields(m, c);
     blocks: BLOCK_SIZE * c.blocks;
     /// The active set of each block.
-    pieces: c.blocks;
+    active_set: c.blocks;
     row_block: c.rows;
     position: c.rows;
     velocity: c.rows;

@@ -14,7 +14,7 @@ pub(crate) const GRID: u32 = 32_768;
 
 /// Who works on an environment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Spread {
+pub(crate) enum Workers {
     /// One thread.
     Thread,
     /// One workgroup.
@@ -27,7 +27,7 @@ pub(crate) struct Kernel {
     /// Its entry point.
     pub entry: &'static str,
     /// Who works on an environment.
-    pub spread: Spread,
+    pub workers: Workers,
     /// What it is made of, besides what all have.
     texts: &'static [&'static str],
 }
@@ -40,10 +40,10 @@ macro_rules! texts {
 const COMMON: &[&str] = texts!["memory", "math"];
 
 macro_rules! kernels {
-    ($($(#[$doc:meta])* $constant:ident = $entry:literal, $spread:ident: $($name:literal),*;)*) => {
+    ($($(#[$doc:meta])* $constant:ident = $entry:literal, $workers:ident: $($name:literal),*;)*) => {
         $($(#[$doc])* pub(crate) const $constant: Kernel = Kernel {
             entry: $entry,
-            spread: Spread::$spread,
+            workers: Workers::$workers,
             texts: texts![$($name),*],
         };)*
     };
@@ -141,17 +141,17 @@ pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
 
 impl Kernel {
     /// Its whole text.
-    pub fn source(&self, constants: &str) -> String {
+    pub(crate) fn source(&self, constants: &str) -> String {
         let texts = COMMON.iter().chain(self.texts);
         texts.fold(constants.to_owned(), |source, text| source + "\n" + text)
     }
 
     /// How many workgroups `count` environments take, along each axis.
-    pub fn workgroups(&self, count: usize) -> [u32; 3] {
+    pub(crate) fn workgroups(&self, count: usize) -> [u32; 3] {
         let count = count as u32;
-        match self.spread {
-            Spread::Thread => [count.div_ceil(GROUP), 1, 1],
-            Spread::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
+        match self.workers {
+            Workers::Thread => [count.div_ceil(GROUP), 1, 1],
+            Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
         }
     }
 }

@@ -9,6 +9,8 @@
 //! Here live the kernels, the tables that they read, and the arrays they work on. Physics that the processor does too belongs in the
 //! crates below; this one only repeats it.
 
+#![deny(unreachable_pub)]
+
 mod backend;
 mod batch;
 mod check;

@@ -17,7 +17,7 @@ pub(crate) struct Base {
 }
 
 impl Base {
-    pub fn new(tables: &Tables, candidates: Vec<Candidate>) -> Self {
+    pub(crate) fn new(tables: &Tables, candidates: Vec<Candidate>) -> Self {
         Base {
             words: tables.words.clone(),
             constants: tables.constants.clone(),

@@ -59,7 +59,7 @@ impl Arrays {
     }
 
     /// What the kernels are given.
-    pub fn bind(&self, device: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
+    pub(crate) fn bind(&self, device: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         let entries: Vec<_> = (0..)
             .zip(self.all())
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -102,7 +102,7 @@ impl Pipelines {
     ///
     /// # Errors
     /// That the device or its driver refuses a kernel.
-    pub fn new(
+    pub(crate) fn new(
         device: &Device,
         layout: &wgpu::BindGroupLayout,
         constants: &str,
@@ -153,7 +153,7 @@ impl Pipelines {
     ///
     /// # Errors
     /// That the device or its driver refuses a kernel.
-    pub fn observe(
+    pub(crate) fn observe(
         &mut self,
         device: &Device,
         count: usize,
@@ -215,7 +215,7 @@ fn compile(
 
 impl Pipeline {
     /// Appends it to a pass.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass) {
+    pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass) {
         let [x, y, z] = self.workgroups;
         pass.set_pipeline(&self.pipeline);
         pass.dispatch_workgroups(x, y, z);

@@ -143,7 +143,7 @@ impl FreeCamera {
 impl Placed {
     /// The matrix that takes points of the world to the picture, column by column. Depth is 1 at the distance `near` and falls to 0
     /// at infinity (for parallel lines of sight at `far`), which keeps single precision even.
-    pub fn matrix(&self, aspect: f32, near: f32, far: f32) -> [[f32; 4]; 4] {
+    pub(crate) fn matrix(&self, aspect: f32, near: f32, far: f32) -> [[f32; 4]; 4] {
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let rows: Vec<[f32; 4]> = (self.axes.iter())
             .map(|&axis| [axis[0], axis[1], axis[2], -dot(axis, self.eye)])

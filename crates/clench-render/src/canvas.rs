@@ -39,7 +39,7 @@ impl Canvas {
 }
 
 /// Copies a texture to where it can be read.
-pub fn copy(gpu: &Gpu, encoder: &mut CommandEncoder, from: &Texture) -> Buffer {
+pub(crate) fn copy(gpu: &Gpu, encoder: &mut CommandEncoder, from: &Texture) -> Buffer {
     let size = from.size();
     let row = (4 * size.width).next_multiple_of(ROW);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -64,7 +64,7 @@ pub fn copy(gpu: &Gpu, encoder: &mut CommandEncoder, from: &Texture) -> Buffer {
 }
 
 /// The pixels of a copy.
-pub fn read(copy: &Buffer, [width, _]: [u32; 2]) -> Vec<[u8; 4]> {
+pub(crate) fn read(copy: &Buffer, [width, _]: [u32; 2]) -> Vec<[u8; 4]> {
     let row = (4 * width).next_multiple_of(ROW) as usize;
     let Ok(bytes) = copy.get_mapped_range(..) else {
         return Vec::new();
@@ -76,7 +76,7 @@ pub fn read(copy: &Buffer, [width, _]: [u32; 2]) -> Vec<[u8; 4]> {
 }
 
 /// A texture that is drawn into, and read or sampled unless a pixel has several samples.
-pub fn texture(
+pub(crate) fn texture(
     gpu: &Gpu,
     [width, height]: [u32; 2],
     format: TextureFormat,

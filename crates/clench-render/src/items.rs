@@ -9,30 +9,30 @@ use clench_view::surfaces::texture;
 /// Numbers of one thing that is drawn; see the shader.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
-pub struct Item {
+pub(crate) struct Item {
     pub pose: [[f32; 4]; 4],
     pub color: [f32; 4],
     pub surface: [f32; 4],
     pub texture: [f32; 4],
 }
 
-/// The looks of every geom of a model and then of every site, at no place yet.
-pub fn of_model(model: &Model) -> Vec<Item> {
+/// What is drawn of every geom of a model and then of every site, without poses.
+pub(crate) fn of_model(model: &Model) -> Vec<Item> {
     let visuals = &model.visuals;
     let geoms = visuals.geoms.iter().enumerate().map(|(g, &appearance)| {
-        let mut item = look(model, appearance);
+        let mut item = item_of(model, appearance);
         item.surface[3] = g as f32;
         item
     });
     let sites = visuals
         .sites
         .iter()
-        .map(|&appearance| look(model, appearance));
+        .map(|&appearance| item_of(model, appearance));
     geoms.chain(sites).collect()
 }
 
-/// How something looks. Where it has no material it shines as MuJoCo lets it.
-fn look(model: &Model, appearance: Appearance) -> Item {
+/// What is drawn of an element. Where it has no material it shines as MuJoCo lets it.
+fn item_of(model: &Model, appearance: Appearance) -> Item {
     let visuals = &model.visuals;
     let material = appearance.material.and_then(|m| visuals.materials.get(m));
     let kind = match texture(model, appearance).map(|t| visuals.textures[t].kind) {
@@ -51,7 +51,9 @@ fn look(model: &Model, appearance: Appearance) -> Item {
 }
 
 /// The poses of all geoms now, then of all sites, column by column.
-pub fn poses<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<[[f32; 4]; 4]>, clench::SimError> {
+pub(crate) fn poses<T: Precision>(
+    sim: &mut Sim<T>,
+) -> Result<Vec<[[f32; 4]; 4]>, clench::SimError> {
     let mut poses = poses_of(sim, "geom_xpos", "geom_xmat")?;
     if !sim.model().sites.is_empty() {
         poses.extend(poses_of(sim, "site_xpos", "site_xmat")?);
@@ -87,14 +89,14 @@ fn poses_of<T: Precision>(
 }
 
 /// Straight parts of tendons now, for a cylinder along z of radius 1 and half the length 1.
-pub fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, clench::SimError> {
+pub(crate) fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, clench::SimError> {
     sim.refresh()?;
     let mut spans = Vec::new();
     tendon_spans(sim, &mut spans);
     let model = sim.model();
     let item = |row: &[f32]| {
         let tendon = row[0] as usize;
-        let mut item = look(model, model.visuals.tendons[tendon]);
+        let mut item = item_of(model, model.visuals.tendons[tendon]);
         // Pictures do not lie on strings.
         item.texture = [0.0; 4];
         let radius = model.visuals.tendon_width[tendon] as f32;

@@ -5,6 +5,8 @@
 //!
 //! No physics here, and no files: what is done with a picture is its user's business.
 
+#![deny(unreachable_pub)]
+
 pub mod camera;
 mod canvas;
 mod device;

@@ -8,22 +8,22 @@ use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Text
 use zerocopy::IntoBytes;
 
 /// Pixels of a side of the sun's shadow.
-pub const SHADOW: u32 = 2048;
+pub(crate) const SHADOW: u32 = 2048;
 /// Nearest thing that is seen, over the size of the model.
 const NEAR: f32 = 0.003;
 /// How far a plane without end reaches, over the size of the model.
-pub const FAR: f32 = 300.0;
+pub(crate) const FAR: f32 = 300.0;
 /// How far shadows reach from the middle, over the size of the model.
-pub const REACH: f32 = 2.2;
+pub(crate) const REACH: f32 = 2.2;
 /// Towards the sun.
 const TO_SUN: [f32; 3] = [0.150, -0.551, 0.821];
 /// Behind everything, as on the viewer's page.
-pub const SKY: [f32; 3] = [0.875, 0.902, 0.933];
+pub(crate) const SKY: [f32; 3] = [0.875, 0.902, 0.933];
 
 /// What the shader is told of a picture.
 #[repr(C)]
 #[derive(Clone, Copy, IntoBytes, zerocopy::Immutable)]
-pub struct Uniforms {
+pub(crate) struct Uniforms {
     camera: [[f32; 4]; 4],
     sun: [[f32; 4]; 4],
     eye: [f32; 4],
@@ -39,7 +39,7 @@ pub struct Uniforms {
 /// A light as the shader reads it.
 #[repr(C)]
 #[derive(Clone, Copy, IntoBytes, zerocopy::Immutable)]
-pub struct Lamp {
+pub(crate) struct Lamp {
     place: [f32; 4],
     dir: [f32; 4],
     ambient: [f32; 4],
@@ -49,7 +49,7 @@ pub struct Lamp {
 }
 
 /// What lights a picture.
-pub struct Lighting {
+pub(crate) struct Lighting {
     pub lamps: Vec<Lamp>,
     /// What the light that casts the shadow sees, if one of the model's does.
     shadow: Option<Placed>,
@@ -62,10 +62,17 @@ pub struct Lighting {
 impl Lighting {
     /// Of the lights of a model where they are now: place and direction of each. Of those that cast shadows the first does; what is
     /// around `centre`, within `reach`, is in it.
-    pub fn new(visuals: &Visuals, places: &[[[f64; 3]; 2]], centre: [f32; 3], reach: f32) -> Self {
+    pub(crate) fn new(
+        visuals: &Visuals,
+        places: &[[[f64; 3]; 2]],
+        centre: [f32; 3],
+        reach: f32,
+    ) -> Self {
         let all = visuals.lights.iter().zip(places);
-        let active: Vec<_> = all.filter(|(light, _)| light.look.active).collect();
-        let casting = active.iter().position(|(light, _)| light.look.castshadow);
+        let active: Vec<_> = all.filter(|(light, _)| light.properties.active).collect();
+        let casting = active
+            .iter()
+            .position(|(light, _)| light.properties.castshadow);
         let head = &visuals.headlight;
         let head = [head.ambient, head.diffuse, head.specular]
             .map(|color| if head.active { color } else { [0.0; 3] });
@@ -89,8 +96,8 @@ fn with([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
 }
 
 fn lamp(light: &Light, place: &[[f64; 3]; 2], casts: bool) -> Lamp {
-    let look = &light.look;
-    let kind = match look.kind {
+    let properties = &light.properties;
+    let kind = match properties.kind {
         LightKind::Spot => 0.0,
         LightKind::Directional => 1.0,
         LightKind::Point => 2.0,
@@ -98,11 +105,11 @@ fn lamp(light: &Light, place: &[[f64; 3]; 2], casts: bool) -> Lamp {
     let [pos, dir] = place.map(narrow);
     Lamp {
         place: with(pos, kind),
-        dir: with(dir, look.cutoff.to_radians().cos() as f32),
-        ambient: with(narrow(look.ambient), look.exponent as f32),
-        diffuse: with(narrow(look.diffuse), f32::from(u8::from(casts))),
-        specular: with(narrow(look.specular), 0.0),
-        attenuation: with(narrow(look.attenuation), 0.0),
+        dir: with(dir, properties.cutoff.to_radians().cos() as f32),
+        ambient: with(narrow(properties.ambient), properties.exponent as f32),
+        diffuse: with(narrow(properties.diffuse), f32::from(u8::from(casts))),
+        specular: with(narrow(properties.specular), 0.0),
+        attenuation: with(narrow(properties.attenuation), 0.0),
     }
 }
 
@@ -110,13 +117,13 @@ fn lamp(light: &Light, place: &[[f64; 3]; 2], casts: bool) -> Lamp {
 fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> Placed {
     let [pos, dir] = place.map(narrow);
     let away = [0, 1, 2].map(|k| centre[k] - pos[k]);
-    match light.look.kind {
+    match light.properties.kind {
         LightKind::Directional => far_away(centre, dir.map(|x| -x), reach),
         // A cone of a right angle and more would not be seen at once.
         LightKind::Spot => Placed {
             eye: pos,
             axes: axes(dir.map(|x| -x)),
-            half: light.look.cutoff.clamp(1.0, 75.0).to_radians().tan() as f32,
+            half: light.properties.cutoff.clamp(1.0, 75.0).to_radians().tan() as f32,
             parallel: false,
         },
         LightKind::Point => Placed {
@@ -130,7 +137,7 @@ fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> 
 
 impl Uniforms {
     /// Of a picture of things of a size around a centre, m.
-    pub fn new(
+    pub(crate) fn new(
         camera: &Placed,
         aspect: f32,
         extent: f32,
@@ -173,7 +180,7 @@ impl Uniforms {
 }
 
 /// What lights things: the sun's shadow.
-pub fn light_group(gpu: &Gpu, passes: &Passes, shadow: &TextureView) -> BindGroup {
+pub(crate) fn light_group(gpu: &Gpu, passes: &Passes, shadow: &TextureView) -> BindGroup {
     let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         compare: Some(wgpu::CompareFunction::GreaterEqual),
         mag_filter: wgpu::FilterMode::Linear,

@@ -9,15 +9,15 @@ use wgpu::{
     TextureSampleType, TextureViewDimension, VertexBufferLayout, VertexState, VertexStepMode,
 };
 
-pub const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-pub const GEOMS: TextureFormat = TextureFormat::R32Sint;
-pub const DISTANCES: TextureFormat = TextureFormat::R32Float;
-pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+pub(crate) const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+pub(crate) const GEOMS: TextureFormat = TextureFormat::R32Sint;
+pub(crate) const DISTANCES: TextureFormat = TextureFormat::R32Float;
+pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// Samples of a pixel.
-pub const SAMPLES: u32 = 4;
+pub(crate) const SAMPLES: u32 = 4;
 
 /// The pipelines, and what they need.
-pub struct Passes {
+pub(crate) struct Passes {
     pub scene: BindGroupLayout,
     pub light: BindGroupLayout,
     pub texture: BindGroupLayout,
@@ -38,7 +38,7 @@ struct Way<'a> {
 }
 
 impl Passes {
-    pub fn new(device: &Device) -> Self {
+    pub(crate) fn new(device: &Device) -> Self {
         let module = device.create_shader_module(wgpu::include_wgsl!("shader.wgsl"));
         let scene = scene_layout(device);
         let light = light_layout(device);

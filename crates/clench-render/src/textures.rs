@@ -16,7 +16,7 @@ use wgpu::{
 const SIDES: usize = 6;
 
 /// The textures that are on something, and the one that is nothing.
-pub struct Textures {
+pub(crate) struct Textures {
     /// By the model's numbers; none of those that nothing has.
     of_model: Vec<Option<BindGroup>>,
     nothing: BindGroup,
@@ -24,7 +24,7 @@ pub struct Textures {
 
 impl Textures {
     /// Brings what geoms and sites have to the device.
-    pub fn new(gpu: &Gpu, passes: &Passes, model: &Model) -> Self {
+    pub(crate) fn new(gpu: &Gpu, passes: &Passes, model: &Model) -> Self {
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             address_mode_u: wgpu::AddressMode::Repeat,
             address_mode_v: wgpu::AddressMode::Repeat,
@@ -65,7 +65,7 @@ impl Textures {
     }
 
     /// That of an element.
-    pub fn of(&self, model: &Model, appearance: Appearance) -> &BindGroup {
+    pub(crate) fn of(&self, model: &Model, appearance: Appearance) -> &BindGroup {
         let index = surfaces::texture(model, appearance);
         let found = index.and_then(|index| self.of_model.get(index)?.as_ref());
         found.unwrap_or(&self.nothing)

@@ -14,7 +14,7 @@ const UPWARDS: usize = 18;
 /// A corner of a triangle.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
-pub struct Vertex {
+pub(crate) struct Vertex {
     pub place: [f32; 3],
     pub normal: [f32; 3],
     /// The place in a picture that lies on the shape: x across and y down, or a direction in a cube of pictures.
@@ -33,7 +33,7 @@ impl Vertex {
 }
 
 /// The triangles of a geom; an infinite plane is so large.
-pub fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Vec<Vertex> {
+pub(crate) fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Vec<Vertex> {
     let described = &model.geoms[geom];
     let size = params.geom_size[geom];
     let appearance = model.visuals.geoms[geom];
@@ -58,7 +58,7 @@ pub fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Ve
 }
 
 /// The triangles of a site.
-pub fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<Vertex> {
+pub(crate) fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<Vertex> {
     let (kind, size) = (model.sites[site].kind, params.site_size[site]);
     let appearance = model.visuals.sites[site];
     let mut shape = primitive(kind, size.to_array().map(|x| x as f32), 0.0);
@@ -93,7 +93,7 @@ fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
 }
 
 /// A cylinder along z of radius 1 and half the length 1, of which tendons are made.
-pub fn string() -> Vec<Vertex> {
+pub(crate) fn string() -> Vec<Vertex> {
     cylinder(1.0, 1.0)
 }
 

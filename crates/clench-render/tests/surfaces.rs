@@ -1,23 +1,17 @@
 //! Pictures lie on surfaces, and lights shine, as a file says. Without a device that draws these tests say so and check nothing else.
 
+#[path = "../../clench-formats/tests/pictures/mod.rs"]
+mod pictures;
+
 use clench::{Loader, Sim};
 use clench_render::{FreeCamera, Image, Picture, RenderError, Renderer, View};
+use pictures::png;
 use std::sync::Arc;
 
 const R: [u8; 3] = [255, 0, 0];
 const G: [u8; 3] = [0, 255, 0];
 const B: [u8; 3] = [0, 0, 255];
 const W: [u8; 3] = [255; 3];
-
-fn png(size: [u32; 2], pixels: &[[u8; 3]]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(pixels.as_flattened()).unwrap();
-    writer.finish().unwrap();
-    bytes
-}
 
 /// The picture of a scene from straight above, or from a camera of its own; none where nothing draws.
 fn drawn(text: &str, view: Option<View>) -> Option<Image> {

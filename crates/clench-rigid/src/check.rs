@@ -98,34 +98,34 @@ macro_rules! declare_inputs {
             false
         }
 
-        /// Shows every number of a state but its time to `look`: field, its bound, index of the first number in the field, numbers.
+        /// Shows every number of a state but its time to `visit`: field, its bound, index of the first number in the field, numbers.
         #[inline(always)]
         fn each_input<T: Real>(
             s: &State<T>,
-            mut look: impl FnMut(&'static str, Bound, usize, &[T]),
+            mut visit: impl FnMut(&'static str, Bound, usize, &[T]),
         ) {
             $($(kind::$kind::numbers::<T>(
                 &s.$name,
                 #[inline(always)]
-                |start, numbers| look(stringify!($name), Bound::$bound, start, numbers),
+                |start, numbers| visit(stringify!($name), Bound::$bound, start, numbers),
             );)*)*
         }
     };
 }
 crate::state_fields!(declare_inputs);
 
-/// Shows to `look` what a step must leave within bounds.
+/// Shows to `visit` what a step must leave within bounds.
 #[inline(always)]
 fn each_result<T: Real>(
     state: &State<T>,
     ws: &Workspace<T>,
-    mut look: impl FnMut(&'static str, Bound, &[T]),
+    mut visit: impl FnMut(&'static str, Bound, &[T]),
 ) {
-    look("qacc", Bound::Near, &ws.qacc);
-    look("qfrc_constraint", Bound::Finite, &ws.qfrc_constraint);
-    look("qvel", Bound::Near, &state.qvel);
-    look("qpos", Bound::Near, &state.qpos);
-    look("act", Bound::Finite, &state.act);
+    visit("qacc", Bound::Near, &ws.qacc);
+    visit("qfrc_constraint", Bound::Finite, &ws.qfrc_constraint);
+    visit("qvel", Bound::Near, &state.qvel);
+    visit("qpos", Bound::Near, &state.qpos);
+    visit("act", Bound::Finite, &state.act);
 }
 
 /// The lanes in which all numbers are within a bound.

@@ -3,7 +3,7 @@
 use crate::contact::shape;
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
-use clench_collide::{Asset, Hit, Pose, Ray, Shape, ShapeKind, UnitRay, ray};
+use clench_collide::{Hit, Mesh, Pose, Ray, Shape, ShapeKind, UnitRay, ray};
 use clench_math::{Mask, Real, Vec3, kernel};
 
 /// The geoms of a configuration.
@@ -25,15 +25,12 @@ impl<'a, T: Real> Geoms<'a, T> {
 
     /// The shape of a geom, with a hull even if it does not collide.
     pub(crate) fn solid(&self, geom: usize) -> Shape<'a, T> {
-        let shape = shape(self.model, self.params, geom);
         match self.model.geoms[geom].mesh {
-            Some(mesh) => Shape {
-                asset: self.model.meshes[mesh]
-                    .any_hull()
-                    .map_or(Asset::None, Asset::Hull),
-                ..shape
-            },
-            None => shape,
+            Some(mesh) => Shape::Mesh(Mesh {
+                hull: self.model.meshes[mesh].any_hull(),
+                extent: self.params.geom_size[geom],
+            }),
+            None => shape(self.model, self.params, geom),
         }
     }
 

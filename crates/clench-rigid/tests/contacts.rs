@@ -244,10 +244,10 @@ fn stack(shape: &GeomSpec, base: GeomSpec) -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new();
     let round = (0..40).map(|k| f64::from(k) * std::f64::consts::TAU / 40.0);
-    let rims: Vec<_> = round
+    let cap_corners: Vec<_> = round
         .flat_map(|a| [-0.05, 0.05].map(|z| [0.1 * a.cos(), 0.1 * a.sin(), z]))
         .collect();
-    b.meshes.push(MeshSpec::hull("prism", &rims));
+    b.meshes.push(MeshSpec::hull("prism", &cap_corners));
     b.bodies[0].geoms.push(base);
     for k in 0..3 {
         let level = f64::from(k);

@@ -279,21 +279,21 @@ fn controls(model: &Model) -> Vec<Value> {
 }
 
 fn light(light: &Light) -> Value {
-    let look = &light.look;
+    let properties = &light.properties;
     json!({
         "name": light.name,
-        "kind": match look.kind {
+        "kind": match properties.kind {
             LightKind::Spot => "spot",
             LightKind::Directional => "directional",
             LightKind::Point => "point",
         },
-        "active": look.active,
-        "castshadow": look.castshadow,
-        "attenuation": look.attenuation,
-        "cutoff": look.cutoff,
-        "exponent": look.exponent,
-        "ambient": look.ambient,
-        "diffuse": look.diffuse,
+        "active": properties.active,
+        "castshadow": properties.castshadow,
+        "attenuation": properties.attenuation,
+        "cutoff": properties.cutoff,
+        "exponent": properties.exponent,
+        "ambient": properties.ambient,
+        "diffuse": properties.diffuse,
     })
 }
 

@@ -1,7 +1,7 @@
 //! A ball and a box about a shape.
 
-use crate::shape::reach_along;
-use crate::{Pose, Shape, ShapeKind, bounding_radius};
+use crate::shape::Solid;
+use crate::{Pose, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// By how much bounding radii and margins are enlarged, a hair more than 1, so that rounding never rejects a pair in which the
@@ -30,9 +30,9 @@ impl<T: Real> Bound<T> {
     pub fn new(shape: &Shape<T>, pose: &Pose<T>) -> Self {
         Bound {
             center: pose.position,
-            radius: bounding_radius(shape) * allowance(),
+            radius: shape.bounding_radius() * allowance(),
             half: half_lengths(shape, pose) * allowance(),
-            plane: (shape.kind == ShapeKind::Plane).then(|| pose.axis()),
+            plane: matches!(shape, Shape::Plane(_)).then(|| pose.axis()),
         }
     }
 }
@@ -40,7 +40,7 @@ impl<T: Real> Bound<T> {
 /// How far a shape reaches from its origin along the coordinate axes.
 #[inline(always)]
 fn half_lengths<T: Real>(shape: &Shape<T>, pose: &Pose<T>) -> Vec3<T> {
-    let [x, y, z] = pose.rotation.rows.map(|axis| reach_along(shape, axis));
+    let [x, y, z] = pose.rotation.rows.map(|axis| shape.reach_along(axis));
     Vec3::new(x, y, z)
 }
 

@@ -177,15 +177,15 @@ fn outline(triangles: &[[u32; 3]], members: &[usize]) -> Option<Vec<u32>> {
     }
     halves.sort_unstable();
     let inner = |&(a, b): &(u32, u32)| halves.binary_search(&(b, a)).is_ok();
-    let rim: Vec<(u32, u32)> = halves.iter().copied().filter(|half| !inner(half)).collect();
-    let (first, mut at) = *rim.first()?;
+    let boundary: Vec<(u32, u32)> = halves.iter().copied().filter(|half| !inner(half)).collect();
+    let (first, mut at) = *boundary.first()?;
     let mut corners = vec![first];
-    while at != first && corners.len() < rim.len() {
+    while at != first && corners.len() < boundary.len() {
         corners.push(at);
-        let next = rim.binary_search_by_key(&at, |&(from, _)| from).ok()?;
-        at = rim[next].1;
+        let next = boundary.binary_search_by_key(&at, |&(from, _)| from).ok()?;
+        at = boundary[next].1;
     }
-    (at == first && corners.len() == rim.len()).then_some(corners)
+    (at == first && corners.len() == boundary.len()).then_some(corners)
 }
 
 fn neighbors(count: usize, edges: &[MeshEdge]) -> Lists {

@@ -2,7 +2,7 @@
 
 use super::placed::Placed;
 use super::segment::Segment;
-use crate::{ContactPoint, Contacts};
+use crate::{Capsule, ContactPoint, Contacts, Sphere};
 use clench_math::{Mask, Real, Vec3, kernel};
 
 /// A point with a radius: a sphere, or one place on the axis of a capsule.
@@ -45,7 +45,7 @@ pub(super) fn ball_ball<T: Real>(
 /// A unit vector across the axes of two shapes. Where these are parallel: across them, in the plane of the world's x axis
 /// (or y, if they are near that). MuJoCo takes x itself then, the same for upright shapes.
 #[inline(always)]
-pub(super) fn across_axes<T: Real>(a: Placed<T>, b: Placed<T>) -> Vec3<T> {
+pub(super) fn across_axes<A, B, T: Real>(a: Placed<A, T>, b: Placed<B, T>) -> Vec3<T> {
     let axis = b.pose.axis();
     let across = a.pose.axis().cross(axis);
     let parallel = across.norm_squared().lt(T::new(1e-24));
@@ -57,10 +57,15 @@ pub(super) fn across_axes<T: Real>(a: Placed<T>, b: Placed<T>) -> Vec3<T> {
 }
 
 #[kernel]
-pub(super) fn sphere_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    let ball = |s: Placed<T>| Ball {
+pub(super) fn sphere_sphere<T: Real>(
+    a: Placed<Sphere<T>, T>,
+    b: Placed<Sphere<T>, T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
+    let ball = |s: Placed<Sphere<T>, T>| Ball {
         center: s.pose.position,
-        radius: s.shape.size.x,
+        radius: s.shape.radius,
     };
     let all = T::Mask::splat(true);
     let across = || a.pose.axis().cross(b.pose.axis()).normalize().0;
@@ -69,8 +74,8 @@ pub(super) fn sphere_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out:
 
 #[kernel]
 pub(super) fn sphere_capsule<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Sphere<T>, T>,
+    b: Placed<Capsule<T>, T>,
     margin: T,
     out: &mut Contacts<T>,
 ) {
@@ -79,11 +84,11 @@ pub(super) fn sphere_capsule<T: Real>(
     let along = segment.clamp(segment.axis.dot(center - segment.center));
     let sphere = Ball {
         center,
-        radius: a.shape.size.x,
+        radius: a.shape.radius,
     };
     let nearest = Ball {
         center: segment.at(along),
-        radius: b.shape.size.x,
+        radius: b.shape.radius,
     };
     let all = T::Mask::splat(true);
     ball_ball(sphere, nearest, || across_axes(a, b), margin, all, out);

@@ -12,7 +12,7 @@ use super::convex;
 use super::per_lane::{Points, per_lane_where};
 use super::placed::Placed;
 use super::separating_axis::SeparatingAxis;
-use crate::{Contacts, Pose};
+use crate::{Contacts, Cuboid, Pose};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
 /// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
@@ -32,13 +32,13 @@ pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
 /// that is found.
 #[kernel]
 pub(super) fn box_box<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Cuboid<T>, T>,
+    b: Placed<Cuboid<T>, T>,
     margin: T,
     axis: &mut SeparatingAxis<T>,
     out: &mut Contacts<T>,
 ) {
-    let near = !axis.separates(a, b, margin);
+    let near = !axis.separates(a.any(), b.any(), margin);
     if !near.any() {
         return;
     }
@@ -54,8 +54,8 @@ pub(super) fn box_box<T: Real>(
 /// # Errors
 /// The boxes are apart: the direction in which they are, in the frame of the first.
 fn points<S: Scalar>(
-    a: Placed<S>,
-    b: Placed<S>,
+    a: Placed<Cuboid<S>, S>,
+    b: Placed<Cuboid<S>, S>,
     margin: S,
     points: &mut Points<S>,
 ) -> Result<(), Vec3<S>> {
@@ -73,13 +73,13 @@ fn points<S: Scalar>(
         }
         Feature::Edges(i, j) if separation <= S::ZERO => {
             let normal = boxes.edge_normal(i, j);
-            convex::points_along((a, b), (normal, separation), margin, points);
+            convex::points_along((a.any(), b.any()), (normal, separation), margin, points);
             return Ok(());
         }
         Feature::Edges(..) => {}
     }
     points.clear();
-    convex::points(a, b, margin, points)
+    convex::points(a.any(), b.any(), margin, points)
 }
 
 /// An axis of each box.
@@ -111,8 +111,9 @@ pub(super) struct BoxPair<S> {
 }
 
 impl<S: Scalar> BoxPair<S> {
-    fn new(a: Placed<S>, b: Placed<S>, margin: S) -> Self {
-        let (pose, size) = ([*a.pose, *b.pose], [a.shape.size, b.shape.size]);
+    fn new(a: Placed<Cuboid<S>, S>, b: Placed<Cuboid<S>, S>, margin: S) -> Self {
+        let pose = [*a.pose, *b.pose];
+        let size = [a.shape.half_lengths, b.shape.half_lengths];
         let rotation = pose[0].rotation.transpose() * pose[1].rotation;
         let extent = |v: Vec3<S>| v.x + v.y + v.z;
         let slack = tolerance::<S>(1e-13, 8.0) * (extent(size[0]) + extent(size[1]));

@@ -7,7 +7,7 @@
 use super::convex;
 use super::per_lane::per_lane_where;
 use super::placed::Placed;
-use crate::{ContactPoint, Contacts};
+use crate::{Capsule, ContactPoint, Contacts, Cuboid, Sphere};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// Coordinate-wise clamp to the box of half lengths `size`.
@@ -48,12 +48,12 @@ fn nearest_face<T: Real>(center: Vec3<T>, size: Vec3<T>) -> (Vec3<T>, T) {
 fn ball_box<T: Real>(
     center: Vec3<T>,
     radius: T,
-    b: Placed<T>,
+    b: Placed<Cuboid<T>, T>,
     margin: T,
     wanted: T::Mask,
     out: &mut Contacts<T>,
 ) {
-    let size = b.shape.size;
+    let size = b.shape.half_lengths;
     let offset = clamp(center, size) - center;
     let squared = offset.norm_squared();
     let reach = radius + margin;
@@ -82,17 +82,27 @@ fn ball_box<T: Real>(
 }
 
 #[kernel]
-pub(super) fn sphere_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
+pub(super) fn sphere_box<T: Real>(
+    a: Placed<Sphere<T>, T>,
+    b: Placed<Cuboid<T>, T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
     let center = b.pose.local(a.pose.position);
     let all = T::Mask::splat(true);
-    ball_box(center, a.shape.size.x, b, margin, all, out);
+    ball_box(center, a.shape.radius, b, margin, all, out);
 }
 
 #[kernel]
-pub(super) fn capsule_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
+pub(super) fn capsule_box<T: Real>(
+    a: Placed<Capsule<T>, T>,
+    b: Placed<Cuboid<T>, T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
     let center = b.pose.local(a.pose.position);
-    let half = b.pose.rotation.transpose_mul(a.pose.axis()) * a.shape.size.y;
-    let (radius, size) = (a.shape.size.x, b.shape.size);
+    let half = b.pose.rotation.transpose_mul(a.pose.axis()) * a.shape.half_length;
+    let (radius, size) = (a.shape.radius, b.shape.half_lengths);
     let beyond = |i: usize| center[i].abs() - half[i].abs() - size[i];
     let near = (beyond(0).max(beyond(1)).max(beyond(2)) - radius).le(margin);
     if !near.any() {
@@ -102,7 +112,7 @@ pub(super) fn capsule_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &
     if sunk.any() {
         per_lane_where(sunk, a, b, margin, out, |_, a, b, margin, points| {
             // They overlap, so that no direction separates them.
-            let _ = convex::points(a, b, margin, points);
+            let _ = convex::points(a.any(), b.any(), margin, points);
         });
     }
     let beside = near & !sunk;

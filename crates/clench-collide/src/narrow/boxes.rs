@@ -3,24 +3,24 @@
 //! Boxes are apart if they are so along a face normal of either (Gottschalk, Lin & Manocha 1996; the nine cross products of edges
 //! would find few more). A sphere is its own bound.
 
-use super::placed::Placed;
+use super::placed::AnyPlaced;
 use super::separating_axis::SeparatingAxis;
-use crate::{ShapeKind, allowance};
+use crate::{Shape, Sphere, allowance};
 use clench_math::{Real, Vec3};
 
 /// Where the boxes about two bounded shapes are at most `margin` apart along all of their face normals; the first may be a sphere.
 /// Where they are not, `axis` becomes the normal along which they are furthest apart.
 #[inline(always)]
 pub(super) fn boxes_near<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: AnyPlaced<T>,
+    b: AnyPlaced<T>,
     margin: T,
     axis: &mut SeparatingAxis<T>,
 ) -> T::Mask {
-    if a.shape.kind == ShapeKind::Sphere {
-        return box_near(b, a.pose.position, a.shape.size.x + margin);
+    if let Shape::Sphere(Sphere { radius }) = a.shape {
+        return box_near(b, a.pose.position, radius + margin);
     }
-    let (half_a, half_b) = (half_lengths(a), half_lengths(b));
+    let (half_a, half_b) = (a.shape.half_lengths(), b.shape.half_lengths());
     let turn = a.pose.rotation.transpose() * b.pose.rotation;
     let offset = b.pose.position - a.pose.position;
     let (along_a, along_b) = (
@@ -51,8 +51,8 @@ pub(super) fn boxes_near<T: Real>(
 
 /// Where the box about a shape is at most `reach` from a point.
 #[inline(always)]
-fn box_near<T: Real>(shape: Placed<T>, point: Vec3<T>, reach: T) -> T::Mask {
-    let (place, half) = (shape.pose.local(point), half_lengths(shape));
+fn box_near<T: Real>(shape: AnyPlaced<T>, point: Vec3<T>, reach: T) -> T::Mask {
+    let (place, half) = (shape.pose.local(point), shape.shape.half_lengths());
     // What is no number stays none and is near nothing.
     let mut gap = Vec3::ZERO;
     for k in 0..3 {
@@ -60,16 +60,4 @@ fn box_near<T: Real>(shape: Placed<T>, point: Vec3<T>, reach: T) -> T::Mask {
     }
     let reach = T::ZERO.max(reach * allowance());
     gap.norm_squared().le(reach * reach)
-}
-
-/// How far a shape reaches along its own axes.
-#[inline(always)]
-fn half_lengths<T: Real>(shape: Placed<T>) -> Vec3<T> {
-    let s = shape.shape.size;
-    match shape.shape.kind {
-        ShapeKind::Sphere => Vec3::new(s.x, s.x, s.x),
-        ShapeKind::Capsule => Vec3::new(s.x, s.x, s.x + s.y),
-        ShapeKind::Cylinder => Vec3::new(s.x, s.x, s.y),
-        _ => s,
-    }
 }

@@ -14,7 +14,7 @@
 use super::ball::{Ball, across_axes, ball_ball};
 use super::placed::Placed;
 use super::segment::Segment;
-use crate::Contacts;
+use crate::{Capsule, Contacts};
 use clench_math::{Mask, Real, kernel};
 
 /// The squared sine of the angle below which capsules are parallel.
@@ -22,8 +22,8 @@ const PARALLEL: f64 = 1e-8;
 
 #[kernel]
 pub(super) fn capsule_capsule<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Capsule<T>, T>,
+    b: Placed<Capsule<T>, T>,
     margin: T,
     out: &mut Contacts<T>,
 ) {
@@ -60,11 +60,11 @@ pub(super) fn capsule_capsule<T: Real>(
         );
         let one = Ball {
             center: first.at(s),
-            radius: a.shape.size.x,
+            radius: a.shape.radius,
         };
         let other = Ball {
             center: second.at(t),
-            radius: b.shape.size.x,
+            radius: b.shape.radius,
         };
         ball_ball(one, other, || across_axes(a, b), margin, wanted, out);
     }

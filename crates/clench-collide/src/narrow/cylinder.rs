@@ -4,7 +4,7 @@ use super::ball::across_axes;
 use super::penetration::{deepest, penetration_depth};
 use super::placed::Placed;
 use super::segment::Segment;
-use crate::{ContactPoint, Contacts};
+use crate::{Capsule, ContactPoint, Contacts, Cylinder, Sphere};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// Steps to the nearest point of a segment. Four to eight are usual; after this many halvings only rounding is left.
@@ -14,20 +14,20 @@ const LEVEL_SINE: f64 = 0.087;
 
 /// A cylinder in its own frame.
 #[derive(Clone, Copy)]
-struct Cylinder<T> {
+struct LocalCylinder<T> {
     radius: T,
     half_length: T,
     /// The outward direction to use for points on the axis, across it.
     spare: Vec3<T>,
 }
 
-impl<T: Real> Cylinder<T> {
+impl<T: Real> LocalCylinder<T> {
     /// The cylinder `b`, as the shape `a` meets it.
     #[inline(always)]
-    fn new(a: Placed<T>, b: Placed<T>) -> Self {
-        Cylinder {
-            radius: b.shape.size.x,
-            half_length: b.shape.size.y,
+    fn new<A>(a: Placed<A, T>, b: Placed<Cylinder<T>, T>) -> Self {
+        LocalCylinder {
+            radius: b.shape.radius,
+            half_length: b.shape.half_length,
             spare: -b.pose.rotation.transpose_mul(across_axes(a, b)),
         }
     }
@@ -64,7 +64,7 @@ fn add_ball<T: Real>(
     center: Vec3<T>,
     radius: T,
     (signed, outward): (T, Vec3<T>),
-    b: Placed<T>,
+    b: Placed<Cylinder<T>, T>,
     active: T::Mask,
     out: &mut Contacts<T>,
 ) {
@@ -83,14 +83,14 @@ fn add_ball<T: Real>(
 
 #[kernel]
 pub(super) fn sphere_cylinder<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Sphere<T>, T>,
+    b: Placed<Cylinder<T>, T>,
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    let radius = a.shape.size.x;
+    let radius = a.shape.radius;
     let center = b.pose.local(a.pose.position);
-    let nearest = Cylinder::new(a, b).distance(center);
+    let nearest = LocalCylinder::new(a, b).distance(center);
     let active = (nearest.0 - radius).le(margin);
     add_ball(center, radius, nearest, b, active, out);
 }
@@ -101,17 +101,17 @@ pub(super) fn sphere_cylinder<T: Real>(
 /// capsule must move to be free, while [`penetration_depth`] does.
 #[kernel]
 pub(super) fn capsule_cylinder<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Capsule<T>, T>,
+    b: Placed<Cylinder<T>, T>,
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    let cylinder = Cylinder::new(a, b);
-    let radius = a.shape.size.x;
+    let cylinder = LocalCylinder::new(a, b);
+    let radius = a.shape.radius;
     let segment = Segment {
         center: b.pose.local(a.pose.position),
         axis: b.pose.rotation.transpose_mul(a.pose.axis()),
-        half_length: a.shape.size.y,
+        half_length: a.shape.half_length,
     };
     let near = (cylinder.apart_at_least(&segment) - radius).le(margin);
     if !near.any() {
@@ -157,7 +157,7 @@ pub(super) fn capsule_cylinder<T: Real>(
     }
 }
 
-impl<T: Real> Cylinder<T> {
+impl<T: Real> LocalCylinder<T> {
     /// What a segment is at least away, cheaply: the larger of how far beyond the caps and beyond the side it stays.
     #[inline(always)]
     fn apart_at_least(&self, segment: &Segment<T>) -> T {

@@ -1,7 +1,8 @@
 //! Pairs whose decisions branch too much for lanes: each lane is computed on its own, in scalar code.
 
 use super::placed::Placed;
-use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, Shape, frame_from_normal};
+use crate::shape::{Solid, lane_of};
+use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, frame_from_normal};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
@@ -17,12 +18,17 @@ pub(super) struct Point<S> {
 pub(super) type Points<S> = ArrayVec<Point<S>, MAX_POINTS>;
 
 /// Puts the points that `pair` finds for each lane into `out`, which is empty; those of equal rank share a slot.
-pub(super) fn per_lane<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+pub(super) fn per_lane<T: Real, A: Solid<T>, B: Solid<T>>(
+    a: Placed<A, T>,
+    b: Placed<B, T>,
     margin: T,
     out: &mut Contacts<T>,
-    pair: impl Fn(Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
+    pair: impl Fn(
+        Placed<A::Alone, T::Scalar>,
+        Placed<B::Alone, T::Scalar>,
+        T::Scalar,
+        &mut Points<T::Scalar>,
+    ),
 ) {
     let all = T::Mask::splat(true);
     per_lane_where(all, a, b, margin, out, |_, a, b, margin, points| {
@@ -31,23 +37,29 @@ pub(super) fn per_lane<T: Real>(
 }
 
 /// The same for some of the lanes, of which `pair` is told the number.
-pub(super) fn per_lane_where<T: Real>(
+pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
     wanted: T::Mask,
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<A, T>,
+    b: Placed<B, T>,
     margin: T,
     out: &mut Contacts<T>,
-    mut pair: impl FnMut(usize, Placed<T::Scalar>, Placed<T::Scalar>, T::Scalar, &mut Points<T::Scalar>),
+    mut pair: impl FnMut(
+        usize,
+        Placed<A::Alone, T::Scalar>,
+        Placed<B::Alone, T::Scalar>,
+        T::Scalar,
+        &mut Points<T::Scalar>,
+    ),
 ) {
     let mut points = Points::new();
     for lane in (0..T::LANES).filter(|lane| wanted.lane(*lane)) {
-        let ((shape_a, pose_a), (shape_b, pose_b)) = (lane_of(a, lane), lane_of(b, lane));
+        let (pose_a, pose_b) = (lane_of_pose(a.pose, lane), lane_of_pose(b.pose, lane));
         let a = Placed {
-            shape: &shape_a,
+            shape: a.shape.lane(lane),
             pose: &pose_a,
         };
         let b = Placed {
-            shape: &shape_b,
+            shape: b.shape.lane(lane),
             pose: &pose_b,
         };
         points.clear();
@@ -63,20 +75,13 @@ pub(super) fn per_lane_where<T: Real>(
     }
 }
 
-fn lane_of<'a, T: Real>(p: Placed<'a, T>, lane: usize) -> (Shape<'a, T::Scalar>, Pose<T::Scalar>) {
-    let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
-    let shape = Shape {
-        kind: p.shape.kind,
-        size: vector(p.shape.size),
-        asset: p.shape.asset,
-    };
-    let pose = Pose {
-        position: vector(p.pose.position),
+fn lane_of_pose<T: Real>(pose: &Pose<T>, lane: usize) -> Pose<T::Scalar> {
+    Pose {
+        position: lane_of(pose.position, lane),
         rotation: Mat3 {
-            rows: p.pose.rotation.rows.map(vector),
+            rows: pose.rotation.rows.map(|row| lane_of(row, lane)),
         },
-    };
-    (shape, pose)
+    }
 }
 
 fn set_point<T: Real>(

@@ -1,7 +1,8 @@
 //! Everything that can lie on a plane. The plane is first, so normals point out of it.
 
 use super::placed::Placed;
-use crate::{ContactPoint, Contacts, frame_along, frame_from_normal};
+use crate::{Capsule, ContactPoint, Contacts, Cuboid, Cylinder, Ellipsoid, Plane, Sphere};
+use crate::{frame_along, frame_from_normal};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
 /// Adds the point of a surface that is `distance` above the plane.
@@ -23,15 +24,20 @@ fn add<T: Real>(
 
 /// The plane's normal and the height of a shape's origin above it.
 #[inline(always)]
-fn height<T: Real>(plane: Placed<T>, shape: Placed<T>) -> (Vec3<T>, T) {
+fn height<X, T: Real>(plane: Placed<Plane<T>, T>, shape: Placed<X, T>) -> (Vec3<T>, T) {
     let normal = plane.pose.axis();
     let above = normal.dot(shape.pose.position - plane.pose.position);
     (normal, above)
 }
 
 #[kernel]
-pub(super) fn plane_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    let radius = b.shape.size.x;
+pub(super) fn plane_sphere<T: Real>(
+    a: Placed<Plane<T>, T>,
+    b: Placed<Sphere<T>, T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
+    let radius = b.shape.radius;
     let (normal, above) = height(a, b);
     let distance = above - radius;
     let active = distance.le(margin);
@@ -43,8 +49,13 @@ pub(super) fn plane_sphere<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: 
 
 /// The two ends of the capsule, the first tangent along its axis.
 #[kernel]
-pub(super) fn plane_capsule<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
-    let (radius, half_length) = (b.shape.size.x, b.shape.size.y);
+pub(super) fn plane_capsule<T: Real>(
+    a: Placed<Plane<T>, T>,
+    b: Placed<Capsule<T>, T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
+    let (radius, half_length) = (b.shape.radius, b.shape.half_length);
     let axis = b.pose.axis();
     let (normal, above) = height(a, b);
     let rise = normal.dot(axis) * half_length;
@@ -63,12 +74,12 @@ pub(super) fn plane_capsule<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out:
 /// The lowest point: the ellipsoid's support against the normal.
 #[kernel]
 pub(super) fn plane_ellipsoid<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Plane<T>, T>,
+    b: Placed<Ellipsoid<T>, T>,
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    let size = b.shape.size;
+    let size = b.shape.semi_axes;
     let (normal, above) = height(a, b);
     let scaled = b.pose.rotation.transpose_mul(normal).scale_by(size);
     let depth = scaled.norm();
@@ -83,15 +94,15 @@ pub(super) fn plane_ellipsoid<T: Real>(
     }
 }
 
-/// The lowest points of both rims, then two more on the lower rim, so that the three there form a regular triangle.
+/// The lowest points of the circles of both caps, then two more on the lower circle, so that the three there form a regular triangle.
 #[kernel]
 pub(super) fn plane_cylinder<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Plane<T>, T>,
+    b: Placed<Cylinder<T>, T>,
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    let (radius, half_length) = (b.shape.size.x, b.shape.size.y);
+    let (radius, half_length) = (b.shape.radius, b.shape.half_length);
     let center = b.pose.position;
     let (normal, above) = height(a, b);
     // The axis, turned to point towards the plane, and the radius that points most steeply towards it.
@@ -134,10 +145,15 @@ pub(super) fn plane_cylinder<T: Real>(
 
 /// The corners on the lower side, at most four.
 #[kernel]
-pub(super) fn plane_box<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
+pub(super) fn plane_box<T: Real>(
+    a: Placed<Plane<T>, T>,
+    b: Placed<Cuboid<T>, T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
     let (normal, above) = height(a, b);
     let rotation = &b.pose.rotation;
-    let half = b.shape.size;
+    let half = b.shape.half_lengths;
     let local = rotation.transpose_mul(normal).scale_by(half);
     let lowest = above - (local.x.abs() + local.y.abs() + local.z.abs());
     if !lowest.le(margin).any() {

@@ -4,13 +4,12 @@
 //! [`Outline`]). If there are fewer points than there is room for, other vertices within the margin around the deepest one:
 //! the vertices of a hull on one side of a plane hang together, so walking over neighbours finds them.
 
-use super::convex::MAX_CORNERS;
 use super::outline::Outline;
 use super::per_lane::{Point, Points, per_lane_where};
 use super::placed::Placed;
 use super::polygon::Polygon;
-use crate::shape::reach_along;
-use crate::{Asset, Contacts, Hull, PATCH_POINTS, allowance};
+use crate::shape::{MAX_CORNERS, Solid};
+use crate::{Contacts, Hull, Mesh, PATCH_POINTS, Plane, allowance};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
@@ -19,11 +18,16 @@ const SAME: f64 = 1e-5;
 const MISSED: f64 = 1e-6;
 
 #[kernel]
-pub(super) fn plane_mesh<T: Real>(a: Placed<T>, b: Placed<T>, margin: T, out: &mut Contacts<T>) {
+pub(super) fn plane_mesh<T: Real>(
+    a: Placed<Plane<T>, T>,
+    b: Placed<Mesh<T>, T>,
+    margin: T,
+    out: &mut Contacts<T>,
+) {
     // The lowest corner of the box about the mesh; what is no number is left to the search.
     let up = b.pose.rotation.transpose_mul(a.pose.axis());
     let height = a.pose.axis().dot(b.pose.position - a.pose.position);
-    let above = (height - reach_along(b.shape, up) * allowance()).gt(margin);
+    let above = (height - b.shape.reach_along(up) * allowance()).gt(margin);
     if !above.all() {
         per_lane_where(!above, a, b, margin, out, |_, a, b, margin, found| {
             points(a, b, margin, found);
@@ -40,8 +44,13 @@ struct Candidate<S> {
 
 type Candidates<S> = ArrayVec<Candidate<S>, PATCH_POINTS>;
 
-fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut Points<S>) {
-    let Asset::Hull(hull) = mesh.shape.asset else {
+fn points<S: Scalar>(
+    plane: Placed<Plane<S>, S>,
+    mesh: Placed<Mesh<S>, S>,
+    margin: S,
+    points: &mut Points<S>,
+) {
+    let Some(hull) = mesh.shape.hull else {
         return;
     };
     let normal = plane.pose.axis();
@@ -61,7 +70,7 @@ fn points<S: Scalar>(plane: Placed<S>, mesh: Placed<S>, margin: S, points: &mut 
     let face = hull.face_across(deepest, down);
     match face {
         Some(face) if hull.corners(face).len() > PATCH_POINTS => {
-            let slack = mesh.shape.size.norm();
+            let slack = mesh.shape.extent.norm();
             sample(hull, face, lowest, slack, candidate, &mut candidates);
             candidates.retain(|candidate| candidate.height <= margin);
         }

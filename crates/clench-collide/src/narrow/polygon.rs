@@ -1,6 +1,6 @@
 //! Convex polygons projected along a direction, and clipping them.
 
-use super::convex::MAX_CORNERS;
+use crate::shape::MAX_CORNERS;
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 use std::cmp::Ordering;

@@ -1,6 +1,7 @@
 //! The middle line of a capsule.
 
 use super::placed::Placed;
+use crate::Capsule;
 use clench_math::{Real, Vec3};
 
 /// The points center + t axis with |t| ≤ half length.
@@ -15,11 +16,11 @@ pub(super) struct Segment<T> {
 impl<T: Real> Segment<T> {
     /// The middle line of a capsule, in the world.
     #[inline(always)]
-    pub(super) fn of(capsule: Placed<T>) -> Self {
+    pub(super) fn of(capsule: Placed<Capsule<T>, T>) -> Self {
         Segment {
             center: capsule.pose.position,
             axis: capsule.pose.axis(),
-            half_length: capsule.shape.size.y,
+            half_length: capsule.shape.half_length,
         }
     }
     /// The point at a signed length from the middle.

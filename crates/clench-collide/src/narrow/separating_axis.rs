@@ -5,9 +5,9 @@
 //! It is believed only where it exceeds the margin by more than a search may be wrong: so an old direction saves a search that would have
 //! found nothing, and changes no result.
 
-use super::placed::Placed;
-use crate::shape::reach_along;
-use crate::{Asset, Hull, ShapeKind, bounding_radius};
+use super::placed::AnyPlaced;
+use crate::shape::Solid;
+use crate::{Hull, Mesh, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// What a search may be wrong by: a share of the smaller shape, twice what the search itself allows ...
@@ -33,27 +33,26 @@ impl<T: Real> Default for SeparatingAxis<T> {
 impl<T: Real> SeparatingAxis<T> {
     /// Where the shapes are surely more than `margin` apart; the boxes about hulls are tried first.
     #[inline(always)]
-    pub(super) fn separates(&self, a: Placed<T>, b: Placed<T>, margin: T) -> T::Mask {
-        let along = match a.shape.kind {
-            ShapeKind::Sphere => self.direction,
+    pub(super) fn separates(&self, a: AnyPlaced<T>, b: AnyPlaced<T>, margin: T) -> T::Mask {
+        let along = match a.shape {
+            Shape::Sphere(_) => self.direction,
             _ => a.pose.rotation * self.direction,
         };
         let offset = b.pose.position - a.pose.position;
         let back = -b.pose.rotation.transpose_mul(along);
         let centers = along.dot(offset);
-        let (size_a, size_b) = (bounding_radius(a.shape), bounding_radius(b.shape));
+        let (size_a, size_b) = (a.shape.bounding_radius(), b.shape.bounding_radius());
         let largest = size_a + size_b + offset.x.abs() + offset.y.abs() + offset.z.abs();
         let rounding = T::splat(T::Scalar::EPSILON) * T::new(SLACK_UNITS);
         let slack = size_a.min(size_b) * T::new(SLACK) + largest * rounding;
         let least = margin + slack;
-        let by_boxes = centers - reach_along(a.shape, self.direction) - reach_along(b.shape, back);
+        let by_boxes = centers - a.shape.reach_along(self.direction) - b.shape.reach_along(back);
         let far = by_boxes.gt(least);
         let open = !far;
-        let has_hull = |p: Placed<T>| matches!(p.shape.asset, Asset::Hull(_));
-        if !open.any() || !(has_hull(a) || has_hull(b)) {
+        if !open.any() || (hull(&a.shape).is_none() && hull(&b.shape).is_none()) {
             return far;
         }
-        let reach = support(a, self.direction, open) + support(b, back, open);
+        let reach = support(&a.shape, self.direction, open) + support(&b.shape, back, open);
         far | (open & (centers - reach).gt(least))
     }
 
@@ -84,9 +83,9 @@ fn is_unit<T: Real>(direction: Vec3<T>) -> T::Mask {
 
 /// The support function of a bounded convex shape along a local unit direction, in some of the lanes.
 #[inline(always)]
-fn support<T: Real>(shape: Placed<T>, d: Vec3<T>, lanes: T::Mask) -> T {
-    let Asset::Hull(hull) = shape.shape.asset else {
-        return reach_along(shape.shape, d);
+fn support<T: Real>(shape: &Shape<T>, d: Vec3<T>, lanes: T::Mask) -> T {
+    let Some(hull) = hull(shape) else {
+        return shape.reach_along(d);
     };
     let mut reach = T::ZERO;
     for lane in (0..T::LANES).filter(|&lane| lanes.lane(lane)) {
@@ -94,6 +93,14 @@ fn support<T: Real>(shape: Placed<T>, d: Vec3<T>, lanes: T::Mask) -> T {
         reach.set_lane(lane, T::Scalar::new(hull_reach(hull, Vec3::from_array(d))));
     }
     reach
+}
+
+#[inline(always)]
+fn hull<'a, T>(shape: &Shape<'a, T>) -> Option<&'a Hull> {
+    match shape {
+        Shape::Mesh(Mesh { hull, .. }) => *hull,
+        _ => None,
+    }
 }
 
 /// How far a hull reaches along a direction.

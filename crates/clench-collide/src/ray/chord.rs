@@ -5,7 +5,7 @@ use clench_math::{Real, Scalar, Vec3};
 
 /// Where a line enters and leaves, and the normals out of the body there. It misses where it would leave before it enters.
 #[derive(Clone, Copy)]
-pub(super) struct Chord<T> {
+pub(crate) struct Chord<T> {
     pub enter: T,
     pub leave: T,
     pub entered: Vec3<T>,
@@ -15,7 +15,7 @@ pub(super) struct Chord<T> {
 impl<T: Real> Chord<T> {
     /// The whole line.
     #[inline(always)]
-    pub(super) fn whole() -> Self {
+    pub(crate) fn whole() -> Self {
         Chord {
             enter: T::new(f64::NEG_INFINITY),
             leave: T::new(f64::INFINITY),
@@ -26,7 +26,7 @@ impl<T: Real> Chord<T> {
 
     /// The part within a ball about a point.
     #[inline(always)]
-    pub(super) fn of_ball(line: &Line<T>, center: Vec3<T>, radius: T) -> Self {
+    pub(crate) fn of_ball(line: &Line<T>, center: Vec3<T>, radius: T) -> Self {
         let offset = line.origin - center;
         let back = offset.dot(line.along);
         // From the nearest point of the line, since the origin may be far away.
@@ -37,7 +37,7 @@ impl<T: Real> Chord<T> {
 
     /// The part within the unbounded cylinder about the z axis.
     #[inline(always)]
-    pub(super) fn of_tube(line: &Line<T>, radius: T) -> Self {
+    pub(crate) fn of_tube(line: &Line<T>, radius: T) -> Self {
         let (o, u) = (line.origin, line.along);
         let square = u.x * u.x + u.y * u.y;
         let least = T::splat(T::Scalar::EPSILON * T::Scalar::EPSILON);
@@ -63,7 +63,7 @@ impl<T: Real> Chord<T> {
 
     /// The part between two planes across an axis.
     #[inline(always)]
-    pub(super) fn slab(self, line: &Line<T>, axis: usize, low: T, high: T) -> Self {
+    pub(crate) fn slab(self, line: &Line<T>, axis: usize, low: T, high: T) -> Self {
         let (o, u) = (line.origin[axis], line.along[axis]);
         let parallel = u.eq(T::ZERO);
         let within = o.ge(low) & o.le(high);
@@ -83,7 +83,7 @@ impl<T: Real> Chord<T> {
 
     /// Begins no earlier and ends no later than this, with these normals.
     #[inline(always)]
-    pub(super) fn cut(self, (enter, entered): (T, Vec3<T>), (leave, left): (T, Vec3<T>)) -> Self {
+    pub(crate) fn cut(self, (enter, entered): (T, Vec3<T>), (leave, left): (T, Vec3<T>)) -> Self {
         let (later, earlier) = (enter.gt(self.enter), leave.lt(self.leave));
         Chord {
             enter: T::select(later, enter, self.enter),
@@ -95,7 +95,7 @@ impl<T: Real> Chord<T> {
 
     /// The part within either of two bodies whose union is convex.
     #[inline(always)]
-    pub(super) fn or(self, other: Self) -> Self {
+    pub(crate) fn or(self, other: Self) -> Self {
         let infinity = T::new(f64::INFINITY);
         let hits = self.enter.le(self.leave);
         let enter = T::select(hits, self.enter, infinity);
@@ -110,7 +110,7 @@ impl<T: Real> Chord<T> {
 
     /// Where the line crosses the surface first, not before its origin, and the normal there. Infinite if nowhere.
     #[inline(always)]
-    pub(super) fn first(&self) -> (T, Vec3<T>) {
+    pub(crate) fn first(&self) -> (T, Vec3<T>) {
         let outside = self.enter.ge(T::ZERO);
         let hit = self.enter.le(self.leave) & self.leave.ge(T::ZERO);
         let distance = T::select(outside, self.enter, self.leave);

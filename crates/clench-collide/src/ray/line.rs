@@ -5,9 +5,9 @@ use clench_math::{Real, Scalar, Vec3};
 
 /// A ray in the frame of a shape, with a direction of unit length.
 #[derive(Clone, Copy)]
-pub(super) struct Line<T> {
-    pub(super) origin: Vec3<T>,
-    pub(super) along: Vec3<T>,
+pub(crate) struct Line<T> {
+    pub(crate) origin: Vec3<T>,
+    pub(crate) along: Vec3<T>,
 }
 
 impl<T: Real> Line<T> {
@@ -24,8 +24,37 @@ impl<T: Real> Line<T> {
 
     /// The point so far along.
     #[inline(always)]
-    pub(super) fn at(&self, distance: T) -> Vec3<T> {
+    pub(crate) fn at(&self, distance: T) -> Vec3<T> {
         self.origin + self.along * distance
+    }
+
+    /// What branches too much for lanes, for each of them: how far along the line, and the normal, if there is a hit.
+    pub(crate) fn in_each_lane(
+        &self,
+        cast: impl Fn(&Line<f64>) -> Option<(f64, Vec3<f64>)>,
+    ) -> (T, Vec3<T>) {
+        let Hit {
+            mut distance,
+            mut normal,
+        } = Hit::<T>::none();
+        for lane in 0..T::LANES {
+            let of = |v: Vec3<T>| Vec3::from_array(v.to_array().map(|x| x.lane(lane).to_f64()));
+            let line = Line {
+                origin: of(self.origin),
+                along: of(self.along),
+            };
+            let sum = line.origin + line.along;
+            if !sum.to_array().iter().all(|x| x.is_finite()) {
+                continue;
+            }
+            if let Some((found, n)) = cast(&line) {
+                distance.set_lane(lane, T::Scalar::new(found));
+                for axis in 0..3 {
+                    normal[axis].set_lane(lane, T::Scalar::new(n[axis]));
+                }
+            }
+        }
+        (distance, normal)
     }
 }
 

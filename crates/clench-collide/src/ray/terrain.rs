@@ -15,7 +15,7 @@ use clench_math::Vec3;
 /// The field's highest point is this much lower than the box that a ray is followed in.
 const HEADROOM: f64 = 1e-9;
 
-pub(super) fn height_field(
+pub(crate) fn height_field(
     field: &HeightField,
     origin: Vec3<f64>,
     along: Vec3<f64>,

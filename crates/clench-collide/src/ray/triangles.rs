@@ -3,7 +3,6 @@
 //! A ray and a triangle are sheared so that the ray is the z axis; then the signs of three areas say on which side of each edge
 //! the ray passes, the same for both triangles at an edge: no ray slips between them (Woop, Benthin & Wald 2013).
 
-use super::each_lane;
 use super::line::{Hit, Line, Ray};
 use crate::Pose;
 use clench_math::{Real, Vec3, kernel};
@@ -91,7 +90,7 @@ impl TriangleMesh {
     #[kernel]
     pub fn ray<T: Real>(&self, pose: &Pose<T>, ray: &Ray<T>) -> Hit<T> {
         let (line, unit) = Line::of(pose, ray);
-        let (distance, normal) = each_lane(&line, |origin, along| self.cast(origin, along));
+        let (distance, normal) = line.in_each_lane(|line| self.cast(line.origin, line.along));
         unit.hit(pose, distance, normal)
     }
 

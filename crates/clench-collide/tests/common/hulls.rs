@@ -18,12 +18,12 @@ pub fn corners(half: V) -> Vec<V> {
     (0..8).map(corner).collect()
 }
 
-/// The rims of a cylinder about z, `sides` points each.
-pub fn rims(radius: f64, half_length: f64, sides: usize) -> Vec<V> {
+/// The circles of the caps of a cylinder about z, `sides` points each.
+pub fn cap_circles(radius: f64, half_length: f64, sides: usize) -> Vec<V> {
     let at = |k: usize| (k as f64 * std::f64::consts::TAU / sides as f64).sin_cos();
     let ends = [-half_length, half_length];
-    let rim = |z| (0..sides).map(move |k| Vec3::new(radius * at(k).1, radius * at(k).0, z));
-    ends.into_iter().flat_map(rim).collect()
+    let circle = |z| (0..sides).map(move |k| Vec3::new(radius * at(k).1, radius * at(k).0, z));
+    ends.into_iter().flat_map(circle).collect()
 }
 
 /// Points on an ellipsoid with these semi-axes.
@@ -56,7 +56,7 @@ fn some_of_all(low: f64, high: f64) -> Vec<&'static Hull> {
         let beside = size.scale_by(random.vector());
         let boxed = corners(size).into_iter().map(|p| p + beside);
         hulls.push(hull_of(&boxed.collect::<Vec<_>>()));
-        hulls.push(hull_of(&rims(size.x, size.y, 5 + 2 * k)));
+        hulls.push(hull_of(&cap_circles(size.x, size.y, 5 + 2 * k)));
     }
     let size = random.size(low, high);
     for thin in [1e-2, 1e-4] {
@@ -78,7 +78,7 @@ pub fn troubled() -> &'static [&'static Hull] {
             let size = Vec3::new(length(), length(), length());
             let points = match hulls.len() % 3 {
                 0 => corners(size),
-                1 => rims(size.x, size.y, 16),
+                1 => cap_circles(size.x, size.y, 16),
                 _ => round(&mut random, 20, size),
             };
             if convex_hull(&points, None).is_ok() {

@@ -8,9 +8,9 @@ pub mod hulls;
 pub mod placement;
 pub mod truth;
 
-use clench_collide::{ContactPoint, Contacts, Pose, Shape, ShapeKind, bounding_radius, collide};
+use clench_collide::{ContactPoint, Contacts, Pose, Shape, ShapeKind, collide};
 use clench_math::{Mat3, Quat, Real, Vec3};
-pub use truth::{off_surface, support};
+pub use truth::{mesh_hull, off_surface, support};
 
 pub type V = Vec3<f64>;
 
@@ -118,8 +118,8 @@ impl Random {
             rotation: self.rotation(),
         };
         let reach = match kinds.0 {
-            ShapeKind::Plane => bounding_radius(&b),
-            _ => bounding_radius(&a) + bounding_radius(&b),
+            ShapeKind::Plane => b.bounding_radius(),
+            _ => a.bounding_radius() + b.bounding_radius(),
         };
         let direction = match kinds.0 {
             ShapeKind::Plane => pose.axis(),
@@ -139,8 +139,8 @@ impl Random {
         if self.unit() < 0.25 {
             let round = |v: V| Vec3::from_array(v.to_array().map(|x| (x * 10.0).round() / 10.0));
             for shape in [&mut scene.a, &mut scene.b] {
-                if shape.kind != ShapeKind::Mesh {
-                    shape.size = grid(shape.size);
+                if shape.kind() != ShapeKind::Mesh {
+                    *shape = shape.resized(grid(shape.size()));
                 }
             }
             scene.pose_a = Pose {
@@ -208,11 +208,7 @@ impl Scene {
 
 /// A shape in another number type, the same in every lane.
 pub fn convert_shape<T: Real>(s: &Shape<'static, f64>) -> Shape<'static, T> {
-    Shape {
-        kind: s.kind,
-        size: Vec3::from_f64(s.size.to_array()),
-        asset: s.asset,
-    }
+    s.resized(Vec3::from_f64(s.size().to_array()))
 }
 
 /// A pose in another number type, the same in every lane.

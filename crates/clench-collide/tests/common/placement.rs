@@ -1,7 +1,7 @@
 //! Two shapes as a simulation meets them, and as it should never meet them.
 
-use super::{Random, Scene, V, fields, hulls};
-use clench_collide::{Pose, Shape, ShapeKind, bounding_radius};
+use super::{Random, Scene, V, fields, hulls, mesh_hull};
+use clench_collide::{Pose, Shape, ShapeKind};
 use clench_math::{Quat, Vec3};
 
 /// How two shapes are placed.
@@ -37,8 +37,8 @@ pub fn placed(random: &mut Random, kinds: (ShapeKind, ShapeKind), placement: Pla
     match placement {
         Placement::Pressed | Placement::Apart => {}
         Placement::Grid => {
-            let sized = shapes.iter_mut().filter(|s| s.kind != ShapeKind::Mesh);
-            sized.for_each(|shape| shape.size = round(shape.size));
+            let sized = shapes.iter_mut().filter(|s| s.kind() != ShapeKind::Mesh);
+            sized.for_each(|shape| *shape = shape.resized(round(shape.size())));
             rotations = [random.quarter_turns(), random.quarter_turns()];
         }
         Placement::Resting => {
@@ -121,8 +121,16 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
         _ => random.rotation(),
     };
     let (a, mut b) = (shape(random, kinds.0), shape(random, kinds.1));
-    if random.unit() < 0.2 && a.asset == b.asset {
-        b.size = a.size;
+    let is_terrain = a.kind() == ShapeKind::HeightField;
+    if random.unit() < 0.2 && mesh_hull(&a) == mesh_hull(&b) && !is_terrain {
+        // The sizes of the first, as far as it has them.
+        let mut size = a.size();
+        for i in 0..3 {
+            if size[i] == 0.0 {
+                size[i] = b.size()[i];
+            }
+        }
+        b = b.resized(size);
     }
     let (rotation_a, rotation_b) = (rotation(random), rotation(random));
     let direction = match (random.unit() * 3.0) as usize {
@@ -144,10 +152,10 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
         margin: random.pick(&[0.0, 0.0, 0.01, 10.0]),
     };
     let finite = |r: f64| if r.is_finite() { r } else { 1.0 };
-    let reach = finite(bounding_radius(&a)) + finite(bounding_radius(&b));
+    let reach = finite(a.bounding_radius()) + finite(b.bounding_radius());
     // Terrain has no support function: somewhere near its surface will do.
-    let touching = match a.kind {
-        ShapeKind::HeightField => a.size.z * random.range(-1.0, 4.0),
+    let touching = match a.kind() {
+        ShapeKind::HeightField => a.size().z * random.range(-1.0, 4.0),
         _ => -scene.gap_along(direction),
     };
     scene.pose_b.position = match (random.unit() * 5.0) as usize {

@@ -1,7 +1,7 @@
 //! The truth about two shapes, by brute force over their support functions.
 
 use super::{Random, Scene, V};
-use clench_collide::{Asset, Hull, Pose, Shape, ShapeKind};
+use clench_collide::{Hull, Pose, Shape, ShapeKind};
 use clench_math::Vec3;
 
 impl Scene {
@@ -21,7 +21,7 @@ impl Scene {
     /// fail. The gap has creases across edges, so some steps go along one crease or to where two cross. The normal that the
     /// library found is one of the starts: it may have found a better one than chance does.
     pub fn optima(&self, random: &mut Random) -> Vec<(f64, V)> {
-        if self.a.kind == ShapeKind::Plane {
+        if self.a.kind() == ShapeKind::Plane {
             let normal = self.pose_a.axis();
             return vec![(self.gap_along(normal), normal)];
         }
@@ -83,7 +83,7 @@ impl Scene {
 
 /// The unit direction of some straight edge of a shape, of a hull one near the vertex furthest along `n`.
 fn edge(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V, random: &mut Random) -> V {
-    let Asset::Hull(hull) = shape.asset else {
+    let Some(hull) = mesh_hull(shape) else {
         return pose.rotation.column((random.unit() * 3.0) as usize);
     };
     let d = pose.rotation.transpose_mul(n);
@@ -105,20 +105,20 @@ fn farthest_vertex(hull: &Hull, d: V) -> V {
     hull.vertices().iter().fold(hull.vertices()[0], further)
 }
 
-/// The hull of a mesh.
-fn hull(shape: &Shape<'static, f64>) -> &'static Hull {
-    match shape.asset {
-        Asset::Hull(hull) => hull,
-        _ => unreachable!("a mesh without a hull"),
+/// The hull of a shape that is a mesh.
+pub fn mesh_hull(shape: &Shape<'static, f64>) -> Option<&'static Hull> {
+    match shape {
+        Shape::Mesh(mesh) => mesh.hull,
+        _ => None,
     }
 }
 
 /// The point of a shape furthest along a direction (of a plane: its origin).
 pub fn support(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V) -> V {
     let d = pose.rotation.transpose_mul(n);
-    let s = shape.size;
+    let s = shape.size();
     let signed = |size: f64, along: f64| size.copysign(along);
-    let local = match shape.kind {
+    let local = match shape.kind() {
         ShapeKind::Plane => V::ZERO,
         ShapeKind::Sphere => d * s.x,
         ShapeKind::Capsule => d * s.x + Vec3::new(0.0, 0.0, signed(s.y, d.z)),
@@ -131,7 +131,7 @@ pub fn support(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V) -> V {
             Vec3::new(d.x / level * s.x, d.y / level * s.x, signed(s.y, d.z))
         }
         ShapeKind::Box => Vec3::new(signed(s.x, d.x), signed(s.y, d.y), signed(s.z, d.z)),
-        ShapeKind::Mesh => farthest_vertex(hull(shape), d),
+        ShapeKind::Mesh => farthest_vertex(mesh_hull(shape).unwrap(), d),
         ShapeKind::HeightField => unreachable!("not convex"),
     };
     pose.point(local)
@@ -141,8 +141,8 @@ pub fn support(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V) -> V {
 /// face.)
 pub fn off_surface(shape: &Shape<'static, f64>, pose: &Pose<f64>, point: V) -> f64 {
     let p = pose.local(point);
-    let s = shape.size;
-    let signed = match shape.kind {
+    let s = shape.size();
+    let signed = match shape.kind() {
         ShapeKind::Plane => p.z,
         ShapeKind::Sphere => p.norm() - s.x,
         ShapeKind::Capsule => (p - Vec3::new(0.0, 0.0, p.z.clamp(-s.y, s.y))).norm() - s.x,
@@ -154,7 +154,7 @@ pub fn off_surface(shape: &Shape<'static, f64>, pose: &Pose<f64>, point: V) -> f
         ShapeKind::Cylinder => outside(&[p.x.hypot(p.y) - s.x, p.z.abs() - s.y]),
         ShapeKind::Box => outside(&[p.x.abs() - s.x, p.y.abs() - s.y, p.z.abs() - s.z]),
         ShapeKind::Mesh => {
-            let hull = hull(shape);
+            let hull = mesh_hull(shape).unwrap();
             let beyond = |face| hull.normal(face).dot(p) - hull.offset(face);
             (0..hull.face_count())
                 .map(beyond)

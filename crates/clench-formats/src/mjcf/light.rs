@@ -6,7 +6,7 @@ use super::orientation::Pose;
 use crate::LoadError;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::LightSpec;
-use clench_rigid::model::{Headlight, LightKind, LightLook};
+use clench_rigid::model::{Headlight, LightKind, LightProperties};
 
 /// A light as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub(crate) struct LightDraft {
     dir: [f64; 3],
     /// None for one that shines as an image does, which is not drawn.
     kind: Option<LightKind>,
-    look: LightLook,
+    properties: LightProperties,
 }
 
 impl Default for LightDraft {
@@ -26,7 +26,7 @@ impl Default for LightDraft {
             pos: [0.0; 3],
             dir: [0.0, 0.0, -1.0],
             kind: Some(LightKind::Spot),
-            look: LightLook::default(),
+            properties: LightProperties::default(),
         }
     }
 }
@@ -50,15 +50,15 @@ impl LightDraft {
             ("true", Some(LightKind::Directional)),
         ];
         element.set_keyword("directional", &directional, &mut self.kind)?;
-        let look = &mut self.look;
-        element.set_boolean("active", &mut look.active)?;
-        element.set_boolean("castshadow", &mut look.castshadow)?;
-        element.set_numbers("attenuation", &mut look.attenuation)?;
-        element.set_number("cutoff", &mut look.cutoff)?;
-        element.set_number("exponent", &mut look.exponent)?;
-        element.set_numbers("ambient", &mut look.ambient)?;
-        element.set_numbers("diffuse", &mut look.diffuse)?;
-        element.set_numbers("specular", &mut look.specular)
+        let properties = &mut self.properties;
+        element.set_boolean("active", &mut properties.active)?;
+        element.set_boolean("castshadow", &mut properties.castshadow)?;
+        element.set_numbers("attenuation", &mut properties.attenuation)?;
+        element.set_number("cutoff", &mut properties.cutoff)?;
+        element.set_number("exponent", &mut properties.exponent)?;
+        element.set_numbers("ambient", &mut properties.ambient)?;
+        element.set_numbers("diffuse", &mut properties.diffuse)?;
+        element.set_numbers("specular", &mut properties.specular)
     }
 
     /// The light in its body, carried along with the frame that it is written in.
@@ -72,10 +72,10 @@ impl LightDraft {
             pos: pose.pos,
             dir: pose.quat.rotate(Vec3::from_array(self.dir)),
             tracking: tracking(self.mode, element),
-            look: LightLook {
+            properties: LightProperties {
                 kind: self.kind.unwrap_or(LightKind::Point),
-                active: self.look.active && self.kind.is_some(),
-                ..self.look
+                active: self.properties.active && self.kind.is_some(),
+                ..self.properties
             },
             origin: Some(element.origin.clone()),
         }

@@ -90,7 +90,7 @@ fn block_along(b: u32, alpha: f32) -> Along {
 // What an evaluation gives: the cost, the active set, and whether the block is on a curved piece.
 struct Value {
     cost: f32,
-    pieces: u32,
+    active_set: u32,
     curved: bool,
 }
 
@@ -119,7 +119,7 @@ fn evaluate_pyramid(first: u32, dim: u32) -> Value {
     let y = row(RESIDUAL + first);
     var normal = 0.0;
     var squares = 0.0;
-    var pieces = 0u;
+    var active_set = 0u;
     for (var k = 1u; k < dim; k++) {
         let mu = row(SHAPE + first + k);
         let side = mu * row(RESIDUAL + first + k);
@@ -128,11 +128,11 @@ fn evaluate_pyramid(first: u32, dim: u32) -> Value {
         normal += plus + minus;
         squares += plus * plus + minus * minus;
         put_row(FORCE + first + k, -(d * mu * (plus - minus)));
-        pieces |= select(0u, 1u, plus < 0.0) << (2u * k - 2u);
-        pieces |= select(0u, 1u, minus < 0.0) << (2u * k - 1u);
+        active_set |= select(0u, 1u, plus < 0.0) << (2u * k - 2u);
+        active_set |= select(0u, 1u, minus < 0.0) << (2u * k - 1u);
     }
     put_row(FORCE + first, -(d * normal));
-    return Value(0.5 * d * squares, pieces, false);
+    return Value(0.5 * d * squares, active_set, false);
 }
 
 fn evaluate_quadratic(first: u32, dim: u32) -> Value {

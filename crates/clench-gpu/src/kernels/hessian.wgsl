@@ -16,14 +16,14 @@ fn weigh_edge(a: u32, i: u32, weight: f32) {
 }
 
 fn weigh_pyramid(b: u32, first: u32, dim: u32, i: u32) {
-    let pieces = u32(row(PIECES + b));
+    let active_set = u32(row(ACTIVE_SET + b));
     let d = row(D + first);
     let normal = row(JACOBIAN + first * NV + i);
-    var sum = d * f32(countOneBits(pieces)) * normal;
+    var sum = d * f32(countOneBits(active_set)) * normal;
     for (var k = 1u; k < dim; k++) {
         let a = first + k;
-        let plus = f32((pieces >> (2u * k - 2u)) & 1u);
-        let minus = f32((pieces >> (2u * k - 1u)) & 1u);
+        let plus = f32((active_set >> (2u * k - 2u)) & 1u);
+        let minus = f32((active_set >> (2u * k - 1u)) & 1u);
         let mu = row(SHAPE + a);
         let mixed = d * mu * (plus - minus);
         let j = row(JACOBIAN + a * NV + i);
@@ -47,7 +47,7 @@ fn weigh(b: u32, i: u32) {
         }
         // Of the pieces of quadratic costs, dry friction and one-sided costs alike, 1 has curvature.
         default: {
-            let stiff = row(PIECES + b) == 1.0;
+            let stiff = row(ACTIVE_SET + b) == 1.0;
             for (var a = first; a < first + block(b, BLOCK_DIM); a++) {
                 weigh_edge(a, i, select(0.0, row(D + a), stiff));
             }
@@ -57,11 +57,11 @@ fn weigh(b: u32, i: u32) {
 
 // Whether a block is on a piece with curvature.
 fn is_stiff(b: u32) -> bool {
-    let pieces = row(PIECES + b);
+    let active_set = row(ACTIVE_SET + b);
     if (block(b, BLOCK_KIND) == DRY_FRICTION) {
-        return pieces == 1.0;
+        return active_set == 1.0;
     }
-    return pieces != 0.0;
+    return active_set != 0.0;
 }
 
 fn build_hessian(nblock: u32) {

@@ -54,9 +54,9 @@ fn evaluate(nblock: u32) -> vec4f {
     var sum = vec4f();
     for (var b = lane; b < nblock; b += GROUP) {
         let value = evaluate_block(b);
-        let pieces = f32(value.pieces);
-        let changed = select(0.0, 1.0, row(PIECES + b) != pieces);
-        put_row(PIECES + b, pieces);
+        let active_set = f32(value.active_set);
+        let changed = select(0.0, 1.0, row(ACTIVE_SET + b) != active_set);
+        put_row(ACTIVE_SET + b, active_set);
         sum += vec4f(value.cost, changed, select(0.0, 1.0, value.curved), 0.0);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {

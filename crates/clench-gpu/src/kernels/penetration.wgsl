@@ -94,8 +94,8 @@ fn deepest_of_segment(s: Segment, size: vec3f, outward: vec3f, otherwise: f32) -
         let square = dot(s.axis.xy, s.axis.xy);
         across = select(-dot(s.center.xy, s.axis.xy) / max(square, TINY), otherwise, square < tiny * tiny);
     } else if (level >= tiny) {
-        let rim = vec3f(outward.xy * (size.x / level), select(size.y, -size.y, outward.z < 0.0));
-        across = dot(s.axis, rim - s.center);
+        let circle_point = vec3f(outward.xy * (size.x / level), select(size.y, -size.y, outward.z < 0.0));
+        across = dot(s.axis, circle_point - s.center);
     }
     return clamp(across, -s.half_length, s.half_length);
 }

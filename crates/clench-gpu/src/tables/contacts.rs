@@ -2,7 +2,7 @@
 
 use super::{Capacity, Tables};
 use crate::check::{METHODS, may_be_general, method_of_pair, points_of_pair};
-use clench_collide::{Asset, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
+use clench_collide::{PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
 use clench_rigid::contact::{Candidate, contact_params, contact_range};
 use clench_rigid::model::Model;
 use clench_rigid::options::MaxContacts;
@@ -39,9 +39,8 @@ fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
 
 /// Within what distance of their centres (of a plane: of the second's to it) two geoms may touch.
 fn reach(m: &Model, pair: &Candidate) -> f64 {
-    let is_empty = |&g: &u32| {
-        m.geoms[g as usize].kind == ShapeKind::Mesh && m.asset(g as usize) == Asset::None
-    };
+    let is_empty =
+        |&g: &u32| m.geoms[g as usize].kind == ShapeKind::Mesh && m.hull(g as usize).is_none();
     if pair.geoms.iter().any(is_empty) {
         return f64::from(f32::MIN);
     }

@@ -40,7 +40,7 @@ impl Tables {
             pairs.extend(pair);
             places.push(numbers.len());
             match rows {
-                1 => numbers.extend(coupling(m, i, pair)),
+                1 => numbers.extend(joint_equality(m, i, pair)),
                 _ => numbers.extend(held(m, i, pair)),
             }
             capacity.blocks += 1;
@@ -71,7 +71,7 @@ fn held(m: &Model, i: usize, bodies: [usize; 2]) -> [f64; HELD_SIZE] {
     all
 }
 
-fn coupling(m: &Model, i: usize, coordinates: [usize; 2]) -> [f64; COUPLING_SIZE] {
+fn joint_equality(m: &Model, i: usize, coordinates: [usize; 2]) -> [f64; COUPLING_SIZE] {
     let p = &m.params;
     let present = |c: usize| (c != NONE as usize).then_some(c);
     let initial = |c: usize| match m.joints.get(c) {

@@ -1,7 +1,7 @@
 //! Convex polyhedra: the hulls of meshes that may touch, once each, and boxes that cylinders may touch.
 
 use super::{Tables, starts};
-use clench_collide::{Asset, Hull, ShapeKind, convex_hull};
+use clench_collide::{Hull, ShapeKind, convex_hull};
 use clench_math::Vec3;
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::Model;
@@ -86,8 +86,8 @@ impl Tables {
             if of_geom[g] != super::NONE as usize {
                 continue;
             }
-            match (geom.kind, m.asset(g)) {
-                (ShapeKind::Mesh, Asset::Hull(hull)) => {
+            match (geom.kind, m.hull(g)) {
+                (ShapeKind::Mesh, Some(hull)) => {
                     let place = geom.mesh.and_then(|mesh| of_mesh[mesh]);
                     let place = place.unwrap_or_else(|| self.hull(hull));
                     if let Some(mesh) = geom.mesh {

@@ -55,7 +55,7 @@ pub(crate) struct Capacity {
 impl Tables {
     /// The tables of a model, and how large its constraints can become. Numbers that environments may have for themselves; what they
     /// share comes after them.
-    pub fn new(
+    pub(crate) fn new(
         model: &Model,
         settings: &StepSettings,
         candidates: &[Candidate],
@@ -92,13 +92,13 @@ impl Tables {
     }
 
     /// Adds a table of numbers.
-    pub fn numbers(&mut self, name: &str, values: impl IntoIterator<Item = f64>) {
+    pub(crate) fn numbers(&mut self, name: &str, values: impl IntoIterator<Item = f64>) {
         self.count(name, self.numbers.len());
         self.numbers.extend(values.into_iter().map(|v| v as f32));
     }
 
     /// Declares a count, a place or a code.
-    pub fn count(&mut self, name: &str, value: usize) {
+    pub(crate) fn count(&mut self, name: &str, value: usize) {
         let _ = writeln!(self.constants, "const {name}: u32 = {value}u;");
     }
 

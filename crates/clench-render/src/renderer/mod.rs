@@ -65,7 +65,7 @@ pub struct Renderer {
     corners: Buffer,
     /// The corners of each geom, of each site, and of a part of a tendon.
     shapes: Vec<Range<u32>>,
-    looks: Vec<Item>,
+    items: Vec<Item>,
     textures: Textures,
     /// The size of what moves at first, m.
     extent: f32,
@@ -103,7 +103,7 @@ impl Renderer {
         let shadow = shadow.create_view(&Default::default());
         let light = light_group(&gpu, &passes, &shadow);
         Ok(Renderer {
-            looks: items::of_model(model),
+            items: items::of_model(model),
             textures: Textures::new(&gpu, &passes, model),
             model: Arc::clone(model),
             gpu,
@@ -146,13 +146,13 @@ impl Renderer {
             None => View::Free(FreeCamera::of_all(sim)?),
         };
         let camera = view.place(sim)?;
-        let mut items = self.looks.clone();
+        let mut items = self.items.clone();
         for (item, pose) in items.iter_mut().zip(items::poses(sim)?) {
             item.pose = pose;
         }
         let shown = self.shown(&items, &camera, wanted);
         items.extend(items::of_tendons(sim)?);
-        let strings = self.looks.len()..items.len();
+        let strings = self.items.len()..items.len();
         let aspect = width as f32 / height as f32;
         let centre = self.centre(&items);
         let places = light_places(&self.model, sim.workspace());

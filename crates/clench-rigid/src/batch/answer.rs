@@ -137,7 +137,7 @@ impl<S: Scalar + Shared> Asking<'_, S> {
         if let Question::Velocity(..) = self.question {
             velocities(self.model, &ws.position, &state.qvel, &mut ws.velocity);
         }
-        self.look(params, ws, given, out);
+        self.write_answer(params, ws, given, out);
         match self.question {
             Question::Acceleration(..) => {
                 crate::check::good_results(state, ws) & !ws.collision.overflow
@@ -148,7 +148,7 @@ impl<S: Scalar + Shared> Asking<'_, S> {
     }
 
     /// What follows from positions alone.
-    fn look<T: Real<Scalar = S>>(
+    fn write_answer<T: Real<Scalar = S>>(
         &self,
         params: &Params<T>,
         ws: &Workspace<T>,

@@ -109,8 +109,8 @@ impl<S: Precision> Batch<S> {
             }
             self.state.write(env, &sim.state)?;
             self.serials[env] = sim.last_serial;
-            if let Some(seen) = &mut self.seen {
-                seen.forget(env);
+            if let Some(recorded) = &mut self.recorded {
+                recorded.forget(env);
             }
         }
         Ok(results)

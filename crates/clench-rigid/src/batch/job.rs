@@ -4,7 +4,7 @@ use super::answer::Asking;
 use super::divergence::Divergence;
 use super::env_rows::EnvRows;
 use super::quality::Quality;
-use super::seen::SeenCells;
+use super::recorded_states::RecordedStateCells;
 use super::shared::Shared;
 use super::targets::{Controls, Targets};
 use crate::error::Fault;
@@ -24,7 +24,7 @@ pub struct Job<'a, S: Scalar + Shared> {
     /// What is done.
     pub pass: Pass,
     /// For which states outputs hold, where any are kept.
-    pub seen: Option<SeenCells<'a, S>>,
+    pub recorded: Option<RecordedStateCells<'a, S>>,
     /// Where outputs go.
     pub targets: Targets<'a, S>,
     pub controls: Controls<'a, S>,

@@ -22,10 +22,10 @@ mod parameters;
 mod precision;
 mod quality;
 mod record;
+mod recorded_states;
 mod reset;
 mod rows;
 mod run;
-mod seen;
 mod shared;
 mod snapshot;
 mod state_rows;
@@ -57,15 +57,15 @@ use crate::profile::Profile;
 use crate::settings::StepSettings;
 use crate::state::State;
 use rayon::ThreadPool;
+use recorded_states::RecordedStates;
 use rows::{per_env, try_reserve};
-use seen::Seen;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
 /// Bytes that an environment takes besides its rows: whether it runs, how often it was reset, the number of its last constraint at run
 /// time, and its place in groups.
-const BESIDES: usize =
+const SERVICE_BYTES: usize =
     size_of::<EnvStatus>() + size_of::<u64>() + size_of::<AtomicU64>() + 2 * size_of::<u32>();
 
 /// Whether an environment takes part in steps.
@@ -94,7 +94,7 @@ pub struct Batch<S: Precision = f64> {
     serials: Vec<u32>,
     params: Vec<ParamRows<S>>,
     outputs: Vec<OutputRows<S>>,
-    seen: Option<Seen<S>>,
+    recorded: Option<RecordedStates<S>>,
     initial: State<S>,
     scratch: State<S>,
     /// Where each environment stands among all by its last contacts.
@@ -149,7 +149,7 @@ impl<S: Precision> Batch<S> {
                 range: "less than 2^32",
             });
         }
-        try_reserve(count, StateRows::<S>::row_bytes(&model) + BESIDES)?;
+        try_reserve(count, StateRows::<S>::row_bytes(&model) + SERVICE_BYTES)?;
         let threads = options.threads(count)?;
         let pool = (threads > 1)
             .then(|| options.pool(threads).map(Arc::new))
@@ -172,7 +172,7 @@ impl<S: Precision> Batch<S> {
             serials: per_env(count, || 0)?,
             params: Vec::new(),
             outputs: Vec::new(),
-            seen: None,
+            recorded: None,
             scratch: initial.clone(),
             initial,
             sort_keys: per_env(count, || AtomicU64::new(0))?,
@@ -224,8 +224,8 @@ impl<S: Precision> Batch<S> {
         let device = device.map_or(0, |mirror| mirror.bytes_per_env(&self.model));
         let state = StateRows::<S>::row_bytes(&self.model);
         let params: usize = self.params.iter().map(ParamRows::row_bytes).sum();
-        let seen = self.seen.as_ref().map_or(0, Seen::row_bytes);
-        state + params + row_bytes(&self.outputs) + seen + BESIDES + device
+        let recorded = self.recorded.as_ref().map_or(0, RecordedStates::row_bytes);
+        state + params + row_bytes(&self.outputs) + recorded + SERVICE_BYTES + device
     }
 
     /// How many environments there are.

@@ -19,7 +19,8 @@ use std::sync::Arc;
 impl<S: Precision> Batch<S> {
     /// `count` environments in the model's initial state that `backend` steps, whose environments are in any state. Outputs that
     /// it does not compute cannot be recorded; options are those that `backend` was made with, and constraints at run time cannot be
-    /// added.
+    /// added. Figures are those of the processor's steps: none are counted of a backend's, so that [`quality`](Self::quality),
+    /// [`divergence`](Self::divergence) and [`profile`](Self::profile) stay at zero.
     ///
     /// # Errors
     /// As [`with_options`](Self::with_options).
@@ -304,9 +305,9 @@ impl<S: Precision> Batch<S> {
         let mut kept = outputs.iter_mut();
         let fetched = kept.try_for_each(|own| self.fetch(mirror, own, 0));
         self.outputs = outputs;
-        if let Some(seen) = &mut self.seen {
+        if let Some(recorded) = &mut self.recorded {
             let ran = mirror.running.iter().enumerate().filter(|(_, runs)| **runs);
-            ran.for_each(|(env, _)| seen.note_row(env, &self.state));
+            ran.for_each(|(env, _)| recorded.note_row(env, &self.state));
         }
         fetched
     }

@@ -40,8 +40,8 @@ impl<S: Precision> Batch<S> {
         for (&env, row) in envs.iter().zip(values.chunks(width.max(1))) {
             Model::clear_structural_guarantees(&mut self.model, field, row);
             self.param_rows(field)?.row_mut(env).copy_from_slice(row);
-            if let Some(seen) = &mut self.seen {
-                seen.forget(env);
+            if let Some(recorded) = &mut self.recorded {
+                recorded.forget(env);
             }
             if let Some((follower, params)) = &mut follower {
                 params.write_lane(field, 0, row);
@@ -97,8 +97,8 @@ impl<S: Precision> Batch<S> {
         self.check_changeable("the options")?;
         self.settings = StepSettings::supported::<S>(&self.model, options)?;
         self.options.options = options;
-        if let Some(seen) = &mut self.seen {
-            (0..self.status.len()).for_each(|env| seen.forget(env));
+        if let Some(recorded) = &mut self.recorded {
+            (0..self.status.len()).for_each(|env| recorded.forget(env));
         }
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! Outputs that a batch keeps, and rollouts that record them step by step.
 
 use super::job::Pass;
+use super::recorded_states::RecordedStates;
 use super::rows::try_reserve;
-use super::seen::Seen;
 use super::targets::{Controls, OutputRows};
 use super::{Batch, EnvStatus, Precision, Rows, Summary};
 use crate::check::check_length;
@@ -60,23 +60,23 @@ impl<S: Precision> Batch<S> {
         let mut new = self.tables(&new, 1, S::ZERO)?;
         if !new.is_empty() {
             // What is new is computed at once and by itself: what was kept before stays as it is, and holds for what it held.
-            let first = match self.seen {
-                None => Some(Seen::new(&self.model, self.count())?),
+            let first = match self.recorded {
+                None => Some(RecordedStates::new(&self.model, self.count())?),
                 Some(_) => None,
             };
-            let before = replace(&mut self.seen, first);
+            let before = replace(&mut self.recorded, first);
             swap(&mut self.outputs, &mut new);
             let computed = self.query(None);
             swap(&mut self.outputs, &mut new);
             if before.is_some() || computed.is_err() {
-                self.seen = before;
+                self.recorded = before;
             }
             computed?;
         }
         self.outputs.retain(|own| wanted.contains(&own.output));
         self.outputs.extend(new);
         if self.outputs.is_empty() {
-            self.seen = None;
+            self.recorded = None;
         }
         Ok(())
     }

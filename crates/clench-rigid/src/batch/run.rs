@@ -3,7 +3,7 @@
 use super::env_rows::EnvRows;
 use super::job::{Job, Pass, Stepper};
 use super::mirror::Call;
-use super::seen::Seen;
+use super::recorded_states::RecordedStates;
 use super::summary::Summary;
 use super::targets::{OutputRows, targets};
 use super::{Batch, Controls, EnvStatus, Precision};
@@ -65,11 +65,11 @@ impl<S: Precision> Batch<S> {
     /// As [`step`](Self::step).
     pub fn refresh(&mut self) -> Result<(), SimError> {
         self.check_state()?;
-        let Some(seen) = &self.seen else {
+        let Some(recorded) = &self.recorded else {
             return Ok(());
         };
         let runs = |env: usize| self.status[env] == EnvStatus::Running;
-        let stale = |env: usize| runs(env) && !seen.holds(env, &self.state);
+        let stale = |env: usize| runs(env) && !recorded.holds(env, &self.state);
         let stale = Vec::from_iter((0..self.count()).map(stale));
         if stale.contains(&true) {
             self.query(Some(&stale))?;
@@ -145,7 +145,7 @@ impl<S: Precision> Batch<S> {
                 targets: targets(&mut self.outputs, trace),
                 sort_keys: &self.sort_keys,
                 pass,
-                seen: self.seen.as_mut().map(Seen::share),
+                recorded: self.recorded.as_mut().map(RecordedStates::share),
                 controls,
                 first,
                 end: range.end.min(first.saturating_add(STEPS_A_GROUP)),

@@ -256,9 +256,9 @@ where
     /// Copies what a step gave out to where it is wanted.
     fn record(&mut self, group: &Group<T>, good: T::Mask, step: usize, job: &Job<T::Scalar>) {
         let last = step + 1 == job.steps;
-        if let Some(seen) = job.seen.as_ref().filter(|_| last) {
+        if let Some(recorded) = job.recorded.as_ref().filter(|_| last) {
             for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
-                seen.note(env, lane, &self.state);
+                recorded.note(env, lane, &self.state);
             }
         }
         for (&output, target) in Output::ALL.iter().zip(&job.targets) {

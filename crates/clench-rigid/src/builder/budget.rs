@@ -16,11 +16,11 @@ pub(super) fn matrices(builder: &ModelBuilder, model: &Model) -> Result<(), Buil
         depths.push(1 + dof.parent.map_or(0, |parent| depths[parent]));
     }
     let about_dofs = |count: usize| (count as u64).saturating_mul(model.nv as u64);
-    admit(builder, "mass matrix", depths.iter().sum())?;
+    check_budget(builder, "mass matrix", depths.iter().sum())?;
     let actuators = about_dofs(builder.actuators.len());
-    admit(builder, "matrix of moment arms of actuators", actuators)?;
+    check_budget(builder, "matrix of moment arms of actuators", actuators)?;
     let tendons = about_dofs(builder.tendons.len());
-    admit(builder, "matrix of moment arms of tendons", tendons)
+    check_budget(builder, "matrix of moment arms of tendons", tendons)
 }
 
 /// The Jacobian of the equalities of a model.
@@ -40,10 +40,10 @@ pub(super) fn equalities(builder: &ModelBuilder, model: &Model) -> Result<(), Bu
         };
         equality.target.rows() as u64 * dofs
     });
-    admit(builder, "Jacobian of equalities", rows.sum())
+    check_budget(builder, "Jacobian of equalities", rows.sum())
 }
 
-fn admit(builder: &ModelBuilder, what: &str, count: u64) -> Result<(), BuildError> {
+fn check_budget(builder: &ModelBuilder, what: &str, count: u64) -> Result<(), BuildError> {
     let most = builder.budget.matrix;
     match count > most {
         true => Err(BuildError::new(

@@ -7,7 +7,7 @@ use super::geoms::{Moved, place};
 use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::{BuildError, Origin};
-use crate::model::{CameraMode, Light, LightLook, Model};
+use crate::model::{CameraMode, Light, LightProperties, Model};
 use crate::workspace::Positions;
 use clench_math::{Quat, Vec3};
 
@@ -23,7 +23,7 @@ pub struct LightSpec {
     /// How it follows bodies, as a camera does.
     pub tracking: CameraTracking,
     /// What it shines like.
-    pub look: LightLook,
+    pub properties: LightProperties,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -36,7 +36,7 @@ impl Default for LightSpec {
             pos: Vec3::ZERO,
             dir: Vec3::new(0.0, 0.0, -1.0),
             tracking: CameraTracking::Fixed,
-            look: LightLook::default(),
+            properties: LightProperties::default(),
             origin: None,
         }
     }
@@ -47,7 +47,7 @@ impl Default for LightSpec {
 /// # Errors
 /// Numbers that are not finite; a direction that is none.
 pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
-    let LightLook {
+    let LightProperties {
         attenuation,
         cutoff,
         exponent,
@@ -55,7 +55,7 @@ pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
         diffuse,
         specular,
         ..
-    } = light.look;
+    } = light.properties;
     light.require_finite("pos", &light.pos.to_array())?;
     light.require_finite("dir", &light.dir.to_array())?;
     light.require_finite("attenuation", &attenuation)?;
@@ -80,7 +80,7 @@ pub(super) fn add(spec: &LightSpec, b: usize, moved: Moved, model: &mut Model) {
         pos0: Vec3::ZERO,
         poscom0: Vec3::ZERO,
         dir0: dir,
-        look: spec.look,
+        properties: spec.properties,
     });
 }
 

@@ -8,7 +8,7 @@ use super::uses::GeomUses;
 use super::visuals::Palette;
 use super::{BuildError, GeomSpec, SiteSpec};
 use crate::model::{HeightField, Model};
-use clench_collide::{Shape, ShapeKind, bounding_radius};
+use clench_collide::{Shape, ShapeKind};
 use clench_math::{Motion, Quat, Vec3};
 use std::sync::Arc;
 
@@ -167,7 +167,7 @@ impl<'a> Assets<'a> {
         }
         check_size(spec, placed.size)?;
         if !matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField) {
-            placed.rbound = bounding_radius(&Shape::new(spec.kind, placed.size));
+            placed.rbound = Shape::new(spec.kind, placed.size).bounding_radius();
         }
         spec.require_finite("bounding radius", &[placed.rbound])?;
         Ok(placed)

@@ -2,7 +2,7 @@
 
 use crate::model::{Model, Params};
 use crate::workspace::Positions;
-use clench_collide::{Pose, Shape};
+use clench_collide::{Mesh, Pose, Shape, ShapeKind, Terrain};
 use clench_math::Real;
 
 /// The shape of a geom.
@@ -12,10 +12,17 @@ pub(crate) fn shape<'a, T: Real>(
     params: &Params<T>,
     geom: usize,
 ) -> Shape<'a, T> {
-    Shape {
-        kind: model.geoms[geom].kind,
-        size: params.geom_size[geom],
-        asset: model.asset(geom),
+    let size = params.geom_size[geom];
+    match model.geoms[geom].kind {
+        ShapeKind::Mesh => Shape::Mesh(Mesh {
+            hull: model.hull(geom),
+            extent: size,
+        }),
+        ShapeKind::HeightField => Shape::HeightField(Terrain {
+            field: model.heights(geom),
+            size,
+        }),
+        kind => Shape::new(kind, size),
     }
 }
 

@@ -18,7 +18,7 @@
 use crate::dynamics::project::{force_at, local_velocity};
 use crate::model::{Model, Params};
 use crate::workspace::{Positions, Velocities};
-use clench_collide::ShapeKind;
+use clench_collide::{Shape, ShapeKind};
 use clench_math::{Force, Motion, Real, Vec3};
 use std::f64::consts::PI;
 
@@ -28,12 +28,7 @@ const TINY: f64 = 1e-15;
 /// Half the lengths of the ellipsoid that stands for a shape of size `size`.
 #[inline(always)]
 pub fn semi_axes<T: Real>(kind: ShapeKind, size: Vec3<T>) -> Vec3<T> {
-    match kind {
-        ShapeKind::Sphere => Vec3::new(size.x, size.x, size.x),
-        ShapeKind::Capsule => Vec3::new(size.x, size.x, size.x + size.y),
-        ShapeKind::Cylinder => Vec3::new(size.x, size.x, size.y),
-        _ => size,
-    }
+    Shape::new(kind, size).half_lengths()
 }
 
 /// An ellipsoid in the medium, at one velocity.

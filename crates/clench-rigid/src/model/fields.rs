@@ -4,7 +4,7 @@ use super::rule::Rule;
 use super::{Model, ParamField, Params};
 use crate::check::check_length;
 use crate::error::SimError;
-use clench_collide::{Shape, ShapeKind, bounding_radius};
+use clench_collide::{Shape, ShapeKind};
 use clench_math::{Real, Scalar};
 use std::sync::Arc;
 
@@ -161,7 +161,7 @@ impl<T: Real> Params<T> {
                     self.geom_rbound.push(match geom.kind {
                         ShapeKind::Plane => T::ZERO,
                         kind if has_own_size(kind) => T::new(model.params.geom_rbound[g]),
-                        kind => bounding_radius(&Shape::new(kind, size)),
+                        kind => Shape::new(kind, size).bounding_radius(),
                     });
                 }
             }

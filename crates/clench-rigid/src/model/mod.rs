@@ -25,14 +25,14 @@ pub use structure::{
     Actuator, Appearance, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates,
     Coupled, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, Headlight,
     HeightField, History, Integrator, Interpolation, Joint, JointKind, Keyframe, KinematicTree,
-    Light, LightKind, LightLook, Material, Mesh, Pair, Pattern, Pixels, RowPattern, Section, Site,
-    SleepPolicy, Tendon, Texture, TextureKind, TextureMark, TexturePattern, TexturePicture,
+    Light, LightKind, LightProperties, Material, Mesh, Pair, Pattern, Pixels, RowPattern, Section,
+    Site, SleepPolicy, Tendon, Texture, TextureKind, TextureMark, TexturePattern, TexturePicture,
     Transmission, Visuals, Wrap,
 };
 
 use crate::Budget;
 use crate::options::RigidOptions;
-use clench_collide::Asset;
+use clench_collide::Hull;
 use clench_solver::Tree;
 use std::collections::HashSet;
 use std::ops::Range;
@@ -201,19 +201,16 @@ impl Model {
         let end = below.iter().position(|other| other.parent < body);
         body..end.map_or(self.bodies.len(), |end| body + 1 + end)
     }
-    /// The hull or the heights of a geom that is a mesh or a height field.
+    /// The hull of a geom that is a mesh and may touch something.
     #[inline(always)]
-    pub fn asset(&self, geom: usize) -> Asset<'_> {
-        let geom = &self.geoms[geom];
-        if let Some(mesh) = geom.mesh {
-            return self.meshes[mesh]
-                .hull
-                .as_ref()
-                .map_or(Asset::None, Asset::Hull);
-        }
-        match geom.height_field {
-            Some(field) => Asset::HeightField(&self.height_fields[field].shape),
-            None => Asset::None,
-        }
+    pub fn hull(&self, geom: usize) -> Option<&Hull> {
+        let mesh = self.geoms[geom].mesh?;
+        self.meshes[mesh].hull.as_ref()
+    }
+    /// The heights of a geom that is a height field.
+    #[inline(always)]
+    pub fn heights(&self, geom: usize) -> Option<&clench_collide::HeightField> {
+        let field = self.geoms[geom].height_field?;
+        Some(&self.height_fields[field].shape)
     }
 }

@@ -3,7 +3,7 @@
 use crate::dynamics::frames::Frames;
 use crate::geometry::{Geoms, RayFilter};
 use crate::model::FrameObject;
-use clench_collide::{Asset, Ray};
+use clench_collide::Ray;
 use clench_math::{Real, Scalar, Vec3, kernel};
 
 /// Numbers of a ray: its origin, its direction.
@@ -66,7 +66,7 @@ pub(crate) fn sample<T: Real>(
             pose.position.z,
         );
         let mut local = pose.rotation.transpose_mul(world - pose.position);
-        if let Asset::HeightField(field) = geoms.model.asset(geom) {
+        if let Some(field) = geoms.model.heights(geom) {
             for lane in 0..T::LANES {
                 let (x, y) = (local.x.lane(lane).to_f64(), local.y.lane(lane).to_f64());
                 local

@@ -9,7 +9,6 @@ use crate::known::Extent;
 use crate::model::FrameObject;
 use crate::sim::Sim;
 use crate::{Model, Precision};
-use clench_collide::Asset;
 use clench_math::{Scalar, Vec3};
 
 /// Rays that can be cast: whole ones, finite, in the frame of an object that the model has.
@@ -33,7 +32,7 @@ pub(crate) fn check_places<S: Scalar>(
     if geom >= model.geoms.len() {
         return Err(no_such("geom", geom, model.geoms.len()));
     }
-    if !matches!(model.asset(geom), Asset::HeightField(_)) {
+    if model.heights(geom).is_none() {
         return Err(SimError::NoHeightField { geom });
     }
     frame.map_or(Ok(()), |frame| check_object(model, frame))?;

@@ -55,19 +55,14 @@ impl<T: Real> Reading<'_, T> {
     /// A geom in one lane, with a hull even if it does not collide.
     fn solid(&self, geom: usize, lane: usize) -> (Shape<'_, T::Scalar>, Pose<T::Scalar>) {
         let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
-        let (whole, pose) = (self.geoms().solid(geom), self.geoms().pose(geom));
-        let shape = Shape {
-            kind: whole.kind,
-            size: vector(whole.size),
-            asset: whole.asset,
-        };
+        let (shape, pose) = (self.geoms().solid(geom), self.geoms().pose(geom));
         let pose = Pose {
             position: vector(pose.position),
             rotation: Mat3 {
                 rows: pose.rotation.rows.map(vector),
             },
         };
-        (shape, pose)
+        (shape.lane(lane), pose)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::reading::Reading;
 use crate::output::of_contact;
-use clench_collide::{Pose, Ray, Shape, ShapeKind, ray};
+use clench_collide::{Mesh, Pose, Ray, Shape, ray};
 use clench_math::{Mask, Mat3, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
@@ -39,43 +39,28 @@ impl<T: Real> Reading<'_, T> {
     /// 1 where a point is inside a site's volume, else 0.
     #[kernel]
     pub(super) fn is_inside(&self, site: usize, point: Vec3<T>) -> T {
-        let pose = self.site_pose(site);
-        let (p, size) = (pose.local(point), self.params.site_size[site]);
-        let level = p.x * p.x + p.y * p.y;
-        let inside = match self.model.sites[site].kind {
-            ShapeKind::Sphere => p.norm_squared().le(size.x.squared()),
-            ShapeKind::Capsule => {
-                let end = (p.z.abs() - size.y).max(T::ZERO);
-                (level + end * end).le(size.x.squared())
-            }
-            ShapeKind::Ellipsoid => {
-                let scaled = Vec3::new(p.x / size.x, p.y / size.y, p.z / size.z);
-                scaled.norm_squared().le(T::ONE)
-            }
-            ShapeKind::Cylinder => level.le(size.x.squared()) & p.z.abs().le(size.y),
-            ShapeKind::Box => p.x.abs().le(size.x) & p.y.abs().le(size.y) & p.z.abs().le(size.z),
-            ShapeKind::Mesh => self.is_in_hull(site, p),
-            ShapeKind::Plane | ShapeKind::HeightField => T::Mask::splat(false),
+        let (shape, pose) = self.volume(site);
+        let (shape, point) = match self.model.sites[site].mesh {
+            Some(mesh) => self.hull(&self.model.meshes[mesh], shape, pose.local(point)),
+            None => (shape, pose.local(point)),
         };
-        T::select(inside, T::ONE, T::ZERO)
+        T::select(shape.contains(point), T::ONE, T::ZERO)
     }
 
-    /// Whether a point in a site's frame is in the hull of the site's mesh, which has its author's coordinates there.
-    fn is_in_hull(&self, site: usize, point: Vec3<T>) -> T::Mask {
-        let mesh = self.model.sites[site]
-            .mesh
-            .map(|mesh| &self.model.meshes[mesh]);
-        let Some((mesh, hull)) = mesh.and_then(|mesh| Some((mesh, mesh.hull.as_ref()?))) else {
-            return T::Mask::splat(false);
-        };
+    /// The hull of a site's mesh, and a point of the site's frame in that of the hull: in a site a mesh has its author's coordinates.
+    fn hull<'a>(
+        &self,
+        mesh: &'a crate::model::Mesh,
+        shape: Shape<'a, T>,
+        point: Vec3<T>,
+    ) -> (Shape<'a, T>, Vec3<T>) {
+        let shape = Shape::Mesh(Mesh {
+            hull: mesh.hull.as_ref(),
+            extent: shape.size(),
+        });
         let axes = Mat3::from_f64(mesh.quat.to_matrix().rows.map(Vec3::to_array));
-        let point = axes.transpose_mul(point - Vec3::from_f64(mesh.pos.to_array()));
-        let mut inside = T::Mask::splat(true);
-        for face in 0..hull.face_count() {
-            let height = Vec3::from_f64(hull.normal(face).to_array()).dot(point);
-            inside &= height.le(T::new(hull.offset(face)));
-        }
-        inside
+        let offset = point - Vec3::from_f64(mesh.pos.to_array());
+        (shape, axes.transpose_mul(offset))
     }
 
     fn volume(&self, site: usize) -> (Shape<'static, T>, Pose<T>) {

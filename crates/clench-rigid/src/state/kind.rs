@@ -30,8 +30,8 @@ pub trait Kind {
     fn number<S: Scalar>(cell: Self::Cell<S>) -> S;
     /// The cell of a number.
     fn from_number<S: Scalar>(number: S) -> Self::Cell<S>;
-    /// Shows the numbers of elements to `look`, with the index of the first: many at once, or an element at a time.
-    fn numbers<T: Real>(elements: &[Self::Of<T>], look: impl FnMut(usize, &[T]));
+    /// Shows the numbers of elements to `visit`, with the index of the first: many at once, or an element at a time.
+    fn numbers<T: Real>(elements: &[Self::Of<T>], visit: impl FnMut(usize, &[T]));
     /// Whether two elements are the same, bit by bit.
     fn same<T: Real>(one: &Self::Of<T>, other: &Self::Of<T>) -> bool;
 }
@@ -77,8 +77,8 @@ impl Kind for Number {
         number
     }
     #[inline(always)]
-    fn numbers<T: Real>(numbers: &[T], mut look: impl FnMut(usize, &[T])) {
-        look(0, numbers);
+    fn numbers<T: Real>(numbers: &[T], mut visit: impl FnMut(usize, &[T])) {
+        visit(0, numbers);
     }
     fn same<T: Real>(one: &T, other: &T) -> bool {
         same_bits(*one, *other)
@@ -117,8 +117,8 @@ impl Kind for Integer {
         number.to_f64() as i32
     }
     #[inline(always)]
-    fn numbers<T: Real>(numbers: &[T], mut look: impl FnMut(usize, &[T])) {
-        look(0, numbers);
+    fn numbers<T: Real>(numbers: &[T], mut visit: impl FnMut(usize, &[T])) {
+        visit(0, numbers);
     }
     fn same<T: Real>(one: &T, other: &T) -> bool {
         same_bits(*one, *other)
@@ -164,9 +164,9 @@ macro_rules! compound {
                 number
             }
             #[inline(always)]
-            fn numbers<T: Real>(elements: &[$of<T>], mut look: impl FnMut(usize, &[T])) {
+            fn numbers<T: Real>(elements: &[$of<T>], mut visit: impl FnMut(usize, &[T])) {
                 for (i, element) in elements.iter().enumerate() {
-                    look(i * Self::WIDTH, &[$(element.$($part).+),*]);
+                    visit(i * Self::WIDTH, &[$(element.$($part).+),*]);
                 }
             }
             fn same<T: Real>(one: &$of<T>, other: &$of<T>) -> bool {

@@ -4,8 +4,8 @@
 //! against the sides of the other. A round cap is its circle where it matters: what is left of a segment or a polygon over it are their
 //! corners within the circle, the ends of their chords, and such points of the circle as lie in the polygon.
 
-use super::corners::{Feature, MAX_CORNERS};
 use crate::narrow::polygon::Polygon;
+use crate::shape::{Feature, MAX_CORNERS};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 

@@ -24,12 +24,18 @@ use super::{
     pair::{Gap, Pair},
     prism::{EDGES, FACES, Prism},
 };
+use crate::Cuboid;
 use crate::hull::{FEW_FACES, Hull};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// The largest gap of a prism and a cylinder if it is not positive, else one that is.
-pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -> Gap<S> {
+pub(super) fn prism_gap<S: Scalar>(
+    pair: &Pair<S>,
+    prism: &Prism<S>,
+    cylinder: &crate::Cylinder<S>,
+    limit: S,
+) -> Gap<S> {
     let (corners, normals) = (prism.corners(), prism.normals());
     let faces = FACES.iter().zip(normals);
     let faces = faces.map(|(face, normal)| (normal, normal.dot(corners[face[0]])));
@@ -48,8 +54,8 @@ pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -
     let cylinder = Cylinder {
         axis: pair.rotation.column(2),
         middle: pair.offset,
-        radius: pair.b.size().x,
-        half: pair.b.size().y,
+        radius: cylinder.radius,
+        half: cylinder.half_length,
     };
     let corners = corners.iter().copied();
     let best = cylinder.search(corners, faces, edges, limit, pair.tolerance);
@@ -61,8 +67,13 @@ pub(super) fn prism_gap<S: Scalar>(pair: &Pair<S>, prism: &Prism<S>, limit: S) -
 }
 
 /// The largest gap of a cylinder and a box if it is not positive, else one that is.
-pub(super) fn box_gap<S: Scalar>(pair: &Pair<S>, limit: S) -> Gap<S> {
-    let size = pair.b.size();
+pub(super) fn box_gap<S: Scalar>(
+    pair: &Pair<S>,
+    cylinder: &crate::Cylinder<S>,
+    cuboid: &Cuboid<S>,
+    limit: S,
+) -> Gap<S> {
+    let size = cuboid.half_lengths;
     // Of each axis first what is along it, then what is against it.
     let sign = |bits: usize, k: usize| [S::ONE, -S::ONE][bits >> k & 1];
     let unit = |k: usize| Mat3::IDENTITY.rows[k];
@@ -86,11 +97,16 @@ pub(super) fn box_gap<S: Scalar>(pair: &Pair<S>, limit: S) -> Gap<S> {
             turn: (S::ZERO, S::ONE),
         }
     });
-    Cylinder::first(pair).gap(pair, corners, faces, edges, limit)
+    Cylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit)
 }
 
 /// The largest gap of a cylinder and a hull if it is not positive, else one that is; nothing where the hull has many faces.
-pub(super) fn hull_gap<S: Scalar>(pair: &Pair<S>, hull: &Hull, limit: S) -> Option<Gap<S>> {
+pub(super) fn hull_gap<S: Scalar>(
+    pair: &Pair<S>,
+    cylinder: &crate::Cylinder<S>,
+    hull: &Hull,
+    limit: S,
+) -> Option<Gap<S>> {
     if hull.creases().is_empty() {
         return None;
     }
@@ -104,7 +120,7 @@ pub(super) fn hull_gap<S: Scalar>(pair: &Pair<S>, hull: &Hull, limit: S) -> Opti
         faces: crease.faces,
         turn: (S::new(crease.turn.0), S::new(crease.turn.1)),
     });
-    Some(Cylinder::first(pair).gap(pair, corners, faces, edges, limit))
+    Some(Cylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit))
 }
 
 /// A cylinder in the frame of a polyhedron.
@@ -156,12 +172,12 @@ impl<S: Scalar> PolyhedronEdge<S> {
 
 impl<S: Scalar> Cylinder<S> {
     /// The first of a pair, in the frame of the second.
-    fn first(pair: &Pair<S>) -> Self {
+    fn first(pair: &Pair<S>, shape: &crate::Cylinder<S>) -> Self {
         Cylinder {
             axis: pair.rotation.rows[2],
             middle: -pair.rotation.transpose_mul(pair.offset),
-            radius: pair.a.size().x,
-            half: pair.a.size().y,
+            radius: shape.radius,
+            half: shape.half_length,
         }
     }
 

@@ -20,11 +20,15 @@ use super::{
     largest_gap::LargestGap,
     pair::{Gap, Pair},
 };
+use crate::shape::Solid;
 use clench_math::{Scalar, Vec3};
 
 /// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two cap circles,
 /// or no common point is at hand; nothing where the axes are parallel.
-pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
+pub(super) fn largest_gap<S: Scalar>(
+    pair: &Pair<S>,
+    shapes: [&crate::Cylinder<S>; 2],
+) -> Option<Gap<S>> {
     let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
     let (cosine, sine) = (
         axes[1].z,
@@ -33,13 +37,12 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
     if sine <= S::EPSILON {
         return None;
     }
-    let sizes = [pair.a.size(), pair.b.size()];
     let least = pair.largest * S::EPSILON;
     let inverse = S::ONE / sine;
     let across = Vec3::new(-axes[1].y * inverse, axes[1].x * inverse, S::ZERO);
     let cylinder = |i: usize, side: Vec3<S>, offset: Vec3<S>| Cylinder {
-        radius: sizes[i].x.max(least),
-        half: sizes[i].y,
+        radius: shapes[i].radius.max(least),
+        half: shapes[i].half_length,
         side,
         offset: [offset.dot(across), offset.dot(side), offset.dot(axes[i])],
     };
@@ -68,7 +71,7 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>) -> Option<Gap<S>> {
     }
     let settled = best.gap > S::ZERO
         || (!circles_cross(&cylinders, (cosine, sine), -best.gap)
-            && (axes_pass(&cylinders, sine) || deepest_inside(pair, best.normal)));
+            && (axes_pass(&cylinders, sine) || deepest_inside(pair, shapes, best.normal)));
     Some(Gap {
         normal: best.normal,
         gap: best.gap,
@@ -90,18 +93,17 @@ fn axes_pass<S: Scalar>([a, b]: &[Cylinder<S>; 2], sine: S) -> bool {
 }
 
 /// Whether the deepest point of one, along the normal, is within the other.
-fn deepest_inside<S: Scalar>(pair: &Pair<S>, normal: Vec3<S>) -> bool {
-    let holds =
-        |size: Vec3<S>, p: Vec3<S>| p.z.abs() <= size.y && p.x * p.x + p.y * p.y <= size.x * size.x;
+fn deepest_inside<S: Scalar>(
+    pair: &Pair<S>,
+    [a, b]: [&crate::Cylinder<S>; 2],
+    normal: Vec3<S>,
+) -> bool {
     let deepest = pair.vertex(normal);
-    holds(pair.a.size(), pair.offset + pair.rotation * deepest.b)
-        || holds(
-            pair.b.size(),
-            pair.rotation.transpose_mul(deepest.a - pair.offset),
-        )
+    a.contains(pair.offset + pair.rotation * deepest.b)
+        || b.contains(pair.rotation.transpose_mul(deepest.a - pair.offset))
 }
 
-/// Rims of both.
+/// Signs of the caps of both.
 const ENDS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
 
 /// A cylinder, and where the other one is from its middle: across both axes, along `side`, and along its own axis.

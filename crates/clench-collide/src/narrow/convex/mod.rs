@@ -3,12 +3,10 @@
 
 mod body;
 mod clipping;
-mod corners;
 mod cylinder_polyhedron;
 mod cylinders;
 mod ellipse;
 mod epa;
-mod feature;
 mod gjk;
 mod largest_gap;
 mod pair;
@@ -21,11 +19,10 @@ mod terrain;
 
 use super::boxes::boxes_near;
 use super::per_lane::{Points, per_lane_where};
-use super::placed::Placed;
+use super::placed::AnyPlaced;
 use super::separating_axis::SeparatingAxis;
-use crate::{Contacts, ShapeKind};
+use crate::{Contacts, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
-pub(super) use corners::MAX_CORNERS;
 use epa::epa;
 use gjk::{Cores, gjk};
 use pair::{Gap, Pair};
@@ -37,8 +34,8 @@ pub(super) use terrain::terrain;
 /// are none. It becomes the one that a search has found.
 #[kernel]
 pub(super) fn convex<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: AnyPlaced<T>,
+    b: AnyPlaced<T>,
     margin: T,
     axis: &mut SeparatingAxis<T>,
     out: &mut Contacts<T>,
@@ -60,19 +57,21 @@ pub(super) fn convex<T: Real>(
 /// # Errors
 /// The bodies are more than `margin` apart: a direction that shows it, in the frame of the first.
 pub(super) fn points<S: Scalar>(
-    a: Placed<S>,
-    b: Placed<S>,
+    a: AnyPlaced<S>,
+    b: AnyPlaced<S>,
     margin: S,
     points: &mut Points<S>,
 ) -> Result<(), Vec3<S>> {
     let pair = Pair::new(a, b);
-    let known = match (a.shape.kind, b.shape.kind) {
-        (ShapeKind::Cylinder, ShapeKind::Box) => Some(cylinder_polyhedron::box_gap(&pair, margin)),
-        (ShapeKind::Cylinder, ShapeKind::Cylinder) => cylinders::largest_gap(&pair),
-        (ShapeKind::Cylinder, ShapeKind::Mesh) => pair
-            .b
-            .hull
-            .and_then(|hull| cylinder_polyhedron::hull_gap(&pair, hull, margin)),
+    let known = match (&a.shape, &b.shape) {
+        (Shape::Cylinder(a), Shape::Box(b)) => {
+            Some(cylinder_polyhedron::box_gap(&pair, a, b, margin))
+        }
+        (Shape::Cylinder(a), Shape::Cylinder(b)) => cylinders::largest_gap(&pair, [a, b]),
+        (Shape::Cylinder(a), Shape::Mesh(b)) => {
+            let gap = |hull| cylinder_polyhedron::hull_gap(&pair, a, hull, margin);
+            b.hull.and_then(gap)
+        }
         _ => None,
     };
     let known = known.filter(|known| Real::is_finite(known.gap));
@@ -123,7 +122,7 @@ fn nearest<S: Scalar>(
 
 /// The contacts of one environment whose normal and distance along it are known already; the normal in the first shape's frame.
 pub(super) fn points_along<S: Scalar>(
-    (a, b): (Placed<S>, Placed<S>),
+    (a, b): (AnyPlaced<S>, AnyPlaced<S>),
     (normal, gap): (Vec3<S>, S),
     margin: S,
     points: &mut Points<S>,
@@ -139,7 +138,7 @@ pub(super) fn points_along<S: Scalar>(
 /// The contacts of a pair whose largest gap was found without a simplex.
 fn patch_along<S: Scalar>(
     pair: &Pair<S>,
-    a: Placed<S>,
+    a: AnyPlaced<S>,
     known: Gap<S>,
     margin: S,
     points: &mut Points<S>,

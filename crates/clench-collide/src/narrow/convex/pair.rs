@@ -5,7 +5,7 @@
 //! bodies is the largest gap. Its gradient on the sphere is the part of w across n, its Hessian there −(H_A + H_B + g 1).
 
 use super::body::Body;
-use crate::narrow::placed::Placed;
+use crate::narrow::placed::AnyPlaced;
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 
@@ -64,8 +64,8 @@ impl<S: Scalar> Gap<S> {
 
 impl<'a, S: Scalar> Pair<'a, S> {
     /// In the frame of the first; that of a sphere is upright, however it is turned.
-    pub(super) fn new(a: Placed<'a, S>, b: Placed<'a, S>) -> Self {
-        let (body_a, body_b) = (Body::new(a.shape), Body::new(b.shape));
+    pub(super) fn new(a: AnyPlaced<'a, S>, b: AnyPlaced<'a, S>) -> Self {
+        let (body_a, body_b) = (Body::new(&a.shape), Body::new(&b.shape));
         let (rotation, offset) = if body_a.is_point() {
             (b.pose.rotation, b.pose.position - a.pose.position)
         } else {
@@ -87,7 +87,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         let largest = a.bounding_radius + b.bounding_radius + x + y + z;
         let rounding = largest * S::EPSILON * S::new(64.0);
         Pair {
-            curved: a.curved() | b.curved(),
+            curved: a.is_curved() | b.is_curved(),
             a,
             b,
             rotation,

@@ -4,13 +4,12 @@
 //! a few points on the outline (see [`Outline`]), and the deepest.
 
 use super::clipping::ProjectedFeature;
-use super::corners::Feature;
 use super::pair::{Gap, Pair, Vertex, across};
 use super::simplex::Simplex;
 use crate::PATCH_POINTS;
 use crate::narrow::outline::Outline;
 use crate::narrow::per_lane::{Point, Points};
-use crate::narrow::placed::Placed;
+use crate::narrow::placed::AnyPlaced;
 use crate::narrow::polygon::{CAPACITY, Polygon};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
@@ -49,7 +48,7 @@ type Spots<S> = ArrayVec<Spot<S>, { CAPACITY + 1 }>;
 /// does.
 pub(super) fn patch<S: Scalar>(
     pair: &Pair<S>,
-    a: Placed<S>,
+    a: AnyPlaced<S>,
     best: Gap<S>,
     simplex: &Simplex<S>,
     margin: S,
@@ -81,12 +80,12 @@ pub(super) fn patch<S: Scalar>(
     if pair.b.is_point() {
         return add_one(pair.offset - n * half);
     }
-    let feature_a = Feature::new(&pair.a, n);
+    let feature_a = pair.a.feature(n);
     // A corner is where it is, however exact the normal.
-    if let (&[corner], false) = (&feature_a.corners[..], pair.a.curved()) {
+    if let (&[corner], false) = (&feature_a.corners[..], pair.a.is_curved()) {
         return add_one(corner + n * half);
     }
-    let feature_b = Feature::new(&pair.b, -pair.rotation.transpose_mul(n));
+    let feature_b = pair.b.feature(-pair.rotation.transpose_mul(n));
     let place = |p| pair.offset + pair.rotation * p;
     // A corner, or the one point where a curved body touches.
     let middle = match (&feature_a.corners[..], &feature_b.corners[..]) {

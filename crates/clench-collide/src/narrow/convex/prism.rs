@@ -1,7 +1,7 @@
 //! A triangle of terrain with the ground below it: a convex body of six corners.
 
-use super::corners::{Feature, most_level};
 use crate::hull::FACE_COSINE;
+use crate::shape::{Core, Feature, most_level};
 use clench_math::{Scalar, Vec3};
 
 /// Three corners on top, counter-clockwise seen from above, and the three below them.
@@ -94,15 +94,15 @@ impl<S: Scalar> Prism<S> {
         }
         best.1
     }
+}
 
-    /// The corner that is furthest along `d`.
+impl<S: Scalar> Core<S> for Prism<S> {
     #[inline]
-    pub(super) fn support(&self, d: Vec3<S>) -> Vec3<S> {
-        self.corners[self.furthest(d)]
+    fn support(&self, _: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
+        self.corners[self.furthest(side)]
     }
 
-    /// The face, edge or corner that lies against a plane across `d`.
-    pub(super) fn feature(&self, d: Vec3<S>, feature: &mut Feature<S>) {
+    fn feature(&self, d: Vec3<S>) -> Feature<S> {
         // A cosine as the squares of two lengths that it is the quotient of.
         let mut best = (S::new(FACE_COSINE).squared(), S::ONE, None);
         // A direction that rises this steeply can be the normal of the top alone.
@@ -120,18 +120,17 @@ impl<S: Scalar> Prism<S> {
             }
         }
         if let (_, _, Some((face, normal))) = best {
-            feature.normal = normal.normalize().0;
-            feature
-                .corners
-                .extend(face.iter().map(|&k| self.corners[k]));
-            return;
+            let mut feature = Feature::along(normal.normalize().0);
+            let corners = face.iter().map(|&k| self.corners[k]);
+            feature.corners.extend(corners);
+            return feature;
         }
         let first = self.furthest(d);
         let corner = self.corners[first];
         let ends = NEIGHBORS[first].into_iter().map(|k| (k, self.corners[k]));
-        feature.corners.push(corner);
+        let mut feature = Feature::corner(d, corner);
+        let end = most_level(corner, ends, d).map(|(_, end)| end);
+        feature.corners.extend(end);
         feature
-            .corners
-            .extend(most_level(corner, ends, d).map(|(_, end)| end));
     }
 }

@@ -1,4 +1,4 @@
-// Convex bodies by their support functions, as a core plus a radius. Sister of `clench-collide/src/narrow/convex/body.rs`, where they
+// Convex bodies by their support functions, as a core plus a radius. Sister of `clench-collide/src/shape/core.rs`, where they
 // are explained.
 
 const LEAST_NORMAL: f32 = 1.1754944e-38;
@@ -127,8 +127,8 @@ fn curvature_of(body: Body, d: vec3f) -> Curvature {
         return Curvature(inverse, s * s, scaled * s * inverse, body.radius);
     }
     if (ANY_CYLINDER && body.kind == CYLINDER) {
-        let rim = radial_direction(d);
-        return Curvature(-s.x / max(length(d.xy), ROUNDING), vec3f(), vec3f(-rim.y, rim.x, 0.0), 0.0);
+        let radial = radial_direction(d);
+        return Curvature(-s.x / max(length(d.xy), ROUNDING), vec3f(), vec3f(-radial.y, radial.x, 0.0), 0.0);
     }
     return Curvature(0.0, vec3f(), vec3f(), 0.0);
 }

@@ -1,4 +1,4 @@
-// What of a body lies against a plane: a face, an edge or a corner. Sister of `clench-collide/src/narrow/convex/feature.rs`.
+// What of a body lies against a plane: a face, an edge or a corner. Sister of `feature` of the shapes in `clench-collide/src/shape`.
 
 // Faces and edges count as lying against the plane up to a tilt of 5°.
 const FACE_COSINE: f32 = 0.996;

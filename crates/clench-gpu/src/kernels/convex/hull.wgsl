@@ -1,5 +1,5 @@
 // Hulls of meshes: the furthest vertex, and what of a hull lies against a plane. Sister of `clench-collide/src/hull/mod.rs` and of
-// `clench-collide/src/narrow/convex/feature.rs`. A hull is a place in the words, where its parts are told.
+// `clench-collide/src/shape/mesh.rs`. A hull is a place in the words, where its parts are told.
 
 // Numbers that all environments share.
 fn shape3(place: u32) -> vec3f {

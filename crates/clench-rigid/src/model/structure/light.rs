@@ -23,12 +23,12 @@ pub struct Light {
     /// Where it shines at `qpos0`, in world axes.
     pub dir0: Vec3<f64>,
     /// What it shines like.
-    pub look: LightLook,
+    pub properties: LightProperties,
 }
 
 /// What a light shines like, in MuJoCo's terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightLook {
+pub struct LightProperties {
     /// Where its light goes.
     pub kind: LightKind,
     /// Whether it shines.
@@ -61,9 +61,9 @@ pub enum LightKind {
 }
 
 /// MuJoCo's defaults.
-impl Default for LightLook {
+impl Default for LightProperties {
     fn default() -> Self {
-        LightLook {
+        LightProperties {
             kind: LightKind::Spot,
             active: true,
             castshadow: true,

@@ -24,7 +24,7 @@ pub use equality::{Coupled, Equality, EqualityTarget};
 pub use geom::{Geom, HeightField, Mesh, Pair};
 pub use history::{History, Interpolation};
 pub use keyframe::Keyframe;
-pub use light::{Headlight, Light, LightKind, LightLook};
+pub use light::{Headlight, Light, LightKind, LightProperties};
 pub use option::{Flags, Integrator};
 pub use pattern::RowPattern;
 pub use sleep::{KinematicTree, SleepPolicy};

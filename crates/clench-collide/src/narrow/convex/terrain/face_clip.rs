@@ -3,7 +3,6 @@
 use super::grid::Triangle;
 use super::manifold::Manifold;
 use crate::narrow::convex::body::Body;
-use crate::narrow::convex::corners::Feature;
 use crate::narrow::convex::pair::across;
 use crate::narrow::{per_lane::Point, polygon::Polygon};
 use clench_math::{Mat3, Scalar, Vec3};
@@ -35,7 +34,7 @@ impl<S: Scalar> FaceClip<'_, S> {
     ///
     /// Where the surface goes on in the same plane, the cut has no corner.
     pub(super) fn touch(&self, margin: S, found: &mut Manifold<S>) -> bool {
-        let feature = Feature::new(self.body, -self.rotation.transpose_mul(self.normal));
+        let feature = self.body.feature(-self.rotation.transpose_mul(self.normal));
         let [p, q, r] = self.triangle.corners;
         // Each opposite to the corner of its number.
         let sides = [self.side(q, r), self.side(r, p), self.side(p, q)];

@@ -28,8 +28,8 @@ use super::{
     simplex::Simplex,
 };
 use crate::narrow::per_lane::{Point, Points, per_lane};
-use crate::narrow::placed::Placed;
-use crate::{Asset, Contacts, Pose, Shape, ShapeKind};
+use crate::narrow::placed::{AnyPlaced, Placed};
+use crate::{Contacts, Pose, Shape, ShapeKind, Terrain};
 use arrayvec::ArrayVec;
 use bounds::Bounds;
 use clench_math::{Mat3, Real, Scalar, Vec3};
@@ -50,21 +50,23 @@ const MAX_FEATURES: usize = 4;
 
 /// The contacts of a height field and a shape that is bounded and convex.
 pub(in crate::narrow) fn terrain<T: Real>(
-    a: Placed<T>,
-    b: Placed<T>,
+    a: Placed<Terrain<T>, T>,
+    b: AnyPlaced<T>,
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    per_lane(a, b, margin, out, points);
+    per_lane(a, b, margin, out, |a, b, margin, found| {
+        points(a, b, margin, found);
+    });
 }
 
-fn points<S: Scalar>(a: Placed<S>, b: Placed<S>, margin: S, points: &mut Points<S>) {
-    let Asset::HeightField(field) = a.shape.asset else {
+fn points<S: Scalar>(a: Placed<Terrain<S>, S>, b: AnyPlaced<S>, margin: S, points: &mut Points<S>) {
+    let Some(field) = a.shape.field else {
         return;
     };
     let grid = Grid::new(field);
     let mut search = Search::new(a, b, margin);
-    let body = Body::new(b.shape);
+    let body = Body::new(&b.shape);
     let around = body.radius + margin + search.tolerance;
     let Some(bounds) = Bounds::new(&body, &search.rotation, search.offset, around, &grid) else {
         return;
@@ -132,8 +134,8 @@ fn keep_deeper<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
 }
 
 impl<S: Scalar> Search<S> {
-    fn new(a: Placed<S>, b: Placed<S>, margin: S) -> Self {
-        let size = crate::bounding_radius(b.shape);
+    fn new(a: Placed<Terrain<S>, S>, b: AnyPlaced<S>, margin: S) -> Self {
+        let size = b.shape.bounding_radius();
         let offset = a.pose.local(b.pose.position);
         let rounding = (size + offset.norm()) * S::EPSILON * S::new(64.0);
         let tolerance = Real::max(rounding, size * S::new(1e-9));
@@ -214,8 +216,8 @@ impl<S: Scalar> Search<S> {
         pair: &Pair<S>,
         prism: &Prism<S>,
     ) -> Result<(Gap<S>, Simplex<S>), Gap<S>> {
-        if pair.b.kind() == ShapeKind::Cylinder {
-            let known = prism_gap(pair, prism, self.margin);
+        if let Some(cylinder) = pair.b.as_cylinder() {
+            let known = prism_gap(pair, prism, cylinder, self.margin);
             if known.gap > self.margin {
                 return Err(known);
             }
@@ -301,7 +303,7 @@ impl<S: Scalar> Search<S> {
             position: clip.triangle.origin,
             rotation: Mat3::IDENTITY,
         };
-        let shape = &Shape::new(ShapeKind::HeightField, Vec3::ZERO);
+        let shape = Shape::new(ShapeKind::HeightField, Vec3::ZERO);
         let ground = Placed { shape, pose: &pose };
         let mut touching = Points::new();
         patch(pair, ground, best, simplex, self.margin, &mut touching);

@@ -11,19 +11,19 @@ use clench_math::{Real, Scalar};
 
 /// What each environment's state was when its outputs were last recorded, as far as they depend on it. Kept only while
 /// outputs are.
-pub(super) struct Seen<S> {
+pub(super) struct RecordedStates<S> {
     qpos: Rows<S>,
     qvel: Rows<S>,
     mocap_pos: Rows<S>,
     mocap_quat: Rows<S>,
 }
 
-impl<S: Scalar + Shared> Seen<S> {
-    /// Nothing seen yet.
+impl<S: Scalar + Shared> RecordedStates<S> {
+    /// Nothing is recorded yet.
     pub(super) fn new(model: &Model, count: usize) -> Result<Self, SimError> {
         // Not equal to itself, nor to any other number.
         let rows = |width| Rows::new(count, width, S::new(f64::NAN));
-        Ok(Seen {
+        Ok(RecordedStates {
             qpos: rows(model.nq)?,
             qvel: rows(model.nv)?,
             mocap_pos: rows(3 * model.nmocap)?,
@@ -59,8 +59,8 @@ impl<S: Scalar + Shared> Seen<S> {
         self.qvel.row_mut(env).fill(S::new(f64::NAN));
     }
 
-    pub(super) fn share(&mut self) -> SeenCells<'_, S> {
-        SeenCells {
+    pub(super) fn share(&mut self) -> RecordedStateCells<'_, S> {
+        RecordedStateCells {
             qpos: Cells::new(&mut self.qpos),
             qvel: Cells::new(&mut self.qvel),
             mocap_pos: Cells::new(&mut self.mocap_pos),
@@ -70,14 +70,14 @@ impl<S: Scalar + Shared> Seen<S> {
 }
 
 /// The tables as a step writes them.
-pub struct SeenCells<'a, S: Scalar + Shared> {
+pub struct RecordedStateCells<'a, S: Scalar + Shared> {
     qpos: Cells<'a, S>,
     qvel: Cells<'a, S>,
     mocap_pos: Cells<'a, S>,
     mocap_quat: Cells<'a, S>,
 }
 
-impl<S: Scalar + Shared> SeenCells<'_, S> {
+impl<S: Scalar + Shared> RecordedStateCells<'_, S> {
     /// Notes the state of an environment, of which outputs were recorded.
     pub fn note<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
         self.qpos.write::<Number, T>(env, lane, &state.qpos);

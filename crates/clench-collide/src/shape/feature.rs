@@ -1,4 +1,4 @@
-//! The corners of a face, an edge or a corner, and which edge counts as level.
+//! What of a core lies against a plane: a face, an edge or a corner, and which edge counts as level.
 
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
@@ -7,10 +7,10 @@ use clench_math::{Scalar, Vec3};
 pub(crate) const MAX_CORNERS: usize = 24;
 
 /// An edge counts as lying against the plane up to this tilt (5°), as a face does.
-pub(super) const EDGE_SINE: f64 = 0.087;
+pub(crate) const EDGE_SINE: f64 = 0.087;
 
 /// A face, counter-clockwise seen from outside, an edge (two corners) or a corner of a core.
-pub(super) struct Feature<S> {
+pub(crate) struct Feature<S> {
     pub corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
     /// The outward normal of a face.
     pub normal: Vec3<S>,
@@ -18,9 +18,40 @@ pub(super) struct Feature<S> {
     pub radius: Option<S>,
 }
 
+impl<S: Scalar> Feature<S> {
+    /// One that has no corners yet, with the direction along which it is furthest as its normal.
+    #[inline]
+    pub(crate) fn along(d: Vec3<S>) -> Self {
+        Feature {
+            corners: ArrayVec::new(),
+            normal: d,
+            radius: None,
+        }
+    }
+
+    /// A corner.
+    #[inline]
+    pub(crate) fn corner(d: Vec3<S>, corner: Vec3<S>) -> Self {
+        let mut feature = Feature::along(d);
+        feature.corners.push(corner);
+        feature
+    }
+
+    /// The edge along `axis` through a corner.
+    #[inline]
+    pub(crate) fn edge(d: Vec3<S>, mut corner: Vec3<S>, axis: usize) -> Self {
+        let mut feature = Feature::along(d);
+        for sign in [-S::ONE, S::ONE] {
+            corner[axis] = corner[axis].copysign(sign);
+            feature.corners.push(corner);
+        }
+        feature
+    }
+}
+
 /// Of the edges from a corner to some ends, which are numbered, the one that is most nearly level across the unit direction `d`,
 /// if one is level enough.
-pub(super) fn most_level<S: Scalar>(
+pub(crate) fn most_level<S: Scalar>(
     corner: Vec3<S>,
     ends: impl Iterator<Item = (usize, Vec3<S>)>,
     d: Vec3<S>,

@@ -1,0 +1,155 @@
+//! The convex hull of a mesh.
+
+use super::core::Core;
+use super::feature::{Feature, MAX_CORNERS, most_level};
+use super::solid::{Solid, lane_of};
+use crate::Hull;
+use crate::ray::chord::Chord;
+use crate::ray::line::Line;
+use clench_math::{Mask, Real, Scalar, Vec3};
+
+/// How much further than the others, as a share of its body, a corner must be to count, which would not be among those that are sampled.
+const NOTICEABLE: f64 = 1e-7;
+/// Faces tilted by less are level.
+const LEVEL: f64 = 2e-3;
+
+/// The convex hull of a mesh, which is the same in every environment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mesh<'a, T> {
+    /// A mesh whose points lie in a plane has none, and touches nothing.
+    pub hull: Option<&'a Hull>,
+    /// Half the lengths of a box about the origin that holds it, m.
+    pub extent: Vec3<T>,
+}
+
+impl<'a, T: Real> Solid<T> for Mesh<'a, T> {
+    type Alone = Mesh<'a, T::Scalar>;
+
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> Self::Alone {
+        Mesh {
+            hull: self.hull,
+            extent: lane_of(self.extent, lane),
+        }
+    }
+
+    #[inline(always)]
+    fn size(&self) -> Vec3<T> {
+        self.extent
+    }
+
+    #[inline(always)]
+    fn bounding_radius(&self) -> T {
+        self.extent.norm()
+    }
+
+    /// That of the box: Σ hᵢ |dᵢ|.
+    #[inline(always)]
+    fn reach_along(&self, d: Vec3<T>) -> T {
+        let h = self.extent;
+        h.x * d.x.abs() + h.y * d.y.abs() + h.z * d.z.abs()
+    }
+
+    /// Behind all planes of its faces.
+    fn contains(&self, point: Vec3<T>) -> T::Mask {
+        let Some(hull) = self.hull else {
+            return T::Mask::splat(false);
+        };
+        let mut inside = T::Mask::splat(true);
+        for face in 0..hull.face_count() {
+            let height = Vec3::from_f64(hull.normal(face).to_array()).dot(point);
+            inside &= height.le(T::new(hull.offset(face)));
+        }
+        inside
+    }
+
+    fn hit(&self, line: &Line<T>) -> (T, Vec3<T>) {
+        line.in_each_lane(|line| hit(self.hull?, line))
+    }
+}
+
+/// Behind all planes of its faces.
+fn hit(hull: &Hull, line: &Line<f64>) -> Option<(f64, Vec3<f64>)> {
+    let mut chord = Chord::whole();
+    let (infinity, none) = (f64::INFINITY, Vec3::ZERO);
+    for face in 0..hull.face_count() {
+        let normal = hull.normal(face);
+        let rate = normal.dot(line.along);
+        let above = normal.dot(line.origin) - hull.offset(face);
+        let at = (-above / rate, normal);
+        chord = if rate < 0.0 {
+            chord.cut(at, (infinity, none))
+        } else if rate > 0.0 {
+            chord.cut((-infinity, none), at)
+        } else if above > 0.0 {
+            return None;
+        } else {
+            chord
+        };
+    }
+    Some(chord.first())
+}
+
+impl<S: Scalar> Mesh<'_, S> {
+    /// The vertex of the hull that is furthest along `d`, with its number.
+    #[inline]
+    fn vertex(&self, d: Vec3<S>) -> Option<(usize, Vec3<S>)> {
+        let hull = self.hull?;
+        let vertex = hull.support(to_f64(d));
+        Some((vertex, Vec3::from_f64(hull.vertices()[vertex].to_array())))
+    }
+}
+
+impl<S: Scalar> Core<S> for Mesh<'_, S> {
+    #[inline]
+    fn support(&self, _: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
+        self.vertex(side).map_or(Vec3::ZERO, |(_, vertex)| vertex)
+    }
+
+    /// Of the faces and edges at the furthest vertex the one that is most nearly level, if one is level enough.
+    fn feature(&self, d: Vec3<S>) -> Feature<S> {
+        let (Some(hull), Some((vertex, corner))) = (self.hull, self.vertex(d)) else {
+            return Feature::corner(d, Vec3::ZERO);
+        };
+        if let Some(face) = hull.face_across(vertex, to_f64(d)) {
+            let noticeable = self.bounding_radius() * S::new(NOTICEABLE);
+            return face_feature(hull, face, vertex, d, noticeable);
+        }
+        let neighbors = hull.neighbors(vertex).iter().map(|&k| k as usize);
+        let ends = neighbors.map(|k| (k, Vec3::from_f64(hull.vertices()[k].to_array())));
+        let mut feature = Feature::corner(d, corner);
+        if let Some((neighbor, end)) = most_level(corner, ends, d) {
+            feature.corners.insert(usize::from(vertex < neighbor), end);
+        }
+        feature
+    }
+}
+
+/// A face of a hull. Where corners are left out, the furthest vertex is kept, but for a level face if it is not noticeably further
+/// than the others.
+fn face_feature<S: Scalar>(
+    hull: &Hull,
+    face: usize,
+    vertex: usize,
+    d: Vec3<S>,
+    noticeable: S,
+) -> Feature<S> {
+    let at = |v: u32| Vec3::from_f64(hull.vertices()[v as usize].to_array());
+    let corners = hull.corners(face);
+    let stride = corners.len().div_ceil(MAX_CORNERS - 1);
+    let mut feature = Feature::along(Vec3::from_f64(hull.normal(face).to_array()));
+    let level = (d - feature.normal).norm_squared() <= S::new(LEVEL * LEVEL);
+    let sampled = corners.iter().step_by(stride).map(|&v| d.dot(at(v)));
+    let furthest = sampled.fold(-S::INFINITY, S::max);
+    let needed = !level || d.dot(at(vertex as u32)) > furthest + noticeable;
+    for (k, &corner) in corners.iter().enumerate() {
+        if k % stride == 0 || (needed && corner as usize == vertex) {
+            feature.corners.push(at(corner));
+        }
+    }
+    feature
+}
+
+fn to_f64<S: Scalar>(v: Vec3<S>) -> Vec3<f64> {
+    Vec3::from_array(v.to_array().map(S::to_f64))
+}

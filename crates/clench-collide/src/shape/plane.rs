@@ -1,0 +1,54 @@
+//! The half-space below a plane.
+
+use super::solid::{Solid, lane_of};
+use crate::ray::line::Line;
+use clench_math::{Mask, Real, Vec3};
+
+/// The half-space below the local xy plane, without bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane<T> {
+    /// For rays alone: where the plane ends along x and y if the first two numbers are positive, m.
+    pub size: Vec3<T>,
+}
+
+impl<T: Real> Solid<T> for Plane<T> {
+    type Alone = Plane<T::Scalar>;
+
+    fn lane(&self, lane: usize) -> Self::Alone {
+        Plane {
+            size: lane_of(self.size, lane),
+        }
+    }
+
+    #[inline(always)]
+    fn size(&self) -> Vec3<T> {
+        self.size
+    }
+
+    #[inline(always)]
+    fn bounding_radius(&self) -> T {
+        T::new(f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn reach_along(&self, _: Vec3<T>) -> T {
+        T::new(f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn contains(&self, _: Vec3<T>) -> T::Mask {
+        T::Mask::splat(false)
+    }
+
+    /// From above; within the rectangle that positive sizes say.
+    #[inline(always)]
+    fn hit(&self, line: &Line<T>) -> (T, Vec3<T>) {
+        let down = line.along.z.lt(T::ZERO);
+        let distance = -line.origin.z / T::select(down, line.along.z, T::ONE);
+        let p = line.at(distance);
+        let within = |x: T, half: T| half.le(T::ZERO) | x.abs().le(half);
+        let hit = down & within(p.x, self.size.x) & within(p.y, self.size.y);
+        let up = Vec3::new(T::ZERO, T::ZERO, T::ONE);
+        (T::select(hit, distance, T::new(f64::INFINITY)), up)
+    }
+}

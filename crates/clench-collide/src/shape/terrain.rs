@@ -1,0 +1,75 @@
+//! Terrain: a height field on a base.
+
+use super::cuboid::Cuboid;
+use super::solid::{Homogeneous, Solid, lane_of};
+use crate::HeightField;
+use crate::ray::line::Line;
+use crate::ray::terrain::height_field;
+use clench_math::{Mask, Real, Vec3};
+
+/// Terrain over a rectangle, on a base, which is the same in every environment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Terrain<'a, T> {
+    /// The heights; without them it touches nothing.
+    pub field: Option<&'a HeightField>,
+    /// Half lengths along x and y; a quarter of the elevation and half of the base, added (as in MuJoCo), m.
+    pub size: Vec3<T>,
+}
+
+impl<'a, T: Real> Solid<T> for Terrain<'a, T> {
+    type Alone = Terrain<'a, T::Scalar>;
+
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> Self::Alone {
+        Terrain {
+            field: self.field,
+            size: lane_of(self.size, lane),
+        }
+    }
+
+    #[inline(always)]
+    fn size(&self) -> Vec3<T> {
+        self.size
+    }
+
+    /// Neither elevation nor base is more than four times the height of the size.
+    #[inline(always)]
+    fn bounding_radius(&self) -> T {
+        let s = self.size;
+        Vec3::new(s.x, s.y, s.z * T::new(4.0)).norm()
+    }
+
+    #[inline(always)]
+    fn reach_along(&self, d: Vec3<T>) -> T {
+        let s = self.size;
+        s.x * d.x.abs() + s.y * d.y.abs() + s.z * T::new(4.0) * d.z.abs()
+    }
+
+    #[inline(always)]
+    fn contains(&self, _: Vec3<T>) -> T::Mask {
+        T::Mask::splat(false)
+    }
+
+    fn hit(&self, line: &Line<T>) -> (T, Vec3<T>) {
+        line.in_each_lane(|line| height_field(self.field?, line.origin, line.along))
+    }
+}
+
+/// MuJoCo takes a height field for a box here.
+impl Homogeneous for Terrain<'_, f64> {
+    fn measure(&self, shell: bool) -> f64 {
+        self.as_box().measure(shell)
+    }
+
+    fn moments(&self, mass: f64, shell: bool) -> Vec3<f64> {
+        self.as_box().moments(mass, shell)
+    }
+}
+
+impl Terrain<'_, f64> {
+    fn as_box(&self) -> Cuboid<f64> {
+        Cuboid {
+            half_lengths: self.size,
+        }
+    }
+}
