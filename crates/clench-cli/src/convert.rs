@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Writes a model as an MJCF file that stands alone: every number resolved, explicit inertials, meshes and height fields in the file. It
 /// loads to the same model, here and in MuJoCo.
 #[derive(Args)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelFile,
     /// The file to write
@@ -19,7 +19,7 @@ pub struct Arguments {
 }
 
 /// Reads one file and writes the other.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let path = &arguments.output;
     require_other(("OUTPUT", path), &[("MODEL", Some(&arguments.model.model))])?;
     let text = arguments.model.load()?.to_mjcf()?;

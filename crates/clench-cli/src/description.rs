@@ -7,7 +7,7 @@ use clench::rigid::model::{Actuator, JointKind, Model, Transmission};
 use serde_json::{Value, json};
 
 /// Sizes, elements, ranges and the options in force.
-pub fn describe(sim: &Sim) -> Value {
+pub(crate) fn describe(sim: &Sim) -> Value {
     let model = sim.model();
     let names = |names: Vec<&String>| json!(names);
     json!({

@@ -11,7 +11,7 @@ use std::io::{self, BufRead, BufWriter, Write};
 /// missing keeps the model's default. With `contacts` (the fields of MuJoCo's mjContact) collision detection is
 /// replaced. Each line of standard output is the result for that state.
 #[derive(Args)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Add the constraint Jacobian, a row a constraint
     #[arg(long)]
     jacobian: bool,
@@ -28,7 +28,7 @@ pub struct Arguments {
 }
 
 /// Answers every line of standard input; stops with an error that names the line at the first that cannot be used.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut sim = arguments.model.sim()?;
     let mut out = BufWriter::new(io::stdout().lock());
     for (number, line) in io::stdin().lock().lines().enumerate() {

@@ -14,7 +14,7 @@ use std::io::{self, Write};
 /// Prints a model's sizes, its tree of bodies, the options in force, and a table of the active constraints with their
 /// forces, violations and impedances.
 #[derive(Args)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Step this often before looking at the constraints
     #[arg(long, value_name = "N", default_value_t = 0)]
     steps: usize,
@@ -31,7 +31,7 @@ pub struct Arguments {
 }
 
 /// Prints everything on standard output.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut sim = arguments.model.sim()?;
     let mut out = io::stdout().lock();
     if arguments.json {

@@ -12,7 +12,7 @@ const ENDED_BY_SIGNAL: u8 = 128;
 
 /// A signal that asks a run to stop.
 #[derive(Clone, Copy)]
-pub struct Signal {
+pub(crate) struct Signal {
     /// Its name.
     pub name: &'static str,
     number: c_int,
@@ -31,20 +31,20 @@ const SIGNALS: [Signal; 2] = [
 
 impl Signal {
     /// The exit code of a run that it stopped.
-    pub fn exit_code(self) -> u8 {
+    pub(crate) fn exit_code(self) -> u8 {
         ENDED_BY_SIGNAL + self.number as u8
     }
 }
 
 /// The signals that came since this was made.
-pub struct Interrupt(Arc<AtomicUsize>);
+pub(crate) struct Interrupt(Arc<AtomicUsize>);
 
 impl Interrupt {
     /// Notes signals from now on, where they would have ended the program. A second one ends it at once.
     ///
     /// # Errors
     /// A system that does not let signals be noted.
-    pub fn listen() -> Result<Self> {
+    pub(crate) fn listen() -> Result<Self> {
         let (came, last) = (
             Arc::new(AtomicBool::new(false)),
             Arc::new(AtomicUsize::new(0)),
@@ -60,7 +60,7 @@ impl Interrupt {
     }
 
     /// The last signal, if one came.
-    pub fn signal(&self) -> Option<Signal> {
+    pub(crate) fn signal(&self) -> Option<Signal> {
         let number = self.0.load(Relaxed) as c_int;
         SIGNALS.into_iter().find(|signal| signal.number == number)
     }

@@ -4,6 +4,8 @@
 //! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`), and what the library
 //! beside this file reads and writes. Physics lives in the library `clench`.
 
+#![deny(unreachable_pub)]
+
 mod allocator;
 mod convert;
 mod description;

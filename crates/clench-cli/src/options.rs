@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// A model file, and how it is read.
 #[derive(Args)]
-pub struct ModelFile {
+pub(crate) struct ModelFile {
     /// Model file (MJCF or URDF)
     #[arg(help_heading = "Arguments")]
     pub model: PathBuf,
@@ -27,7 +27,7 @@ pub struct ModelFile {
 
 /// The model file and the options that override it.
 #[derive(Args)]
-pub struct ModelArguments {
+pub(crate) struct ModelArguments {
     #[command(flatten)]
     pub file: ModelFile,
     #[command(flatten)]
@@ -39,7 +39,7 @@ pub struct ModelArguments {
 
 impl ModelFile {
     /// Loads the model, and says on standard error what the loader wants known.
-    pub fn load(&self) -> Result<Model> {
+    pub(crate) fn load(&self) -> Result<Model> {
         let loader = Loader::new()
             .budget(Budget::default().times(self.budget))
             .package_path(&self.package_path)
@@ -57,7 +57,7 @@ impl ModelFile {
 
 impl ModelArguments {
     /// Loads the model with the user's time step.
-    pub fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
+    pub(crate) fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
         let mut model = self.file.load()?;
         if let Some(timestep) = self.timestep {
             ensure!(
@@ -70,7 +70,7 @@ impl ModelArguments {
     }
 
     /// A simulation of one environment.
-    pub fn sim(&self) -> Result<Sim> {
+    pub(crate) fn sim(&self) -> Result<Sim> {
         let (model, options) = self.load()?;
         Ok(Sim::with_options(model, options)?)
     }

@@ -7,10 +7,10 @@ use clench::RigidOptions;
 use clench::rigid::options::{Argument, MaxContacts, OptionValue, RigidOption};
 
 /// Under which these flags stand in a help text.
-pub const HEADING: &str = "Options that override the file";
+pub(crate) const HEADING: &str = "Options that override the file";
 
 /// Options that override the file's `<option>`; what is not given stays as the file says.
-pub struct Overrides(pub RigidOptions);
+pub(crate) struct Overrides(pub RigidOptions);
 
 impl Args for Overrides {
     fn augment_args(command: Command) -> Command {

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Draws a model without a window: a picture (`.png`) of its initial state, or a film (`.gif`, or `.mp4` by the program ffmpeg) of its
 /// motion. Cameras of the file are honoured; without one all that moves is seen.
 #[derive(Args)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Where to: `.png`, `.gif` or `.mp4`
     #[arg(long, value_name = "OUT")]
     out: PathBuf,
@@ -46,7 +46,7 @@ pub struct Arguments {
 }
 
 /// Draws what is asked for.
-pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let inputs = [
         ("the model", Some(arguments.model.file.model.as_path())),

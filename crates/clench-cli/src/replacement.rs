@@ -8,7 +8,7 @@ use tempfile::{Builder, NamedTempFile};
 
 /// A file in the making. What stands at its path stays there until [`finish`](Self::finish), whatever happens in between; if
 /// it is never called nothing is left.
-pub enum Replacement {
+pub(crate) enum Replacement {
     /// A temporary file beside the path, which it takes in the end.
     Beside { file: NamedTempFile, path: PathBuf },
     /// What is no file on a disk, such as a pipe, has no contents that could be kept, and cannot be replaced.
@@ -20,7 +20,7 @@ impl Replacement {
     ///
     /// # Errors
     /// A path at which no file can be made, or one that must not be written.
-    pub fn begin(path: &Path) -> io::Result<Self> {
+    pub(crate) fn begin(path: &Path) -> io::Result<Self> {
         let (path, old) = match fs::canonicalize(path) {
             Ok(path) => {
                 // Replacing asks nothing of the old file, but one that is protected is so for a reason.
@@ -54,7 +54,7 @@ impl Replacement {
     }
 
     /// What to write to.
-    pub fn file(&self) -> io::Result<File> {
+    pub(crate) fn file(&self) -> io::Result<File> {
         match self {
             Replacement::Beside { file, .. } => file.as_file().try_clone(),
             Replacement::Direct(file) => file.try_clone(),
@@ -63,7 +63,7 @@ impl Replacement {
 
     /// Where it is written, if that is a file on a disk.
     #[cfg(feature = "render")]
-    pub fn path(&self) -> Option<&Path> {
+    pub(crate) fn path(&self) -> Option<&Path> {
         match self {
             Replacement::Beside { file, .. } => Some(file.path()),
             Replacement::Direct(_) => None,
@@ -74,7 +74,7 @@ impl Replacement {
     ///
     /// # Errors
     /// A disk that cannot take it; the old file is then as it was.
-    pub fn finish(self) -> io::Result<()> {
+    pub(crate) fn finish(self) -> io::Result<()> {
         match self {
             Replacement::Direct(_) => Ok(()),
             Replacement::Beside { file, path } => {
@@ -103,7 +103,7 @@ fn readable<'a, 'b, 'c>(builder: &'a mut Builder<'b, 'c>) -> &'a mut Builder<'b,
 ///
 /// # Errors
 /// The first input that is the output.
-pub fn require_other(output: (&str, &Path), inputs: &[(&str, Option<&Path>)]) -> Result<()> {
+pub(crate) fn require_other(output: (&str, &Path), inputs: &[(&str, Option<&Path>)]) -> Result<()> {
     let (flag, path) = output;
     // An output that does not exist yet is no input.
     let Ok(place) = fs::canonicalize(path) else {

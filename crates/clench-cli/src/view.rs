@@ -26,7 +26,7 @@ const STEPPING: f64 = 0.8;
 /// pause, step, go back, pull bodies, set controls, and change the solver's options.
 #[derive(Args)]
 #[command(after_help = DETAILS)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Do not open a browser; the address is printed in any case
     #[arg(long)]
     no_open: bool,
@@ -69,7 +69,7 @@ On a remote machine: `ssh -L 8000:127.0.0.1:8000 machine` here, `clench view MOD
 printed address here. Ctrl-C ends it.";
 
 /// Shows the model until a signal comes.
-pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let limit = arguments.memory.limit();
     let envs = arguments.envs.unwrap_or(1) as usize;

@@ -39,7 +39,7 @@ pub struct Timing {
     pub stages: StageTimes,
 }
 
-/// What a frame tells besides the simulation.
+/// What a frame tells about the viewing of a simulation: timing, what users hold and draw, which environments are shown.
 #[derive(Default)]
 pub struct Besides<'a> {
     /// Bits, see [`PAUSED`].
@@ -118,7 +118,7 @@ sections! {
     /// Constraints but contacts: kind (0 equality, 1 joint limit, 2 tendon limit, 3 dry friction), element, size of its force.
     constraints: 3 => constraints(s.sim.workspace(), out);
     /// What constraints but contacts push on: kind as in `constraints`, element, body, where, force, torque.
-    pushes: 12 => s.pushes.iter().for_each(|push| out.extend(pushed(push)));
+    pushes: 12 => s.pushes.iter().for_each(|push| out.extend(push_numbers(push)));
     /// The island of each tree, by its lowest tree; -1 where no constraint acts.
     islands: 1 => out.extend(islands(s.sim.workspace(), 0).iter().map(|first| first.map_or(-1.0, |tree| tree as f32)));
     /// Cameras: position, and as columns the axes to the right, upwards and backwards.
@@ -228,7 +228,7 @@ fn kind(source: ConstraintSource) -> Option<f32> {
     }
 }
 
-fn pushed(push: &Push) -> [f32; 12] {
+fn push_numbers(push: &Push) -> [f32; 12] {
     let mut row = [push.body as f32; 12];
     row[0] = kind(push.source).unwrap_or(-1.0);
     row[1] = push.source.index() as f32;

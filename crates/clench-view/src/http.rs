@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 
 /// What a request asks for.
 #[derive(Debug, PartialEq)]
-pub enum Request {
+pub(crate) enum Request {
     /// The page.
     Page,
     /// A WebSocket, with the key of its handshake.
@@ -26,7 +26,7 @@ pub enum Request {
 
 /// A request that is not answered as it wants: its status and what is said.
 #[derive(Debug, PartialEq)]
-pub struct Refusal(pub &'static str, pub &'static str);
+pub(crate) struct Refusal(pub &'static str, pub &'static str);
 
 const BAD: Refusal = Refusal(
     "400 Bad Request",
@@ -43,7 +43,7 @@ const NO_TOKEN: Refusal = Refusal(
 const UNKNOWN: Refusal = Refusal("404 Not Found", "There is nothing here.");
 const METHOD: Refusal = Refusal("405 Method Not Allowed", "Only GET is allowed.");
 /// For one client too many.
-pub const CROWDED: Refusal = Refusal(
+pub(crate) const CROWDED: Refusal = Refusal(
     "503 Service Unavailable",
     "Too many pages look at this viewer already.",
 );
@@ -52,7 +52,7 @@ pub const CROWDED: Refusal = Refusal(
 ///
 /// # Errors
 /// A connection that breaks or is too slow; inside, a request that is refused.
-pub fn read_request(
+pub(crate) fn read_request(
     stream: &mut TcpStream,
     token: &str,
     anywhere: bool,
@@ -158,7 +158,7 @@ fn same_token(given: &str, token: &str) -> bool {
 ///
 /// # Errors
 /// A connection that breaks.
-pub fn send_page(stream: &mut TcpStream, html: &str) -> io::Result<()> {
+pub(crate) fn send_page(stream: &mut TcpStream, html: &str) -> io::Result<()> {
     send(stream, "200 OK", "text/html; charset=utf-8", html)
 }
 
@@ -166,7 +166,10 @@ pub fn send_page(stream: &mut TcpStream, html: &str) -> io::Result<()> {
 ///
 /// # Errors
 /// A connection that breaks.
-pub fn send_refusal(stream: &mut TcpStream, Refusal(status, text): &Refusal) -> io::Result<()> {
+pub(crate) fn send_refusal(
+    stream: &mut TcpStream,
+    Refusal(status, text): &Refusal,
+) -> io::Result<()> {
     send(stream, status, "text/plain; charset=utf-8", text)
 }
 

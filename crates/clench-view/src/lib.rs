@@ -5,7 +5,9 @@
 //! [`Player`], which steps it itself in real time, or a loop of the user's with a [`PassiveViewer`]. What commands do is the same
 //! in both, in [`interaction`]. The page itself stands in `web/`.
 //!
-//! No physics here, and nothing of the page's looks.
+//! No physics here, and nothing about the layout of the page.
+
+#![deny(unreachable_pub)]
 
 pub mod command;
 pub mod delta;

@@ -19,7 +19,7 @@ use tungstenite::handshake::derive_accept_key;
 use tungstenite::{Bytes, Utf8Bytes};
 
 /// The most connections at a time.
-pub const MAX_CLIENTS: usize = 64;
+pub(crate) const MAX_CLIENTS: usize = 64;
 /// The most commands that wait.
 const MAX_COMMANDS: usize = 1024;
 

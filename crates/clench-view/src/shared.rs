@@ -32,12 +32,12 @@ pub(crate) struct News {
 }
 
 impl Shared {
-    pub fn news(&self) -> MutexGuard<'_, News> {
+    pub(crate) fn news(&self) -> MutexGuard<'_, News> {
         self.news.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What is newest, once there is a frame after this one or a while has passed.
-    pub fn newer_than(&self, seen: u64) -> News {
+    pub(crate) fn newer_than(&self, seen: u64) -> News {
         let old = |news: &mut News| news.number <= seen && !self.closing.load(Relaxed);
         let waited = (self.changed).wait_timeout_while(self.news(), HEARTBEAT, old);
         let (news, _) = waited.unwrap_or_else(PoisonError::into_inner);

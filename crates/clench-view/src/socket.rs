@@ -44,7 +44,7 @@ enum Said {
 ///
 /// # Errors
 /// A connection that breaks.
-pub fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
+pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(LOOK))?;
     stream.set_write_timeout(Some(PATIENCE))?;

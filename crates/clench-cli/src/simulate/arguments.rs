@@ -16,7 +16,7 @@ use std::path::PathBuf;
 /// what is wrong with it also comes as warnings on standard error.
 #[derive(Args)]
 #[command(after_help = DETAILS)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Steps to take [default: one simulated second, or as many as --ctrl has rows]
     #[arg(long, value_name = "N", conflicts_with = "time")]
     pub(super) steps: Option<usize>,
@@ -97,7 +97,7 @@ pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
 /// How many environments there are, and how they are stepped.
 #[derive(Args)]
 #[command(next_help_heading = "Many environments")]
-pub struct BatchArguments {
+pub(crate) struct BatchArguments {
     /// Step so many environments as a batch
     #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
     pub envs: Option<u32>,
@@ -117,7 +117,7 @@ pub struct BatchArguments {
 
 /// What steps environments.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DeviceName {
+pub(crate) enum DeviceName {
     Cpu,
     Gpu,
 }
@@ -125,7 +125,7 @@ pub enum DeviceName {
 impl BatchArguments {
     /// The first flag that says how a processor steps, if any was given.
     #[cfg(feature = "gpu")]
-    pub fn of_processor(&self) -> Option<&'static str> {
+    pub(crate) fn of_processor(&self) -> Option<&'static str> {
         let flags = [
             ("--threads", self.threads.is_some()),
             ("--instructions", self.instructions.is_some()),

@@ -1,17 +1,18 @@
 //! A run of many environments side by side.
 
 use super::arguments::Arguments;
-use super::energy::{EnergyAccount, STEPS_A_LOOK, next_steps};
+use super::energy::{EnergyAccount, STEPS_BETWEEN_CHECKS};
 use super::quality::{Verdict, verdict};
-use super::record::{BATCH_OUTPUTS, BatchRecorder};
+use super::record::BATCH_OUTPUTS;
 use super::report::{BatchReport, DivergenceReport, Failure, Report, pairs, stages};
+use super::rollout::{Rollout, Taken};
 use super::run::Run;
-use super::start::{narrow, widen};
+use super::start::widen;
 use super::summary::{is_conservative, status};
 use crate::allocator::ALLOCATOR;
 use anyhow::Result;
 use clench::math::{Instructions, Scalar};
-use clench::rigid::batch::{Controls, Recording};
+use clench::rigid::batch::Recording;
 use clench::rigid::{EnvStatus, Precision};
 use clench::{Batch, RigidOptions};
 use std::sync::Arc;
@@ -35,7 +36,7 @@ fn name(instructions: Instructions) -> &'static str {
 }
 
 /// Steps many environments side by side.
-pub fn run<S: Precision>(
+pub(crate) fn run<S: Precision>(
     arguments: &Arguments,
     run: &Run,
     envs: u32,
@@ -49,52 +50,38 @@ pub fn run<S: Precision>(
     let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;
     let mut account = EnergyAccount::open(&run.model, energies.iter().copied());
-    let mut recorder = (run.record.as_ref())
-        .map(|options| BatchRecorder::create(options, &run.model, batch.count()))
-        .transpose()?;
-    let every = recorder.as_ref().map(|_| arguments.every);
+    let most = (ENV_STEPS_A_CALL / batch.count()).max(LEAST_STEPS_A_CALL);
+    let rollout = Rollout::new(run, batch.count(), most)?;
+    let records = rollout.records();
     let traced: &[&str] = match &account {
         Some(_) if run.model.nu() > 0 => &["actuator_power"],
         _ => &[],
     };
-    let most = (ENV_STEPS_A_CALL / batch.count()).max(LEAST_STEPS_A_CALL);
-    let controls = run.controls.as_ref().map(|rows| narrow(rows.values()));
-    let nu = run.model.nu();
     batch.clear_figures();
     batch.run_clocks(arguments.profile);
-    let progress = run.progress();
     let mut spent = Duration::ZERO;
-    let (mut steps, mut running) = (0, batch.count());
-    while steps < run.steps && running > 0 && run.interrupt.signal().is_none() {
-        let range = next_steps(steps, run.steps, every, most);
-        let end = range.end;
-        let look = account.is_some() && (end.is_multiple_of(STEPS_A_LOOK) || end == run.steps);
-        let recorded = recorder.iter().flat_map(|_| BATCH_OUTPUTS);
-        let outputs = Vec::from_iter(recorded.chain(look.then_some("energy")));
+    let Taken {
+        steps,
+        recorded_rows,
+    } = rollout.take(&mut batch, |batch, range, controls| {
+        let is_checked = range.end.is_multiple_of(STEPS_BETWEEN_CHECKS) || range.end == run.steps;
+        let recorded = BATCH_OUTPUTS.into_iter().filter(|_| records);
+        let energy = (account.is_some() && is_checked).then_some("energy");
+        let outputs = Vec::from_iter(recorded.chain(energy));
         heap.taken_by(|| batch.record(&outputs))?;
-        let ctrl = controls.as_ref().map(|rows| &rows[steps * nu..end * nu]);
-        let controls = ctrl.map_or(Controls::Held, Controls::Shared);
         let begin = Instant::now();
         let recording = heap.taken_by(|| batch.rollout(range.len(), controls, traced))?;
         spent += begin.elapsed();
-        (steps, running) = (end, recording.summary.running);
         if let Some(account) = &mut account {
-            watch(account, &recording, &batch);
+            watch(account, &recording, batch);
         }
-        if let Some(recorder) = &mut recorder {
-            let held = batch.state.ctrl.row(0);
-            let last = ctrl.map_or(held, |rows| &rows[rows.len() - nu..]);
-            recorder.after_steps(steps, &batch, last);
-        }
-        progress.set_position(steps as u64);
-    }
-    progress.finish_and_clear();
+        Ok(recording.summary.running)
+    })?;
     batch.run_clocks(false);
-    let recorded = recorder.map(BatchRecorder::write).transpose();
     let verdict = verdict(&run.model, &batch.quality(), account.as_ref());
     let mut report = report(&batch, done(&batch, &times, steps), spent, &heap, verdict);
     let whole = report.failure.is_none() && report.resets == 0;
-    report.take_record(recorded);
+    report.take_record(recorded_rows);
     let free = whole && batch.quality().constrained == 0;
     if free && is_conservative(&run.model) {
         report.energy_drift = drift(&energies, &self::energies(&mut batch, &mut heap)?);
@@ -119,7 +106,7 @@ fn watch<S: Precision>(account: &mut EnergyAccount, recording: &Recording<S>, ba
     if let Some(energies) = batch.output("energy") {
         let running = |&(env, _): &(usize, _)| batch.status(env) == EnvStatus::Running;
         for (env, energy) in energies.iter().enumerate().filter(running) {
-            account.look(env, [energy[0], energy[1]].map(|x| x.to_f64()));
+            account.check(env, [energy[0], energy[1]].map(|x| x.to_f64()));
         }
     }
 }

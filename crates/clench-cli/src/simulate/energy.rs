@@ -8,7 +8,7 @@ use clench::Model;
 use std::ops::Range;
 
 /// Steps between two looks at the energy.
-pub const STEPS_A_LOOK: usize = 50;
+pub(crate) const STEPS_BETWEEN_CHECKS: usize = 50;
 
 /// The share of the kinetic energy that an integrator may get wrong.
 const KINETIC_SHARE: f64 = 0.2;
@@ -19,7 +19,7 @@ const ALLOWANCE: f64 = 2.0;
 const GRAVITY: f64 = 9.81;
 
 /// The energy of the environments of a run.
-pub struct EnergyAccount {
+pub(crate) struct EnergyAccount {
     timestep: f64,
     /// What lifting each body by its own radius of gyration would cost, J: what is little for this model.
     little: f64,
@@ -36,7 +36,7 @@ struct Account {
 
 /// The largest energy that came from nowhere.
 #[derive(Clone, Copy)]
-pub struct Growth {
+pub(crate) struct Growth {
     pub env: usize,
     /// By how much the mechanical energy rose, J.
     pub growth: f64,
@@ -47,7 +47,7 @@ pub struct Growth {
 impl EnergyAccount {
     /// An account of environments that start with these energies, potential and kinetic, in J. None for a model to which others
     /// than actuators may give energy: mocap bodies, gravity compensation, wind.
-    pub fn open(model: &Model, start: impl IntoIterator<Item = [f64; 2]>) -> Option<Self> {
+    pub(crate) fn open(model: &Model, start: impl IntoIterator<Item = [f64; 2]>) -> Option<Self> {
         if !is_closed(model) {
             return None;
         }
@@ -72,12 +72,12 @@ impl EnergyAccount {
     }
 
     /// Takes in the power, W, that the actuators of an environment put in during a step.
-    pub fn supply(&mut self, env: usize, power: f64) {
+    pub(crate) fn supply(&mut self, env: usize, power: f64) {
         self.envs[env].supplied += self.timestep * power;
     }
 
-    /// Looks at the potential and kinetic energy, J, of an environment.
-    pub fn look(&mut self, env: usize, [potential, kinetic]: [f64; 2]) {
+    /// Compares the potential and kinetic energy, J, of an environment with what was supplied to it.
+    pub(crate) fn check(&mut self, env: usize, [potential, kinetic]: [f64; 2]) {
         let account = &mut self.envs[env];
         let (growth, supplied) = (potential + kinetic - account.start, account.supplied);
         let explained = ALLOWANCE * (self.little + supplied) + KINETIC_SHARE * kinetic;
@@ -94,7 +94,7 @@ impl EnergyAccount {
     }
 
     /// How many environments once had energy from nowhere, and the most of it.
-    pub fn grown(&self) -> Option<(usize, Growth)> {
+    pub(crate) fn grown(&self) -> Option<(usize, Growth)> {
         let count = self.envs.iter().filter(|account| account.grown).count();
         self.worst.map(|worst| (count, worst))
     }
@@ -108,11 +108,16 @@ fn is_closed(model: &Model) -> bool {
 }
 
 /// The next range of steps to take at once: up to the next that is recorded, is looked at, or ends the run.
-pub fn next_steps(done: usize, steps: usize, every: Option<usize>, most: usize) -> Range<usize> {
+pub(crate) fn next_steps(
+    done: usize,
+    steps: usize,
+    every: Option<usize>,
+    most: usize,
+) -> Range<usize> {
     let multiple = |of: usize| (done / of + 1).saturating_mul(of);
     let mut end = steps
         .min(done.saturating_add(most))
-        .min(multiple(STEPS_A_LOOK));
+        .min(multiple(STEPS_BETWEEN_CHECKS));
     if let Some(every) = every {
         end = end.min(multiple(every));
     }

@@ -1,13 +1,11 @@
 //! A run of many environments on a graphics device.
 
 use super::arguments::Arguments;
-use super::energy::next_steps;
-use super::record::{BATCH_OUTPUTS, BatchRecorder};
+use super::record::BATCH_OUTPUTS;
 use super::report::Failure;
+use super::rollout::Rollout;
 use super::run::Run;
-use super::start::narrow;
 use anyhow::{Result, bail, ensure};
-use clench::rigid::batch::Controls;
 use clench::{Batch, BatchOptions, EnvStatus, RigidOptions};
 use clench_gpu::GpuError;
 use serde::Serialize;
@@ -15,14 +13,14 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Steps between two looks at signals.
+/// Steps of a call, after which signals are asked for.
 const STEPS_A_CALL: usize = 64;
 /// How many failed environments a report names.
 const NAMED_FAILURES: usize = 10;
 
 /// The figures of a finished run.
 #[derive(Serialize)]
-pub struct GpuReport {
+pub(crate) struct GpuReport {
     /// `ok`, `interrupted` or `failed`, where an environment did.
     status: &'static str,
     device: String,
@@ -50,7 +48,7 @@ pub struct GpuReport {
 
 impl GpuReport {
     /// Whether some environment failed.
-    pub fn failed(&self) -> bool {
+    pub(crate) fn failed(&self) -> bool {
         self.failed_envs > 0
     }
 }
@@ -59,7 +57,7 @@ impl GpuReport {
 ///
 /// # Errors
 /// That there are none.
-pub fn list() -> Result<()> {
+pub(crate) fn list() -> Result<()> {
     let all = clench_gpu::devices();
     ensure!(!all.is_empty(), GpuError::NoDevice);
     all.iter().for_each(|device| println!("{device}"));
@@ -88,36 +86,17 @@ pub(super) fn run(
     let mut batch = clench_gpu::batch(Arc::clone(&run.model), envs, rows, None)?;
     run.starts.start_all(&mut batch)?;
     batch.record(&BATCH_OUTPUTS)?;
-    let mut recorder = (run.record.as_ref())
-        .map(|options| BatchRecorder::create(options, &run.model, envs))
-        .transpose()?;
-    let every = recorder.as_ref().map(|_| arguments.every);
-    let controls = run.controls.as_ref().map(|rows| narrow(rows.values()));
-    let nu = run.model.nu();
-    let progress = run.progress();
+    let rollout = Rollout::new(run, envs, STEPS_A_CALL)?;
     let mut spent = Duration::ZERO;
-    let (mut steps, mut running) = (0, envs);
-    while steps < run.steps && running > 0 && run.interrupt.signal().is_none() {
-        let range = next_steps(steps, run.steps, every, STEPS_A_CALL);
-        let end = range.end;
-        let ctrl = controls.as_ref().map(|rows| &rows[steps * nu..end * nu]);
-        let controls = ctrl.map_or(Controls::Held, Controls::Shared);
-        let start = Instant::now();
-        let done = batch.rollout(range.len(), controls, &[])?;
-        spent += start.elapsed();
-        (steps, running) = (end, done.summary.running);
-        if let Some(recorder) = &mut recorder {
-            let held = batch.state.ctrl.row(0);
-            let last = ctrl.map_or(held, |rows| &rows[rows.len() - nu..]);
-            recorder.after_steps(steps, &batch, last);
-        }
-        progress.set_position(steps as u64);
-    }
-    progress.finish_and_clear();
-    let recorded_rows = recorder.map(BatchRecorder::write).transpose()?;
+    let taken = rollout.take(&mut batch, |batch, range, controls| {
+        let begin = Instant::now();
+        let recording = batch.rollout(range.len(), controls, &[])?;
+        spent += begin.elapsed();
+        Ok(recording.summary.running)
+    })?;
     Ok(GpuReport {
-        recorded_rows,
-        ..report(&batch, run, steps, spent.as_secs_f64())
+        recorded_rows: taken.recorded_rows?,
+        ..report(&batch, run, taken.steps, spent.as_secs_f64())
     })
 }
 

@@ -12,10 +12,10 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// How the name of such a record ends.
-pub const EXTENSION: &str = "mcap";
+pub(crate) const EXTENSION: &str = "mcap";
 
 /// A file of messages in the making. It stands at its place from the beginning: what is in it can be read even if the program is killed.
-pub struct MessageRecorder {
+pub(crate) struct MessageRecorder {
     path: PathBuf,
     recorder: McapRecorder<BufWriter<File>>,
     every: usize,
@@ -29,7 +29,7 @@ fn context(path: &Path) -> String {
 
 impl MessageRecorder {
     /// An empty record in place of an old one.
-    pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
+    pub(crate) fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
         let path = options.path.to_path_buf();
         let file = File::create(&path).with_context(|| context(&path))?;
         let recorder = McapRecorder::new(BufWriter::new(file), model);
@@ -42,7 +42,11 @@ impl MessageRecorder {
     }
 
     /// Records what `steps` steps led to, if it is wanted. Where the file takes no more, that is told once and the run goes on.
-    pub fn after_steps<T: Precision>(&mut self, steps: usize, sim: &mut Sim<T>) -> Result<()> {
+    pub(crate) fn after_steps<T: Precision>(
+        &mut self,
+        steps: usize,
+        sim: &mut Sim<T>,
+    ) -> Result<()> {
         if !steps.is_multiple_of(self.every) || self.full.is_some() {
             return Ok(());
         }
@@ -62,7 +66,7 @@ impl MessageRecorder {
     }
 
     /// Writes the rest; how many moments there are.
-    pub fn write(self) -> Result<usize> {
+    pub(crate) fn write(self) -> Result<usize> {
         let moments = self.recorder.len();
         if let Some(error) = self.full {
             bail!("{}: {error}", context(&self.path));

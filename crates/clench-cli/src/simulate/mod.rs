@@ -7,12 +7,13 @@ mod batch;
 mod display;
 mod energy;
 #[cfg(feature = "gpu")]
-pub mod gpu;
+pub(crate) mod gpu;
 mod messages;
 mod page;
 mod quality;
 mod record;
 mod report;
+mod rollout;
 mod run;
 mod single;
 mod start;
@@ -24,18 +25,18 @@ use crate::message::tell;
 use crate::npy::{Rows, read_rows};
 use crate::replacement::require_other;
 use anyhow::{Context, Result, bail, ensure};
-pub use arguments::Arguments;
+pub(crate) use arguments::Arguments;
 use arguments::{Bits, DeviceName};
 use record::RecordOptions;
 use run::Run;
 use serde::Serialize;
-pub use start::StartArguments;
+pub(crate) use start::StartArguments;
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
 
 /// Runs the simulation, writes the record, prints the summary.
-pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let envs = arguments.batch.envs;
     let limit = arguments.memory.limit();

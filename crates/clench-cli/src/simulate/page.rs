@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const EXTENSION: &str = "html";
 
 /// The record of one environment, in the form that its name asks for.
-pub enum RunRecorder {
+pub(crate) enum RunRecorder {
     /// NumPy's arrays.
     Arrays(Recorder),
     /// A page.
@@ -26,7 +26,7 @@ pub enum RunRecorder {
 
 impl RunRecorder {
     /// An empty record.
-    pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
+    pub(crate) fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
         let end = options.path.extension();
         let ends = |name: &str| end.is_some_and(|end| end.eq_ignore_ascii_case(name));
         if ends(EXTENSION) {
@@ -41,7 +41,11 @@ impl RunRecorder {
     }
 
     /// Appends what `steps` steps led to, if it is wanted.
-    pub fn after_steps<T: Precision>(&mut self, steps: usize, sim: &mut Sim<T>) -> Result<()> {
+    pub(crate) fn after_steps<T: Precision>(
+        &mut self,
+        steps: usize,
+        sim: &mut Sim<T>,
+    ) -> Result<()> {
         match self {
             RunRecorder::Arrays(recorder) => recorder.after_steps(steps, sim),
             RunRecorder::Page(recorder) => recorder.after_steps(steps, sim)?,
@@ -51,7 +55,7 @@ impl RunRecorder {
     }
 
     /// Writes the record; how many rows or frames it has.
-    pub fn write(self) -> Result<usize> {
+    pub(crate) fn write(self) -> Result<usize> {
         match self {
             RunRecorder::Arrays(recorder) => recorder.write(),
             RunRecorder::Page(recorder) => recorder.write(),
@@ -61,7 +65,7 @@ impl RunRecorder {
 }
 
 /// A page in the making.
-pub struct PageRecorder {
+pub(crate) struct PageRecorder {
     path: PathBuf,
     file: Replacement,
     page: Page,

@@ -15,7 +15,7 @@ const FEW_UNCONVERGED: f64 = 0.01;
 const LONG: f64 = 1e6;
 
 /// The verdict on a run.
-pub struct Verdict {
+pub(crate) struct Verdict {
     /// `good`, or the gravest that can be said against it.
     pub word: &'static str,
     /// All that can be said against it, the gravest first.
@@ -23,7 +23,7 @@ pub struct Verdict {
 }
 
 /// Judges a run of a model.
-pub fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAccount>) -> Verdict {
+pub(crate) fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAccount>) -> Verdict {
     let steps = quality.steps;
     let share = |count: u64| count as f64 / steps.max(1) as f64;
     let mut found = Vec::new();

@@ -11,13 +11,13 @@ use clench::{Batch, Model, Sim};
 use std::path::{Path, PathBuf};
 
 /// The outputs of a batch that a record holds beside states.
-pub const BATCH_OUTPUTS: [&str; 2] = ["contact_count", "solver_iterations"];
+pub(crate) const BATCH_OUTPUTS: [&str; 2] = ["contact_count", "solver_iterations"];
 
 /// How the name of a record must end.
 const EXTENSION: &str = "npz";
 
 /// What a record is to be.
-pub struct RecordOptions<'a> {
+pub(crate) struct RecordOptions<'a> {
     /// Its file.
     pub path: &'a Path,
     /// Each so many-th step has a row.
@@ -190,11 +190,11 @@ impl Record {
 ///
 /// Arrays: `time` (n), `qpos` (n, nq), `qvel` (n, nv), `ctrl` (n, nu), `contacts`, `penetration`, `iterations`, `gradient`,
 /// `improvement`, `gap`, `status` (n), and where the model may sleep `tree_asleep` (n, ntree).
-pub struct Recorder(Record);
+pub(crate) struct Recorder(Record);
 
 impl Recorder {
     /// An empty record.
-    pub fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
+    pub(crate) fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
         let mut columns = vec![
             Column::number("time"),
             Column::of_row("qpos", model.nq),
@@ -213,7 +213,7 @@ impl Recorder {
     }
 
     /// Appends the state that `steps` steps led to, if it is wanted, and the statistics of the last one's solve.
-    pub fn after_steps<T: Precision>(&mut self, steps: usize, sim: &Sim<T>) {
+    pub(crate) fn after_steps<T: Precision>(&mut self, steps: usize, sim: &Sim<T>) {
         if !self.0.wants(steps) {
             return;
         }
@@ -236,7 +236,7 @@ impl Recorder {
     }
 
     /// Writes the record; how many rows it has.
-    pub fn write(self) -> Result<usize> {
+    pub(crate) fn write(self) -> Result<usize> {
         self.0.write()
     }
 }
@@ -245,11 +245,11 @@ impl Recorder {
 ///
 /// Arrays: `time` (envs, n), `qpos` (envs, n, nq), `qvel` (envs, n, nv), `ctrl` (envs, n, nu), `contacts`, `iterations`
 /// (envs, n), and where the model may sleep `tree_asleep` (envs, n, ntree).
-pub struct BatchRecorder(Record);
+pub(crate) struct BatchRecorder(Record);
 
 impl BatchRecorder {
     /// An empty record.
-    pub fn create(options: &RecordOptions, model: &Model, envs: usize) -> Result<Self> {
+    pub(crate) fn create(options: &RecordOptions, model: &Model, envs: usize) -> Result<Self> {
         let mut columns = vec![
             Column::number("time").of_each(envs),
             Column::of_row("qpos", model.nq).of_each(envs),
@@ -265,7 +265,7 @@ impl BatchRecorder {
 
     /// Appends the states that `steps` steps led to, if they are wanted, and what the last step gave out; `ctrl` are its
     /// controls.
-    pub fn after_steps<S: Precision>(&mut self, steps: usize, batch: &Batch<S>, ctrl: &[S]) {
+    pub(crate) fn after_steps<S: Precision>(&mut self, steps: usize, batch: &Batch<S>, ctrl: &[S]) {
         if !self.0.wants(steps) {
             return;
         }
@@ -282,7 +282,7 @@ impl BatchRecorder {
     }
 
     /// Writes the record; how many rows it has.
-    pub fn write(self) -> Result<usize> {
+    pub(crate) fn write(self) -> Result<usize> {
         self.0.write()
     }
 }

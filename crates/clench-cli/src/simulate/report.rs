@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// The figures of a finished run. Means and counts are over steps of environments.
 #[derive(Serialize)]
-pub struct Report {
+pub(crate) struct Report {
     /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out), `reset`
     /// (some step diverged and started over), `interrupted`, `failed`, or `record_failed` (all went well but the record).
     pub status: &'static str,
@@ -63,7 +63,7 @@ pub struct Report {
 
 impl Report {
     /// Takes over how many rows a record has, if there is one and it could be written; that it could not is the least of failures.
-    pub fn take_record(&mut self, recorded: anyhow::Result<Option<usize>>) {
+    pub(crate) fn take_record(&mut self, recorded: anyhow::Result<Option<usize>>) {
         match recorded {
             Ok(rows) => self.recorded_rows = rows,
             Err(error) if self.failure.is_none() => {
@@ -77,7 +77,7 @@ impl Report {
 
 /// What only a batch has.
 #[derive(Serialize)]
-pub struct BatchReport {
+pub(crate) struct BatchReport {
     /// Environments that a thread steps side by side.
     pub lanes: usize,
     pub bytes_per_env: usize,
@@ -92,14 +92,14 @@ pub struct BatchReport {
 
 /// An environment that could not go on.
 #[derive(Serialize)]
-pub struct Failure {
+pub(crate) struct Failure {
     pub env: usize,
     pub reason: String,
 }
 
 /// How unlike environments side by side were.
 #[derive(Serialize)]
-pub struct DivergenceReport {
+pub(crate) struct DivergenceReport {
     /// The share of lanes at work in an iteration of the solver.
     pub live_share: f64,
     pub iterations_per_group: f64,
@@ -108,7 +108,7 @@ pub struct DivergenceReport {
 
 /// The time of a stage.
 #[derive(Serialize)]
-pub struct StageReport {
+pub(crate) struct StageReport {
     pub stage: &'static str,
     /// Processor time a step and environment.
     pub microseconds: f64,
@@ -118,7 +118,7 @@ pub struct StageReport {
 
 /// Pairs of geoms of two kinds; numbers are means over steps of environments.
 #[derive(Serialize)]
-pub struct PairReport {
+pub(crate) struct PairReport {
     pub kinds: [String; 2],
     /// Pairs that were near enough to be looked at: of environments side by side, in any of them.
     pub near: f64,
@@ -128,7 +128,7 @@ pub struct PairReport {
 }
 
 /// The pairs of a profile of so many steps of environments, the most expensive first.
-pub fn pairs(profile: &Profile, env_steps: u64) -> Vec<PairReport> {
+pub(crate) fn pairs(profile: &Profile, env_steps: u64) -> Vec<PairReport> {
     let steps = env_steps.max(1) as f64;
     let kind = |kind: ShapeKind| format!("{kind:?}").to_lowercase();
     let report = |pair: &PairProfile| PairReport {
@@ -144,7 +144,7 @@ pub fn pairs(profile: &Profile, env_steps: u64) -> Vec<PairReport> {
 
 /// The stages of a profile of so many steps of environments. The rest of what threads spent, `total`, comes last:
 /// between steps, or idle.
-pub fn stages(profile: &Profile, total: Duration, env_steps: u64) -> Vec<StageReport> {
+pub(crate) fn stages(profile: &Profile, total: Duration, env_steps: u64) -> Vec<StageReport> {
     let elsewhere = total.saturating_sub(profile.total());
     let whole = (profile.total() + elsewhere).as_secs_f64();
     let all = profile.stages.iter().copied();

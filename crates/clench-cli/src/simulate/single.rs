@@ -1,7 +1,7 @@
 //! A run of one environment.
 
 use super::arguments::Arguments;
-use super::energy::{EnergyAccount, STEPS_A_LOOK};
+use super::energy::{EnergyAccount, STEPS_BETWEEN_CHECKS};
 use super::page::RunRecorder;
 use super::quality::verdict;
 use super::report::{Report, pairs, stages};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Steps one environment alone.
-pub fn run<T: Precision>(
+pub(crate) fn run<T: Precision>(
     arguments: &Arguments,
     run: &Run,
     options: RigidOptions,
@@ -55,7 +55,7 @@ pub fn run<T: Precision>(
         progress.inc(1);
     }
     if let Some(account) = &mut account {
-        account.look(0, energy(&mut sim)?);
+        account.check(0, energy(&mut sim)?);
     }
     progress.finish_and_clear();
     let recorded = recorder.map(RunRecorder::write).transpose();
@@ -82,9 +82,9 @@ fn watch<T: Precision>(
         let power = sim.output("actuator_power")?;
         account.supply(0, power[0].to_f64());
     }
-    if (step + 1).is_multiple_of(STEPS_A_LOOK) {
+    if (step + 1).is_multiple_of(STEPS_BETWEEN_CHECKS) {
         sim.run_clocks(false);
-        account.look(0, energy(sim)?);
+        account.check(0, energy(sim)?);
         sim.run_clocks(profile);
     }
     Ok(())

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Where a run starts.
 #[derive(Args)]
 #[command(next_help_heading = "Initial states")]
-pub struct StartArguments {
+pub(crate) struct StartArguments {
     /// Start from this keyframe (name or index)
     #[arg(long, value_name = "K")]
     keyframe: Option<String>,
@@ -31,7 +31,7 @@ pub struct StartArguments {
 }
 
 /// The states that the environments of a run start from.
-pub struct Starts<'a> {
+pub(crate) struct Starts<'a> {
     model: &'a Model,
     keyframe: Option<usize>,
     states: Option<Rows>,
@@ -41,12 +41,12 @@ pub struct Starts<'a> {
 
 impl StartArguments {
     /// The file of initial states, if there is one.
-    pub fn states(&self) -> Option<&Path> {
+    pub(crate) fn states(&self) -> Option<&Path> {
         self.states.as_deref()
     }
 
     /// Looks everything up for a run of so many environments.
-    pub fn starts<'a>(
+    pub(crate) fn starts<'a>(
         &self,
         model: &'a Model,
         envs: usize,
@@ -81,7 +81,7 @@ impl StartArguments {
 
 impl Starts<'_> {
     /// Brings a simulation to where environment 0 starts.
-    pub fn start<T: Precision>(&self, sim: &mut Sim<T>) -> Result<()> {
+    pub(crate) fn start<T: Precision>(&self, sim: &mut Sim<T>) -> Result<()> {
         if let Some(key) = self.keyframe {
             sim.reset_to_keyframe(key)?;
         }
@@ -92,7 +92,7 @@ impl Starts<'_> {
     }
 
     /// Brings all environments of a batch to where they start.
-    pub fn start_all<S: Precision>(&self, batch: &mut Batch<S>) -> Result<()> {
+    pub(crate) fn start_all<S: Precision>(&self, batch: &mut Batch<S>) -> Result<()> {
         for env in 0..batch.count() {
             if let Some(key) = self.keyframe {
                 batch.reset_to_keyframe(env, key)?;

@@ -7,7 +7,7 @@ use clench::rigid::{Precision, SimError};
 use clench::{Model, Sim};
 
 /// Accumulates over the steps of a run.
-pub struct Summary {
+pub(crate) struct Summary {
     iterations: usize,
     contacts: usize,
     overflows: u64,
@@ -18,7 +18,7 @@ pub struct Summary {
 
 impl Summary {
     /// Starts at the simulation's present state.
-    pub fn new<T: Precision>(sim: &mut Sim<T>) -> Result<Self, SimError> {
+    pub(crate) fn new<T: Precision>(sim: &mut Sim<T>) -> Result<Self, SimError> {
         let start_energy = energy(sim)?.iter().sum();
         Ok(Summary {
             iterations: 0,
@@ -31,7 +31,7 @@ impl Summary {
     }
 
     /// Takes note of a step.
-    pub fn after_step<T: Precision>(&mut self, sim: &Sim<T>) {
+    pub(crate) fn after_step<T: Precision>(&mut self, sim: &Sim<T>) {
         self.quality.note(sim);
         self.iterations += sim.stats().iterations;
         self.contacts += sim.contacts().len();
@@ -39,17 +39,22 @@ impl Summary {
     }
 
     /// Takes note of the error that ended the run in step `step`.
-    pub fn failed(&mut self, step: usize, error: &SimError) {
+    pub(crate) fn failed(&mut self, step: usize, error: &SimError) {
         self.failure = Some(format!("step {step}: {error}"));
     }
 
     /// How well the steps went.
-    pub fn quality(&self) -> &Quality {
+    pub(crate) fn quality(&self) -> &Quality {
         &self.quality
     }
 
     /// The figures of the run, which took `seconds` of stepping.
-    pub fn finish<T: Precision>(self, sim: &mut Sim<T>, seconds: f64, verdict: Verdict) -> Report {
+    pub(crate) fn finish<T: Precision>(
+        self,
+        sim: &mut Sim<T>,
+        seconds: f64,
+        verdict: Verdict,
+    ) -> Report {
         let steps = self.quality.steps;
         // Not by the clock, which resets turn back.
         let simulated_time = steps as f64 * sim.params().timestep.to_f64();
@@ -102,7 +107,7 @@ impl Summary {
 }
 
 /// A run's status in a word.
-pub fn status(failed: bool, resets: u64, overflows: u64, unconverged: u64) -> &'static str {
+pub(crate) fn status(failed: bool, resets: u64, overflows: u64, unconverged: u64) -> &'static str {
     match (failed, resets, overflows, unconverged) {
         (true, ..) => "failed",
         (false, 0, 0, 0) => "ok",
@@ -113,12 +118,12 @@ pub fn status(failed: bool, resets: u64, overflows: u64, unconverged: u64) -> &'
 }
 
 /// The deepest penetration among the contacts, m; zero where nothing penetrates.
-pub fn worst_penetration<T: Precision>(sim: &Sim<T>) -> f64 {
+pub(crate) fn worst_penetration<T: Precision>(sim: &Sim<T>) -> f64 {
     (sim.contacts().iter()).fold(0.0, |worst, c| f64::max(worst, -c.dist.to_f64()))
 }
 
 /// Nothing in the model adds or removes energy while no constraint acts and nobody applies forces.
-pub fn is_conservative(model: &Model) -> bool {
+pub(crate) fn is_conservative(model: &Model) -> bool {
     let p = &model.params;
     let none = |values: &[f64]| values.iter().all(|&v| v == 0.0);
     none(&p.dof_damping)
@@ -132,7 +137,7 @@ pub fn is_conservative(model: &Model) -> bool {
 }
 
 /// The potential and the kinetic energy of a simulation, J.
-pub fn energy<T: Precision>(sim: &mut Sim<T>) -> Result<[f64; 2], SimError> {
+pub(crate) fn energy<T: Precision>(sim: &mut Sim<T>) -> Result<[f64; 2], SimError> {
     let energy = sim.energy()?;
     Ok([energy.potential, energy.kinetic].map(|x| x.to_f64()))
 }

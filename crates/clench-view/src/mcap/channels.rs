@@ -9,7 +9,7 @@ use clench::rigid::Precision;
 use serde_json::{Value, json};
 
 /// A stream of messages of one kind.
-pub struct Channel {
+pub(crate) struct Channel {
     pub topic: &'static str,
     pub schema_name: &'static str,
     pub schema: Value,
@@ -20,7 +20,7 @@ pub struct Channel {
 
 /// What a channel tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MessageKind {
+pub(crate) enum MessageKind {
     Frames,
     Shapes,
     Forces,
@@ -34,7 +34,7 @@ pub enum MessageKind {
 
 impl MessageKind {
     /// What it says at a moment, whose time is given in Foxglove's form.
-    pub fn message<T: Precision>(self, moment: &Moment<T>, time: &Value) -> Value {
+    pub(crate) fn message<T: Precision>(self, moment: &Moment<T>, time: &Value) -> Value {
         match self {
             MessageKind::Frames => messages::frames(moment, time),
             MessageKind::Shapes => messages::shapes(moment, time),
@@ -50,7 +50,7 @@ impl MessageKind {
 }
 
 /// The channels of a model.
-pub fn channels(model: &Model) -> Vec<Channel> {
+pub(crate) fn channels(model: &Model) -> Vec<Channel> {
     let channel = |topic, schema_name, schema, message| Channel {
         topic,
         schema_name,

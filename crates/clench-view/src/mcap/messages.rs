@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
 /// The numbers of the solver.
-pub const SOLVER: [&str; 6] = [
+pub(crate) const SOLVER: [&str; 6] = [
     "iterations",
     "gap",
     "gradient",
@@ -20,7 +20,7 @@ pub const SOLVER: [&str; 6] = [
     "islands",
 ];
 /// Energies, J.
-pub const ENERGY: [&str; 2] = ["potential", "kinetic"];
+pub(crate) const ENERGY: [&str; 2] = ["potential", "kinetic"];
 
 /// What the arrow of the whole weight is as long as, over the size of the model.
 const WEIGHT: f64 = 1.1;
@@ -32,7 +32,7 @@ const FRICTION: [f32; 4] = [0.94, 0.54, 0.14, 1.0];
 const HELD: [f32; 4] = [0.55, 0.36, 0.82, 1.0];
 
 /// What messages are made of.
-pub struct Moment<'a, T: Precision> {
+pub(crate) struct Moment<'a, T: Precision> {
     pub sim: &'a Sim<T>,
     /// Potential and kinetic, J.
     pub energy: [f64; 2],
@@ -43,7 +43,7 @@ pub struct Moment<'a, T: Precision> {
 }
 
 /// A name of its own for the frame of each body.
-pub fn frame_names(model: &Model) -> Vec<String> {
+pub(crate) fn frame_names(model: &Model) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut name = |(index, body): (usize, &clench::rigid::model::Body)| {
         let mut name = match (index, body.name.as_str()) {
@@ -74,7 +74,7 @@ fn size(model: &Model) -> f64 {
 }
 
 /// How long arrows are, m/N: that of the whole weight is a little longer than the model.
-pub fn force_scale(model: &Model) -> f64 {
+pub(crate) fn force_scale(model: &Model) -> f64 {
     let weight = 9.81 * model.params.body_mass.iter().sum::<f64>();
     WEIGHT * size(model) / weight.max(1e-9)
 }
@@ -94,14 +94,14 @@ fn plain_joints(model: &Model) -> impl Iterator<Item = (usize, &clench::rigid::m
 }
 
 /// Their names.
-pub fn joint_names(model: &Model) -> Vec<String> {
+pub(crate) fn joint_names(model: &Model) -> Vec<String> {
     plain_joints(model)
         .map(|(j, joint)| named(&joint.name, "joint", j))
         .collect()
 }
 
 /// The names of all controls.
-pub fn control_names(model: &Model) -> Vec<String> {
+pub(crate) fn control_names(model: &Model) -> Vec<String> {
     let mut names = Vec::with_capacity(model.nu());
     for (a, actuator) in model.actuators.iter().enumerate() {
         let name = named(&actuator.name, "actuator", a);
@@ -114,7 +114,7 @@ pub fn control_names(model: &Model) -> Vec<String> {
 }
 
 /// The names of all sensors.
-pub fn sensor_names(model: &Model) -> Vec<String> {
+pub(crate) fn sensor_names(model: &Model) -> Vec<String> {
     let sensors = model.sensors.iter().enumerate();
     sensors
         .map(|(s, sensor)| named(&sensor.name, "sensor", s))
@@ -122,7 +122,7 @@ pub fn sensor_names(model: &Model) -> Vec<String> {
 }
 
 /// Where the frames of bodies are.
-pub fn frames<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+pub(crate) fn frames<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let position = &moment.sim.workspace().position;
     let transform = |body: usize| {
         let at = position.xpos[body].to_array().map(|x| x.to_f64());
@@ -161,7 +161,7 @@ fn update(entities: Vec<Value>) -> Value {
 }
 
 /// What bodies look like, each in its frame.
-pub fn shapes<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+pub(crate) fn shapes<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let model = moment.sim.model();
     let of_body = |body: usize| {
         let things = shapes::of_body(model, body);
@@ -172,7 +172,7 @@ pub fn shapes<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
 }
 
 /// What pushes on what: contacts, and after them connects, welds and limits.
-pub fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+pub(crate) fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let mut arrows = Vec::new();
     let thick = THICK * size(moment.sim.model());
     let mut add = |at: [f64; 3], force: Vec3<f64>, color: [f32; 4]| {
@@ -205,7 +205,7 @@ pub fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
 }
 
 /// Straight parts of tendons.
-pub fn tendons<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
+pub(crate) fn tendons<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let model = moment.sim.model();
     let mut spans = Vec::new();
     tendon_spans(moment.sim, &mut spans);
@@ -233,7 +233,7 @@ fn record(names: impl IntoIterator<Item = impl Into<String>>, numbers: Vec<Value
 }
 
 /// How the last solve went.
-pub fn solver<T: Precision>(moment: &Moment<T>) -> Value {
+pub(crate) fn solver<T: Precision>(moment: &Moment<T>) -> Value {
     let (stats, contacts) = (moment.sim.stats(), moment.sim.contacts());
     let depths = contacts.iter().map(|contact| -contact.dist.to_f64());
     let numbers = vec![
@@ -248,12 +248,12 @@ pub fn solver<T: Precision>(moment: &Moment<T>) -> Value {
 }
 
 /// Energies.
-pub fn energy<T: Precision>(moment: &Moment<T>) -> Value {
+pub(crate) fn energy<T: Precision>(moment: &Moment<T>) -> Value {
     record(ENERGY, moment.energy.map(|x| json!(x)).to_vec())
 }
 
 /// Positions (m, rad) and velocities of slides and hinges.
-pub fn joints<T: Precision>(moment: &Moment<T>) -> Value {
+pub(crate) fn joints<T: Precision>(moment: &Moment<T>) -> Value {
     let (model, state) = (moment.sim.model(), &moment.sim.state);
     let of = |(_, joint): (usize, &clench::rigid::model::Joint)| {
         let (position, velocity) = (state.qpos[joint.qpos], state.qvel[joint.dof]);
@@ -263,13 +263,13 @@ pub fn joints<T: Precision>(moment: &Moment<T>) -> Value {
 }
 
 /// Controls.
-pub fn controls<T: Precision>(moment: &Moment<T>) -> Value {
+pub(crate) fn controls<T: Precision>(moment: &Moment<T>) -> Value {
     let numbers = moment.sim.state.ctrl.iter().map(|x| json!(x.to_f64()));
     record(control_names(moment.sim.model()), numbers.collect())
 }
 
 /// What each sensor measures.
-pub fn sensors<T: Precision>(moment: &Moment<T>) -> Value {
+pub(crate) fn sensors<T: Precision>(moment: &Moment<T>) -> Value {
     let model = moment.sim.model();
     let data = &moment.sim.workspace().sensors.data;
     let of = |sensor: &clench::rigid::model::Sensor| {

@@ -13,27 +13,27 @@ const FAR: f64 = 20.0;
 const SHOWN: std::ops::Range<i32> = 0..3;
 
 /// A point or a size.
-pub fn point([x, y, z]: [f64; 3]) -> Value {
+pub(crate) fn point([x, y, z]: [f64; 3]) -> Value {
     json!({"x": x, "y": y, "z": z})
 }
 
 /// A quaternion, of ours with w first.
-pub fn turn([w, x, y, z]: [f64; 4]) -> Value {
+pub(crate) fn turn([w, x, y, z]: [f64; 4]) -> Value {
     json!({"x": x, "y": y, "z": z, "w": w})
 }
 
 /// A place and a quaternion.
-pub fn pose(at: [f64; 3], quat: [f64; 4]) -> Value {
+pub(crate) fn pose(at: [f64; 3], quat: [f64; 4]) -> Value {
     json!({"position": point(at), "orientation": turn(quat)})
 }
 
 /// Red, green, blue and opacity.
-pub fn color([r, g, b, a]: [f32; 4]) -> Value {
+pub(crate) fn color([r, g, b, a]: [f32; 4]) -> Value {
     json!({"r": r, "g": g, "b": b, "a": a})
 }
 
 /// The things that a body looks like, in lists by their kind.
-pub fn of_body(model: &Model, body: usize) -> Map<String, Value> {
+pub(crate) fn of_body(model: &Model, body: usize) -> Map<String, Value> {
     let mut things = Map::new();
     let geoms = model.geoms.iter().enumerate();
     for (g, geom) in geoms.filter(|(_, geom)| geom.body == body && SHOWN.contains(&geom.group)) {
