@@ -1,11 +1,11 @@
 //! Many environments of one model on a graphics device.
 
+use crate::base::Base;
 use crate::check::{Simulation, check};
 use crate::device::{Device, DeviceInfo};
 use crate::error::GpuError;
 use crate::fields::{self, Fields};
 use crate::kernels::{Memory, constants};
-use crate::parameters::Base;
 use crate::pipelines::{Arrays, Pipelines, layout};
 use crate::tables::{Capacity, ENVS, Tables};
 use clench_rigid::contact::candidates;

@@ -12,6 +12,7 @@
 #![deny(unreachable_pub)]
 
 mod backend;
+mod base;
 mod batch;
 mod check;
 mod device;

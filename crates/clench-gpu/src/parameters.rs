@@ -3,29 +3,9 @@
 use crate::batch::GpuBatch;
 use crate::error::GpuError;
 use crate::tables::{OWN_PARAMETERS, Tables};
-use clench_rigid::contact::Candidate;
 use clench_rigid::model::Model;
 use std::iter::repeat_n;
 use zerocopy::IntoBytes;
-
-/// What the kernels were made of, to which all environments must keep.
-pub(crate) struct Base {
-    words: Vec<u32>,
-    constants: String,
-    parameters: Vec<f32>,
-    pub candidates: Vec<Candidate>,
-}
-
-impl Base {
-    pub(crate) fn new(tables: &Tables, candidates: Vec<Candidate>) -> Self {
-        Base {
-            words: tables.words.clone(),
-            constants: tables.constants.clone(),
-            parameters: tables.numbers.clone(),
-            candidates,
-        }
-    }
-}
 
 impl GpuBatch {
     /// The parameters of a model that differs from that of this batch in its parameters alone.

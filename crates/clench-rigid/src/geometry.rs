@@ -2,7 +2,7 @@
 
 use crate::contact::shape;
 use crate::model::{Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_collide::{Hit, Mesh, Pose, Ray, Shape, ShapeKind, UnitRay, ray};
 use clench_math::{Mask, Real, Vec3, kernel};
 

@@ -33,6 +33,7 @@ pub mod settings;
 mod sim;
 mod singular;
 pub mod sleep;
+mod stages;
 pub mod state;
 pub mod workspace;
 

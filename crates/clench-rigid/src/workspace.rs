@@ -1,18 +1,17 @@
 //! Everything derived from model and state: preallocated, reused, inspectable.
 
-mod stages;
-
 use crate::Model;
-use crate::constraint::ConstraintRecord;
-use crate::contact::{Collision, Contact};
+use crate::constraint::assembly::ConstraintRecord;
+use crate::contact::Contact;
+use crate::contact::collision::Collision;
 use crate::dynamics::articulated::{ArticulatedInertia, articulated_bodies};
 use crate::dynamics::integration::Integration;
 use crate::profile::{Profile, StepClock};
-use crate::sensor::SensorReadings;
+use crate::sensor::readings::SensorReadings;
 use crate::sleep::Sleep;
+pub use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real};
 use clench_solver::{Problem, Solver, TreeMatrix};
-pub use stages::{Forces, Positions, Velocities};
 
 /// Everything derived from model and state.
 #[derive(Debug)]

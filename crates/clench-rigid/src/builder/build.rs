@@ -10,7 +10,7 @@ use super::{
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
 use crate::model::{Model, Params, RowPattern, Visuals};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::Vec3;
 use clench_solver::Tree;
 use std::collections::HashSet;

@@ -7,7 +7,7 @@ use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use crate::dynamics::camera::fixed_pose;
 use crate::model::{Camera, CameraMode, Model};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 
 /// MuJoCo's focal lengths of a camera that has a field of view instead, m.
 const UNUSED_INTRINSIC: [f64; 4] = [0.01, 0.01, 0.0, 0.0];

@@ -6,7 +6,7 @@ use super::resolve::AllNames;
 use super::tendons::require_scalar;
 use super::{BuildError, ConnectAnchor, EqualityKind, EqualitySpec};
 use crate::model::{Equality, EqualityTarget, Model};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Quat, Vec3};
 
 /// Adds all equality constraints; `pose0` are the poses at qpos0.

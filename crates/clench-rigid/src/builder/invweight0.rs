@@ -12,7 +12,7 @@ use crate::dynamics::tendon_armature::add_tendon_inertia;
 use crate::dynamics::{tendon, transmission};
 use crate::model::{Actuator, JointKind, Model};
 use crate::singular::first_bad_pivot;
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::Motion;
 use clench_solver::{TreeFactor, TreeMatrix};
 

@@ -8,7 +8,7 @@ use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::{BuildError, Origin};
 use crate::model::{CameraMode, Light, LightProperties, Model};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Quat, Vec3};
 
 /// A light.

@@ -9,8 +9,9 @@ use crate::model::{JointKind, KinematicTree, Model, SleepPolicy, Transmission};
 use crate::options::RigidOptions;
 use crate::settings::StepSettings;
 use crate::sleep::{AWAKE, READY};
+use crate::stages::Positions;
 use crate::state::State;
-use crate::workspace::{Positions, Workspace};
+use crate::workspace::Workspace;
 use crate::{pipeline, sleep};
 
 /// The least size of a body, m (as in MuJoCo).

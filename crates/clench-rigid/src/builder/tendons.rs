@@ -7,7 +7,7 @@ use super::visuals::Palette;
 use super::{BuildError, TendonSpec, WrapSpec};
 use crate::dynamics::chains::Chains;
 use crate::model::{JointKind, Model, Tendon, Wrap};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_collide::ShapeKind;
 
 /// Adds all tendons.

@@ -3,8 +3,8 @@
 use crate::model::{Model, Params};
 use crate::settings::StepSettings;
 use crate::sleep::Sleep;
+use crate::stages::{Positions, Velocities};
 use crate::state::State;
-use crate::workspace::{Positions, Velocities};
 use clench_math::Real;
 
 /// All that constraints read.

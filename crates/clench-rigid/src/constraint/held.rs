@@ -4,8 +4,8 @@ use super::assembly::{BlockRecord, ConstraintSource};
 use super::context::ConstraintContext;
 use super::softness::Softness;
 use crate::model::Params;
+use crate::stages::Positions;
 use crate::state::State;
-use crate::workspace::Positions;
 use clench_math::{Quat, Real, Vec3};
 
 /// Two frames, one on each of two bodies.

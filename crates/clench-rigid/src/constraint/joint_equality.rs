@@ -12,7 +12,7 @@ use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
 use super::row::Row;
 use crate::model::Params;
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Real, kernel};
 use clench_solver::Cost;
 

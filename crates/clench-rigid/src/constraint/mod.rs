@@ -4,7 +4,7 @@
 //! stand in MuJoCo's order: equalities, dry friction, limits, contacts. What was added at run time comes after the equalities.
 
 mod active;
-mod assembly;
+pub(crate) mod assembly;
 mod connect;
 mod contact;
 mod context;

@@ -18,7 +18,7 @@ use super::context::ConstraintContext;
 use super::held::{Frames, Held};
 use super::row::Row;
 use crate::dynamics::chains::{Chains, Side};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Cost;
 

@@ -2,7 +2,7 @@
 
 use super::Candidate;
 use crate::model::{Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_collide::{ShapeKind, allowance};
 use clench_math::{Real, Vec3, kernel};
 

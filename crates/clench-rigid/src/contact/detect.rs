@@ -8,7 +8,8 @@ use crate::model::{Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::sleep::Sleep;
-use crate::workspace::{Positions, Workspace};
+use crate::stages::Positions;
+use crate::workspace::Workspace;
 use clench_collide::{ContactPoint, Contacts, SeparatingAxis, collide_again, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
 

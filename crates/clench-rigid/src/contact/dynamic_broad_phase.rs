@@ -5,7 +5,7 @@ use super::bounding_sphere::{self, BoundingSphere, own_margin};
 use super::placed_shape::{pose, shape};
 use super::select::{explicit, geoms_may_collide, meet_any};
 use crate::model::{Geom, Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
 use clench_math::{Mask, Real, Vec3, kernel};
 

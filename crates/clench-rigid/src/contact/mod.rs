@@ -2,7 +2,7 @@
 //! contact becomes is `constraint::contact`.
 
 mod bounding_sphere;
-mod collision;
+pub(crate) mod collision;
 mod detect;
 mod dynamic_broad_phase;
 mod mix;

@@ -1,7 +1,7 @@
 //! The shape of a geom, and its pose.
 
 use crate::model::{Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_collide::{Mesh, Pose, Shape, ShapeKind, Terrain};
 use clench_math::Real;
 

@@ -5,7 +5,7 @@
 
 use super::placed_shape::pose;
 use crate::model::Params;
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
 /// Velocity of the second geom's surface less that of the first at `point`: along both tangents of `frame`, and about its normal.

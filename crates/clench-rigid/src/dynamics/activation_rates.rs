@@ -5,7 +5,7 @@ use super::actuator::{ActuatorMotion, Given};
 use super::setpoint::nearest_setpoint;
 use super::{dc_motor, muscle, pid};
 use crate::model::{DynamicsKind, Model, Params};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Real, kernel};
 
 /// The rate of change of each activation (na). A filtered servo on a circle turns towards its control by the shorter way.

@@ -7,8 +7,8 @@ use crate::dynamics::gain::unlimited_force;
 use crate::dynamics::transmission::moment;
 use crate::dynamics::{dc_motor, orientation};
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
-use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Real, kernel};
 
 /// `act_dot`, `actuator_force` and `qfrc_actuator`, within the limits of tendons, actuators and joints, in this order. Gravity

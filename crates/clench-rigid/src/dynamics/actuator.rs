@@ -1,7 +1,7 @@
 //! What actuators are given, and how they move.
 
 use crate::model::Model;
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Real, Scalar};
 
 /// What actuators are given: controls as they act, and activations.

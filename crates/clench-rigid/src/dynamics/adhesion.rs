@@ -7,7 +7,7 @@
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use crate::model::{Model, Transmission};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Real, kernel};
 
 /// Moment arms of all actuators on contacts, once these are found.

@@ -16,7 +16,7 @@
 use crate::constraint::softness::is_single;
 use crate::dynamics::reflected::{dof_armature, tendon_armature};
 use crate::model::{JointKind, Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Inertia, Mask, Mat3, Real, Vec3, kernel};
 use clench_solver::TreeFactor;
 

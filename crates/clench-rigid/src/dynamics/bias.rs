@@ -5,7 +5,7 @@
 
 use crate::dynamics::project::project_forces;
 use crate::model::{Model, Params};
-use crate::workspace::{Forces, Positions, Velocities};
+use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Motion, Real, Vec3, kernel};
 
 /// `qfrc_bias`, on the left side of the equation of motion.

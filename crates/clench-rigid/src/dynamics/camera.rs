@@ -1,7 +1,7 @@
 //! Where cameras are. No motion depends on them, so they are worked out when somebody asks.
 
 use crate::model::{CameraMode, Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Mat3, Real, Vec3, kernel};
 
 /// The pose of a camera that is fixed to its body.

@@ -4,7 +4,7 @@
 //! is left lies on different branches, and dofs are numbered depth first, so one rest comes wholly before the other.
 
 use crate::model::Model;
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Motion, Real, Vec3};
 
 /// Which of the two bodies a dof moves.

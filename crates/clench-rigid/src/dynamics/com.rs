@@ -1,7 +1,7 @@
 //! Centres of mass, and inertias and dof axes as spatial vectors about them.
 
 use crate::model::{JointKind, Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Inertia, Motion, Real, Vec3, kernel};
 use std::ops::Range;
 

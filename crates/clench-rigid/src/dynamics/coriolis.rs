@@ -15,7 +15,7 @@
 use crate::dynamics::ellipsoid::ellipsoid_rates;
 use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
 use crate::model::{JointKind, Model, Params};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Force, Inertia, Motion, Real, kernel};
 use clench_solver::TreeLu;
 

@@ -12,8 +12,8 @@ use crate::dynamics::reflected::{dof_damper, tendon_damper};
 use crate::dynamics::transmission::moment;
 use crate::dynamics::{dc_motor, orientation, tendon};
 use crate::model::{GainKind, Model, Params, Transmission};
+use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
-use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real, kernel};
 use clench_solver::TreeMatrix;
 

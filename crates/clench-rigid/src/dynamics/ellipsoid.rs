@@ -17,7 +17,7 @@
 
 use crate::dynamics::project::{force_at, local_velocity};
 use crate::model::{Model, Params};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_collide::{Shape, ShapeKind};
 use clench_math::{Force, Motion, Real, Vec3};
 use std::f64::consts::PI;

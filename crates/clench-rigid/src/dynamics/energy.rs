@@ -4,7 +4,7 @@ use crate::dynamics::spring::{
     JointStretch, joint_spring, joint_stretch, tendon_spring, tendon_stretch,
 };
 use crate::model::{Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Real, kernel};
 use clench_solver::TreeMatrix;
 

@@ -12,7 +12,7 @@
 use crate::dynamics::ellipsoid::{Ellipsoid, ellipsoids};
 use crate::dynamics::project::{force_at, local_velocity, project_forces};
 use crate::model::{Model, Params};
-use crate::workspace::{Forces, Positions, Velocities};
+use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 use std::f64::consts::PI;
 

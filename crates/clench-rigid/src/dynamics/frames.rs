@@ -4,7 +4,7 @@ use crate::dynamics::camera::camera_pose;
 use crate::dynamics::chains::BodyPoint;
 use crate::geometry::Geoms;
 use crate::model::{FrameObject, Model, Params};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Mat3, Motion, Quat, Real, Vec3};
 
 /// The frames of a configuration.

@@ -15,7 +15,8 @@
 use crate::dynamics::ellipsoid::ellipsoid_rates;
 use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
 use crate::model::{JointKind, Model, Params};
-use crate::workspace::{Positions, Velocities, Workspace};
+use crate::stages::{Positions, Velocities};
+use crate::workspace::Workspace;
 use clench_math::{Force, Real, Vec3, kernel};
 
 /// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.

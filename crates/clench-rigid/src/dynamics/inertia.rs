@@ -5,7 +5,7 @@
 
 use crate::dynamics::reflected::dof_armature;
 use crate::model::{Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Real, kernel};
 use clench_solver::TreeMatrix;
 

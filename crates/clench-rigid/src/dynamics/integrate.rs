@@ -6,8 +6,9 @@ use super::setpoint::nearest_setpoint;
 use crate::dynamics::activation::next_activation;
 use crate::dynamics::orientation;
 use crate::model::{GainKind, JointKind, Model, Params};
+use crate::stages::{Positions, Velocities};
 use crate::state::State;
-use crate::workspace::{Positions, Velocities, Workspace};
+use crate::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Tree;
 

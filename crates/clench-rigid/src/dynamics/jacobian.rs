@@ -10,7 +10,7 @@
 
 use crate::dynamics::chains::BodyPoint;
 use crate::model::{JointKind, Model, Params};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Motion, Real, Vec3, kernel};
 
 /// The dofs that move a body, ascending.

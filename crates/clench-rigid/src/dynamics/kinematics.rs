@@ -10,8 +10,8 @@
 //! Only bodies in some parts of the model are looked at: what sleeps, and lies where it lay in the last pass, is none of them.
 
 use crate::model::{JointKind, Model, Params};
+use crate::stages::Positions;
 use crate::state::State;
-use crate::workspace::Positions;
 use clench_math::{Mat3, Quat, Real, Vec3, kernel};
 use std::ops::Range;
 

@@ -11,7 +11,7 @@
 use super::actuator::{Given, scaling_error};
 use crate::dynamics::activation::next_activation;
 use crate::model::{ControlInput, Model, Params};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Mask, Quat, Real, Vec3};
 
 /// How many lengths, moment arms and forces a servo has.

@@ -10,8 +10,8 @@ use crate::dynamics::spring::{
 };
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
+use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
-use crate::workspace::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Real, Vec3, kernel};
 
 /// `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid`, `qfrc_adhesion` and their sum `qfrc_passive`. Gravity compensation of joints

@@ -1,7 +1,7 @@
 //! Between bodies and dofs: Σ_b J_bᵀ f_b in one pass over the tree instead of a chain a body, and the frames that forces are told in.
 
 use crate::model::Model;
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Force, Mat3, Motion, Real, Vec3, kernel};
 
 /// The spatial force, about the reference point of its tree, of a force and a torque that act on body `b` at `point`.

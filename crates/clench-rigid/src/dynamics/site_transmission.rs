@@ -6,7 +6,7 @@
 use crate::dynamics::chains::{Chains, Side};
 use crate::dynamics::project::force_at;
 use crate::model::{Model, Params};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Force, Quat, Real, Vec3};
 
 /// A force and a couple, in world axes, at a site.

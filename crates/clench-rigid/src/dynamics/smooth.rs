@@ -2,8 +2,8 @@
 
 use crate::dynamics::project::{force_at, project_forces};
 use crate::model::Model;
+use crate::stages::{Forces, Positions};
 use crate::state::State;
-use crate::workspace::{Forces, Positions};
 use clench_math::{Force, Mask, Real, kernel};
 use clench_solver::Problem;
 

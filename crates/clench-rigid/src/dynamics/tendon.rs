@@ -4,7 +4,7 @@
 
 use crate::dynamics::tendon_path::spatial_tendon;
 use crate::model::{Model, Params, Wrap};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Real, kernel};
 
 /// The dofs that change a tendon's length, with ∂length/∂q along each.

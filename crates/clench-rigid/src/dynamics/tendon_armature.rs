@@ -8,7 +8,7 @@ use crate::dynamics::reflected::tendon_armature;
 use crate::dynamics::tendon::{add_tendon_force, gradient};
 use crate::dynamics::tendon_path::bias_acceleration;
 use crate::model::{Model, Params};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::TreeMatrix;
 

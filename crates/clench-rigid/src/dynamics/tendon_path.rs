@@ -8,7 +8,7 @@
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use crate::dynamics::wrap::{Obstacle, WrapShape, wrap};
 use crate::model::{Model, Params, Section, Tendon};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_collide::ShapeKind;
 use clench_math::{Real, Vec3};
 

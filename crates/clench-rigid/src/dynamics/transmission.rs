@@ -4,7 +4,7 @@ use crate::dynamics::site_transmission::{
     relative_pose, relative_turn, slider_crank, turning_arms, wrench_arms,
 };
 use crate::model::{Actuator, Joint, JointKind, Model, Params, Transmission};
-use crate::workspace::Positions;
+use crate::stages::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 
 /// The dofs that a force of an actuator, one of `Model::nout`, acts on, with its moment arm along each.

@@ -3,7 +3,7 @@
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
 use crate::model::{JointKind, Model};
-use crate::workspace::{Positions, Velocities};
+use crate::stages::{Positions, Velocities};
 use clench_math::{Motion, Real, kernel};
 
 /// `cvel`, `cdof_dot`, tendon and actuator velocities.

@@ -19,8 +19,8 @@ use crate::dynamics::frames::Frames;
 use crate::dynamics::integrate::integrate_positions;
 use crate::dynamics::kinematics::kinematics;
 use crate::model::{JointKind, Model, Params};
+use crate::stages::Positions;
 use crate::state::State;
-use crate::workspace::Positions;
 use clench_math::{Mask, Quat, Real, Scalar, kernel};
 use std::ops::Range;
 

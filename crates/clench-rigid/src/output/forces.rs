@@ -29,7 +29,7 @@ impl<T: Real> Wrench<T> {
 
 /// Appends what acts on each body from outside, about the centre of mass of its tree: torque, force.
 #[kernel]
-pub(crate) fn external<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
+pub(crate) fn external_forces<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     let start = out.len();
     let pos = &s.ws.position;
     let com = |body: usize| pos.subtree_com[s.model.bodies[body].root];

@@ -2,12 +2,12 @@
 //!
 //! Names, order and frames are MuJoCo's where it has the same thing.
 
-mod forces;
-mod source;
+pub(crate) mod forces;
+pub(crate) mod source;
 mod tendon_forces;
 
-use crate::sensor::BodyForces;
-pub(crate) use forces::{each_joint_of_bodies, external as external_forces, of_contact};
+use crate::sensor::readings::BodyForces;
+pub(crate) use forces::{each_joint_of_bodies, of_contact};
 pub(crate) use source::Source;
 
 use crate::dynamics::camera::camera_pose;
@@ -138,7 +138,7 @@ outputs! {
     qfrc_constraint [m.nv] of Everything => out.extend_from_slice(&s.ws.qfrc_constraint);
     /// What acts on each body from outside: applied forces, contacts, connects, welds and strings. Torque, then force, about
     /// the centre of mass of its tree (nbody, 6).
-    cfrc_ext [m.nbody(), 6] of Everything => forces::external(s, out);
+    cfrc_ext [m.nbody(), 6] of Everything => forces::external_forces(s, out);
     /// What each body's joints carry: the torque, then the force of its parent on it, about the centre of mass of its tree (nbody, 6).
     cfrc_int [m.nbody(), 6] of Everything => wrenches(&body_forces(s).cfrc_int, out);
     /// Acceleration of each body with gravity's upward reaction, angular, then linear at the centre of mass of its tree

@@ -5,7 +5,8 @@
 
 use super::reading::Reading;
 use crate::model::{Model, Params};
-use crate::output::{Source, external_forces};
+use crate::output::forces::external_forces;
+use crate::output::source::Source;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Force, Motion, Real, Vec3, kernel};

@@ -8,7 +8,7 @@
 use super::reading::Reading;
 use crate::contact::Contact;
 use crate::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
-use crate::output::of_contact;
+use crate::output::forces::of_contact;
 use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 
 /// The most numbers that are told of a contact.

@@ -11,7 +11,7 @@ mod frame;
 mod limit;
 mod ray;
 mod reading;
-mod readings;
+pub(crate) mod readings;
 mod volume;
 
 use crate::model::{Model, Params, Sensor, SensorData, SensorKind};
@@ -19,7 +19,6 @@ use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
 use reading::Reading;
-pub(crate) use readings::BodyForces;
 pub use readings::SensorReadings;
 
 /// Evaluates all sensors of the model, if anybody wants them, or will.

@@ -1,7 +1,7 @@
 //! Volumes of sites: what touches there, and what is inside.
 
 use super::reading::Reading;
-use crate::output::of_contact;
+use crate::output::forces::of_contact;
 use clench_collide::{Mesh, Pose, Ray, Shape, ray};
 use clench_math::{Mask, Mat3, Real, Vec3, kernel};
 

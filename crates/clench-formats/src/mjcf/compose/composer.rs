@@ -1,6 +1,6 @@
 //! Expanding the body tree of one model.
 
-use super::keyframes::AttachedKeyframe;
+use super::attached_keyframe::AttachedKeyframe;
 use super::models::Models;
 use super::names::{Names, Namespace};
 use super::relations;

@@ -5,6 +5,7 @@
 //! copied. In the end a keyframe says what it says of those elements that are there. As in MuJoCo 4.0 keyframes are named with the
 //! prefix of the attachment, and of replicas the first is meant.
 
+use super::attached_keyframe::{AttachedKeyframe, Fragment};
 use super::composer::Composer;
 use super::models::Part;
 use super::names::Namespace;
@@ -17,23 +18,6 @@ use crate::mjcf::sections::{entries, sections};
 use crate::mjcf::{keyframe, relations};
 use clench_rigid::builder::{KeyframeElement, KeyframePart, KeyframeSpec};
 use std::collections::HashMap;
-
-/// A keyframe in parts.
-#[derive(Clone, Debug)]
-pub(crate) struct AttachedKeyframe {
-    /// Its name, time and place; it has no numbers of its own.
-    spec: KeyframeSpec,
-    parts: Vec<Fragment>,
-}
-
-/// What a keyframe says of an element.
-#[derive(Clone, Debug)]
-struct Fragment {
-    /// The number of the element.
-    number: u32,
-    first: Vec<f64>,
-    second: Vec<f64>,
-}
 
 /// Cuts the keyframes of a model that will be attached, and numbers its elements. Those of models that it attaches itself follow.
 ///

@@ -5,6 +5,7 @@
 //! settings.
 
 mod attach;
+mod attached_keyframe;
 mod composer;
 pub(crate) mod keyframes;
 mod models;
@@ -21,8 +22,8 @@ use super::source::Sources;
 use crate::LoadError;
 use crate::mjcf::sections::sections;
 use crate::spending::Spending;
+use attached_keyframe::AttachedKeyframe;
 use composer::Composer;
-use keyframes::AttachedKeyframe;
 use models::{Models, Part};
 use names::Names;
 use settings::Settings;

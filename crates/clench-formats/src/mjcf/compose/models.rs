@@ -1,6 +1,6 @@
 //! The models that a model can attach.
 
-use super::keyframes::AttachedKeyframe;
+use super::attached_keyframe::AttachedKeyframe;
 use super::settings::Settings;
 use crate::mjcf::document::Element;
 
