@@ -4,12 +4,22 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-from clench._document import Value, written
+from clench._document import Document, Value, written
 
-if TYPE_CHECKING:
-    from clench._spec import ModelSpec
+
+class Attachable(Protocol):
+    """A model that can be attached, such as a `ModelSpec`."""
+
+    @property
+    def assets(self) -> dict[str, bytes]:
+        """Files that its document names, by name without folders."""
+        ...
+
+    def to_xml(self) -> str:
+        """Its document."""
+        ...
 
 
 class SpecElement:
@@ -20,14 +30,14 @@ class SpecElement:
 
     Parameters
     ----------
-    spec : ModelSpec
+    document : Document
         What it is an element of.
     node : xml.etree.ElementTree.Element
         The element in the document.
     """
 
-    def __init__(self, spec: ModelSpec, node: ET.Element) -> None:
-        self._spec = spec
+    def __init__(self, document: Document, node: ET.Element) -> None:
+        self._document = document
         self._node = node
 
     @property
@@ -52,7 +62,7 @@ class SpecElement:
             raise KeyError(f"{self._described()} does not say {attribute!r}") from None
 
     def __setitem__(self, attribute: str, value: Value) -> None:
-        self._spec._document.check_name(self._node, attribute, value)
+        self._document.check_name(self._node, attribute, value)
         self._node.set(attribute, written(value))
 
     def __delitem__(self, attribute: str) -> None:
@@ -64,7 +74,7 @@ class SpecElement:
 
     def __iter__(self) -> Iterator[SpecElement]:
         """The elements directly below it."""
-        return (SpecElement(self._spec, node) for node in list(self._node))
+        return (SpecElement(self._document, node) for node in list(self._node))
 
     def add(self, tag: str, /, **attributes: Value) -> SpecElement:
         """Add an element below this one.
@@ -87,7 +97,7 @@ class SpecElement:
         """
         node = ET.Element(tag)
         self._node.append(node)
-        element = SpecElement(self._spec, node)
+        element = SpecElement(self._document, node)
         try:
             for name, value in attributes.items():
                 element[name.removesuffix("_")] = value
@@ -166,7 +176,7 @@ class SpecElement:
         """
         return self.add("frame", **attributes)
 
-    def attach(self, other: ModelSpec, *, prefix: str, body: str | None = None) -> SpecElement:
+    def attach(self, other: Attachable, *, prefix: str, body: str | None = None) -> SpecElement:
         """Attach another model below this body or frame, as MJCF's ``attach``.
 
         Parameters
@@ -188,21 +198,22 @@ class SpecElement:
         ValueError
             A prefix that is taken; files of the same name and other contents.
         """
-        spec = self._spec
+        document = self._document
         name = f"{prefix}model"
-        if spec._document.find("model", name) is not None:
+        if document.find("model", name) is not None:
             raise ValueError(f"a model is attached with the prefix {prefix!r} already")
         file = f"{name}.xml"
-        spec._document.add_files({**other.assets, file: other.to_xml().encode()})
-        spec.add_asset("model", name=name, file=file)
+        document.add_files({**other.assets, file: other.to_xml().encode()})
+        assets = document.root.find("asset")
+        section = ET.SubElement(document.root, "asset") if assets is None else assets
+        SpecElement(document, section).add("model", name=name, file=file)
         return self.add("attach", model=name, prefix=prefix, **({} if body is None else {"body": body}))
 
     def remove(self) -> None:
         """Remove this element, all below it, and what refers to any of them: sensors of a joint go with the joint."""
-        spec = self._spec
-        if self._node not in spec._document.parents():
+        if self._node not in self._document.parents():
             raise ValueError(f"{self._described()} is removed already, or is the document itself")
-        spec._document.remove(self._node)
+        self._document.remove(self._node)
 
     def rename(self, name: str) -> None:
         """Give it another name, here and wherever it is referred to.
@@ -218,10 +229,10 @@ class SpecElement:
             A name that another element of its kind has.
         """
         old = self.name
-        kind = self._spec._document.kind_of(self._node)
+        kind = self._document.kind_of(self._node)
         self["name"] = name
         if kind and old:
-            for node, attribute in self._spec._document.references(kind, old):
+            for node, attribute in self._document.references(kind, old):
                 node.set(attribute, name)
 
     def _described(self) -> str:

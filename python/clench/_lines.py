@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from clench._element_view import ElementView, is_alone
+
 if TYPE_CHECKING:
     from typing_extensions import Self
-
-    from clench._named import ElementView
 
 
 class Line:
@@ -83,8 +83,3 @@ def set_parameter(owner: Any, field: str, values: ArrayLike) -> None:
         owner.set_param(field, values)
     else:
         owner.randomize(field, values)
-
-
-def is_alone(owner: Any) -> bool:
-    """Whether it is a `Sim`, which has no axis over environments."""
-    return not hasattr(owner, "n_envs")

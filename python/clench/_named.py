@@ -6,14 +6,15 @@ parameter (of this simulation alone). How the three are read and set stands in `
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, SupportsIndex
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike, NDArray
 
-from clench._lines import OutputLine, ParameterLine, StateLine, is_alone, set_parameter
+from clench._lines import OutputLine, ParameterLine, StateLine, set_parameter
+from clench._element_view import ElementView, is_alone
 
 if TYPE_CHECKING:
-    from clench._core import Batch, Element, Sim
+    from clench._core import Batch, Sim
 
 __all__ = [
     "ActuatorView",
@@ -27,50 +28,6 @@ __all__ = [
     "SiteView",
     "TendonView",
 ]
-
-
-class ElementView:
-    """An element of a simulation or batch: what belongs to it can be read and set.
-
-    Parts of the state are live views of the same memory; write into them or assign. Outputs are those of the last step, or of the
-    present state where it was written since; in a batch they must be recorded. Parameters are of this simulation alone: they are read
-    as copies that cannot be written, and an assignment is checked. In a batch all have the environments as their first axis.
-
-    Parameters
-    ----------
-    owner : Sim or Batch
-        What it is an element of.
-    which : str or int
-        Its name or index.
-    """
-
-    __slots__ = ("_alone", "_element", "_owner", "_row")
-    _kind = ""
-
-    def __init__(self, owner: Sim | Batch, which: str | SupportsIndex) -> None:
-        self._element: Element = getattr(owner.model, self._kind)(which)
-        self._owner = owner
-        self._row: int = self._element.id
-        self._alone = is_alone(owner)
-
-    @property
-    def element(self) -> Element:
-        """The element of the model, which knows its structure too."""
-        return self._element
-
-    @property
-    def id(self) -> int:
-        """Index among the elements of its kind."""
-        return self._row
-
-    @property
-    def name(self) -> str:
-        """Its name, possibly empty."""
-        return self.element.name
-
-    def __repr__(self) -> str:
-        what = f'"{self.name}"' if self.name else "without a name"
-        return f"<clench.{type(self).__name__}: {self._kind} {self._row}, {what}>"
 
 
 class BodyView(ElementView):

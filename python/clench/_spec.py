@@ -129,7 +129,7 @@ class ModelSpec:
         SpecElement
         """
         node = self._document.root.find(tag)
-        return SpecElement(self, ET.SubElement(self._document.root, tag) if node is None else node)
+        return SpecElement(self._document, ET.SubElement(self._document.root, tag) if node is None else node)
 
     def add_actuator(self, tag: str, /, **attributes: Value) -> SpecElement:
         """Add an actuator: "motor", "position", "general" and so on.
@@ -270,7 +270,7 @@ class ModelSpec:
         if node is None:
             known = ", ".join(self.names(kind)[:10])
             raise ValueError(f'there is no {kind} "{name}"' + (f": there are {known}" if known else ""))
-        return SpecElement(self, node)
+        return SpecElement(self._document, node)
 
     def body(self, name: str) -> SpecElement:
         """The body of that name; "world" is the world.

@@ -6,7 +6,7 @@
 
 use clench::{Model, Sim, load, load_str};
 use clench_view::delta::delta;
-use clench_view::frame::{Besides, encode};
+use clench_view::frame::{FrameExtras, encode};
 use serde_json::json;
 use std::error::Error;
 use std::sync::Arc;
@@ -54,7 +54,7 @@ fn measure(model: Model) -> Result<(), Box<dyn Error>> {
         }
         steps.push(1e6 * start.elapsed().as_secs_f64());
         let start = Instant::now();
-        let frame = encode(&mut sim, &Besides::default())?;
+        let frame = encode(&mut sim, &FrameExtras::default())?;
         frames.push(1e6 * start.elapsed().as_secs_f64());
         let start = Instant::now();
         let delta = delta(&last, &frame);

@@ -41,7 +41,7 @@ pub struct Timing {
 
 /// What a frame tells about the viewing of a simulation: timing, what users hold and draw, which environments are shown.
 #[derive(Default)]
-pub struct Besides<'a> {
+pub struct FrameExtras<'a> {
     /// Bits, see [`PAUSED`].
     pub flags: u32,
     /// How the last step went.
@@ -62,7 +62,7 @@ pub struct Besides<'a> {
     pub poses: Vec<f32>,
 }
 
-impl Besides<'_> {
+impl FrameExtras<'_> {
     /// Adds the poses of one more environment. Where they cannot be computed its last ones are told.
     pub fn add_poses<T: Precision>(&mut self, sim: &mut Sim<T>) {
         let _ = sim.refresh();
@@ -85,7 +85,7 @@ struct Shown<'a, T: Precision> {
     energy: [f64; 2],
     pushes: Vec<Push>,
     cameras: Vec<[f32; 12]>,
-    besides: &'a Besides<'a>,
+    extras: &'a FrameExtras<'a>,
 }
 
 macro_rules! sections {
@@ -140,35 +140,35 @@ sections! {
     /// What sensors measure.
     sensors: 1 => narrow(&s.sim.workspace().sensors.data, out);
     /// The spring that drags a body: the body, the point, where it is drawn to, the force.
-    drag: 10 => out.extend(s.besides.drag.into_iter().flat_map(|drag| drag.row(s.sim.workspace())));
+    drag: 10 => out.extend(s.extras.drag.into_iter().flat_map(|drag| drag.row(s.sim.workspace())));
     /// The spring that turns a body: the body, where its centre of mass is, what is left to turn (rad, along the axis), the torque.
-    turn: 10 => out.extend(s.besides.turn.into_iter().flat_map(|turn| turn.row(s.sim.workspace())));
+    turn: 10 => out.extend(s.extras.turn.into_iter().flat_map(|turn| turn.row(s.sim.workspace())));
     /// The first and last time, s, to which one can come back.
-    past: 2 => out.extend(s.besides.past.iter().flatten().map(|&time| time as f32));
+    past: 2 => out.extend(s.extras.past.iter().flatten().map(|&time| time as f32));
     /// Plotted: iterations, log10 of the duality gap and of the gradient, deepest penetration (m), contacts, potential
     /// and kinetic energy (J), time of a step (µs), simulated over real time.
     plots: 9 => plots(s, out);
     /// The time of each stage of a step (µs), in the order of `STAGES`.
-    stages: 1 => out.extend(s.besides.timing.stages.iter().map(|time| 1e6 * time.as_secs_f32()));
+    stages: 1 => out.extend(s.extras.timing.stages.iter().map(|time| 1e6 * time.as_secs_f32()));
     /// What users draw: kind (0 sphere, 1 line, 2 arrow, 3 text), both ends, radius, colour and opacity.
-    marks: 12 => s.besides.marks.iter().for_each(|mark| out.extend(mark.row()));
+    marks: 12 => s.extras.marks.iter().for_each(|mark| out.extend(mark.row()));
     /// The environment of a batch whose contacts these are, and the first of those that are seen.
-    chosen: 1 => out.extend(s.besides.chosen.iter().flatten().map(|&env| env as f32));
+    chosen: 1 => out.extend(s.extras.chosen.iter().flatten().map(|&env| env as f32));
     /// The environments of a batch that are seen: number, and whether it cannot go on.
-    envs: 2 => out.extend(s.besides.envs.iter().flat_map(|(env, why)| [*env as f32, f32::from(u8::from(why.is_some()))]));
+    envs: 2 => out.extend(s.extras.envs.iter().flat_map(|(env, why)| [*env as f32, f32::from(u8::from(why.is_some()))]));
     /// Position and orientation of each body of each of these, where more than one is seen.
-    poses: 7 => out.extend(&s.besides.poses);
+    poses: 7 => out.extend(&s.extras.poses);
     /// How many letters the text of each mark and of each environment has, which says why it cannot go on.
-    texts: 1 => out.extend(s.besides.texts().map(|text| text.chars().count() as f32));
+    texts: 1 => out.extend(s.extras.texts().map(|text| text.chars().count() as f32));
     /// The letters of all of these, as code points.
-    letters: 1 => out.extend(s.besides.texts().flat_map(str::chars).map(|letter| u32::from(letter) as f32));
+    letters: 1 => out.extend(s.extras.texts().flat_map(str::chars).map(|letter| u32::from(letter) as f32));
 }
 
 /// The bytes of the frame of a simulation as it is now.
 ///
 /// # Errors
 /// A state that cannot be evaluated.
-pub fn encode<T: Precision>(sim: &mut Sim<T>, besides: &Besides) -> Result<Vec<u8>, SimError> {
+pub fn encode<T: Precision>(sim: &mut Sim<T>, extras: &FrameExtras) -> Result<Vec<u8>, SimError> {
     sim.refresh()?;
     let energy = sim.energy()?;
     let pushes = sim.pushes()?;
@@ -178,13 +178,13 @@ pub fn encode<T: Precision>(sim: &mut Sim<T>, besides: &Besides) -> Result<Vec<u
         cameras,
         sim,
         energy: [energy.potential.to_f64(), energy.kinetic.to_f64()],
-        besides,
+        extras,
     };
     let mut numbers = Vec::new();
     let counts = write_sections(&shown, &mut numbers);
     let mut bytes = Vec::with_capacity(20 + 4 * (counts.len() + numbers.len()));
     bytes.extend(MAGIC);
-    bytes.extend(besides.flags.to_le_bytes());
+    bytes.extend(extras.flags.to_le_bytes());
     bytes.extend(shown.sim.state.time.to_le_bytes());
     bytes.extend((counts.len() as u32).to_le_bytes());
     counts.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
@@ -319,8 +319,8 @@ fn plots<T: Precision>(s: &Shown<T>, out: &mut Vec<f32>) {
         contacts.len() as f64,
         s.energy[0],
         s.energy[1],
-        1e6 * s.besides.timing.step.as_secs_f64(),
-        s.besides.timing.speed,
+        1e6 * s.extras.timing.step.as_secs_f64(),
+        s.extras.timing.speed,
     ];
     out.extend(numbers.map(|x| x as f32));
 }

@@ -2,7 +2,7 @@
 
 use crate::command::{Command, cone};
 use crate::drag::{Drag, Turn};
-use crate::frame::{Besides, PAUSED, Timing, encode};
+use crate::frame::{FrameExtras, PAUSED, Timing, encode};
 use crate::marks::Marks;
 use crate::viewed::Viewed;
 use clench::math::Real;
@@ -202,26 +202,26 @@ impl Interaction {
             Some((_, Hold::Turn(turn))) => (None, Some(turn)),
             None => (None, None),
         };
-        let mut besides = Besides {
+        let mut extras = FrameExtras {
             flags: if self.paused { PAUSED } else { 0 },
             timing,
             drag,
             turn,
             past,
             marks: marks.at(viewed.time(env)).collect(),
-            ..Besides::default()
+            ..FrameExtras::default()
         };
         if viewed.envs() > 1 {
             let seen = match count {
                 1 => env..env + 1,
                 count => first..(first + count).min(viewed.envs()),
             };
-            besides.chosen = Some([env, first]);
-            besides.envs = seen.clone().map(|env| (env, viewed.fault(env))).collect();
+            extras.chosen = Some([env, first]);
+            extras.envs = seen.clone().map(|env| (env, viewed.fault(env))).collect();
             if count > 1 {
-                viewed.ask_each(seen, |_, sim| besides.add_poses(sim))?;
+                viewed.ask_each(seen, |_, sim| extras.add_poses(sim))?;
             }
         }
-        viewed.ask(env, |sim| encode(sim, &besides))?
+        viewed.ask(env, |sim| encode(sim, &extras))?
     }
 }

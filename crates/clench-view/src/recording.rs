@@ -1,6 +1,6 @@
 //! Frames that are kept, and the page that replays them from a file.
 
-use crate::frame::{Besides, MAGIC, SECTIONS, encode};
+use crate::frame::{FrameExtras, MAGIC, SECTIONS, encode};
 use crate::marks::Marks;
 use crate::{Page, Scene};
 use clench::SimError;
@@ -77,11 +77,11 @@ impl Recording {
         sim: &mut Sim<T>,
         marks: &mut Marks,
     ) -> Result<(), RecordError> {
-        let besides = Besides {
+        let extras = FrameExtras {
             marks: marks.at(sim.state.time).collect(),
-            ..Besides::default()
+            ..FrameExtras::default()
         };
-        let frame = encode(sim, &besides)?;
+        let frame = encode(sim, &extras)?;
         marks.shown();
         let frame = BASE64.encode(&frame);
         if self.bytes + frame.len() > self.limit {

@@ -2,7 +2,7 @@
 
 use clench::{Sim, load_str};
 use clench_view::delta::{DELTA, delta};
-use clench_view::frame::{Besides, SECTIONS, encode};
+use clench_view::frame::{FrameExtras, SECTIONS, encode};
 use std::sync::Arc;
 
 /// A ball that falls, one that rests, and fifty that are part of the world.
@@ -52,7 +52,7 @@ fn a_client_that_missed_frames_still_has_the_right_ones() {
     let mut frames = Vec::new();
     for _ in 0..40 {
         (0..10).for_each(|_| sim.step().unwrap());
-        frames.push(encode(&mut sim, &Besides::default()).unwrap());
+        frames.push(encode(&mut sim, &FrameExtras::default()).unwrap());
     }
     for missed in [1, 3, 17] {
         let mut seen = frames[0].clone();
@@ -71,7 +71,7 @@ fn what_rests_is_not_sent_again() {
     let mut sim = Sim::<f64>::new(Arc::new(load_str(SCENE).unwrap())).unwrap();
     let mut frame = || {
         sim.step().unwrap();
-        encode(&mut sim, &Besides::default()).unwrap()
+        encode(&mut sim, &FrameExtras::default()).unwrap()
     };
     let (first, second) = (frame(), frame());
     let changed = delta(&first, &second).unwrap();

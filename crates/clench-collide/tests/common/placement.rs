@@ -4,6 +4,15 @@ use super::{Random, Scene, V, fields, hulls, mesh_hull};
 use clench_collide::{Pose, Shape, ShapeKind};
 use clench_math::{Quat, Vec3};
 
+/// How many numbers the size of a shape has.
+pub fn size_count(kind: ShapeKind) -> usize {
+    match kind {
+        ShapeKind::Sphere => 1,
+        ShapeKind::Capsule | ShapeKind::Cylinder => 2,
+        _ => 3,
+    }
+}
+
 /// How two shapes are placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placement {
@@ -123,13 +132,9 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     let (a, mut b) = (shape(random, kinds.0), shape(random, kinds.1));
     let is_terrain = a.kind() == ShapeKind::HeightField;
     if random.unit() < 0.2 && mesh_hull(&a) == mesh_hull(&b) && !is_terrain {
-        // The sizes of the first, as far as it has them.
-        let mut size = a.size();
-        for i in 0..3 {
-            if size[i] == 0.0 {
-                size[i] = b.size()[i];
-            }
-        }
+        // The sizes of the first, as many as it has.
+        let mut size = b.size();
+        (0..size_count(a.kind())).for_each(|i| size[i] = a.size()[i]);
         b = b.resized(size);
     }
     let (rotation_a, rotation_b) = (rotation(random), rotation(random));
