@@ -62,7 +62,7 @@ fn points<S: Scalar>(
     let boxes = BoxPair::new(a, b, margin);
     let (feature, separation) = boxes.touching_feature()?;
     match feature {
-        Feature::Face { owner, axis } => {
+        TouchingFeature::Face { owner, axis } => {
             boxes.face_contact(owner, axis, points);
             let least = points
                 .iter()
@@ -71,12 +71,12 @@ fn points<S: Scalar>(
                 return Ok(());
             }
         }
-        Feature::Edges(i, j) if separation <= S::ZERO => {
+        TouchingFeature::Edges(i, j) if separation <= S::ZERO => {
             let normal = boxes.edge_normal(i, j);
             convex::points_along((a.any(), b.any()), (normal, separation), margin, points);
             return Ok(());
         }
-        Feature::Edges(..) => {}
+        TouchingFeature::Edges(..) => {}
     }
     points.clear();
     convex::points(a.any(), b.any(), margin, points)
@@ -87,7 +87,7 @@ type EdgePair = (usize, usize);
 
 /// What touches what.
 #[derive(Clone, Copy)]
-enum Feature {
+enum TouchingFeature {
     /// A face across `axis` of box `owner` (0 or 1).
     Face { owner: usize, axis: usize },
     /// An edge along an axis of each box.
@@ -135,7 +135,7 @@ impl<S: Scalar> BoxPair<S> {
     ///
     /// # Errors
     /// That is beyond reach: its normal towards the second box, in the frame of the first.
-    fn touching_feature(&self) -> Result<(Feature, S), Vec3<S>> {
+    fn touching_feature(&self) -> Result<(TouchingFeature, S), Vec3<S>> {
         let (face, face_separation) = self.best_face()?;
         let (edges, separation) = self.best_edges(face_separation)?;
         let Some((i, j)) = edges else {
@@ -143,15 +143,17 @@ impl<S: Scalar> BoxPair<S> {
         };
         let (direction, _) = self.edge_axis(i, j).normalize();
         let along_face = match face {
-            Feature::Face { owner: 0, axis } => direction[axis].abs(),
-            Feature::Face { axis, .. } => self.rotation[0].column(axis).dot(direction).abs(),
-            Feature::Edges(..) => S::ZERO,
+            TouchingFeature::Face { owner: 0, axis } => direction[axis].abs(),
+            TouchingFeature::Face { axis, .. } => {
+                self.rotation[0].column(axis).dot(direction).abs()
+            }
+            TouchingFeature::Edges(..) => S::ZERO,
         };
         let share = S::new(ALIAS_SHARE) * face_separation.abs() + S::new(1e-15);
         let alias = along_face > S::new(ALIAS_COSINE) && separation < face_separation + share;
         Ok(match alias {
             true => (face, face_separation),
-            false => (Feature::Edges(i, j), separation),
+            false => (TouchingFeature::Edges(i, j), separation),
         })
     }
 
@@ -159,10 +161,10 @@ impl<S: Scalar> BoxPair<S> {
     ///
     /// # Errors
     /// Some face separates the boxes: its normal.
-    fn best_face(&self) -> Result<(Feature, S), Vec3<S>> {
+    fn best_face(&self) -> Result<(TouchingFeature, S), Vec3<S>> {
         let (owner, axis) = (0, 0);
         let first = self.face_separation(owner, axis);
-        let mut best = (Feature::Face { owner, axis }, first);
+        let mut best = (TouchingFeature::Face { owner, axis }, first);
         for owner in 0..2 {
             for axis in 0..3 {
                 let separation = self.face_separation(owner, axis);
@@ -170,7 +172,7 @@ impl<S: Scalar> BoxPair<S> {
                     return Err(self.face_normal(owner, axis));
                 }
                 if separation > best.1 {
-                    best = (Feature::Face { owner, axis }, separation);
+                    best = (TouchingFeature::Face { owner, axis }, separation);
                 }
             }
         }

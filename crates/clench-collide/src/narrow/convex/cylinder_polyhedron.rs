@@ -24,8 +24,8 @@ use super::{
     pair::{Gap, Pair},
     prism::{EDGES, FACES, Prism},
 };
-use crate::Cuboid;
 use crate::hull::{FEW_FACES, Hull};
+use crate::{Cuboid, Cylinder};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
@@ -33,7 +33,7 @@ use clench_math::{Mat3, Scalar, Vec3};
 pub(super) fn prism_gap<S: Scalar>(
     pair: &Pair<S>,
     prism: &Prism<S>,
-    cylinder: &crate::Cylinder<S>,
+    cylinder: &Cylinder<S>,
     limit: S,
 ) -> Gap<S> {
     let (corners, normals) = (prism.corners(), prism.normals());
@@ -51,7 +51,7 @@ pub(super) fn prism_gap<S: Scalar>(
             turn: (cosine, (S::ONE - cosine * cosine).max(S::ZERO).sqrt()),
         }
     });
-    let cylinder = Cylinder {
+    let cylinder = FramedCylinder {
         axis: pair.rotation.column(2),
         middle: pair.offset,
         radius: cylinder.radius,
@@ -69,7 +69,7 @@ pub(super) fn prism_gap<S: Scalar>(
 /// The largest gap of a cylinder and a box if it is not positive, else one that is.
 pub(super) fn box_gap<S: Scalar>(
     pair: &Pair<S>,
-    cylinder: &crate::Cylinder<S>,
+    cylinder: &Cylinder<S>,
     cuboid: &Cuboid<S>,
     limit: S,
 ) -> Gap<S> {
@@ -97,13 +97,13 @@ pub(super) fn box_gap<S: Scalar>(
             turn: (S::ZERO, S::ONE),
         }
     });
-    Cylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit)
+    FramedCylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit)
 }
 
 /// The largest gap of a cylinder and a hull if it is not positive, else one that is; nothing where the hull has many faces.
 pub(super) fn hull_gap<S: Scalar>(
     pair: &Pair<S>,
-    cylinder: &crate::Cylinder<S>,
+    cylinder: &Cylinder<S>,
     hull: &Hull,
     limit: S,
 ) -> Option<Gap<S>> {
@@ -120,11 +120,11 @@ pub(super) fn hull_gap<S: Scalar>(
         faces: crease.faces,
         turn: (S::new(crease.turn.0), S::new(crease.turn.1)),
     });
-    Some(Cylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit))
+    Some(FramedCylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit))
 }
 
 /// A cylinder in the frame of a polyhedron.
-struct Cylinder<S> {
+struct FramedCylinder<S> {
     axis: Vec3<S>,
     middle: Vec3<S>,
     radius: S,
@@ -170,10 +170,10 @@ impl<S: Scalar> PolyhedronEdge<S> {
     }
 }
 
-impl<S: Scalar> Cylinder<S> {
+impl<S: Scalar> FramedCylinder<S> {
     /// The first of a pair, in the frame of the second.
-    fn first(pair: &Pair<S>, shape: &crate::Cylinder<S>) -> Self {
-        Cylinder {
+    fn first(pair: &Pair<S>, shape: &Cylinder<S>) -> Self {
+        FramedCylinder {
             axis: pair.rotation.rows[2],
             middle: -pair.rotation.transpose_mul(pair.offset),
             radius: shape.radius,

@@ -20,15 +20,13 @@ use super::{
     largest_gap::LargestGap,
     pair::{Gap, Pair},
 };
+use crate::Cylinder;
 use crate::shape::Solid;
 use clench_math::{Scalar, Vec3};
 
 /// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two cap circles,
 /// or no common point is at hand; nothing where the axes are parallel.
-pub(super) fn largest_gap<S: Scalar>(
-    pair: &Pair<S>,
-    shapes: [&crate::Cylinder<S>; 2],
-) -> Option<Gap<S>> {
+pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) -> Option<Gap<S>> {
     let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
     let (cosine, sine) = (
         axes[1].z,
@@ -40,7 +38,7 @@ pub(super) fn largest_gap<S: Scalar>(
     let least = pair.largest * S::EPSILON;
     let inverse = S::ONE / sine;
     let across = Vec3::new(-axes[1].y * inverse, axes[1].x * inverse, S::ZERO);
-    let cylinder = |i: usize, side: Vec3<S>, offset: Vec3<S>| Cylinder {
+    let cylinder = |i: usize, side: Vec3<S>, offset: Vec3<S>| SkewCylinder {
         radius: shapes[i].radius.max(least),
         half: shapes[i].half_length,
         side,
@@ -80,7 +78,7 @@ pub(super) fn largest_gap<S: Scalar>(
 }
 
 /// Whether a direction across two cap circles may have a smaller depth than `depth`.
-fn circles_cross<S: Scalar>([a, b]: &[Cylinder<S>; 2], angle: (S, S), depth: S) -> bool {
+fn circles_cross<S: Scalar>([a, b]: &[SkewCylinder<S>; 2], angle: (S, S), depth: S) -> bool {
     ENDS.into_iter().any(|ends| {
         let [end, other] = ends.map(S::new);
         a.near_circle(b, [end, other], angle, depth) && b.near_circle(a, [other, end], angle, depth)
@@ -88,16 +86,12 @@ fn circles_cross<S: Scalar>([a, b]: &[Cylinder<S>; 2], angle: (S, S), depth: S) 
 }
 
 /// Whether the axes' nearest points are within both cylinders: then they overlap, if no gap is across both axes.
-fn axes_pass<S: Scalar>([a, b]: &[Cylinder<S>; 2], sine: S) -> bool {
+fn axes_pass<S: Scalar>([a, b]: &[SkewCylinder<S>; 2], sine: S) -> bool {
     a.offset[1].abs() <= b.half * sine && b.offset[1].abs() <= a.half * sine
 }
 
 /// Whether the deepest point of one, along the normal, is within the other.
-fn deepest_inside<S: Scalar>(
-    pair: &Pair<S>,
-    [a, b]: [&crate::Cylinder<S>; 2],
-    normal: Vec3<S>,
-) -> bool {
+fn deepest_inside<S: Scalar>(pair: &Pair<S>, [a, b]: [&Cylinder<S>; 2], normal: Vec3<S>) -> bool {
     let deepest = pair.vertex(normal);
     a.contains(pair.offset + pair.rotation * deepest.b)
         || b.contains(pair.rotation.transpose_mul(deepest.a - pair.offset))
@@ -107,7 +101,7 @@ fn deepest_inside<S: Scalar>(
 const ENDS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
 
 /// A cylinder, and where the other one is from its middle: across both axes, along `side`, and along its own axis.
-struct Cylinder<S> {
+struct SkewCylinder<S> {
     radius: S,
     half: S,
     /// The unit direction across its axis towards the axis of the other.
@@ -115,7 +109,7 @@ struct Cylinder<S> {
     offset: [S; 3],
 }
 
-impl<S: Scalar> Cylinder<S> {
+impl<S: Scalar> SkewCylinder<S> {
     /// Whether a cap circle of another cylinder passes within `depth` of this one's cap and side, inside, at one of its ends; `ends` select
     /// that end and the circle. (Or it may pass.)
     ///
