@@ -17,6 +17,11 @@ pub fn msh(data: &[u8]) -> bool {
     mesh("msh", data)
 }
 
+/// A mesh in Collada.
+pub fn dae(data: &[u8]) -> bool {
+    mesh("dae", data)
+}
+
 /// A height field from an image. Its checksums are made right first: what they keep out is no concern of the readers behind
 /// them.
 pub fn png(data: &[u8]) -> bool {

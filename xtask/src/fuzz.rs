@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
 /// The targets, by the names of their folders in `fuzz/seeds`.
-const TARGETS: [&str; 10] = [
-    "mjcf", "urdf", "stl", "obj", "msh", "png", "grid", "npy", "states", "contacts",
+const TARGETS: [&str; 11] = [
+    "mjcf", "urdf", "stl", "obj", "msh", "dae", "png", "grid", "npy", "states", "contacts",
 ];
 
 /// What the compiler adds so that libFuzzer sees which code runs: its coverage pass is part of stable Rust.

@@ -135,10 +135,23 @@ fn count_newlines(bytes: &[u8]) -> u32 {
     bytes.iter().filter(|&&b| b == b'\n').count() as u32
 }
 
-/// Bounds what the parser does that grows with the square of a file, before it does.
+/// More of something in a text than there may be.
+pub(crate) struct Excess {
+    line: u32,
+    message: String,
+}
+
+impl std::fmt::Display for Excess {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "line {}: {}", self.line, self.message)
+    }
+}
+
+/// How many elements, attributes, comments and the like a text has at most.
 ///
-/// A value cannot contain `<`, so a tag has no more attributes than there are `=` up to the next `<`.
-fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(), LoadError> {
+/// Bounds what the parser does that grows with the square of a file, before it does. A value cannot contain `<`, so a tag has no
+/// more attributes than there are `=` up to the next `<`.
+pub(crate) fn count_marks(text: &str) -> Result<u64, Excess> {
     let (mut marks, mut namespaces, mut at) = (0, 0, 0);
     while let Some(found) = text[at..].find('<') {
         let start = at + found;
@@ -156,7 +169,7 @@ fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(
                 let tag = rest[1..].split('<').next().unwrap_or_default();
                 let attributes = tag.bytes().filter(|&b| b == b'=').count();
                 namespaces += tag.matches("xmlns").count();
-                let excess = if attributes > MAX_ATTRIBUTES {
+                let message = if attributes > MAX_ATTRIBUTES {
                     format!("an element has more than {MAX_ATTRIBUTES} attributes")
                 } else if namespaces > MAX_NAMESPACES {
                     format!("there are more than {MAX_NAMESPACES} declarations of namespaces")
@@ -166,12 +179,19 @@ fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(
                     continue;
                 };
                 let line = 1 + count_newlines(&text.as_bytes()[..start]);
-                return Err(LoadError::line(file, line, excess));
+                return Err(Excess { line, message });
             }
         };
         marks += 1;
         at = start + length;
     }
+    Ok(marks)
+}
+
+/// Takes what the parser will, before it does.
+fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(), LoadError> {
+    let marks = count_marks(text)
+        .map_err(|Excess { line, message }| LoadError::line(file, line, message))?;
     let bytes = 3 * text.len() as u64 + MARK * marks;
     spending
         .bytes(bytes)

@@ -1,9 +1,10 @@
-//! Meshes: triangles from STL, OBJ and MSH files, and those that a model asks for by name.
+//! Meshes: triangles from STL, OBJ, MSH and Collada files, and those that a model asks for by name.
 //!
 //! A reader takes the bytes of a file and says what is wrong with them; who asked for the file adds which one it was. Counts that a
 //! file claims are held against its length before anything is allocated.
 
 pub(crate) mod builtin;
+mod collada;
 mod ears;
 mod msh;
 mod obj;
@@ -30,6 +31,7 @@ pub(crate) enum Format {
     Stl,
     Obj,
     Msh,
+    Collada,
 }
 
 impl Format {
@@ -39,6 +41,7 @@ impl Format {
             "stl" => Some(Format::Stl),
             "obj" => Some(Format::Obj),
             "msh" => Some(Format::Msh),
+            "dae" => Some(Format::Collada),
             _ => None,
         }
     }
@@ -48,6 +51,7 @@ impl Format {
             "model/stl" => Some(Format::Stl),
             "model/obj" => Some(Format::Obj),
             "model/vnd.mujoco.msh" => Some(Format::Msh),
+            "model/vnd.collada+xml" => Some(Format::Collada),
             _ => None,
         }
     }
@@ -65,6 +69,7 @@ pub(crate) fn read(bytes: Vec<u8>, format: Format) -> Result<Triangles, String> 
         Format::Stl => stl::read(bytes),
         Format::Obj => obj::read(&bytes),
         Format::Msh => msh::read(&bytes),
+        Format::Collada => collada::read(&bytes),
     }?;
     check(&found)?;
     Ok(found)

@@ -114,7 +114,8 @@ fn read_or_written(
         Some(media_type) => Format::from_media_type(media_type),
         None => Format::from_extension(&file.extension),
     };
-    let wrong = || element.error("a mesh file is STL, OBJ or MSH, and its name says which");
+    let wrong =
+        || element.error("a mesh file is STL, OBJ, MSH or Collada (.dae), and its name says which");
     let format = format.ok_or_else(wrong)?;
     let found = file.parse(element, |bytes| mesh::read(bytes, format))?;
     merge(found, written, element)

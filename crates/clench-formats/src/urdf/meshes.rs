@@ -63,7 +63,7 @@ impl<'a> Meshes<'a> {
         let mut file = Content::open(path, element, spending)?;
         let format = Format::from_extension(&file.extension).ok_or_else(|| {
             element.error(format!(
-                "\"{written}\" is no mesh that can be read: its name must end in .stl, .obj or .msh"
+                "\"{written}\" is no mesh that can be read: its name must end in .stl, .obj, .dae or .msh"
             ))
         })?;
         let triangles = file.parse(element, |bytes| mesh::read(bytes, format))?;
