@@ -255,3 +255,28 @@ fn cylinders_apart_by_a_micrometre_do_not_touch() {
     };
     assert!(scene.deepest().is_none(), "{:?}", scene.deepest());
 }
+
+/// Two cylinders about one axis, but for rounding, are as far apart along every direction across it.
+#[test]
+fn the_normal_of_coaxial_cylinders_does_not_turn_with_rounding() {
+    let cylinder = |radius, half| Shape::new(ShapeKind::Cylinder, V::new(radius, half, 0.0));
+    let mut random = Random(34);
+    for _ in 0..100 {
+        let any = random.direction();
+        let noise = V::new(any.x, any.y, 0.0) * 1e-17;
+        let tilt = Quat::from_rotation_vector(random.direction() * 1e-16);
+        let scene = Scene {
+            a: cylinder(0.01, 0.2),
+            pose_a: Pose::IDENTITY,
+            b: cylinder(0.02, 0.1),
+            pose_b: Pose {
+                position: V::new(0.0, 0.0, 0.05) + noise,
+                rotation: tilt.to_matrix(),
+            },
+            margin: 0.0,
+        };
+        let deepest = scene.deepest().expect("one is around the other");
+        assert_eq!(deepest.frame.rows[0], V::new(1.0, 0.0, 0.0), "{scene:?}");
+        assert!((deepest.distance + 0.03).abs() < 1e-15, "{deepest:?}");
+    }
+}

@@ -168,6 +168,11 @@ impl<S: Scalar> ProjectedFeature<S> {
             return;
         }
         let corners = &cut.corners;
+        // What holds all corners holds the face.
+        if corners.iter().all(|p| self.covers(*p, slack)) {
+            corners.iter().for_each(|corner| over.push(*corner));
+            return;
+        }
         for (k, &p) in corners.iter().enumerate() {
             if self.covers(p, slack) {
                 over.push(p);

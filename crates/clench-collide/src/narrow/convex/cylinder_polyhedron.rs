@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A corner on the side matters only where all of the polyhedron is beside the axis, and then it is the corner nearest to it.
-//! ProjectedFeature along b the cap circle is an ellipse, the edge a point, and n the normal of the ellipse that goes through that point.
+//! Seen along b the cap circle is an ellipse, the edge a point, and n the normal of the ellipse that goes through that point.
 //!
 //! An edge touches along the directions between the normals of its faces. Let g be the gap through the edge on the way from one
 //! of them, m, to a direction n at the angle θ where it is as large as it gets. A support function and its second derivative have
@@ -288,7 +288,7 @@ impl<S: Scalar> FramedCylinder<S> {
         let across = across * (S::ONE / sine);
         let inward = [m.outward.cross(edge.along), edge.along.cross(n.outward)];
         let from_middle = edge.start - self.middle;
-        // ProjectedFeature along the edge, with x across the axis, the edge is where x is positive.
+        // Seen along the edge, with x across the axis, the edge is where x is positive.
         let x = across.dot(from_middle);
         let side = S::ONE.copysign(x);
         let (x, out) = (x.abs(), inward.map(|d| across.dot(d) * side));

@@ -9,7 +9,7 @@
 //! z × u      a side across a side      any other n      a circle across a circle
 //! ```
 //!
-//! ProjectedFeature along its axis a cylinder is a circle, the other a rectangle with halves of an ellipse at its ends; their middle lines are
+//! Seen along its axis a cylinder is a circle, the other a rectangle with halves of an ellipse at its ends; their middle lines are
 //! the same, so the smallest depth is in the quarter that the offset points to.
 //!
 //! A direction across two cap circles with a depth below d joins one to the other: each passes within d of both the cap and the
@@ -22,18 +22,19 @@ use super::{
 };
 use crate::Cylinder;
 use crate::shape::Solid;
-use clench_math::{Scalar, Vec3};
+use clench_math::{Mat3, Scalar, Vec3};
 
 /// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two cap circles,
-/// or no common point is at hand; nothing where the axes are parallel.
-pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) -> Option<Gap<S>> {
+/// or no common point is at hand.
+pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) -> Gap<S> {
     let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
     let (cosine, sine) = (
         axes[1].z,
         (axes[1].x.squared() + axes[1].y.squared()).sqrt(),
     );
-    if sine <= S::EPSILON {
-        return None;
+    // No point of either is moved noticeably by so small a tilt.
+    if sine * pair.largest <= pair.tolerance {
+        return parallel(pair);
     }
     let least = pair.largest * S::EPSILON;
     let inverse = S::ONE / sine;
@@ -70,11 +71,28 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) 
     let settled = best.gap > S::ZERO
         || (!circles_cross(&cylinders, (cosine, sine), -best.gap)
             && (axes_pass(&cylinders, sine) || deepest_inside(pair, shapes, best.normal)));
-    Some(Gap {
+    Gap {
         normal: best.normal,
         gap: best.gap,
         settled,
-    })
+    }
+}
+
+/// The same where the axes are parallel: then the difference is a cylinder too, which is left across a cap or across its side.
+fn parallel<S: Scalar>(pair: &Pair<S>) -> Gap<S> {
+    let (x, y) = (pair.offset.x, pair.offset.y);
+    let (side, distance) = Vec3::new(x, y, S::ZERO).normalize();
+    // Around a common axis all directions are as good, and one that turns with the first body stays.
+    let side = if distance > pair.tolerance {
+        side
+    } else {
+        Mat3::IDENTITY.rows[0]
+    };
+    let along = Vec3::new(S::ZERO, S::ZERO, S::ONE.copysign(pair.offset.z));
+    let mut best = pair.gap(along);
+    best.improve(pair.gap(side), S::ZERO);
+    best.settled = true;
+    best
 }
 
 /// Whether a direction across two cap circles may have a smaller depth than `depth`.

@@ -67,7 +67,7 @@ pub(super) fn points<S: Scalar>(
         (Shape::Cylinder(a), Shape::Box(b)) => {
             Some(cylinder_polyhedron::box_gap(&pair, a, b, margin))
         }
-        (Shape::Cylinder(a), Shape::Cylinder(b)) => cylinders::largest_gap(&pair, [a, b]),
+        (Shape::Cylinder(a), Shape::Cylinder(b)) => Some(cylinders::largest_gap(&pair, [a, b])),
         (Shape::Cylinder(a), Shape::Mesh(b)) => {
             let gap = |hull| cylinder_polyhedron::hull_gap(&pair, a, hull, margin);
             b.hull.and_then(gap)

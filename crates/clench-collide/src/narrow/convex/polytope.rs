@@ -84,7 +84,7 @@ impl<S: Scalar> Polytope<S> {
         for vertex in [a, b, c, d] {
             self.vertices.push(*vertex);
         }
-        // ProjectedFeature against d, the first face turns counter-clockwise now.
+        // Seen against d, the first face turns counter-clockwise now.
         for (number, (corners, across)) in [
             ([0, 1, 2], [(1, 0), (2, 0), (3, 0)]),
             ([1, 0, 3], [(0, 0), (3, 2), (2, 1)]),
@@ -100,11 +100,12 @@ impl<S: Scalar> Polytope<S> {
     }
 
     /// Puts a face in the place of that with a number, or after the last.
+    #[inline(always)]
     fn insert(&mut self, number: usize, corners: [u8; 3], across: [HalfEdge; 3]) {
         let [a, b, c] = corners.map(|k| self.vertices[k as usize].w);
         let normal = (b - a).cross(c - a);
         let area = normal.norm();
-        // A face without area, to rounding, may even find_horizon inwards.
+        // A face without area, to rounding, may even look inwards.
         let flat = normal.dot(a - self.middle) <= area * self.rounding;
         let normal = if flat {
             Vec3::ZERO
@@ -191,30 +192,38 @@ impl<S: Scalar> Polytope<S> {
         self.visible.push(face as u8);
     }
 
-    /// Removes a face, entered across one of its sides, and its neighbours as far as they are visible from `w`; lists the sides
-    /// where that ends, the horizon.
-    fn find_horizon(&mut self, entered: HalfEdge, w: Vec3<S>) {
-        let face = &self.faces[entered.face as usize];
+    /// Looks at the face across a side: one that `w` does not see ends there, at the horizon; others are removed, with what lies
+    /// behind them.
+    #[inline(always)]
+    fn find_horizon(&mut self, across: HalfEdge, w: Vec3<S>) {
+        let face = &self.faces[across.face as usize];
         if face.removed {
             return;
         }
         // One without area has no normal and goes with its neighbours.
         let has_area = face.normal != Vec3::ZERO;
         if has_area && face.normal.dot(w) - face.distance <= self.rounding {
-            let from = entered.side as usize;
+            let from = across.side as usize;
             let to = if from == 2 { 0 } else { from + 1 };
             let edge = HorizonEdge {
-                side: entered,
+                side: across,
                 ends: [face.corners[from], face.corners[to]],
             };
             // A side is listed once, unless the polytope is broken, and then the horizon is not closed.
             let _ = self.horizon.try_push(edge);
             return;
         }
-        let across = face.across;
+        self.remove_from(across, &w);
+    }
+
+    /// Removes a face, entered across one of its sides, and its neighbours as far as they are visible from `w`. Few are: so the look at
+    /// each, which mostly ends there, is part of its callers, and this is a call.
+    #[inline(never)]
+    fn remove_from(&mut self, entered: HalfEdge, w: &Vec3<S>) {
+        let across = self.faces[entered.face as usize].across;
         self.remove(entered.face as usize);
         for turn in 1..3 {
-            self.find_horizon(across[(entered.side as usize + turn) % 3], w);
+            self.find_horizon(across[(entered.side as usize + turn) % 3], *w);
         }
     }
 
