@@ -80,6 +80,9 @@ fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usi
 
 /// A state of the model's lengths.
 pub(crate) fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimError> {
+    if s.fits(model) {
+        return Ok(());
+    }
     for (field, found) in FIELDS.iter().zip(s.lengths()) {
         check_length(field.name, found, field.numbers(model))?;
     }

@@ -40,6 +40,7 @@ pub struct Sim<T: Precision = f64> {
     settings: StepSettings,
     ws: Workspace<T>,
     initial: State<T>,
+    /// What the present step writes of the state, as it was before.
     last_good: State<T>,
     known: Known<T>,
     /// Whether the workspace holds the first half of a step, and nothing after it.
@@ -124,7 +125,7 @@ impl<T: Precision> Sim<T> {
     fn try_step(&mut self) -> Result<(), SimError> {
         self.ws.clock.start();
         self.check_present()?;
-        self.last_good.copy_from(&self.state);
+        self.last_good.copy_moving_from(&self.state);
         self.ws.clock.lap(Stage::Rows as usize);
         T::step(
             &self.model,
@@ -136,7 +137,7 @@ impl<T: Precision> Sim<T> {
         let result = self.check_result(self.last_good.time);
         self.note(&result);
         if result.is_err() {
-            self.state.copy_from(&self.last_good);
+            self.state.copy_moving_from(&self.last_good);
         }
         self.ws.clock.lap(Stage::Rows as usize);
         result

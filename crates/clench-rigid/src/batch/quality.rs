@@ -198,6 +198,9 @@ fn deepest<T: Real>(place: Place<T>, lane: usize) -> Option<DeepContact> {
     let mut deepest = None;
     for contact in (place.ws.contacts.iter()).filter(|contact| contact.active.lane(lane)) {
         let depth = -number(contact.dist);
+        if depth <= number(half_thickness(place, contact)) {
+            continue;
+        }
         let excess = number(contact.includemargin) + depth;
         let explained = contact.block.map_or(f64::INFINITY, |block| {
             explained(
@@ -209,7 +212,7 @@ fn deepest<T: Real>(place: Place<T>, lane: usize) -> Option<DeepContact> {
                 (contact.solref, contact.solimp),
             )
         });
-        if depth > number(half_thickness(place, contact)) && excess > explained {
+        if excess > explained {
             let geoms = contact.geoms;
             deepest = worse(deepest, Some(DeepContact { geoms, depth }));
         }

@@ -39,7 +39,7 @@ impl<T: Precision> Sim<T> {
         }
         self.halfway = false;
         self.check_present()?;
-        self.last_good.copy_from(&self.state);
+        self.last_good.copy_moving_from(&self.state);
         T::step_from_forces(
             &self.model,
             &self.params,
@@ -53,7 +53,7 @@ impl<T: Precision> Sim<T> {
             self.ws.clock.lap(Stage::Rows as usize);
             return result;
         }
-        self.state.copy_from(&self.last_good);
+        self.state.copy_moving_from(&self.last_good);
         if self.settings.autoreset {
             // It fails once more, and starts over as the options say.
             return self.step();

@@ -128,6 +128,11 @@ macro_rules! declare_state {
                 [$($(self.$name.len() * <kind::$kind as Kind>::WIDTH),*),*].into_iter()
             }
 
+            /// Whether every field has as many elements as the model says.
+            pub(crate) fn fits(&self, model: &Model) -> bool {
+                $($(self.$name.len() == Size::$size.of(model))&&*)&&*
+            }
+
             /// Takes over another state of the same model, without allocating.
             pub fn copy_from(&mut self, other: &Self) {
                 self.time = other.time;
@@ -137,6 +142,21 @@ macro_rules! declare_state {
     };
 }
 crate::state_fields!(declare_state);
+
+macro_rules! declare_moving {
+    (moving { $(
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* } $($others:tt)*) => {
+        impl<T: Real> State<T> {
+            /// Takes over from another state of the same model what a step writes, without allocating.
+            pub(crate) fn copy_moving_from(&mut self, other: &Self) {
+                self.time = other.time;
+                $(self.$name.clone_from(&other.$name);)*
+            }
+        }
+    };
+}
+crate::state_fields!(declare_moving);
 
 impl<T: Real> Eq for State<T> {}
 
