@@ -7,7 +7,7 @@
 use clench::Model;
 use std::ops::Range;
 
-/// Steps between two looks at the energy.
+/// Steps between two comparisons of the energy with what was supplied.
 pub(crate) const STEPS_BETWEEN_CHECKS: usize = 50;
 
 /// The share of the kinetic energy that an integrator may get wrong.
