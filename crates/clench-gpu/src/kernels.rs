@@ -68,7 +68,7 @@ kernels! {
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "noslip", "newton";
     /// Accelerations of bodies and forces between them, where somebody asks.
-    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "external", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "external", "body_forces";
     /// What sensors measure, where somebody asks.
     SENSORS = "sensors", Thread: "chains", "site_volume", "sensors";
     /// Whether what they found is within bounds.

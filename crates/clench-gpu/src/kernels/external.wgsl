@@ -86,13 +86,13 @@ fn push_strings() {
             force += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]) * parameter(PULL_GEAR + k);
         }
         for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
-            let start = words[SECTION_SITES + 2u * s];
-            let to = words[SECTION_SITES + 2u * s + 1u];
-            let p = fetch3(SITE_XPOS + 3u * start);
-            let q = fetch3(SITE_XPOS + 3u * to);
-            let pull = direction(q - p).xyz * (parameter(SECTION_SHARE + s) * force);
-            push(words[SITE_BODY + start], -1.0, pull, vec3f(), p);
-            push(words[SITE_BODY + to], 1.0, pull, vec3f(), q);
+            let path = section_path(s);
+            for (var k = 0u; k < bound(span_count(path)); k++) {
+                let span = span_of(s, path, k);
+                let pull = direction(span.last - span.first).xyz * (parameter(SECTION_SHARE + s) * force);
+                push(span.bodies.x, -1.0, pull, vec3f(), span.first);
+                push(span.bodies.y, 1.0, pull, vec3f(), span.last);
+            }
         }
     }
 }

@@ -27,32 +27,14 @@ fn add_span(t: u32, a: u32, p: vec3f, b: u32, q: vec3f, pull: vec3f) {
 fn spatial_tendon(t: u32) -> f32 {
     var length = 0.0;
     for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
-        let start = words[SECTION_SITES + 2u * s];
-        let to = words[SECTION_SITES + 2u * s + 1u];
         let share = parameter(SECTION_SHARE + s);
-        let p = fetch3(SITE_XPOS + 3u * start);
-        let q = fetch3(SITE_XPOS + 3u * to);
-        let obstacle = words[SECTION_OBSTACLE + 2u * s];
-        var wrapped = Wrapped(false, p, q, 0.0);
-        if (ANY_OBSTACLE && obstacle != NONE) {
-            wrapped = wrap(p, q, obstacle, words[SECTION_OBSTACLE + 2u * s + 1u]);
-        }
-        // A straight string is one span; one that touches a geom has a span to either side of it.
-        for (var k = 0u; k < bound(select(1u, 2u, wrapped.touches)); k++) {
-            var bodies = vec2u(words[SITE_BODY + start], words[SITE_BODY + to]);
-            var first = p;
-            var last = q;
-            if (wrapped.touches && k == 0u) {
-                bodies.y = words[GEOM_BODY + obstacle];
-                last = wrapped.first;
-            } else if (wrapped.touches) {
-                bodies.x = words[GEOM_BODY + obstacle];
-                first = wrapped.last;
-                length += share * wrapped.length;
-            }
-            let apart = direction(last - first);
+        let path = section_path(s);
+        length += select(0.0, share * path.length, path.touches);
+        for (var k = 0u; k < bound(span_count(path)); k++) {
+            let span = span_of(s, path, k);
+            let apart = direction(span.last - span.first);
             length += share * apart.w;
-            add_span(t, bodies.x, first, bodies.y, last, apart.xyz * share);
+            add_span(t, span.bodies.x, span.first, span.bodies.y, span.last, apart.xyz * share);
         }
     }
     return length;

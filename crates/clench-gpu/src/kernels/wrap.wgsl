@@ -177,3 +177,40 @@ fn wrap(p: vec3f, q: vec3f, geom: u32, side: u32) -> Wrapped {
     let on_surface = length(vec2f(found.arc, heights.y - heights.x));
     return Wrapped(touches, center + axes * first, center + axes * last, on_surface);
 }
+
+// A straight part of a string between points of two bodies.
+struct Span {
+    bodies: vec2u,
+    first: vec3f,
+    last: vec3f,
+}
+
+// How the string of a section runs from site to site.
+fn section_path(s: u32) -> Wrapped {
+    let p = fetch3(SITE_XPOS + 3u * words[SECTION_SITES + 2u * s]);
+    let q = fetch3(SITE_XPOS + 3u * words[SECTION_SITES + 2u * s + 1u]);
+    let obstacle = words[SECTION_OBSTACLE + 2u * s];
+    if (ANY_OBSTACLE && obstacle != NONE) {
+        return wrap(p, q, obstacle, words[SECTION_OBSTACLE + 2u * s + 1u]);
+    }
+    return Wrapped(false, p, q, 0.0);
+}
+
+// A straight string is one span; one that touches a geom has a span to either side of it.
+fn span_count(path: Wrapped) -> u32 {
+    return select(1u, 2u, path.touches);
+}
+
+fn span_of(s: u32, path: Wrapped, k: u32) -> Span {
+    let start = words[SECTION_SITES + 2u * s];
+    let to = words[SECTION_SITES + 2u * s + 1u];
+    var span = Span(vec2u(words[SITE_BODY + start], words[SITE_BODY + to]), fetch3(SITE_XPOS + 3u * start), fetch3(SITE_XPOS + 3u * to));
+    if (path.touches && k == 0u) {
+        span.bodies.y = words[GEOM_BODY + words[SECTION_OBSTACLE + 2u * s]];
+        span.last = path.first;
+    } else if (path.touches) {
+        span.bodies.x = words[GEOM_BODY + words[SECTION_OBSTACLE + 2u * s]];
+        span.first = path.last;
+    }
+    return span;
+}
