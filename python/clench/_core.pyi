@@ -222,6 +222,7 @@ class Model:
     body_dofadr: Final[_Codes]  # (nbody,) The first of them, or -1.
     body_geomnum: Final[_Codes]  # (nbody,) How many geoms.
     body_geomadr: Final[_Codes]  # (nbody,) The first of them, or -1.
+    body_user: Final[_Floats]  # (nbody, k) The user's own numbers, of which each body has as many.
 
     jnt_pos: Final[_Floats]  # (njnt, 3) Anchor in the body frame.
     jnt_axis: Final[_Floats]  # (njnt, 3) Unit axis in the body frame.
@@ -240,6 +241,7 @@ class Model:
     jnt_limited: Final[_Flags]  # (njnt,) Whether its range is a limit.
     jnt_actfrclimited: Final[_Flags]  # (njnt,) Whether the force of its actuators is limited.
     jnt_actgravcomp: Final[_Flags]  # (njnt,) Whether gravity compensation counts as actuation.
+    jnt_user: Final[_Floats]  # (njnt, k) The user's own numbers.
 
     dof_armature: Final[_Floats]  # (nv,) Added inertia.
     dof_length: Final[_Floats]  # (nv,) What makes a velocity of a rotation that is compared with `sleep_tolerance`, m.
@@ -276,11 +278,13 @@ class Model:
     geom_condim: Final[_Codes]  # (ngeom,) Dimensions of its contacts.
     geom_priority: Final[_Codes]  # (ngeom,) Whose parameters win.
     geom_group: Final[_Codes]  # (ngeom,) Group.
+    geom_user: Final[_Floats]  # (ngeom, k) The user's own numbers.
 
     site_size: Final[_Floats]  # (nsite, 3) Size of the site's volume, as a geom's.
     site_pos: Final[_Floats]  # (nsite, 3) Position in the body frame.
     site_quat: Final[_Floats]  # (nsite, 4) Orientation in the body frame.
     site_bodyid: Final[_Codes]  # (nsite,) The body that carries it.
+    site_user: Final[_Floats]  # (nsite, k) The user's own numbers.
     cam_pos: Final[_Floats]  # (ncam, 3) Position in the body frame.
     cam_quat: Final[_Floats]  # (ncam, 4) Orientation in the body frame.
     cam_pos0: Final[_Floats]  # (ncam, 3) From the body to the camera in the initial configuration, world axes.
@@ -291,6 +295,7 @@ class Model:
     cam_intrinsic: Final[_Floats]  # (ncam, 4) Focal length and principal point, two numbers each.
     cam_bodyid: Final[_Codes]  # (ncam,) The body that carries it.
     cam_resolution: Final[_Codes]  # (ncam, 2) Pixels: width, height.
+    cam_user: Final[_Floats]  # (ncam, k) The user's own numbers.
 
     wrap_coef: Final[_Floats]  # (nwrap,) What tendons are made of: coefficients of joints, divisors of pulleys, else 0.
     wrap_type: Final[_Codes]  # (nwrap,) 1 joint, 2 pulley, 3 site, 4 sphere, 5 cylinder.
@@ -314,6 +319,7 @@ class Model:
     tendon_solref_fri: Final[_Floats]  # (ntendon, 2) Dry-friction reference dynamics.
     tendon_solimp_fri: Final[_Floats]  # (ntendon, 5) Dry-friction impedance.
     tendon_type: Final[_Codes]  # (ntendon,) 0 fixed, 1 spatial.
+    tendon_user: Final[_Floats]  # (ntendon, k) The user's own numbers.
     tendon_num: Final[_Codes]  # (ntendon,) How many elements its path has.
     tendon_adr: Final[_Codes]  # (ntendon,) The first element of its path, or -1.
     tendon_limited: Final[_Flags]  # (ntendon,) Whether its range is a limit.
@@ -349,6 +355,7 @@ class Model:
     actuator_forcelimited: Final[_Flags]  # (nactuator,) Whether its force is clamped.
     actuator_actlimited: Final[_Flags]  # (nactuator,) Whether its activation is clamped.
     actuator_actearly: Final[_Flags]  # (nactuator,) Whether the activation as of the end of the step acts.
+    actuator_user: Final[_Floats]  # (nactuator, k) The user's own numbers.
 
     sensor_adr: Final[_Codes]  # (nsensor,) The first of its numbers in sensordata.
     sensor_dim: Final[_Codes]  # (nsensor,) How many numbers.
@@ -356,6 +363,7 @@ class Model:
     sensor_delay: Final[_Floats]  # (nsensor,) How late it tells what it measures, s; only where it keeps past values.
     sensor_interval: Final[_Floats]  # (nsensor,) How often it measures, s, without MuJoCo's phase; zero: every step.
     sensor_noise: Final[_Floats]  # (nsensor,) Standard deviation of the noise that is expected; none is added.
+    sensor_user: Final[_Floats]  # (nsensor, k) The user's own numbers.
 
     eq_anchor1: Final[_Floats]  # (neq, 3) Anchor or weld point in the first body's frame.
     eq_anchor2: Final[_Floats]  # (neq, 3) Anchor or weld point in the second body's frame.
@@ -534,6 +542,7 @@ class Element:
     trnid: Final[_Codes]  # (2,) actuator
     trntype: Final[int]  # actuator
     type: Final[int]  # joint, geom, equality
+    user: Final[_Floats]  # (k,) body, joint, geom, site, camera, tendon, actuator, sensor
     vert: Final[_Floats]  # (vertnum, 3) mesh
     vertadr: Final[int]  # mesh
     vertnum: Final[int]  # mesh

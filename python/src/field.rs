@@ -68,6 +68,15 @@ pub(super) fn reals<E>(elements: &[E], number: impl Fn(&E) -> f64) -> Field {
     }
 }
 
+/// The user's own numbers, of which each element has as many.
+pub(crate) fn user_rows<E>(elements: &[E], numbers: impl Fn(&E) -> &[f64]) -> Field {
+    let width = elements.first().map_or(0, |first| numbers(first).len());
+    Field {
+        shape: vec![elements.len(), width],
+        numbers: Numbers::Real(elements.iter().flat_map(numbers).copied().collect()),
+    }
+}
+
 /// Indices and counts are far below 2³¹: no memory holds so many elements.
 pub(crate) fn id(index: usize) -> i32 {
     index as i32

@@ -1,7 +1,9 @@
 //! The fields of a model by name: its parameters, and the structure in MuJoCo's names and codes.
 
 use crate::assets::ASSETS;
-use crate::field::{Field, NONE, Numbers, Reader, codes, first, flags, id, id_or_none, reals};
+use crate::field::{
+    Field, NONE, Numbers, Reader, codes, first, flags, id, id_or_none, reals, user_rows,
+};
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::rigid::model::{
@@ -46,6 +48,7 @@ const STRUCTURE: &[Reader] = &[
     ("body_dofadr", |m| codes(&m.bodies, |b| first(&b.dofs))),
     ("body_geomnum", |m| codes(&m.bodies, |b| id(b.geoms.len()))),
     ("body_geomadr", |m| codes(&m.bodies, |b| first(&b.geoms))),
+    ("body_user", |m| user_rows(&m.bodies, |b| &b.user)),
     ("jnt_type", |m| codes(&m.joints, |j| joint_type(j.kind))),
     ("jnt_bodyid", |m| codes(&m.joints, |j| id(j.body))),
     ("jnt_qposadr", |m| codes(&m.joints, |j| id(j.qpos))),
@@ -56,6 +59,7 @@ const STRUCTURE: &[Reader] = &[
         flags(&m.joints, |j| j.actfrclimited)
     }),
     ("jnt_actgravcomp", |m| flags(&m.joints, |j| j.actgravcomp)),
+    ("jnt_user", |m| user_rows(&m.joints, |j| &j.user)),
     ("dof_bodyid", |m| codes(&m.dofs, |d| id(d.body))),
     ("dof_jntid", |m| codes(&m.dofs, |d| id(d.joint))),
     ("dof_parentid", |m| codes(&m.dofs, |d| id_or_none(d.parent))),
@@ -75,9 +79,12 @@ const STRUCTURE: &[Reader] = &[
     }),
     ("geom_priority", |m| codes(&m.geoms, |g| g.priority)),
     ("geom_group", |m| codes(&m.geoms, |g| g.group)),
+    ("geom_user", |m| user_rows(&m.geoms, |g| &g.user)),
     ("site_bodyid", |m| codes(&m.sites, |s| id(s.body))),
+    ("site_user", |m| user_rows(&m.sites, |s| &s.user)),
     ("cam_bodyid", |m| codes(&m.cameras, |c| id(c.body))),
     ("cam_resolution", resolutions),
+    ("cam_user", |m| user_rows(&m.cameras, |c| &c.user)),
     ("tendon_num", |m| codes(&m.tendons, |t| id(t.coefs.len()))),
     ("tendon_adr", |m| codes(&m.tendons, |t| first(&t.coefs))),
     ("tendon_limited", |m| flags(&m.tendons, |t| t.limited)),
@@ -87,6 +94,7 @@ const STRUCTURE: &[Reader] = &[
     ("tendon_type", |m| {
         codes(&m.tendons, |t| i32::from(t.is_spatial()))
     }),
+    ("tendon_user", |m| user_rows(&m.tendons, |t| &t.user)),
     ("wrap_type", |m| wraps(m, |wrap| wrap.0)),
     ("wrap_objid", |m| wraps(m, |wrap| wrap.1)),
     ("wrap_sideid", |m| wraps(m, |wrap| wrap.2)),
@@ -135,10 +143,12 @@ const STRUCTURE: &[Reader] = &[
         flags(&m.actuators, |a| a.actlimited)
     }),
     ("actuator_actearly", |m| flags(&m.actuators, |a| a.actearly)),
+    ("actuator_user", |m| user_rows(&m.actuators, |a| &a.user)),
     ("sensor_adr", |m| codes(&m.sensors, |s| id(s.numbers.start))),
     ("sensor_dim", |m| codes(&m.sensors, |s| id(s.numbers.len()))),
     ("sensor_cutoff", |m| reals(&m.sensors, |s| s.cutoff)),
     ("sensor_noise", |m| reals(&m.sensors, |s| s.noise)),
+    ("sensor_user", |m| user_rows(&m.sensors, |s| &s.user)),
     ("eq_type", |m| {
         codes(&m.equalities, |e| equality(e.target).0)
     }),

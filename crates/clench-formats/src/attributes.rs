@@ -3,6 +3,7 @@
 use crate::LoadError;
 use crate::document::Element;
 use clench_math::Vec3;
+use std::sync::Arc;
 
 /// Keywords of an attribute and what they stand for.
 pub(crate) type Keywords<'a, T> = &'a [(&'a str, T)];
@@ -115,6 +116,15 @@ impl Element {
             word.parse().map_err(wrong)
         };
         words.map(number).collect()
+    }
+
+    /// Overwrites the user's own numbers of an element if it has any.
+    pub(crate) fn set_user(&self, target: &mut Arc<[f64]>) -> Result<(), LoadError> {
+        let numbers = self.any_numbers("user")?;
+        if !numbers.is_empty() {
+            *target = numbers.into();
+        }
+        Ok(())
     }
 
     /// Overwrites a number if the attribute is there.

@@ -13,6 +13,7 @@ use crate::LoadError;
 use clench_rigid::builder::{ActuatorSpec, HistorySpec};
 use clench_rigid::model::Interpolation;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
+use std::sync::Arc;
 
 /// Overwrites what the element says of past values; fewer samples than none are none, as in MuJoCo.
 pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Result<(), LoadError> {
@@ -47,6 +48,7 @@ pub(crate) struct ActuatorDraft {
     damping: [f64; 3],
     armature: f64,
     group: i32,
+    user: Arc<[f64]>,
 }
 
 impl Default for ActuatorDraft {
@@ -68,6 +70,7 @@ impl Default for ActuatorDraft {
             damping: [0.0; 3],
             armature: 0.0,
             group: 0,
+            user: Arc::default(),
         }
     }
 }
@@ -99,6 +102,7 @@ impl ActuatorDraft {
         element.set_number("armature", &mut self.armature)?;
         element.set_number("cranklength", &mut self.cranklength)?;
         element.set_integer("group", &mut self.group)?;
+        element.set_user(&mut self.user)?;
         if matches!(shortcut, Shortcut::General | Shortcut::Pid) {
             element.set_range("posrange", &mut self.ctrlrange)?;
             element.set_range("velrange", &mut self.velrange)?;
@@ -232,6 +236,7 @@ impl ActuatorDraft {
             actdim: usize::try_from(parameters.actdim).ok().filter(|_| counts),
             actearly: parameters.actearly,
             group: self.group,
+            user: self.user,
             origin: Some(element.origin.clone()),
         })
     }

@@ -183,6 +183,7 @@ impl<'a> BodyReader<'a> {
         let fused = element.keyword("fuse", &[("false", false), ("auto", true)])?;
         body.never_fused = fused == Some(false);
         element.set_number("gravcomp", &mut body.gravcomp)?;
+        element.set_user(&mut body.user)?;
         self.charge(element, size_of::<BodySpec>(), &[&body.name])?;
         if body.mocap {
             self.mocaps.push(element.number);

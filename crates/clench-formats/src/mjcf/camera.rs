@@ -6,6 +6,7 @@ use super::orientation::{Orientation, Pose};
 use crate::LoadError;
 use clench_math::Vec3;
 use clench_rigid::builder::{CameraLens, CameraSpec, CameraTracking};
+use std::sync::Arc;
 
 /// A camera as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
@@ -19,6 +20,7 @@ pub(crate) struct CameraDraft {
     sensorsize: [f64; 2],
     focal: Lengths,
     principal: Lengths,
+    user: Arc<[f64]>,
 }
 
 /// How a camera or light follows bodies.
@@ -50,6 +52,7 @@ impl Default for CameraDraft {
             sensorsize: [0.0; 2],
             focal: Lengths::default(),
             principal: Lengths::default(),
+            user: Arc::default(),
         }
     }
 }
@@ -69,6 +72,7 @@ impl CameraDraft {
             [width, height] => self.resolution = [width, height],
             _ => return Err(element.error("resolution needs 2 numbers: width and height")),
         }
+        element.set_user(&mut self.user)?;
         element.set_numbers("sensorsize", &mut self.sensorsize)?;
         element.set_numbers("focal", &mut self.focal.metres)?;
         element.set_numbers("focalpixel", &mut self.focal.pixels)?;
@@ -95,6 +99,7 @@ impl CameraDraft {
             orthographic: self.orthographic,
             lens: self.lens(element)?,
             resolution: self.resolution.map(|n| usize::try_from(n).unwrap_or(0)),
+            user: self.user,
             origin: Some(element.origin.clone()),
         })
     }

@@ -1,10 +1,11 @@
-//! `<custom>`: what a file keeps for its user's program.
+//! What a file keeps for its user's program: `<custom>`, and how many numbers of the user's own elements have.
 
 use super::document::Element;
 use super::schema;
 use super::sections::entries;
 use crate::LoadError;
 use crate::spending::Spending;
+use clench_rigid::builder::UserWidths;
 use clench_rigid::model::{Custom, TupleEntry};
 
 /// Kinds of elements that a tuple may list.
@@ -44,6 +45,30 @@ pub(crate) fn read(root: &Element, spending: &mut Spending) -> Result<Custom, Lo
         }
     }
     Ok(custom)
+}
+
+/// Reads from a `<size>` how many numbers of the user's own elements have; -1 stands for as many as are given.
+pub(crate) fn read_widths(size: &Element, widths: &mut UserWidths) -> Result<(), LoadError> {
+    let targets = [
+        ("nuser_body", &mut widths.body),
+        ("nuser_jnt", &mut widths.joint),
+        ("nuser_geom", &mut widths.geom),
+        ("nuser_site", &mut widths.site),
+        ("nuser_cam", &mut widths.camera),
+        ("nuser_tendon", &mut widths.tendon),
+        ("nuser_actuator", &mut widths.actuator),
+        ("nuser_sensor", &mut widths.sensor),
+    ];
+    for (name, width) in targets {
+        match size.integer(name)? {
+            None => {}
+            Some(count @ ..-1) => {
+                return Err(size.error(format!("{name} is {count}, less than -1")));
+            }
+            Some(count) => *width = usize::try_from(count).ok(),
+        }
+    }
+    Ok(())
 }
 
 /// As many numbers as `size` says, with zeros at the end, or as `data` has.

@@ -93,6 +93,7 @@ impl GeomDraft {
         }
         read_appearance(element, &mut geom.appearance)?;
         element.set_number("fitscale", &mut geom.fitscale)?;
+        element.set_user(&mut geom.user)?;
         element.overlay("size", &mut self.size)?;
         element.set_numbers("pos", &mut self.pos)?;
         self.orientation.read(element)?;

@@ -31,6 +31,7 @@ pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadE
     element.set_numbers("springdamper", &mut joint.springdamper)?;
     element.set_number("armature", &mut joint.armature)?;
     element.set_number("frictionloss", &mut joint.frictionloss)?;
+    element.set_user(&mut joint.user)?;
     element.overlay("solreflimit", &mut joint.solref_limit)?;
     element.overlay("solimplimit", &mut joint.solimp_limit)?;
     element.overlay("solreffriction", &mut joint.solref_friction)?;

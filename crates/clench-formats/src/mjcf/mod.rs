@@ -112,6 +112,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         .extend(compose::keyframes::resolve(keyframes, root, numbers));
     for size in sections(root, "size") {
         keyframe::pad(size, &mut builder.keyframes)?;
+        custom::read_widths(size, &mut builder.user_widths)?;
     }
     builder.custom = custom::read(root, spending)?;
     if builder.compiler.fusestatic {

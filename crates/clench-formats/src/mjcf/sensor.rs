@@ -11,6 +11,7 @@ use clench_rigid::builder::{
 use clench_rigid::model::{
     Attachment, ContactField, ContactReduction, RayField, SensorData, SensorKind,
 };
+use std::sync::Arc;
 
 /// What all sensors have, before what they are attached to.
 macro_rules! rule {
@@ -18,10 +19,9 @@ macro_rules! rule {
         Rule {
             element: "sensor",
             read: concat!(
-                "name cutoff noise nsample interp delay interval ",
+                "name cutoff noise nsample interp delay interval user ",
                 $attributes
             ),
-            ignored: "user",
             ..NONE
         }
     };
@@ -43,8 +43,8 @@ const GEOMS: Rule = rule!("geom1 geom2 body1 body2");
 /// What the user's numbers belong to and when they are computed matters to the user's program alone.
 const USER: Rule = Rule {
     element: "sensor",
-    read: "name cutoff noise dim datatype",
-    ignored: "user objtype objname needstage",
+    read: "name cutoff noise dim datatype user",
+    ignored: "objtype objname needstage",
     ..NONE
 };
 const PROJECTION: Rule = rule!("site camera");
@@ -113,11 +113,13 @@ pub(crate) fn read(element: &Element, kind: SensorKind) -> Result<SensorSpec, Lo
         noise: 0.0,
         history: HistorySpec::default(),
         interval: [0.0; 2],
+        user: Arc::default(),
         origin: Some(element.origin.clone()),
     };
     element.refuse_negative(&["cutoff", "noise"])?;
     element.set_number("cutoff", &mut spec.cutoff)?;
     element.set_number("noise", &mut spec.noise)?;
+    element.set_user(&mut spec.user)?;
     read_history(element, &mut spec.history)?;
     element.overlay("interval", &mut spec.interval)?;
     Ok(spec)

@@ -9,6 +9,7 @@ use crate::LoadError;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
 use clench_rigid::builder::{AppearanceSpec, SiteSpec};
+use std::sync::Arc;
 
 /// A site as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
@@ -21,6 +22,7 @@ pub(crate) struct SiteDraft {
     fromto: Option<[f64; 6]>,
     group: i32,
     appearance: AppearanceSpec,
+    user: Arc<[f64]>,
 }
 
 impl Default for SiteDraft {
@@ -34,6 +36,7 @@ impl Default for SiteDraft {
             fromto: None,
             group: 0,
             appearance: AppearanceSpec::default(),
+            user: Arc::default(),
         }
     }
 }
@@ -57,6 +60,7 @@ impl SiteDraft {
         self.orientation.read(element)?;
         self.fromto = element.numbers("fromto")?.or(self.fromto);
         element.set_integer("group", &mut self.group)?;
+        element.set_user(&mut self.user)?;
         read_appearance(element, &mut self.appearance)
     }
 
@@ -84,6 +88,7 @@ impl SiteDraft {
             size: self.size,
             group: self.group,
             appearance: self.appearance,
+            user: self.user,
             origin: Some(element.origin.clone()),
         })
     }

@@ -22,6 +22,7 @@ pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<
     element.overlay("solimpfriction", &mut tendon.solimp_friction)?;
     read_appearance(element, &mut tendon.appearance)?;
     element.set_number("width", &mut tendon.width)?;
+    element.set_user(&mut tendon.user)?;
     let mut rest = tendon.springlength.unwrap_or([-1.0; 2]);
     match element.overlay("springlength", &mut rest)? {
         0 => {}

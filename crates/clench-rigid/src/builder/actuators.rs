@@ -11,6 +11,7 @@ use crate::dynamics::orientation;
 use crate::model::{
     Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Transmission,
 };
+use std::sync::Arc;
 
 /// Adds all actuators, and numbers their activations.
 ///
@@ -105,6 +106,7 @@ fn add(
         disabled: (builder.physics.disabled_actuator_groups.iter())
             .any(|&group| i64::from(group) == i64::from(spec.group)),
         group: spec.group,
+        user: Arc::clone(&spec.user),
     });
     model.na += activations;
     transmissions::push_dofs(transmission, model);

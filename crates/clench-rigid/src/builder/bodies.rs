@@ -11,6 +11,7 @@ use super::{
 };
 use crate::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
+use std::sync::Arc;
 
 /// Offsets (m, and parts of a quaternion) below which frames count as equal (MuJoCo's `kFrameEps`).
 const SAME_FRAME: f64 = 1e-6;
@@ -189,6 +190,7 @@ fn push_body(model: &mut Model, spec: &BodySpec, parent: usize, simple_inertia: 
         simple_inertia,
         fluid_ellipsoids: false,
         never_simple: spec.never_simple,
+        user: Arc::clone(&spec.user),
         origin: spec.origin.clone(),
     };
     model.bodies.push(body);

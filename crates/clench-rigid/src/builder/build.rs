@@ -6,6 +6,7 @@ use super::resolve::AllNames;
 use super::{
     BuildError, DEFAULT_DYNAMIC_CONSTRAINTS, actuators, bodies, budget, cameras, check, contacts,
     equalities, fuse, invweight0, keyframes, length_range, lights, sensors, sleep, tendons,
+    user_numbers,
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
@@ -65,6 +66,7 @@ impl ModelBuilder {
         cameras::aim_all(self, &order, &names, &mut model)?;
         lights::aim_all(self, &order, &names, &mut model)?;
         sensors::add_all(self, &names, &mut model)?;
+        user_numbers::pad(self, &mut model)?;
         sleep::add_trees(self, &order, &mut model)?;
 
         let mut pose0 = pose(&model, &model.params.qpos0);

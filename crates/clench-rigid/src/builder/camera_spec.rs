@@ -2,6 +2,7 @@
 
 use super::Origin;
 use clench_math::{Quat, Vec3};
+use std::sync::Arc;
 
 /// How a camera's frame follows bodies.
 #[derive(Clone, Debug, Default)]
@@ -53,6 +54,8 @@ pub struct CameraSpec {
     pub lens: CameraLens,
     /// Pixels: width, height.
     pub resolution: [usize; 2],
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -68,6 +71,7 @@ impl Default for CameraSpec {
             orthographic: false,
             lens: CameraLens::FieldOfView(45.0),
             resolution: [1; 2],
+            user: Arc::default(),
             origin: None,
         }
     }

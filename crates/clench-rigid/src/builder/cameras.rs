@@ -8,6 +8,7 @@ use super::resolve::AllNames;
 use crate::dynamics::camera::fixed_pose;
 use crate::model::{Camera, CameraMode, Model};
 use crate::stages::Positions;
+use std::sync::Arc;
 
 /// MuJoCo's focal lengths of a camera that has a field of view instead, m.
 const UNUSED_INTRINSIC: [f64; 4] = [0.01, 0.01, 0.0, 0.0];
@@ -33,6 +34,7 @@ pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) 
         orthographic: spec.orthographic,
         resolution: spec.resolution,
         intrinsic: matches!(spec.lens, CameraLens::Intrinsic { .. }),
+        user: Arc::clone(&spec.user),
     });
     let (pos, quat) = place(moved, spec.pos, spec.quat);
     let p = &mut model.params;

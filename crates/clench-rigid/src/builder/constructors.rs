@@ -10,6 +10,7 @@ use super::{
 use crate::model::{BiasKind, DynamicsKind, GainKind, JointKind};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
+use std::sync::Arc;
 
 impl ModelBuilder {
     /// The world, on which everything stands.
@@ -306,6 +307,7 @@ impl ActuatorSpec {
             actdim: None,
             actearly: false,
             group: 0,
+            user: Arc::default(),
             origin: None,
         }
     }

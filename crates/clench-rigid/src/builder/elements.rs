@@ -49,6 +49,8 @@ pub struct BodySpec {
     /// The settings of the model that it was attached from, which decide about its inertia and its frame; `None` for those of
     /// the builder.
     pub compiler: Option<Arc<CompilerSpec>>,
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -126,6 +128,8 @@ pub struct JointSpec {
     pub group: i32,
     /// Whether the model's `alignfree` applies to this free joint; `None`: as the compiler says.
     pub align: Option<bool>,
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -156,6 +160,7 @@ impl Default for JointSpec {
             solimp_friction: DEFAULT_SOLIMP,
             group: 0,
             align: None,
+            user: Arc::default(),
             origin: None,
         }
     }
@@ -227,6 +232,8 @@ pub struct GeomSpec {
     pub group: i32,
     /// How it looks.
     pub appearance: AppearanceSpec,
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -261,6 +268,7 @@ impl Default for GeomSpec {
             visible: true,
             group: 0,
             appearance: AppearanceSpec::default(),
+            user: Arc::default(),
             origin: None,
         }
     }
@@ -285,6 +293,8 @@ pub struct SiteSpec {
     pub group: i32,
     /// How it looks.
     pub appearance: AppearanceSpec,
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -301,6 +311,7 @@ impl Default for SiteSpec {
             size: [0.005; 3],
             group: 0,
             appearance: AppearanceSpec::default(),
+            user: Arc::default(),
             origin: None,
         }
     }

@@ -8,6 +8,7 @@ use crate::dynamics::ellipsoid::semi_axes;
 use crate::model::{Geom, Model, Site};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
+use std::sync::Arc;
 
 /// Where a body's frame was moved, its geoms and sites follow: their pose in the model's frame, of unit quaternion.
 pub(super) type Moved = Option<(Vec3<f64>, Quat<f64>)>;
@@ -52,6 +53,7 @@ pub(super) fn add_geom(
         group: spec.group,
         visible: spec.visible,
         fluid_ellipsoid,
+        user: Arc::clone(&spec.user),
         origin: spec.origin.clone(),
     });
     let appearance = assets.palette.resolve(&spec.appearance);
@@ -101,6 +103,7 @@ pub(super) fn add_site(
         kind: spec.kind,
         group: spec.group,
         mesh: mesh.map(|(index, _)| index),
+        user: Arc::clone(&spec.user),
     });
     let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| mesh.reach());
     model.params.site_size.push(size);

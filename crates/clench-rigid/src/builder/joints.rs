@@ -5,6 +5,7 @@ use super::model_builder::ModelBuilder;
 use super::{BuildError, JointSpec};
 use crate::model::{Dof, Joint, JointKind, Model};
 use clench_math::{Quat, Vec3};
+use std::sync::Arc;
 
 /// Shortest axis that still says a direction (its square is MuJoCo's `mjEPS`).
 const MIN_AXIS_LENGTH: f64 = 1e-7;
@@ -37,6 +38,7 @@ pub(super) fn add(
         actgravcomp: spec.actuatorgravcomp,
         reflecting: Vec::new(),
         group: spec.group,
+        user: Arc::clone(&spec.user),
         origin: spec.origin.clone(),
     });
     push_params(spec, placement(spec)?, pose, model);

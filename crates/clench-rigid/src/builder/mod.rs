@@ -65,6 +65,7 @@ mod sleep;
 mod solid;
 mod tendons;
 mod transmissions;
+mod user_numbers;
 mod uses;
 mod visuals;
 
@@ -86,6 +87,8 @@ pub use relations::{
     ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeElement,
     KeyframePart, KeyframeSpec, PairSpec, TendonSpec, TransmissionSpec, WrapSpec,
 };
+
+pub use user_numbers::UserWidths;
 
 pub use sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,

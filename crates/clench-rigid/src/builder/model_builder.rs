@@ -8,6 +8,7 @@ use super::relations::{
     ActuatorSpec, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec, TendonSpec,
 };
 use super::sensor_specs::SensorSpec;
+use super::user_numbers::UserWidths;
 use crate::Budget;
 use crate::model::{Custom, Headlight, Texture};
 use crate::options::RigidOptions;
@@ -57,6 +58,8 @@ pub struct ModelBuilder {
     pub left_out: Vec<String>,
     /// The user's own data.
     pub custom: Custom,
+    /// How many numbers of the user's own elements have.
+    pub user_widths: UserWidths,
 }
 
 /// A world without anything in it.
@@ -84,6 +87,7 @@ impl Default for ModelBuilder {
             notes: Vec::new(),
             left_out: Vec::new(),
             custom: Custom::default(),
+            user_widths: UserWidths::default(),
         }
     }
 }

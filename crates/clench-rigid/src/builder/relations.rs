@@ -4,6 +4,7 @@ use super::constraint_defaults::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use super::{AppearanceSpec, HistorySpec, Origin};
 use crate::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 use clench_math::{Quat, Vec3};
+use std::sync::Arc;
 
 /// What a tendon is made of, or passes.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,6 +69,8 @@ pub struct TendonSpec {
     pub appearance: AppearanceSpec,
     /// Radius with which it is drawn, m.
     pub width: f64,
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -93,6 +96,7 @@ impl Default for TendonSpec {
             solimp_friction: DEFAULT_SOLIMP,
             appearance: AppearanceSpec::default(),
             width: 0.003,
+            user: Arc::default(),
             origin: None,
         }
     }
@@ -187,6 +191,8 @@ pub struct ActuatorSpec {
     pub actearly: bool,
     /// Group.
     pub group: i32,
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

@@ -2,6 +2,7 @@
 
 use super::{HistorySpec, Origin};
 use crate::model::{ContactField, ContactReduction, RayField, SensorData, SensorKind};
+use std::sync::Arc;
 
 /// A kind of object with a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,6 +141,8 @@ pub struct SensorSpec {
     /// How often it measures, s, and when it did so last before time zero; zero: every step, and one period before. MuJoCo's
     /// `interval`, which only counts where past values are kept.
     pub interval: [f64; 2],
+    /// The user's own numbers, which move nothing.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -155,6 +158,7 @@ impl SensorSpec {
             noise: 0.0,
             history: HistorySpec::default(),
             interval: [0.0; 2],
+            user: Arc::default(),
             origin: None,
         }
     }

@@ -13,6 +13,7 @@ use crate::model::{
 };
 use clench_collide::ShapeKind;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A sensor has at most this many numbers.
 const MAX_DIM: usize = 1 << 20;
@@ -67,6 +68,7 @@ pub(super) fn add_all(
             numbers: start..start + dim,
             history,
             phase,
+            user: Arc::clone(&spec.user),
             origin: spec.origin.clone(),
         });
     }

@@ -9,6 +9,7 @@ use crate::dynamics::chains::Chains;
 use crate::model::{JointKind, Model, Tendon, Wrap};
 use crate::stages::Positions;
 use clench_collide::ShapeKind;
+use std::sync::Arc;
 
 /// Adds all tendons.
 ///
@@ -42,6 +43,7 @@ pub(super) fn add_all(
             actfrclimited,
             frictionloss: spec.frictionloss > 0.0,
             reflecting: Vec::new(),
+            user: Arc::clone(&spec.user),
         };
         if spec.armature > 0.0 && tendon.has_obstacles() {
             return Err(spec.error("a tendon that goes around geoms cannot have an armature"));

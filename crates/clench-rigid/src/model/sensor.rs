@@ -5,6 +5,7 @@ use super::sensor_target::SensorTarget;
 use crate::builder::Origin;
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What a kind of sensor is attached to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -236,6 +237,8 @@ pub struct Sensor {
     pub history: Option<History>,
     /// Of a sensor that measures periodically, when it did so last before time zero, s; zero: one period before.
     pub phase: f64,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

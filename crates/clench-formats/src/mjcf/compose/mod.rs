@@ -88,7 +88,7 @@ fn compose_model(
     let models = read_models(root, shared)?;
     let (options, others) = std::mem::take(&mut root.children)
         .into_iter()
-        .partition(|section| section.tag == "option");
+        .partition(|section| settings::SECTIONS.contains(&&*section.tag));
     root.children = others;
     let mut composer = Composer {
         models,

@@ -1,4 +1,4 @@
-//! What becomes of the options of a model that is attached to another, as `<compiler conflict="..."/>` says, after MuJoCo's table of
+//! What becomes of the options and sizes of a model that is attached to another, as `<compiler conflict="..."/>` says, after MuJoCo's table of
 //! attributes that can be merged.
 //!
 //! A value counts as given where the file says it, or where it was taken over from a model attached before.
@@ -45,6 +45,21 @@ const OPTIONS: &[(&str, Merge)] = &[
     ("o_friction", Merge::Never),
 ];
 
+/// Attributes of `<size>`, of which the largest counts; -1 stands for nothing said.
+const SIZES: &[&str] = &[
+    "nuser_body",
+    "nuser_jnt",
+    "nuser_geom",
+    "nuser_site",
+    "nuser_cam",
+    "nuser_tendon",
+    "nuser_actuator",
+    "nuser_sensor",
+];
+
+/// The sections that hold them.
+pub(super) const SECTIONS: &[&str] = &["option", "size"];
+
 /// Flags that are off where nothing is said; all others are on.
 const OFF_BY_DEFAULT: &[&str] = &[
     "override",
@@ -57,13 +72,16 @@ const OFF_BY_DEFAULT: &[&str] = &[
     "speculative",
 ];
 
-/// The `<option>`s of a model, as far as others are merged into them.
+/// The `<option>`s and `<size>`s of a model, into which others are merged.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Settings(pub Vec<Element>);
 
 impl Settings {
     pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        let says = |section: &Element| {
+            section.tag == "option" || SIZES.iter().any(|name| section.text(name).is_some())
+        };
+        !self.0.iter().any(says)
     }
 
     /// Takes over what an attached model says, as far as the rule allows. Returns the names of the attributes that changed.
@@ -83,6 +101,14 @@ impl Settings {
                 Verdict::Conflict(what) => conflicts.push(what),
             }
         }
+        let mut sizes = Vec::new();
+        for &name in SIZES {
+            match self.compare(other, name, Merge::Most, rule) {
+                Verdict::Same => {}
+                Verdict::Becomes(value) => sizes.push((name.to_owned(), value)),
+                Verdict::Conflict(what) => conflicts.push(what),
+            }
+        }
         let mut flags = Vec::new();
         for (name, value) in other.flags() {
             match self.compare_flag(name, value, rule) {
@@ -97,20 +123,21 @@ impl Settings {
         if let Some(groups) = other.groups().filter(|_| rule == Conflict::Merge) {
             option.push(("actuatorgroupdisable".to_owned(), groups)); // Those of the model itself stay disabled.
         }
-        Ok(self.take(other, option, flags))
+        Ok(self.take(other, option, sizes, flags))
     }
 
-    /// Appends an `<option>` with values of an attached model. Returns their names.
+    /// Appends sections with values of an attached model. Returns their names.
     fn take(
         &mut self,
         other: &Settings,
         option: Vec<(String, String)>,
+        sizes: Vec<(String, String)>,
         flags: Vec<(String, String)>,
     ) -> Vec<String> {
         let Some(place) = other.0.last() else {
             return Vec::new();
         };
-        let names: Vec<String> = (option.iter().chain(&flags))
+        let names: Vec<String> = (option.iter().chain(&sizes).chain(&flags))
             .map(|(name, _)| name.clone())
             .collect();
         let mut section = Element::in_place_of(place, "option");
@@ -120,7 +147,12 @@ impl Settings {
             flag.attributes = flags;
             section.children.push(flag);
         }
-        if !names.is_empty() {
+        if !section.attributes.is_empty() || !section.children.is_empty() {
+            self.0.push(section);
+        }
+        if !sizes.is_empty() {
+            let mut section = Element::in_place_of(place, "size");
+            section.attributes = sizes;
             self.0.push(section);
         }
         names
@@ -181,7 +213,7 @@ impl Settings {
             value = new;
             value.extend(kept);
         }
-        Some(value)
+        Some(value).filter(|value| !(SIZES.contains(&name) && *value == ["-1"]))
     }
 
     /// Flags and what was said of them, the last word of each.

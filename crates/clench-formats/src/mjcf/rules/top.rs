@@ -47,12 +47,12 @@ pub(super) const RULES: &[Rule] = &[
         later: "ipc=disable speculative=disable",
         ..NONE
     },
-    ignored(
-        "size",
-        "memory njmax nconmax nstack nuserdata nkey nuser_body nuser_jnt nuser_geom nuser_site nuser_cam \
-        nuser_tendon nuser_actuator nuser_sensor",
-        "",
-    ),
+    Rule {
+        element: "size",
+        read: "nkey nuser_body nuser_jnt nuser_geom nuser_site nuser_cam nuser_tendon nuser_actuator nuser_sensor",
+        ignored: "memory njmax nconmax nstack nuserdata",
+        ..NONE
+    },
     ignored(
         "statistic",
         "meaninertia meanmass meansize extent center",

@@ -14,8 +14,7 @@ pub(super) const RULES: &[Rule] = &[
     section("worldbody", IN_A_BODY, IN_A_BODY_LATER),
     Rule {
         element: "body",
-        read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp simple fuse sleep",
-        ignored: "user",
+        read: "name childclass pos quat axisangle euler xyaxes zaxis mocap gravcomp simple fuse sleep user",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
         ..NONE
@@ -51,8 +50,7 @@ pub(super) const RULES: &[Rule] = &[
         element: "joint",
         read: "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit \
             solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref \
-            armature damping frictionloss",
-        ignored: "user",
+            armature damping frictionloss user",
         later: "springyield=0",
         ..NONE
     },
@@ -65,22 +63,22 @@ pub(super) const RULES: &[Rule] = &[
         element: "geom",
         read: "name class type contype conaffinity condim group priority size friction mass density shellinertia \
             solmix solref solimp margin gap surfacevel adhesion fluidshape fluidcoef fromto pos quat axisangle euler xyaxes zaxis mesh hfield fitscale material \
-            rgba",
-        ignored: "castshadow user",
+            rgba user",
+        ignored: "castshadow",
         later_children: "plugin",
         ..NONE
     },
     Rule {
         element: "site",
-        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis mesh",
-        ignored: "material rgba user",
+        read: "name class type group pos fromto size quat axisangle euler xyaxes zaxis mesh user",
+        ignored: "material rgba",
         ..NONE
     },
     Rule {
         element: "camera",
         read: "name class mode target pos quat axisangle euler xyaxes zaxis projection fovy resolution focal \
-            focalpixel principal principalpixel sensorsize",
-        ignored: "ipd output user",
+            focalpixel principal principalpixel sensorsize user",
+        ignored: "ipd output",
         ..NONE
     },
     ignored(

@@ -33,6 +33,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         actearly,
         disabled: _,
         group,
+        user,
     } = &model.actuators[u];
     let p = &model.params;
     let pulls_back = match bias {
@@ -72,6 +73,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         .numbers_unless("actrange", &p.actuator_actrange[u], &[0.0; 2])
         .boolean("actlimited", *actlimited)
         .numbers("gear", &p.actuator_gear[u])
+        .numbers_unless("user", user, &[])
         .numbers_unless("lengthrange", &p.actuator_lengthrange[u], &[0.0; 2])
         .text("dyntype", dynamics_type(*dynamics))
         .text("gaintype", gain_type(*gain))

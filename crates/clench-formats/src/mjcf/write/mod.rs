@@ -50,6 +50,7 @@ impl SaveModel for Model {
         let mut xml = Xml::default();
         xml.tag("mujoco").text("model", &self.name).open();
         option::write(self, &mut xml)?;
+        write_widths(self, &mut xml);
         xml.section("asset", |xml| assets::write(self, xml))?;
         tree::write(self, &mut xml)?;
         xml.section("contact", |xml| relations::write_contacts(self, xml))?;
@@ -60,6 +61,28 @@ impl SaveModel for Model {
         xml.section("custom", |xml| write_custom(self, xml))?;
         xml.section("keyframe", |xml| write_keyframes(self, xml))?;
         Ok(xml.finish())
+    }
+}
+
+/// How many numbers of the user's own elements have, where there are any.
+fn write_widths(model: &Model, xml: &mut Xml) {
+    let widths = [
+        ("nuser_body", model.bodies.first().map(|e| &e.user)),
+        ("nuser_jnt", model.joints.first().map(|e| &e.user)),
+        ("nuser_geom", model.geoms.first().map(|e| &e.user)),
+        ("nuser_site", model.sites.first().map(|e| &e.user)),
+        ("nuser_cam", model.cameras.first().map(|e| &e.user)),
+        ("nuser_tendon", model.tendons.first().map(|e| &e.user)),
+        ("nuser_actuator", model.actuators.first().map(|e| &e.user)),
+        ("nuser_sensor", model.sensors.first().map(|e| &e.user)),
+    ];
+    let widths = widths.map(|(name, user)| (name, user.map_or(0, |user| user.len())));
+    if widths.iter().any(|(_, width)| *width > 0) {
+        let mut tag = xml.tag("size");
+        for (name, width) in widths {
+            tag = tag.integer_unless(name, width as i64, 0);
+        }
+        tag.end();
     }
 }
 

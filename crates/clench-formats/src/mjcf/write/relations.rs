@@ -57,6 +57,7 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
         actfrclimited,
         frictionloss: _,
         reflecting: _,
+        user,
     } = tendon;
     let p = &model.params;
     if p.tendon_lengthspring[t] == [-1.0; 2] && p.tendon_length0[t] != -1.0 {
@@ -91,6 +92,7 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
         .numbers_unless("solimplimit", &p.tendon_solimp_lim[t], &DEFAULT_SOLIMP)
         .numbers_unless("solreffriction", &p.tendon_solref_fri[t], &DEFAULT_SOLREF)
         .numbers_unless("solimpfriction", &p.tendon_solimp_fri[t], &DEFAULT_SOLIMP)
+        .numbers_unless("user", user, &[])
         .open();
     for (&wrap, &number) in path.iter().zip(&p.wrap_coef[coefs.clone()]) {
         let site = |s: usize| named("site", &model.sites[s].name, s);

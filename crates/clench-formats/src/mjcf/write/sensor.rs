@@ -22,9 +22,13 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
             numbers,
             history,
             phase,
+            user,
             origin: _,
         } = sensor;
-        let mut tag = xml.tag(kind.name()).name(name);
+        let mut tag = xml
+            .tag(kind.name())
+            .name(name)
+            .numbers_unless("user", user, &[]);
         tag = match (target, kind.attachment()) {
             (SensorTarget::Nothing, Attachment::User) => tag
                 .integer("dim", numbers.len() as i64)

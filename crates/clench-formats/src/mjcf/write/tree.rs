@@ -53,6 +53,7 @@ fn write_body(model: &Model, b: usize, xml: &mut Xml) -> Result<(), SaveError> {
         simple_inertia: _,
         fluid_ellipsoids: _,
         never_simple,
+        user,
         origin: _,
     } = &model.bodies[b];
     let p = &model.params;
@@ -71,6 +72,7 @@ fn write_body(model: &Model, b: usize, xml: &mut Xml) -> Result<(), SaveError> {
             tag = tag.text("sleep", sleep_policy(tree.sleep));
         }
         tag.number_unless("gravcomp", p.body_gravcomp[b], 0.0)
+            .numbers_unless("user", user, &[])
             .open();
         let inertial = xml
             .tag("inertial")
@@ -123,6 +125,7 @@ fn write_joint(model: &Model, j: usize, xml: &mut Xml) -> Result<(), SaveError> 
         actgravcomp,
         reflecting: _,
         group,
+        user,
         origin: _,
     } = &model.joints[j];
     let p = &model.params;
@@ -173,6 +176,7 @@ fn write_joint(model: &Model, j: usize, xml: &mut Xml) -> Result<(), SaveError> 
         .numbers_unless("solreffriction", &p.dof_solref[d], &DEFAULT_SOLREF)
         .numbers_unless("solimpfriction", &p.dof_solimp[d], &DEFAULT_SOLIMP)
         .integer_unless("group", (*group).into(), 0);
+    tag = tag.numbers_unless("user", user, &[]);
     if *actgravcomp {
         tag = tag.boolean("actuatorgravcomp", true);
     }
@@ -216,6 +220,7 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
         group,
         visible,
         fluid_ellipsoid,
+        user,
         origin: _,
     } = &model.geoms[g];
     let p = &model.params;
@@ -255,7 +260,8 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
             "fluidcoef",
             &p.geom_fluidcoef[g],
             &[0.5, 0.25, 1.5, 1.0, 1.0],
-        );
+        )
+        .numbers_unless("user", user, &[]);
     if *fluid_ellipsoid {
         tag = tag.text("fluidshape", "ellipsoid");
     }
@@ -286,6 +292,7 @@ fn write_site(model: &Model, s: usize, xml: &mut Xml) {
         kind,
         group,
         mesh,
+        user,
     } = &model.sites[s];
     let p = &model.params;
     let rgba = colour(&model.visuals, model.visuals.sites[s]);
@@ -295,7 +302,9 @@ fn write_site(model: &Model, s: usize, xml: &mut Xml) {
         Some(mesh) => tag.text("mesh", &model.meshes[*mesh].name),
         None => tag.numbers("size", &p.site_size[s].to_array()),
     };
-    let tag = tag.integer_unless("group", (*group).into(), 0);
+    let tag = tag
+        .integer_unless("group", (*group).into(), 0)
+        .numbers_unless("user", user, &[]);
     coloured(tag, rgba).end();
 }
 
@@ -307,6 +316,7 @@ fn write_camera(model: &Model, c: usize, xml: &mut Xml) -> Result<(), SaveError>
         orthographic,
         resolution,
         intrinsic,
+        user,
     } = &model.cameras[c];
     let p = &model.params;
     let (mode, target) = match *mode {
@@ -324,7 +334,8 @@ fn write_camera(model: &Model, c: usize, xml: &mut Xml) -> Result<(), SaveError>
         tag = tag.text("projection", "orthographic");
     }
     tag = placed(tag, p.cam_pos[c], p.cam_quat[c])
-        .integers("resolution", resolution.iter().map(|&n| n as i64));
+        .integers("resolution", resolution.iter().map(|&n| n as i64))
+        .numbers_unless("user", user, &[]);
     let [focal_x, focal_y, principal_x, principal_y] = p.cam_intrinsic[c];
     match intrinsic {
         true => tag

@@ -2,6 +2,7 @@
 
 use super::History;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What an actuator pulls on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -157,6 +158,8 @@ pub struct Actuator {
     pub disabled: bool,
     /// Group.
     pub group: i32,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
 }
 
 impl Actuator {

@@ -3,6 +3,7 @@
 use crate::builder::Origin;
 use clench_collide::ShapeKind;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Kinds of joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +68,8 @@ pub struct Body {
     pub fluid_ellipsoids: bool,
     /// Its constraints are scaled by the mean over all directions, even where it only slides along coordinate axes.
     pub never_simple: bool,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -94,6 +97,8 @@ pub struct Joint {
     pub reflecting: Vec<usize>,
     /// Group.
     pub group: i32,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }
@@ -124,4 +129,6 @@ pub struct Site {
     pub group: i32,
     /// The mesh whose convex hull it is, for `ShapeKind::Mesh`.
     pub mesh: Option<usize>,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
 }

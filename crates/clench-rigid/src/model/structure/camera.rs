@@ -1,5 +1,7 @@
 //! Cameras: frames that look along their negative z axis, x to the right and y up.
 
+use std::sync::Arc;
+
 /// How a camera's frame follows bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraMode {
@@ -31,4 +33,6 @@ pub struct Camera {
     pub resolution: [usize; 2],
     /// Whether its field of view comes from a focal length and the size of its sensor, not from `fovy`.
     pub intrinsic: bool,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
 }

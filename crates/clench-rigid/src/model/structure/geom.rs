@@ -3,7 +3,7 @@
 use crate::builder::{MeshSpec, Origin};
 use clench_collide::{Hull, ShapeKind, TriangleMesh, convex_hull};
 use clench_math::{Quat, Vec3};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// A shape on a body.
 #[derive(Clone, Debug)]
@@ -32,6 +32,8 @@ pub struct Geom {
     pub visible: bool,
     /// Feels a surrounding medium as an ellipsoid.
     pub fluid_ellipsoid: bool,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
     /// Where it was written.
     pub origin: Option<Origin>,
 }

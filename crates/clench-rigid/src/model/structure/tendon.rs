@@ -1,6 +1,7 @@
 //! Tendons.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What a tendon is made of, or passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +38,8 @@ pub struct Tendon {
     pub frictionloss: bool,
     /// The actuators that may damp it or add inertia to it, in order.
     pub reflecting: Vec<usize>,
+    /// The user's own numbers, as many for each element of its kind.
+    pub user: Arc<[f64]>,
 }
 
 /// A part of a spatial tendon between two sites that follow each other.
