@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 const PERIOD: Duration = Duration::from_micros(16_667);
 /// Time between frames while none does, so that one that comes finds something.
 const IDLE_PERIOD: Duration = Duration::from_millis(500);
-/// For how long to wait where there is nothing to do: what users do is looked at after that.
+/// How long a loop that stands still waits before it looks again at what users do.
 const REST: Duration = Duration::from_millis(10);
 /// A loop that is later than this, s, is no longer waited for: it does not make up for it.
 const LATE: f64 = 0.1;
@@ -37,6 +37,8 @@ pub struct PassiveViewer {
     left: Option<(Instant, f64)>,
     timing: Timing,
     stages: StageClock,
+    /// How many steps the loop has taken since `stages` last read the profile.
+    unread_steps: u32,
 }
 
 impl PassiveViewer {
@@ -50,7 +52,6 @@ impl PassiveViewer {
         interaction: Interaction,
         viewed: &mut V,
     ) -> Result<Self, ServeError> {
-        viewed.run_clocks(true);
         let scene = Scene::new(viewed.model())
             .of_envs(viewed.envs())
             .without_past();
@@ -64,7 +65,9 @@ impl PassiveViewer {
             left: None,
             timing: Timing::default(),
             stages: StageClock::default(),
+            unread_steps: 0,
         };
+        viewed.run_clocks(true);
         viewer.show(viewed);
         Ok(viewer)
     }
@@ -114,6 +117,10 @@ impl PassiveViewer {
     /// Shows what is now.
     pub fn show<V: Viewed>(&mut self, viewed: &mut V) {
         self.published = Some(Instant::now());
+        if self.unread_steps > 0 {
+            let steps = std::mem::take(&mut self.unread_steps);
+            self.timing.stages = self.stages.mean_since_last(&viewed.profile(), steps);
+        }
         match (self.interaction).frame(viewed, self.timing, None, &mut self.marks) {
             Ok(frame) => self.server.publish(frame),
             Err(error) => self.server.tell(&format!("nothing to show: {error}")),
@@ -139,8 +146,8 @@ impl PassiveViewer {
         }
     }
 
-    /// How long the loop was away, and how far it came.
-    fn measure<V: Viewed>(&mut self, viewed: &mut V, env: usize) {
+    /// Measures how long the loop was away, and how far it came.
+    fn measure<V: Viewed>(&mut self, viewed: &V, env: usize) {
         let Some((when, before)) = self.left.take() else {
             return;
         };
@@ -149,7 +156,7 @@ impl PassiveViewer {
             .round()
             .max(1.0);
         self.timing.step = when.elapsed().div_f64(steps);
-        self.timing.stages = self.stages.since_last(&viewed.profile(), steps as u32);
+        self.unread_steps = self.unread_steps.saturating_add(steps as u32);
         if let Some((when, before)) = self.anchor {
             self.timing.speed = (time - before) / when.elapsed().as_secs_f64().max(1e-9);
         }

@@ -91,7 +91,7 @@ impl<V: Stepped> Player<V> {
         }
         if steps > 0 {
             self.timing.step = start.elapsed() / steps;
-            self.timing.stages = self.stages.since_last(&self.viewed.profile(), steps);
+            self.timing.stages = self.stages.mean_since_last(&self.viewed.profile(), steps);
         }
         // What could not be done in time is not made up for.
         self.due = self.due.clamp(0.0, timestep);

@@ -1,63 +1,56 @@
-//! How the time of a step splits over its stages, as far as a plot can tell them apart.
+//! How the time of a step splits over the stages that the page plots. Each of them is the sum of some stages of a [`Profile`].
 
 use clench::rigid::profile::Profile;
 use std::time::Duration;
 
-/// What is plotted, in the order of a step, and the stages of a [`Profile`] that belong to it.
-const GROUPS: [(&str, &[&str]); 6] = [
-    (
-        "kinematics",
-        &["kinematics", "inertia", "mass factorization"],
-    ),
-    ("collision", &["collision broad", "collision narrow"]),
-    ("forces", &["velocity", "forces"]),
-    ("assembly", &["assembly"]),
-    (
-        "solve",
-        &[
-            "solve start",
-            "hessian",
-            "factorization",
-            "direction",
-            "line search",
-            "evaluation",
-            "solve rest",
-        ],
-    ),
-    ("rest", &["sensors", "integration", "rows and checks"]),
+/// The stages that are plotted, in the order of a step.
+pub const STAGES: [&str; 6] = [
+    "kinematics",
+    "collision",
+    "forces",
+    "assembly",
+    "solve",
+    "rest",
 ];
 
-/// The names of what is plotted, in the order of a step.
-pub const STAGES: [&str; GROUPS.len()] = {
-    let mut names = [""; GROUPS.len()];
-    let mut index = 0;
-    while index < names.len() {
-        names[index] = GROUPS[index].0;
-        index += 1;
-    }
-    names
-};
+/// The stages of a [`Profile`] that each of [`STAGES`] is the sum of.
+const PARTS: [&[&str]; STAGES.len()] = [
+    &["kinematics", "inertia", "mass factorization"],
+    &["collision broad", "collision narrow"],
+    &["velocity", "forces"],
+    &["assembly"],
+    &[
+        "solve start",
+        "hessian",
+        "factorization",
+        "direction",
+        "line search",
+        "evaluation",
+        "solve rest",
+    ],
+    &["sensors", "integration", "rows and checks"],
+];
 
-/// The time of each of [`STAGES`]; of all threads together.
+/// The time of each of [`STAGES`], summed over all threads.
 pub type StageTimes = [Duration; STAGES.len()];
 
-/// Splits the time of steps by what clocks say that never stop.
+/// Turns the totals of a [`Profile`], which grow from step to step, into the time of a step.
 #[derive(Clone, Debug, Default)]
 pub struct StageClock {
-    /// What they said last.
-    before: StageTimes,
+    /// The totals at the last call.
+    last_totals: StageTimes,
 }
 
 impl StageClock {
-    /// What a step took in each stage, where so many were taken since the last call.
-    pub fn since_last(&mut self, profile: &Profile, steps: u32) -> StageTimes {
-        let mut now = StageTimes::default();
+    /// The mean time of each stage over the `steps` that were taken since the last call.
+    pub fn mean_since_last(&mut self, profile: &Profile, steps: u32) -> StageTimes {
+        let mut totals = StageTimes::default();
         for (name, time) in &profile.stages {
-            let group = GROUPS.iter().position(|(_, stages)| stages.contains(name));
-            now[group.unwrap_or(STAGES.len() - 1)] += *time;
+            let stage = PARTS.iter().position(|parts| parts.contains(name));
+            totals[stage.unwrap_or(STAGES.len() - 1)] += *time;
         }
-        let before = std::mem::replace(&mut self.before, now);
-        std::array::from_fn(|k| now[k].saturating_sub(before[k]) / steps.max(1))
+        let before = std::mem::replace(&mut self.last_totals, totals);
+        std::array::from_fn(|k| totals[k].saturating_sub(before[k]) / steps.max(1))
     }
 }
 
@@ -68,7 +61,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn every_stage_of_a_step_belongs_to_one_group() {
+    fn every_stage_of_a_profile_is_part_of_one_that_is_plotted() {
         let text = "<mujoco>
              <worldbody>
                <geom type='plane' size='1 1 1'/>
@@ -87,18 +80,14 @@ mod tests {
         }
         let profile = sim.profile();
         let mut names: Vec<&str> = profile.stages.iter().map(|(name, _)| *name).collect();
-        let mut grouped: Vec<&str> = GROUPS
-            .iter()
-            .flat_map(|(_, stages)| *stages)
-            .copied()
-            .collect();
+        let mut parts = PARTS.concat();
         names.sort_unstable();
-        grouped.sort_unstable();
-        assert_eq!(names, grouped);
-        let sum: Duration = clock.since_last(&profile, 1).iter().sum();
+        parts.sort_unstable();
+        assert_eq!(names, parts);
+        let sum: Duration = clock.mean_since_last(&profile, 1).iter().sum();
         assert_eq!(sum, profile.total());
         assert!(sum > Duration::ZERO);
-        // Nothing has happened since.
-        assert_eq!(clock.since_last(&profile, 1), StageTimes::default());
+        // No step was taken since.
+        assert_eq!(clock.mean_since_last(&profile, 1), StageTimes::default());
     }
 }
