@@ -85,7 +85,7 @@ pub enum Shape<'a, T> {
     Mesh(Mesh<'a, T>),
 }
 
-/// Asks a shape of whichever kind.
+/// The same expression for every variant of [`Shape`], with the shape in it bound to a name.
 macro_rules! of_each {
     ($shape:expr, $solid:ident => $answer:expr) => {
         match $shape {
@@ -170,7 +170,7 @@ impl<'a, T: Real> Shape<'a, T> {
     /// Its size in metres, as its kind says.
     #[inline(always)]
     pub fn size(&self) -> Vec3<T> {
-        of_each!(self, solid => solid.size())
+        Solid::size(self)
     }
     /// The shape of one lane.
     #[inline(always)]

@@ -27,7 +27,7 @@ enum AnyCore<'a, S> {
     Prism(&'a Prism<S>),
 }
 
-/// Asks a core of whichever kind.
+/// The same expression for every variant of [`AnyCore`], with the core in it bound to a name.
 macro_rules! of_core {
     ($body:expr, $core:ident => $answer:expr) => {
         match &$body.core {

@@ -8,7 +8,7 @@
 //! n·w(n)  ≤  distance  ≤  |v|,
 //! ```
 //!
-//! so the loop knows how far it may be off. Against curved bodies it would take many rounds, each new vertex a little nearer to
+//! so the loop knows how far it may be off. Against curved bodies it would take many iterations, each new vertex a little nearer to
 //! the touching point; there Newton's method takes over as soon as the bounds are near each other, and its direction is
 //! confirmed by the same bounds.
 
@@ -19,8 +19,8 @@ use super::{
 };
 use clench_math::{Scalar, Vec3};
 
-/// Rounds until an answer is given, certain or not. Five to ten are usual.
-const ROUNDS: usize = 64;
+/// The search ends after this many iterations, whether its answer is certain or not. Five to ten are usual.
+const MAX_ITERATIONS: usize = 64;
 /// Newton's method is tried once the bounds differ by less than this share of the smaller body.
 const NEAR: f64 = 0.1;
 /// The multiple of √ε, as a share of the larger coordinates, below which the direction of v is noise.
@@ -95,7 +95,7 @@ fn search<S: Scalar>(
 ) -> End<S> {
     let mut v = simplex.vertices()[0].w;
     let touching = pair.smallest * S::EPSILON.sqrt() * S::new(NOISE);
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ITERATIONS {
         if best.gap > limit {
             return End::Beyond;
         }
@@ -124,7 +124,7 @@ fn search<S: Scalar>(
             return End::Inside;
         };
         if nearest.norm_squared() >= square {
-            // Rounding has the last word.
+            // Rounding hides any further progress.
             return End::Nearest(length);
         }
         v = nearest;

@@ -63,7 +63,7 @@ impl<S: Scalar> Gap<S> {
 }
 
 impl<'a, S: Scalar> Pair<'a, S> {
-    /// In the frame of the first; that of a sphere is upright, however it is turned.
+    /// In the frame of the first; where that is a sphere, along the axes of the world, since a sphere has none of its own.
     pub(super) fn new(a: AnyPlaced<'a, S>, b: AnyPlaced<'a, S>) -> Self {
         let (body_a, body_b) = (Body::new(&a.shape), Body::new(&b.shape));
         let (rotation, offset) = if body_a.is_point() {

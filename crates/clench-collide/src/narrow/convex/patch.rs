@@ -1,4 +1,4 @@
-//! The points of a contact: where the features of two bodies overlap, seen along the normal.
+//! The points of a contact: where the features of two bodies overlap when they are projected along the normal.
 //!
 //! At each corner of the overlap the contact's distance is the difference of the features' heights. For many corners stand
 //! a few points on the outline (see [`Outline`]), and the deepest.
@@ -14,19 +14,22 @@ use crate::narrow::polygon::{CAPACITY, Polygon};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// Shares of the smaller body: points nearer to each other are one; a patch may miss the deepest point by so much.
-const SAME: f64 = 1e-5;
-const MISSED: f64 = 1e-6;
+/// Points of a patch are merged where they are nearer to each other than this share of the smaller body.
+const SAME_POINT: f64 = 1e-5;
+/// The deepest point of a patch may be less deep than the pair by at most this share of the smaller body.
+const MAX_MISS: f64 = 1e-6;
 
-/// A contact in the view: where it is across the normal, and the heights of both surfaces.
+/// A point of the patch, projected along the normal.
 #[derive(Clone, Copy)]
-struct Spot<S> {
+struct PatchPoint<S> {
+    /// Where it is across the normal.
     x: S,
     y: S,
+    /// Where the surfaces of both bodies are along the normal.
     heights: (S, S),
 }
 
-impl<S: Scalar> Spot<S> {
+impl<S: Scalar> PatchPoint<S> {
     fn distance(&self) -> S {
         self.heights.1 - self.heights.0
     }
@@ -34,15 +37,15 @@ impl<S: Scalar> Spot<S> {
     fn at_distance(&self, distance: S) -> Self {
         let middle = (self.heights.0 + self.heights.1) * S::new(0.5);
         let half = distance * S::new(0.5);
-        Spot {
+        PatchPoint {
             heights: (middle - half, middle + half),
             ..*self
         }
     }
 }
 
-/// All corners of an overlap, and one more.
-type Spots<S> = ArrayVec<Spot<S>, { CAPACITY + 1 }>;
+/// The corners of an overlap, and one more point.
+type PatchPoints<S> = ArrayVec<PatchPoint<S>, { CAPACITY + 1 }>;
 
 /// Adds the contacts of a pair whose largest gap is known; `simplex` tells the nearest points of the cores where no feature
 /// does.
@@ -54,13 +57,13 @@ pub(super) fn patch<S: Scalar>(
     margin: S,
     points: &mut Points<S>,
 ) {
-    // Once more: squares of very short vectors lose digits.
+    // It is normalized once more, since squares of very short vectors lose digits.
     let n = best.normal.normalize().0;
     let radii = (pair.a.radius, pair.b.radius);
     let half = best.gap * S::new(0.5);
     let shift = (radii.0 - radii.1) * S::new(0.5);
     let distance = best.gap - radii.0 - radii.1;
-    // Its frame is upright: see [`Pair::new`].
+    // The frame of a sphere is that of the world: see [`Pair::new`].
     if pair.a.is_point() {
         points.push(Point {
             position: a.pose.position + n * (half + shift),
@@ -107,56 +110,56 @@ pub(super) fn patch<S: Scalar>(
         true,
     );
 
-    let slack = (pair.smallest * S::new(MISSED)).max(pair.tolerance);
-    let spot_at = |p: &Vec3<S>| {
+    let slack = (pair.smallest * S::new(MAX_MISS)).max(pair.tolerance);
+    let project = |p: &Vec3<S>| {
         let on_a = projected_a.height(*p);
         // Just beyond a corner the features' planes go on, but the bodies do not.
         let on_b = projected_b.height(*p).max(on_a + best.gap);
-        Spot {
+        PatchPoint {
             x: p.x,
             y: p.y,
             heights: (on_a, on_b),
         }
     };
-    let (mut over, mut spots) = (Polygon::empty(), Spots::new());
+    let (mut over, mut found) = (Polygon::empty(), PatchPoints::new());
     // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
     for beyond in [S::ZERO, pair.tolerance, slack] {
-        spots.clear();
+        found.clear();
         projected_a.overlap(&projected_b, beyond, &mut over);
-        spots.extend(over.corners().iter().map(spot_at));
-        if spots.iter().any(|s| s.distance() <= best.gap + slack) {
+        found.extend(over.corners().iter().map(project));
+        if found.iter().any(|s| s.distance() <= best.gap + slack) {
             break;
         }
     }
-    let mut lowest = deepest(&spots, pair.tolerance);
+    let mut lowest = deepest(&found, pair.tolerance);
     if lowest.is_none_or(|lowest| lowest.distance() > best.gap + slack) {
         let witness = witness(simplex, pair, &view, best.gap);
-        spots.insert(0, witness);
+        found.insert(0, witness);
         lowest = Some(witness);
     }
     let reach = margin + radii.0 + radii.1;
-    let same = pair.smallest * S::new(SAME);
+    let same = pair.smallest * S::new(SAME_POINT);
     match lowest {
-        // They touch by less than the features tell.
+        // The features are further apart than the bodies: one point stands for the patch.
         Some(lowest) if lowest.distance() > reach => {
-            spots.clear();
-            spots.push(lowest.at_distance(best.gap));
+            found.clear();
+            found.push(lowest.at_distance(best.gap));
         }
-        Some(lowest) if spots.len() > PATCH_POINTS => {
+        Some(lowest) if found.len() > PATCH_POINTS => {
             let first = projected_b.cap_direction();
             let first = first.filter(|_| !projected_a.is_cap());
             let first = first.unwrap_or_else(|| projected_a.direction());
             let outline = Outline::around(over.corners(), same);
-            spots.clear();
-            sample(&outline, first, lowest, slack, spot_at, &mut spots);
+            found.clear();
+            sample(&outline, first, lowest, slack, project, &mut found);
         }
         _ => {}
     }
-    spots.retain(|s| s.distance() <= reach);
-    merge(&mut spots, same);
-    for spot in &spots {
-        let (from, to) = (spot.heights.0 + radii.0, spot.heights.1 - radii.1);
-        let middle = Vec3::new(spot.x, spot.y, (from + to) * S::new(0.5));
+    found.retain(|s| s.distance() <= reach);
+    merge(&mut found, same);
+    for point in &found {
+        let (from, to) = (point.heights.0 + radii.0, point.heights.1 - radii.1);
+        let middle = Vec3::new(point.x, point.y, (from + to) * S::new(0.5));
         points.push(Point {
             position: a.pose.point(view.transpose_mul(middle)),
             normal,
@@ -166,81 +169,88 @@ pub(super) fn patch<S: Scalar>(
 }
 
 /// The nearest points of the cores: those that support the normal if they face each other, else as the simplex has them.
-fn witness<S: Scalar>(simplex: &Simplex<S>, pair: &Pair<S>, view: &Mat3<S>, gap: S) -> Spot<S> {
+fn witness<S: Scalar>(
+    simplex: &Simplex<S>,
+    pair: &Pair<S>,
+    view: &Mat3<S>,
+    gap: S,
+) -> PatchPoint<S> {
     let Vertex { w, a, b } = pair.vertex(view.rows[2]);
     let (mut on_a, mut on_b) = (a, b);
-    if (w - view.rows[2] * gap).norm() > pair.smallest * S::new(MISSED) {
+    if (w - view.rows[2] * gap).norm() > pair.smallest * S::new(MAX_MISS) {
         (on_a, on_b) = simplex.nearest();
     }
     let on_b = pair.offset + pair.rotation * on_b;
     let middle = *view * ((on_a + on_b) * S::new(0.5));
-    let spot = Spot {
+    let witness = PatchPoint {
         x: middle.x,
         y: middle.y,
         heights: (middle.z, middle.z),
     };
-    spot.at_distance(gap)
+    witness.at_distance(gap)
 }
 
-/// Leaves one of points that coincide: the deepest.
-fn merge<S: Scalar>(spots: &mut Spots<S>, same: S) {
+/// Merges points that coincide into the deepest of them.
+fn merge<S: Scalar>(found: &mut PatchPoints<S>, same: S) {
     let mut kept = 0;
-    for k in 0..spots.len() {
-        let spot = spots[k];
-        let near = |s: &Spot<S>| (s.x - spot.x).squared() + (s.y - spot.y).squared() <= same * same;
-        match spots[..kept].iter().position(near) {
-            Some(twin) if spot.distance() < spots[twin].distance() => spots[twin] = spot,
+    for k in 0..found.len() {
+        let point = found[k];
+        let near = |s: &PatchPoint<S>| {
+            (s.x - point.x).squared() + (s.y - point.y).squared() <= same * same
+        };
+        match found[..kept].iter().position(near) {
+            Some(twin) if point.distance() < found[twin].distance() => found[twin] = point,
             Some(_) => {}
             None => {
-                spots[kept] = spot;
+                found[kept] = point;
                 kept += 1;
             }
         }
     }
-    spots.truncate(kept);
+    found.truncate(kept);
 }
 
-/// Fills `spots` with at most [`PATCH_POINTS`]: all corners if they are no more, else points of the outline, seen from the direction
-/// `first`. If these miss the lowest spot by more than `slack` they are seen from its direction, and it is one of them.
+/// Fills `found` with at most [`PATCH_POINTS`]: all corners if they are no more, else points of the outline, seen from the direction
+/// `first`. If these miss the lowest point by more than `slack` they are seen from its direction, and it is one of them.
 fn sample<S: Scalar>(
     outline: &Outline<S>,
     first: Vec3<S>,
-    lowest: Spot<S>,
+    lowest: PatchPoint<S>,
     slack: S,
-    spot_at: impl Fn(&Vec3<S>) -> Spot<S>,
-    spots: &mut Spots<S>,
+    project: impl Fn(&Vec3<S>) -> PatchPoint<S>,
+    found: &mut PatchPoints<S>,
 ) {
     let few = outline.corners().len() <= PATCH_POINTS;
     if few {
-        spots.extend(outline.corners().iter().map(&spot_at));
+        found.extend(outline.corners().iter().map(&project));
     } else {
-        spots.extend(outline.sample(first).iter().map(&spot_at));
+        found.extend(outline.sample(first).iter().map(&project));
     }
-    let missed = least_distance(spots) - lowest.distance();
-    if missed > slack && few && spots.len() < PATCH_POINTS {
-        spots.push(lowest);
+    let missed = least_distance(found) - lowest.distance();
+    if missed > slack && few && found.len() < PATCH_POINTS {
+        found.push(lowest);
     } else if missed > slack {
         let middle = outline.middle();
         let first = Vec3::new(lowest.x - middle.x, lowest.y - middle.y, S::ZERO);
-        spots.clear();
-        spots.extend(outline.sample(first).iter().map(&spot_at));
-        spots[0] = lowest;
+        found.clear();
+        found.extend(outline.sample(first).iter().map(&project));
+        found[0] = lowest;
     }
-    // What is left of the difference is too little to move a point, not to be told.
-    let least = least_distance(spots);
-    if let Some(spot) = spots.iter_mut().find(|s| s.distance() <= least) {
-        *spot = spot.at_distance(least.min(lowest.distance()));
+    // What is left of the difference is too small to move a point for, but the contact has the true depth.
+    let least = least_distance(found);
+    if let Some(point) = found.iter_mut().find(|s| s.distance() <= least) {
+        *point = point.at_distance(least.min(lowest.distance()));
     }
 }
 
-fn least_distance<S: Scalar>(spots: &Spots<S>) -> S {
-    let distances = spots.iter().map(Spot::distance);
+fn least_distance<S: Scalar>(found: &PatchPoints<S>) -> S {
+    let distances = found.iter().map(PatchPoint::distance);
     distances.fold(S::INFINITY, |least, d| least.min(d))
 }
 
-/// The first of the deepest spots; what the tolerance cannot tell apart is as deep.
-fn deepest<S: Scalar>(spots: &Spots<S>, tolerance: S) -> Option<Spot<S>> {
-    let least = least_distance(spots) + tolerance;
-    let mut spots = spots.iter().copied();
-    spots.find(|spot| spot.distance() <= least)
+/// The first of the deepest points; those that the tolerance cannot tell apart are equally deep.
+fn deepest<S: Scalar>(found: &PatchPoints<S>, tolerance: S) -> Option<PatchPoint<S>> {
+    let least = least_distance(found) + tolerance;
+    let mut found = found.iter().copied();
+    found.find(|point| point.distance() <= least)
 }

@@ -17,9 +17,9 @@ use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
 /// Newton converges quadratically, so more steps than this mean that it does not.
-const STEPS: usize = 12;
+const MAX_STEPS: usize = 12;
 /// How often a step that loses is halved before Newton's method is given up.
-const HALVINGS: usize = 3;
+const MAX_HALVINGS: usize = 3;
 /// The largest turn of a step, rad.
 const MAX_TURN: f64 = 0.3;
 /// The last step turns by less than this in double precision; then the next would turn by some times its square.
@@ -189,7 +189,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
         gap: start.dot(w),
         settled: false,
     };
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         let Some((mut turn, down)) = step(pair, &best, w, active) else {
             return best;
         };
@@ -207,7 +207,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
                 (best.normal, best.gap) = (tried, gap);
                 break;
             }
-            if halvings == HALVINGS {
+            if halvings == MAX_HALVINGS {
                 return best;
             }
             halvings += 1;
