@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 /// Steps of environments that a batch takes at a call, after which signals are looked at: about a second's work.
 const ENV_STEPS_A_CALL: usize = 1 << 19;
 /// Steps that it takes at least: so many are done before environments are grouped anew.
-const LEAST_STEPS_A_CALL: usize = 8;
+const MIN_STEPS_A_CALL: usize = 8;
 /// How many failed environments a report names.
 const NAMED_FAILURES: usize = 10;
 
@@ -50,7 +50,7 @@ pub(crate) fn run<S: Precision>(
     let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;
     let mut account = EnergyAccount::open(&run.model, energies.iter().copied());
-    let most = (ENV_STEPS_A_CALL / batch.count()).max(LEAST_STEPS_A_CALL);
+    let most = (ENV_STEPS_A_CALL / batch.count()).max(MIN_STEPS_A_CALL);
     let rollout = Rollout::new(run, batch.count(), most)?;
     let records = rollout.records();
     let traced: &[&str] = match &account {

@@ -4,7 +4,7 @@ var<workgroup> hessian: array<f32, PACKED>;
 var<workgroup> inverse_pivots: array<f32, NV>;
 
 // A pivot below this part of the diagonal that it is left of is nothing but rounding.
-const LEAST_PIVOT: f32 = 1.1920929e-7;
+const MIN_PIVOT: f32 = 1.1920929e-7;
 
 // The entry (i, j), i ≥ j, of a lower triangle.
 fn packed(i: u32, j: u32) -> u32 {
@@ -106,7 +106,7 @@ fn factor_hessian() {
     for (var k = 0u; k < bound(NV); k++) {
         let diagonal = hessian[packed(k, k)];
         let left = reduced(k, k);
-        let pivot = select(diagonal, left, left > LEAST_PIVOT * diagonal);
+        let pivot = select(diagonal, left, left > MIN_PIVOT * diagonal);
         let inverse = inverseSqrt(pivot);
         for (var i = lane; i < bound(NV); i += GROUP) {
             if (i > k) {

@@ -76,14 +76,14 @@ fn find_moments() {
             p.y * p.y + p.y * q.y + q.y * q.y,
         ) * twice;
     }
-    let inverse = 1.0 / max(area, LEAST_NORMAL);
+    let inverse = 1.0 / max(area, MIN_NORMAL);
     let mean = first * (inverse / 3.0);
     second *= inverse / 6.0;
     let xy = second.y - mean.x * mean.y;
     // A very thin polygon counts as a little wider.
     var squares = second.xz - mean * mean;
     squares = max(squares, vec2f()) + (squares.x + squares.y) * ROOT_OF_ROUNDING;
-    let root = sqrt(max(squares.x * squares.y - xy * xy, LEAST_NORMAL));
+    let root = sqrt(max(squares.x * squares.y - xy * xy, MIN_NORMAL));
     let scale = 1.0 / (root * sqrt(squares.x + squares.y + root * 2.0));
     outline_middle = origin + mean;
     outline_round = vec3f(squares.y + root, -xy, squares.x + root) * scale;

@@ -21,7 +21,7 @@ fn is_mixed(solref: vec2f) -> bool {
 fn spring_damper(solref: vec2f, dmax_given: f32) -> vec2f {
     let dmax = clamp_impedance(dmax_given);
     if (solref.x > 0.0) {
-        let timeconst = max(solref.x, LEAST_TIMECONST);
+        let timeconst = max(solref.x, MIN_TIMECONST);
         let squares = dmax * dmax * timeconst * timeconst * solref.y * solref.y;
         return vec2f(1.0 / max(squares, LEAST), 2.0 / max(dmax * timeconst, LEAST));
     }

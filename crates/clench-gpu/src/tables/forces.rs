@@ -68,7 +68,7 @@ impl Tables {
             floor
         };
         self.real("TIMESTEP", h);
-        self.real("LEAST_TIMECONST", least);
+        self.real("MIN_TIMECONST", least);
         self.real("IMPRATIO", s.impratio);
         self.flag("ELLIPTIC_CONES", s.friction_cone == FrictionCone::Elliptic);
         self.flag("WARMSTART", s.solver.warmstart);

@@ -255,13 +255,8 @@ fn explained<T: Real>(
     (solref, solimp): ([T; 2], [T; 5]),
 ) -> f64 {
     let number = |x: T| x.lane(lane).to_f64();
-    let least_timeconst = place.settings.constraint_timeconst;
-    let soft = Softness::new(
-        solref.map(number),
-        solimp.map(number),
-        found,
-        least_timeconst,
-    );
+    let min_timeconst = place.settings.constraint_timeconst;
+    let soft = Softness::new(solref.map(number), solimp.map(number), found, min_timeconst);
     let block = place.ws.problem.block(block);
     let force = number(place.ws.solver.force()[block.rows()][row]).abs();
     // Each edge of a pyramid carries its share of the normal force.

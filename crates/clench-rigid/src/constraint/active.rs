@@ -61,7 +61,7 @@ impl<T: Real> ConstraintContext<'_, T> {
         (solref, solimp): ([T; 2], [T; 5]),
         violation: T,
     ) -> (Softness<T>, BlockRecord<T>) {
-        let soft = Softness::new(solref, solimp, violation, self.least_timeconst);
+        let soft = Softness::new(solref, solimp, violation, self.min_timeconst);
         let record = BlockRecord {
             source,
             active,

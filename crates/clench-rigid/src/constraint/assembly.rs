@@ -66,9 +66,9 @@ pub(super) struct Assembly<'a, T: Real> {
     pub problem: &'a mut Problem<T>,
     pub record: &'a mut ConstraintRecord<T>,
     pub qvel: &'a [T],
-    /// Inverse inertia of each dof in the initial configuration.
-    pub weights: &'a [T],
-    /// Computes it anew for each row, with the flag `diagexact`.
+    /// Inverse inertia of each dof in the initial configuration (nv).
+    pub dof_invweight0: &'a [T],
+    /// Computes the inverse inertia that each row sees at present, with the flag `diagexact`.
     pub exact: Option<ExactDiagonal<'a, T>>,
 }
 
@@ -113,7 +113,14 @@ impl<T: Real> Assembly<'_, T> {
             exact.regularize(cost, rows, matrix, block.impedance, &mut r);
         }
         if is_single::<T>() {
-            raise(cost, rows, target.jacobian, dofs, self.weights, &mut r);
+            raise_regularization(
+                cost,
+                rows,
+                target.jacobian,
+                dofs,
+                self.dof_invweight0,
+                &mut r,
+            );
         }
         for (i, row) in rows.iter().enumerate() {
             let jacobian = &target.jacobian[i * dofs.len()..(i + 1) * dofs.len()];
@@ -144,18 +151,18 @@ fn any_nonzero<T: Real>(row: &[T]) -> T::Mask {
 /// Raises R to what the rounding of single precision leaves of it, see [`least_regularization`]. The rows of a cone are
 /// raised together: their ratios are its shape.
 #[inline(always)]
-fn raise<T: Real>(
+fn raise_regularization<T: Real>(
     cost: Cost,
     rows: &[Row<T>],
     jacobian: &[T],
     dofs: &[u32],
-    weights: &[T],
+    dof_invweight0: &[T],
     r: &mut [T; MAX_DIM],
 ) {
     let mut inertia = [T::ZERO; MAX_DIM];
     for (i, a) in inertia[..rows.len()].iter_mut().enumerate() {
         for (&j, &dof) in jacobian[i * dofs.len()..].iter().zip(dofs) {
-            *a += j * j * weights[dof as usize];
+            *a += j * j * dof_invweight0[dof as usize];
         }
     }
     let mut factor = T::ONE;

@@ -58,7 +58,7 @@ pub(super) fn push<T: Real>(
         contact.solref,
         contact.solimp,
         contact.dist - contact.includemargin,
-        context.least_timeconst,
+        context.min_timeconst,
     );
     let weight = |body: usize| context.params.body_invweight0[body][0];
     let a0 = weight(bodies[0]) + weight(bodies[1]);
@@ -116,7 +116,7 @@ fn rows<T: Real>(
             let damping = soft.friction_damping(
                 contact.solreffriction,
                 contact.solimp,
-                context.least_timeconst,
+                context.min_timeconst,
             );
             rows[0].shape = mu[0] * (r1 / normal.r).sqrt();
             for (row, &mu_j) in rows[1..].iter_mut().zip(&mu) {

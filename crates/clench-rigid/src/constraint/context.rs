@@ -1,4 +1,4 @@
-//! All that constraints read.
+//! What all kinds of constraint read.
 
 use crate::model::{Model, Params};
 use crate::settings::StepSettings;
@@ -7,7 +7,7 @@ use crate::stages::{Positions, Velocities};
 use crate::state::State;
 use clench_math::Real;
 
-/// All that constraints read.
+/// What all kinds of constraint read.
 pub(super) struct ConstraintContext<'a, T: Real> {
     pub(super) model: &'a Model,
     pub(super) params: &'a Params<T>,
@@ -17,7 +17,7 @@ pub(super) struct ConstraintContext<'a, T: Real> {
     pub(super) velocity: &'a Velocities<T>,
     pub(super) sleep: &'a Sleep<T>,
     /// No constraint has a shorter time constant, s.
-    pub(super) least_timeconst: T,
+    pub(super) min_timeconst: T,
     /// Ratio of friction to normal impedance.
     pub(super) impratio: T,
 }

@@ -80,7 +80,7 @@ impl<T: Real> Friction<T> {
         if !active.any() {
             return;
         }
-        let soft = Softness::new(self.solref, self.solimp, T::ZERO, context.least_timeconst);
+        let soft = Softness::new(self.solref, self.solimp, T::ZERO, context.min_timeconst);
         let row = Row {
             shape: self.loss,
             ..Row::new(&soft, T::ZERO, T::ZERO, self.a0)

@@ -148,12 +148,7 @@ impl<T: Real> Limit<'_, T> {
         fill: impl FnOnce(&[u32], &mut [T]),
     ) {
         let violation = dist - self.margin;
-        let soft = Softness::new(
-            *self.solref,
-            *self.solimp,
-            violation,
-            context.least_timeconst,
-        );
+        let soft = Softness::new(*self.solref, *self.solimp, violation, context.min_timeconst);
         let row = Row::new(&soft, dist, self.margin, self.a0);
         let block = BlockRecord {
             source: self.source,

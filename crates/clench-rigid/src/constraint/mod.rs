@@ -83,7 +83,7 @@ pub fn assemble<T: Real>(
         position: &ws.position,
         velocity: &ws.velocity,
         sleep: &ws.sleep,
-        least_timeconst: least_timeconst(params, settings),
+        min_timeconst: min_timeconst(params, settings),
         impratio: T::new(settings.impratio),
     };
     // Rows are appended to the problem while the factor of its mass is read.
@@ -98,7 +98,7 @@ pub fn assemble<T: Real>(
         problem: &mut ws.problem,
         record: &mut ws.record,
         qvel: &state.qvel,
-        weights: &params.dof_invweight0,
+        dof_invweight0: &params.dof_invweight0,
         exact,
     };
     if settings.flags.equality {
@@ -121,7 +121,7 @@ pub fn assemble<T: Real>(
 }
 
 #[inline(always)]
-fn least_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
+fn min_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
     let floor = T::new(settings.constraint_timeconst);
     if settings.flags.refsafe {
         floor.max(params.timestep * T::new(2.0))

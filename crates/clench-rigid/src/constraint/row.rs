@@ -1,9 +1,9 @@
-//! One row of a block to be.
+//! One row of a block, before the block is pushed.
 
 use super::softness::Softness;
 use clench_math::Real;
 
-/// One row of a block to be: everything but its Jacobian.
+/// One row of a block: everything but its Jacobian.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row<T> {
     /// Position.
@@ -14,9 +14,9 @@ pub(super) struct Row<T> {
     pub damping: T,
     /// Regularization.
     pub r: T,
-    /// What else moves along the row, beside the dofs.
+    /// The part of its velocity that is not J v: that of surfaces which move by themselves.
     pub drift: T,
-    /// A force that the row gives where its reference acceleration is met: it is raised by R times this.
+    /// A force with which the row pulls where it would otherwise give none: the reference acceleration is raised by R times this.
     pub pull: T,
     /// Shape of its cost, see `clench_solver::BlockMut::shape`.
     pub shape: T,

@@ -21,7 +21,7 @@ use clench_math::{Mask, Real, Scalar, array};
 /// Least R, and least width of the impedance's rise (MuJoCo's `mjMINVAL`).
 const MIN_VALUE: f64 = 1e-15;
 /// The same in roundings: `MIN_VALUE` is 4.5 of double precision's at 1.
-const LEAST_ROUNDINGS: f64 = 4.5;
+const MIN_ROUNDINGS: f64 = 4.5;
 /// Bounds of the impedance (MuJoCo's `mjMINIMP`, `mjMAXIMP`).
 const IMPEDANCE_RANGE: [f64; 2] = [0.0001, 0.9999];
 /// What replaces a solref whose numbers have mixed signs.
@@ -39,16 +39,16 @@ pub struct Softness<T> {
 }
 
 impl<T: Real> Softness<T> {
-    /// From the parameters of a constraint at violation `r`; no time constant is below `least_timeconst` (s).
+    /// From the parameters of a constraint at violation `r`; no time constant is below `min_timeconst` (s).
     #[inline(always)]
-    pub fn new(solref: [T; 2], solimp: [T; 5], r: T, least_timeconst: T) -> Self {
+    pub fn new(solref: [T; 2], solimp: [T; 5], r: T, min_timeconst: T) -> Self {
         let mixed = is_mixed(solref);
         let solref = array(
             #[inline(always)]
             |i| T::select(mixed, T::new(DEFAULT_SOLREF[i]), solref[i]),
         );
         let impedance = impedance(solimp, r);
-        let (k, damping) = spring_damper(solref, solimp[1], least_timeconst);
+        let (k, damping) = spring_damper(solref, solimp[1], min_timeconst);
         Softness {
             impedance,
             stiffness: k * impedance,
@@ -58,12 +58,12 @@ impl<T: Real> Softness<T> {
 
     /// The damping of friction dimensions that have their own solref: as `self` where it is zero or mixed.
     #[inline(always)]
-    pub fn friction_damping(&self, solref: [T; 2], solimp: [T; 5], least_timeconst: T) -> T {
+    pub fn friction_damping(&self, solref: [T; 2], solimp: [T; 5], min_timeconst: T) -> T {
         let given = !(solref[0].eq(T::ZERO) & solref[1].eq(T::ZERO)) & !is_mixed(solref);
         if !given.any() {
             return self.damping;
         }
-        let (_, damping) = spring_damper(solref, solimp[1], least_timeconst);
+        let (_, damping) = spring_damper(solref, solimp[1], min_timeconst);
         T::select(given, damping, self.damping)
     }
 
@@ -93,7 +93,7 @@ pub fn is_single<T: Real>() -> bool {
 /// of the inertia that it moves, must not exceed what the working precision can tell from infinity.
 #[inline(always)]
 pub fn least_regularization<T: Real>(a: T) -> T {
-    a * T::splat(T::Scalar::EPSILON) * T::new(LEAST_ROUNDINGS)
+    a * T::splat(T::Scalar::EPSILON) * T::new(MIN_ROUNDINGS)
 }
 
 #[inline(always)]
@@ -104,12 +104,12 @@ fn is_mixed<T: Real>(solref: [T; 2]) -> T::Mask {
 
 /// (k, b) of a solref whose signs agree.
 #[inline(always)]
-fn spring_damper<T: Real>(solref: [T; 2], dmax: T, least_timeconst: T) -> (T, T) {
+fn spring_damper<T: Real>(solref: [T; 2], dmax: T, min_timeconst: T) -> (T, T) {
     let least = T::new(MIN_VALUE);
     let dmax = clamp_impedance(dmax);
     let [first, second] = solref;
     let standard = first.gt(T::ZERO);
-    let timeconst = first.max(least_timeconst);
+    let timeconst = first.max(min_timeconst);
     let squares = dmax * dmax * timeconst * timeconst * second * second;
     let k = T::ONE / squares.max(least);
     let b = T::new(2.0) / (dmax * timeconst).max(least);
@@ -152,14 +152,14 @@ fn spline<T: Real>(x: T, midpoint: T, power: T) -> T {
     let below = x.le(midpoint);
     let base = T::select(below, x, T::ONE - x);
     let edge = T::select(below, midpoint, T::ONE - midpoint);
-    let y = raise(base, power) * (T::ONE / raise(edge, power - T::ONE));
+    let y = pow(base, power) * (T::ONE / pow(edge, power - T::ONE));
     let y = T::select(below, y, T::ONE - y);
     T::select(power.eq(T::ONE), x, y)
 }
 
 /// base^exponent, exact for the usual exponents 1 and 2.
 #[inline(always)]
-fn raise<T: Real>(base: T, exponent: T) -> T {
+fn pow<T: Real>(base: T, exponent: T) -> T {
     let first = exponent.eq(T::ONE);
     let usual = first | exponent.eq(T::new(2.0));
     let power = T::select(first, base, base * base);

@@ -25,12 +25,12 @@ use clench_math::{Mask, Quat, Real, Scalar, kernel};
 use std::ops::Range;
 
 /// ε: damping never fades altogether, for at singular postures A alone is no matrix to solve with.
-const LEAST_DAMPING: f64 = 1e-9;
+const MIN_DAMPING: f64 = 1e-9;
 /// By what λ is multiplied where a step fails, and divided where one goes well.
 const RAISE: f64 = 8.0;
 const LOWER: f64 = 4.0;
 /// λ stays above this, or it would take many failures to raise it again.
-const LEAST_LAMBDA: f64 = 1e-6;
+const MIN_LAMBDA: f64 = 1e-6;
 /// A step that brings at least this part of what the linear model promised went well.
 const GOOD_RATIO: f64 = 0.5;
 /// Where the linear model promises no more than this part of the cost, nothing is to be gained.
@@ -157,7 +157,7 @@ impl<T: Real> Search<T> {
                 break;
             }
             self.iterations = T::select(live, self.iterations + T::ONE, self.iterations);
-            let damping = lambda * (self.here.cost + self.here.cost + T::new(LEAST_DAMPING));
+            let damping = lambda * (self.here.cost + self.here.cost + T::new(MIN_DAMPING));
             let promised = self.try_step(model, params, ik, damping);
             let gained = self.here.cost - self.there.cost;
             let better = live & self.there.cost.lt(self.here.cost);
@@ -166,7 +166,7 @@ impl<T: Real> Search<T> {
             for (own, &tried) in self.qpos.iter_mut().zip(&self.state.qpos) {
                 *own = T::select(better, tried, *own);
             }
-            let lowered = (lambda / T::new(LOWER)).max(T::new(LEAST_LAMBDA));
+            let lowered = (lambda / T::new(LOWER)).max(T::new(MIN_LAMBDA));
             let raised = lambda * T::new(RAISE);
             lambda = T::select(better, T::select(good, lowered, lambda), raised);
             failures = T::select(better, T::ZERO, failures + T::ONE);

@@ -38,7 +38,7 @@ fn cross_face(c: Cylinder, plane: vec4f) -> Crossed {
     let sideways = cross(c.axis, plane.xyz);
     let level = length(sideways);
     let reach = c.size.x * level + c.size.y * abs(along);
-    let arm = c.size.x * along / max(level, LEAST_NORMAL) - signed(c.size.y, along);
+    let arm = c.size.x * along / max(level, MIN_NORMAL) - signed(c.size.y, along);
     return Crossed(reach + plane.w - dot(plane.xyz, c.center), cross(c.center, plane.xyz) + sideways * arm);
 }
 

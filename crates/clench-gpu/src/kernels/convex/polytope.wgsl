@@ -56,7 +56,7 @@ fn insert_face(face: u32, corners: vec3u, sides: vec3u) {
     let area = length(crossed);
     // A face without area, to rounding, may even look inwards.
     let is_flat = dot(crossed, a - middle) <= area * visibility();
-    let normal = select(crossed / max(area, LEAST_NORMAL), vec3f(), is_flat);
+    let normal = select(crossed / max(area, MIN_NORMAL), vec3f(), is_flat);
     let distance = dot(normal, a);
     put3(place, vec3f(corners));
     put3(place + 3u, vec3f(sides));

@@ -15,7 +15,7 @@ var<private> edge_count: u32;
 
 fn extend_edges(edge: vec3f) {
     let whole = length(edge);
-    if (edge_count == 2u || whole <= LEAST_NORMAL) {
+    if (edge_count == 2u || whole <= MIN_NORMAL) {
         return;
     }
     var rest = edge;
@@ -199,7 +199,7 @@ fn refine(n: vec3f) -> Gap {
             return at;
         }
         size = length(step.xyz);
-        step = vec4f(step.xyz * min(1.0, MAX_TURN / max(size, LEAST_NORMAL)), step.w);
+        step = vec4f(step.xyz * min(1.0, MAX_TURN / max(size, MIN_NORMAL)), step.w);
         before = gap;
         halvings = 0u;
         steps++;
