@@ -12,7 +12,45 @@ use crate::model::Model;
 use crate::profile::Profile;
 use crate::settings::StepSettings;
 use clench_math::Scalar;
+use std::ops::Range;
 use std::sync::atomic::AtomicU64;
+
+/// A call of a batch: steps, or a forward pass, of its running environments.
+#[derive(Clone)]
+pub(super) struct Call<'a, S> {
+    pub(super) pass: Pass,
+    /// Which of all its steps are done now.
+    pub(super) range: Range<usize>,
+    /// How many steps it has.
+    pub(super) steps: usize,
+    pub(super) controls: Controls<'a, S>,
+    /// Which environments take part, if not all that run.
+    pub(super) mask: Option<&'a [bool]>,
+}
+
+impl<S> Call<'_, S> {
+    /// All of so many steps, with the controls that are in the state.
+    pub(super) fn steps(steps: usize) -> Self {
+        Call {
+            pass: Pass::Step,
+            range: 0..steps,
+            steps,
+            controls: Controls::Held,
+            mask: None,
+        }
+    }
+}
+
+impl<'a, S> Call<'a, S> {
+    /// One forward pass of the environments in a mask, or of all.
+    pub(super) fn forward(pass: Pass, mask: Option<&'a [bool]>) -> Self {
+        Call {
+            pass,
+            mask,
+            ..Call::steps(1)
+        }
+    }
+}
 
 /// What a call asks of its threads, the same for every group.
 pub struct Job<'a, S: Scalar + Shared> {
@@ -28,7 +66,7 @@ pub struct Job<'a, S: Scalar + Shared> {
     /// Where outputs go.
     pub targets: Targets<'a, S>,
     pub controls: Controls<'a, S>,
-    /// Of all steps of the call, these are done now.
+    /// Of all steps of the call, those from `first` to `end` are done now.
     pub first: usize,
     pub end: usize,
     pub steps: usize,

@@ -1,16 +1,13 @@
 //! What a device holds of the rows on this side, and what it is asked besides steps: outputs and parameters.
 
-use super::Controls;
 use super::backend::{Backend, Outcome};
 use super::env_rows::ParamRows;
-use super::job::Pass;
 use super::shared::Shared;
 use crate::error::SimError;
 use crate::model::{Model, ParamField};
 use crate::output::Output;
 use crate::state::FIELDS;
 use clench_math::Scalar;
-use std::ops::Range;
 
 /// A device, and what it holds of the rows on this side.
 pub(super) struct Mirror<S> {
@@ -57,18 +54,6 @@ impl<S: Scalar> Mirror<S> {
             known.join(", ")
         )))
     }
-}
-
-/// What a call does.
-#[derive(Clone)]
-pub(super) struct Call<'a, S> {
-    pub(super) pass: Pass,
-    /// Of all steps of the call, these are done now.
-    pub(super) range: Range<usize>,
-    pub(super) steps: usize,
-    pub(super) controls: Controls<'a, S>,
-    /// Which environments take part, if not all that run.
-    pub(super) mask: Option<&'a [bool]>,
 }
 
 impl<S: Scalar + Shared> Mirror<S> {

@@ -63,9 +63,9 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
-/// Bytes that an environment takes besides its rows: whether it runs, how often it was reset, the number of its last constraint at run
-/// time, and its place in groups.
-const SERVICE_BYTES: usize =
+/// Bytes of memory that an environment takes beside its rows: its status, how often it was reset, the number of the last constraint that
+/// was added at run time, and its place in groups.
+const BOOKKEEPING_BYTES: usize =
     size_of::<EnvStatus>() + size_of::<u64>() + size_of::<AtomicU64>() + 2 * size_of::<u32>();
 
 /// Whether an environment takes part in steps.
@@ -149,7 +149,7 @@ impl<S: Precision> Batch<S> {
                 range: "less than 2^32",
             });
         }
-        try_reserve(count, StateRows::<S>::row_bytes(&model) + SERVICE_BYTES)?;
+        try_reserve(count, StateRows::<S>::row_bytes(&model) + BOOKKEEPING_BYTES)?;
         let threads = options.threads(count)?;
         let pool = (threads > 1)
             .then(|| options.pool(threads).map(Arc::new))
@@ -225,7 +225,7 @@ impl<S: Precision> Batch<S> {
         let state = StateRows::<S>::row_bytes(&self.model);
         let params: usize = self.params.iter().map(ParamRows::row_bytes).sum();
         let recorded = self.recorded.as_ref().map_or(0, RecordedStates::row_bytes);
-        state + params + row_bytes(&self.outputs) + recorded + SERVICE_BYTES + device
+        state + params + row_bytes(&self.outputs) + recorded + BOOKKEEPING_BYTES + device
     }
 
     /// How many environments there are.

@@ -2,8 +2,8 @@
 //! becomes statuses, times and new starts. Whatever else a batch is asked (resets, snapshots, queries) it answers from its rows, as ever.
 
 use super::backend::{Backend, Outcome, Trouble};
-use super::job::Pass;
-use super::mirror::{Call, Mirror};
+use super::job::{Call, Pass};
+use super::mirror::Mirror;
 use super::rows::per_env;
 use super::targets::OutputRows;
 use super::{Batch, BatchOptions, Controls, EnvStatus, Precision, StateRows, Summary};

@@ -1,6 +1,6 @@
 //! Outputs that a batch keeps, and rollouts that record them step by step.
 
-use super::job::Pass;
+use super::job::Call;
 use super::recorded_states::RecordedStates;
 use super::rows::try_reserve;
 use super::targets::{Controls, OutputRows};
@@ -144,7 +144,12 @@ impl<S: Precision> Batch<S> {
         let summary = loop {
             let range = first..steps.min(first.saturating_add(portion));
             first = range.end;
-            let part = self.run(Pass::Step, range, steps, controls, None, &mut outputs)?;
+            let call = Call {
+                range,
+                controls,
+                ..Call::steps(steps)
+            };
+            let part = self.run(&call, &mut outputs)?;
             failed += part.failed;
             resets += part.resets;
             if first == steps || part.running == 0 || !go_on() {

@@ -1,16 +1,14 @@
 //! Stepping a batch: environments are grouped, threads claim groups, and what went wrong becomes a status.
 
 use super::env_rows::EnvRows;
-use super::job::{Job, Pass, Stepper};
-use super::mirror::Call;
+use super::job::{Call, Job, Pass, Stepper};
 use super::recorded_states::RecordedStates;
 use super::summary::Summary;
 use super::targets::{OutputRows, targets};
-use super::{Batch, Controls, EnvStatus, Precision};
+use super::{Batch, EnvStatus, Precision};
 use crate::check::check_length;
 use crate::error::SimError;
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// After so many steps of a call environments are grouped anew.
@@ -34,7 +32,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
-        self.run(Pass::Step, 0..steps, steps, Controls::Held, None, &mut [])
+        self.run(&Call::steps(steps), &mut [])
     }
 
     /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
@@ -43,7 +41,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<Summary, SimError> {
-        self.run(Pass::Forward, 0..1, 1, Controls::Held, None, &mut [])
+        self.run(&Call::forward(Pass::Forward, None), &mut [])
     }
 
     /// As [`forward`](Self::forward), only for the running environments where `mask` is true. Of the others nothing changes:
@@ -53,7 +51,7 @@ impl<S: Precision> Batch<S> {
     /// As [`step`](Self::step), and a mask of another length than there are environments.
     pub fn forward_mask(&mut self, mask: &[bool]) -> Result<Summary, SimError> {
         check_length("mask", mask.len(), self.count())?;
-        self.run(Pass::Forward, 0..1, 1, Controls::Held, Some(mask), &mut [])
+        self.run(&Call::forward(Pass::Forward, Some(mask)), &mut [])
     }
 
     /// Computes the outputs that are kept anew for running environments whose positions, velocities, mocap poses or parameters were
@@ -79,57 +77,38 @@ impl<S: Precision> Batch<S> {
 
     /// A forward pass that nobody notices but in outputs.
     pub(super) fn query(&mut self, mask: Option<&[bool]>) -> Result<(), SimError> {
-        self.run(Pass::Query, 0..1, 1, Controls::Held, mask, &mut [])?;
+        self.run(&Call::forward(Pass::Query, mask), &mut [])?;
         Ok(())
     }
 
-    /// Does those in `range` of `steps` steps, or one forward pass, of every running environment that is not masked out.
+    /// Does a call, and puts the outputs of each of its steps into `trace`.
     pub(super) fn run(
         &mut self,
-        pass: Pass,
-        range: Range<usize>,
-        steps: usize,
-        controls: Controls<S>,
-        mask: Option<&[bool]>,
+        call: &Call<S>,
         trace: &mut [OutputRows<S>],
     ) -> Result<Summary, SimError> {
         self.check_state()?;
         self.check_threads()?;
         if let Some(mut mirror) = self.mirror.take() {
-            let call = Call {
-                pass,
-                range,
-                steps,
-                controls,
-                mask,
-            };
-            let done = self.run_on_device(&mut mirror, &call, trace);
+            let done = self.run_on_device(&mut mirror, call, trace);
             self.mirror = Some(mirror);
             return done;
         }
         // All groupings of a call run inside the pool, so that its threads need not be woken for each.
         Ok(match self.pool.clone() {
-            None => self.run_here(pass, range, steps, controls, mask, trace),
-            Some(pool) => pool.install(|| self.run_here(pass, range, steps, controls, mask, trace)),
+            None => self.run_here(call, trace),
+            Some(pool) => pool.install(|| self.run_here(call, trace)),
         })
     }
 
-    fn run_here(
-        &mut self,
-        pass: Pass,
-        range: Range<usize>,
-        steps: usize,
-        controls: Controls<S>,
-        mask: Option<&[bool]>,
-        trace: &mut [OutputRows<S>],
-    ) -> Summary {
+    fn run_here(&mut self, call: &Call<S>, trace: &mut [OutputRows<S>]) -> Summary {
         let mut summary = Summary {
             failed: 0,
             running: 0,
             resets: 0,
         };
-        for first in range.clone().step_by(STEPS_A_GROUP) {
-            self.regroup(mask);
+        for first in call.range.clone().step_by(STEPS_A_GROUP) {
+            self.regroup(call.mask);
             if self.order.is_empty() {
                 break;
             }
@@ -144,12 +123,12 @@ impl<S: Precision> Batch<S> {
                 },
                 targets: targets(&mut self.outputs, trace),
                 sort_keys: &self.sort_keys,
-                pass,
+                pass: call.pass,
                 recorded: self.recorded.as_mut().map(RecordedStates::share),
-                controls,
+                controls: call.controls,
                 first,
-                end: range.end.min(first.saturating_add(STEPS_A_GROUP)),
-                steps,
+                end: call.range.end.min(first.saturating_add(STEPS_A_GROUP)),
+                steps: call.steps,
             };
             spread(&mut self.steppers, &self.order, |stepper, group| {
                 stepper.run(group, &job)
