@@ -20,10 +20,29 @@ use crate::dynamics::euler::damped_inertia;
 use crate::dynamics::implicit::{full_inertia, gyroscopic_product, symmetric_inertia};
 use crate::model::{Integrator, Model, Params};
 use crate::pipeline::{position_stage, velocity_stage};
-use crate::settings::{Acceleration, StepSettings};
+use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Real, kernel};
+
+/// Which acceleration inverse dynamics are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acceleration {
+    /// That which forward dynamics find.
+    Continuous,
+    /// That by which a step changes the velocity, (v₁ − v₀) / h.
+    Discrete,
+}
+
+impl Acceleration {
+    /// Which one a model says is given (MuJoCo's flag `invdiscrete`).
+    pub fn of(model: &Model) -> Self {
+        match model.flags.invdiscrete {
+            true => Acceleration::Discrete,
+            false => Acceleration::Continuous,
+        }
+    }
+}
 
 /// Leaves the acceleration that forward dynamics would find in `ws.qacc`, the constraint forces in `ws.qfrc_constraint` and in
 /// the solver, and in `qfrc_inverse` (nv) the forces along dofs that actuators and users must give for it. The state is that of
@@ -43,30 +62,35 @@ pub fn inverse<T: Real>(
     velocity_stage(model, params, state, ws);
     ws.qacc.copy_from_slice(qacc);
     if given == Acceleration::Discrete {
-        continuous(model, params, state, ws);
+        make_continuous(model, params, state, ws);
     }
     assemble(model, params, settings, state, ws);
     (ws.solver.evaluate(&ws.problem, &ws.qacc))
         .expect("the arrays of a workspace have the model's lengths");
     let constraint = ws.solver.qfrc_constraint();
     ws.qfrc_constraint.copy_from_slice(constraint);
-    sum(model, ws, qfrc_inverse);
+    applied_forces(model, ws, qfrc_inverse);
 }
 
-/// M a + bias − passive − Jᵀ f.
+/// τ = M a + bias − passive − Jᵀ f.
 #[kernel]
-fn sum<T: Real>(model: &Model, ws: &Workspace<T>, qfrc_inverse: &mut [T]) {
+fn applied_forces<T: Real>(model: &Model, ws: &Workspace<T>, qfrc_inverse: &mut [T]) {
     ws.problem.mass.mul(&model.tree, &ws.qacc, qfrc_inverse);
     for (i, force) in qfrc_inverse.iter_mut().enumerate() {
         *force += ws.force.qfrc_bias[i] - ws.force.qfrc_passive[i] - ws.qfrc_constraint[i];
     }
 }
 
-/// Replaces `ws.qacc`, by which a step changes the velocity, by M⁻¹ M′ times it. A step of Runge and Kutta has no such M′: its
+/// Turns the discrete acceleration in `ws.qacc` into the continuous one, M⁻¹ M′ times it. A step of Runge and Kutta has no such M′: its
 /// acceleration is taken as it is.
-fn continuous<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
+fn make_continuous<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
     let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
-    // The slopes of actuators depend on their forces.
+    // The derivatives of actuators depend on their forces.
     actuation(model, params, state, pos, vel, T::ZERO, force);
     let tree = &model.tree;
     match model.integrator {

@@ -1,12 +1,12 @@
-//! Whether what was computed from a state still holds.
+//! Whether what the workspace holds was computed from the present state, or is stale.
 
 use crate::state::State;
 use clench_math::{Quat, Scalar, Vec3};
 
-/// How much of what follows from a state.
+/// How far the computation from a state has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Extent {
-    /// The state itself.
+    /// Nothing is computed.
     Nothing,
     /// What the position stage computes.
     Positions,
@@ -14,10 +14,10 @@ pub(crate) enum Extent {
     Everything,
 }
 
-/// How much of the workspace holds, and for which positions and velocities.
+/// How much the workspace holds, and the positions and velocities that it was computed from.
 ///
-/// A step moves the state on, and what it computed on the way counts as known all the same, as in MuJoCo; positions or
-/// velocities that anyone writes afterwards do not.
+/// What a step computed from the state at its start counts as known at its end, as in MuJoCo. Once anyone writes other positions or
+/// velocities it is stale.
 #[derive(Clone, Debug)]
 pub(crate) struct Known<T> {
     extent: Extent,
@@ -39,12 +39,12 @@ impl<T: Scalar> Known<T> {
         }
     }
 
-    /// What is known holds no longer.
+    /// Marks everything as stale.
     pub(crate) fn forget(&mut self) {
         self.extent = Extent::Nothing;
     }
 
-    /// So much is known as long as nobody writes this state.
+    /// Notes what was computed. It is known as long as nobody writes to this state.
     pub(crate) fn note(&mut self, extent: Extent, state: &State<T>) {
         self.extent = extent;
         self.qpos.clone_from(&state.qpos);
@@ -53,7 +53,7 @@ impl<T: Scalar> Known<T> {
         self.mocap_quat.clone_from(&state.mocap_quat);
     }
 
-    /// How much holds for this state.
+    /// How much is known of this state.
     pub(crate) fn extent(&self, state: &State<T>) -> Extent {
         let placed = self.qpos == state.qpos
             && self.mocap_pos == state.mocap_pos

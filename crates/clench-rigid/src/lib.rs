@@ -41,8 +41,9 @@ pub use batch::{Batch, BatchOptions, EnvStatus, Precision};
 pub use budget::Budget;
 pub use error::{Fault, SimError};
 pub use ik::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask};
+pub use inverse::Acceleration;
 pub use options::RigidOptions;
-pub use settings::{Acceleration, StepSettings};
+pub use settings::StepSettings;
 // The rows of the solver in the table of options.
 #[doc(hidden)]
 pub use clench_solver::solver_options;

@@ -1,4 +1,4 @@
-//! The life of a step: each stage reads what the ones before it left in the workspace.
+//! The stages of a step. Each reads what those before it left in the workspace.
 
 use crate::constraint::constraint_stage;
 use crate::contact::detect;
@@ -43,8 +43,8 @@ pub fn position_stage<T: Real>(
     positions(model, params, state, ws);
 }
 
-/// The same, where the workspace still holds what follows from the poses of trees that are in none of the parts of
-/// [`Sleep`](sleep::Sleep).
+/// The same, but the poses of trees that sleep where they slept in the last pass are taken from the workspace:
+/// [`Sleep::parts`](sleep::Sleep::parts) leaves them out.
 fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
     let (pos, parts) = (&mut ws.position, ws.sleep.parts());
     poses(model, params, state, parts, pos);
@@ -60,7 +60,7 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
     ws.clock.lap(Stage::MassFactorization as usize);
 }
 
-/// Poses of bodies in `parts`, tendons and transmissions.
+/// Poses of the bodies in the ranges `parts`; tendons and transmissions.
 fn poses<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -154,7 +154,8 @@ fn forward_dynamics<T: Real>(
     from_forces(model, params, settings, state, ws);
 }
 
-/// The first half of forward dynamics: all that depends on positions and velocities alone, contacts included.
+/// The first half of forward dynamics, before controls act: all that depends on positions and velocities alone, contacts included.
+/// (MuJoCo's `mj_step1`.)
 pub fn before_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -183,7 +184,7 @@ pub fn before_forces<T: Real>(
     velocity_stage(model, params, state, ws);
 }
 
-/// The second half: forces, which controls change too, and constraints.
+/// The second half of forward dynamics: forces, those of controls among them, and constraints.
 fn from_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -215,7 +216,7 @@ pub fn step<T: Real>(
     step_from_forces(model, params, settings, state, ws);
 }
 
-/// The rest of a step after [`before_forces`], for the same positions and velocities.
+/// The rest of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)
 pub fn step_from_forces<T: Real>(
     model: &Model,
     params: &Params<T>,

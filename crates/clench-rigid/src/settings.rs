@@ -83,22 +83,3 @@ impl StepSettings {
         Ok(settings)
     }
 }
-
-/// Which acceleration is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Acceleration {
-    /// That which forward dynamics find.
-    Continuous,
-    /// That by which a step changes the velocity, (v₁ − v₀) / h.
-    Discrete,
-}
-
-impl Acceleration {
-    /// Which one a model says is given (MuJoCo's flag `invdiscrete`).
-    pub fn of(model: &Model) -> Self {
-        match model.flags.invdiscrete {
-            true => Acceleration::Discrete,
-            false => Acceleration::Continuous,
-        }
-    }
-}

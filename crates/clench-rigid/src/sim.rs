@@ -12,13 +12,14 @@ use crate::check::{self, check_contact, check_values};
 use crate::contact::Contact;
 use crate::dynamics::energy::Energy;
 use crate::error::{SimError, no_such};
+use crate::inverse::Acceleration;
 use crate::known::{Extent, Known};
 use crate::model::{Model, Params};
 use crate::options::RigidOptions;
 use crate::output::{Output, Source};
 use crate::profile::{Profile, Stage};
 use crate::sensor::bodies::update as update_body_forces;
-use crate::settings::{Acceleration, StepSettings};
+use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use crate::{Precision, readout};
@@ -48,8 +49,8 @@ pub struct Sim<T: Precision = f64> {
     resets: u64,
     /// The number that the last constraint got which was added at run time.
     pub(crate) last_serial: u32,
-    /// Where inverse dynamics are computed, once somebody asks for them: [`workspace`](Self::workspace) stays as it is.
-    aside: Option<Box<Workspace<T>>>,
+    /// The workspace of inverse dynamics, made when they are first asked for: [`workspace`](Self::workspace) stays as it is.
+    inverse_ws: Option<Box<Workspace<T>>>,
 }
 
 impl<T: Precision> Sim<T> {
@@ -83,7 +84,7 @@ impl<T: Precision> Sim<T> {
             halfway: false,
             resets: 0,
             last_serial: 0,
-            aside: None,
+            inverse_ws: None,
             initial,
             model,
         })
@@ -99,11 +100,11 @@ impl<T: Precision> Sim<T> {
     /// positions, velocities or accelerations beyond 1e10) or a mass matrix that is singular. The state is then as before
     /// the step.
     pub fn step(&mut self) -> Result<(), SimError> {
-        self.or_from_the_start(Self::try_step)
+        self.with_autoreset(Self::try_step)
     }
 
-    /// Does a step or forward pass; if that meets a fault, once more from the initial state, where the options say so.
-    fn or_from_the_start(
+    /// Does a step or forward pass. If it meets a fault and the option `autoreset` is on, it is done again from the initial state.
+    fn with_autoreset(
         &mut self,
         pass: impl Fn(&mut Self) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
@@ -149,7 +150,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn forward(&mut self) -> Result<(), SimError> {
-        self.or_from_the_start(Self::try_forward)
+        self.with_autoreset(Self::try_forward)
     }
 
     fn try_forward(&mut self) -> Result<(), SimError> {
@@ -166,7 +167,7 @@ impl<T: Precision> Sim<T> {
         result
     }
 
-    /// Notes what is known after a step or forward pass.
+    /// Notes that a step or forward pass computed everything, or that it failed and what it computed means nothing.
     fn note(&mut self, result: &Result<(), SimError>) {
         self.halfway = false;
         match result {
@@ -186,24 +187,24 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// As [`step`](Self::step); nothing is reset.
     pub fn refresh(&mut self) -> Result<(), SimError> {
-        self.know(Extent::Everything)
+        self.require(Extent::Everything)
     }
 
     /// Computes what follows from the present positions, also where what followed from those before the last step would do.
     pub(crate) fn refresh_positions(&mut self) -> Result<(), SimError> {
         self.known.forget();
-        self.know(Extent::Positions)
+        self.require(Extent::Positions)
     }
 
-    /// What is known holds no longer: it followed from other parameters.
+    /// Marks everything that was computed as stale, because parameters changed.
     fn forget(&mut self) {
         self.halfway = false;
         self.known.forget();
         self.ws.sleep.forget();
     }
 
-    /// Sees to it that so much is known.
-    pub(crate) fn know(&mut self, wanted: Extent) -> Result<(), SimError> {
+    /// Computes what the workspace must hold for the present state, unless it holds it already.
+    pub(crate) fn require(&mut self, wanted: Extent) -> Result<(), SimError> {
         if wanted <= self.known.extent(&self.state) {
             return Ok(());
         }
@@ -227,7 +228,7 @@ impl<T: Precision> Sim<T> {
         Err(check::input_fault(&self.model, &self.state, 0).into())
     }
 
-    /// Of a step from `time`.
+    /// Finds the fault in what a step from `time` computed, if there is one.
     fn check_result(&self, time: f64) -> Result<(), SimError> {
         if check::good_results(&self.state, &self.ws) {
             return Ok(());
@@ -364,7 +365,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// As [`refresh`](Self::refresh).
     pub fn mass_matrix(&mut self) -> Result<Vec<f64>, SimError> {
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         Ok(readout::mass_matrix(&self.ws, 0))
     }
 
@@ -380,7 +381,7 @@ impl<T: Precision> Sim<T> {
             return Ok(vec![energy.potential, energy.kinetic]);
         }
         self.check_present()?;
-        self.know(output.extent())?;
+        self.require(output.extent())?;
         let mut source = Source {
             model: &self.model,
             params: &self.params,
@@ -406,7 +407,7 @@ impl<T: Precision> Sim<T> {
     ) -> Result<(), SimError> {
         self.check_present()?;
         let (model, state) = (&self.model, &self.state);
-        let ws = (self.aside).get_or_insert_with(|| Box::new(Workspace::new(model)));
+        let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(Workspace::new(model)));
         let given = (qacc, given);
         let (params, settings) = (&self.params, &self.settings);
         T::inverse(model, params, settings, state, given, ws, qfrc_inverse);

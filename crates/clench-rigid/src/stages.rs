@@ -45,14 +45,14 @@ pub struct Positions<T> {
     pub ten_length: Vec<T>,
     /// ∂length/∂q of all tendons, row after row, in the pattern `Model::tendon_dofs`.
     pub ten_jacobian: Vec<T>,
-    /// Actuator lengths (nactuator).
+    /// Actuator lengths (nout).
     pub actuator_length: Vec<T>,
     /// Moment arms ∂length/∂q of all actuators, row after row, in the pattern `Model::actuator_dofs`.
     pub actuator_moment: Vec<T>,
 }
 
 impl<T: Real> Positions<T> {
-    /// Room for a model; what its poses are is not known yet.
+    /// Room for a model, with every pose at the origin.
     pub fn new(model: &Model) -> Self {
         let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
         let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
@@ -94,11 +94,11 @@ pub struct Velocities<T> {
     pub cdof_dot: Vec<Motion<T>>,
     /// Tendon velocities (ntendon).
     pub ten_velocity: Vec<T>,
-    /// Actuator velocities (nactuator).
+    /// Actuator velocities (nout).
     pub actuator_velocity: Vec<T>,
 }
 
-/// Forces along dofs (nv each) and of actuators (nactuator).
+/// Forces along dofs (nv each) and of actuators.
 #[derive(Clone, Debug, Default)]
 pub struct Forces<T> {
     /// Coriolis, centrifugal and gravity: on the left side of the equation of motion.
@@ -119,7 +119,7 @@ pub struct Forces<T> {
     pub qfrc_actuator: Vec<T>,
     /// Everything but constraints: passive + actuator + applied − bias.
     pub qfrc_smooth: Vec<T>,
-    /// Scalar force of each actuator (nactuator).
+    /// Forces of actuators (nout): one each, but three of an orientation servo.
     pub actuator_force: Vec<T>,
     /// Total force of the actuators of each tendon with a limit on it, after all limits (ntendon).
     pub ten_actuator_force: Vec<T>,
@@ -127,8 +127,8 @@ pub struct Forces<T> {
     pub ctrl: Vec<T>,
     /// Rate of change of each activation (na).
     pub act_dot: Vec<T>,
-    /// Body accelerations, scratch of the bias forces (nbody).
+    /// Scratch of the bias forces: body accelerations (nbody).
     pub cacc: Vec<Motion<T>>,
-    /// Body forces, likewise (nbody).
+    /// Scratch of the bias forces: body forces (nbody).
     pub cfrc_body: Vec<Force<T>>,
 }

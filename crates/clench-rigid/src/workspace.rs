@@ -24,11 +24,11 @@ pub struct Workspace<T: Real> {
     pub force: Forces<T>,
     /// Contacts of the position stage, in canonical order.
     pub contacts: Vec<Contact<T>>,
-    /// How they are found.
+    /// What the detection of contacts keeps and reports.
     pub collision: Collision<T>,
     /// The convex problem: mass matrix and its factor, unconstrained acceleration, constraint blocks.
     pub problem: Problem<T>,
-    /// What is known of its blocks and rows beside the problem.
+    /// What each of its blocks and rows comes from.
     pub record: ConstraintRecord<T>,
     /// Its solver, and the solution.
     pub solver: Solver<T>,
@@ -36,19 +36,19 @@ pub struct Workspace<T: Real> {
     pub qacc: Vec<T>,
     /// Constraint forces along dofs (nv).
     pub qfrc_constraint: Vec<T>,
-    /// Whether anybody reads what a step leaves here: else a step in which everything sleeps need not know it.
+    /// Whether anybody reads the workspace after a step. If nobody does, a step in which everything sleeps computes nothing.
     pub read: bool,
     /// Which trees are awake.
     pub sleep: Sleep<T>,
     /// What sensors measure.
     pub sensors: SensorReadings<T>,
-    /// Where the mass matrix is factored by articulated bodies: scratch of that (nbody); else empty.
+    /// Scratch of the factorization by articulated bodies (nbody); empty in a model whose mass matrix is factored otherwise.
     pub articulated: Vec<ArticulatedInertia<T>>,
-    /// Where energies of states are worked out, once one is asked for.
+    /// Scratch of the energy of a state, made when it is first asked for.
     pub energy: Option<Box<EnergyScratch<T>>>,
-    /// What integrators need besides.
+    /// Scratch of integrators.
     pub integration: Integration<T>,
-    /// Where the time goes, once it runs; see also the solver's.
+    /// Times the stages of a step while it runs. The solver and the detection of contacts have clocks of their own.
     pub clock: StepClock,
     /// Lanes in which a matrix that had to be positive definite (the mass matrix, or that of an implicit integrator) was
     /// not: their accelerations mean nothing.
@@ -125,7 +125,7 @@ impl<T: Real> Workspace<T> {
     }
 }
 
-/// Where the energy of a state is worked out: positions in a workspace are those of its last pass, which others still read.
+/// Scratch of the energy of a state: the positions in the workspace are those of its last pass, which others still read.
 #[derive(Clone, Debug)]
 pub struct EnergyScratch<T> {
     /// Poses of the state.

@@ -12,11 +12,11 @@ use crate::check::{check_length, check_values};
 use crate::error::SimError;
 use crate::geometry::RayFilter;
 use crate::ik::{Ik, IkSolution};
+use crate::inverse::Acceleration;
 use crate::model::FrameObject;
 use crate::query::{
     HIT, RAY, check_acceleration, check_body, check_object, check_places, check_rays,
 };
-use crate::settings::Acceleration;
 
 impl<S: Precision> Batch<S> {
     /// The Jacobian of an object in each environment (n, 6 × nv), see [`Sim::jacobian`](crate::Sim::jacobian), in the present

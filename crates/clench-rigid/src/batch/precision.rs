@@ -5,11 +5,12 @@ use super::shared::Shared;
 use super::stepper::MakeStepper;
 use crate::dynamics::energy::Energy;
 use crate::ik::{Ik, Search};
+use crate::inverse::{self, Acceleration};
 use crate::model::{Model, Params};
-use crate::settings::{Acceleration, StepSettings};
+use crate::pipeline;
+use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::{EnergyScratch, Workspace};
-use crate::{inverse, pipeline};
 use clench_math::{Instructions, Scalar};
 use zerocopy::{Immutable, IntoBytes};
 

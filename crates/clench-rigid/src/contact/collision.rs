@@ -54,8 +54,8 @@ pub struct Collision<T: Real> {
     pub given: bool,
     /// Lanes in which the last step found more contacts than the options allow.
     pub overflow: T::Mask,
-    /// What the last step found so much of that it exceeds the model's budget, as the code of an [`Excess`]; such lanes have no
-    /// contacts.
+    /// What the last step found more of than the model's budget allows, as the code of an [`Excess`], or 0. Lanes with an excess have
+    /// no contacts.
     pub excess: T,
     /// Pairs to look at, in canonical order.
     pub(super) candidates: Vec<Candidate>,
@@ -65,12 +65,13 @@ pub struct Collision<T: Real> {
     pub(super) broad_phase: Option<Box<DynamicBroadPhase<T>>>,
     pub(super) spheres: Vec<BoundingSphere<T>>,
     pub(super) axes: SeparatingAxes<T>,
-    /// Where the time goes, by kinds of pair.
+    /// Times the narrow phase by kinds of pair.
     pub(crate) clock: PairClock,
     pub(super) points: Contacts<T>,
-    pub(super) count: T,
-    /// Numbers in the Jacobian of the contacts.
-    pub(super) numbers: T,
+    /// How many contacts each lane has.
+    pub(super) contact_count: T,
+    /// How many numbers the Jacobian of the contacts has.
+    pub(super) jacobian_size: T,
 }
 
 impl<T: Real> Collision<T> {
@@ -91,12 +92,12 @@ impl<T: Real> Collision<T> {
             axes: SeparatingAxes::default(),
             clock: PairClock::default(),
             points: Contacts::new(),
-            count: T::ZERO,
-            numbers: T::ZERO,
+            contact_count: T::ZERO,
+            jacobian_size: T::ZERO,
         }
     }
 
-    /// Counts the lanes of a new contact, whose Jacobian has `numbers`; leaves those that have room for it.
+    /// Counts a new contact, whose Jacobian has `numbers`, in the lanes where it is active. Returns those that have room for it.
     #[inline(always)]
     pub(super) fn count_within_limit(
         &mut self,
@@ -106,27 +107,27 @@ impl<T: Real> Collision<T> {
         budget: &Budget,
     ) -> T::Mask {
         let full = match most {
-            MaxContacts::Limit(most) => self.count.ge(T::new(most as f64)),
+            MaxContacts::Limit(most) => self.contact_count.ge(T::new(most as f64)),
             MaxContacts::Auto => T::Mask::splat(false),
         };
         self.overflow |= active & full;
         let active = active & !full & self.excess.le(T::ZERO);
-        self.count += T::select(active, T::ONE, T::ZERO);
-        self.numbers += T::select(active, T::new(numbers as f64), T::ZERO);
-        self.exceed(
-            self.count.gt(T::new(budget.contacts as f64)),
+        self.contact_count += T::select(active, T::ONE, T::ZERO);
+        self.jacobian_size += T::select(active, T::new(numbers as f64), T::ZERO);
+        self.record_excess(
+            self.contact_count.gt(T::new(budget.contacts as f64)),
             Excess::Contacts,
         );
-        self.exceed(
-            self.numbers.gt(T::new(budget.matrix as f64)),
+        self.record_excess(
+            self.jacobian_size.gt(T::new(budget.matrix as f64)),
             Excess::Jacobian,
         );
         active
     }
 
-    /// Notes what lanes have too much of.
+    /// Records in some lanes what they have too much of.
     #[inline(always)]
-    pub(super) fn exceed(&mut self, lanes: T::Mask, excess: Excess) {
+    pub(super) fn record_excess(&mut self, lanes: T::Mask, excess: Excess) {
         self.excess = T::select(lanes, T::new(f64::from(excess as u8)), self.excess);
     }
 }

@@ -13,10 +13,10 @@ use crate::workspace::Workspace;
 use clench_collide::{ContactPoint, Contacts, SeparatingAxis, collide_again, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
 
-/// What sleeps: two bodies neither of which is awake make no contact.
+/// Tells which bodies are awake: two that both sleep make no contact.
 struct Awake<'a, T: Real> {
     model: &'a Model,
-    /// Nothing does without it.
+    /// `None` where trees cannot sleep.
     sleep: Option<&'a Sleep<T>>,
 }
 
@@ -50,15 +50,15 @@ pub fn detect<T: Real>(
     }
     contacts.clear();
     collision.overflow = T::Mask::splat(false);
-    (collision.count, collision.numbers) = (T::ZERO, T::ZERO);
+    (collision.contact_count, collision.jacobian_size) = (T::ZERO, T::ZERO);
     if !settings.flags.constraint || !settings.flags.contact {
         return;
     }
     let spheres = &mut collision.spheres;
     if let Some(broad_phase) = &mut collision.broad_phase {
         broad_phase.update(model, params, pos, spheres);
-        let crowded = broad_phase.find(model, &mut collision.candidates);
-        collision.exceed(crowded, Excess::Pairs);
+        let too_many = broad_phase.find(model, &mut collision.candidates);
+        collision.record_excess(too_many, Excess::Pairs);
     } else {
         bounding_sphere::update(model, params, pos, 0..model.geoms.len(), spheres);
     }
@@ -80,7 +80,7 @@ pub fn detect<T: Real>(
     for near in 0..collision.near.len() {
         let candidate = collision.candidates[collision.near[near] as usize];
         let (axis, points) = (collision.axes.of(candidate.geoms), &mut collision.points);
-        narrow(model, params, pos, &candidate, axis, points);
+        narrow_phase(model, params, pos, &candidate, axis, points);
         let any = |lanes: T::Mask, point: &ContactPoint<T>| lanes | point.active;
         collision.clock.lap(candidate.kinds, T::LANES, || {
             let points = collision.points.as_slice().iter();
@@ -91,12 +91,12 @@ pub fn detect<T: Real>(
             collision.points.keep_deepest();
         }
         if !collision.points.as_slice().is_empty() {
-            list(
+            push_contacts(
                 params, settings, pos, &candidate, &awake, collision, contacts,
             );
         }
     }
-    // Nothing is computed for a step that cannot be.
+    // A lane over the budget fails its step: no constraint is computed for it.
     let within = collision.excess.le(T::ZERO);
     if !within.all() {
         contacts.iter_mut().for_each(|c| c.active &= within);
@@ -106,7 +106,7 @@ pub fn detect<T: Real>(
 
 /// The points of one candidate.
 #[inline(always)]
-fn narrow<T: Real>(
+fn narrow_phase<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
@@ -121,9 +121,9 @@ fn narrow<T: Real>(
     collide_again(&shape_a, &pose_a, &shape_b, &pose_b, range, axis, points);
 }
 
-/// Makes contacts of the points of one candidate.
+/// Adds a contact for each point of one candidate.
 #[kernel]
-fn list<T: Real>(
+fn push_contacts<T: Real>(
     params: &Params<T>,
     settings: &StepSettings,
     pos: &Positions<T>,

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Below this mass (kg) a subtree's centre of mass is that of its top body (MuJoCo's `mjMINVAL`).
 const MASSLESS: f64 = 1e-15;
 
-/// `subtree_com`, `cinert` and `cdof` of the bodies in `parts`, from the poses.
+/// `subtree_com`, `cinert` and `cdof` of the bodies in the ranges `parts`, from the poses.
 #[kernel]
 pub fn com_positions<T: Real>(
     model: &Model,

@@ -7,7 +7,8 @@
 //! The joints' own rotations come first, in a pass of their own: they do not depend on one another, and so do not wait for
 //! one another, as poses along a chain do.
 //!
-//! Only bodies in some parts of the model are looked at: what sleeps, and lies where it lay in the last pass, is none of them.
+//! Poses are computed for the bodies in some ranges only. The ranges leave out trees that sleep where they slept in the last pass: their
+//! poses of that pass still hold.
 
 use crate::model::{JointKind, Model, Params};
 use crate::stages::Positions;
@@ -15,7 +16,7 @@ use crate::state::State;
 use clench_math::{Mat3, Quat, Real, Vec3, kernel};
 use std::ops::Range;
 
-/// Poses of the bodies in `parts`, and of inertial frames, joints, geoms and sites on them, from `state.qpos` and the mocap poses.
+/// Poses of the bodies in the ranges `parts`, and of inertial frames, joints, geoms and sites on them, from `state.qpos` and the mocap poses.
 ///
 /// Quaternions need not be of unit length: they are read normalized, and never written.
 #[kernel]

@@ -171,8 +171,10 @@ impl<T: Real> Params<T> {
 }
 
 impl Model {
-    /// Takes back what the model's structure says of numbers that are no longer the model's: that a dof or tendon is without
-    /// dry friction, that a body's inertial frame is its own. The model is copied at most once, when that changes anything.
+    /// Updates the structure of a model whose environments get parameters of their own. Structure lets a step leave out what the model's
+    /// own numbers make zero: dry friction of a dof or tendon, inertia and damping that an actuator reflects, the offset of an inertial
+    /// frame. Where a number in `row` is not zero, the step must no longer leave it out. The model is copied at most once, and only if
+    /// something changes.
     pub(crate) fn clear_structural_guarantees<S: Scalar>(
         model: &mut Arc<Model>,
         field: ParamField,

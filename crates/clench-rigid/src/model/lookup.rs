@@ -1,8 +1,10 @@
-//! Elements and the user's own data by name, what to call elements that have no name, and the body of an object.
+//! Elements and the user's own data by name, what to call elements that have no name, the body of an object, and what gives a geom its
+//! shape.
 
 use super::Model;
 use super::custom::TupleEntry;
 use super::sensor_target::FrameObject;
+use clench_collide::{HeightField, Hull};
 
 macro_rules! lookups {
     ($($(#[$doc:meta])* $method:ident in $elements:ident;)*) => {
@@ -95,5 +97,20 @@ impl Model {
     /// The user's list of elements with this name.
     pub fn tuple(&self, name: &str) -> Option<&[TupleEntry]> {
         named(&self.custom.tuples, name).map(Vec::as_slice)
+    }
+}
+
+impl Model {
+    /// The hull of a geom that is a mesh and may touch something.
+    #[inline(always)]
+    pub fn hull(&self, geom: usize) -> Option<&Hull> {
+        let mesh = self.geoms[geom].mesh?;
+        self.meshes[mesh].hull.as_ref()
+    }
+    /// The heights of a geom that is a height field.
+    #[inline(always)]
+    pub fn heights(&self, geom: usize) -> Option<&HeightField> {
+        let field = self.geoms[geom].height_field?;
+        Some(&self.height_fields[field].shape)
     }
 }

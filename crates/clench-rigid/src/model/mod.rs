@@ -32,7 +32,6 @@ pub use structure::{
 
 use crate::Budget;
 use crate::options::RigidOptions;
-use clench_collide::Hull;
 use clench_solver::Tree;
 use std::collections::HashSet;
 use std::ops::Range;
@@ -200,17 +199,5 @@ impl Model {
         let below = &self.bodies[body + 1..];
         let end = below.iter().position(|other| other.parent < body);
         body..end.map_or(self.bodies.len(), |end| body + 1 + end)
-    }
-    /// The hull of a geom that is a mesh and may touch something.
-    #[inline(always)]
-    pub fn hull(&self, geom: usize) -> Option<&Hull> {
-        let mesh = self.geoms[geom].mesh?;
-        self.meshes[mesh].hull.as_ref()
-    }
-    /// The heights of a geom that is a height field.
-    #[inline(always)]
-    pub fn heights(&self, geom: usize) -> Option<&clench_collide::HeightField> {
-        let field = self.geoms[geom].height_field?;
-        Some(&self.height_fields[field].shape)
     }
 }

@@ -37,7 +37,7 @@ impl<T: Precision> Sim<T> {
     /// An object that the model does not have, a wrong length; else as [`refresh`](Self::refresh).
     pub fn jacobian(&mut self, anchor: Anchor<T>, jacobian: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, jacobian.len())?;
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let point = self.body_point(anchor);
         point_jacobian(self.model(), &self.workspace().position, &point, jacobian);
         Ok(())
@@ -49,7 +49,7 @@ impl<T: Precision> Sim<T> {
     /// As [`jacobian`](Self::jacobian).
     pub fn jacobian_rate(&mut self, anchor: Anchor<T>, rate: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, rate.len())?;
-        self.know(Extent::Everything)?;
+        self.require(Extent::Everything)?;
         let (point, ws) = (self.body_point(anchor), self.workspace());
         point_jacobian_rate(self.model(), (&ws.position, &ws.velocity), &point, rate);
         Ok(())
@@ -63,7 +63,7 @@ impl<T: Precision> Sim<T> {
     pub fn subtree_jacobian(&mut self, body: usize, jacobian: &mut [T]) -> Result<(), SimError> {
         check_body(self.model(), body)?;
         check_length("jacobian", jacobian.len(), 3 * self.model().nv)?;
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let pos = &self.workspace().position;
         subtree_jacobian(self.model(), self.params(), pos, body, jacobian);
         Ok(())
@@ -76,7 +76,7 @@ impl<T: Precision> Sim<T> {
     /// As [`jacobian`](Self::jacobian).
     pub fn velocity(&mut self, object: FrameObject, axes: Axes) -> Result<[Vec3<T>; 2], SimError> {
         check_object(self.model(), object)?;
-        self.know(Extent::Everything)?;
+        self.require(Extent::Everything)?;
         let velocity = self.frames().velocity(object, &self.workspace().velocity);
         Ok(along(self.frames(), axes, object, velocity))
     }
@@ -92,7 +92,7 @@ impl<T: Precision> Sim<T> {
         axes: Axes,
     ) -> Result<[Vec3<T>; 2], SimError> {
         check_object(self.model(), object)?;
-        self.know(Extent::Everything)?;
+        self.require(Extent::Everything)?;
         self.update_body_forces();
         let ws = self.workspace();
         let cacc = &ws.sensors.bodies.cacc;

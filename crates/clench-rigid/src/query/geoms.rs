@@ -21,7 +21,7 @@ impl<T: Precision> Sim<T> {
         direction: Vec3<T>,
         filter: &RayFilter,
     ) -> Result<Option<RayHit<T>>, SimError> {
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let line = Ray { origin, direction };
         let (geom, hit) = self.geoms().first_hit(&line, filter);
         Ok((hit.distance < T::INFINITY).then(|| RayHit {
@@ -48,7 +48,7 @@ impl<T: Precision> Sim<T> {
         if let Some(index) = [geom1, geom2].into_iter().find(|geom| *geom >= count) {
             return Err(no_such("geom", index, count));
         }
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let geoms = self.geoms();
         let [a, b] = [geom1, geom2].map(|geom| (geoms.solid(geom), geoms.pose(geom)));
         Ok(distance(&a.0, &a.1, &b.0, &b.1, limit))

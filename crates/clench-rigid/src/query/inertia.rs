@@ -20,7 +20,7 @@ impl<T: Precision> Sim<T> {
     pub fn mul_mass(&mut self, x: &[T], product: &mut [T]) -> Result<(), SimError> {
         check_values("x", x, self.model().nv)?;
         check_length("product", product.len(), x.len())?;
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let mass = &self.workspace().problem.mass;
         mass.mul(&self.model().tree, x, product);
         Ok(())
@@ -32,7 +32,7 @@ impl<T: Precision> Sim<T> {
     /// As [`mul_mass`](Self::mul_mass), and a mass matrix that is singular; x is then as before.
     pub fn solve_mass(&mut self, x: &mut [T]) -> Result<(), SimError> {
         check_values("x", x, self.model().nv)?;
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let (model, ws) = (self.model(), self.workspace());
         if ws.singular {
             let (time, place) = (self.state.time, massless(model, ws, 0));
@@ -56,7 +56,7 @@ impl<T: Precision> Sim<T> {
     ) -> Result<(), SimError> {
         check_body(self.model(), body)?;
         check_length("qfrc", qfrc.len(), self.model().nv)?;
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let point = self.body_point(Anchor::Point { body, place });
         let pos = &self.workspace().position;
         add_point_forces(self.model(), pos, &point, (force, torque), qfrc);

@@ -2,8 +2,8 @@
 
 use crate::check::{check_length, check_values};
 use crate::error::SimError;
+use crate::inverse::Acceleration;
 use crate::model::Integrator;
-use crate::settings::Acceleration;
 use crate::sim::Sim;
 use crate::{Model, Precision};
 

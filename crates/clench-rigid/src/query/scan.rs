@@ -53,7 +53,7 @@ impl<T: Precision> Sim<T> {
         filter: &RayFilter,
     ) -> Result<Vec<Option<RayHit<T>>>, SimError> {
         check_rays(self.model(), frame, rays)?;
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let mut hits = Vec::new();
         cast(self.geoms(), frame, rays, filter, &mut hits);
         let hit = |numbers: &[T]| {
@@ -79,7 +79,7 @@ impl<T: Precision> Sim<T> {
         frame: Option<FrameObject>,
     ) -> Result<Vec<T>, SimError> {
         check_places(self.model(), geom, frame, places)?;
-        self.know(Extent::Positions)?;
+        self.require(Extent::Positions)?;
         let mut heights = Vec::new();
         sample(self.geoms(), geom, frame, places, &mut heights);
         Ok(heights)

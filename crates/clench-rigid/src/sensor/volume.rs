@@ -1,6 +1,7 @@
 //! Volumes of sites: what touches there, and what is inside.
 
 use super::reading::Reading;
+use crate::model;
 use crate::output::forces::of_contact;
 use clench_collide::{Mesh, Pose, Ray, Shape, ray};
 use clench_math::{Mask, Mat3, Real, Vec3, kernel};
@@ -41,26 +42,12 @@ impl<T: Real> Reading<'_, T> {
     pub(super) fn is_inside(&self, site: usize, point: Vec3<T>) -> T {
         let (shape, pose) = self.volume(site);
         let (shape, point) = match self.model.sites[site].mesh {
-            Some(mesh) => self.hull(&self.model.meshes[mesh], shape, pose.local(point)),
+            Some(mesh) => {
+                in_frame_of_hull(&self.model.meshes[mesh], shape.size(), pose.local(point))
+            }
             None => (shape, pose.local(point)),
         };
         T::select(shape.contains(point), T::ONE, T::ZERO)
-    }
-
-    /// The hull of a site's mesh, and a point of the site's frame in that of the hull: in a site a mesh has its author's coordinates.
-    fn hull<'a>(
-        &self,
-        mesh: &'a crate::model::Mesh,
-        shape: Shape<'a, T>,
-        point: Vec3<T>,
-    ) -> (Shape<'a, T>, Vec3<T>) {
-        let shape = Shape::Mesh(Mesh {
-            hull: mesh.hull.as_ref(),
-            extent: shape.size(),
-        });
-        let axes = Mat3::from_f64(mesh.quat.to_matrix().rows.map(Vec3::to_array));
-        let offset = point - Vec3::from_f64(mesh.pos.to_array());
-        (shape, axes.transpose_mul(offset))
     }
 
     fn volume(&self, site: usize) -> (Shape<'static, T>, Pose<T>) {
@@ -75,4 +62,21 @@ impl<T: Real> Reading<'_, T> {
             rotation: pos.site_xmat[site],
         }
     }
+}
+
+/// The hull of a site's mesh, of `extent` along its axes, and in its frame a point of the site's frame, in which the mesh has its
+/// author's coordinates.
+#[inline(always)]
+fn in_frame_of_hull<T: Real>(
+    mesh: &model::Mesh,
+    extent: Vec3<T>,
+    point: Vec3<T>,
+) -> (Shape<'_, T>, Vec3<T>) {
+    let shape = Shape::Mesh(Mesh {
+        hull: mesh.hull.as_ref(),
+        extent,
+    });
+    let axes = Mat3::from_f64(mesh.quat.to_matrix().rows.map(Vec3::to_array));
+    let offset = point - Vec3::from_f64(mesh.pos.to_array());
+    (shape, axes.transpose_mul(offset))
 }

@@ -1,4 +1,4 @@
-//! What a step need not look at, since it sleeps.
+//! What a step leaves out because it sleeps.
 //!
 //! Poses of trees that sleep, and lie where they lay when the workspace's poses were computed, need not be computed again.
 //! If no lane has a tree that is awake, and nothing can wake one, a step only lets time pass. What the workspace holds then is
@@ -35,7 +35,7 @@ pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspa
     ws.sleep.rests_as_before(model, state) || (model.nmocap == 0 && !ws.read)
 }
 
-/// Such a step.
+/// Does a step that only lets time pass.
 pub(crate) fn idle<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -52,7 +52,7 @@ pub(crate) fn idle<T: Real>(
     state.qacc_warmstart.fill(T::ZERO);
 }
 
-/// Lets the workspace say that nothing acts and nothing went wrong; poses and forces are not known.
+/// Makes the workspace say that nothing acts and nothing went wrong. Its poses and forces are not updated.
 fn clear<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -73,7 +73,7 @@ fn clear<T: Real>(
 }
 
 impl<T: Real> Sleep<T> {
-    /// What the workspace holds belongs to other numbers from now on.
+    /// Has the next pass compute all poses, because what the workspace holds was computed from other numbers.
     pub(crate) fn forget(&mut self) {
         (self.placed, self.at_rest) = (false, false);
         if self.enabled {
@@ -93,12 +93,13 @@ impl<T: Real> Sleep<T> {
         self.at_rest = self.all_asleep().all();
     }
 
-    /// The bodies that the position stage looks at: all but trees on the world that sleep and lie as they did in the last pass.
+    /// Ranges of the bodies whose poses the position stage computes: all but those of trees on the world that sleep where they slept in
+    /// the last pass.
     pub(crate) fn parts(&self) -> &[Range<usize>] {
         &self.parts
     }
 
-    /// Finds them for a state.
+    /// Finds [`parts`](Self::parts) for a state.
     pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>) {
         self.parts.clear();
         let mut start = 0;

@@ -41,9 +41,9 @@ pub struct Sleep<T: Real> {
     /// Whether the workspace holds what follows from the positions and the poses of mocap bodies in `pose`.
     placed: bool,
     pose: Vec<T>,
-    /// Whether besides all trees slept in the last pass, in all lanes.
+    /// Whether, besides, all trees slept in the last pass in all lanes.
     at_rest: bool,
-    /// The bodies that the position stage looks at, all but trees that lie as they did.
+    /// Ranges of the bodies whose poses the position stage computes.
     parts: Vec<Range<usize>>,
     partition: Partition<T>,
     /// The trees of an island.
