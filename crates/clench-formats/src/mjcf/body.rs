@@ -227,7 +227,7 @@ impl<'a> BodyReader<'a> {
             "site" => self.read_site(element, place)?,
             "camera" => self.read_camera(element, place)?,
             "light" => self.read_light(element, place)?,
-            // Lights; the schema lets nothing else through.
+            // The schema lets nothing else through.
             _ => {}
         }
         Ok(())

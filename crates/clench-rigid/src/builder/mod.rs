@@ -69,6 +69,7 @@ mod user_numbers;
 mod uses;
 mod visuals;
 
+pub use appearance::{AppearanceSpec, MaterialSpec};
 pub use assets::{HeightFieldSpec, MeshInertia, MeshSpec};
 pub use camera_spec::{CameraLens, CameraSpec, CameraTracking};
 pub use constraint_defaults::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
@@ -87,11 +88,7 @@ pub use relations::{
     ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeElement,
     KeyframePart, KeyframeSpec, PairSpec, TendonSpec, TransmissionSpec, WrapSpec,
 };
-
-pub use user_numbers::UserWidths;
-
 pub use sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
 };
-
-pub use appearance::{AppearanceSpec, MaterialSpec};
+pub use user_numbers::UserWidths;
