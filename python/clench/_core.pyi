@@ -1,6 +1,7 @@
 """Types of the compiled part of :mod:`clench`."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from os import PathLike
 from typing import Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
@@ -79,6 +80,7 @@ _Flags: TypeAlias = NDArray[np.bool_]
 __version__: str
 OUTPUTS: tuple[str, ...]
 PARAMETERS: tuple[str, ...]
+_STATE_FIELDS: tuple[tuple[str, str, str, str], ...]  # Name, type, shape, and what it is; all but the time.
 
 @final
 class Model:
@@ -569,6 +571,7 @@ class RigidOptions:
     def __new__(
         cls,
         *,
+        # <arguments of options> Written by `cargo xtask stubs`.
         constraint_solver: Literal["Newton", "CG"] | None = None,
         iterations: SupportsIndex | None = None,
         tolerance: SupportsFloat | None = None,
@@ -586,7 +589,9 @@ class RigidOptions:
         friction_cone: Literal["pyramidal", "elliptic"] | None = None,
         impratio: SupportsFloat | None = None,
         autoreset: bool | np.bool_ | None = None,
+        # </arguments of options>
     ) -> Self: ...
+    # <attributes of options> Written by `cargo xtask stubs`.
     @property
     def constraint_solver(self) -> Literal["Newton", "CG"] | None: ...
     @property
@@ -621,6 +626,7 @@ class RigidOptions:
     def impratio(self) -> float | None: ...
     @property
     def autoreset(self) -> bool | None: ...
+    # </attributes of options>
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
 
 @disjoint_base
@@ -630,6 +636,7 @@ class StateViews:
     def time(self) -> float | _Floats: ...
     @time.setter
     def time(self, values: ArrayLike) -> None: ...
+    # <views of the state> Written by `cargo xtask stubs`.
     @property
     def qpos(self) -> NDArray[Any]: ...  # (nq,)
     @qpos.setter
@@ -643,21 +650,29 @@ class StateViews:
     @act.setter
     def act(self, values: ArrayLike) -> None: ...
     @property
-    def ctrl(self) -> NDArray[Any]: ...  # (nu,)
-    @ctrl.setter
-    def ctrl(self, values: ArrayLike) -> None: ...
-    @property
     def history(self) -> NDArray[Any]: ...  # (nhistory,)
     @history.setter
     def history(self, values: ArrayLike) -> None: ...
     @property
+    def qacc_warmstart(self) -> NDArray[Any]: ...  # (nv,)
+    @qacc_warmstart.setter
+    def qacc_warmstart(self, values: ArrayLike) -> None: ...
+    @property
+    def tree_asleep(self) -> NDArray[np.int32]: ...  # (ntree where trees may sleep, else 0,)
+    @tree_asleep.setter
+    def tree_asleep(self, values: ArrayLike) -> None: ...
+    @property
+    def pose_asleep(self) -> NDArray[Any]: ...  # (nq + 7 nmocap where trees may sleep, else 0,)
+    @pose_asleep.setter
+    def pose_asleep(self, values: ArrayLike) -> None: ...
+    @property
+    def ctrl(self) -> NDArray[Any]: ...  # (nu,)
+    @ctrl.setter
+    def ctrl(self, values: ArrayLike) -> None: ...
+    @property
     def qfrc_applied(self) -> NDArray[Any]: ...  # (nv,)
     @qfrc_applied.setter
     def qfrc_applied(self, values: ArrayLike) -> None: ...
-    @property
-    def xfrc_applied(self) -> NDArray[Any]: ...  # (nbody, 6)
-    @xfrc_applied.setter
-    def xfrc_applied(self, values: ArrayLike) -> None: ...
     @property
     def mocap_pos(self) -> NDArray[Any]: ...  # (nmocap, 3)
     @mocap_pos.setter
@@ -671,19 +686,11 @@ class StateViews:
     @eq_active.setter
     def eq_active(self, values: ArrayLike) -> None: ...
     @property
-    def qacc_warmstart(self) -> NDArray[Any]: ...  # (nv,)
-    @qacc_warmstart.setter
-    def qacc_warmstart(self, values: ArrayLike) -> None: ...
+    def xfrc_applied(self) -> NDArray[Any]: ...  # (nbody, 6)
+    @xfrc_applied.setter
+    def xfrc_applied(self, values: ArrayLike) -> None: ...
     @property
-    def tree_asleep(self) -> NDArray[np.int32]: ...  # (ntree,), empty where no tree may sleep
-    @tree_asleep.setter
-    def tree_asleep(self, values: ArrayLike) -> None: ...
-    @property
-    def pose_asleep(self) -> NDArray[Any]: ...  # (nq + 7 nmocap,), empty where no tree may sleep
-    @pose_asleep.setter
-    def pose_asleep(self, values: ArrayLike) -> None: ...
-    @property
-    def dynamic_kind(self) -> NDArray[np.int32]: ...  # (max_dynamic_constraints,) 1 connect, 2 weld, else nothing
+    def dynamic_kind(self) -> NDArray[np.int32]: ...  # (max_dynamic_constraints,)
     @dynamic_kind.setter
     def dynamic_kind(self, values: ArrayLike) -> None: ...
     @property
@@ -710,6 +717,33 @@ class StateViews:
     def dynamic_quat(self) -> NDArray[Any]: ...  # (max_dynamic_constraints, 4)
     @dynamic_quat.setter
     def dynamic_quat(self, values: ArrayLike) -> None: ...
+    # </views of the state>
+
+@dataclass(kw_only=True, eq=False, repr=False)
+class _StateArrays:
+    time: NDArray[Any]
+    # <arrays of a state> Written by `cargo xtask stubs`.
+    qpos: NDArray[Any]
+    qvel: NDArray[Any]
+    act: NDArray[Any]
+    history: NDArray[Any]
+    qacc_warmstart: NDArray[Any]
+    tree_asleep: NDArray[np.int32]
+    pose_asleep: NDArray[Any]
+    ctrl: NDArray[Any]
+    qfrc_applied: NDArray[Any]
+    mocap_pos: NDArray[Any]
+    mocap_quat: NDArray[Any]
+    eq_active: _Flags
+    xfrc_applied: NDArray[Any]
+    dynamic_kind: NDArray[np.int32]
+    dynamic_serial: NDArray[np.int32]
+    dynamic_body1: NDArray[np.int32]
+    dynamic_body2: NDArray[np.int32]
+    dynamic_anchor1: NDArray[Any]
+    dynamic_anchor2: NDArray[Any]
+    dynamic_quat: NDArray[Any]
+    # </arrays of a state>
 
 class _Outputs(StateViews):
     # What the last step or forward computed: copies for a simulation; for a batch, views of those that are recorded, with the

@@ -6,11 +6,13 @@ import io
 import math
 import operator
 import zipfile
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass, fields, make_dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from clench._core import _STATE_FIELDS
 
 __all__ = ["State"]
 
@@ -18,8 +20,7 @@ __all__ = ["State"]
 # the precision of all other numbers; before version 3, nothing was delayed and nothing slept; before version 4,
 # nothing was tied together at run time.
 _VERSION = 4
-# The fields of 32 bits, and how many numbers an element of each field has that came with version 4.
-_INTEGERS = ("tree_asleep", "dynamic_kind", "dynamic_serial", "dynamic_body1", "dynamic_body2")
+# What came with version 4, and how many numbers an element of it has.
 _SINCE_4 = {
     "dynamic_kind": (),
     "dynamic_serial": (),
@@ -32,9 +33,21 @@ _SINCE_4 = {
 # The most entries of an archive that are looked at: more than any version has.
 _MAX_ENTRIES = 100
 
+if TYPE_CHECKING:
+    from clench._core import _StateArrays
+else:
+    _names = ("time", *(name for name, *_ in _STATE_FIELDS))
+    _StateArrays = make_dataclass("_StateArrays", [(name, np.ndarray) for name in _names], kw_only=True, eq=False, repr=False)
+
+# The types of all fields but those that have the precision of the simulation.
+_DTYPES: dict[str, np.dtype[Any]] = {
+    "time": np.dtype(np.float64),
+    **{name: np.dtype(kind) for name, kind, *_ in _STATE_FIELDS if kind != "number"},
+}
+
 
 @dataclass(kw_only=True, eq=False, repr=False)
-class State:
+class State(_StateArrays):
     """A copy of everything that the next step depends on, parameters apart.
 
     `Sim.state` and `Batch.state` make one, and assigning it brings the simulation back there, to the bit. The arrays are the
@@ -47,46 +60,13 @@ class State:
     ----------
     time : numpy.ndarray
         s, float64 in every precision.
-    qpos, qvel, act, history, ctrl, qfrc_applied, xfrc_applied, mocap_pos, mocap_quat, qacc_warmstart : numpy.ndarray
-        Numbers, all float64 or all float32.
-    eq_active : numpy.ndarray
-        Switches of equality constraints, bool.
-    tree_asleep : numpy.ndarray
-        Which trees sleep, int32; empty where none may.
-    pose_asleep : numpy.ndarray
-        Where they lie, numbers as the others; empty where none may.
-    dynamic_kind, dynamic_serial, dynamic_body1, dynamic_body2 : numpy.ndarray
-        What was added at run time, slot by slot, int32: see `Sim.add_weld`. Empty in states that are older than it.
-    dynamic_anchor1, dynamic_anchor2, dynamic_quat : numpy.ndarray
-        Where it holds, numbers as the others.
+    {fields}
 
     Raises
     ------
     TypeError
         Arrays of other types.
     """
-
-    time: NDArray[Any]
-    qpos: NDArray[Any]
-    qvel: NDArray[Any]
-    act: NDArray[Any]
-    history: NDArray[Any]
-    ctrl: NDArray[Any]
-    qfrc_applied: NDArray[Any]
-    xfrc_applied: NDArray[Any]
-    mocap_pos: NDArray[Any]
-    mocap_quat: NDArray[Any]
-    eq_active: NDArray[np.bool_]
-    qacc_warmstart: NDArray[Any]
-    tree_asleep: NDArray[np.int32]
-    pose_asleep: NDArray[Any]
-    dynamic_kind: NDArray[np.int32]
-    dynamic_serial: NDArray[np.int32]
-    dynamic_body1: NDArray[np.int32]
-    dynamic_body2: NDArray[np.int32]
-    dynamic_anchor1: NDArray[Any]
-    dynamic_anchor2: NDArray[Any]
-    dynamic_quat: NDArray[Any]
 
     def __post_init__(self) -> None:
         self._arrays()
@@ -95,13 +75,8 @@ class State:
         """The fields by name, their types checked: fields can be replaced."""
         arrays = {field.name: getattr(self, field.name) for field in fields(self)}
         numbers = np.dtype(np.float32 if getattr(self.qpos, "dtype", None) == np.float32 else np.float64)
-        special = {
-            "time": np.dtype(np.float64),
-            "eq_active": np.dtype(np.bool_),
-            **dict.fromkeys(_INTEGERS, np.dtype(np.int32)),
-        }
         for name, array in arrays.items():
-            wanted = special.get(name, numbers)
+            wanted = _DTYPES.get(name, numbers)
             found = getattr(array, "dtype", type(array).__name__)
             if not isinstance(array, np.ndarray) or found != wanted:
                 raise TypeError(f"{name} of a state must be an array of {wanted}, not {found}")
@@ -173,7 +148,7 @@ class State:
             arrays.update(history=empty, tree_asleep=empty.astype(np.int32), pose_asleep=empty)
         if version < 4 and "qpos" in arrays:
             for name, width in _SINCE_4.items():
-                dtype = np.int32 if name in _INTEGERS else arrays["qpos"].dtype
+                dtype = _DTYPES.get(name, arrays["qpos"].dtype)
                 arrays[name] = np.zeros((*arrays["qpos"].shape[:-1], 0, *width), dtype)
         try:
             return State(**arrays)
@@ -183,6 +158,16 @@ class State:
     def __repr__(self) -> str:
         envs = "" if self.qpos.ndim == 1 else f" of {len(self.qpos)} environments"
         return f"<clench.State{envs}, {self.qpos.dtype}>"
+
+
+def _describe(name: str, kind: str, shape: str, doc: str) -> str:
+    """An entry of the documentation's list of parameters."""
+    dtype = "float64 or float32" if kind == "number" else kind
+    return f"{name} : numpy.ndarray\n        {shape} of {dtype}. {doc}"
+
+
+_described = "\n    ".join(_describe(*field) for field in _STATE_FIELDS)
+State.__doc__ = (State.__doc__ or "").replace("{fields}", _described)
 
 
 def _same_bits(one: NDArray[Any], other: NDArray[Any]) -> bool:

@@ -52,6 +52,7 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    use crate::state_views;
     use clench::Output;
     use clench::rigid::model::ParamField;
     use pyo3::prelude::*;
@@ -106,6 +107,21 @@ mod _core {
         let outputs = Output::ALL.iter().map(|output| output.name());
         let parameters = ParamField::ALL.iter().map(|field| field.name());
         module.add("OUTPUTS", PyTuple::new(module.py(), outputs)?)?;
-        module.add("PARAMETERS", PyTuple::new(module.py(), parameters)?)
+        module.add("PARAMETERS", PyTuple::new(module.py(), parameters)?)?;
+        // For `clench.State` and for the tool that writes the stub: set, for `add` would list it in `__all__`.
+        let fields = state_views::FIELDS.iter().map(|field| {
+            let shape = match field.width {
+                1 => format!("{},", field.size.symbol()),
+                width => format!("{}, {width}", field.size.symbol()),
+            };
+            (
+                field.name,
+                field.dtype,
+                format!("({shape})"),
+                field.doc.trim(),
+            )
+        });
+        let fields = PyTuple::new(module.py(), fields.collect::<Vec<_>>())?;
+        module.setattr("_STATE_FIELDS", fields)
     }
 }

@@ -3,6 +3,7 @@
 use crate::view::{Keeper, view};
 use clench::Precision;
 use clench::rigid::batch::{Rows, StateRows};
+use clench::rigid::state::Size;
 use clench::rigid::state::kind::{self, Kind};
 use numpy::Element;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -11,9 +12,21 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
+/// What Python is told of a field of the state.
+pub(crate) struct StateField {
+    pub name: &'static str,
+    /// NumPy's type; `number` is the float of the simulation's precision.
+    pub dtype: &'static str,
+    pub size: Size,
+    /// How many numbers each element has.
+    pub width: usize,
+    /// What it is.
+    pub doc: &'static str,
+}
+
 macro_rules! views {
     ($($group:ident { $(
-        $(#[$doc:meta])* $field:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+        $(#[doc = $doc:literal])* $field:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
     )* })*) => {
         /// The state of a `Sim` or of all environments of a `Batch`, as NumPy arrays that are the memory a step works on: no
         /// copies.
@@ -27,6 +40,15 @@ macro_rules! views {
             $($($field: Py<PyAny>,)*)*
         }
 
+        /// The fields of a state, but for the time.
+        pub(crate) const FIELDS: &[StateField] = &[$($(StateField {
+            name: stringify!($field),
+            dtype: <<kind::$kind as Kind>::Cell<f64> as Viewed>::NAME,
+            size: Size::$size,
+            width: kind::$kind::WIDTH,
+            doc: concat!($($doc),*),
+        }),*),*];
+
         impl StateViews {
             /// The arrays with their names.
             fn named(&self) -> Vec<(&'static str, &Py<PyAny>)> {
@@ -38,7 +60,7 @@ macro_rules! views {
         impl StateViews {
             $($(
             /// numpy.ndarray :
-            $(#[$doc])*
+            $(#[doc = $doc])*
             #[getter]
             fn $field(&self, py: Python<'_>) -> Py<PyAny> {
                 self.$field.clone_ref(py)
@@ -97,19 +119,25 @@ clench::rigid::state_fields!(views);
 pub(crate) trait Viewed: Sized {
     /// The number of the same bytes.
     type As: Element;
+    /// What it is called in [`StateField::dtype`].
+    const NAME: &'static str;
 }
 impl Viewed for f64 {
     type As = f64;
+    const NAME: &'static str = "number";
 }
 impl Viewed for f32 {
     type As = f32;
+    const NAME: &'static str = "number";
 }
 impl Viewed for i32 {
     type As = i32;
+    const NAME: &'static str = "int32";
 }
 /// A truth value is a byte for NumPy too.
 impl Viewed for u8 {
     type As = bool;
+    const NAME: &'static str = "bool";
 }
 
 /// A table as an array of a shape that has as many numbers.

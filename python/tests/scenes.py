@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from typing import Any
 
@@ -90,11 +91,7 @@ NUMBERS = (
     "mocap_quat",
     "qacc_warmstart",
 )
-FIELDS = (
-    *NUMBERS,
-    *("eq_active", "tree_asleep", "pose_asleep"),
-    *("dynamic_kind", "dynamic_serial", "dynamic_body1", "dynamic_body2", "dynamic_anchor1", "dynamic_anchor2", "dynamic_quat"),
-)
+FIELDS = tuple(field.name for field in dataclasses.fields(clench.State))
 
 
 def same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:

@@ -1,4 +1,4 @@
-"""What stubtest cannot see of the stubs: attributes that are looked up by name."""
+"""What stubtest cannot see of the stubs: sections that are written from tables, and attributes that are looked up by name."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 import clench
 import pytest
 from scenes import puppet
+from stubs import rewrite
 
 STUB = Path(clench.__file__).with_name("_core.pyi").read_text()
 STATE = {"time", "qpos", "qvel", "act"}
@@ -24,6 +25,19 @@ def attributes(name: str) -> dict[str, str]:
             shape = re.search(r"# \((.*?)\)", lines[node.lineno - 1])
             result[node.target.id] = shape[1] if shape else ""
     return result
+
+
+def test_sections_of_stub_are_as_the_tables_in_rust() -> None:
+    assert rewrite(STUB) == STUB, "run `cargo xtask stubs`"
+
+
+def test_shapes_of_the_state_are_true() -> None:
+    sim = clench.Sim(puppet())
+    sizes = {"ntree where trees may sleep, else 0": 0, "nq + 7 nmocap where trees may sleep, else 0": 0}
+    for name, _, shape, _ in clench._core._STATE_FIELDS:
+        first, *width = shape.strip("()").rsplit(", ", 1) if shape[-2] != "," else [shape.strip("(),")]
+        size = sizes[first] if first in sizes else getattr(sim.model, first)
+        assert getattr(sim, name).shape == (size, *map(int, width)), name
 
 
 @pytest.mark.parametrize("name", ["Sim", "Batch"])

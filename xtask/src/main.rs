@@ -56,6 +56,7 @@ Commands:
                       recordings  end `clench simulate --record` by kill -9; no half a file may be left
   lanes             List the functions of the release program in which operations on lanes are calls: where a #[kernel] is missing.
   docs              Build the site in target/site: pages, notebooks, which are run, and the reference of the Python package.
+  stubs             Install the Python package, and write the sections of its stub that follow from tables in Rust.
   wheel             Build the Python package that this machine can, in target/wheels, with the licences of what is compiled in.
   others [NAME]     Test the Python package beside large packages of others, which are installed below .venv:
                       ray       a batch on a cluster, whose workers are killed (500 MB)
@@ -76,6 +77,7 @@ fn main() -> ExitCode {
         Some("soak") => soak::soak(&args[1..]),
         Some("lanes") => lanes::list(),
         Some("docs") => docs::build(),
+        Some("stubs") => package::write_stubs(),
         Some("wheel") => notices::build(),
         Some("others") => others::test(&args[1..]),
         Some("fuzz") => fuzz::fuzz(&args[1..]),

@@ -48,6 +48,15 @@ pub(crate) fn install(profile: Profile) -> Result<(), String> {
     })
 }
 
+/// Installs the package, and writes the sections of its stub that follow from tables in Rust.
+///
+/// # Errors
+/// What failed, and what to check.
+pub(crate) fn write_stubs() -> Result<(), String> {
+    install(Profile::Release)?;
+    run(command(interpreter(), &["python/tests/stubs.py"]))
+}
+
 /// Builds the package for others to install, in `target/wheels`.
 ///
 /// # Errors

@@ -8,34 +8,41 @@ use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast};
 use kind::Kind;
 use std::ops::Range;
 
-/// How many elements a field has.
+/// How many elements a field has: as many as the model has of what a variant is named after.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Size {
-    /// nq: those of a joint lie together.
+#[expect(missing_docs, reason = "`symbol` says how many each means")]
+pub enum Size {
     Positions,
-    /// nv: those of a joint lie together.
     Dofs,
-    /// na.
     Activations,
-    /// nu.
     Actuators,
-    /// nhistory.
     History,
-    /// nbody.
     Bodies,
-    /// nmocap.
     MocapBodies,
-    /// neq.
     Equalities,
-    /// max_dynamic_constraints.
     DynamicConstraints,
-    /// ntree where trees may sleep, else none.
     Trees,
-    /// nq + 7 nmocap where trees may sleep, else none.
     AsleepPose,
 }
 
 impl Size {
+    /// How it is written where shapes are told, in MuJoCo's names.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Size::Positions => "nq",
+            Size::Dofs => "nv",
+            Size::Activations => "na",
+            Size::Actuators => "nu",
+            Size::History => "nhistory",
+            Size::Bodies => "nbody",
+            Size::MocapBodies => "nmocap",
+            Size::Equalities => "neq",
+            Size::DynamicConstraints => "max_dynamic_constraints",
+            Size::Trees => "ntree where trees may sleep, else 0",
+            Size::AsleepPose => "nq + 7 nmocap where trees may sleep, else 0",
+        }
+    }
+
     fn of(self, model: &Model) -> usize {
         match self {
             Size::Positions => model.nq,
@@ -53,7 +60,7 @@ impl Size {
         }
     }
 
-    /// Where the elements of a joint lie, in fields that have any for joints.
+    /// Where the elements of a joint lie, in fields that have any for joints: next to each other.
     pub(crate) fn of_joint(self, joint: &Joint) -> Option<Range<usize>> {
         match self {
             Size::Positions => Some(joint.qpos..joint.qpos + joint.kind.nq()),
