@@ -9,7 +9,7 @@ pub(crate) struct Image {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Of a pixel: grey or red, green, blue, either followed by opacity or not.
+    /// Samples of a pixel: grey, or red, green and blue, either followed by opacity or not.
     pub samples: usize,
     line: usize,
     bytes: Vec<u8>,

@@ -23,7 +23,7 @@ pub(crate) fn joint_of(model: &Model, field: &str, index: usize) -> Option<Arc<s
     found.map(|joint| describe(model, joint))
 }
 
-/// Such as `joint "elbow" of body "arm" (arm.xml:12)`.
+/// What errors call a joint: `joint "elbow" of body "arm" (arm.xml:12)`.
 fn describe(model: &Model, joint: &Joint) -> Arc<str> {
     let body = &model.bodies[joint.body];
     let kind = format!("{:?}", joint.kind).to_lowercase();

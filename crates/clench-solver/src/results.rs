@@ -19,7 +19,7 @@ pub(crate) struct Results<T: Real> {
 }
 
 impl<T: Real> Results<T> {
-    /// Those of a problem in which no constraint acts.
+    /// Sets the results of a problem in which no constraint acts.
     #[kernel]
     pub fn reset(&mut self, problem: &Problem<T>) {
         let finite = all_finite(&problem.qacc_smooth);
@@ -43,7 +43,7 @@ impl<T: Real> Results<T> {
         }
     }
 
-    /// Those of a problem solved as a whole.
+    /// Takes the results of a problem that was solved as a whole.
     pub(crate) fn set(&mut self, work: &Workspace<T>) {
         let iterate = &work.state.iterate;
         self.stats = work.state.stats;

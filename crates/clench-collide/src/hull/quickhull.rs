@@ -45,7 +45,7 @@ pub(super) struct Quickhull<'a> {
     /// Facets that may have points outside.
     pending: Vec<u32>,
     round: u32,
-    /// Of the new facets of a round, the one whose edge starts at a point.
+    /// The new facet of a round whose edge starts at each point.
     starting_at: Vec<u32>,
 }
 

@@ -208,7 +208,7 @@ fn moments<S: Scalar>(corners: &[Vec3<S>]) -> (Vec3<S>, [S; 3]) {
     let Some(&origin) = corners.first() else {
         return (Vec3::ZERO, [S::ONE, S::ZERO, S::ONE]);
     };
-    // Of the triangles between the first corner and each side: twice the area, and so on.
+    // Moments of area are summed over the triangles between the first corner and each side: twice the area, first, and second moments.
     let (mut area, mut x, mut y) = (S::ZERO, S::ZERO, S::ZERO);
     let (mut xx, mut xy, mut yy) = (S::ZERO, S::ZERO, S::ZERO);
     for side in corners.windows(2).skip(1) {

@@ -10,9 +10,9 @@ use crate::shape::Solid;
 use crate::{Hull, Mesh, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
-/// What a search may be wrong by: a share of the smaller shape, twice what the search itself allows ...
+/// A search may be wrong by this share of the smaller shape, which is twice what the search itself allows ...
 const SLACK: f64 = 4e-6;
-/// ... and so many times what rounding makes of the largest coordinate.
+/// ... and by this many times the rounding of the largest coordinate.
 const SLACK_UNITS: f64 = 256.0;
 
 /// A direction along which two shapes were apart when last looked at, in each lane. [`collide_again`](crate::collide_again) uses and

@@ -156,14 +156,14 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Of the line over the triangle on the right of the cell's diagonal, or on its left.
+    /// The height of the line over the triangle on the right of the cell's diagonal, or on its left.
     fn over(&self, at: f64, right: bool) -> f64 {
         let [x, y] = self.place(at);
         let (z, along_x, along_y) = self.slopes(right);
         self.line.at(at).z - (z + along_x * x + along_y * y)
     }
 
-    /// Of the line over the surface.
+    /// The height of the line over the surface.
     fn height(&self, at: f64) -> f64 {
         let [x, y] = self.place(at);
         self.over(at, x > y)

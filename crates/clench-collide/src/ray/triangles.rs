@@ -7,7 +7,7 @@ use super::line::{Hit, Line, Ray};
 use crate::Pose;
 use clench_math::{Real, Vec3, kernel};
 
-/// Leaves hold up to so many triangles.
+/// A leaf holds at most this many triangles.
 const LEAF: usize = 4;
 /// Nodes that wait to be visited: no more than the tree is deep, and 2³² triangles make it 32 deep.
 const STACK: usize = 64;

@@ -14,7 +14,7 @@ pub struct UnitRay<T> {
 }
 
 impl<T: Real> UnitRay<T> {
-    /// Of a ray; one without direction leads upwards.
+    /// The same ray with a unit direction; one without direction leads upwards.
     #[inline(always)]
     pub fn of(ray: &Ray<T>) -> Self {
         let (direction, unit) = Unit::of(ray.direction);

@@ -53,7 +53,7 @@ pub(crate) trait Core<S: Scalar> {
         None
     }
 
-    /// Of a point of the core, the part that jumps where the support function has a crease: the corner of a box, the end of
+    /// The part of a point of the core that jumps where the support function has a crease: the corner of a box, the end of
     /// a segment or of a cylinder's axis. Edges and faces are spanned by differences of these.
     #[inline]
     fn corner(&self, point: Vec3<S>) -> Vec3<S> {
@@ -78,7 +78,7 @@ pub(crate) trait Core<S: Scalar> {
 
 /// How the supporting point of a core moves with the direction: the matrix λ (Q − p pᵀ) − ρ 1 with a diagonal Q.
 ///
-/// Of an ellipsoid Q = S², p = S² d / |S d| and λ = 1 / |S d|. Of the cap circle of a cylinder p is the direction along it, and −λ
+/// For an ellipsoid Q = S², p = S² d / |S d| and λ = 1 / |S d|. For the cap circle of a cylinder p is the direction along it, and −λ
 /// its radius over the part of d in its plane.
 pub(crate) struct Curvature<S> {
     pub share: S,
@@ -88,7 +88,7 @@ pub(crate) struct Curvature<S> {
 }
 
 impl<S: Scalar> Curvature<S> {
-    /// Of a corner.
+    /// The curvature at a corner, which does not move.
     pub(crate) const NONE: Self = Curvature {
         share: S::ZERO,
         diagonal: Vec3::ZERO,

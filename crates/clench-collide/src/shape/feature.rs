@@ -49,8 +49,8 @@ impl<S: Scalar> Feature<S> {
     }
 }
 
-/// Of the edges from a corner to some ends, which are numbered, the one that is most nearly level across the unit direction `d`,
-/// if one is level enough.
+/// The most nearly level of the edges from a corner to some ends, which are numbered: level is across the unit direction `d`. Nothing
+/// where none is level enough.
 pub(crate) fn most_level<S: Scalar>(
     corner: Vec3<S>,
     ends: impl Iterator<Item = (usize, Vec3<S>)>,

@@ -106,7 +106,7 @@ impl<S: Scalar> Core<S> for Mesh<'_, S> {
         self.vertex(side).map_or(Vec3::ZERO, |(_, vertex)| vertex)
     }
 
-    /// Of the faces and edges at the furthest vertex the one that is most nearly level, if one is level enough.
+    /// The most nearly level of the faces and edges at the furthest vertex, if one is level enough.
     fn feature(&self, d: Vec3<S>) -> Feature<S> {
         let (Some(hull), Some((vertex, corner))) = (self.hull, self.vertex(d)) else {
             return Feature::corner(d, Vec3::ZERO);

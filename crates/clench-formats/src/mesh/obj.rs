@@ -116,7 +116,7 @@ fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result
     Ok([number()?, 1.0 - number()?])
 }
 
-/// A corner, such as `7`, `7/1/2` or, counted back from the last, `-1`; so many vertices and texture coordinates came before.
+/// A corner, such as `7`, `7/1/2` or, counted back from the last, `-1`; `before` counts the vertices and texture coordinates up to there.
 fn corner(word: &str, before: [usize; 2], line: usize) -> Result<Corner, String> {
     let wrong = || format!("line {line}: \"{word}\" is no corner of a face");
     let mut parts = word.split('/');

@@ -127,7 +127,7 @@ fn read(
             dynamics.set_number("friction", &mut joint.frictionloss)?;
         }
     }
-    // Of a planar joint, as in MuJoCo, limits hold the first direction alone.
+    // The limits of a planar joint hold its first direction alone, as in MuJoCo.
     read_limit(element, kind, &mut joints[0], notes)?;
     Ok(joints)
 }

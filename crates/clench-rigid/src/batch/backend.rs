@@ -48,7 +48,7 @@ pub trait Backend<S>: Send {
     /// # Errors
     /// That the device failed.
     fn read_output(&mut self, output: Output, rows: &mut [S]) -> Result<(), SimError>;
-    /// Advances the environments that are `running` by so many time steps, and tells of each what became of it. One that fails
+    /// Advances the environments that are `running` by `steps` time steps, and tells of each what became of it. One that fails
     /// keeps its last good state and goes no further; of those that do not run nothing changes.
     ///
     /// # Errors

@@ -29,7 +29,7 @@ pub(super) struct Call<'a, S> {
 }
 
 impl<S> Call<'_, S> {
-    /// All of so many steps, with the controls that are in the state.
+    /// A call of `steps` steps, with the controls that are in the state.
     pub(super) fn steps(steps: usize) -> Self {
         Call {
             pass: Pass::Step,
@@ -98,9 +98,9 @@ pub struct StepTotals {
 pub trait Stepper<S: Scalar + Shared>: Send {
     /// How many environments it steps at once.
     fn lanes(&self) -> usize;
-    /// Does a job for a group of at most so many environments.
+    /// Does a job for a group of at most [`lanes`](Self::lanes) environments.
     fn run(&mut self, group: &[u32], job: &Job<S>);
-    /// Answers a question about a group likewise.
+    /// Answers a question about such a group.
     fn ask(&mut self, group: &[u32], asking: &Asking<S>);
     /// What happened since it was last cleared.
     fn totals(&mut self) -> &mut StepTotals;

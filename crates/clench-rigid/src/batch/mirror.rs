@@ -16,7 +16,7 @@ pub(super) struct Mirror<S> {
     pub(super) held: Vec<Vec<S>>,
     /// Which environments take part in a call, and still run in it.
     pub(super) running: Vec<bool>,
-    /// Those of them whose step is done over from the initial state.
+    /// Which of them do their step over from the initial state.
     pub(super) restarted: Vec<bool>,
     pub(super) outcomes: Vec<Outcome>,
     /// Room for a field or an output.

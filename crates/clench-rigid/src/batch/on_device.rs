@@ -1,5 +1,5 @@
 //! Steps on a device: what was written into rows since the last call goes up, what steps moved comes down, and what the device reports
-//! becomes statuses, times and new starts. Whatever else a batch is asked (resets, snapshots, queries) it answers from its rows, as ever.
+//! becomes statuses, times and new starts. Resets, snapshots and queries are answered from the rows, as without a device.
 
 use super::backend::{Backend, Outcome, Trouble};
 use super::job::{Call, Pass};
@@ -195,7 +195,7 @@ impl<S: Precision> Batch<S> {
         mirror.backend.write("ctrl", held)
     }
 
-    /// Does so many steps, or a forward pass, and notes who failed, or is to start over.
+    /// Does a number of steps, or a forward pass, and notes which environments failed or are to start over.
     fn advance(
         &mut self,
         mirror: &mut Mirror<S>,

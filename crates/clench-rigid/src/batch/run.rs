@@ -11,7 +11,7 @@ use crate::error::SimError;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// After so many steps of a call environments are grouped anew.
+/// Environments are grouped anew after this many steps of a call.
 const STEPS_A_GROUP: usize = 8;
 
 impl<S: Precision> Batch<S> {

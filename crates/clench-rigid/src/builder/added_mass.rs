@@ -36,7 +36,7 @@ pub(super) struct AddedMass {
 }
 
 impl AddedMass {
-    /// Of an ellipsoid of these semi-axes.
+    /// The added mass of an ellipsoid of these semi-axes.
     pub(super) fn of_ellipsoid(r: Vec3<f64>) -> Self {
         let r = r.to_array();
         let volume = 4.0 / 3.0 * PI * r[0] * r[1] * r[2];

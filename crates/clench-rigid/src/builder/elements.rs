@@ -106,9 +106,9 @@ pub struct JointSpec {
     pub reference: f64,
     /// Position at which the spring rests.
     pub springref: f64,
-    /// Of the spring, which pulls with a x + b x² + c x³ at a displacement x, N/m or N m/rad.
+    /// Coefficients of the spring, which pulls with a x + b x² + c x³ at a displacement x, N/m or N m/rad.
     pub stiffness: [f64; 3],
-    /// Of the damper, which brakes with a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
+    /// Coefficients of the damper, which brakes with a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
     pub damping: [f64; 3],
     /// Time constant and damping ratio from which the linear stiffness and damping are derived, where positive.
     pub springdamper: [f64; 2],

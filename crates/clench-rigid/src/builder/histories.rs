@@ -7,7 +7,7 @@ use super::model_builder::ModelBuilder;
 use crate::budget::RAISE;
 use crate::model::{History, Model};
 
-/// The buffer of an element with so many numbers a sample, if it keeps any; room for it is taken.
+/// Makes room for the past values of an element, `width` numbers a sample, if it keeps any.
 ///
 /// # Errors
 /// A delay without samples, or that is negative; samples of nothing, or more of them than the budget has.

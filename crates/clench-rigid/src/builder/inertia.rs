@@ -25,7 +25,7 @@ pub(super) struct MassProperties {
 }
 
 impl MassProperties {
-    /// Those of the world.
+    /// The mass properties of the world.
     pub(super) const NONE: Self = MassProperties {
         mass: 0.0,
         pos: Vec3::ZERO,

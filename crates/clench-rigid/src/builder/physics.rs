@@ -138,10 +138,10 @@ impl Default for PhysicsSpec {
 pub enum LengthRangeMode {
     /// None.
     None,
-    /// Those whose gain or bias is a muscle's.
+    /// The ranges of actuators whose gain or bias is a muscle's.
     #[default]
     Muscle,
-    /// Those whose gain or bias is a muscle's or the user's.
+    /// The ranges of actuators whose gain or bias is a muscle's or the user's.
     MuscleUser,
     /// All.
     All,

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The processed meshes and height fields of a model.
 pub(super) struct Assets<'a> {
-    /// What else is said of geoms.
+    /// Which geoms collide and which are discarded.
     pub(super) uses: GeomUses<'a>,
     names: Names<'a>,
     field_names: Names<'a>,
@@ -33,7 +33,7 @@ pub(super) struct PlacedGeom<'a> {
     /// Of unit length.
     pub quat: Quat<f64>,
     pub size: Vec3<f64>,
-    /// Of the surface, at its origin and along its axes.
+    /// Velocity of the surface at its origin, along its axes: linear, angular.
     pub surfacevel: [f64; 6],
     /// Radius of a sphere about its origin that holds it; 0 for a plane.
     pub rbound: f64,
@@ -44,7 +44,7 @@ pub(super) struct PlacedGeom<'a> {
 }
 
 impl<'a> Assets<'a> {
-    /// Those of a description.
+    /// Processes the meshes and height fields of a description.
     ///
     /// # Errors
     /// Names that are taken; meshes and height fields that cannot be.

@@ -43,7 +43,7 @@ pub(super) fn add_all(
         let dim = dim(spec, &target, model)
             .filter(|&dim| dim <= MAX_DIM)
             .ok_or_else(|| spec.error(format!("has more than {MAX_DIM} numbers")))?;
-        // Of a distance the cutoff is how far it is searched for.
+        // The cutoff of a sensor of distances is how far it searches.
         let searched = spec.kind.attachment() == Attachment::Geoms;
         let turns = matches!(data, SensorData::Axis | SensorData::Quaternion);
         if spec.cutoff > 0.0 && turns && !searched {

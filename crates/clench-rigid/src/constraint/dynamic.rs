@@ -1,6 +1,6 @@
 //! Constraints that are added at run time: connects and welds between any two bodies, such as what a suction gripper holds.
 //!
-//! How many there can be is the model's structure: every state has so many slots. What a slot holds are rows of the state, so lanes
+//! The model says how many slots for them a state has. What a slot holds are fields of the state, so lanes
 //! may tie different bodies in the same slot. A slot then becomes a block for each pair of bodies that any lane ties, active in the
 //! lanes that tie this pair, as contacts of different geoms become different blocks: in a lane, at most one block of a slot acts.
 //! All are as soft as MuJoCo's equalities are by default.

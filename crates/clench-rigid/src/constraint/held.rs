@@ -20,7 +20,7 @@ pub(crate) struct Frames<T> {
 }
 
 impl<T: Real> Frames<T> {
-    /// Those of an equality of the model.
+    /// The frames that an equality of the model holds.
     #[inline(always)]
     pub(crate) fn of_equality(params: &Params<T>, equality: usize, bodies: [usize; 2]) -> Self {
         Frames {
@@ -31,7 +31,7 @@ impl<T: Real> Frames<T> {
         }
     }
 
-    /// Those of a constraint that was added at run time.
+    /// The frames that a constraint holds which was added at run time.
     #[inline(always)]
     pub(crate) fn of_slot(state: &State<T>, slot: usize, bodies: [usize; 2]) -> Self {
         Frames {

@@ -10,9 +10,9 @@ use clench_math::{Real, Vec3, kernel};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoundingSphere<T> {
     center: Vec3<T>,
-    /// Of the shape alone; 0 for a plane.
+    /// Radius that holds the shape; 0 for a plane.
     radius: T,
-    /// With the geom's share of margin and gap.
+    /// The same radius with the geom's share of margin and gap.
     reach: T,
 }
 

@@ -21,7 +21,7 @@ pub(super) struct SeparatingAxes<T> {
 type Place<T> = ([u32; 2], SeparatingAxis<T>);
 
 impl<T: Real> SeparatingAxes<T> {
-    /// Makes room for so many pairs; forgets all where that is more than ever before.
+    /// Makes room for a number of pairs. Where that is more than ever before, all axes are forgotten.
     pub(super) fn reserve(&mut self, pairs: usize) {
         let wanted = (pairs * PLACES_PER_PAIR).div_ceil(WAYS).next_power_of_two();
         if self.buckets.len() < wanted {

@@ -8,7 +8,7 @@
 //! δf_b = B_b s + I_b (ṡ − s × u)      B_b x = I_b (x × v_b) + x ×* I_b v_b + v_b ×* I_b x
 //! ```
 //!
-//! What of the medium's forces changes without symmetry is counted as B, too, for it stands in the same entries.
+//! The part of the derivative of the medium's forces that is not symmetric is added to B, since it has the same entries.
 //!
 //! Summed over the bodies below the later one of two dofs i and j, B and I give both entries of the pair.
 

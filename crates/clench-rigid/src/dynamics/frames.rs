@@ -16,7 +16,7 @@ pub(crate) struct Frames<'a, T: Real> {
 }
 
 impl<'a, T: Real> Frames<'a, T> {
-    /// Those of the configuration that geoms are in.
+    /// The frames of the configuration that geoms are in.
     #[inline(always)]
     pub(crate) fn of(geoms: Geoms<'a, T>) -> Self {
         Frames {
@@ -104,10 +104,10 @@ impl<'a, T: Real> Frames<'a, T> {
 /// Axes in which vectors are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axes {
-    /// Those of the world.
+    /// The axes of the world.
     #[default]
     World,
-    /// Those of the object.
+    /// The axes of the object.
     Local,
 }
 

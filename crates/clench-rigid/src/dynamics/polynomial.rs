@@ -13,9 +13,9 @@ use clench_math::{Mask, Real};
 /// The coefficients a, and [b, c].
 #[derive(Clone, Copy, Debug)]
 pub struct Polynomial<T> {
-    /// Of the first power.
+    /// The coefficient of the first power.
     pub linear: T,
-    /// Of the second and third.
+    /// The coefficients of the second and third power.
     pub higher: [T; 2],
 }
 

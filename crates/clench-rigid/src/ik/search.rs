@@ -41,7 +41,7 @@ const FAILURES: f64 = 12.0;
 /// Memory of a search.
 #[derive(Debug)]
 pub struct Search<T: Real> {
-    /// Where it stands; mocap poses are read as well.
+    /// The positions that the search has reached; mocap poses are read as well.
     pub state: State<T>,
     /// Goals, task after task.
     pub goals: Vec<T>,

@@ -235,7 +235,7 @@ pub struct Sensor {
     pub numbers: Range<usize>,
     /// The buffer of its past values.
     pub history: Option<History>,
-    /// Of a sensor that measures periodically, when it did so last before time zero, s; zero: one period before.
+    /// When a sensor that measures periodically did so last before time zero, s; zero: one period before.
     pub phase: f64,
     /// The user's own numbers, as many for each element of its kind.
     pub user: Arc<[f64]>,

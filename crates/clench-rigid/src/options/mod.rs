@@ -155,7 +155,7 @@ macro_rules! declare_solver_part {
         step $step:tt
     ) => {
         impl RigidOptions {
-            /// Those that the solver reads.
+            /// The options that the solver reads.
             pub fn solver(self) -> SolverOptions {
                 SolverOptions { $( $name: self.$name, )* }
             }

@@ -133,7 +133,7 @@ impl Range {
         }
     }
 
-    /// It in words.
+    /// The range in words.
     pub fn text(self) -> &'static str {
         match self {
             Range::Any => "any",

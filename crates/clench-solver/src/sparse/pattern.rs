@@ -137,7 +137,7 @@ impl SparsePattern {
         } = &mut self.scratch;
         let row = dof as u32;
         union.clear();
-        // Those of the matrix. A row of M that has a child gets its columns from there.
+        // The columns of the matrix. A row of M that has a child gets its columns from there.
         if !has_child[dof] {
             union.extend(tree.row(dof).iter().filter(|&&column| column < row));
             (union.iter()).for_each(|&column| found[column as usize] = row);
@@ -155,7 +155,7 @@ impl SparsePattern {
         if union.len() > own {
             union.sort_unstable();
         }
-        // Those of the rows eliminated before, but for this one's own.
+        // The columns of the rows that were eliminated before, but for this row's own.
         for child in children.iter(row).chain(open) {
             let columns = &self.columns[self.supernodes[child as usize].columns.clone()];
             let columns = &columns[..columns.len() - 1];
@@ -246,7 +246,7 @@ impl SparsePattern {
         self.supernodes.iter().map(of).sum()
     }
 
-    /// Those of a factorization that stores the paths of the elimination tree whole.
+    /// The operations of a factorization that stores the paths of the elimination tree whole.
     pub(crate) fn cost_of_paths(&mut self) -> f64 {
         let depths = &mut self.scratch.found;
         let mut cost = 0.0;

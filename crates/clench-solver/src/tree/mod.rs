@@ -190,7 +190,7 @@ impl Tree {
     /// hold all entries that eliminating the coupled matrix from its last row fills.
     ///
     /// Liu's algorithm, from the last dof to the first: the tree that holds a neighbour so far comes to hang on the dof.
-    /// Of a coupling, only each dof with the next one matters: what lies above hangs on that already.
+    /// Of a coupling only the pairs of neighbouring dofs matter, since the dofs above already hang on them.
     ///
     /// False, and nothing is done, where the pattern would have more than `most` entries.
     pub(crate) fn rebuild_coupled(

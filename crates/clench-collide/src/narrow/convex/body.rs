@@ -9,9 +9,9 @@ use clench_math::{Scalar, Vec3};
 #[derive(Clone)]
 pub(super) struct Body<'a, S> {
     core: AnyCore<'a, S>,
-    /// Of the ball that is added to the core, m.
+    /// Radius of the ball that is added to the core, m.
     pub radius: S,
-    /// Of a sphere about the origin that holds the body, m.
+    /// Radius of a sphere about the origin that holds the body, m.
     pub bounding_radius: S,
 }
 

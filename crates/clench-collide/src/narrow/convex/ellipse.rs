@@ -12,7 +12,7 @@
 
 use clench_math::Scalar;
 
-/// Newton's method stops after so many steps, converged or not. Four are usual.
+/// Newton's method stops after this many steps, converged or not. Four are usual.
 const STEPS: usize = 16;
 
 /// An ellipse with semi-axes 1 along x and b ≤ 1 along y: a circle seen aslant.
@@ -23,7 +23,7 @@ pub(super) struct Ellipse<S> {
 }
 
 impl<S: Scalar> Ellipse<S> {
-    /// Of a circle across an axis at an angle to the line of sight that has this cosine and this sine.
+    /// The projection of a unit circle whose axis is at an angle of this cosine and sine to the line of sight.
     pub(super) fn new(cosine: S, sine: S) -> Self {
         Ellipse {
             minor: cosine,

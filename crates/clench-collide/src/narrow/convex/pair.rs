@@ -121,7 +121,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         self.difference(self.a.support(normal, normal), self.b.support(local, local))
     }
 
-    /// Of the vertices w(n) where there are several, the one furthest against `side`, which is next to n.
+    /// The one of several vertices w(n) that is furthest against `side`, which is next to n.
     #[inline]
     pub(super) fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
         let local = |v| -self.rotation.transpose_mul(v);

@@ -19,7 +19,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Of a body that is finite; `around` are its radius and margin.
+    /// The bounds of a finite body; `around` are its radius and margin.
     pub(super) fn new<S: Scalar>(
         body: &Body<S>,
         rotation: &Mat3<S>,
