@@ -41,7 +41,7 @@ use job::Stepper;
 use mirror::Mirror;
 pub use options::BatchOptions;
 pub use precision::Precision;
-pub(crate) use quality::Place;
+pub(crate) use quality::StepResults;
 pub use quality::{DeepContact, Quality, Violation};
 pub use record::Recording;
 pub use rows::Rows;

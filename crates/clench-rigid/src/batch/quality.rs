@@ -73,9 +73,9 @@ pub struct Violation {
     pub size: f64,
 }
 
-/// Where steps happen: what their workspace is read with.
+/// What a step left in a workspace, and what it is read with.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<'a, T: Real> {
+pub(crate) struct StepResults<'a, T: Real> {
     pub model: &'a Model,
     pub params: &'a Params<T>,
     pub settings: &'a StepSettings,
@@ -84,10 +84,10 @@ pub(crate) struct Place<'a, T: Real> {
 
 impl Quality {
     /// Takes in the `good` ones of the first `len` lanes, in which environments are.
-    pub(crate) fn count<T: Real>(&mut self, place: Place<T>, len: usize, good: T::Mask) {
-        let stats = place.ws.solver.stats();
-        let extent = extent(place);
-        let (deep, violated) = (extent.deep & good, extent.violated & good);
+    pub(crate) fn count<T: Real>(&mut self, results: StepResults<T>, len: usize, good: T::Mask) {
+        let stats = results.ws.solver.stats();
+        let figures = figures(results);
+        let (deep, violated) = (figures.deep & good, figures.violated & good);
         for lane in (0..len).filter(|&lane| good.lane(lane)) {
             let status = stats.status(lane);
             let value = |x: T| x.lane(lane).to_f64();
@@ -95,16 +95,16 @@ impl Quality {
             self.constrained += u64::from(status != Status::Unconstrained);
             self.unconverged += u64::from(status == Status::IterationLimit);
             self.gap_max = self.gap_max.max(value(stats.gap));
-            self.contacts_max = self.contacts_max.max(value(extent.contacts) as u64);
-            self.penetration_max = self.penetration_max.max(value(extent.depth));
+            self.contacts_max = self.contacts_max.max(value(figures.contacts) as u64);
+            self.penetration_max = self.penetration_max.max(value(figures.depth));
             if deep.lane(lane)
-                && let Some(contact) = deepest(place, lane)
+                && let Some(contact) = deepest(results, lane)
             {
                 self.deep += 1;
                 self.deepest = worse(self.deepest, Some(contact));
             }
             if violated.lane(lane)
-                && let Some(violation) = worst_violation(place, lane)
+                && let Some(violation) = worst_violation(results, lane)
             {
                 self.violated += 1;
                 self.worst_violation = worse(self.worst_violation, Some(violation));
@@ -113,8 +113,8 @@ impl Quality {
     }
 }
 
-/// What the constraints of a step come to.
-struct Extent<T: Real> {
+/// The figures of a step, lane by lane.
+struct StepFigures<T: Real> {
     /// How many contacts there are.
     contacts: T,
     /// How deep the deepest is, m.
@@ -126,35 +126,35 @@ struct Extent<T: Real> {
 }
 
 #[kernel]
-fn extent<T: Real>(place: Place<T>) -> Extent<T> {
-    let mut extent = Extent {
+fn figures<T: Real>(results: StepResults<T>) -> StepFigures<T> {
+    let mut figures = StepFigures {
         contacts: T::ZERO,
         depth: T::ZERO,
         deep: T::Mask::splat(false),
         violated: T::Mask::splat(false),
     };
-    for contact in &place.ws.contacts {
+    for contact in &results.ws.contacts {
         let depth = -contact.dist;
-        let half = half_thickness(place, contact);
-        extent.contacts += T::select(contact.active, T::ONE, T::ZERO);
-        extent.depth = T::select(contact.active, depth, extent.depth).max(extent.depth);
-        extent.deep |= contact.active & depth.gt(half);
+        let half = half_thickness(results, contact);
+        figures.contacts += T::select(contact.active, T::ONE, T::ZERO);
+        figures.depth = T::select(contact.active, depth, figures.depth).max(figures.depth);
+        figures.deep |= contact.active & depth.gt(half);
     }
-    for (_, record, pos) in held(place.ws) {
+    for (_, record, pos) in held(results.ws) {
         for &pos in pos {
             let size = violation(record, pos);
-            extent.violated |= record.active & size.gt(T::new(SUSPICIOUS_VIOLATION));
+            figures.violated |= record.active & size.gt(T::new(SUSPICIOUS_VIOLATION));
         }
     }
-    extent
+    figures
 }
 
 /// Half the thickness of the thinner geom of a contact.
 #[inline(always)]
-fn half_thickness<T: Real>(place: Place<T>, contact: &Contact<T>) -> T {
+fn half_thickness<T: Real>(results: StepResults<T>, contact: &Contact<T>) -> T {
     let half = |g: usize| {
-        let Vec3 { x, y, z } = place.params.geom_size[g];
-        match place.model.geoms[g].kind {
+        let Vec3 { x, y, z } = results.params.geom_size[g];
+        match results.model.geoms[g].kind {
             ShapeKind::Plane | ShapeKind::HeightField => T::new(f64::INFINITY),
             ShapeKind::Sphere | ShapeKind::Capsule => x,
             ShapeKind::Cylinder => x.min(y),
@@ -193,18 +193,18 @@ fn violation<T: Real>(record: &BlockRecord<T>, pos: T) -> T {
 }
 
 /// The deepest contact of a lane among those that are too deep.
-fn deepest<T: Real>(place: Place<T>, lane: usize) -> Option<DeepContact> {
+fn deepest<T: Real>(results: StepResults<T>, lane: usize) -> Option<DeepContact> {
     let number = |x: T| x.lane(lane).to_f64();
     let mut deepest = None;
-    for contact in (place.ws.contacts.iter()).filter(|contact| contact.active.lane(lane)) {
+    for contact in (results.ws.contacts.iter()).filter(|contact| contact.active.lane(lane)) {
         let depth = -number(contact.dist);
-        if depth <= number(half_thickness(place, contact)) {
+        if depth <= number(half_thickness(results, contact)) {
             continue;
         }
         let excess = number(contact.includemargin) + depth;
         let explained = contact.block.map_or(f64::INFINITY, |block| {
             explained(
-                place,
+                results,
                 lane,
                 block,
                 0,
@@ -221,10 +221,10 @@ fn deepest<T: Real>(place: Place<T>, lane: usize) -> Option<DeepContact> {
 }
 
 /// The worst violation of an equality or a limit in a lane, among those that softness does not explain.
-fn worst_violation<T: Real>(place: Place<T>, lane: usize) -> Option<Violation> {
-    let p = place.params;
+fn worst_violation<T: Real>(results: StepResults<T>, lane: usize) -> Option<Violation> {
+    let p = results.params;
     let mut worst = None;
-    for (block, record, rows) in held(place.ws) {
+    for (block, record, rows) in held(results.ws) {
         let source = record.source;
         let softness = match source {
             ConstraintSource::Equality(i) => (p.eq_solref[i], p.eq_solimp[i]),
@@ -236,7 +236,7 @@ fn worst_violation<T: Real>(place: Place<T>, lane: usize) -> Option<Violation> {
         for (row, &pos) in rows.iter().enumerate().filter(|_| record.active.lane(lane)) {
             let size = violation(record, pos).lane(lane).to_f64();
             if size > SUSPICIOUS_VIOLATION
-                && size > explained(place, lane, block, row, size, softness)
+                && size > explained(results, lane, block, row, size, softness)
             {
                 worst = worse(worst, Some(Violation { source, size }));
             }
@@ -247,7 +247,7 @@ fn worst_violation<T: Real>(place: Place<T>, lane: usize) -> Option<Violation> {
 
 /// The violation of a row that softness explains, where it is `found` one: at rest under its force, and in an impact.
 fn explained<T: Real>(
-    place: Place<T>,
+    results: StepResults<T>,
     lane: usize,
     block: usize,
     row: usize,
@@ -255,10 +255,10 @@ fn explained<T: Real>(
     (solref, solimp): ([T; 2], [T; 5]),
 ) -> f64 {
     let number = |x: T| x.lane(lane).to_f64();
-    let min_timeconst = place.settings.constraint_timeconst;
+    let min_timeconst = results.settings.constraint_timeconst;
     let soft = Softness::new(solref.map(number), solimp.map(number), found, min_timeconst);
-    let block = place.ws.problem.block(block);
-    let force = number(place.ws.solver.force()[block.rows()][row]).abs();
+    let block = results.ws.problem.block(block);
+    let force = number(results.ws.solver.force()[block.rows()][row]).abs();
     // Each edge of a pyramid carries its share of the normal force.
     let shares = if block.cost == Cost::Pyramid {
         2 * (block.dim - 1)

@@ -133,7 +133,7 @@ impl<S: Precision> Batch<S> {
             spread(&mut self.steppers, &self.order, |stepper, group| {
                 stepper.run(group, &job)
             });
-            self.settle(&mut summary);
+            self.collect_reports(&mut summary);
         }
         let running = |status: &&EnvStatus| **status == EnvStatus::Running;
         summary.running = self.status.iter().filter(running).count();
@@ -154,8 +154,8 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Takes over what the steppers have to report.
-    fn settle(&mut self, summary: &mut Summary) {
+    /// Collects what the steppers report.
+    fn collect_reports(&mut self, summary: &mut Summary) {
         for stepper in &mut self.steppers {
             let totals = stepper.totals();
             for env in totals.resets.drain(..) {

@@ -4,7 +4,7 @@ use super::answer::{AskMemory, Asking};
 use super::env_rows::EnvRows;
 use super::group::{Group, MAX_LANES};
 use super::job::{Job, Pass, StepTotals, Stepper};
-use super::quality::Place;
+use super::quality::StepResults;
 use super::shared::Shared;
 use super::state_rows::clear_occasional;
 use crate::error::Fault;
@@ -244,13 +244,13 @@ where
             return;
         }
         self.totals.divergence.count(&self.ws, group.len);
-        let place = Place {
+        let results = StepResults {
             model: job.model,
             params: &self.params,
             settings: job.settings,
             ws: &self.ws,
         };
-        self.totals.quality.count(place, group.len, good);
+        self.totals.quality.count(results, group.len, good);
     }
 
     /// Copies what a step gave out to where it is wanted.

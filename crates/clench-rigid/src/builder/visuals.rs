@@ -14,14 +14,14 @@ pub(super) struct Palette {
 impl Palette {
     /// That of a description.
     pub(super) fn new(builder: &ModelBuilder) -> Self {
-        let textures = places(builder.textures.iter().map(|texture| &texture.name));
+        let textures = indices_by_name(builder.textures.iter().map(|texture| &texture.name));
         let material = |spec: &MaterialSpec| Material {
             texture: textures.get(&*spec.texture).copied(),
             ..spec.surface.clone()
         };
         let materials: Vec<Material> = builder.materials.iter().map(material).collect();
         Palette {
-            place: places(materials.iter().map(|material| &material.name)),
+            place: indices_by_name(materials.iter().map(|material| &material.name)),
             visuals: Visuals {
                 materials,
                 textures: builder.textures.clone(),
@@ -45,11 +45,11 @@ impl Palette {
     }
 }
 
-/// Where each name stands; of equal ones the first.
-fn places<'a>(names: impl Iterator<Item = &'a String>) -> HashMap<String, usize> {
-    let mut places = HashMap::new();
-    for (place, name) in names.enumerate() {
-        places.entry(name.clone()).or_insert(place);
+/// The index of each name; of equal ones the first.
+fn indices_by_name<'a>(names: impl Iterator<Item = &'a String>) -> HashMap<String, usize> {
+    let mut indices = HashMap::new();
+    for (index, name) in names.enumerate() {
+        indices.entry(name.clone()).or_insert(index);
     }
-    places
+    indices
 }

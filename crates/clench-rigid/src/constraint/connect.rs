@@ -10,7 +10,7 @@
 
 use super::assembly::Assembly;
 use super::context::ConstraintContext;
-use super::held::{Frames, Held};
+use super::held::{Held, HeldFrames};
 use super::row::Row;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use clench_math::{Motion, Real, Vec3, kernel};
@@ -51,7 +51,7 @@ pub(super) struct Anchors<T> {
 
 impl<T: Real> Anchors<T> {
     #[inline(always)]
-    pub(super) fn new(context: &ConstraintContext<T>, frames: &Frames<T>) -> Self {
+    pub(super) fn new(context: &ConstraintContext<T>, frames: &HeldFrames<T>) -> Self {
         let [body1, body2] = frames.bodies;
         let [world1, world2] = frames.points(context.position);
         let first = BodyPoint::new(context.model, context.position, body1, world1);

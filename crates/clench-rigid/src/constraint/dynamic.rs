@@ -7,7 +7,7 @@
 
 use super::assembly::{Assembly, ConstraintSource};
 use super::context::ConstraintContext;
-use super::held::{Frames, Held};
+use super::held::{Held, HeldFrames};
 use super::{connect, weld};
 use crate::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::Model;
@@ -99,7 +99,7 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
             }
             let (bodies, weld) = (tie.bodies, tie.weld);
             let held = Held {
-                frames: Frames::of_slot(context.state, slot, bodies),
+                frames: HeldFrames::of_slot(context.state, slot, bodies),
                 source: ConstraintSource::Dynamic { slot, bodies, weld },
                 active,
                 solref,

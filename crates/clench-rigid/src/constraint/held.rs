@@ -9,7 +9,7 @@ use crate::state::State;
 use clench_math::{Quat, Real, Vec3};
 
 /// Two frames, one on each of two bodies.
-pub(crate) struct Frames<T> {
+pub(crate) struct HeldFrames<T> {
     pub bodies: [usize; 2],
     /// The origin of each in its body's frame.
     pub anchors: [Vec3<T>; 2],
@@ -19,11 +19,11 @@ pub(crate) struct Frames<T> {
     pub torquescale: T,
 }
 
-impl<T: Real> Frames<T> {
+impl<T: Real> HeldFrames<T> {
     /// The frames that an equality of the model holds.
     #[inline(always)]
     pub(crate) fn of_equality(params: &Params<T>, equality: usize, bodies: [usize; 2]) -> Self {
-        Frames {
+        HeldFrames {
             bodies,
             anchors: [params.eq_anchor1[equality], params.eq_anchor2[equality]],
             quats: [params.eq_quat1[equality], params.eq_quat2[equality]],
@@ -34,7 +34,7 @@ impl<T: Real> Frames<T> {
     /// The frames that a constraint holds which was added at run time.
     #[inline(always)]
     pub(crate) fn of_slot(state: &State<T>, slot: usize, bodies: [usize; 2]) -> Self {
-        Frames {
+        HeldFrames {
             bodies,
             anchors: [state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]],
             quats: [state.dynamic_quat[slot], Quat::IDENTITY],
@@ -53,9 +53,9 @@ impl<T: Real> Frames<T> {
     }
 }
 
-/// Frames that are held together, how softly, and in which lanes.
+/// HeldFrames that are held together, how softly, and in which lanes.
 pub(super) struct Held<T: Real> {
-    pub frames: Frames<T>,
+    pub frames: HeldFrames<T>,
     pub source: ConstraintSource,
     pub active: T::Mask,
     pub solref: [T; 2],
@@ -71,7 +71,7 @@ impl<T: Real> Held<T> {
         bodies: [usize; 2],
     ) -> Self {
         Held {
-            frames: Frames::of_equality(context.params, equality, bodies),
+            frames: HeldFrames::of_equality(context.params, equality, bodies),
             source: ConstraintSource::Equality(equality),
             active: context.active_equality(equality),
             solref: context.params.eq_solref[equality],

@@ -21,7 +21,7 @@ mod weld;
 
 pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
 use context::ConstraintContext;
-pub(crate) use held::Frames;
+pub(crate) use held::HeldFrames;
 pub(crate) use joint_equality::equality_slope;
 pub use softness::Softness;
 pub(crate) use weld::weld_torque;

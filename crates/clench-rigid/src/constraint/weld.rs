@@ -15,7 +15,7 @@
 use super::assembly::Assembly;
 use super::connect::Anchors;
 use super::context::ConstraintContext;
-use super::held::{Frames, Held};
+use super::held::{Held, HeldFrames};
 use super::row::Row;
 use crate::dynamics::chains::{Chains, Side};
 use crate::stages::Positions;
@@ -61,7 +61,7 @@ pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
 #[kernel]
 pub(crate) fn weld_torque<T: Real>(
     position: &Positions<T>,
-    frames: &Frames<T>,
+    frames: &HeldFrames<T>,
     f: Vec3<T>,
 ) -> Vec3<T> {
     let relative = Relative::new(position, frames);
@@ -80,7 +80,7 @@ struct Relative<T> {
 
 impl<T: Real> Relative<T> {
     #[inline(always)]
-    fn new(position: &Positions<T>, frames: &Frames<T>) -> Self {
+    fn new(position: &Positions<T>, frames: &HeldFrames<T>) -> Self {
         let xquat = &position.xquat;
         let [body1, body2] = frames.bodies;
         let first = xquat[body1] * frames.quats[0];

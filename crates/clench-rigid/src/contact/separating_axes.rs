@@ -14,11 +14,11 @@ const PLACES_PER_PAIR: usize = 4;
 /// A table of buckets without chains.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SeparatingAxes<T> {
-    buckets: Vec<[Place<T>; WAYS]>,
+    buckets: Vec<[Entry<T>; WAYS]>,
 }
 
 /// A pair of geoms and its direction.
-type Place<T> = ([u32; 2], SeparatingAxis<T>);
+type Entry<T> = ([u32; 2], SeparatingAxis<T>);
 
 impl<T: Real> SeparatingAxes<T> {
     /// Makes room for a number of pairs. Where that is more than ever before, all axes are forgotten.

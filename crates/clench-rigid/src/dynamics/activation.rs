@@ -1,6 +1,6 @@
 //! From controls to what acts: clamped controls, activation dynamics, and setpoints on a circle.
 
-use super::actuator::{ActuatorMotion, Given};
+use super::actuator::{ActuatorInputs, ActuatorMotion};
 use super::setpoint::nearest_setpoint;
 use crate::dynamics::dc_motor;
 use crate::model::{DynamicsKind, Model, Params};
@@ -87,7 +87,7 @@ pub fn next_activation<T: Real>(
 pub fn input<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,

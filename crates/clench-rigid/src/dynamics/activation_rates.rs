@@ -1,7 +1,7 @@
 //! Activation dynamics: the rates of change of activations.
 
 use super::activation::time_constant;
-use super::actuator::{ActuatorMotion, Given};
+use super::actuator::{ActuatorInputs, ActuatorMotion};
 use super::setpoint::nearest_setpoint;
 use super::{dc_motor, muscle, pid};
 use crate::model::{DynamicsKind, Model, Params};
@@ -13,7 +13,7 @@ use clench_math::{Real, kernel};
 pub fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     pos: &Positions<T>,
     vel: &Velocities<T>,
     act_dot: &mut [T],

@@ -1,7 +1,7 @@
 //! Actuator forces, force = gain · input + bias, and the dof forces they make.
 
 use super::activation_rates::activation_rates;
-use super::actuator::{ActuatorMotion, Given};
+use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::activation::acting_controls;
 use crate::dynamics::gain::unlimited_force;
 use crate::dynamics::transmission::moment;
@@ -31,7 +31,7 @@ pub fn actuation<T: Real>(
         return;
     }
     acting_controls(model, params, state, offset, &mut force.ctrl);
-    let given = Given {
+    let given = ActuatorInputs {
         ctrl: &force.ctrl,
         act: &state.act,
     };
@@ -61,7 +61,7 @@ pub fn actuation<T: Real>(
         }
         if actuator.bias == BiasKind::DcMotor && !actuator.disabled {
             let (act_dot, length) = (&force.act_dot, pos.actuator_length[first]);
-            let given = Given {
+            let given = ActuatorInputs {
                 ctrl: &force.ctrl,
                 act: &state.act,
             };

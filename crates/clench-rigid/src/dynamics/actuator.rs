@@ -6,7 +6,7 @@ use clench_math::{Real, Scalar};
 
 /// What actuators are given: controls as they act, and activations.
 #[derive(Clone, Copy, Debug)]
-pub struct Given<'a, T> {
+pub struct ActuatorInputs<'a, T> {
     /// Delayed, and within their ranges (nu).
     pub ctrl: &'a [T],
     /// Activations (na).

@@ -14,7 +14,7 @@
 //! `gainprm` R₀ K α T₀ kp ki kd Vmax; `dynprm` te, largest |i̇|, RT, C, ambient, σ₀, σ₁, slew rate, bound of the integral; `biasprm` A
 //! N φ F_C F_S v_S.
 
-use super::actuator::{ActuatorMotion, Given};
+use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
 use crate::model::{ControlInput, Model, Params};
 use clench_math::Real;
@@ -45,7 +45,7 @@ impl<T: Real> Circuit<T> {
     fn new(
         model: &Model,
         params: &Params<T>,
-        given: Given<'_, T>,
+        given: ActuatorInputs<'_, T>,
         u: usize,
         at: ActuatorMotion<T>,
     ) -> Self {
@@ -105,7 +105,7 @@ impl<T: Real> Circuit<T> {
 pub fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     u: usize,
     at: ActuatorMotion<T>,
     act_dot: &mut [T],
@@ -183,7 +183,7 @@ pub fn next_activation<T: Real>(
 pub fn electrical_force<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,
@@ -206,7 +206,7 @@ pub fn electrical_force<T: Real>(
 pub fn electrical_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     u: usize,
     at: ActuatorMotion<T>,
 ) -> T {
@@ -230,7 +230,7 @@ pub fn electrical_slope<T: Real>(
 pub fn mechanical_force<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     length: T,

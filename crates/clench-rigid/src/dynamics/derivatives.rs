@@ -4,7 +4,7 @@
 //! factors without fill (both as in MuJoCo's `implicitfast`). A force s along a generalized velocity J v contributes
 //! its slope: s′ JᵀJ.
 
-use super::actuator::{ActuatorMotion, Given, scaling_error};
+use super::actuator::{ActuatorInputs, ActuatorMotion, scaling_error};
 use crate::dynamics::ellipsoid::ellipsoid_rates;
 use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
 use crate::dynamics::gain::{unlimited_force, unlimited_slope};
@@ -92,7 +92,7 @@ fn actuator_derivative<T: Real>(
         return orientation::slope(model, params, u, &force.actuator_force);
     }
     let (act_dot, at) = (&force.act_dot, ActuatorMotion::of(model, pos, vel, u));
-    let given = Given {
+    let given = ActuatorInputs {
         ctrl: &force.ctrl,
         act: &state.act,
     };

@@ -1,6 +1,6 @@
 //! Gains and biases of actuators, force = gain · input + bias, and how the force changes with velocity.
 
-use super::actuator::{ActuatorMotion, Given};
+use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::activation::input;
 use crate::dynamics::muscle::Muscle;
 use crate::dynamics::{dc_motor, pid};
@@ -12,7 +12,7 @@ use clench_math::Real;
 pub fn unlimited_force<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,
@@ -41,7 +41,7 @@ pub fn unlimited_force<T: Real>(
 pub fn unlimited_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,

@@ -8,7 +8,7 @@
 //! in the frame of what is turned. The servo has three lengths, the rotation vector of q, and three moment arms, each with a force of its
 //! own. Its target is a rotation vector, of three controls or of three activations that integrate them, or a quaternion of four controls.
 
-use super::actuator::{Given, scaling_error};
+use super::actuator::{ActuatorInputs, scaling_error};
 use crate::dynamics::activation::next_activation;
 use crate::model::{ControlInput, Model, Params};
 use crate::stages::{Positions, Velocities};
@@ -22,7 +22,7 @@ pub const OUTPUTS: usize = 3;
 pub fn torque<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     (pos, vel): (&Positions<T>, &Velocities<T>),
@@ -41,7 +41,7 @@ pub fn torque<T: Real>(
 fn target<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
 ) -> Quat<T> {

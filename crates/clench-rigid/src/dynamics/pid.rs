@@ -3,7 +3,7 @@
 //! As in MuJoCo, kp and kv are those of the affine bias, which makes the part of the force that no setpoint makes; ki is `gainprm[0]`, the bound
 //! of the integral `dynprm[0]`, the fastest change of the position setpoint `dynprm[1]`.
 
-use super::actuator::{ActuatorMotion, Given};
+use super::actuator::{ActuatorInputs, ActuatorMotion};
 use super::setpoint::nearest_setpoint;
 use crate::dynamics::activation::next_activation;
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
@@ -15,7 +15,7 @@ use clench_math::Real;
 pub fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     u: usize,
     length: T,
     act_dot: &mut [T],
@@ -37,7 +37,7 @@ pub fn activation_rates<T: Real>(
 pub fn force<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: Given<'_, T>,
+    given: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,

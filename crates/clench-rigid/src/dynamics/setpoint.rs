@@ -1,6 +1,6 @@
 //! What controllers are asked for: the controls of an actuator by what they mean, moved no faster than the first may move.
 
-use super::actuator::Given;
+use super::actuator::ActuatorInputs;
 use crate::model::{
     BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Params, Transmission,
 };
@@ -24,7 +24,7 @@ pub struct Setpoints<T> {
 impl<T: Real> Setpoints<T> {
     /// Of actuator `u`. A first control whose rate is limited acts from where it was, and on a circle goes the shorter way.
     #[inline(always)]
-    pub fn new(model: &Model, params: &Params<T>, given: Given<'_, T>, u: usize) -> Self {
+    pub fn new(model: &Model, params: &Params<T>, given: ActuatorInputs<'_, T>, u: usize) -> Self {
         let actuator = &model.actuators[u];
         let mut setpoints = Setpoints {
             position: T::ZERO,

@@ -5,7 +5,7 @@
 
 use super::source::Source;
 use super::tendon_forces::each_pull;
-use crate::constraint::{ConstraintSource, Frames, weld_torque};
+use crate::constraint::{ConstraintSource, HeldFrames, weld_torque};
 use crate::contact::Contact;
 use crate::model::EqualityTarget;
 use crate::workspace::Workspace;
@@ -159,10 +159,10 @@ pub(crate) fn each_joint_of_bodies<T: Real>(
 }
 
 /// The frames that a connect or weld holds together, and whether it is a weld.
-fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(Frames<T>, bool)> {
+fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(HeldFrames<T>, bool)> {
     match source {
         ConstraintSource::Dynamic { slot, bodies, weld } => {
-            Some((Frames::of_slot(s.state, slot, bodies), weld))
+            Some((HeldFrames::of_slot(s.state, slot, bodies), weld))
         }
         ConstraintSource::Equality(e) => {
             let target = s.model.equalities[e].target;
@@ -172,7 +172,7 @@ fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(Frames<T>
                 return None;
             };
             let weld = matches!(target, EqualityTarget::Weld { .. });
-            Some((Frames::of_equality(s.params, e, [body1, body2]), weld))
+            Some((HeldFrames::of_equality(s.params, e, [body1, body2]), weld))
         }
         _ => None,
     }

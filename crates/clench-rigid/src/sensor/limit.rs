@@ -5,7 +5,7 @@ use crate::constraint::ConstraintSource;
 use clench_math::{Mask, Real, kernel};
 
 /// The row of a limit; zero where it does not act.
-pub(super) struct Limit<T> {
+pub(super) struct LimitReading<T> {
     /// Distance to the limit less the margin.
     pub pos: T,
     /// Its rate of change.
@@ -17,9 +17,9 @@ pub(super) struct Limit<T> {
 impl<T: Real> Reading<'_, T> {
     /// The first limit of a joint or tendon that acts.
     #[kernel]
-    pub(super) fn limit(&self, source: ConstraintSource) -> Limit<T> {
+    pub(super) fn limit(&self, source: ConstraintSource) -> LimitReading<T> {
         let ws = self.ws;
-        let mut limit = Limit {
+        let mut limit = LimitReading {
             pos: T::ZERO,
             vel: T::ZERO,
             force: T::ZERO,

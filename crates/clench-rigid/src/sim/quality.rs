@@ -2,17 +2,17 @@
 
 use super::Sim;
 use crate::Precision;
-use crate::batch::{Place, Quality};
+use crate::batch::{Quality, StepResults};
 
 impl Quality {
     /// Takes in the last step of a simulation, which must have gone well.
     pub fn note<T: Precision>(&mut self, sim: &Sim<T>) {
-        let place = Place {
+        let results = StepResults {
             model: sim.model(),
             params: sim.params(),
             settings: sim.settings(),
             ws: sim.workspace(),
         };
-        self.count(place, 1, true);
+        self.count(results, 1, true);
     }
 }

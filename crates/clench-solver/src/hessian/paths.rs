@@ -3,7 +3,7 @@
 use super::rank_one::each_of_change;
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, Jacobian};
-use crate::tree::Coupling;
+use crate::tree::CouplingScratch;
 use crate::{Problem, SolveClock, SolvePart, Tree, TreeFactor, TreeMatrix};
 use clench_math::{Mask, Real, kernel};
 
@@ -17,7 +17,7 @@ pub(super) struct PathForm<T> {
     spare: TreeFactor<T>,
     /// The vector of a rank-one update, along its path.
     direction: Vec<T>,
-    scratch: Coupling,
+    scratch: CouplingScratch,
 }
 
 impl<T: Real> PathForm<T> {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::jacobian::Pattern;
-use crate::tree::Coupling;
+use crate::tree::CouplingScratch;
 use crate::{Tree, TreeFactor, TreeMatrix};
 use std::collections::BTreeSet;
 
@@ -72,7 +72,12 @@ fn factors_solutions_and_updates_equal_those_over_paths_to_the_bit() {
         let scene = random_scene(&mut rng, 1 + k / 2, k % 30);
         let (tree, couplings) = &scene;
         let mut coupled = Tree::default();
-        assert!(coupled.rebuild_coupled(tree, couplings, usize::MAX, &mut Coupling::default()));
+        assert!(coupled.rebuild_coupled(
+            tree,
+            couplings,
+            usize::MAX,
+            &mut CouplingScratch::default()
+        ));
         let mut matrix = TreeMatrix::zeros(&coupled);
         fill(&mut Rng(k as u64), &scene, &coupled, &mut matrix.values);
         let mut paths = TreeFactor::zeros(&coupled);

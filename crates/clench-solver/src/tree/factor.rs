@@ -5,7 +5,7 @@
 //! descendant to the first, and an entry that is zero contributes an exact zero, **so that a larger pattern gives the same
 //! bits**.
 
-use super::{Supernode, Tree, TreeMatrix, with_len};
+use super::{Tree, TreeMatrix, TreeSupernode, with_len};
 use crate::transfer::Transfer;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
@@ -56,7 +56,7 @@ impl<T: Real> TreeFactor<T> {
     fn factor_above(&mut self, tree: &Tree, matrix: &TreeMatrix<T>, floor: T) -> T::Mask {
         self.resize(tree);
         let mut positive = T::Mask::splat(true);
-        for &Supernode { first, len } in tree.supernodes.iter().rev() {
+        for &TreeSupernode { first, len } in tree.supernodes.iter().rev() {
             positive &=
                 with_len!(len, LEN => self.factor_supernode::<LEN>(tree, first, matrix, floor));
         }
@@ -216,7 +216,7 @@ impl<T: Real> TreeFactor<T> {
         for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
             *x *= inverse;
         }
-        for &Supernode { first, len } in &tree.supernodes {
+        for &TreeSupernode { first, len } in &tree.supernodes {
             with_len!(len, LEN => self.solve_supernode::<LEN>(tree, first, x));
         }
     }
@@ -269,7 +269,7 @@ impl<T: Real> TreeFactor<T> {
     /// `x ← L^(-T) x`.
     #[inline(always)]
     fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
-        for &Supernode { first, len } in tree.supernodes.iter().rev() {
+        for &TreeSupernode { first, len } in tree.supernodes.iter().rev() {
             with_len!(len, LEN => self.solve_transposed_supernode::<LEN>(tree, first, x));
         }
     }

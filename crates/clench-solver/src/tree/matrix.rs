@@ -1,6 +1,6 @@
 //! A symmetric matrix in the pattern of a tree.
 
-use super::{Supernode, Tree, with_len};
+use super::{Tree, TreeSupernode, with_len};
 use clench_math::{Real, array, kernel};
 
 /// A symmetric matrix in the pattern of a [`Tree`]: its lower triangle, row by row.
@@ -30,7 +30,7 @@ impl<T: Real> TreeMatrix<T> {
     /// `out = A x`.
     #[kernel]
     pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
-        for &Supernode { first, len } in &tree.supernodes {
+        for &TreeSupernode { first, len } in &tree.supernodes {
             with_len!(len, LEN => self.mul_supernode::<LEN>(tree, first, x, out));
         }
     }

@@ -30,7 +30,7 @@ pub struct Tree {
     trees: Vec<u32>,
     ntree: usize,
     /// All dofs in supernodes, ascending.
-    supernodes: Vec<Supernode>,
+    supernodes: Vec<TreeSupernode>,
     /// For each dof, where the rows of its descendants start, in ascending order.
     descendants: Vec<u32>,
     descendant_starts: Vec<usize>,
@@ -39,7 +39,7 @@ pub struct Tree {
 /// A few dofs of which each is the only child of the one before. Their rows share all columns but the last few, and what
 /// lies below the last lies below all of them, so that kernels run over several rows at once: a column is looked up once, and sums that would wait for themselves run side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Supernode {
+pub(crate) struct TreeSupernode {
     /// The first dof; the others follow.
     pub first: usize,
     /// How many there are: 1 to [`MAX_SUPERNODE`].
@@ -139,7 +139,7 @@ impl Tree {
             });
             match self.supernodes.last_mut() {
                 Some(last) if last.len < MAX_SUPERNODE && only_child => last.len += 1,
-                _ => self.supernodes.push(Supernode { first: dof, len: 1 }),
+                _ => self.supernodes.push(TreeSupernode { first: dof, len: 1 }),
             }
         }
     }
@@ -198,10 +198,10 @@ impl Tree {
         tree: &Tree,
         couplings: &[u32],
         most: usize,
-        scratch: &mut Coupling,
+        scratch: &mut CouplingScratch,
     ) -> bool {
         let nv = tree.nv();
-        let Coupling {
+        let CouplingScratch {
             edges,
             parents,
             roots,
@@ -306,7 +306,7 @@ impl Tree {
 
 /// Scratch of [`Tree::rebuild_coupled`].
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Coupling {
+pub(crate) struct CouplingScratch {
     /// (lower, higher) dof.
     edges: Vec<(u32, u32)>,
     parents: Vec<Option<usize>>,

@@ -232,7 +232,12 @@ fn coupling_branches_holds_all_fill_and_no_path_that_is_not_needed() {
                     .for_each(|&c| filled[i][c] = true);
             }
         }
-        coupled.rebuild_coupled(&tree, &couplings, usize::MAX, &mut Coupling::default());
+        coupled.rebuild_coupled(
+            &tree,
+            &couplings,
+            usize::MAX,
+            &mut CouplingScratch::default(),
+        );
         for k in 0..nv {
             let first = (0..k).rev().find(|&c| filled[k][c]);
             assert_eq!(

@@ -1,6 +1,6 @@
 //! Bounds of a body along the axes and along slopes: which triangles it may touch.
 
-use super::grid::{Grid, Node};
+use super::grid::{Node, TerrainGrid};
 use crate::narrow::convex::body::Body;
 use clench_math::{Mat3, Scalar, Vec3};
 use std::ops::RangeInclusive;
@@ -25,7 +25,7 @@ impl Bounds {
         rotation: &Mat3<S>,
         offset: Vec3<S>,
         around: S,
-        grid: &Grid,
+        grid: &TerrainGrid,
     ) -> Option<Self> {
         let known = body.bounding_radius + offset.norm_squared();
         if !(known.to_f64().is_finite() && around > -S::INFINITY) {
@@ -57,7 +57,7 @@ impl Bounds {
     }
 
     /// The rows and columns of cells of a grid that they reach, no higher than the highest; nothing where they are off the field.
-    pub(super) fn window(&self, grid: &Grid) -> Option<[RangeInclusive<i64>; 2]> {
+    pub(super) fn window(&self, grid: &TerrainGrid) -> Option<[RangeInclusive<i64>; 2]> {
         let (low, high) = self.below(grid.elevation);
         let over = |axis: usize| low[axis] <= grid.half[axis] && high[axis] >= -grid.half[axis];
         let cells = |axis| grid.cell(axis, low[axis])..=grid.cell(axis, high[axis]);
@@ -77,7 +77,7 @@ impl Bounds {
 
     /// Whether they reach the left and the right triangle of a cell. No branches: which it is cannot be predicted.
     #[inline]
-    pub(super) fn reach(&self, cell: Node, grid: &Grid) -> [bool; 2] {
+    pub(super) fn reach(&self, cell: Node, grid: &TerrainGrid) -> [bool; 2] {
         let [x, y] = grid.corner(cell);
         let [dx, dy] = grid.step;
         let area = dx * dy;

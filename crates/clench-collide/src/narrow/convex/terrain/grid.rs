@@ -13,7 +13,7 @@ pub(super) fn same_direction<S: Scalar>() -> S {
 }
 
 /// A height field with what follows from its size.
-pub(super) struct Grid<'a> {
+pub(super) struct TerrainGrid<'a> {
     field: &'a HeightField,
     pub half: [f64; 2],
     /// Lengths of a cell along x and y, m.
@@ -22,11 +22,11 @@ pub(super) struct Grid<'a> {
     pub base: f64,
 }
 
-impl<'a> Grid<'a> {
+impl<'a> TerrainGrid<'a> {
     pub(super) fn new(field: &'a HeightField) -> Self {
         let [x, y, elevation, base] = field.size();
         let step = |half: f64, count: usize| 2.0 * half / (count - 1) as f64;
-        Grid {
+        TerrainGrid {
             field,
             half: [x, y],
             step: [step(x, field.columns()), step(y, field.rows())],
@@ -69,7 +69,7 @@ impl<'a> Grid<'a> {
 
 /// A triangle of the surface, in a frame that begins at its first corner.
 pub(super) struct Triangle<'a, S> {
-    grid: &'a Grid<'a>,
+    grid: &'a TerrainGrid<'a>,
     pub nodes: [Node; 3],
     /// Where its frame begins, in the field's frame.
     pub origin: Vec3<S>,
@@ -79,7 +79,7 @@ pub(super) struct Triangle<'a, S> {
 
 impl<'a, S: Scalar> Triangle<'a, S> {
     /// One of the triangles of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the highest.
-    pub(super) fn of_cell(grid: &'a Grid<'a>, first: Node, half: usize) -> Self {
+    pub(super) fn of_cell(grid: &'a TerrainGrid<'a>, first: Node, half: usize) -> Self {
         let [x, y] = grid.corner(first);
         let z = grid.height(first);
         let origin = Vec3::from_f64([x, y, z]);

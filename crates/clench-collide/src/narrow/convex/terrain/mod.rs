@@ -34,7 +34,7 @@ use arrayvec::ArrayVec;
 use bounds::Bounds;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 use face_clip::FaceClip;
-use grid::{Grid, Triangle, same_direction};
+use grid::{TerrainGrid, Triangle, same_direction};
 use manifold::Manifold;
 use voronoi::VoronoiFeature;
 
@@ -64,7 +64,7 @@ fn points<S: Scalar>(a: Placed<Terrain<S>, S>, b: AnyPlaced<S>, margin: S, point
     let Some(field) = a.shape.field else {
         return;
     };
-    let grid = Grid::new(field);
+    let grid = TerrainGrid::new(field);
     let mut search = Search::new(a, b, margin);
     let body = Body::new(&b.shape);
     let around = body.radius + margin + search.tolerance;
