@@ -188,12 +188,10 @@ pub(crate) fn build() -> Result<(), String> {
     compile(Profile::Release, "clench-cli", ["--bin", "clench"])
 }
 
-/// Builds a target of a package alone; but with the Python package named beside it, both share what they are built of. Else a
-/// dependency of both would have other features in each, and the kernels would be compiled twice.
+/// Builds a target of a package.
 fn compile(profile: Profile, package: &str, target: [&str; 2]) -> Result<(), String> {
-    let packages = ["--package", package, "--package", "clench-python"];
     let mut build = cargo(&["build", "--quiet", "--profile", profile.name()]);
-    build.args(packages).args(target);
+    build.args(["--package", package]).args(target);
     run(build)
 }
 
