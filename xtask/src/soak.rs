@@ -35,7 +35,7 @@ const SOAKS: [Soak; 5] = [
     Soak {
         name: "collide",
         package: "clench-collide",
-        test: "trouble",
+        test: "suite",
         case: "",
     },
     Soak {

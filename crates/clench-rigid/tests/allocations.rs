@@ -1,5 +1,11 @@
 //! A step allocates nothing once its buffers have grown.
 
+// Of what the suite shares this program uses some.
+#[allow(dead_code)]
+#[path = "suite/common/mod.rs"]
+mod common;
+#[allow(dead_code)]
+#[path = "suite/scenes/mod.rs"]
 mod scenes;
 
 use clench_rigid::Sim;

@@ -1,6 +1,15 @@
 //! Steps of a batch allocate nothing once warm, and an environment takes the memory that the batch says.
 
+// Of what the suite shares this program uses some.
+#[allow(dead_code)]
+#[path = "suite/batches/mod.rs"]
 mod batches;
+#[allow(dead_code)]
+#[path = "suite/common/mod.rs"]
+mod common;
+#[allow(dead_code)]
+#[path = "suite/scenes/mod.rs"]
+mod scenes;
 
 use batches::*;
 use clench_math::Instructions;

@@ -2,7 +2,8 @@
 //!
 //! Each line is a family of 64 random problems, cold-started. Sparse and dense factors are timed in turn.
 
-#[path = "../tests/common/mod.rs"]
+#[allow(dead_code)] // Of what the suite shares this program uses some.
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 use clench_math::{Lanes, Real};

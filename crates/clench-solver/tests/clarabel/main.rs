@@ -8,7 +8,8 @@
 //!
 //! `cargo test -p clench-solver --test clarabel -- --nocapture` prints the worst differences.
 
-#[path = "../common/mod.rs"]
+#[allow(dead_code)] // Of what the suite shares this program uses some.
+#[path = "../suite/common/mod.rs"]
 mod common;
 mod conic;
 mod number;

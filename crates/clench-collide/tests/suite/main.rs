@@ -1,0 +1,19 @@
+//! Tests of collision through the crate's public face: one program, so that its generic code is compiled once for all of them.
+
+mod accuracy;
+mod broad_phase;
+mod closed_forms;
+mod common;
+mod distance;
+mod hulls;
+mod invariance;
+mod patches;
+mod ray_triangles;
+mod rays;
+mod resting;
+mod rough_ground;
+mod separating_axis;
+mod stability;
+mod terrain;
+mod trouble;
+mod truth;

@@ -1,0 +1,112 @@
+//! Environments that share a register move as if each were alone, to the bit.
+
+use crate::scenes::{Numbers, loose_parts};
+use clench_math::{Lanes, Mask, Real};
+use clench_rigid::model::Integrator;
+use clench_rigid::options::{FrictionCone, RigidOptions};
+use clench_rigid::{Model, Sim, State, StepSettings, Workspace, pipeline};
+use clench_solver::ConstraintSolver;
+use std::sync::Arc;
+
+const N: usize = 4;
+type L = Lanes<f64, N>;
+
+/// One of the environments: its own velocities, and the weld on in the last.
+fn start(model: &Arc<Model>, options: RigidOptions, lane: usize) -> Sim {
+    let mut sim = Sim::with_options(model.clone(), options).expect("valid");
+    Numbers(lane as u64).fill(&mut sim.state.qvel, 1.5);
+    sim.state.eq_active[0] = lane == N - 1;
+    sim
+}
+
+/// Steps all environments together and alone; whether any had too many contacts.
+fn compare(options: RigidOptions, integrator: Integrator, steps: usize) -> bool {
+    let mut builder = loose_parts();
+    builder.physics.integrator = integrator;
+    let model = crate::scenes::model(&builder);
+    let mut alone: Vec<Sim> = (0..N).map(|lane| start(&model, options, lane)).collect();
+
+    let settings = StepSettings::new::<L>(&model, options).expect("valid");
+    let params = model.params.broadcast::<L>();
+    let (mut state, mut ws) = (State::<L>::new(&model), Workspace::<L>::new(&model));
+    for (lane, sim) in alone.iter().enumerate() {
+        for (to, &from) in state.qvel.iter_mut().zip(&sim.state.qvel) {
+            to.set_lane(lane, from);
+        }
+        state.eq_active[0].set_lane(lane, sim.state.eq_active[0]);
+    }
+    let (mut contacts, mut overflow) = ([0; N], false);
+    for step in 0..steps {
+        pipeline::step(&model, &params, &settings, &mut state, &mut ws);
+        for (lane, sim) in alone.iter_mut().enumerate() {
+            sim.step().expect("finite");
+            let same = |what: &str, wide: &[L], narrow: &[f64]| {
+                for (i, (w, n)) in wide.iter().zip(narrow).enumerate() {
+                    let w = w.lane(lane);
+                    assert!(
+                        w.to_bits() == n.to_bits(),
+                        "step {step}, lane {lane}: {what}[{i}] is {w}, alone {n}"
+                    );
+                }
+            };
+            same("qpos", &state.qpos, &sim.state.qpos);
+            same("qvel", &state.qvel, &sim.state.qvel);
+            same("qacc", &ws.qacc, &sim.workspace().qacc);
+            same(
+                "qfrc_constraint",
+                &ws.qfrc_constraint,
+                &sim.workspace().qfrc_constraint,
+            );
+            let active = ws.contacts.iter().filter(|c| c.active.lane(lane)).count();
+            assert_eq!(
+                active,
+                sim.contacts().len(),
+                "step {step}, lane {lane}: contacts"
+            );
+            assert_eq!(
+                ws.solver.stats().lane(lane).iterations,
+                sim.stats().iterations
+            );
+            assert_eq!(ws.collision.overflow.lane(lane), sim.contact_overflow());
+            overflow |= sim.contact_overflow();
+            contacts[lane] += active;
+        }
+    }
+    assert!(
+        contacts.iter().all(|&c| c > steps),
+        "all touch: {contacts:?}"
+    );
+    assert!(
+        contacts.windows(2).any(|c| c[0] != c[1]),
+        "but not alike: {contacts:?}"
+    );
+    overflow
+}
+
+#[test]
+fn newton_with_pyramids() {
+    assert!(!compare(RigidOptions::new(), Integrator::Euler, 300));
+}
+
+#[test]
+fn newton_with_elliptic_cones() {
+    let options = RigidOptions::new()
+        .friction_cone(FrictionCone::Elliptic)
+        .impratio(3.0);
+    assert!(!compare(options, Integrator::ImplicitFast, 300));
+}
+
+#[test]
+fn cg_and_runge_kutta() {
+    let options = RigidOptions::new().constraint_solver(ConstraintSolver::Cg);
+    assert!(!compare(options, Integrator::Rk4, 300));
+}
+
+#[test]
+fn a_bound_on_contacts_holds_for_each_lane() {
+    let options = RigidOptions::new().max_contacts(clench_rigid::options::MaxContacts::Limit(3));
+    assert!(
+        compare(options, Integrator::Euler, 300),
+        "the bound was reached"
+    );
+}

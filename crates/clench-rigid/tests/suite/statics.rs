@@ -1,0 +1,100 @@
+//! Scenes of many geoms that stand still, which are looked at once and not in each step.
+
+use crate::scenes::{add, cuboid, free, sphere, world};
+use clench_math::Vec3;
+use clench_rigid::builder::{BodySpec, GeomSpec, ModelBuilder};
+use clench_rigid::{Batch, Sim};
+use std::sync::Arc;
+
+const TILES: usize = 160;
+
+/// A row of tiles 1 m apart, the top of each at 0; a ball that touches the first, and one a metre above the second.
+fn tiles() -> ModelBuilder {
+    let mut b = world();
+    for i in 0..TILES {
+        b.bodies[0].geoms.push(GeomSpec {
+            pos: Vec3::new(i as f64, 0.0, -0.1),
+            ..cuboid([0.3, 0.3, 0.1])
+        });
+    }
+    add(&mut b, 0, "", [0.0, 0.0, 0.099], free(), vec![sphere(0.1)]);
+    add(&mut b, 0, "", [1.0, 0.0, 1.1], free(), vec![sphere(0.1)]);
+    b
+}
+
+/// Positions of all geoms where the tiles are raised by so much.
+fn raised(sim: &Sim, by: f64) -> Vec<f64> {
+    let mut pos = sim.param("geom_pos").expect("a field");
+    for tile in pos.chunks_exact_mut(3).take(TILES) {
+        tile[2] += by;
+    }
+    pos
+}
+
+fn touching(sim: &Sim) -> Vec<[usize; 2]> {
+    sim.contacts().iter().map(|contact| contact.geoms).collect()
+}
+
+#[test]
+fn what_stands_still_is_found_where_it_was_put_last() {
+    let mut sim = crate::scenes::sim(&tiles());
+    sim.forward().expect("finite");
+    assert_eq!(touching(&sim), [[TILES, 0]]);
+    for (height, found) in [
+        (1.0 + 1e-4, vec![[TILES + 1, 1]]),
+        (5.0, vec![]),
+        (0.0, vec![[TILES, 0]]),
+    ] {
+        let low = crate::scenes::sim(&tiles());
+        sim.set_param("geom_pos", &raised(&low, height))
+            .expect("finite");
+        sim.forward().expect("finite");
+        assert_eq!(touching(&sim), found, "tiles at {height}");
+    }
+}
+
+#[test]
+fn what_is_placed_from_outside_is_found_where_it_is() {
+    let mut b = tiles();
+    b.bodies.push(BodySpec {
+        pos: Vec3::new(0.0, 50.0, 0.0),
+        mocap: true,
+        geoms: vec![cuboid([0.1, 0.1, 0.1])],
+        ..BodySpec::default()
+    });
+    let mut sim = crate::scenes::sim(&b);
+    sim.forward().expect("finite");
+    let before = touching(&sim).len();
+    sim.state.mocap_pos[0] = Vec3::new(1.0, 0.0, 0.95);
+    sim.forward().expect("finite");
+    assert_eq!(touching(&sim).len(), before + 1);
+}
+
+#[test]
+fn environments_with_their_own_scenes_move_as_if_alone() {
+    let model = crate::scenes::model(&tiles());
+    let heights = [0.0, 0.9, -0.2, 0.05, 0.0];
+    let mut batch: Batch = Batch::new(Arc::clone(&model), heights.len()).expect("room");
+    let mut alone = Vec::new();
+    for (env, &height) in heights.iter().enumerate() {
+        let mut sim: Sim = Sim::new(Arc::clone(&model)).expect("a model");
+        let pos = raised(&sim, height);
+        sim.set_param("geom_pos", &pos).expect("finite");
+        batch.randomize("geom_pos", &[env], &pos).expect("finite");
+        alone.push(sim);
+    }
+    for _ in 0..120 {
+        batch.step().expect("finite");
+        for sim in &mut alone {
+            sim.step().expect("finite");
+        }
+    }
+    for (env, sim) in alone.iter().enumerate() {
+        let bits = |x: &[f64]| Vec::from_iter(x.iter().map(|x| x.to_bits()));
+        assert_eq!(
+            bits(batch.state.qpos.row(env)),
+            bits(&sim.state.qpos),
+            "{env}"
+        );
+    }
+}
