@@ -10,10 +10,9 @@ use super::inputs;
 use super::shortcut::{self, ActuatorParams, Shortcut};
 use super::transmission;
 use crate::LoadError;
-use clench_rigid::builder::{ActuatorSpec, HistorySpec};
+use clench_rigid::builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
 use clench_rigid::model::Interpolation;
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
-use std::sync::Arc;
 
 /// Overwrites what the element says of past values; fewer samples than none are none, as in MuJoCo.
 pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Result<(), LoadError> {
@@ -34,21 +33,8 @@ pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Resu
 pub(crate) struct ActuatorDraft {
     pub shortcut: Shortcut,
     pub parameters: ActuatorParams,
-    gear: [f64; 6],
-    cranklength: f64,
-    ctrlrange: [f64; 2],
-    ctrllimited: Option<bool>,
-    forcerange: [f64; 2],
-    forcelimited: Option<bool>,
-    actrange: [f64; 2],
-    actlimited: Option<bool>,
-    velrange: [f64; 2],
-    ffrange: [f64; 2],
-    history: HistorySpec,
-    damping: [f64; 3],
-    armature: f64,
-    group: i32,
-    user: Arc<[f64]>,
+    /// All other attributes that a default class can have.
+    spec: ActuatorSpec,
 }
 
 impl Default for ActuatorDraft {
@@ -56,21 +42,7 @@ impl Default for ActuatorDraft {
         ActuatorDraft {
             shortcut: Shortcut::General,
             parameters: ActuatorParams::default(),
-            gear: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-            cranklength: 0.0,
-            ctrlrange: [0.0; 2],
-            ctrllimited: None,
-            forcerange: [0.0; 2],
-            forcelimited: None,
-            actrange: [0.0; 2],
-            actlimited: None,
-            velrange: [0.0; 2],
-            ffrange: [0.0; 2],
-            history: HistorySpec::default(),
-            damping: [0.0; 3],
-            armature: 0.0,
-            group: 0,
-            user: Arc::default(),
+            spec: ActuatorSpec::general("", TransmissionSpec::Joint(String::new())),
         }
     }
 }
@@ -90,23 +62,24 @@ impl ActuatorDraft {
         inherited: ActuatorParams,
     ) -> Result<(), LoadError> {
         self.shortcut = shortcut;
-        element.set_range("ctrlrange", &mut self.ctrlrange)?;
-        element.set_tristate("ctrllimited", &mut self.ctrllimited)?;
-        element.set_range("forcerange", &mut self.forcerange)?;
-        element.set_tristate("forcelimited", &mut self.forcelimited)?;
-        element.set_range("actrange", &mut self.actrange)?;
-        element.set_tristate("actlimited", &mut self.actlimited)?;
-        element.overlay("gear", &mut self.gear)?;
-        read_history(element, &mut self.history)?;
-        element.overlay("damping", &mut self.damping)?;
-        element.set_number("armature", &mut self.armature)?;
-        element.set_number("cranklength", &mut self.cranklength)?;
-        element.set_integer("group", &mut self.group)?;
-        element.set_user(&mut self.user)?;
+        let spec = &mut self.spec;
+        element.set_range("ctrlrange", &mut spec.ctrlrange)?;
+        element.set_tristate("ctrllimited", &mut spec.ctrllimited)?;
+        element.set_range("forcerange", &mut spec.forcerange)?;
+        element.set_tristate("forcelimited", &mut spec.forcelimited)?;
+        element.set_range("actrange", &mut spec.actrange)?;
+        element.set_tristate("actlimited", &mut spec.actlimited)?;
+        element.overlay("gear", &mut spec.gear)?;
+        read_history(element, &mut spec.history)?;
+        element.overlay("damping", &mut spec.damping)?;
+        element.set_number("armature", &mut spec.armature)?;
+        element.set_number("cranklength", &mut spec.cranklength)?;
+        element.set_integer("group", &mut spec.group)?;
+        element.set_user(&mut spec.user)?;
         if matches!(shortcut, Shortcut::General | Shortcut::Pid) {
-            element.set_range("posrange", &mut self.ctrlrange)?;
-            element.set_range("velrange", &mut self.velrange)?;
-            element.set_range("ffrange", &mut self.ffrange)?;
+            element.set_range("posrange", &mut spec.ctrlrange)?;
+            element.set_range("velrange", &mut spec.velrange)?;
+            element.set_range("ffrange", &mut spec.ffrange)?;
         }
         let parameters = match shortcut {
             Shortcut::General => read_general(element, self.parameters)?,
@@ -127,8 +100,8 @@ impl ActuatorDraft {
             Shortcut::Damper | Shortcut::Adhesion => self.require_positive_controls(element)?,
             _ => {}
         }
-        self.actlimited = match shortcut {
-            Shortcut::General => self.actlimited,
+        self.spec.actlimited = match shortcut {
+            Shortcut::General => self.spec.actlimited,
             // Its activations are of many kinds, which no range bounds.
             Shortcut::DcMotor => Some(false),
             // As in MuJoCo, whatever the file says of it: an activation range limits if there is one.
@@ -143,13 +116,13 @@ impl ActuatorDraft {
         element: &Element,
         inherited: ActuatorParams,
     ) -> Result<ActuatorParams, LoadError> {
-        let damping = self.damping[0];
+        let damping = self.spec.damping[0];
         let (parameters, saturation) = controller::read_dc_motor(element, inherited, damping)?;
         match saturation {
             Saturation::Inherited => {}
-            Saturation::None => (self.forcerange, self.forcelimited) = ([0.0; 2], None),
+            Saturation::None => (self.spec.forcerange, self.spec.forcelimited) = ([0.0; 2], None),
             Saturation::Torque(torque) => {
-                (self.forcerange, self.forcelimited) = ([-torque, torque], Some(true));
+                (self.spec.forcerange, self.spec.forcelimited) = ([-torque, torque], Some(true));
             }
         }
         Ok(parameters)
@@ -157,13 +130,13 @@ impl ActuatorDraft {
 
     /// Dampers and adhesions are limited to positive controls.
     fn require_positive_controls(&mut self, element: &Element) -> Result<(), LoadError> {
-        if self.ctrlrange.iter().any(|&end| end < 0.0) {
+        if self.spec.ctrlrange.iter().any(|&end| end < 0.0) {
             return Err(element.error(format!(
                 "the ctrlrange of <{}> cannot be negative",
                 element.tag
             )));
         }
-        self.ctrllimited = Some(true);
+        self.spec.ctrllimited = Some(true);
         Ok(())
     }
 
@@ -183,8 +156,8 @@ impl ActuatorDraft {
                 return Err(element.error(format!("{name} and inheritrange cannot both be given")));
             }
             (true, false) => self.parameters.inheritrange = 0.0,
-            (_, true) if integrates => self.actrange = [0.0; 2],
-            (_, true) => self.ctrlrange = [0.0; 2],
+            (_, true) if integrates => self.spec.actrange = [0.0; 2],
+            (_, true) => self.spec.ctrlrange = [0.0; 2],
             (false, false) => {}
         }
         Ok(())
@@ -218,26 +191,12 @@ impl ActuatorDraft {
             biasprm: parameters.biasprm,
             dampratio,
             inheritrange: if servo { parameters.inheritrange } else { 0.0 },
-            gear: self.gear,
-            history: self.history,
-            damping: self.damping,
-            armature: self.armature,
             lengthrange,
-            cranklength: self.cranklength,
-            ctrlrange: self.ctrlrange,
-            ctrllimited: self.ctrllimited,
-            velrange: self.velrange,
-            ffrange: self.ffrange,
             inputs: parameters.inputs.map(|inputs| inputs.controls()),
-            forcerange: self.forcerange,
-            forcelimited: self.forcelimited,
-            actrange: self.actrange,
-            actlimited: self.actlimited,
             actdim: usize::try_from(parameters.actdim).ok().filter(|_| counts),
             actearly: parameters.actearly,
-            group: self.group,
-            user: self.user,
             origin: Some(element.origin.clone()),
+            ..self.spec
         })
     }
 }

@@ -4,6 +4,7 @@
 use super::document::Element;
 use super::inputs::{Inputs, read_inputs};
 use crate::LoadError;
+use clench_rigid::builder::{ActuatorSpec, TransmissionSpec};
 use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
 
 /// Which element an actuator is written with.
@@ -82,15 +83,16 @@ fn params<const N: usize>(leading: [f64; N]) -> [f64; 10] {
 
 impl Default for ActuatorParams {
     fn default() -> Self {
+        let general = ActuatorSpec::general("", TransmissionSpec::Joint(String::new()));
         ActuatorParams {
-            dynamics: DynamicsKind::None,
-            dynprm: params([1.0]),
-            gain: GainKind::Fixed,
-            gainprm: params([1.0]),
-            bias: BiasKind::None,
-            biasprm: [0.0; 10],
-            inheritrange: 0.0,
-            actearly: false,
+            dynamics: general.dynamics,
+            dynprm: general.dynprm,
+            gain: general.gain,
+            gainprm: general.gainprm,
+            bias: general.bias,
+            biasprm: general.biasprm,
+            inheritrange: general.inheritrange,
+            actearly: general.actearly,
             actdim: -1,
             inputs: None,
         }

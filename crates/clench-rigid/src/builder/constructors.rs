@@ -247,14 +247,14 @@ impl GeomSpec {
 impl ActuatorSpec {
     /// A motor: its force on the target is the control times `gear`.
     pub fn motor(name: impl Into<String>, target: TransmissionSpec, gear: f64) -> Self {
-        let mut actuator = Self::direct(name, target);
+        let mut actuator = Self::general(name, target);
         actuator.gear[0] = gear;
         actuator
     }
 
     /// A position servo: force `kp (control − position) − kv velocity`.
     pub fn position(name: impl Into<String>, target: TransmissionSpec, kp: f64, kv: f64) -> Self {
-        let mut actuator = Self::direct(name, target);
+        let mut actuator = Self::general(name, target);
         actuator.gainprm[0] = kp;
         actuator.bias = BiasKind::Affine;
         actuator.biasprm[1] = -kp;
@@ -264,15 +264,15 @@ impl ActuatorSpec {
 
     /// A velocity servo: force `kv (control − velocity)`.
     pub fn velocity(name: impl Into<String>, target: TransmissionSpec, kv: f64) -> Self {
-        let mut actuator = Self::direct(name, target);
+        let mut actuator = Self::general(name, target);
         actuator.gainprm[0] = kv;
         actuator.bias = BiasKind::Affine;
         actuator.biasprm[2] = -kv;
         actuator
     }
 
-    /// Force equal to the control.
-    fn direct(name: impl Into<String>, transmission: TransmissionSpec) -> Self {
+    /// A force equal to the control: what MJCF's `<general>` is without any attribute.
+    pub fn general(name: impl Into<String>, transmission: TransmissionSpec) -> Self {
         let one = |n: f64| {
             let mut prm = [0.0; 10];
             prm[0] = n;
