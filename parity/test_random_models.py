@@ -3,8 +3,6 @@
 `soak_models.py` does the same with as many seeds as one has time for; its models and these differ in seeds alone.
 """
 
-import pytest
-
 from random_models import rules, search
 
 SEEDS = range(1, 1541)  # of these MuJoCo compiles a thousand
@@ -13,20 +11,11 @@ MIN_COMPARED = 1000
 NEVER = {("site", "mesh")}
 
 
-@pytest.fixture(scope="module")
-def findings():
-    return search.search(SEEDS)
-
-
-def test_the_engines_agree(findings):
+def test_the_engines_agree():
+    findings = search.search(SEEDS)
     assert not findings.differences, f"{findings}\nThe models are in {search.FOLDER}."
-
-
-def test_enough_models_are_compared(findings):
     assert findings.compared >= MIN_COMPARED
-
-
-def test_every_attribute_that_is_read_occurs(findings):
+    # Every attribute that is read occurs.
     missing = [
         (element, name) for element, rule in rules.rules().items() for name in rule["read"] if not findings.used[element, name]
     ]

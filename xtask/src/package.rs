@@ -1,6 +1,6 @@
 //! The Python package, as its users get it: built and installed by pip, its types checked, its tests run.
 
-use crate::python::{interpreter, prepare};
+use crate::python::{self, interpreter, prepare};
 use crate::run::{Profile, command, run, target};
 use crate::web;
 
@@ -78,10 +78,7 @@ pub(crate) fn wheel() -> Result<(), String> {
 /// # Errors
 /// That a test failed.
 pub(crate) fn test() -> Result<(), String> {
-    run(command(
-        interpreter(),
-        &["-m", "pytest", "--quiet", "-rs", "python/tests"],
-    ))?;
+    run(python::tests(&["-rs", "python/tests"]))?;
     match web::no_browser() {
         None => web::test_python(),
         Some(reason) => {

@@ -4,6 +4,7 @@
 use crate::run::{command, root, run};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Packages as mere folders of files: nothing that they need to run, nothing compiled, and what was there before replaced.
 const UNPACK_ONLY: &[&str] = &[
@@ -33,6 +34,14 @@ pub(crate) fn interpreter() -> PathBuf {
     })
 }
 
+/// Tests in Python, some on each core; who is done takes over what others have left.
+pub(crate) fn tests(arguments: &[&str]) -> Command {
+    let mut pytest = command(interpreter(), &["-m", "pytest", "--quiet"]);
+    pytest.args(["--numprocesses", "auto", "--dist", "worksteal"]);
+    pytest.args(arguments);
+    pytest
+}
+
 /// The folder of the robots of Gymnasium's MuJoCo tasks.
 ///
 /// # Errors
@@ -55,7 +64,7 @@ pub(crate) fn dm_control_suite() -> PathBuf {
 
 /// `.venv` with pip in it. One left half made by an interrupted run is made again.
 fn make_environment() -> Result<(), String> {
-    let has_pip = |mut c: std::process::Command| c.output().is_ok_and(|o| o.status.success());
+    let has_pip = |mut c: Command| c.output().is_ok_and(|o| o.status.success());
     if interpreter().is_file() && has_pip(command(interpreter(), &["-m", "pip", "--version"])) {
         return Ok(());
     }

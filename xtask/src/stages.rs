@@ -196,10 +196,7 @@ fn compile(profile: Profile, package: &str, target: [&str; 2]) -> Result<(), Str
 }
 
 fn parity() -> Result<(), String> {
-    let mut pytest = command(
-        python::interpreter(),
-        &["-m", "pytest", "--quiet", "parity"],
-    );
+    let mut pytest = python::tests(&["parity"]);
     pytest.env("CLENCH", Profile::Release.program("clench"));
     run(pytest)
 }

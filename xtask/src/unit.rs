@@ -5,14 +5,16 @@ use crate::run::{cargo, shown};
 use std::io::{BufRead, BufReader, pipe};
 use std::process::Command;
 
+/// What has tests besides documentation. Examples have none, and the stage `clippy` has looked at them.
+const PROGRAMS: [&str; 3] = ["--lib", "--bins", "--tests"];
+
 /// Builds and runs them.
 ///
 /// # Errors
 /// What cannot be built, or that a test failed.
 pub(crate) fn test() -> Result<(), String> {
     let mut programs = 0;
-    let mut build = cargo(&["test", "--workspace", "--no-run"]);
-    build.env("CLENCH_GPU", "skip");
+    let build = tests(&[&PROGRAMS[..], &["--no-run"]].concat());
     read_lines(build, |line| {
         if line.trim_start().starts_with("Executable") {
             programs += 1;
@@ -21,15 +23,25 @@ pub(crate) fn test() -> Result<(), String> {
         }
     })?;
     let mut report = Report::new(programs);
-    let mut tests = cargo(&["test", "--workspace"]);
-    tests.env("CLENCH_GPU", "skip");
-    let outcome = read_lines(tests, |line| {
-        if let Some(text) = report.read(line) {
-            println!("{text}");
+    let mut outcome = Ok(());
+    for chosen in [&PROGRAMS[..], &["--doc"]] {
+        outcome = read_lines(tests(chosen), |line| {
+            if let Some(text) = report.read(line) {
+                println!("{text}");
+            }
+        });
+        if outcome.is_err() {
+            break;
         }
-    });
+    }
     println!("{}", report.rest());
     outcome
+}
+
+fn tests(chosen: &[&str]) -> Command {
+    let mut tests = cargo(&["test", "--workspace"]);
+    tests.args(chosen).env("CLENCH_GPU", "skip");
+    tests
 }
 
 /// Crates of others compile by the hundred; ours have a path.
