@@ -105,7 +105,7 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
             *p = T::select(convergence.live, *p, T::ZERO);
         }
         clock.lap(SolvePart::Direction as usize);
-        ray.prepare(problem, iterate);
+        ray.prepare(problem);
         let step = ray.search(problem, iterate, D::NEWTON, precision, convergence.live);
         clock.lap(SolvePart::LineSearch as usize);
         ray.advance(step.alpha, iterate);

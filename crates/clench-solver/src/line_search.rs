@@ -6,7 +6,7 @@
 
 use crate::costs::{BlockCost, Slope, with_cost};
 use crate::iterate::{Iterate, add_scaled, dot};
-use crate::jacobian::Jacobian;
+use crate::jacobian::{BlockIndex, Jacobian};
 use crate::ray::Ray;
 use crate::{Cost, Problem};
 use clench_math::{Mask, Real, Scalar, kernel};
@@ -40,33 +40,24 @@ const RESOLUTION: f64 = 0.01;
 /// at 0, and a decrease of at least this part of what the slope at 0 promises.
 const CURVATURE: f64 = 0.1;
 const DECREASE: f64 = 1e-4;
-/// The rounding error of a slope, over the working precision, relative to the inertial part of it.
-const NOISE: f64 = 4.0;
 
 impl<T: Real> Ray<T> {
-    /// Computes M p, J p and the quadratic part, for the direction already set.
+    /// Computes M p, J p and the second derivative of what is quadratic everywhere, for the direction already set.
     #[kernel]
-    pub fn prepare(&mut self, problem: &Problem<T>, iterate: &Iterate<T>) {
+    pub fn prepare(&mut self, problem: &Problem<T>) {
         self.mass_direction.resize(problem.nv(), T::ZERO);
         self.rows.resize(problem.nrow(), T::ZERO);
         problem
             .mass
             .mul(problem.tree(), &self.direction, &mut self.mass_direction);
         problem.jacobian.mul(&self.direction, &mut self.rows);
-        let mut slope = Slope {
-            first: dot(&iterate.inertial, &self.direction),
-            second: dot(&self.direction, &self.mass_direction),
-        };
-        for b in problem
-            .jacobian
-            .blocks
-            .iter()
-            .filter(|b| b.cost == Cost::Quadratic)
-        {
-            let (y, dy) = (&iterate.residual[b.rows()], &self.rows[b.rows()]);
-            crate::costs::Quadratic::slope(problem.rows(b), y, dy, T::ZERO, &mut slope);
+        self.second = dot(&self.direction, &self.mass_direction);
+        let blocks = problem.jacobian.blocks.iter();
+        for b in blocks.filter(|b| b.cost == Cost::Quadratic) {
+            for (&d, &dy) in problem.rows(b).d.iter().zip(&self.rows[b.rows()]) {
+                self.second += d * dy * dy;
+            }
         }
-        (self.first, self.second) = (slope.first, slope.second);
     }
 
     /// Moves the iterate by `alpha` along the ray.
@@ -77,36 +68,29 @@ impl<T: Real> Ray<T> {
         add_scaled(&mut iterate.residual, alpha, &self.rows);
     }
 
-    /// Derivatives of the cost at α.
+    /// How much steeper the cost is at α than at 0, and its second derivative at α.
     #[kernel]
     fn slope(&self, problem: &Problem<T>, iterate: &Iterate<T>, alpha: T) -> Slope<T> {
         let mut slope = Slope {
-            first: self.first + alpha * self.second,
+            growth: alpha * self.second,
             second: self.second,
         };
-        for b in problem
-            .jacobian
-            .blocks
-            .iter()
-            .filter(|b| b.cost != Cost::Quadratic)
-        {
+        for b in piecewise(problem) {
             let (y, dy) = (&iterate.residual[b.rows()], &self.rows[b.rows()]);
             with_cost!(b.cost, C => C::slope(iterate.rows(problem, b), y, dy, alpha, &mut slope));
         }
         slope
     }
 
-    /// Cost at α less cost at 0.
+    /// Cost at α less cost at 0, where its derivative is `start`.
     #[kernel]
-    fn change(&self, problem: &Problem<T>, iterate: &Iterate<T>, alpha: T) -> T {
-        let inertial = dot(&iterate.inertial, &self.direction);
-        let mass = dot(&self.direction, &self.mass_direction);
-        let mut sum = alpha * (inertial + T::new(0.5) * alpha * mass);
-        for b in &problem.jacobian.blocks {
+    fn change(&self, problem: &Problem<T>, iterate: &Iterate<T>, start: T, alpha: T) -> T {
+        let mut sum = T::new(0.5) * alpha * alpha * self.second;
+        for b in piecewise(problem) {
             let (y, dy) = (&iterate.residual[b.rows()], &self.rows[b.rows()]);
-            sum += with_cost!(b.cost, C => C::change(iterate.rows(problem, b), y, dy, alpha));
+            sum += with_cost!(b.cost, C => C::divergence(iterate.rows(problem, b), y, dy, alpha));
         }
-        sum
+        alpha * start + sum
     }
 
     /// Finds the minimiser along the ray in the lanes of `live`. `newton` says that the direction is Newton's, so that 1 is
@@ -138,46 +122,54 @@ impl<T: Real> Ray<T> {
             guess = -start / self.slope(problem, iterate, T::ZERO).second;
             step.evaluations += count(descends);
         }
-        let epsilon = T::splat(T::Scalar::EPSILON);
-        let resolution = T::new(RESOLUTION) * epsilon.sqrt();
+        let resolution = T::new(RESOLUTION) * T::splat(T::Scalar::EPSILON).sqrt();
         let length = dot(&self.direction, &self.direction).sqrt();
-        // The slope is a difference of two that nearly cancel: below their rounding it means nothing.
-        let noise = T::new(NOISE) * epsilon * self.first.abs();
-        let exact = noise.max(-(resolution * start));
+        let exact = -(resolution * start);
         let loose = (precision.slope * length).min(-(T::new(CURVATURE) * start));
         let mut bracket = Bracket::new(guess);
         let mut open = descends;
         for _ in 0..precision.evaluations {
-            let slope = self.slope(problem, iterate, bracket.alpha);
+            let Slope { growth, second } = self.slope(problem, iterate, bracket.alpha);
+            let first = start + growth;
             step.evaluations += count(open);
-            let steepness = slope.first.abs();
+            let steepness = first.abs();
             open &= steepness.gt(exact);
             // However loose the tolerance, the cost has to fall: beyond a kink the slope can be small where it has risen.
             let near = open & steepness.le(loose);
             if near.any() {
-                let change = self.change(problem, iterate, bracket.alpha);
+                let change = self.change(problem, iterate, start, bracket.alpha);
                 let enough = T::new(DECREASE) * bracket.alpha * start;
                 open &= !(near & change.le(enough));
             }
-            open &= bracket.narrow(slope, resolution, open);
+            open &= bracket.narrow((first, second), resolution, open);
             if !open.any() {
                 break;
             }
         }
         step.cut = open & (bracket.high - bracket.low).gt(resolution);
         step.alpha = T::select(descends, bracket.alpha, T::ZERO);
-        let mut change = self.change(problem, iterate, step.alpha);
+        let mut reached = self.change(problem, iterate, start, step.alpha);
         // Only a search cut short can end above its start (elsewhere, what looks like it is rounding); the low end of its
         // bracket does not.
-        let worse = open & change.gt(T::ZERO);
+        let worse = open & reached.gt(T::ZERO);
         if worse.any() {
             step.alpha = T::select(worse, bracket.low, step.alpha);
-            change = T::select(worse, self.change(problem, iterate, step.alpha), change);
+            reached = T::select(
+                worse,
+                self.change(problem, iterate, start, step.alpha),
+                reached,
+            );
         }
-        // A convex function falls by no more than its slope at 0 promises; beyond that, the difference is rounding.
-        step.improvement = (-change).min(-(step.alpha * start)).max(T::ZERO);
+        step.improvement = (-reached).max(T::ZERO);
         step
     }
+}
+
+/// The blocks whose Hessian is not the same everywhere.
+#[inline(always)]
+fn piecewise<T: Real>(problem: &Problem<T>) -> impl Iterator<Item = &BlockIndex> {
+    let blocks = problem.jacobian.blocks.iter();
+    blocks.filter(|b| b.cost != Cost::Quadratic)
 }
 
 /// The interval that holds the root, and the point to evaluate next.
@@ -205,11 +197,11 @@ impl<T: Real> Bracket<T> {
 
     /// Takes in the slope at `alpha` and moves `alpha`, in the lanes of `open`; returns those where it moved noticeably.
     #[inline(always)]
-    fn narrow(&mut self, slope: Slope<T>, resolution: T, open: T::Mask) -> T::Mask {
-        let falling = slope.first.lt(T::ZERO);
+    fn narrow(&mut self, (first, second): (T, T), resolution: T, open: T::Mask) -> T::Mask {
+        let falling = first.lt(T::ZERO);
         self.low = T::select(open & falling, self.alpha, self.low);
         self.high = T::select(open & !falling, self.alpha, self.high);
-        let newton = self.alpha - slope.first / slope.second;
+        let newton = self.alpha - first / second;
         let bounded = self.high.is_finite();
         let inside = newton.gt(self.low) & newton.lt(self.high);
         let headway = (newton - self.alpha).abs().lt(T::new(0.5) * self.last_step);

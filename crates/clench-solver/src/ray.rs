@@ -9,7 +9,6 @@ pub(crate) struct Ray<T> {
     pub mass_direction: Vec<T>,
     /// J p.
     pub rows: Vec<T>,
-    /// Derivatives at 0 of what is quadratic everywhere: inertia and equalities.
-    pub first: T,
+    /// The second derivative of what is quadratic everywhere: inertia and equalities.
     pub second: T,
 }

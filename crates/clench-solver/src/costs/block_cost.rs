@@ -68,10 +68,10 @@ impl Form {
     }
 }
 
-/// First and second derivative along a ray.
+/// By how much the derivative along a ray has grown since its start, and the second derivative.
 #[derive(Clone, Copy)]
 pub(crate) struct Slope<T> {
-    pub first: T,
+    pub growth: T,
     pub second: T,
 }
 
@@ -103,8 +103,8 @@ pub(crate) trait BlockCost<T: Real> {
     /// Calls `emit` with each rank-one change of the Hessian block from the pieces `old` to the pieces `new`, none of which
     /// may be curved.
     fn changes(rows: Rows<T>, old: &[T], new: &[T], emit: impl FnMut(RankOne<T>));
-    /// Adds the derivatives of α ↦ s(y + α dy).
+    /// Adds the derivatives of α ↦ s(y + α dy), the first less what it is at 0: for α ≥ 0 a sum of terms that are not negative.
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>);
-    /// s(y + α dy) − s(y), without the cancellation of subtracting two values.
-    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T;
+    /// The Bregman divergence s(y + α dy) − s(y) − α ∇s(y)·dy ≥ 0, without the cancellation of subtracting values.
+    fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T;
 }

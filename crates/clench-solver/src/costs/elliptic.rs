@@ -34,6 +34,8 @@ struct Zone<T: Real> {
     /// N − μT and μN + T, each where negative.
     p: T,
     q: T,
+    /// T.
+    t: T,
     /// Direction of slip, zero where there is none.
     u: [T; MAX_DIM],
     /// μ² − μ N/T in the middle zone.
@@ -73,6 +75,7 @@ impl<T: Real> Zone<T> {
             mu,
             p: a.min(T::ZERO),
             q: T::select(bottom, b, T::ZERO),
+            t,
             u,
             c: T::select(middle, mu * mu - mu * n * inverse, T::ZERO),
             middle,
@@ -184,27 +187,109 @@ impl<T: Real> BlockCost<T> for Elliptic {
 
     #[inline(always)]
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
-        let zone = Zone::new(rows, |j| y[j] + alpha * dy[j]);
-        let dn = zone.mu * dy[0];
-        let mut along = T::ZERO;
-        let mut squares = T::ZERO;
-        for j in 1..rows.d.len() {
-            let du = rows.shape[j] * dy[j];
-            along += zone.u[j] * du;
-            squares += du * du;
-        }
-        let (da, db) = (dn - zone.mu * along, zone.mu * dn + along);
-        slope.first += zone.k * (zone.p * da + zone.q * db);
-        let surface = zone.k * (da * da + zone.c * (squares - along * along));
-        let stick = zone.k * (T::ONE + zone.mu * zone.mu) * (dn * dn + squares);
-        slope.second += T::select(zone.middle, surface, T::select(zone.bottom, stick, T::ZERO));
+        let Path {
+            before,
+            after,
+            dp,
+            dq,
+            dn,
+            along,
+            turn,
+            squares,
+            ..
+        } = Path::new(rows, y, dy, alpha);
+        let (k, mu) = (after.k, after.mu);
+        let slip = |zone: &Zone<T>| zone.q - mu * zone.p;
+        let normal = (dp + mu * dq) * dn;
+        slope.growth += k * (normal + (dq - mu * dp) * (along + turn) + slip(&before) * turn);
+        let end = along + turn;
+        let da = dn - mu * end;
+        let surface = k * (da * da + after.c * (squares - end * end));
+        let stick = k * (T::ONE + mu * mu) * (dn * dn + squares);
+        slope.second += T::select(
+            after.middle,
+            surface,
+            T::select(after.bottom, stick, T::ZERO),
+        );
     }
 
     #[inline(always)]
-    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+    fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+        let Path {
+            before,
+            dp,
+            dq,
+            dn,
+            along,
+            bend,
+            in_p,
+            in_q,
+            ..
+        } = Path::new(rows, y, dy, alpha);
+        let mu = before.mu;
+        // What p and q leave of the ways along which they started.
+        let p = T::select(in_p, -(mu * bend), dp - alpha * (dn - mu * along));
+        let q = T::select(in_q, bend, dq - alpha * (mu * dn + along));
+        before.k * (T::new(0.5) * (dp * dp + dq * dq) + before.p * p + before.q * q)
+    }
+}
+
+/// A block on its way from y to y + α dy, with T and u at both ends.
+struct Path<T: Real> {
+    before: Zone<T>,
+    after: Zone<T>,
+    /// p₁ − p₀, q₁ − q₀.
+    dp: T,
+    dq: T,
+    /// N' and |U'|².
+    dn: T,
+    squares: T,
+    /// u₀·U' and by how much u·U' grows.
+    along: T,
+    turn: T,
+    /// T₁ − T₀ − α u₀·U' ≥ 0.
+    bend: T,
+    /// Where p, and where q, is negative at both ends.
+    in_p: T::Mask,
+    in_q: T::Mask,
+}
+
+impl<T: Real> Path<T> {
+    /// Differences are written so that they keep their digits where the step is small.
+    #[inline(always)]
+    fn new(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> Self {
         let before = Zone::new(rows, |j| y[j]);
         let after = Zone::new(rows, |j| y[j] + alpha * dy[j]);
-        let (dp, dq) = (after.p - before.p, after.q - before.q);
-        T::new(0.5) * before.k * (dp * (after.p + before.p) + dq * (after.q + before.q))
+        let dn = before.mu * dy[0];
+        let (mut along, mut squares) = (T::ZERO, T::ZERO);
+        for j in 1..rows.d.len() {
+            let du = rows.shape[j] * dy[j];
+            along += before.u[j] * du;
+            squares += du * du;
+        }
+        // T₁² = (T₀ + α u₀·U')² + α² (|U'|² − (u₀·U')²): what is left of a straight way towards T₁ is the bend.
+        let across = (squares - along * along).max(T::ZERO);
+        let straight = before.t + alpha * along;
+        let ahead = straight.gt(T::ZERO);
+        let sum = T::select(ahead, after.t + straight, T::ONE);
+        let bend = T::select(ahead, alpha * alpha * across / sum, after.t - straight);
+        let dt = alpha * along + bend;
+        let slips = after.t.gt(T::ZERO);
+        let turn = (alpha * across - along * bend) / T::select(slips, after.t, T::ONE);
+        let in_p = before.p.lt(T::ZERO) & after.p.lt(T::ZERO);
+        let in_q = before.bottom & after.bottom;
+        Path {
+            dp: T::select(in_p, alpha * dn - before.mu * dt, after.p - before.p),
+            dq: T::select(in_q, before.mu * alpha * dn + dt, after.q - before.q),
+            turn: T::select(slips, turn, -along),
+            bend,
+            before,
+            after,
+            dn,
+            squares,
+            along,
+            in_p,
+            in_q,
+        }
     }
 }

@@ -5,7 +5,7 @@
 //! ```text
 //! s(y) = ½ D y² where |y| < Rη, else η |y| − ½ R η²      force = −D y, saturated at ±η
 //! Hessian = diag(D where |y| < Rη)                       pieces: −1, 0, 1 for y ≤ −Rη, between, y ≥ Rη
-//! s(y₁) − s(y₀) = D [ c₀ (y₁ − y₀) + (c₁ − c₀)(y₁ − ½ (c₀ + c₁)) ]      as s = D (c y − ½ c²)
+//! s(y₁) − s(y₀) − ∇s(y₀)·(y₁ − y₀) = D (c₁ − c₀)(y₁ − ½ (c₀ + c₁))      as s = D (c y − ½ c²)
 //! ```
 
 use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
@@ -68,26 +68,46 @@ impl<T: Real> BlockCost<T> for Huber {
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
         for i in 0..rows.d.len() {
             let (d, dy) = (rows.d[i], dy[i]);
-            let bound = rows.r[i] * rows.shape[i];
-            let y = y[i] + alpha * dy;
-            slope.first += d * y.clamp(-bound, bound) * dy;
-            slope.second += T::select(y.abs().lt(bound), d, T::ZERO) * dy * dy;
+            let turn = Turn::new(rows.r[i] * rows.shape[i], y[i], alpha * dy);
+            slope.growth += d * turn.change * dy;
+            slope.second += T::select(turn.ends_inside, d, T::ZERO) * dy * dy;
         }
     }
 
     #[inline(always)]
-    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+    fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
         let mut sum = T::ZERO;
         for i in 0..rows.d.len() {
-            let bound = rows.r[i] * rows.shape[i];
-            let step = alpha * dy[i];
-            let (y0, y1) = (y[i], y[i] + step);
-            let (c0, c1) = (y0.clamp(-bound, bound), y1.clamp(-bound, bound));
-            let inside = y0.abs().lt(bound) & y1.abs().lt(bound);
-            let dc = T::select(inside, step, c1 - c0);
-            sum += rows.d[i] * (c0 * step + dc * (y1 - T::new(0.5) * (c0 + c1)));
+            let turn = Turn::new(rows.r[i] * rows.shape[i], y[i], alpha * dy[i]);
+            sum += rows.d[i] * turn.change * turn.beyond;
         }
         sum
+    }
+}
+
+/// One row on its way from y₀ to y₁.
+struct Turn<T: Real> {
+    /// c₁ − c₀.
+    change: T,
+    /// y₁ − ½ (c₀ + c₁), with the sign of the change.
+    beyond: T,
+    ends_inside: T::Mask,
+}
+
+impl<T: Real> Turn<T> {
+    #[inline(always)]
+    fn new(bound: T, y: T, step: T) -> Self {
+        let half = T::new(0.5);
+        let end = y + step;
+        let (c0, c1) = (y.clamp(-bound, bound), end.clamp(-bound, bound));
+        let ends_inside = end.abs().lt(bound);
+        // Within the quadratic stretch both follow from the step, which keeps all its digits.
+        let inside = y.abs().lt(bound) & ends_inside;
+        Turn {
+            change: T::select(inside, step, c1 - c0),
+            beyond: T::select(inside, half * step, end - half * (c0 + c1)),
+            ends_inside,
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! s(y) = ½ Σ D m²      force = −D m ≥ 0      Hessian = diag(D where y < 0)      pieces: 1 where y < 0, else 0
-//! s(y₁) − s(y₀) = ½ Σ D (m₁ − m₀)(m₁ + m₀)
+//! s(y₁) − s(y₀) − ∇s(y₀)·(y₁ − y₀) = Σ D (m₁ − m₀)² / 2 + D m₀ ((m₁ − m₀) − (y₁ − y₀))
 //! ```
 
 use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
@@ -59,15 +59,15 @@ impl<T: Real> BlockCost<T> for OneSided {
     #[inline(always)]
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
         for ((&d, &y), &dy) in rows.d.iter().zip(y).zip(dy) {
-            add_edge_slope(d, y + alpha * dy, dy, slope);
+            add_edge_slope(d, y, dy, alpha, slope);
         }
     }
 
     #[inline(always)]
-    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+    fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
         let mut sum = T::ZERO;
         for ((&d, &y), &dy) in rows.d.iter().zip(y).zip(dy) {
-            sum += edge_change(d, y, alpha * dy);
+            sum += edge_divergence(d, y, alpha * dy);
         }
         sum
     }
@@ -79,19 +79,25 @@ pub(super) fn active<T: Real>(d: T, y: T) -> T {
     T::select(d.gt(T::ZERO) & y.lt(T::ZERO), T::ONE, T::ZERO)
 }
 
-/// Adds the derivatives of one one-sided term at `y`, moving by `dy`.
+/// How far min(y, 0) moves when y moves by `step`. That is the step itself where both are violated: it keeps all its digits.
 #[inline(always)]
-pub(super) fn add_edge_slope<T: Real>(d: T, y: T, dy: T, slope: &mut Slope<T>) {
-    let stiffness = T::select(y.lt(T::ZERO), d, T::ZERO) * dy;
-    slope.first += stiffness * y;
-    slope.second += stiffness * dy;
+fn violation_change<T: Real>(y: T, step: T) -> T {
+    let end = y + step;
+    let both = y.lt(T::ZERO) & end.lt(T::ZERO);
+    T::select(both, step, end.min(T::ZERO) - y.min(T::ZERO))
 }
 
-/// s(y + step) − s(y) of one one-sided term.
+/// Adds to the slope what one one-sided term does that starts at `y` and moves by `alpha` times `dy`.
 #[inline(always)]
-pub(super) fn edge_change<T: Real>(d: T, y: T, step: T) -> T {
-    let (m0, m1) = (y.min(T::ZERO), (y + step).min(T::ZERO));
-    // m₁ − m₀ is the step itself where both are violated: it keeps all its digits.
-    let dm = T::select(y.lt(T::ZERO) & (y + step).lt(T::ZERO), step, m1 - m0);
-    T::new(0.5) * d * dm * (m1 + m0)
+pub(super) fn add_edge_slope<T: Real>(d: T, y: T, dy: T, alpha: T, slope: &mut Slope<T>) {
+    let step = alpha * dy;
+    slope.growth += d * dy * violation_change(y, step);
+    slope.second += T::select((y + step).lt(T::ZERO), d, T::ZERO) * dy * dy;
+}
+
+/// s(y + step) − s(y) − s'(y) step of one one-sided term.
+#[inline(always)]
+pub(super) fn edge_divergence<T: Real>(d: T, y: T, step: T) -> T {
+    let change = violation_change(y, step);
+    d * (T::new(0.5) * change * change + y.min(T::ZERO) * (change - step))
 }

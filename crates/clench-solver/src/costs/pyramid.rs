@@ -13,7 +13,7 @@
 //! 1+, 1−, 2+, 2−, ... All rows have the same D.
 
 use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
-use super::one_sided::{active, add_edge_slope, edge_change};
+use super::one_sided::{active, add_edge_slope, edge_divergence};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Pyramid;
@@ -88,25 +88,22 @@ impl<T: Real> BlockCost<T> for Pyramid {
     #[inline(always)]
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
         let d = rows.d[0];
-        let normal = y[0] + alpha * dy[0];
         for j in 1..rows.d.len() {
-            let mu = rows.shape[j];
-            let side = mu * (y[j] + alpha * dy[j]);
-            let dside = mu * dy[j];
-            add_edge_slope(d, normal + side, dy[0] + dside, slope);
-            add_edge_slope(d, normal - side, dy[0] - dside, slope);
+            let (side, dside) = (rows.shape[j] * y[j], rows.shape[j] * dy[j]);
+            add_edge_slope(d, y[0] + side, dy[0] + dside, alpha, slope);
+            add_edge_slope(d, y[0] - side, dy[0] - dside, alpha, slope);
         }
     }
 
     #[inline(always)]
-    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+    fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
         let d = rows.d[0];
         let mut sum = T::ZERO;
         for j in 1..rows.d.len() {
             let (side, dside) = (rows.shape[j] * y[j], rows.shape[j] * dy[j]);
             let (plus, minus) = (y[0] + side, y[0] - side);
-            sum += edge_change(d, plus, alpha * (dy[0] + dside));
-            sum += edge_change(d, minus, alpha * (dy[0] - dside));
+            sum += edge_divergence(d, plus, alpha * (dy[0] + dside));
+            sum += edge_divergence(d, minus, alpha * (dy[0] - dside));
         }
         sum
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! s(y) = ½ Σ D y²      force = −D y      Hessian = diag(D)      one piece
-//! s(y + α dy) − s(y) = α Σ D dy (y + ½ α dy)
+//! divergence along a ray: ½ α² Σ D dy²
 //! ```
 
 use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
@@ -36,19 +36,20 @@ impl<T: Real> BlockCost<T> for Quadratic {
     fn changes(_: Rows<T>, _: &[T], _: &[T], _: impl FnMut(RankOne<T>)) {}
 
     #[inline(always)]
-    fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
-        for ((&d, &y), &dy) in rows.d.iter().zip(y).zip(dy) {
-            slope.first += d * (y + alpha * dy) * dy;
-            slope.second += d * dy * dy;
+    fn slope(rows: Rows<T>, _: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
+        for (&d, &dy) in rows.d.iter().zip(dy) {
+            let second = d * dy * dy;
+            slope.growth += alpha * second;
+            slope.second += second;
         }
     }
 
     #[inline(always)]
-    fn change(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
+    fn divergence(rows: Rows<T>, _: &[T], dy: &[T], alpha: T) -> T {
         let mut sum = T::ZERO;
-        for ((&d, &y), &dy) in rows.d.iter().zip(y).zip(dy) {
-            sum += d * dy * (y + T::new(0.5) * alpha * dy);
+        for (&d, &dy) in rows.d.iter().zip(dy) {
+            sum += d * dy * dy;
         }
-        alpha * sum
+        T::new(0.5) * alpha * alpha * sum
     }
 }
