@@ -223,6 +223,12 @@ impl<T: Real> Convergence<T> {
             gap.le(self.tolerance)
         };
         self.end(converged, Status::Converged, stats);
+        // There a gradient that the rounding of its terms explains is as small as this precision can tell.
+        let minimum = self.live & exact & !in_continuation;
+        if minimum.any() {
+            let rounding = iterate.rounding(problem, &mut ray.mass_direction);
+            self.end(minimum & norm.le(rounding), Status::NoProgress, stats);
+        }
 
         let rounding = T::splat(T::Scalar::EPSILON) * T::new(NEGLIGIBLE) * cost;
         let negligible = step.improvement.le(rounding) | exact;

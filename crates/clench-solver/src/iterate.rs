@@ -5,7 +5,7 @@ use crate::continuation::Continuation;
 use crate::costs::{BlockCost, Rows, Totals, with_cost};
 use crate::jacobian::{BlockIndex, Jacobian};
 use crate::ray::Ray;
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// A point, and everything that follows from it.
 #[derive(Clone, Debug, Default)]
@@ -163,6 +163,18 @@ impl<T: Real> Iterate<T> {
             square += *g * *g;
         }
         square.sqrt()
+    }
+
+    /// The norm of the rounding errors of the gradient: forces that press against each other cancel in it.
+    #[kernel]
+    pub fn rounding(&self, problem: &Problem<T>, sizes: &mut Vec<T>) -> T {
+        sizes.clear();
+        sizes.extend_from_slice(&self.inertial);
+        for x in sizes.iter_mut() {
+            *x = x.abs();
+        }
+        problem.jacobian.add_transposed_sizes(&self.force, sizes);
+        T::splat(T::Scalar::EPSILON) * dot(sizes, sizes).sqrt()
     }
 
     /// The lanes in which acceleration and residuals are finite. (A one-sided cost of NaN is zero, so costs do not show it.)

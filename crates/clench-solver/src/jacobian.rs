@@ -38,6 +38,8 @@ pub(crate) trait Jacobian<T: Real> {
     fn mul(&self, x: &[T], out: &mut [T]);
     /// `out += Jᵀ f`.
     fn add_transposed(&self, f: &[T], out: &mut [T]);
+    /// `out += |J|ᵀ |f|`: the size of what `Jᵀ f` sums up.
+    fn add_transposed_sizes(&self, f: &[T], out: &mut [T]);
     /// `hessian += Jᵀ W J`, in a pattern that holds an entry for each two dofs of a block. `weigh` writes the Hessian block of a
     /// constraint.
     fn add_gram(
@@ -317,6 +319,19 @@ impl<T: Real> Jacobian<T> for StoredRows<T> {
     fn add_transposed(&self, f: &[T], out: &mut [T]) {
         for b in &self.blocks {
             with_dim!(b.dim, DIM => self.add_transposed_block::<DIM>(b, f, out));
+        }
+    }
+
+    #[kernel]
+    fn add_transposed_sizes(&self, f: &[T], out: &mut [T]) {
+        for b in &self.blocks {
+            let dofs = self.dofs(b);
+            let rows = self.values(b).chunks_exact(dofs.len().max(1));
+            for (row, &f) in rows.zip(&f[b.rows()]) {
+                for (&j, &dof) in row.iter().zip(dofs) {
+                    out[dof as usize] += (j * f).abs();
+                }
+            }
         }
     }
 

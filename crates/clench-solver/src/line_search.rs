@@ -3,6 +3,10 @@
 //! Along a ray the cost is convex, piecewise quadratic but for elliptic cones, and its derivatives are analytic. So its
 //! minimiser is the root of an increasing function, found by Newton's method kept inside a bracket, across as many piece
 //! changes as lie on the way. J p and M p are computed once for the ray; an evaluation touches rows only.
+//!
+//! Forces that press against each other cancel in the slope, and would leave rounding where they are large. So the slope is
+//! that at the start, which the gradient gives, plus how much each constraint's part has grown, and the cost is its tangent at the
+//! start plus how far each part has risen above its own: sums of terms of one sign, which keep their digits.
 
 use crate::costs::{BlockCost, Slope, with_cost};
 use crate::iterate::{Iterate, add_scaled, dot};

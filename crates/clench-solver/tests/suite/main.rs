@@ -8,3 +8,4 @@ mod lanes;
 mod loose;
 mod noslip;
 mod optimality;
+mod single_precision;
