@@ -82,6 +82,7 @@ pub use lights::LightSpec;
 pub use model_builder::ModelBuilder;
 pub use physics::{
     CompilerSpec, ContactOverride, InertiaFromGeom, LengthRangeMode, LengthRangeSpec, PhysicsSpec,
+    UserWidths,
 };
 pub use placed::surfacevel_in_frame;
 pub use relations::{
@@ -91,4 +92,3 @@ pub use relations::{
 pub use sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
 };
-pub use user_numbers::UserWidths;

@@ -3,12 +3,11 @@
 use super::appearance::MaterialSpec;
 use super::assets::{HeightFieldSpec, MeshSpec};
 use super::elements::BodySpec;
-use super::physics::{CompilerSpec, PhysicsSpec};
+use super::physics::{CompilerSpec, PhysicsSpec, UserWidths};
 use super::relations::{
     ActuatorSpec, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec, TendonSpec,
 };
 use super::sensor_specs::SensorSpec;
-use super::user_numbers::UserWidths;
 use crate::Budget;
 use crate::model::{Custom, Headlight, Texture};
 use crate::options::RigidOptions;

@@ -1,4 +1,4 @@
-//! Model-wide settings: how to derive what was not said, and the physics of the world.
+//! Model-wide settings: how to derive what was not said, the physics of the world, and how wide users' own numbers are.
 
 use super::constraint_defaults::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use crate::model::{Flags, Integrator};
@@ -187,4 +187,26 @@ impl Default for LengthRangeSpec {
             tolrange: 0.05,
         }
     }
+}
+
+/// How many numbers of the user's own the elements of each kind have; `None`: as many as the one that is given most. What an
+/// element is not given is zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UserWidths {
+    /// Of bodies.
+    pub body: Option<usize>,
+    /// Of joints.
+    pub joint: Option<usize>,
+    /// Of geoms.
+    pub geom: Option<usize>,
+    /// Of sites.
+    pub site: Option<usize>,
+    /// Of cameras.
+    pub camera: Option<usize>,
+    /// Of tendons.
+    pub tendon: Option<usize>,
+    /// Of actuators.
+    pub actuator: Option<usize>,
+    /// Of sensors.
+    pub sensor: Option<usize>,
 }

@@ -3,31 +3,10 @@
 use super::BuildError;
 use super::element::Element;
 use super::model_builder::ModelBuilder;
+use super::physics::UserWidths;
 use crate::budget::RAISE;
 use crate::model::Model;
 use std::sync::Arc;
-
-/// How many numbers of the user's own the elements of each kind have; `None`: as many as the one that is given most. What an
-/// element is not given is zero.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct UserWidths {
-    /// Of bodies.
-    pub body: Option<usize>,
-    /// Of joints.
-    pub joint: Option<usize>,
-    /// Of geoms.
-    pub geom: Option<usize>,
-    /// Of sites.
-    pub site: Option<usize>,
-    /// Of cameras.
-    pub camera: Option<usize>,
-    /// Of tendons.
-    pub tendon: Option<usize>,
-    /// Of actuators.
-    pub actuator: Option<usize>,
-    /// Of sensors.
-    pub sensor: Option<usize>,
-}
 
 /// The widths of a description, none of them open.
 ///
