@@ -324,7 +324,7 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
     let later = "not supported yet";
     for (line, element) in [
         ("<geom type='sdf' mesh='m'/>", "geom"),
-        ("<frame scale='2'/>", "frame"),
+        ("<frame scale='1 2 3' scaling='geometry'/>", "frame"),
         ("<flexcomp/>", "flexcomp"),
         ("<body><joint springyield='1'/></body>", "joint"),
     ] {
@@ -353,7 +353,6 @@ fn what_is_not_supported_is_accepted_where_it_does_nothing() {
            <option><flag ipc='disable' invdiscrete='enable'/></option>
            <worldbody>
              <body><joint springyield='0'/></body>
-             <frame scale='1'/>
            </worldbody>
          </mujoco>",
     )

@@ -6,6 +6,7 @@ use super::defaults::{Classes, MAIN};
 use super::document::Element;
 use super::joint;
 use super::orientation::{Orientation, Pose};
+use super::scale::{FrameId, Frames, Named};
 use super::source::Sources;
 use crate::LoadError;
 use crate::spending::Spending;
@@ -27,6 +28,7 @@ pub(crate) struct BodyReader<'a> {
     joints: Vec<(usize, u32)>,
     /// The number of each mocap body.
     mocaps: Vec<u32>,
+    frames: Frames,
 }
 
 /// By what numbers keyframes of attached models know the joints and mocap bodies of a model, in its order.
@@ -55,6 +57,8 @@ struct Place {
     class: usize,
     /// The frame that what is read is written in.
     frame: Pose,
+    /// The innermost frame that scales it.
+    scale: FrameId,
 }
 
 /// An element whose children are being read.
@@ -89,16 +93,18 @@ impl<'a> BodyReader<'a> {
             spending,
             joints: Vec::new(),
             mocaps: Vec::new(),
+            frames: Frames::default(),
         }
     }
 
-    /// The numbers of what was read.
-    pub(super) fn numbers(mut self) -> Numbers {
+    /// The numbers of what was read, and the frames that scale it.
+    pub(super) fn finish(mut self) -> (Numbers, Frames) {
         self.joints.sort_by_key(|&(body, _)| body);
-        Numbers {
+        let numbers = Numbers {
             joints: self.joints.into_iter().map(|(_, number)| number).collect(),
             mocaps: self.mocaps,
-        }
+        };
+        (numbers, self.frames)
     }
 
     /// Reads one `<worldbody>`.
@@ -107,6 +113,7 @@ impl<'a> BodyReader<'a> {
             body: 0,
             class: MAIN,
             frame: Pose::IDENTITY,
+            scale: 0,
         };
         let mut open = vec![Level {
             element,
@@ -152,7 +159,11 @@ impl<'a> BodyReader<'a> {
             class: self
                 .classes(element)
                 .named_by(element, "childclass", place.class)?,
-            frame: Pose::IDENTITY,
+            frame: Pose {
+                scale: place.frame.scale,
+                ..Pose::IDENTITY
+            },
+            scale: place.scale,
         };
         Ok(Level {
             element,
@@ -169,7 +180,7 @@ impl<'a> BodyReader<'a> {
             parent: place.body,
             pos: pose.pos,
             quat: pose.quat,
-            written: Some((written.pos, written.quat)),
+            written: Some((written.pos * place.frame.scale, written.quat)),
             compiler: self.own_settings(element),
             origin: Some(element.origin.clone()),
             ..BodySpec::default()
@@ -188,11 +199,21 @@ impl<'a> BodyReader<'a> {
         if body.mocap {
             self.mocaps.push(element.number);
         }
+        self.frames.add_body(&body.name, place.scale, body.mocap);
         self.bodies.push(body);
         Ok(())
     }
 
-    fn enter_frame<'e>(&self, element: &'e Element, place: &Place) -> Result<Level<'e>, LoadError> {
+    fn enter_frame<'e>(
+        &mut self,
+        element: &'e Element,
+        place: &Place,
+    ) -> Result<Level<'e>, LoadError> {
+        let mut frame = place
+            .frame
+            .then(Pose::read(element, self.compiler(element))?);
+        let scale = self.frames.enter(element, place.scale, frame.pos)?;
+        frame.scale = self.frames.scale(scale).length;
         let class = self
             .classes(element)
             .named_by(element, "class", place.class)?;
@@ -200,9 +221,8 @@ impl<'a> BodyReader<'a> {
             class: self
                 .classes(element)
                 .named_by(element, "childclass", class)?,
-            frame: place
-                .frame
-                .then(Pose::read(element, self.compiler(element))?),
+            frame,
+            scale,
             ..place.clone()
         };
         Ok(Level {
@@ -239,6 +259,7 @@ impl<'a> BodyReader<'a> {
         let pose = place.frame.then(Pose {
             pos: Vec3::from_array(element.required_numbers("pos")?),
             quat: orientation.resolve(self.compiler(element), element)?,
+            scale: 1.0,
         });
         let [mass] = element.required_numbers("mass")?;
         let inertia = read_inertia(element, &place.frame)?;
@@ -246,13 +267,15 @@ impl<'a> BodyReader<'a> {
         if body.inertial.is_some() {
             return Err(element.error("a body can have only one inertial"));
         }
-        body.inertial = Some(InertialSpec {
+        let mut inertial = InertialSpec {
             pos: pose.pos,
             quat: pose.quat,
             mass,
             inertia,
             origin: Some(element.origin.clone()),
-        });
+        };
+        self.frames.scale(place.scale).inertial(&mut inertial);
+        body.inertial = Some(inertial);
         Ok(())
     }
 
@@ -302,11 +325,14 @@ impl<'a> BodyReader<'a> {
         let name = element.string("name");
         self.charge(element, size_of::<JointSpec>(), &[&name])?;
         self.joints.push((place.body, element.number));
-        self.bodies[place.body].joints.push(JointSpec {
+        let mut joint = JointSpec {
             name,
             origin: Some(element.origin.clone()),
             ..joint
-        });
+        };
+        self.frames.scale(place.scale).joint(&mut joint);
+        self.frames.add_joint(&joint, place.body, place.scale);
+        self.bodies[place.body].joints.push(joint);
         Ok(())
     }
 
@@ -317,7 +343,11 @@ impl<'a> BodyReader<'a> {
         geom.read(element)?;
         let bytes = size_of::<GeomSpec>() + geom.text_length();
         self.charge(element, bytes, &[])?;
-        let geom = geom.finish(element, self.compiler(element), self.palette, &place.frame)?;
+        let mut geom = geom.finish(element, self.compiler(element), self.palette, &place.frame)?;
+        self.frames.scale(place.scale).geom(&mut geom);
+        self.frames.instance(&mut geom.mesh, place.scale);
+        self.frames.instance(&mut geom.hfield, place.scale);
+        self.frames.add(Named::Geom, &geom.name, place.scale);
         self.bodies[place.body].geoms.push(geom);
         Ok(())
     }
@@ -327,7 +357,10 @@ impl<'a> BodyReader<'a> {
             .site
             .clone();
         site.read(element)?;
-        let site = site.finish(element, self.compiler(element), &place.frame)?;
+        let mut site = site.finish(element, self.compiler(element), &place.frame)?;
+        self.frames.scale(place.scale).site(&mut site);
+        self.frames.instance(&mut site.mesh, place.scale);
+        self.frames.add(Named::Site, &site.name, place.scale);
         self.charge(element, size_of::<SiteSpec>(), &[&site.name])?;
         self.bodies[place.body].sites.push(site);
         Ok(())
@@ -338,7 +371,8 @@ impl<'a> BodyReader<'a> {
             .light
             .clone();
         light.read(element)?;
-        let light = light.finish(element, &place.frame);
+        let mut light = light.finish(element, &place.frame);
+        self.frames.scale(place.scale).light(&mut light);
         self.charge(element, size_of::<LightSpec>(), &[&light.name])?;
         self.bodies[place.body].lights.push(light);
         Ok(())
@@ -349,7 +383,9 @@ impl<'a> BodyReader<'a> {
             .camera
             .clone();
         camera.read(element)?;
-        let camera = camera.finish(element, self.compiler(element), &place.frame)?;
+        let mut camera = camera.finish(element, self.compiler(element), &place.frame)?;
+        self.frames.scale(place.scale).camera(&mut camera);
+        self.frames.add(Named::Camera, &camera.name, place.scale);
         self.charge(element, size_of::<CameraSpec>(), &[&camera.name])?;
         self.bodies[place.body].cameras.push(camera);
         Ok(())

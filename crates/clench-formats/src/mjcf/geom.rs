@@ -21,22 +21,27 @@ const KINDS: [(&str, Option<ShapeKind>); 9] = [
     ("sdf", None),
 ];
 
-/// The shape that `type` names.
-pub(crate) fn read_kind(element: &Element) -> Result<Option<ShapeKind>, LoadError> {
-    match element.keyword("type", &KINDS)? {
-        Some(None) => {
-            let name = element.string("type");
-            Err(element.error(format!("the type \"{name}\" is not supported yet")))
-        }
-        Some(kind) => Ok(kind),
-        None => Ok(None),
-    }
+/// Overwrites the shape if `type` names one; none stands for a signed distance field.
+pub(crate) fn read_kind(element: &Element, kind: &mut Option<ShapeKind>) -> Result<(), LoadError> {
+    element.set_keyword("type", &KINDS, kind)
+}
+
+/// The shape of an element of the model; a default class may have any.
+///
+/// # Errors
+/// A signed distance field.
+pub(crate) fn known_kind(
+    kind: Option<ShapeKind>,
+    element: &Element,
+) -> Result<ShapeKind, LoadError> {
+    kind.ok_or_else(|| element.error("the type \"sdf\" is not supported yet"))
 }
 
 /// A geom as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
 pub(crate) struct GeomDraft {
     pub spec: GeomSpec,
+    kind: Option<ShapeKind>,
     size: [f64; 3],
     pos: [f64; 3],
     orientation: Orientation,
@@ -49,6 +54,7 @@ impl Default for GeomDraft {
     fn default() -> Self {
         GeomDraft {
             spec: GeomSpec::default(),
+            kind: Some(ShapeKind::Sphere),
             size: [0.0; 3],
             pos: [0.0; 3],
             orientation: Orientation::default(),
@@ -63,9 +69,7 @@ impl GeomDraft {
     /// Overwrites what the element gives.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         let geom = &mut self.spec;
-        if let Some(kind) = read_kind(element)? {
-            geom.kind = kind;
-        }
+        read_kind(element, &mut self.kind)?;
         geom.contype = read_mask(element, "contype", geom.contype)?;
         geom.conaffinity = read_mask(element, "conaffinity", geom.conaffinity)?;
         if let Some(condim) = read_condim(element)? {
@@ -115,6 +119,7 @@ impl GeomDraft {
         palette: &Palette,
         frame: &Pose,
     ) -> Result<GeomSpec, LoadError> {
+        self.spec.kind = known_kind(self.kind, element)?;
         let pose = match self.fromto {
             Some(_) if !self.spec.mesh.is_empty() => {
                 return Err(element.error("fromto and mesh cannot both be given"));
@@ -125,6 +130,7 @@ impl GeomDraft {
             None => Pose {
                 pos: Vec3::from_array(self.pos),
                 quat: self.orientation.resolve(compiler, element)?,
+                scale: 1.0,
             },
         };
         let pose = frame.then(pose);

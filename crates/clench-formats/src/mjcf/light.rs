@@ -66,6 +66,7 @@ impl LightDraft {
         let pose = frame.then(Pose {
             pos: Vec3::from_array(self.pos),
             quat: Quat::IDENTITY,
+            scale: 1.0,
         });
         LightSpec {
             name: element.string("name"),

@@ -30,6 +30,7 @@ pub(crate) mod option;
 pub(crate) mod orientation;
 mod relations;
 mod rules;
+mod scale;
 pub(crate) mod schema;
 mod sections;
 mod sensor;
@@ -105,7 +106,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
     for section in sections(root, "worldbody") {
         bodies.read_world(section)?;
     }
-    let numbers = bodies.numbers();
+    let (numbers, frames) = bodies.finish();
     relations::read(root, sources, &mut builder)?;
     builder
         .keyframes
@@ -114,6 +115,8 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         keyframe::pad(size, &mut builder.keyframes)?;
         custom::read_widths(size, &mut builder.user_widths)?;
     }
+    let shortcuts = relations::shortcuts(root);
+    frames.scale_rest(&shortcuts, &mut builder, spending)?;
     builder.custom = custom::read(root, spending)?;
     if builder.compiler.fusestatic {
         kept::keep_named(root, &mut builder.bodies);

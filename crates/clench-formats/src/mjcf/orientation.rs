@@ -102,12 +102,15 @@ fn columns(x: Vec3<f64>, y: Vec3<f64>, z: Vec3<f64>) -> Mat3<f64> {
 pub(crate) struct Pose {
     pub pos: Vec3<f64>,
     pub quat: Quat<f64>,
+    /// By what positions in it are multiplied before anything else.
+    pub scale: f64,
 }
 
 impl Pose {
     pub(crate) const IDENTITY: Pose = Pose {
         pos: Vec3::ZERO,
         quat: Quat::IDENTITY,
+        scale: 1.0,
     };
 
     /// The pose that an element writes in `pos` and one of the orientation attributes.
@@ -117,6 +120,7 @@ impl Pose {
         Ok(Pose {
             pos: Vec3::from_array(element.numbers("pos")?.unwrap_or_default()),
             quat: orientation.resolve(compiler, element)?,
+            scale: 1.0,
         })
     }
 
@@ -125,12 +129,13 @@ impl Pose {
         Pose {
             pos: self.point(inner.pos),
             quat: (self.quat * inner.quat).normalize(),
+            scale: self.scale * inner.scale,
         }
     }
 
     /// A point of the frame in its parent.
     pub(crate) fn point(&self, local: Vec3<f64>) -> Vec3<f64> {
-        self.pos + self.quat.rotate(local)
+        self.pos + self.quat.rotate(local * self.scale)
     }
 }
 
@@ -147,6 +152,7 @@ pub(crate) fn segment(
     let pose = Pose {
         pos: (from + to) * 0.5,
         quat: Quat::from_two_vectors(Vec3::new(0.0, 0.0, 1.0), axis),
+        scale: 1.0,
     };
     Ok((pose, length * 0.5))
 }

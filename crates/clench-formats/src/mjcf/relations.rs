@@ -46,6 +46,12 @@ pub(crate) fn read(
     Ok(())
 }
 
+/// Which elements the actuators are written with.
+pub(crate) fn shortcuts(root: &Element) -> Vec<Shortcut> {
+    let tags = entries(root, "actuator").map(|element| Shortcut::from_tag(&element.tag));
+    tags.map(Option::unwrap_or_default).collect()
+}
+
 fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadError> {
     let draft = sources.of(element).classes.of(element)?.tendon.clone();
     let mut tendon = tendon::read(element, draft)?;

@@ -3,7 +3,7 @@
 use super::appearance::read_appearance;
 use super::compiler::CompilerOptions;
 use super::document::Element;
-use super::geom::{place_segment, read_kind};
+use super::geom::{known_kind, place_segment, read_kind};
 use super::orientation::{Orientation, Pose};
 use crate::LoadError;
 use clench_collide::ShapeKind;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// A site as it is written, or as a default class has it.
 #[derive(Clone, Debug)]
 pub(crate) struct SiteDraft {
-    kind: ShapeKind,
+    kind: Option<ShapeKind>,
     mesh: String,
     size: [f64; 3],
     pos: [f64; 3],
@@ -28,7 +28,7 @@ pub(crate) struct SiteDraft {
 impl Default for SiteDraft {
     fn default() -> Self {
         SiteDraft {
-            kind: ShapeKind::Sphere,
+            kind: Some(ShapeKind::Sphere),
             mesh: String::new(),
             size: [0.005; 3],
             pos: [0.0; 3],
@@ -44,10 +44,10 @@ impl Default for SiteDraft {
 impl SiteDraft {
     /// Overwrites what the element gives.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
-        self.kind = read_kind(element)?.unwrap_or(self.kind);
+        read_kind(element, &mut self.kind)?;
         match self.kind {
-            ShapeKind::Plane => return Err(element.error("a site cannot be a plane")),
-            ShapeKind::HeightField => {
+            Some(ShapeKind::Plane) => return Err(element.error("a site cannot be a plane")),
+            Some(ShapeKind::HeightField) => {
                 return Err(element.error("a site cannot be a height field"));
             }
             _ => {}
@@ -71,11 +71,13 @@ impl SiteDraft {
         compiler: &CompilerOptions,
         frame: &Pose,
     ) -> Result<SiteSpec, LoadError> {
+        let kind = known_kind(self.kind, element)?;
         let pose = match self.fromto {
-            Some(points) => place_segment(points, self.pos, self.kind, &mut self.size, element)?,
+            Some(points) => place_segment(points, self.pos, kind, &mut self.size, element)?,
             None => Pose {
                 pos: Vec3::from_array(self.pos),
                 quat: self.orientation.resolve(compiler, element)?,
+                scale: 1.0,
             },
         };
         let pose = frame.then(pose);
@@ -83,7 +85,7 @@ impl SiteDraft {
             name: element.string("name"),
             pos: pose.pos,
             quat: pose.quat,
-            kind: self.kind,
+            kind,
             mesh: self.mesh,
             size: self.size,
             group: self.group,

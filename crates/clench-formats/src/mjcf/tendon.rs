@@ -62,7 +62,7 @@ fn read_wrap(element: &Element) -> Result<WrapSpec, LoadError> {
         },
         "geom" => WrapSpec::Geom {
             geom: named("geom")?,
-            side: element.text("sidesite").map(str::to_owned),
+            side: (element.text("sidesite").filter(|side| !side.is_empty())).map(str::to_owned),
         },
         "pulley" => {
             let [divisor] = element.required_numbers("divisor")?;

@@ -72,7 +72,7 @@ impl Layout {
         for section in sections(root, "worldbody") {
             reader.read_world(section)?;
         }
-        let numbers = reader.numbers();
+        let (numbers, _) = reader.finish();
         let kinds = bodies.iter().flat_map(|body| &body.joints);
         let sizes = kinds.map(|joint| [joint.kind.nq(), joint.kind.nv()]);
         let mut actuators = Vec::new();

@@ -21,9 +21,8 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "frame",
-        read: "name class childclass pos quat axisangle euler xyaxes zaxis",
+        read: "name class childclass pos quat axisangle euler xyaxes zaxis scale scaling massscale",
         ignored: OF_BODIES,
-        later: "scale=1 scaling massscale=1",
         children: IN_A_BODY,
         later_children: IN_A_BODY_LATER,
         ..NONE

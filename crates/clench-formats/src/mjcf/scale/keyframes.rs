@@ -1,0 +1,99 @@
+//! Stored states.
+
+use super::actuators::States;
+use super::{FrameId, Frames, located};
+use crate::LoadError;
+use clench_rigid::builder::{KeyframeSpec, ModelBuilder};
+use clench_rigid::model::JointKind;
+
+impl Frames {
+    /// Scales what keyframes say of positions, velocities, controls and activations.
+    ///
+    /// # Errors
+    /// Keyframes of attached models, and controls of a model in which some actuator has several.
+    pub(super) fn scale_keyframes(
+        &self,
+        actuators: &[States],
+        builder: &mut ModelBuilder,
+    ) -> Result<(), LoadError> {
+        // Joints are numbered by body, and those of one body as they are read.
+        let mut joints = self.all_joints.clone();
+        joints.sort_by_key(|&(body, ..)| body);
+        let (mut qpos, mut qvel) = (Vec::new(), Vec::new());
+        for (_, frame, kind) in joints {
+            let length = self.scale(frame).length;
+            match kind {
+                JointKind::Free => {
+                    qpos.extend(self.moved(frame));
+                    qpos.extend([linear(1.0); 4]);
+                    qvel.extend([length, length, length, 1.0, 1.0, 1.0].map(linear));
+                }
+                JointKind::Ball => {
+                    qpos.extend([linear(1.0); 4]);
+                    qvel.extend([linear(1.0); 3]);
+                }
+                JointKind::Slide => {
+                    qpos.push(linear(length));
+                    qvel.push(linear(length));
+                }
+                JointKind::Hinge => {
+                    qpos.push(linear(1.0));
+                    qvel.push(linear(1.0));
+                }
+            }
+        }
+        let mocaps = self.mocaps.iter();
+        let mocap_pos: Vec<Map> = mocaps.flat_map(|&frame| self.moved(frame)).collect();
+        let controls = actuators.iter().map(|states| linear(states.control));
+        let control: Vec<Map> = controls.collect();
+        let acts = (builder.actuators.iter().zip(actuators))
+            .filter(|(actuator, _)| actuator.dynamics != clench_rigid::model::DynamicsKind::None);
+        let activation: Vec<Map> = acts.map(|(_, states)| linear(states.activation)).collect();
+        let refuse = |keyframe: &KeyframeSpec, what: &str| {
+            let message = format!("{what} beside frames with a scale are not supported yet");
+            Err(located(&keyframe.origin, "key", &keyframe.name, message))
+        };
+        for keyframe in &mut builder.keyframes {
+            if !keyframe.parts.is_empty() {
+                return refuse(keyframe, "keyframes of attached models");
+            }
+            let several = |maps: &[Map], given: &Option<Vec<f64>>| {
+                let given = given.as_ref().map_or(maps.len(), Vec::len);
+                given != maps.len() && maps.iter().any(|&map| map != linear(1.0))
+            };
+            if several(&control, &keyframe.ctrl) || several(&activation, &keyframe.act) {
+                return refuse(keyframe, "states of actuators with several of them");
+            }
+            apply(&mut keyframe.qpos, &qpos);
+            apply(&mut keyframe.qvel, &qvel);
+            apply(&mut keyframe.ctrl, &control);
+            apply(&mut keyframe.act, &activation);
+            apply(&mut keyframe.mocap_pos, &mocap_pos);
+        }
+        Ok(())
+    }
+}
+
+impl Frames {
+    /// What becomes of the position of something in the world that a frame carries: it moves with the frame, and away from it.
+    fn moved(&self, frame: FrameId) -> [Map; 3] {
+        let frame = &self.list[frame];
+        let length = frame.scale.length;
+        let offset = frame.position - frame.unscaled * length;
+        offset.to_array().map(|offset| (length, offset))
+    }
+}
+
+/// What becomes of a number: it is multiplied by the first, and the second is added.
+type Map = (f64, f64);
+
+fn linear(factor: f64) -> Map {
+    (factor, 0.0)
+}
+
+/// Numbers of another count than the maps are told of when the model is built.
+fn apply(numbers: &mut Option<Vec<f64>>, maps: &[Map]) {
+    for (number, (factor, offset)) in numbers.iter_mut().flatten().zip(maps) {
+        *number = *number * factor + offset;
+    }
+}

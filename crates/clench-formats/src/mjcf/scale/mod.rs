@@ -1,0 +1,344 @@
+//! Frames that scale what is in them: `scale`, `scaling` and `massscale`.
+//!
+//! A frame multiplies lengths by s and masses by m, which is s³ where the file does not say. What follows depends on the policy. With
+//! `similar` the frame changes the units of length and mass: a quantity of dimension Lᵃ Mᵇ Tᶜ becomes sᵃ mᵇ as large. With `geometry`
+//! only lengths, masses and inertias change; forces, stiffnesses, dampings and gains stay. Frames in frames multiply, each by its own
+//! policy. What names elements of the tree (pairs, tendons, equalities, actuators, sensors, keyframes) follows the scale of
+//! these: a geometric mean where two of them differ, and for a tendon the frames that hold all that it passes. The dimensions are
+//! those of MuJoCo's table of units (XMLunits), the rules for two scales were found beside MuJoCo 4.0.
+
+mod actuators;
+mod elements;
+mod instances;
+mod keyframes;
+mod relations;
+
+use super::document::Element;
+use super::shortcut::Shortcut;
+use crate::LoadError;
+use crate::spending::Spending;
+use clench_math::Vec3;
+use clench_rigid::builder::{BuildError, JointSpec, ModelBuilder, Origin};
+use clench_rigid::model::JointKind;
+use std::collections::BTreeMap;
+
+/// By what the frames around an element multiply its numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scale {
+    /// Lengths.
+    pub length: f64,
+    /// Masses.
+    pub mass: f64,
+    /// The unit of length that forces follow.
+    unit_length: f64,
+    /// The unit of mass that forces follow.
+    unit_mass: f64,
+}
+
+impl Scale {
+    const ONE: Scale = Scale {
+        length: 1.0,
+        mass: 1.0,
+        unit_length: 1.0,
+        unit_mass: 1.0,
+    };
+
+    /// What a frame says.
+    fn read(element: &Element) -> Result<Scale, LoadError> {
+        let axes = match element.list("scale")?.unwrap_or_default()[..] {
+            [] => [1.0; 3],
+            [all] => [all; 3],
+            [x, y, z] => [x, y, z],
+            _ => return Err(element.error("scale needs 1 or 3 numbers")),
+        };
+        if axes.iter().any(|&axis| axis <= 0.0) {
+            return Err(element.error("scale must be positive"));
+        }
+        let policies = [("similar", true), ("geometry", false)];
+        let similar = element.keyword("scaling", &policies)?.unwrap_or(true);
+        let [length, y, z] = axes;
+        if y != length || z != length {
+            return Err(element.error(match similar {
+                true => "a scale that differs between axes needs scaling \"geometry\"",
+                false => "a scale that differs between axes is not supported yet",
+            }));
+        }
+        let mut mass = 0.0;
+        element.set_number("massscale", &mut mass)?;
+        element.refuse_negative(&["massscale"])?;
+        if mass == 0.0 {
+            mass = length * length * length;
+        }
+        let (unit_length, unit_mass) = if similar { (length, mass) } else { (1.0, 1.0) };
+        Ok(Scale {
+            length,
+            mass,
+            unit_length,
+            unit_mass,
+        })
+    }
+
+    /// The scale of a frame in this one.
+    fn then(self, inner: Scale) -> Scale {
+        self.zip(inner, |outer, inner| outer * inner)
+    }
+
+    /// The geometric mean of two scales.
+    fn mean(self, other: Scale) -> Scale {
+        match self == other {
+            true => self,
+            false => self.zip(other, |a, b| (a * b).sqrt()),
+        }
+    }
+
+    fn zip(self, other: Scale, combine: impl Fn(f64, f64) -> f64) -> Scale {
+        Scale {
+            length: combine(self.length, other.length),
+            mass: combine(self.mass, other.mass),
+            unit_length: combine(self.unit_length, other.unit_length),
+            unit_mass: combine(self.unit_mass, other.unit_mass),
+        }
+    }
+
+    /// By what a quantity of dimension M Lᵃ that follows forces is multiplied; any power of time may go with it.
+    fn force(self, lengths: i32) -> f64 {
+        self.unit_mass * self.unit_length.powi(lengths)
+    }
+
+    /// The same along a coordinate: forces and lengths, or torques and angles.
+    fn along(self, coordinate: Coordinate) -> Along {
+        match coordinate {
+            Coordinate::Length => Along {
+                coordinate: self.length,
+                unit: self.unit_length,
+                force: self.force(1),
+                pressure: self.force(-1),
+            },
+            Coordinate::Angle => Along {
+                coordinate: 1.0,
+                unit: 1.0,
+                force: self.force(2),
+                pressure: self.force(-1),
+            },
+        }
+    }
+}
+
+/// What a coordinate measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Coordinate {
+    Length,
+    Angle,
+}
+
+/// By what the quantities along a coordinate are multiplied.
+#[derive(Clone, Copy, Debug)]
+struct Along {
+    /// Positions and velocities.
+    coordinate: f64,
+    /// The same, where forces follow.
+    unit: f64,
+    /// Forces or torques.
+    force: f64,
+    /// Pressures.
+    pressure: f64,
+}
+
+impl Along {
+    /// A stiffness or damping: forces for a coordinate, its square and its cube.
+    fn polynomial(self, coefficients: &mut [f64; 3]) {
+        let mut factor = self.force;
+        for coefficient in coefficients {
+            factor /= self.unit;
+            *coefficient *= factor;
+        }
+    }
+
+    /// Force for a coordinate, or for its rate.
+    fn gain(self) -> f64 {
+        self.force / self.unit
+    }
+}
+
+/// A frame that scales, by its number; 0 stands for none.
+pub(super) type FrameId = usize;
+
+/// A frame that scales.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    /// The frame around it.
+    outer: FrameId,
+    /// The scale of what is in it.
+    scale: Scale,
+    /// Its position in the body, and what it would be without scales.
+    position: Vec3<f64>,
+    unscaled: Vec3<f64>,
+}
+
+impl Frame {
+    const NONE: Frame = Frame {
+        outer: 0,
+        scale: Scale::ONE,
+        position: Vec3::ZERO,
+        unscaled: Vec3::ZERO,
+    };
+
+    /// Where a point in the frame lies without scales.
+    fn unscaled(self, point: Vec3<f64>) -> Vec3<f64> {
+        self.unscaled + (point - self.position) * (1.0 / self.scale.length)
+    }
+}
+
+/// The frames that scale, and the named elements in them.
+#[derive(Debug)]
+pub(super) struct Frames {
+    list: Vec<Frame>,
+    bodies: BTreeMap<String, FrameId>,
+    joints: BTreeMap<String, (FrameId, JointKind)>,
+    geoms: BTreeMap<String, FrameId>,
+    sites: BTreeMap<String, FrameId>,
+    cameras: BTreeMap<String, FrameId>,
+    tendons: BTreeMap<String, (FrameId, Coordinate)>,
+    /// Of all joints their body, in the order in which they are read.
+    all_joints: Vec<(usize, FrameId, JointKind)>,
+    /// Of all mocap bodies.
+    mocaps: Vec<FrameId>,
+    /// The lengths of a mesh or height field in the order of the elements that are it.
+    instances: BTreeMap<String, Vec<f64>>,
+}
+
+/// A kind of element that others name.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Named {
+    Geom,
+    Site,
+    Camera,
+}
+
+impl Default for Frames {
+    fn default() -> Self {
+        Frames {
+            list: vec![Frame::NONE],
+            bodies: BTreeMap::new(),
+            joints: BTreeMap::new(),
+            geoms: BTreeMap::new(),
+            sites: BTreeMap::new(),
+            cameras: BTreeMap::new(),
+            tendons: BTreeMap::new(),
+            all_joints: Vec::new(),
+            mocaps: Vec::new(),
+            instances: BTreeMap::new(),
+        }
+    }
+}
+
+impl Frames {
+    /// Reads what a frame in another, at this position in the body, says of its scale.
+    pub(super) fn enter(
+        &mut self,
+        element: &Element,
+        outer: FrameId,
+        position: Vec3<f64>,
+    ) -> Result<FrameId, LoadError> {
+        let own = Scale::read(element)?;
+        if own == Scale::ONE {
+            return Ok(outer);
+        }
+        let around = self.list[outer];
+        self.list.push(Frame {
+            outer,
+            scale: around.scale.then(own),
+            position,
+            unscaled: around.unscaled(position),
+        });
+        Ok(self.list.len() - 1)
+    }
+
+    /// The scale of what is in a frame.
+    pub(super) fn scale(&self, frame: FrameId) -> Scale {
+        self.list[frame].scale
+    }
+
+    /// Whether any frame scales.
+    fn any(&self) -> bool {
+        self.list.len() > 1
+    }
+
+    /// The innermost frame around both of two.
+    fn common(&self, mut a: FrameId, mut b: FrameId) -> FrameId {
+        // A frame has a larger number than those around it.
+        while a != b {
+            let (larger, smaller) = (a.max(b), a.min(b));
+            (a, b) = (self.list[larger].outer, smaller);
+        }
+        a
+    }
+
+    pub(super) fn add_body(&mut self, name: &str, frame: FrameId, mocap: bool) {
+        if frame != 0 && !name.is_empty() {
+            self.bodies.insert(name.to_owned(), frame);
+        }
+        if mocap {
+            self.mocaps.push(frame);
+        }
+    }
+
+    pub(super) fn add_joint(&mut self, joint: &JointSpec, body: usize, frame: FrameId) {
+        self.all_joints.push((body, frame, joint.kind));
+        if frame != 0 && !joint.name.is_empty() {
+            self.joints.insert(joint.name.clone(), (frame, joint.kind));
+        }
+    }
+
+    pub(super) fn add(&mut self, kind: Named, name: &str, frame: FrameId) {
+        if frame == 0 || name.is_empty() {
+            return;
+        }
+        let names = match kind {
+            Named::Geom => &mut self.geoms,
+            Named::Site => &mut self.sites,
+            Named::Camera => &mut self.cameras,
+        };
+        names.insert(name.to_owned(), frame);
+    }
+
+    /// Scales all that names what is in the frames.
+    ///
+    /// # Errors
+    /// Actuators whose parameters cannot be scaled, and what takes more memory than is left.
+    pub(super) fn scale_rest(
+        mut self,
+        shortcuts: &[Shortcut],
+        builder: &mut ModelBuilder,
+        spending: &mut Spending,
+    ) -> Result<(), LoadError> {
+        if !self.any() {
+            return Ok(());
+        }
+        self.make_instances(builder, spending)?;
+        self.scale_tendons(builder);
+        self.scale_pairs(builder);
+        self.scale_equalities(builder);
+        self.scale_sensors(builder);
+        let actuators = self.scale_actuators(shortcuts, builder)?;
+        self.scale_keyframes(&actuators, builder)
+    }
+}
+
+/// An error of an element that was read before.
+fn located(
+    origin: &Option<Origin>,
+    kind: &str,
+    name: &str,
+    message: impl Into<String>,
+) -> LoadError {
+    let label = match name {
+        "" => kind.to_owned(),
+        _ => format!("{kind} \"{name}\""),
+    };
+    LoadError::from(BuildError {
+        origin: origin.clone(),
+        element: label,
+        message: message.into(),
+    })
+}

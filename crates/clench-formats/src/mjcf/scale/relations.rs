@@ -1,0 +1,263 @@
+//! Pairs, tendons, equalities and sensors.
+
+use super::{Along, Coordinate, FrameId, Frames, Scale};
+use clench_rigid::builder::{
+    ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName, GeomsName, ModelBuilder,
+    SensorSpec, SensorSubject, TendonSpec, WrapSpec,
+};
+use clench_rigid::model::{JointKind, SensorKind};
+use std::collections::BTreeMap;
+
+impl Frames {
+    fn of(&self, names: &BTreeMap<String, FrameId>, name: &str) -> Scale {
+        self.scale(names.get(name).copied().unwrap_or(0))
+    }
+
+    pub(super) fn of_body(&self, name: &str) -> Scale {
+        self.of(&self.bodies, name)
+    }
+
+    pub(super) fn of_site(&self, name: &str) -> Scale {
+        self.of(&self.sites, name)
+    }
+
+    /// What a joint's coordinate is multiplied by, and forces along it.
+    pub(super) fn of_joint(&self, name: &str) -> Along {
+        let found = self.joints.get(name).copied();
+        let (frame, coordinate) = found.map_or((0, Coordinate::Angle), |(frame, kind)| {
+            let coordinate = Coordinate::of_joint(kind);
+            (frame, coordinate.unwrap_or(Coordinate::Angle))
+        });
+        self.scale(frame).along(coordinate)
+    }
+
+    /// The scale of a free joint in a frame, if it is one.
+    pub(super) fn of_free_joint(&self, name: &str) -> Option<Scale> {
+        let (frame, kind) = *self.joints.get(name)?;
+        (kind == JointKind::Free).then(|| self.scale(frame))
+    }
+
+    /// What a tendon's length is multiplied by, and forces along it.
+    pub(super) fn of_tendon(&self, name: &str) -> Along {
+        let found = self.tendons.get(name).copied();
+        let (frame, coordinate) = found.unwrap_or((0, Coordinate::Length));
+        self.scale(frame).along(coordinate)
+    }
+
+    pub(super) fn scale_pairs(&self, builder: &mut ModelBuilder) {
+        for pair in &mut builder.pairs {
+            let [first, second] = [&pair.geom1, &pair.geom2].map(|name| self.of(&self.geoms, name));
+            let scale = first.mean(second);
+            if let Some([_, _, rest @ ..]) = &mut pair.friction {
+                rest.iter_mut().for_each(|length| *length *= scale.length);
+            }
+            if let Some([_, _, width, ..]) = &mut pair.solimp {
+                *width *= scale.length;
+            }
+            for length in [&mut pair.margin, &mut pair.gap].into_iter().flatten() {
+                *length *= scale.length;
+            }
+            if let Some(adhesion) = &mut pair.adhesion {
+                *adhesion *= scale.force(1);
+            }
+        }
+    }
+
+    /// A tendon has the scale of the frames around all that it passes, and measures lengths if any of that does.
+    pub(super) fn scale_tendons(&mut self, builder: &mut ModelBuilder) {
+        for tendon in &mut builder.tendons {
+            let frames = tendon.path.iter().filter_map(|wrap| match wrap {
+                WrapSpec::Joint { joint, .. } => {
+                    Some(self.joints.get(joint).map_or(0, |&(frame, _)| frame))
+                }
+                WrapSpec::Site(site) => Some(self.sites.get(site).copied().unwrap_or(0)),
+                WrapSpec::Geom { geom, .. } => Some(self.geoms.get(geom).copied().unwrap_or(0)),
+                WrapSpec::Pulley(_) => None,
+            });
+            let frame = frames.reduce(|a, b| self.common(a, b)).unwrap_or(0);
+            let turns = |wrap: &WrapSpec| match wrap {
+                WrapSpec::Joint { joint, .. } => {
+                    (self.joints.get(joint)).is_some_and(|(_, kind)| {
+                        Coordinate::of_joint(*kind) != Some(Coordinate::Length)
+                    })
+                }
+                _ => false,
+            };
+            let coordinate = match tendon.path.iter().all(turns) {
+                true => Coordinate::Angle,
+                false => Coordinate::Length,
+            };
+            let scale = self.scale(frame);
+            let along = scale.along(coordinate);
+            for wrap in &mut tendon.path {
+                if let WrapSpec::Joint { joint, coef } = wrap {
+                    *coef *= along.coordinate / self.of_joint(joint).coordinate;
+                }
+            }
+            scale_tendon(tendon, along);
+            tendon.width *= scale.length;
+            self.tendons
+                .insert(tendon.name.clone(), (frame, coordinate));
+        }
+    }
+
+    pub(super) fn scale_equalities(&self, builder: &mut ModelBuilder) {
+        for equality in &mut builder.equalities {
+            self.scale_equality(equality);
+        }
+    }
+
+    fn scale_equality(&self, equality: &mut EqualitySpec) {
+        let width = match &mut equality.kind {
+            EqualityKind::Connect(ConnectAnchor::Bodies { body1, anchor, .. }) => {
+                let scale = self.of_body(body1);
+                *anchor = *anchor * scale.length;
+                scale.length
+            }
+            EqualityKind::Connect(ConnectAnchor::Sites { site1, site2 }) => {
+                self.of_site(site1).mean(self.of_site(site2)).length
+            }
+            EqualityKind::Weld {
+                anchor,
+                relpose,
+                torquescale,
+            } => {
+                let [first, second] = match anchor {
+                    ConnectAnchor::Bodies {
+                        body1,
+                        body2,
+                        anchor,
+                    } => {
+                        let second = self.of_body(body2);
+                        *anchor = *anchor * second.length;
+                        [self.of_body(body1), second]
+                    }
+                    ConnectAnchor::Sites { site1, site2 } => {
+                        [site1, site2].map(|name| self.of_site(name))
+                    }
+                };
+                if let Some((pos, _)) = relpose {
+                    *pos = *pos * first.length;
+                }
+                let between = first.mean(second).length;
+                *torquescale *= between;
+                between
+            }
+            EqualityKind::Joint {
+                joint1,
+                joint2,
+                polycoef,
+            } => {
+                let leader = joint2.as_ref().map(|joint| self.of_joint(joint));
+                scale_coupling(self.of_joint(joint1), leader, polycoef)
+            }
+            EqualityKind::Tendon {
+                tendon1,
+                tendon2,
+                polycoef,
+            } => {
+                let leader = tendon2.as_ref().map(|tendon| self.of_tendon(tendon));
+                scale_coupling(self.of_tendon(tendon1), leader, polycoef)
+            }
+        };
+        equality.solimp[2] *= width;
+    }
+
+    pub(super) fn scale_sensors(&self, builder: &mut ModelBuilder) {
+        for sensor in &mut builder.sensors {
+            let factor = self.of_sensor(sensor);
+            sensor.cutoff *= factor;
+            sensor.noise *= factor;
+        }
+    }
+}
+
+/// The dimension of what a sensor measures.
+enum Dimension {
+    /// A length, with any power of time.
+    Length,
+    /// M Lᵃ that follows forces.
+    Force(i32),
+    None,
+}
+
+impl Frames {
+    /// By what the numbers of a sensor are multiplied; those of an actuator are looked at with it.
+    fn of_sensor(&self, sensor: &SensorSpec) -> f64 {
+        use SensorKind as K;
+        let element = match &sensor.subject {
+            SensorSubject::Element(name) => name.as_str(),
+            _ => "",
+        };
+        let scale = match &sensor.subject {
+            SensorSubject::Frame { object, .. } => self.of_object(object),
+            SensorSubject::Rays { source, .. } => self.of_object(source),
+            SensorSubject::Geoms(sides) => {
+                let [first, second] = sides.each_ref().map(|side| match side {
+                    GeomsName::Geom(name) => self.of(&self.geoms, name),
+                    GeomsName::Body(name) => self.of_body(name),
+                });
+                first.mean(second)
+            }
+            _ => Scale::ONE,
+        };
+        let (scale, dimension) = match sensor.kind {
+            K::Touch | K::Force => (self.of_site(element), Dimension::Force(1)),
+            K::Torque => (self.of_site(element), Dimension::Force(2)),
+            K::Accelerometer | K::Velocimeter => (self.of_site(element), Dimension::Length),
+            K::FramePos | K::FrameLinVel | K::FrameLinAcc => (scale, Dimension::Length),
+            K::Rangefinder | K::Distance | K::Normal | K::FromTo => (scale, Dimension::Length),
+            K::SubtreeCom | K::SubtreeLinVel => (self.of_body(element), Dimension::Length),
+            K::SubtreeAngMom => (self.of_body(element), Dimension::Force(2)),
+            K::JointPos | K::JointVel | K::JointLimitPos | K::JointLimitVel => {
+                return self.of_joint(element).coordinate;
+            }
+            K::JointActuatorFrc | K::JointLimitFrc => return self.of_joint(element).force,
+            K::TendonPos | K::TendonVel | K::TendonLimitPos | K::TendonLimitVel => {
+                return self.of_tendon(element).coordinate;
+            }
+            K::TendonActuatorFrc | K::TendonLimitFrc => return self.of_tendon(element).force,
+            _ => (Scale::ONE, Dimension::None),
+        };
+        match dimension {
+            Dimension::Length => scale.length,
+            Dimension::Force(lengths) => scale.force(lengths),
+            Dimension::None => 1.0,
+        }
+    }
+
+    fn of_object(&self, object: &FrameName) -> Scale {
+        match object.kind {
+            FrameKind::Inertial | FrameKind::Body => self.of_body(&object.name),
+            FrameKind::Geom => self.of(&self.geoms, &object.name),
+            FrameKind::Site => self.of_site(&object.name),
+            FrameKind::Camera => self.of(&self.cameras, &object.name),
+        }
+    }
+}
+
+fn scale_tendon(tendon: &mut TendonSpec, along: Along) {
+    tendon.range = tendon.range.map(|end| end * along.coordinate);
+    tendon.springlength = tendon
+        .springlength
+        .map(|rest| rest.map(|end| end * along.coordinate));
+    tendon.margin *= along.coordinate;
+    tendon.solimp_limit[2] *= along.coordinate;
+    tendon.solimp_friction[2] *= along.coordinate;
+    tendon.actuatorfrcrange = tendon.actuatorfrcrange.map(|end| end * along.force);
+    tendon.frictionloss *= along.force;
+    tendon.armature *= along.gain();
+    along.polynomial(&mut tendon.stiffness);
+    along.polynomial(&mut tendon.damping);
+}
+
+/// Scales y = Σ coef_k xᵏ, and gives the scale of y.
+fn scale_coupling(follower: Along, leader: Option<Along>, polycoef: &mut [f64; 5]) -> f64 {
+    let leader = leader.map_or(1.0, |along| along.coordinate);
+    let mut factor = follower.coordinate;
+    for coefficient in polycoef {
+        *coefficient *= factor;
+        factor /= leader;
+    }
+    follower.coordinate
+}

@@ -1,0 +1,172 @@
+//! Frames that scale what is in them. Every field is compared with MuJoCo's in the Python tests, over `parity/models/scaled_frames.xml`.
+
+use clench_formats::load_str;
+use clench_math::Vec3;
+use clench_rigid::{Model, Sim};
+use std::sync::Arc;
+
+fn load(sections: &str) -> Model {
+    match load_str(&format!("<mujoco>{sections}</mujoco>")) {
+        Ok(model) => model,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn refused(sections: &str) -> String {
+    match load_str(&format!("<mujoco>{sections}</mujoco>")) {
+        Ok(_) => panic!("it loads: {sections}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// A pendulum on a slider, under gravity, in a frame.
+fn pendulum(frame: &str, gravity: f64) -> Model {
+    load(&format!(
+        "<option gravity='0 0 {gravity}' integrator='RK4'/>
+         <worldbody><frame {frame}>
+           <body pos='0 0 1'>
+             <joint name='slide' type='slide' axis='1 0 0' stiffness='20 3 1' damping='0.4 0.1' springref='0.1' armature='0.1'/>
+             <geom type='box' size='0.1 0.1 0.1'/>
+             <body pos='0 0 -0.3'>
+               <joint name='hinge' axis='0 1 0' stiffness='1 0.5' damping='0.02' armature='0.01'/>
+               <geom type='capsule' fromto='0 0 0 0.1 0 -0.4' size='0.03'/>
+             </body>
+           </body>
+         </frame></worldbody>"
+    ))
+}
+
+/// A similar model moves as the original would in weaker gravity: lengths are as much larger at every moment, and angles equal.
+#[test]
+fn a_similar_copy_moves_alike_in_proportional_gravity() {
+    let (small, large) = (
+        pendulum("", -9.81),
+        pendulum("scale='2' massscale='5'", -19.62),
+    );
+    let [mut small, mut large] =
+        [small, large].map(|model| Sim::<f64>::new(Arc::new(model)).unwrap());
+    for sim in [&mut small, &mut large] {
+        sim.state.qvel[1] = 2.0;
+    }
+    for _ in 0..500 {
+        small.step().unwrap();
+        large.step().unwrap();
+    }
+    let [small, large] = [small.state.qpos.clone(), large.state.qpos.clone()];
+    assert!(small[1].abs() > 0.05 && small[0].abs() > 1e-3, "{small:?}");
+    assert!(
+        (large[0] - 2.0 * small[0]).abs() < 1e-10,
+        "{small:?} {large:?}"
+    );
+    assert!((large[1] - small[1]).abs() < 1e-10, "{small:?} {large:?}");
+}
+
+#[test]
+fn frames_multiply_and_each_keeps_its_policy() {
+    let model = load(
+        "<worldbody><frame pos='1 0 0' scale='2' scaling='geometry'>
+           <frame pos='1 0 0' euler='0 0 90' scale='3 3 3'>
+             <body pos='1 0 0'><joint stiffness='1'/><geom size='1' mass='1'/></body>
+           </frame>
+         </frame></worldbody>",
+    );
+    let pos = model.params.body_pos[1] - Vec3::new(3.0, 6.0, 0.0);
+    assert!(pos.dot(pos) < 1e-20);
+    assert_eq!(model.params.body_mass[1], 216.0);
+    // Torques follow the inner frame alone, whose mass grows with its volume.
+    assert_eq!(model.params.jnt_stiffness[0], 243.0);
+    assert_eq!(model.params.geom_size[0].x, 6.0);
+}
+
+#[test]
+fn a_policy_alone_changes_nothing() {
+    let geoms = "<body><joint stiffness='3'/><geom size='0.5'/></body>";
+    let plain = load(&format!("<worldbody><frame>{geoms}</frame></worldbody>"));
+    for said in [
+        "scaling='geometry'",
+        "scaling='similar'",
+        "scale='1'",
+        "massscale='0'",
+    ] {
+        let model = load(&format!(
+            "<worldbody><frame {said}>{geoms}</frame></worldbody>"
+        ));
+        assert_eq!(model.params.body_mass, plain.params.body_mass);
+        assert_eq!(model.params.jnt_stiffness, plain.params.jnt_stiffness);
+    }
+}
+
+#[test]
+fn a_mesh_has_an_instance_for_each_size() {
+    let mesh = "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/></asset>";
+    let geom = "<geom type='mesh' mesh='m'/>";
+    let model = load(&format!(
+        "{mesh}<worldbody>{geom}<frame scale='2'>{geom}{geom}<frame scale='3'>{geom}</frame></frame></worldbody>"
+    ));
+    let names: Vec<&str> = model.meshes.iter().map(|mesh| &*mesh.name).collect();
+    assert_eq!(names, ["m", "m@1", "m@2"]);
+    let used: Vec<_> = model.geoms.iter().map(|geom| geom.mesh).collect();
+    assert_eq!(used, [0, 1, 1, 2].map(Some));
+    let only = load(&format!(
+        "{mesh}<worldbody><frame scale='2'>{geom}</frame></worldbody>"
+    ));
+    assert_eq!(only.meshes.len(), 1);
+    let reach = only.meshes[0]
+        .vertices
+        .iter()
+        .map(|v| v.dot(*v))
+        .fold(0.0, f64::max);
+    let original = model.meshes[0]
+        .vertices
+        .iter()
+        .map(|v| v.dot(*v))
+        .fold(0.0, f64::max);
+    assert!((reach - 4.0 * original).abs() < 1e-12);
+}
+
+#[test]
+fn keyframes_are_scaled_with_what_they_place() {
+    let model = load(
+        "<worldbody><frame scale='2'>
+           <body><joint axis='0 1 0'/><joint type='slide'/><geom size='1'/></body>
+           <body pos='9 0 0'><freejoint/><geom size='1'/></body>
+           <body mocap='true'/>
+         </frame></worldbody>
+         <keyframe><key qpos='1 1 1 1 1 1 0 0 0' qvel='1 1 1 1 1 1 1 1' mpos='1 1 1'/></keyframe>",
+    );
+    let key = &model.keyframes[0];
+    assert_eq!(key.qpos, [1.0, 2.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(key.qvel, [1.0, 2.0, 2.0, 2.0, 2.0, 1.0, 1.0, 1.0]);
+    assert_eq!(key.mocap_pos, [2.0; 3]);
+}
+
+#[test]
+fn what_cannot_be_scaled_is_refused() {
+    let geom = "<body><joint name='j'/><geom size='1'/></body>";
+    for (frame, words) in [
+        ("scale='0'", "scale must be positive"),
+        ("scale='-1'", "scale must be positive"),
+        ("scale='1 2'", "1 or 3 numbers"),
+        ("scale='nan'", "not a finite number"),
+        ("massscale='-1'", "massscale cannot be negative"),
+        ("scaling='other'", "not one of similar, geometry"),
+        ("scale='1 2 3'", "needs scaling \"geometry\""),
+        ("scale='1 2 3' scaling='geometry'", "is not supported yet"),
+    ] {
+        let text = refused(&format!(
+            "<worldbody><frame name='f' {frame}>{geom}</frame></worldbody>"
+        ));
+        assert!(
+            text.contains("frame \"f\"") && text.contains(words),
+            "{text}"
+        );
+    }
+    let motor = "<actuator><dcmotor name='m' joint='j' motorconst='1' resistance='1'/></actuator>";
+    let with = |frame: &str| format!("<worldbody><frame {frame}>{geom}</frame></worldbody>{motor}");
+    let text = refused(&with("scale='2'"));
+    assert!(
+        text.contains("actuator \"m\"") && text.contains("use scaling"),
+        "{text}"
+    );
+    load(&with("scale='2' scaling='geometry'"));
+}
