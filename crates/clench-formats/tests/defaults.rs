@@ -121,3 +121,35 @@ fn every_kind_of_element_has_defaults() {
     );
     assert_eq!(tendon.springlength, Some([1.0, 1.0]));
 }
+
+/// A class may say what no element of the model could be, as long as none is.
+#[test]
+fn what_is_not_supported_refuses_nothing_in_a_class_that_serves_none() {
+    let geom = "<worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>";
+    for (said, used) in [
+        (
+            "<geom type='sdf'/>",
+            "<worldbody><geom class='c' size='1'/></worldbody>",
+        ),
+        (
+            "<site type='sdf'/>",
+            "<worldbody><site class='c'/></worldbody>",
+        ),
+        (
+            "<pid input='voltage quat'/>",
+            "<actuator><pid class='c' joint='j'/></actuator>",
+        ),
+        (
+            "<general input='ff'/>",
+            "<actuator><general class='c' joint='j'/></actuator>",
+        ),
+    ] {
+        let class = format!("<default><default class='c'>{said}</default></default>{geom}");
+        read(&class);
+        let text = format!("<mujoco>{class}{used}</mujoco>");
+        assert!(read_str(&text).is_err(), "{text}");
+    }
+    let shaped = "<default><default class='c'><geom type='sdf'/></default></default>
+                  <worldbody><geom class='c' type='box' size='1 1 1'/></worldbody>";
+    assert_eq!(read(shaped).bodies[0].geoms.len(), 1);
+}

@@ -166,6 +166,9 @@ impl ActuatorDraft {
     /// The actuator of the model.
     pub(super) fn finish(self, element: &Element) -> Result<ActuatorSpec, LoadError> {
         let mut parameters = self.parameters;
+        if let Some(inputs) = parameters.inputs {
+            inputs.check(parameters.gain, element)?;
+        }
         let mut lengthrange = [0.0; 2];
         element.set_range("lengthrange", &mut lengthrange)?;
         // MuJoCo keeps a damping ratio as a positive velocity coefficient of what pulls back, however written.
@@ -231,7 +234,7 @@ fn read_general(
     if parameters.gain != inherited {
         parameters.inputs = None;
     }
-    inputs::read_inputs(element, parameters.gain, &mut parameters.inputs)?;
+    inputs::read_inputs(element, &mut parameters.inputs)?;
     let biases = [
         ("none", BiasKind::None),
         ("affine", BiasKind::Affine),

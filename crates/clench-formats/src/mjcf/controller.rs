@@ -54,7 +54,7 @@ pub(crate) fn read_pid(
         parameters.dynamics = DynamicsKind::Pid;
     }
     element.set_number("inheritrange", &mut parameters.inheritrange)?;
-    read_inputs(element, GainKind::Pid, &mut parameters.inputs)?;
+    read_inputs(element, &mut parameters.inputs)?;
     Ok(parameters)
 }
 
@@ -92,7 +92,7 @@ pub(crate) fn read_dc_motor(
         motor.biasprm = inherited.biasprm;
         motor.inputs = inherited.inputs;
     }
-    read_inputs(element, GainKind::DcMotor, &mut motor.inputs)?;
+    read_inputs(element, &mut motor.inputs)?;
     read_constants(element, &mut motor, damping)?;
     read_circuit(element, &mut motor)?;
     read_heat(element, &mut motor)?;

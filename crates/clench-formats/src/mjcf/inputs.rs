@@ -36,14 +36,42 @@ impl Inputs {
             .copied()
             .collect()
     }
+
+    /// Refuses inputs that an actuator with this gain cannot have. A default class may say any: it may serve none.
+    pub(super) fn check(self, gain: GainKind, element: &Element) -> Result<(), LoadError> {
+        let single = self
+            .0
+            .is_power_of_two()
+            .then(|| INPUTS[self.0.trailing_zeros() as usize].0);
+        let is = |names: &[&str]| single.is_some_and(|name| names.contains(&name));
+        let possible = match gain {
+            GainKind::Fixed | GainKind::Affine => is(&["pos", "vel", "pressure"]),
+            GainKind::So3 => is(&["expmap", "quat"]),
+            GainKind::Muscle | GainKind::User => false,
+            GainKind::Pid => self.0 != 0 && self.0 < 1 << ROTATIONS,
+            GainKind::DcMotor => self.0 < 1 << ROTATIONS,
+        };
+        match possible {
+            true => Ok(()),
+            false => {
+                let named = |k: &usize| self.0 & (1 << k) != 0;
+                let named: Vec<&str> = (0..INPUTS.len())
+                    .filter(named)
+                    .map(|k| INPUTS[k].0)
+                    .collect();
+                let text = if named.is_empty() {
+                    "none".to_owned()
+                } else {
+                    named.join(" ")
+                };
+                Err(element.error(format!("input \"{text}\" does not go with this gain")))
+            }
+        }
+    }
 }
 
 /// Overwrites the inputs if the element names them. Of an actuator whose control is scaled by its gain they only say what it is.
-pub(crate) fn read_inputs(
-    element: &Element,
-    gain: GainKind,
-    inputs: &mut Option<Inputs>,
-) -> Result<(), LoadError> {
+pub(crate) fn read_inputs(element: &Element, inputs: &mut Option<Inputs>) -> Result<(), LoadError> {
     let Some(text) = element.text("input") else {
         return Ok(());
     };
@@ -59,18 +87,6 @@ pub(crate) fn read_inputs(
         found.0 |= 1 << place;
     }
     let given = !text.trim().is_empty();
-    let possible = match gain {
-        _ if !given => true,
-        GainKind::Fixed | GainKind::Affine => ["pos", "vel", "pressure"].contains(&text.trim()),
-        GainKind::So3 => ["expmap", "quat"].contains(&text.trim()),
-        _ if found.0 >= 1 << ROTATIONS => false,
-        GainKind::Muscle | GainKind::User => false,
-        GainKind::Pid => found.0 != 0,
-        GainKind::DcMotor => found.0 != 0 || text == "none",
-    };
-    if !possible {
-        return Err(element.error(format!("input \"{text}\" does not go with this gain")));
-    }
     *inputs = given.then_some(found);
     Ok(())
 }

@@ -163,7 +163,7 @@ pub(crate) fn read_orientation(
         inputs: inherited.inputs.filter(|_| inherited.gain == GainKind::So3),
         ..read_servo(element, inherited)?
     };
-    read_inputs(element, GainKind::So3, &mut parameters.inputs)?;
+    read_inputs(element, &mut parameters.inputs)?;
     Ok(parameters)
 }
 
