@@ -223,11 +223,11 @@ fn pictures_are_counted_before_they_are_unpacked() {
     refused(loaded, &["model.xml:2: hfield", "flat.png", "bytes"]);
 }
 
+/// They are refused before they are made: what these files ask for would neither fit into memory nor ever end.
 #[test]
 fn replicas_are_counted() {
     let geoms = "<geom size='1'/>".repeat(60);
     let world = |inside: &str| format!("<mujoco><worldbody>\n{inside}\n</worldbody></mujoco>");
-    let start = Instant::now();
     refused(
         load_str(&world(&format!(
             "<replicate count='100000'>{geoms}</replicate>"
@@ -269,7 +269,6 @@ fn replicas_are_counted() {
         load_str_within(&ten, few.times(2.0)).unwrap().geoms.len(),
         10
     );
-    assert!(start.elapsed() < Duration::from_secs(60));
 }
 
 #[test]
