@@ -17,20 +17,21 @@ pub use contacts::contacts;
 pub use dictionary::dictionary;
 pub use mjcf::{mjcf, urdf};
 pub use npy::npy;
-pub use shapes::{dae, grid, msh, obj, png, stl};
+pub use shapes::{dae, gltf, grid, msh, obj, png, stl};
 pub use states::states;
 
 /// A target by name, which is also that of its folders.
 pub type Target = (&'static str, fn(&[u8]) -> bool);
 
 /// All targets.
-pub const TARGETS: [Target; 11] = [
+pub const TARGETS: [Target; 12] = [
     ("mjcf", mjcf),
     ("urdf", urdf),
     ("stl", stl),
     ("obj", obj),
     ("msh", msh),
     ("dae", dae),
+    ("gltf", gltf),
     ("png", png),
     ("grid", grid),
     ("npy", npy),

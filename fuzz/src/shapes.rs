@@ -22,6 +22,11 @@ pub fn dae(data: &[u8]) -> bool {
     mesh("dae", data)
 }
 
+/// A mesh in glTF, as a binary file or as text.
+pub fn gltf(data: &[u8]) -> bool {
+    mesh("gltf", data)
+}
+
 /// A height field from an image. Its checksums are made right first: what they keep out is no concern of the readers behind
 /// them.
 pub fn png(data: &[u8]) -> bool {

@@ -62,7 +62,7 @@ macro_rules! replays {
     };
 }
 
-replays! { mjcf urdf stl obj msh dae png grid npy states contacts }
+replays! { mjcf urdf stl obj msh dae gltf png grid npy states contacts }
 
 #[test]
 fn the_models_of_the_repository_are_seeds_too() {

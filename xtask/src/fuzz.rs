@@ -8,7 +8,7 @@ use std::process::Stdio;
 
 /// The targets, by the names of their folders in `fuzz/seeds`.
 const TARGETS: [&str; 11] = [
-    "mjcf", "urdf", "stl", "obj", "msh", "dae", "png", "grid", "npy", "states", "contacts",
+    "mjcf", "urdf", "stl", "obj", "msh", "dae", "gltf", "png", "grid", "npy", "states", "contacts",
 ];
 
 /// What the compiler adds so that libFuzzer sees which code runs: its coverage pass is part of stable Rust.

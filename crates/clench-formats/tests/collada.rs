@@ -130,7 +130,7 @@ fn an_error_says_where_and_what() {
         (
             "strange",
             file("", &strange, ""),
-            "line 10: <p>: \"x\" is not such a number",
+            "line 10: <p>: \"x\" is not a valid number",
         ),
         (
             "skew",

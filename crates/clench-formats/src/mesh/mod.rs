@@ -1,17 +1,21 @@
-//! Meshes: triangles from STL, OBJ, MSH and Collada files, and those that a model asks for by name.
+//! Meshes: triangles from STL, OBJ, MSH, Collada and glTF files, and those that a model asks for by name.
 //!
 //! A reader takes the bytes of a file and says what is wrong with them; who asked for the file adds which one it was. Counts that a
 //! file claims are held against its length before anything is allocated.
 
+mod affine;
 pub(crate) mod builtin;
 mod collada;
 mod ears;
+mod gltf;
 mod msh;
 mod obj;
 mod stl;
 mod triangles;
 
+use crate::spending::Spending;
 use clench_math::Vec3;
+use std::path::Path;
 pub(crate) use triangles::Triangles;
 
 /// What a mesh takes in all, bytes: in the builder, in the model, as a hull, and in a tree for rays.
@@ -32,6 +36,7 @@ pub(crate) enum Format {
     Obj,
     Msh,
     Collada,
+    Gltf,
 }
 
 impl Format {
@@ -42,6 +47,7 @@ impl Format {
             "obj" => Some(Format::Obj),
             "msh" => Some(Format::Msh),
             "dae" => Some(Format::Collada),
+            "gltf" | "glb" => Some(Format::Gltf),
             _ => None,
         }
     }
@@ -52,16 +58,39 @@ impl Format {
             "model/obj" => Some(Format::Obj),
             "model/vnd.mujoco.msh" => Some(Format::Msh),
             "model/vnd.collada+xml" => Some(Format::Collada),
+            "model/gltf+json" | "model/gltf-binary" => Some(Format::Gltf),
             _ => None,
         }
+    }
+}
+
+/// The folder of a mesh file, in which files are that it names.
+pub(crate) struct Beside<'a> {
+    pub directory: &'a Path,
+    pub spending: &'a mut Spending,
+}
+
+impl Beside<'_> {
+    /// Reads a file that a mesh file names.
+    ///
+    /// # Errors
+    /// A file that is not there or too long.
+    fn read(&mut self, name: &str) -> Result<Vec<u8>, String> {
+        let path = self.directory.join(name);
+        let read = self.spending.read(&path);
+        read.map_err(|error| format!("cannot read \"{}\": {error}", path.display()))
     }
 }
 
 /// Reads a mesh.
 ///
 /// # Errors
-/// What is wrong with the bytes.
-pub(crate) fn read(bytes: Vec<u8>, format: Format) -> Result<Triangles, String> {
+/// What is wrong with the bytes, or with a file that they name.
+pub(crate) fn read(
+    bytes: Vec<u8>,
+    format: Format,
+    beside: &mut Beside,
+) -> Result<Triangles, String> {
     if bytes.is_empty() {
         return Err("the file is empty".to_owned());
     }
@@ -70,6 +99,7 @@ pub(crate) fn read(bytes: Vec<u8>, format: Format) -> Result<Triangles, String> 
         Format::Obj => obj::read(&bytes),
         Format::Msh => msh::read(&bytes),
         Format::Collada => collada::read(&bytes),
+        Format::Gltf => gltf::read(&bytes, beside),
     }?;
     check(&found)?;
     Ok(found)

@@ -107,6 +107,11 @@ impl Content {
         })
     }
 
+    /// The folder that the file is in.
+    pub(crate) fn directory(&self) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).to_owned()
+    }
+
     /// Takes the bytes out, for a reader whose errors shall name the file and who asked for it.
     pub(crate) fn parse<T>(
         &mut self,

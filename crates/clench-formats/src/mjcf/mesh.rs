@@ -3,7 +3,7 @@
 use super::document::Element;
 use super::files::Files;
 use crate::LoadError;
-use crate::mesh::{self, Format, Triangles, builtin};
+use crate::mesh::{self, Beside, Format, Triangles, builtin};
 use crate::spending::Spending;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{MeshInertia, MeshSpec};
@@ -114,10 +114,16 @@ fn read_or_written(
         Some(media_type) => Format::from_media_type(media_type),
         None => Format::from_extension(&file.extension),
     };
-    let wrong =
-        || element.error("a mesh file is STL, OBJ, MSH or Collada (.dae), and its name says which");
+    let wrong = || {
+        element.error("a mesh file is STL, OBJ, MSH, Collada (.dae) or glTF (.glb, .gltf), and its name says which")
+    };
     let format = format.ok_or_else(wrong)?;
-    let found = file.parse(element, |bytes| mesh::read(bytes, format))?;
+    let directory = file.directory();
+    let mut beside = Beside {
+        directory: &directory,
+        spending,
+    };
+    let found = file.parse(element, |bytes| mesh::read(bytes, format, &mut beside))?;
     merge(found, written, element)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::LoadError;
 use crate::document::Element;
-use crate::mesh::{self, Format};
+use crate::mesh::{self, Beside, Format};
 use crate::mjcf::compiler::CompilerOptions;
 use crate::mjcf::files::{Content, slashes};
 use crate::spending::Spending;
@@ -63,10 +63,15 @@ impl<'a> Meshes<'a> {
         let mut file = Content::open(path, element, spending)?;
         let format = Format::from_extension(&file.extension).ok_or_else(|| {
             element.error(format!(
-                "\"{written}\" is no mesh that can be read: its name must end in .stl, .obj, .dae or .msh"
+                "\"{written}\" is no mesh that can be read: its name must end in .stl, .obj, .dae, .glb, .gltf or .msh"
             ))
         })?;
-        let triangles = file.parse(element, |bytes| mesh::read(bytes, format))?;
+        let directory = file.directory();
+        let mut beside = Beside {
+            directory: &directory,
+            spending,
+        };
+        let triangles = file.parse(element, |bytes| mesh::read(bytes, format, &mut beside))?;
         spending
             .bytes(mesh::cost(&triangles))
             .map_err(|excess| element.error(excess))?;

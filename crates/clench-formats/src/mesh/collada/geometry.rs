@@ -1,7 +1,7 @@
 //! `<geometry>`: vertices and faces of a mesh.
 
-use super::transform::Transform;
 use super::{File, at, child, children, numbers};
+use crate::mesh::affine::{Transform, to_single};
 use crate::mesh::ears::triangulate;
 use crate::mesh::triangles::Triangles;
 use clench_math::Vec3;
@@ -104,7 +104,9 @@ impl Polygons {
                 }
                 let mut number = |corner: usize| {
                     *numbers[face[corner]].get_or_insert_with(|| {
-                        found.vertices.push(short(transform.point(places[corner])));
+                        found
+                            .vertices
+                            .push(to_single(transform.point(places[corner])));
                         found.vertices.len() as u32 - 1
                     })
                 };
@@ -121,11 +123,6 @@ fn offset(input: Node) -> Result<usize, String> {
         Ok(offset) if offset < MAX_INPUTS => Ok(offset),
         _ => Err(at(input, "the offset is no small number")),
     }
-}
-
-/// The 24 bits a coordinate that other formats have too.
-fn short(point: Vec3<f64>) -> Vec3<f64> {
-    Vec3::from_array(point.to_array().map(|x| f64::from(x as f32)))
 }
 
 /// The points of `<vertices>`.

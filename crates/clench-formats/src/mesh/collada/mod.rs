@@ -7,13 +7,13 @@ mod geometry;
 mod scene;
 mod transform;
 
+use super::affine::Transform;
 use super::triangles::Triangles;
 use crate::document;
 use roxmltree::{Document, Node};
 use scene::Instance;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use transform::Transform;
 
 /// Most elements and attributes of a file; large scenes have some ten thousand. The parser takes some 300 bytes for each.
 const MAX_MARKS: u64 = 1_000_000;
@@ -130,12 +130,7 @@ fn numbers<T: std::str::FromStr>(node: Node) -> Result<Vec<T>, String> {
     let words = texts.flat_map(str::split_ascii_whitespace);
     words
         .map(|word| {
-            let wrong = |_| {
-                at(
-                    node,
-                    &format!("\"{word}\" is not such a number as stands here"),
-                )
-            };
+            let wrong = |_| at(node, &format!("\"{word}\" is not a valid number"));
             word.parse().map_err(wrong)
         })
         .collect()

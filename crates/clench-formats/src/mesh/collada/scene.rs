@@ -1,7 +1,8 @@
 //! `<visual_scene>`: which meshes stand where.
 
-use super::transform::Transform;
+use super::transform;
 use super::{File, at, child, children};
+use crate::mesh::affine::Transform;
 use roxmltree::Node;
 
 /// Deepest nesting of nodes, and of nodes that stand for others.
@@ -72,7 +73,7 @@ fn below<'a>(file: &File<'a>, scene: Node<'a, 'a>) -> Result<Vec<Instance<'a>>, 
                 "nodes are nested too deeply, or there are too many",
             ));
         }
-        let transform = around * Transform::of_node(node)?;
+        let transform = around * transform::of_node(node)?;
         let mut inner = Vec::new();
         for element in node.children().filter(Node::is_element) {
             let node = match element.tag_name().name() {

@@ -1,0 +1,160 @@
+//! The numbers of a glTF file, in bytes that come with it, in its text, or in files beside it.
+
+use super::json::{Accessor, Primitive, Root};
+use crate::mesh::Beside;
+use clench_math::Vec3;
+use data_encoding::BASE64;
+use std::borrow::Cow;
+
+/// Codes of the types of numbers.
+const U8: u32 = 5121;
+const U16: u32 = 5123;
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+
+/// The bytes of all buffers.
+pub(super) struct Buffers<'a> {
+    root: &'a Root,
+    bytes: Vec<Cow<'a, [u8]>>,
+}
+
+impl<'a> Buffers<'a> {
+    /// # Errors
+    /// Bytes that are not there or cannot be decoded.
+    pub(super) fn new(
+        root: &'a Root,
+        binary: Option<&'a [u8]>,
+        beside: &mut Beside,
+    ) -> Result<Self, String> {
+        let mut bytes = Vec::with_capacity(root.buffers.len());
+        for (number, buffer) in root.buffers.iter().enumerate() {
+            let about = |error: String| format!("buffer {number}: {error}");
+            bytes.push(match (&buffer.uri, binary) {
+                (Some(uri), _) => Cow::Owned(fetch(uri, beside).map_err(about)?),
+                (None, Some(binary)) if number == 0 => Cow::Borrowed(binary),
+                (None, _) => return Err(about("has no bytes".to_owned())),
+            });
+        }
+        Ok(Buffers { root, bytes })
+    }
+
+    /// The vertices of an accessor.
+    pub(super) fn positions(&self, accessor: usize) -> Result<Vec<Vec3<f64>>, String> {
+        let accessor = self.accessor(accessor)?;
+        if (accessor.component_type, accessor.kind.as_str()) != (F32, "VEC3") {
+            return Err("positions that are not three numbers of single precision".to_owned());
+        }
+        let point = |bytes: &[u8]| {
+            let (words, _) = bytes.as_chunks::<4>();
+            Vec3::from_array([0, 1, 2].map(|k| f64::from(f32::from_le_bytes(words[k]))))
+        };
+        Ok(self.items(accessor, 12)?.map(point).collect())
+    }
+
+    /// The corners of the triangles of a primitive; none where it consists of points or lines.
+    pub(super) fn corners(&self, primitive: &Primitive) -> Result<Option<Vec<[usize; 3]>>, String> {
+        let mode = primitive.mode.unwrap_or(4);
+        if !(4..=6).contains(&mode) {
+            return Ok(None);
+        }
+        let listed = match primitive.indices {
+            Some(indices) => self.indices(indices)?,
+            None => (0..self.accessor(super::position(primitive)?)?.count).collect(),
+        };
+        let count = listed.len();
+        Ok(Some(match mode {
+            4 => listed.as_chunks::<3>().0.to_vec(),
+            // Of a strip every other triangle is wound the other way.
+            5 => (listed.windows(3).enumerate())
+                .map(|(k, corner)| match k % 2 {
+                    0 => [corner[0], corner[1], corner[2]],
+                    _ => [corner[1], corner[0], corner[2]],
+                })
+                .collect(),
+            _ => (2..count)
+                .map(|k| [listed[0], listed[k - 1], listed[k]])
+                .collect(),
+        }))
+    }
+
+    fn indices(&self, accessor: usize) -> Result<Vec<usize>, String> {
+        let accessor = self.accessor(accessor)?;
+        let size = match (accessor.component_type, accessor.kind.as_str()) {
+            (U8, "SCALAR") => 1,
+            (U16, "SCALAR") => 2,
+            (U32, "SCALAR") => 4,
+            _ => return Err("indices that are not whole numbers of 8, 16 or 32 bits".to_owned()),
+        };
+        let number = |bytes: &[u8]| {
+            let digits = bytes.iter().rev();
+            digits.fold(0, |number, &byte| number << 8 | usize::from(byte))
+        };
+        Ok(self.items(accessor, size)?.map(number).collect())
+    }
+
+    fn accessor(&self, number: usize) -> Result<&'a Accessor, String> {
+        let found = self.root.accessors.get(number);
+        found.ok_or_else(|| format!("there is no accessor {number}"))
+    }
+
+    /// The items of an accessor, each of so many bytes.
+    fn items(
+        &self,
+        accessor: &Accessor,
+        size: usize,
+    ) -> Result<impl Iterator<Item = &[u8]>, String> {
+        if accessor.sparse.is_some() {
+            return Err("sparse accessors are not supported".to_owned());
+        }
+        let view = accessor
+            .buffer_view
+            .ok_or("an accessor has no buffer view")?;
+        let view = self.root.buffer_views.get(view);
+        let view = view.ok_or("an accessor names a buffer view that is not there")?;
+        let bytes = self.bytes.get(view.buffer);
+        let bytes = bytes.ok_or("a buffer view names a buffer that is not there")?;
+        let stride = view.byte_stride.unwrap_or(size).max(size);
+        let viewed = (bytes.get(view.byte_offset..))
+            .and_then(|rest| rest.get(..view.byte_length))
+            .and_then(|rest| rest.get(accessor.byte_offset..));
+        let viewed = viewed.ok_or("a buffer view goes beyond its buffer")?;
+        let last = accessor.count.saturating_sub(1).checked_mul(stride);
+        let needed = last.and_then(|last| last.checked_add(size));
+        if accessor.count > 0 && needed.is_none_or(|needed| needed > viewed.len()) {
+            return Err("an accessor goes beyond its buffer view".to_owned());
+        }
+        Ok((0..accessor.count).map(move |k| &viewed[k * stride..k * stride + size]))
+    }
+}
+
+/// The bytes that a URI stands for: they are in it, or in a file that it names.
+fn fetch(uri: &str, beside: &mut Beside) -> Result<Vec<u8>, String> {
+    let Some(data) = uri.strip_prefix("data:") else {
+        return beside.read(&percent_decoded(uri));
+    };
+    let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
+    let encoded = encoded.ok_or("a data URI that is not in base 64")?;
+    let decoded = BASE64.decode(encoded.as_bytes());
+    decoded.map_err(|error| format!("not in base 64: {error}"))
+}
+
+/// A file name, in which `%20` stands for a space.
+fn percent_decoded(uri: &str) -> String {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = after.first_chunk::<2>().filter(|_| *first == b'%');
+        let code = code.and_then(|digits| std::str::from_utf8(digits).ok());
+        match code.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &after[2..];
+            }
+            None => {
+                bytes.push(*first);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}

@@ -1,0 +1,137 @@
+//! glTF 2.0 (`.glb`, `.gltf`): the triangles of a scene, in metres, each where the nodes of the scene put it.
+//!
+//! Coordinates stay as they are written: like those of Collada files, robots' meshes are not turned from y to z upwards. Materials,
+//! lights, cameras, lines and points are passed over. What is deformed by a skeleton, or compressed, is an error.
+
+mod buffers;
+mod json;
+mod scene;
+
+use super::Beside;
+use super::affine::{Transform, to_single};
+use super::triangles::Triangles;
+use buffers::Buffers;
+use json::{Primitive, Root};
+use scene::Instance;
+use std::collections::HashMap;
+
+/// Most values of a file's text; large scenes have some ten thousand. The parser takes some 200 bytes for each.
+const MAX_MARKS: usize = 2_000_000;
+/// Most vertices and corners of faces in a scene, in which a mesh may stand many times.
+const MAX_SIZE: usize = 20_000_000;
+
+/// What a binary file begins with.
+const MAGIC: &[u8] = b"glTF";
+
+/// Extensions that only say how surfaces look.
+const ONLY_SEEN: [&str; 4] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "EXT_texture_",
+];
+
+pub(super) fn read(bytes: &[u8], beside: &mut Beside) -> Result<Triangles, String> {
+    let (text, binary) = match bytes.starts_with(MAGIC) {
+        true => chunks(bytes)?,
+        false => (bytes, None),
+    };
+    let marks = text.iter().filter(|byte| b"{[,".contains(byte)).count();
+    if marks > MAX_MARKS {
+        return Err(format!("more than {MAX_MARKS} values in a glTF file"));
+    }
+    let root: Root =
+        serde_json::from_slice(text).map_err(|error| format!("not a glTF file: {error}"))?;
+    check(&root)?;
+    let buffers = Buffers::new(&root, binary, beside)?;
+    let (mut found, mut size) = (Triangles::default(), 0);
+    for Instance { mesh, transform } in scene::instances(&root)? {
+        for primitive in &mesh.primitives {
+            let Some(corners) = buffers.corners(primitive)? else {
+                continue;
+            };
+            let places = buffers.positions(position(primitive)?)?;
+            size += corners.len() + places.len();
+            if size > MAX_SIZE {
+                return Err(format!("more than {MAX_SIZE} vertices and corners"));
+            }
+            append(&mut found, &corners, &places, &transform)?;
+        }
+    }
+    match found.faces.is_empty() {
+        true => Err("the glTF file has no triangles in its scene".to_owned()),
+        false => Ok(found),
+    }
+}
+
+/// The text of a binary file, and the bytes that come with it.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    let short = || "the file ends too early".to_owned();
+    let word = |at: usize| -> Result<usize, String> {
+        let word = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
+        Ok(u32::from_le_bytes(*word.ok_or_else(short)?) as usize)
+    };
+    if word(4)? != 2 {
+        return Err(format!("glTF of version {}, not 2", word(4)?));
+    }
+    let (mut at, mut text, mut binary) = (12, None, None);
+    while at < bytes.len() && text.is_none_or(|_| binary.is_none()) {
+        let (length, kind) = (word(at)?, bytes.get(at + 4..at + 8));
+        let content = bytes[at..].get(8..).and_then(|rest| rest.get(..length));
+        let content = content.ok_or_else(short)?;
+        match kind {
+            Some(b"JSON") if text.is_none() => text = Some(content),
+            Some(b"BIN\0") if binary.is_none() => binary = Some(content),
+            _ => {}
+        }
+        at += 8 + length;
+    }
+    Ok((text.ok_or_else(short)?, binary))
+}
+
+fn check(root: &Root) -> Result<(), String> {
+    let version = &root.asset.version;
+    if !version.starts_with("2.") {
+        return Err(format!("glTF of version {version}, not 2"));
+    }
+    let acts = |name: &&String| !ONLY_SEEN.iter().any(|prefix| name.starts_with(prefix));
+    match root.extensions_required.iter().find(acts) {
+        Some(name) => Err(format!(
+            "needs the extension {name}, which is not supported"
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The accessor of the vertices.
+fn position(primitive: &Primitive) -> Result<usize, String> {
+    let missing = || "a primitive has no positions".to_owned();
+    primitive.attributes.position.ok_or_else(missing)
+}
+
+/// Adds triangles as they stand in the scene. Vertices that no face has do not count.
+fn append(
+    found: &mut Triangles,
+    corners: &[[usize; 3]],
+    places: &[clench_math::Vec3<f64>],
+    transform: &Transform,
+) -> Result<(), String> {
+    let mut numbers: HashMap<usize, u32> = HashMap::new();
+    for &corner in corners {
+        let mut face = [0; 3];
+        for (number, place) in face.iter_mut().zip(corner) {
+            let point = places.get(place);
+            let point =
+                point.ok_or_else(|| format!("a face names vertex {place}, which is not there"))?;
+            *number = *numbers.entry(place).or_insert_with(|| {
+                found.vertices.push(to_single(transform.point(*point)));
+                found.vertices.len() as u32 - 1
+            });
+        }
+        if transform.mirrors() {
+            face.reverse();
+        }
+        found.faces.push(face);
+    }
+    Ok(())
+}

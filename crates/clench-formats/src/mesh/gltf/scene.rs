@@ -1,0 +1,98 @@
+//! Nodes: which meshes stand where.
+
+use super::json::{Mesh, Node, Root};
+use crate::mesh::affine::Transform;
+use clench_math::Quat;
+
+/// Deepest nesting of nodes.
+const MAX_DEPTH: usize = 64;
+/// Most nodes of a scene, those counted again that stand in several.
+const MAX_NODES: usize = 100_000;
+
+/// A mesh of the scene.
+pub(super) struct Instance<'a> {
+    pub mesh: &'a Mesh,
+    pub transform: Transform,
+}
+
+/// A node to be looked into, and how what holds it stands.
+struct Pending {
+    node: usize,
+    around: Transform,
+    depth: usize,
+}
+
+/// All meshes of the file's scene, in order; those of the first where the file does not say which, and of a file without one each
+/// mesh once.
+///
+/// # Errors
+/// Nodes and meshes that are not there, that a skeleton deforms, or nodes too many or too deep.
+pub(super) fn instances(root: &Root) -> Result<Vec<Instance<'_>>, String> {
+    let all = |mesh| Instance {
+        mesh,
+        transform: Transform::IDENTITY,
+    };
+    if root.scenes.is_empty() {
+        return Ok(root.meshes.iter().map(all).collect());
+    }
+    let scene = root.scene.unwrap_or(0);
+    let scene = root.scenes.get(scene);
+    let scene = scene.ok_or("the scene of the file is not there")?;
+    let mut pending = Vec::new();
+    let outermost = (Transform::IDENTITY, 0);
+    push(&mut pending, &scene.nodes, outermost);
+    let (mut found, mut visited) = (Vec::new(), 0);
+    while let Some(Pending {
+        node: number,
+        around,
+        depth,
+    }) = pending.pop()
+    {
+        visited += 1;
+        if visited > MAX_NODES || depth > MAX_DEPTH {
+            return Err(format!(
+                "more than {MAX_NODES} nodes, or nodes nested more than {MAX_DEPTH} deep"
+            ));
+        }
+        let node = root.nodes.get(number);
+        let node = node.ok_or_else(|| format!("there is no node {number}"))?;
+        let transform = around * own(node);
+        if let Some(number) = node.mesh {
+            if node.skin.is_some() {
+                return Err("meshes that a skeleton deforms are not supported".to_owned());
+            }
+            let mesh = root.meshes.get(number);
+            let mesh = mesh.ok_or_else(|| format!("there is no mesh {number}"))?;
+            found.push(Instance { mesh, transform });
+        }
+        if pending.len() + node.children.len() > MAX_NODES {
+            return Err(format!("more than {MAX_NODES} nodes"));
+        }
+        push(&mut pending, &node.children, (transform, depth + 1));
+    }
+    Ok(found)
+}
+
+/// Adds nodes so that the first comes off first.
+fn push(pending: &mut Vec<Pending>, nodes: &[usize], (around, depth): (Transform, usize)) {
+    let pushed = nodes.iter().rev().map(|&node| Pending {
+        node,
+        around,
+        depth,
+    });
+    pending.extend(pushed);
+}
+
+/// How a node stands in the one around it.
+fn own(node: &Node) -> Transform {
+    if let Some(m) = node.matrix {
+        return Transform::from_rows(
+            [0, 1, 2, 3].map(|row| [m[row], m[row + 4], m[row + 8], m[row + 12]]),
+        );
+    }
+    let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let turn = Quat::from_f64([w, x, y, z]).normalize();
+    Transform::translation(node.translation.unwrap_or_default())
+        * Transform::rotation(turn)
+        * Transform::scaling(node.scale.unwrap_or([1.0; 3]))
+}
