@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
 /// The targets, by the names of their folders in `fuzz/seeds`.
-const TARGETS: [&str; 11] = [
+const TARGETS: [&str; 12] = [
     "mjcf", "urdf", "stl", "obj", "msh", "dae", "gltf", "png", "grid", "npy", "states", "contacts",
 ];
 

@@ -156,6 +156,13 @@ fn an_error_says_where_and_what() {
             "goes beyond",
         ),
         (
+            "huge-without-indices",
+            plain
+                .replacen(", \"indices\": 1}", "}", 1)
+                .replace("\"count\": 5", "\"count\": 18446744073709551615"),
+            "goes beyond",
+        ),
+        (
             "view",
             plain.replace("\"byteLength\": 24", "\"byteLength\": 25"),
             "beyond its buffer",

@@ -51,18 +51,18 @@ impl<'a> Buffers<'a> {
         Ok(self.items(accessor, 12)?.map(point).collect())
     }
 
-    /// The corners of the triangles of a primitive; none where it consists of points or lines.
-    pub(super) fn corners(&self, primitive: &Primitive) -> Result<Option<Vec<[usize; 3]>>, String> {
-        let mode = primitive.mode.unwrap_or(4);
-        if !(4..=6).contains(&mode) {
-            return Ok(None);
-        }
+    /// The corners of the triangles of a primitive with so many vertices, which are the corners in turn where it has no indices.
+    pub(super) fn corners(
+        &self,
+        primitive: &Primitive,
+        vertices: usize,
+    ) -> Result<Vec<[usize; 3]>, String> {
         let listed = match primitive.indices {
             Some(indices) => self.indices(indices)?,
-            None => (0..self.accessor(super::position(primitive)?)?.count).collect(),
+            None => (0..vertices).collect(),
         };
         let count = listed.len();
-        Ok(Some(match mode {
+        Ok(match primitive.mode() {
             4 => listed.as_chunks::<3>().0.to_vec(),
             // Of a strip every other triangle is wound the other way.
             5 => (listed.windows(3).enumerate())
@@ -74,7 +74,7 @@ impl<'a> Buffers<'a> {
             _ => (2..count)
                 .map(|k| [listed[0], listed[k - 1], listed[k]])
                 .collect(),
-        }))
+        })
     }
 
     fn indices(&self, accessor: usize) -> Result<Vec<usize>, String> {

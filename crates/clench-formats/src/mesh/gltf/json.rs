@@ -57,7 +57,18 @@ pub(super) struct Mesh {
 pub(super) struct Primitive {
     pub attributes: Attributes,
     pub indices: Option<usize>,
-    pub mode: Option<u32>,
+    mode: Option<u32>,
+}
+
+impl Primitive {
+    /// What each few vertices are: points (0), lines (1 to 3), triangles (4), a strip (5) or a fan of them (6).
+    pub(super) fn mode(&self) -> u32 {
+        self.mode.unwrap_or(4)
+    }
+
+    pub(super) fn has_triangles(&self) -> bool {
+        (4..=6).contains(&self.mode())
+    }
 }
 
 #[derive(Deserialize)]

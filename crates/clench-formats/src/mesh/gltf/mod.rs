@@ -17,7 +17,7 @@ use std::collections::HashMap;
 
 /// Most values of a file's text; large scenes have some ten thousand. The parser takes some 200 bytes for each.
 const MAX_MARKS: usize = 2_000_000;
-/// Most vertices and corners of faces in a scene, in which a mesh may stand many times.
+/// Most primitives, vertices and faces in a scene, in which a mesh may stand many times.
 const MAX_SIZE: usize = 20_000_000;
 
 /// What a binary file begins with.
@@ -47,15 +47,18 @@ pub(super) fn read(bytes: &[u8], beside: &mut Beside) -> Result<Triangles, Strin
     let (mut found, mut size) = (Triangles::default(), 0);
     for Instance { mesh, transform } in scene::instances(&root)? {
         for primitive in &mesh.primitives {
-            let Some(corners) = buffers.corners(primitive)? else {
-                continue;
-            };
-            let places = buffers.positions(position(primitive)?)?;
-            size += corners.len() + places.len();
-            if size > MAX_SIZE {
-                return Err(format!("more than {MAX_SIZE} vertices and corners"));
+            size += 1;
+            if primitive.has_triangles() {
+                let places = buffers.positions(position(primitive)?)?;
+                let corners = buffers.corners(primitive, places.len())?;
+                size += places.len() + corners.len();
+                append(&mut found, &corners, &places, &transform)?;
             }
-            append(&mut found, &corners, &places, &transform)?;
+            if size > MAX_SIZE {
+                return Err(format!(
+                    "more than {MAX_SIZE} primitives, vertices and faces"
+                ));
+            }
         }
     }
     match found.faces.is_empty() {
