@@ -5,16 +5,14 @@ use crate::run::{cargo, shown};
 use std::io::{BufRead, BufReader, pipe};
 use std::process::Command;
 
-/// What has tests besides documentation. Examples have none, and the stage `clippy` has looked at them.
-const PROGRAMS: [&str; 3] = ["--lib", "--bins", "--tests"];
-
 /// Builds and runs them.
 ///
 /// # Errors
 /// What cannot be built, or that a test failed.
 pub(crate) fn test() -> Result<(), String> {
     let mut programs = 0;
-    let build = tests(&[&PROGRAMS[..], &["--no-run"]].concat());
+    // Not examples, which have no tests: the stage `clippy` has looked at them.
+    let build = tests(&["--tests", "--no-run"]);
     read_lines(build, |line| {
         if line.trim_start().starts_with("Executable") {
             programs += 1;
@@ -24,8 +22,8 @@ pub(crate) fn test() -> Result<(), String> {
     })?;
     let mut report = Report::new(programs);
     let mut outcome = Ok(());
-    for chosen in [&PROGRAMS[..], &["--doc"]] {
-        outcome = read_lines(tests(chosen), |line| {
+    for chosen in ["--tests", "--doc"] {
+        outcome = read_lines(tests(&[chosen]), |line| {
             if let Some(text) = report.read(line) {
                 println!("{text}");
             }
