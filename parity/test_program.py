@@ -60,10 +60,12 @@ def test_contacts_are_listed():
 
 
 def test_what_is_supported_is_listed():
-    listed = program.run("mjcf", "joint").stdout.splitlines()
-    assert listed[0] == "joint" and all(line.startswith("  ") for line in listed[1:])
-    assert {line.split()[0] for line in listed[1:]} == {"read", "ignored", "refused"}
-    assert " pos " in listed[1] and len(program.run("mjcf").stdout.splitlines()) > 100
+    listed = program.run("mjcf", "spatial").stdout.splitlines()
+    assert listed[0] == "spatial" and all(line.startswith("  ") for line in listed[1:])
+    words = {line.split()[0]: line.split()[1:] for line in listed[1:]}
+    assert words.keys() == {"children", "read", "ignored", "refused"}
+    assert "range" in words["read"] and "springyield=0" in words["refused"]
+    assert len(program.run("mjcf").stdout.splitlines()) > 100
 
 
 def test_forward_tells_the_next_state():
