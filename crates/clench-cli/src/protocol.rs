@@ -110,7 +110,8 @@ struct ContactLine {
     solreffriction: [f64; 2],
     solimp: [f64; 5],
     dim: usize,
-    /// Not zero: the contact is listed but makes no constraint; 1: since it is in the gap, where sensors still tell of it.
+    /// Not zero: the contact is listed but makes no constraint; 1: since it is in the gap, 3: since no dof is between its bodies. In these
+    /// two cases sensors still tell of it.
     #[serde(default)]
     exclude: i32,
     #[serde(default)]
@@ -225,7 +226,8 @@ fn assign<K: Written>(
 
 impl ContactLine {
     fn into_contact(self, sim: &Sim) -> Result<Contact<f64>> {
-        let ngeom = sim.model().geoms.len();
+        let model = sim.model();
+        let ngeom = model.geoms.len();
         let mut geoms = [0; 2];
         for (geom, &given) in geoms.iter_mut().zip(&self.geom) {
             match usize::try_from(given) {
@@ -242,8 +244,12 @@ impl ContactLine {
         Ok(Contact {
             geoms,
             active: match self.exclude {
+                0 => true,
                 1 => self.dist >= self.includemargin,
-                excluded => excluded == 0,
+                3 => geoms
+                    .iter()
+                    .all(|&g| model.bodies[model.geoms[g].body].weld == 0),
+                _ => false,
             },
             dim: self.dim,
             dist: self.dist,
