@@ -9,13 +9,6 @@ SEEDS = range(1, 1541)  # of these MuJoCo compiles a thousand
 MIN_COMPARED = 1000
 # MuJoCo ends the process where touch is felt in a mesh; `models/sensors.xml` has such a site.
 NEVER = {("site", "mesh")}
-# Not drawn yet: what frames scale is compared in `models/scaled_frames.xml` alone, users' numbers of all kinds in `models/user_numbers.xml`.
-NOT_DRAWN = {("frame", "scale"), ("frame", "scaling"), ("frame", "massscale"), ("size", "nuser_sensor"), ("default/tendon", "user")}
-
-
-def is_drawn(element, name):
-    return (element, name) not in NEVER | NOT_DRAWN and not (element.startswith("sensor/") and name == "user")
-
 
 def test_the_engines_agree():
     findings = search.search(SEEDS)
@@ -25,5 +18,5 @@ def test_the_engines_agree():
     missing = [
         (element, name) for element, rule in rules.rules().items() for name in rule["read"] if not findings.used[element, name]
     ]
-    missing = [pair for pair in missing if is_drawn(*pair)]
+    missing = [pair for pair in missing if pair not in NEVER]
     assert not missing, f"random models never have {missing}: see random_models/values.py"

@@ -14,12 +14,12 @@ from random_models.preamble import Preamble
 from random_models.relations import Relations
 from random_models.sensing import Sensing
 from random_models.tree import Tree
-from random_models.values import Draw, text
+from random_models.values import VALUES, Draw, text
 
 
 def generate(seed):
     """The root element of the model of a seed."""
-    return Generator(Draw(seed), Draw(f"{seed} later")).model()
+    return Generator(Draw(seed), Draw(f"{seed} later"), Draw(f"{seed} last")).model()
 
 
 class Generator(Preamble, Tree, Relations, Actuation, Sensing):
@@ -41,7 +41,29 @@ class Generator(Preamble, Tree, Relations, Actuation, Sensing):
             self.add(self.root, "size", nkey=draw.randint(0, 3))
         if draw.chance(0.2):
             harmless.decorate(self.root, draw)
+        self.scale_frames()
+        self.number_elements()
         return self.root
+
+    def scale_frames(self):
+        """Some frames scale what is in them."""
+        draw = self.last
+        if draw.chance(0.7):
+            return
+        for frame in self.root.iter("frame"):
+            for name, value in VALUES["scaled frame"].items():
+                if draw.chance(0.5):
+                    frame.set(name, value(draw))
+
+    def number_elements(self):
+        """Sensors, and tendons of some classes, have numbers of the user's."""
+        draw = self.last
+        sections = [*self.root.iter("sensor"), *self.root.iter("default")]
+        for element in (element for section in sections for element in section if section.tag == "sensor" or element.tag == "tendon"):
+            if draw.chance(0.1):
+                element.set("user", text(*(draw.number(-1, 1) for _ in range(draw.randint(1, 3)))))
+        if draw.chance(0.1):
+            self.add(self.root, "size", nuser_sensor=draw.choice((-1, 3, 4)))
 
 
 def with_keyframe(root, model, draw):

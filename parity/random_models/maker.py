@@ -13,9 +13,11 @@ SCALAR = ("hinge", "slide")
 class Maker:
     """A model in the making, and what of it can be referred to."""
 
-    def __init__(self, draw, later):
+    def __init__(self, draw, later, last):
         self.draw = draw
-        self.later = later  # for what came after most models had been compared, so that the rest of each stays as it was
+        # For what came after most models had been compared, in two waves, so that the rest of each stays as it was.
+        self.later = later
+        self.last = last
         self.density = draw.choice((0.05, 0.15, 0.3, 0.5))
         draw.degrees = draw.chance(0.6)
         draw.autolimits = draw.chance(0.9)

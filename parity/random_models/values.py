@@ -243,6 +243,7 @@ VALUES = {
         "gravcomp": usually(number(0, 1.5), "1", "-0.5"),
     },
     "frame": POSE,
+    "scaled frame": {"scale": scale(0.5, 2), "scaling": one_of("similar", "geometry"), "massscale": scale(0.3, 3)},
     "replicate": {
         "count": one_of(1, 2, 3),
         "offset": vector(-0.3, 0.3),

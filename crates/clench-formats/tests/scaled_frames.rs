@@ -141,6 +141,25 @@ fn keyframes_are_scaled_with_what_they_place() {
 }
 
 #[test]
+fn controls_and_activations_are_scaled_by_what_they_measure() {
+    let model = load(
+        "<worldbody><site name='w'/><frame scale='2'>
+           <body><joint name='slide' type='slide'/><geom size='1'/><site name='s'/></body>
+         </frame></worldbody>
+         <actuator>
+           <pid joint='slide' kp='1' ki='1' slewmax='1' input='pos vel ff'/>
+           <cylinder joint='slide' timeconst='1'/>
+           <orientation site='s' refsite='w' kp='1'/>
+         </actuator>
+         <keyframe><key ctrl='1 1 1 1 1 1 1' act='1 1 1'/></keyframe>",
+    );
+    let (length, force, pressure) = (2.0, 16.0, 4.0);
+    let key = &model.keyframes[0];
+    assert_eq!(key.ctrl, [length, length, force, pressure, 1.0, 1.0, 1.0]);
+    assert_eq!(key.act, [length, length, pressure]);
+}
+
+#[test]
 fn what_cannot_be_scaled_is_refused() {
     let geom = "<body><joint name='j'/><geom size='1'/></body>";
     for (frame, words) in [

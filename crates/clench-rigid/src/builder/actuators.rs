@@ -150,14 +150,20 @@ fn control_range(spec: &ActuatorSpec, input: ControlInput, ctrllimited: bool) ->
 }
 
 impl ActuatorSpec {
-    /// How many controls and how many activations the actuator has.
+    /// What the controls of the actuator are, in their order.
     ///
     /// # Errors
-    /// Kinds of dynamics, gain and bias that do not go together, another `actdim` than they have.
-    pub fn counts(&self) -> Result<[usize; 2], BuildError> {
-        let controller = controller(self, 0)?;
-        let activations = activations(self, &controller)?;
-        Ok([controller.inputs.len(), activations])
+    /// Kinds of dynamics, gain and bias that do not go together, or inputs that they do not have.
+    pub fn controls(&self) -> Result<Vec<ControlInput>, BuildError> {
+        Ok(controller(self, 0)?.inputs)
+    }
+
+    /// How many activations the actuator has.
+    ///
+    /// # Errors
+    /// The same, and another `actdim` than these dynamics have.
+    pub fn activations(&self) -> Result<usize, BuildError> {
+        activations(self, &controller(self, 0)?)
     }
 }
 

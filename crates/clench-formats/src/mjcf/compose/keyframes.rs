@@ -16,7 +16,7 @@ use crate::mjcf::appearance::Palette;
 use crate::mjcf::body::{self, BodyReader};
 use crate::mjcf::sections::{entries, sections};
 use crate::mjcf::{keyframe, relations};
-use clench_rigid::builder::{KeyframeElement, KeyframePart, KeyframeSpec};
+use clench_rigid::builder::{BuildError, KeyframeElement, KeyframePart, KeyframeSpec};
 use std::collections::HashMap;
 
 /// Cuts the keyframes of a model that will be attached, and numbers its elements. Those of models that it attaches itself follow.
@@ -78,10 +78,10 @@ impl Layout {
         let mut actuators = Vec::new();
         for element in entries(root, "actuator") {
             let spec = relations::read_actuator(element, &shared.sources)?;
-            let counts = spec
-                .counts()
-                .map_err(|error| element.error(error.message))?;
-            actuators.push((element.number, counts));
+            let refuse = |error: BuildError| element.error(error.message);
+            let controls = spec.controls().map_err(refuse)?.len();
+            let activations = spec.activations().map_err(refuse)?;
+            actuators.push((element.number, [controls, activations]));
         }
         Ok(Layout {
             joints: numbers.joints.into_iter().zip(sizes).collect(),

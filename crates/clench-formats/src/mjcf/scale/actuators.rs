@@ -3,15 +3,17 @@
 use super::{Along, Coordinate, Frames, located};
 use crate::LoadError;
 use crate::mjcf::shortcut::Shortcut;
-use clench_rigid::builder::{ActuatorSpec, ModelBuilder, SensorSubject, TransmissionSpec};
+use clench_rigid::builder::{
+    ActuatorSpec, BuildError, ModelBuilder, SensorSubject, TransmissionSpec,
+};
 use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind, SensorKind};
 use std::collections::BTreeMap;
 
-/// By what the control and the activation of an actuator are multiplied.
-#[derive(Clone, Copy, Debug)]
+/// By what the controls and the activations of an actuator are multiplied, in their order.
+#[derive(Clone, Debug, Default)]
 pub(super) struct States {
-    pub control: f64,
-    pub activation: f64,
+    pub controls: Vec<f64>,
+    pub activations: Vec<f64>,
 }
 
 impl Frames {
@@ -101,75 +103,146 @@ fn scale_actuator(
     if unknown && follows {
         return refuse("its parameters cannot be scaled; use scaling \"geometry\"");
     }
-    let pid = actuator.gain == GainKind::Pid || actuator.dynamics == DynamicsKind::Pid;
-    if pid && (along.coordinate != 1.0 || along.unit != 1.0) {
-        return refuse("a pid along a length in a frame with a scale is not supported yet");
-    }
-    let is_coordinate = commands_coordinate(actuator, written);
-    let control = if is_coordinate { along.coordinate } else { 1.0 };
-    let activation = match is_coordinate || written == Shortcut::IntVelocity {
-        true => along.coordinate,
-        false => 1.0,
+    let command = Command::new(actuator, written);
+    // What cannot be counted is refused when the model is built.
+    let states = command.states(actuator, written, along).unwrap_or_default();
+    scale_gain(actuator, command, along);
+    scale_bias(actuator, along);
+    scale_setpoints(actuator, along);
+    let first = states.controls.first().copied().unwrap_or(1.0);
+    let activation = states.activations.first().copied().unwrap_or(1.0);
+    actuator.ctrlrange = match actuator.gain {
+        GainKind::Pid => actuator.ctrlrange.map(|end| end * along.coordinate),
+        _ => actuator.ctrlrange.map(|end| end * first),
     };
-    scale_parameters(actuator, written, is_coordinate, along);
-    actuator.ctrlrange = actuator.ctrlrange.map(|end| end * control);
+    actuator.velrange = actuator.velrange.map(|end| end * along.coordinate);
+    actuator.ffrange = actuator.ffrange.map(|end| end * along.force);
     actuator.actrange = actuator.actrange.map(|end| end * activation);
     actuator.forcerange = actuator.forcerange.map(|end| end * along.force);
     actuator.lengthrange = actuator.lengthrange.map(|end| end * along.coordinate);
     actuator.armature *= along.gain();
     along.polynomial(&mut actuator.damping);
-    Ok(States {
-        control,
-        activation,
-    })
+    Ok(states)
 }
 
-/// Whether the control is a position or velocity of what the actuator pulls on.
-fn commands_coordinate(actuator: &ActuatorSpec, written: Shortcut) -> bool {
-    match written {
-        Shortcut::Position | Shortcut::Velocity | Shortcut::IntVelocity => true,
-        _ => matches!(
-            actuator.inputs.as_deref(),
-            Some([ControlInput::Position | ControlInput::Velocity])
-        ),
+/// What the only control of an actuator is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Command {
+    /// A position or velocity of what the actuator pulls on.
+    Coordinate,
+    /// A pressure in a cylinder.
+    Pressure,
+    /// A number without a dimension.
+    Number,
+}
+
+impl Command {
+    fn new(actuator: &ActuatorSpec, written: Shortcut) -> Self {
+        use ControlInput::{Position, Velocity};
+        let single = [GainKind::Fixed, GainKind::Affine].contains(&actuator.gain);
+        match (written, actuator.inputs.as_deref()) {
+            (Shortcut::Position | Shortcut::Velocity | Shortcut::IntVelocity, _) => {
+                Command::Coordinate
+            }
+            (Shortcut::Cylinder, _) => Command::Pressure,
+            (_, Some([Position | Velocity])) if single => Command::Coordinate,
+            // A pressure is an input without a part in the force of its own.
+            (_, Some([])) if single => Command::Pressure,
+            _ => Command::Number,
+        }
+    }
+
+    /// By what it is multiplied.
+    fn scale(self, along: Along) -> f64 {
+        match self {
+            Command::Coordinate => along.coordinate,
+            Command::Pressure => along.pressure,
+            Command::Number => 1.0,
+        }
+    }
+
+    /// The same, where forces follow.
+    fn unit(self, along: Along) -> f64 {
+        match self {
+            Command::Coordinate => along.unit,
+            Command::Pressure => along.pressure,
+            Command::Number => 1.0,
+        }
+    }
+
+    /// By what all controls and activations are multiplied.
+    fn states(
+        self,
+        actuator: &ActuatorSpec,
+        written: Shortcut,
+        along: Along,
+    ) -> Result<States, BuildError> {
+        let of_input = |input: &ControlInput| match input {
+            ControlInput::Position | ControlInput::Velocity => along.coordinate,
+            ControlInput::Feedforward => along.force,
+            ControlInput::Command => self.scale(along),
+            ControlInput::Voltage | ControlInput::RotationVector | ControlInput::Quaternion => 1.0,
+        };
+        let activation = match (actuator.dynamics, written) {
+            (DynamicsKind::Pid, _) | (_, Shortcut::IntVelocity) => along.coordinate,
+            _ => self.scale(along),
+        };
+        Ok(States {
+            controls: actuator.controls()?.iter().map(of_input).collect(),
+            activations: vec![activation; actuator.activations()?],
+        })
     }
 }
 
-fn scale_parameters(
-    actuator: &mut ActuatorSpec,
-    written: Shortcut,
-    is_coordinate: bool,
-    along: Along,
-) {
-    let (force, gain) = (along.force, along.gain());
-    match (actuator.gain, written) {
-        (GainKind::Fixed, Shortcut::Cylinder) => {
-            // Its control is a pressure, so that the gain is an area, or a volume for a torque.
-            actuator.gainprm[0] *= force / along.pressure;
+fn scale_gain(actuator: &mut ActuatorSpec, command: Command, along: Along) {
+    let [first, length, velocity, ..] = &mut actuator.gainprm;
+    match actuator.gain {
+        GainKind::Fixed => *first *= along.force / command.unit(along),
+        GainKind::Affine => {
+            *first *= along.force / command.unit(along);
+            *length *= along.gain() / command.unit(along);
+            *velocity *= along.gain() / command.unit(along);
         }
-        (GainKind::Fixed, _) => {
-            actuator.gainprm[0] *= if is_coordinate { gain } else { force };
-        }
-        (GainKind::Affine, _) => {
-            actuator.gainprm[0] *= if is_coordinate { gain } else { force };
-            actuator.gainprm[1] *= gain;
-            actuator.gainprm[2] *= gain;
-        }
-        (GainKind::So3 | GainKind::Pid, _) => actuator.gainprm[0] *= gain,
-        (GainKind::Muscle, _) => scale_muscle(&mut actuator.gainprm, force),
-        (GainKind::DcMotor | GainKind::User, _) => {}
+        GainKind::So3 => *first *= along.turning(),
+        GainKind::Pid => *first *= along.gain(),
+        GainKind::Muscle => scale_muscle(&mut actuator.gainprm, along.force),
+        GainKind::DcMotor | GainKind::User => {}
     }
+}
+
+fn scale_bias(actuator: &mut ActuatorSpec, along: Along) {
+    let gain = match actuator.bias {
+        BiasKind::So3 => along.turning(),
+        _ => along.gain(),
+    };
     match actuator.bias {
         BiasKind::Affine | BiasKind::So3 => {
-            actuator.biasprm[0] *= force;
+            actuator.biasprm[0] *= along.force;
             actuator.biasprm[1] *= gain;
             // Above zero it is a damping ratio.
             if actuator.biasprm[2] < 0.0 {
                 actuator.biasprm[2] *= gain;
             }
         }
-        BiasKind::Muscle => scale_muscle(&mut actuator.biasprm, force),
-        BiasKind::None | BiasKind::DcMotor | BiasKind::User => {}
+        BiasKind::Muscle => scale_muscle(&mut actuator.biasprm, along.force),
+        BiasKind::DcMotor => {
+            let [_, poles, _, _, _, stribeck_velocity, ..] = &mut actuator.biasprm;
+            *poles /= along.coordinate;
+            *stribeck_velocity *= along.coordinate;
+        }
+        BiasKind::None | BiasKind::User => {}
+    }
+}
+
+/// The largest integral of a position error, and the largest rate of a setpoint.
+fn scale_setpoints(actuator: &mut ActuatorSpec, along: Along) {
+    let limits = match (actuator.dynamics, &mut actuator.dynprm) {
+        (DynamicsKind::Pid, [integral, rate, ..]) => [integral, rate],
+        (DynamicsKind::DcMotor, [.., rate, integral, _]) => [integral, rate],
+        _ => return,
+    };
+    for limit in limits {
+        *limit *= along.coordinate;
     }
 }
 

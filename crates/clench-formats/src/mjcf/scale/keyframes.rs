@@ -3,14 +3,14 @@
 use super::actuators::States;
 use super::{FrameId, Frames, located};
 use crate::LoadError;
-use clench_rigid::builder::{KeyframeSpec, ModelBuilder};
+use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::JointKind;
 
 impl Frames {
     /// Scales what keyframes say of positions, velocities, controls and activations.
     ///
     /// # Errors
-    /// Keyframes of attached models, and controls of a model in which some actuator has several.
+    /// Keyframes of attached models.
     pub(super) fn scale_keyframes(
         &self,
         actuators: &[States],
@@ -44,25 +44,13 @@ impl Frames {
         }
         let mocaps = self.mocaps.iter();
         let mocap_pos: Vec<Map> = mocaps.flat_map(|&frame| self.moved(frame)).collect();
-        let controls = actuators.iter().map(|states| linear(states.control));
-        let control: Vec<Map> = controls.collect();
-        let acts = (builder.actuators.iter().zip(actuators))
-            .filter(|(actuator, _)| actuator.dynamics != clench_rigid::model::DynamicsKind::None);
-        let activation: Vec<Map> = acts.map(|(_, states)| linear(states.activation)).collect();
-        let refuse = |keyframe: &KeyframeSpec, what: &str| {
-            let message = format!("{what} beside frames with a scale are not supported yet");
-            Err(located(&keyframe.origin, "key", &keyframe.name, message))
-        };
+        let control = states(actuators, |states| &states.controls);
+        let activation = states(actuators, |states| &states.activations);
         for keyframe in &mut builder.keyframes {
             if !keyframe.parts.is_empty() {
-                return refuse(keyframe, "keyframes of attached models");
-            }
-            let several = |maps: &[Map], given: &Option<Vec<f64>>| {
-                let given = given.as_ref().map_or(maps.len(), Vec::len);
-                given != maps.len() && maps.iter().any(|&map| map != linear(1.0))
-            };
-            if several(&control, &keyframe.ctrl) || several(&activation, &keyframe.act) {
-                return refuse(keyframe, "states of actuators with several of them");
+                let message =
+                    "keyframes of attached models beside frames with a scale are not supported yet";
+                return Err(located(&keyframe.origin, "key", &keyframe.name, message));
             }
             apply(&mut keyframe.qpos, &qpos);
             apply(&mut keyframe.qvel, &qvel);
@@ -86,6 +74,12 @@ impl Frames {
 
 /// What becomes of a number: it is multiplied by the first, and the second is added.
 type Map = (f64, f64);
+
+fn states(actuators: &[States], which: impl Fn(&States) -> &[f64]) -> Vec<Map> {
+    (actuators.iter().flat_map(|states| which(states)))
+        .map(|&factor| linear(factor))
+        .collect()
+}
 
 fn linear(factor: f64) -> Map {
     (factor, 0.0)

@@ -158,6 +158,11 @@ impl Along {
     fn gain(self) -> f64 {
         self.force / self.unit
     }
+
+    /// Torque, whatever the coordinate is: M L² of lengths, and the torque of angles, whose unit is 1.
+    fn turning(self) -> f64 {
+        self.force * self.unit
+    }
 }
 
 /// A frame that scales, by its number; 0 stands for none.
