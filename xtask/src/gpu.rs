@@ -9,17 +9,8 @@ use std::process::Command;
 /// Where drivers for Vulkan register on Linux.
 const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 
-/// Those that compute, and those that draw.
-const COMPUTING: [&str; 8] = [
-    "stages",
-    "steps",
-    "batch",
-    "outputs",
-    "refusals",
-    "gymnasium",
-    "dm_control",
-    "gpu",
-];
+/// Those that compute, of `clench-gpu` and of the program, and those that draw.
+const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
 
 /// Runs them.

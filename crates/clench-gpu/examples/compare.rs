@@ -1,6 +1,6 @@
 //! How far the device is from the processor on random states of a model, field by field: `compare MODEL [STATES] [SPREAD]`.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/device/common/mod.rs"]
 mod common;
 
 use std::sync::Arc;

@@ -53,7 +53,7 @@ impl<T: Real> HeldFrames<T> {
     }
 }
 
-/// HeldFrames that are held together, how softly, and in which lanes.
+/// Frames that are held together, how softly, and in which lanes.
 pub(super) struct Held<T: Real> {
     pub frames: HeldFrames<T>,
     pub source: ConstraintSource,

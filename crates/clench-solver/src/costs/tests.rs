@@ -152,7 +152,7 @@ fn hessian_is_the_derivative_of_the_gradient() {
             down[j] -= STEP;
             let (up, down) = (s.at(&up), s.at(&down));
             if up.2 != piece || down.2 != piece {
-                continue; // the Hessian jumps between active_set
+                continue; // the Hessian jumps between active sets
             }
             checked += 1;
             for i in 0..s.y.len() {
@@ -215,7 +215,7 @@ fn a_ray_keeps_its_digits_for_tiny_steps() {
         let alpha = 1e-9;
         let (slope, divergence) = (s.slope(alpha), s.divergence(alpha));
         if s.at(&s.along(alpha)).2 != s.at(&s.y).2 {
-            continue; // the Hessian jumps between active_set
+            continue; // the Hessian jumps between active sets
         }
         let second = slope.second;
         curved += usize::from(s.cost == Cost::Elliptic && second > 0.0);

@@ -51,9 +51,9 @@ pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &
     }
 }
 
-/// The text of a model in `tests/models`.
+/// The text of a model in `tests/device/models`.
 pub fn own(name: &str) -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/models/");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/device/models/");
     std::fs::read_to_string(format!("{folder}{name}.xml")).expect("a model of ours is there")
 }
 

@@ -1,10 +1,8 @@
 //! Every output that a device computes is what the processor computes, after a forward pass and after a step.
 
-mod common;
-
+use crate::common::{self, Random, difference, own, random_state, text};
 use clench_rigid::model::{Model, Sensor};
 use clench_rigid::{Batch, BatchOptions, Output};
-use common::{Random, difference, own, random_state, text};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! The robots of Gymnasium's MuJoCo tasks, where the environment variable `CLENCH_GYMNASIUM` names the folder of their files.
 
-mod common;
+use crate::common;
 
 /// Each, on how many states, and how far from its initial one.
 const ROBOTS: &[(&str, usize, f64)] = &[

@@ -1,9 +1,7 @@
 //! What the device cannot do yet is refused by name, before the first step and without a device.
 
-mod common;
-
+use crate::common::text;
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
-use common::text;
 
 /// A model of one ball, with something more at each of four places.
 fn model(option: &str, geom: &str, in_world: &str, after: &str) -> String {

@@ -1,10 +1,8 @@
 //! Each stage on the device equals its sister on the processor, on random states.
 
-mod common;
-
+use crate::common::{self, batch, own, text};
 use clench_rigid::Batch;
 use clench_rigid::model::Model;
-use common::{batch, own, text};
 use std::sync::Arc;
 
 /// Agrees, and has seen something.

@@ -1,6 +1,6 @@
 //! The models of dm-control's suite, where the environment variable `CLENCH_DM_CONTROL` names the folder of their files.
 
-mod common;
+use crate::common;
 
 /// Each, on how many states, and how far from its initial one.
 const MODELS: &[(&str, usize, f64)] = &[

@@ -1,13 +1,11 @@
 //! A batch that a device steps: rows go up and come down, outputs are the device's, faults are told as on the processor.
 
-mod common;
-
+use crate::common::{self, Random, own, random_state, text};
 use clench_gpu::GpuBatch;
 use clench_rigid::batch::{Controls, EnvStatus};
 use clench_rigid::model::Model;
 use clench_rigid::options::{MaxContacts, RigidOptions};
 use clench_rigid::{Batch, BatchOptions, Fault, State};
-use common::{Random, own, random_state, text};
 use std::sync::Arc;
 
 const COUNT: usize = 40;

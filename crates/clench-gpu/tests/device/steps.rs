@@ -1,13 +1,11 @@
 //! Steps: trajectories, and what one environment may know of another.
 
-mod common;
-
+use crate::common::{Random, assert_all_run, batch, convert, own, random_state, text, upload};
 use clench_gpu::{GpuBatch, GpuFault, GpuOptions};
 use clench_rigid::batch::Precision;
 use clench_rigid::model::Model;
 use clench_rigid::options::{MaxContacts, RigidOptions};
 use clench_rigid::{Sim, State};
-use common::{Random, assert_all_run, batch, convert, own, random_state, text, upload};
 use std::sync::Arc;
 
 fn runner() -> Arc<Model> {

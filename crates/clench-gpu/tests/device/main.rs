@@ -1,0 +1,11 @@
+//! Tests of the device through the crate's public face: one program, so that its generic code is compiled once for all of them, and
+//! kernels of several models are compiled side by side.
+
+mod batch;
+mod common;
+mod dm_control;
+mod gymnasium;
+mod outputs;
+mod refusals;
+mod stages;
+mod steps;
