@@ -145,6 +145,11 @@ def test_time_limits_and_help():
         assert done.returncode == 0 and "--" in done.stdout
 
 
+def test_a_program_without_a_device_says_how_to_get_one():
+    done = program.run("simulate", program.ROOT / "models/rolling_sphere.xml", "--envs", 2, "--device", "gpu")
+    assert done.returncode == 2 and "--features gpu" in done.stderr
+
+
 def test_a_line_search_cut_short_is_no_success():
     """One evaluation a search cannot solve this scene; a summary that says ok would hide it."""
     done = program.run("simulate", program.ROOT / "models/pinch.xml", "--json", "--ls-iterations", 1)

@@ -2,7 +2,7 @@
 
 use crate::install::try_to_install;
 use crate::python;
-use crate::run::{cargo, run};
+use crate::run::{ALL_FEATURES, cargo, run};
 use std::path::Path;
 use std::process::Command;
 
@@ -28,10 +28,10 @@ pub(crate) fn test() -> Result<(), String> {
     run(tests(&DRAWING))
 }
 
-/// Runs the tests of these names. All packages are named, so that nothing is compiled anew for other features.
+/// Runs the tests of these names, which the stage `unit` has compiled: all packages are named, so that nothing is compiled anew for other features.
 fn tests(names: &[&str]) -> Command {
     let mut tests = cargo(&["test", "--quiet", "--workspace"]);
-    tests.args(["--features", "clench-cli/gpu,clench-cli/render"]);
+    tests.args(["--features", ALL_FEATURES]);
     for name in names {
         tests.args(["--test", name]);
     }

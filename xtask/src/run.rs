@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// The parts of the program that are left out by default; checks and tests have them.
+pub(crate) const ALL_FEATURES: &str = "clench-cli/gpu,clench-cli/render";
+
 /// The workspace's root folder.
 pub(crate) fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -3,7 +3,7 @@
 use crate::gpu;
 use crate::package;
 use crate::python;
-use crate::run::{Profile, cargo, command, run};
+use crate::run::{ALL_FEATURES, Profile, cargo, command, run};
 use crate::unit;
 use crate::web;
 use std::time::Instant;
@@ -170,7 +170,7 @@ fn clippy() -> Result<(), String> {
         "--quiet",
         "--workspace",
         "--features",
-        "clench-cli/gpu,clench-cli/render",
+        ALL_FEATURES,
         "--all-targets",
         "--",
         "-D",

@@ -1,7 +1,7 @@
 //! The stage `unit`: all Rust tests but those on a graphics device, with a line for each program of tests, so that one sees how far
 //! it is. What `cargo test` prints besides is shown where a test fails.
 
-use crate::run::{cargo, shown};
+use crate::run::{ALL_FEATURES, cargo, shown};
 use std::io::{BufRead, BufReader, pipe};
 use std::process::Command;
 
@@ -37,7 +37,7 @@ pub(crate) fn test() -> Result<(), String> {
 }
 
 fn tests(chosen: &[&str]) -> Command {
-    let mut tests = cargo(&["test", "--workspace"]);
+    let mut tests = cargo(&["test", "--workspace", "--features", ALL_FEATURES]);
     tests.args(chosen).env("CLENCH_GPU", "skip");
     tests
 }

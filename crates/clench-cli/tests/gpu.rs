@@ -1,4 +1,5 @@
-//! Runs on a graphics device, of programs that were built for them; the others say how to get one.
+//! Runs on a graphics device, of programs that were built for them.
+#![cfg(feature = "gpu")]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -11,16 +12,6 @@ fn clench(arguments: &[&str]) -> Output {
 }
 
 #[test]
-#[cfg(not(feature = "gpu"))]
-fn a_program_without_the_feature_says_how_to_get_one_with_it() {
-    let output = clench(&["--envs", "2", "--device", "gpu"]);
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("--features gpu"), "{said}");
-}
-
-#[test]
-#[cfg(feature = "gpu")]
 fn a_run_on_a_device_is_told_as_one_on_the_processor_is() {
     if std::env::var("CLENCH_GPU").as_deref() != Ok("require") {
         return;
@@ -43,7 +34,6 @@ fn a_run_on_a_device_is_told_as_one_on_the_processor_is() {
 }
 
 #[test]
-#[cfg(feature = "gpu")]
 fn a_run_on_a_device_is_recorded() {
     if std::env::var("CLENCH_GPU").as_deref() != Ok("require") {
         return;
