@@ -178,7 +178,6 @@ VALUES = {
     "bone": {"body": "cube", "bindpos": "0.1 0 0", "bindquat": "0 1 0 0", "vertid": "2 1 0", "vertweight": "0.5 1 2"},
     "layer": {"texture": "checks", "role": "normal"},
     "mesh": {
-        "normal": "0 0 1 1 0 0 0 1 0 0 1 1",
         "texcoord": "0 0 1 0 0 1 1 1",
         "smoothnormal": "true",
     },

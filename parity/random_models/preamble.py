@@ -143,6 +143,8 @@ class Preamble(Maker):
             mesh.set("scale", text(*(draw.choice((1, 1, -1)) * draw.scale(0.5, 2) for _ in range(3))))
         if draw.chance(0.2) and self.materials:
             mesh.set("material", draw.choice(self.materials))
+        if "vertex" in mesh.attrib and self.last.chance(0.3):  # a normal and two tangents at each vertex
+            mesh.set("normal", text(*(self.last.number(-1, 1) for _ in range(3 * len(mesh.get("vertex").split())))))
         self.fill(mesh)
         self.meshes.append(mesh.get("name"))
 

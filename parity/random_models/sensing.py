@@ -2,7 +2,7 @@
 
 from random_models import harmless
 from random_models.maker import Maker
-from random_models.values import text
+from random_models.values import VALUES, text
 
 # Few models have a tendon whose range counts, which these measure.
 RARE = ("tendonlimitpos", "tendonlimitvel", "tendonlimitfrc") * 3
@@ -36,6 +36,27 @@ class Sensing(Maker):
             if sensor.get("reduce") == "netforce" and "data" in sensor.attrib:
                 kept = [word for word in sensor.get("data").split() if word not in ("linvel", "angvel")]
                 sensor.set("data", " ".join(kept) or "found")
+
+        self.skins(section)
+
+    def skins(self, section):
+        """Sensors that feel with a mesh in the frame of a geom."""
+        draw = self.last
+        geoms = [name for name, _ in self.geoms]
+        terrain = any(geom.get("type") == "hfield" for geom in self.root.iter("geom"))  # MuJoCo ends the process where it is touched
+        if not self.meshes or not geoms or terrain or draw.chance(0.7):
+            return
+        for _ in range(draw.randint(1, 3)):
+            skin = self.add(section, "tactile", mesh=draw.choice(self.meshes), geom=draw.choice(geoms))
+            for name, value in VALUES["sensor/tactile"].items():
+                if draw.chance(0.2):
+                    skin.set(name, value(draw))
+            if draw.chance(0.1):
+                skin.set("name", f"skin{len(section)}")
+            if "nsample" in skin.attrib and draw.chance(0.7):
+                skin.set("delay", text(draw.scale(0.001, 0.03)))
+            if "nsample" in skin.attrib and draw.chance(0.3):
+                skin.set("interval", text(draw.scale(0.001, 0.03)))
 
     def attached(self, kind):
         """What a sensor of this kind measures, None where there is nothing of the sort."""

@@ -418,6 +418,7 @@ VALUES = {
     **{f"sensor/{kind}": SENSOR for kind in SENSORS},
     **{f"sensor/{kind}": {**SENSOR, "data": words(RAY_DATA)} for kind in ("rangefinder",)},
     "sensor/contact": {**SENSOR, "num": one_of(1, 2, 5), "data": words(CONTACT_DATA), "reduce": one_of("none", "mindist", "maxforce", "netforce")},
+    "sensor/tactile": {"cutoff": scale(0.02, 5), **PAST},
     "sensor/user": {"noise": scale(0.01, 1), "cutoff": scale(0.02, 5), "datatype": one_of("real", "positive")},
     **{f"sensor/{kind}": {"noise": scale(0.01, 1), "cutoff": one_of(0), **PAST} for kind in TURNS},
 }

@@ -3,7 +3,7 @@
 mod files;
 
 use clench_formats::read_str;
-use clench_rigid::builder::{KeyframeElement, KeyframePart, ModelBuilder};
+use clench_rigid::builder::{KeyframeElement, KeyframePart, ModelBuilder, SensorSubject};
 use files::Files;
 
 const ARM: &str = "<mujoco model='arm'>
@@ -23,7 +23,7 @@ const ARM: &str = "<mujoco model='arm'>
     <body name='D'><joint name='jd'/><geom/></body>
   </worldbody>
   <actuator><motor name='ma' joint='ja'/><motor name='md' joint='jd'/></actuator>
-  <sensor><clock name='c'/><jointpos name='sa' joint='ja'/></sensor>
+  <sensor><clock name='c'/><jointpos name='sa' joint='ja'/><tactile name='st' mesh='m' geom='ga'/></sensor>
   <contact><exclude name='ex' body1='A' body2='B'/><exclude name='lost' body1='A' body2='D'/></contact>
   <equality><weld name='w' body1='A'/><weld name='lost' body1='A' body2='D'/></equality>
 </mujoco>";
@@ -54,7 +54,11 @@ fn a_body_brings_what_refers_to_it_and_keeps_the_settings_of_its_file() {
     let bodies = names(&model.bodies, |b| &b.name);
     assert_eq!(bodies, ["world", "P", "p_A", "p_B", "p_C"]);
     assert_eq!(names(&model.actuators, |a| &a.name), ["own", "p_ma"]);
-    assert_eq!(names(&model.sensors, |s| &s.name), ["p_c", "p_sa"]);
+    assert_eq!(names(&model.sensors, |s| &s.name), ["p_c", "p_sa", "p_st"]);
+    let SensorSubject::Taxels { mesh, geom } = &model.sensors[2].subject else {
+        panic!("not a skin")
+    };
+    assert_eq!([mesh, geom], ["p_m", "p_ga"]);
     assert_eq!(names(&model.excludes, |e| &e.name), ["p_ex"]);
     assert_eq!(names(&model.equalities, |e| &e.name), ["p_w"]);
     assert_eq!(names(&model.meshes, |m| &m.name), ["p_m"]);

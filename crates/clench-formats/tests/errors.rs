@@ -331,7 +331,7 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         expect(line, element, later);
     }
     for (line, element) in [
-        ("<sensor><tactile/></sensor>", "tactile"),
+        ("<sensor><plugin/></sensor>", "plugin"),
         (
             "<tendon><spatial springyield='1'><site site='a'/></spatial></tendon>",
             "spatial",

@@ -6,11 +6,12 @@ use clench_rigid::model::{
     CameraMode, ContactSide, FrameObject, SensorData, SensorKind, SensorTarget,
 };
 
-const BODIES: &str = "<worldbody><geom name='floor' type='plane' size='1 1 1'/>
+const BODIES: &str = "<asset><mesh name='skin' builtin='plate' params='2 3'/></asset><worldbody><geom name='floor' type='plane' size='1 1 1'/>
     <body name='arm'><joint name='hinge'/><geom name='rod' size='.1'/><site name='tip' type='box' size='.1 .2 .3'/>
     <camera name='eye' resolution='3 2'/>
     <camera name='blind' resolution='0 2'/><camera name='huge' resolution='99999 99999'/>
-    <body name='hand'><joint name='ball' type='ball'/><geom name='fist' size='.1'/></body></body></worldbody>
+    <body name='hand'><joint name='ball' type='ball'/><geom name='fist' size='.1'/></body></body>
+    <body><geom name='air' contype='0' conaffinity='0' size='1'/></body></worldbody>
     <actuator><motor name='motor' joint='hinge'/></actuator>";
 
 fn model(sensors: &str) -> Result<clench_rigid::Model, String> {
@@ -133,10 +134,34 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
             "<contact reduce='netforce' data='linvel'/>",
             "a net force has no linvel",
         ),
+        (
+            "<tactile geom='fist'/>",
+            "the attribute \"mesh\" is required",
+        ),
+        (
+            "<tactile mesh='skin'/>",
+            "the attribute \"geom\" is required",
+        ),
+        (
+            "<tactile mesh='no' geom='fist'/>",
+            "there is no mesh \"no\"",
+        ),
+        (
+            "<tactile mesh='skin' geom='no'/>",
+            "there is no geom \"no\"",
+        ),
+        (
+            "<tactile mesh='skin' geom='air'/>",
+            "needs a geom that can collide",
+        ),
+        (
+            "<tactile mesh='skin' geom='fist' noise='1'/>",
+            "unknown attribute \"noise\"",
+        ),
     ] {
         let error = model(sensor).expect_err(sensor);
         assert!(error.contains(reason), "{sensor}: {error}");
-        assert!(error.contains('7'), "{sensor} names no line: {error}");
+        assert!(error.contains('8'), "{sensor} names no line: {error}");
     }
 }
 
@@ -144,11 +169,11 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
 fn the_numbers_of_a_sensor_follow_from_its_data() {
     let model = model(
         "<rangefinder site='tip'/><rangefinder camera='eye' data='dist point'/><camprojection site='tip' camera='eye'/>
-         <contact/><contact subtree1='arm' num='3' data='found force torque dist'/>",
+         <contact/><contact subtree1='arm' num='3' data='found force torque dist'/><tactile mesh='skin' geom='fist'/>",
     )
     .expect("valid");
     let numbers: Vec<_> = model.sensors.iter().map(|s| s.numbers.clone()).collect();
-    assert_eq!(numbers, [0..1, 1..25, 25..27, 27..28, 28..52]);
+    assert_eq!(numbers, [0..1, 1..25, 25..27, 27..28, 28..52, 52..70]);
     let SensorTarget::Contacts(query) = &model.sensors[4].target else {
         panic!("not of contacts")
     };

@@ -83,7 +83,7 @@ pub(crate) fn make(
     }
 }
 
-/// A point with the bits that it keeps.
+/// A point or tangent with the bits that it keeps.
 fn point(x: f64, y: f64, z: f64) -> Vec3<f64> {
     Vec3::from_array([x, y, z].map(|coordinate| f64::from(coordinate as f32)))
 }
@@ -329,14 +329,18 @@ fn wedge(bins: [usize; 2], angles: [f64; 2], fovea: f64) -> Triangles {
             .collect()
     };
     let elevations = middles(1);
-    let row = |azimuth: f64| {
-        elevations.iter().map(move |&elevation| {
-            let out = elevation.cos();
-            point(out * azimuth.sin(), elevation.sin(), -out * azimuth.cos())
-        })
-    };
+    let (mut vertices, mut tangents) = (Vec::new(), Vec::new());
+    for azimuth in middles(0) {
+        let (sin, cos) = azimuth.sin_cos();
+        for &elevation in &elevations {
+            let (up, out) = elevation.sin_cos();
+            vertices.push(point(out * sin, up, -out * cos));
+            tangents.push([point(cos, 0.0, sin), point(-up * sin, out, up * cos)]);
+        }
+    }
     Triangles {
-        vertices: middles(0).into_iter().flat_map(row).collect(),
+        vertices,
+        tangents,
         ..Triangles::default()
     }
 }
@@ -357,7 +361,9 @@ fn plate(cells: [usize; 2]) -> Triangles {
             }
         }
     }
+    let axes = [Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
     Triangles {
+        tangents: vec![axes; vertices.len()],
         vertices,
         faces,
         ..Triangles::default()

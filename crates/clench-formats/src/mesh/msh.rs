@@ -45,5 +45,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
             numbers.as_chunks::<2>().0.to_vec()
         },
         face_texcoords: Vec::new(),
+        tangents: Vec::new(),
     })
 }

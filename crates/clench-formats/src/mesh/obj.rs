@@ -85,6 +85,7 @@ fn triangles(
         faces,
         texcoords,
         face_texcoords,
+        tangents: Vec::new(),
     })
 }
 

@@ -9,6 +9,8 @@ pub(crate) struct Triangles {
     pub vertices: Vec<Vec3<f64>>,
     /// Triangles; none for a cloud of points.
     pub faces: Vec<[u32; 3]>,
+    /// Two tangents at each vertex, or none.
+    pub tangents: Vec<[Vec3<f64>; 2]>,
     /// Places in a picture, across and down: one a vertex, or those that `face_texcoords` names; or none.
     pub texcoords: Vec<[f32; 2]>,
     /// Which of these each corner of each triangle has; none stands for those of the vertices.

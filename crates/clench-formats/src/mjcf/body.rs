@@ -348,6 +348,8 @@ impl<'a> BodyReader<'a> {
         self.frames.instance(&mut geom.mesh, place.scale);
         self.frames.instance(&mut geom.hfield, place.scale);
         self.frames.add(Named::Geom, &geom.name, place.scale);
+        let number = self.bodies[place.body].geoms.len();
+        (self.frames).add_mesh(&geom, place.body, number, place.scale);
         self.bodies[place.body].geoms.push(geom);
         Ok(())
     }

@@ -51,7 +51,7 @@ impl MeshDraft {
             }
             mesh.refquat = Quat::from_f64(quat);
         }
-        let found = match element.text("builtin") {
+        let mut found = match element.text("builtin") {
             Some(builtin) => {
                 if builtin == "plate" {
                     mesh.inertia = MeshInertia::Shell; // It has no volume.
@@ -65,12 +65,17 @@ impl MeshDraft {
                 found
             }
         };
+        let given = read_tangents(element, found.vertices.len())?;
+        if !given.is_empty() {
+            found.tangents = given;
+        }
         if mesh.name.is_empty() {
             return Err(element.error("a mesh needs a name or a file"));
         }
         Ok(MeshSpec {
             vertices: found.vertices,
             faces: found.faces,
+            tangents: found.tangents,
             texcoords: found.texcoords,
             face_texcoords: found.face_texcoords,
             origin: Some(element.origin.clone()),
@@ -103,6 +108,7 @@ fn read_or_written(
         faces: read_faces(element)?,
         texcoords: read_texcoords(element)?,
         face_texcoords: Vec::new(),
+        tangents: Vec::new(),
     };
     let Some(mut file) = files.read(element, spending)? else {
         return Ok(written);
@@ -154,6 +160,17 @@ fn merge(file: Triangles, written: Triangles, element: &Element) -> Result<Trian
     })
 }
 
+/// Tangents, where each vertex has a normal and two of them: nine numbers. Normals alone do nothing to motion.
+fn read_tangents(element: &Element, vertices: usize) -> Result<Vec<[Vec3<f64>; 2]>, LoadError> {
+    let numbers = element.list("normal")?.unwrap_or_default();
+    if numbers.len() != 9 * vertices {
+        return Ok(Vec::new());
+    }
+    let frames = numbers.as_chunks::<9>().0.iter();
+    let tangents = frames.map(|&[_, _, _, a, b, c, d, e, f]| [[a, b, c], [d, e, f]]);
+    Ok(tangents.map(|pair| pair.map(short)).collect())
+}
+
 /// Vertices with the 24 bits a coordinate that MuJoCo keeps.
 fn read_vertices(element: &Element) -> Result<Vec<Vec3<f64>>, LoadError> {
     let numbers = element.list("vertex")?.unwrap_or_default();
@@ -161,8 +178,12 @@ fn read_vertices(element: &Element) -> Result<Vec<Vec3<f64>>, LoadError> {
     if !rest.is_empty() {
         return Err(element.error("vertex needs three numbers a vertex"));
     }
-    let short = |point: [f64; 3]| Vec3::from_array(point.map(|x| f64::from(x as f32)));
     Ok(points.iter().copied().map(short).collect())
+}
+
+/// What MuJoCo keeps of three numbers.
+fn short(numbers: [f64; 3]) -> Vec3<f64> {
+    Vec3::from_array(numbers.map(|x| f64::from(x as f32)))
 }
 
 fn read_texcoords(element: &Element) -> Result<Vec<[f32; 2]>, LoadError> {

@@ -49,6 +49,12 @@ const USER: Rule = Rule {
 };
 const PROJECTION: Rule = rule!("site camera");
 const CONTACTS: Rule = rule!("geom1 geom2 body1 body2 subtree1 subtree2 site num data reduce");
+/// A skin has no noise.
+const TAXELS: Rule = Rule {
+    element: "sensor",
+    read: "name cutoff nsample interp delay interval user mesh geom",
+    ..NONE
+};
 const RAYS: Rule = rule!("site camera data");
 
 /// The rule of a sensor's element.
@@ -67,6 +73,7 @@ pub(crate) fn rule(tag: &str) -> Option<&'static Rule> {
         Attachment::Projection => &PROJECTION,
         Attachment::Rays => &RAYS,
         Attachment::Contacts => &CONTACTS,
+        Attachment::Taxels => &TAXELS,
         Attachment::Geoms => &GEOMS,
         Attachment::User => &USER,
     })
@@ -99,6 +106,10 @@ pub(crate) fn read(element: &Element, kind: SensorKind) -> Result<SensorSpec, Lo
         },
         Attachment::Rays => read_rays(element)?,
         Attachment::Contacts => read_contacts(element)?,
+        Attachment::Taxels => SensorSubject::Taxels {
+            mesh: element.required_text("mesh")?.to_owned(),
+            geom: element.required_text("geom")?.to_owned(),
+        },
         Attachment::Geoms => SensorSubject::Geoms([
             read_geoms(element, "geom1", "body1")?,
             read_geoms(element, "geom2", "body2")?,

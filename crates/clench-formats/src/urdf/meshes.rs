@@ -81,6 +81,7 @@ impl<'a> Meshes<'a> {
             name: name.clone(),
             vertices: triangles.vertices,
             faces: triangles.faces,
+            tangents: triangles.tangents,
             texcoords: triangles.texcoords,
             face_texcoords: triangles.face_texcoords,
             scale: Vec3::from_array(scale),

@@ -33,6 +33,8 @@ pub struct MeshSpec {
     pub texcoords: Vec<[f32; 2]>,
     /// Which of these each corner of each triangle has; none stands for those of the vertices.
     pub face_texcoords: Vec<[u32; 3]>,
+    /// Two tangents at each vertex, along which a tactile sensor measures; or none.
+    pub tangents: Vec<[Vec3<f64>; 2]>,
     /// Subtracted from the vertices.
     pub refpos: Vec3<f64>,
     /// Turned back from the vertices.
@@ -55,6 +57,7 @@ impl Default for MeshSpec {
             faces: Vec::new(),
             texcoords: Vec::new(),
             face_texcoords: Vec::new(),
+            tangents: Vec::new(),
             refpos: Vec3::ZERO,
             refquat: Quat::IDENTITY,
             scale: Vec3::new(1.0, 1.0, 1.0),

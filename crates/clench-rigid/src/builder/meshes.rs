@@ -66,6 +66,9 @@ pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, Bu
     let vertices: Vec<Vec3<f64>> = (vertices.iter())
         .map(|&v| turn.rotate(v - mass.pos))
         .collect();
+    let tangents = (spec.tangents.iter())
+        .map(|pair| placed_tangents(spec, pair).map(|tangent| turn.rotate(tangent)))
+        .collect();
     let by_axis = |pick: fn(f64, f64) -> f64| {
         let all = vertices.iter().copied();
         all.reduce(|a, b| Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z)))
@@ -85,6 +88,7 @@ pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, Bu
                 .map(|s| Hull::new(&s, &vertices)),
             texcoords: spec.texcoords.clone(),
             face_texcoords: face_texcoords(spec, &faces),
+            tangents,
             spec: spec.clone(),
             on_demand: Default::default(),
             vertices,
@@ -111,6 +115,16 @@ fn check(spec: &MeshSpec) -> Result<(), BuildError> {
         }
     }
     check_texcoords(spec)?;
+    if !spec.tangents.is_empty() && spec.tangents.len() != spec.vertices.len() {
+        let counts = (spec.tangents.len(), spec.vertices.len());
+        return Err(spec.error(format!(
+            "has tangents at {} of {} vertices",
+            counts.0, counts.1
+        )));
+    }
+    if !spec.tangents.iter().flatten().all(finite) {
+        return Err(spec.error("a tangent is not finite"));
+    }
     spec.require_finite("refpos", &spec.refpos.to_array())?;
     spec.require_finite("refquat", &spec.refquat.to_array())?;
     spec.require_finite("scale", &spec.scale.to_array())?;
@@ -176,6 +190,23 @@ fn placed(spec: &MeshSpec) -> Vec<Vec3<f64>> {
     (spec.vertices.iter())
         .map(|&v| back.rotate(v - spec.refpos).scale_by(spec.scale))
         .collect()
+}
+
+/// Tangents after reference orientation and scale, by which MuJoCo divides them, as normals. It does so in single precision, which
+/// speeds along them show.
+fn placed_tangents(spec: &MeshSpec, tangents: &[Vec3<f64>; 2]) -> [Vec3<f64>; 2] {
+    let back = spec.refquat.normalize().conjugate();
+    let scale = spec.scale.to_array();
+    tangents.map(|tangent| {
+        let turned = back.rotate(tangent).to_array().map(|x| x as f32);
+        let [x, y, z] = std::array::from_fn(|i| (f64::from(turned[i]) / scale[i]) as f32);
+        let squared = x * x + y * y + z * z;
+        let unit = match f64::from(squared) > NEGLIGIBLE {
+            true => [x, y, z].map(|x| x * (1.0 / squared.sqrt())),
+            false => [0.0, 0.0, 1.0],
+        };
+        Vec3::from_array(unit.map(f64::from))
+    })
 }
 
 fn faces(spec: &MeshSpec, surface: Option<&HullSurface>) -> Vec<[u32; 3]> {

@@ -6,7 +6,7 @@ use super::model_builder::ModelBuilder;
 use super::resolve::Names;
 use super::uses::GeomUses;
 use super::visuals::Palette;
-use super::{BuildError, GeomSpec, SiteSpec};
+use super::{BuildError, GeomSpec, SensorSubject, SiteSpec};
 use crate::model::{HeightField, Model};
 use clench_collide::{Shape, ShapeKind};
 use clench_math::{Motion, Quat, Vec3};
@@ -103,6 +103,13 @@ impl<'a> Assets<'a> {
         }
         for site in builder.bodies.iter().flat_map(|body| &body.sites) {
             if let Ok(mesh) = self.names.find(&site.mesh, site) {
+                used[mesh] = true;
+            }
+        }
+        for sensor in &builder.sensors {
+            if let SensorSubject::Taxels { mesh, .. } = &sensor.subject
+                && let Ok(mesh) = self.names.find(mesh, sensor)
+            {
                 used[mesh] = true;
             }
         }

@@ -119,6 +119,13 @@ pub enum SensorSubject {
     Geoms([GeomsName; 2]),
     /// Contacts.
     Contacts(ContactQuerySpec),
+    /// The vertices of a mesh in the frame of a geom.
+    Taxels {
+        /// The mesh.
+        mesh: String,
+        /// The geom.
+        geom: String,
+    },
     /// So many numbers of a user's own, of this kind.
     User(usize, SensorData),
 }

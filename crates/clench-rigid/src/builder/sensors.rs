@@ -8,9 +8,10 @@ use super::sensor_specs::{
 };
 use super::{BuildError, histories};
 use crate::model::{
-    Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, JointKind,
-    Model, RayField, RaySource, Sensor, SensorData, SensorKind, SensorTarget,
+    Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, Geom,
+    JointKind, Model, RayField, RaySource, Sensor, SensorData, SensorKind, SensorTarget,
 };
+use crate::sensor::tactile;
 use clench_collide::ShapeKind;
 use std::ops::Range;
 use std::sync::Arc;
@@ -93,6 +94,10 @@ fn dim(spec: &SensorSpec, target: &SensorTarget, model: &Model) -> Option<usize>
             Some(model.actuators[u].outputs.len())
         }
         (_, SensorTarget::Contacts(query)) => query.count.checked_mul(query.size()),
+        (_, &SensorTarget::Taxels { mesh, .. }) => model.meshes[mesh]
+            .vertices
+            .len()
+            .checked_mul(tactile::CHANNELS),
         _ => Some(spec.kind.dim()),
     }
 }
@@ -161,6 +166,14 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
         (Attachment::Contacts, Of::Contacts(query)) => {
             contact_query(spec, names, model, query).map(SensorTarget::Contacts)
         }
+        (Attachment::Taxels, Of::Taxels { mesh, geom }) => {
+            let geom = names.geoms.find(geom, spec)?;
+            require_collider(spec, model, geom)?;
+            Ok(SensorTarget::Taxels {
+                mesh: find_mesh(spec, model, mesh)?,
+                geom,
+            })
+        }
         (Attachment::Geoms, Of::Geoms([first, second])) => {
             let sets = [
                 geoms(spec, names, model, first)?,
@@ -196,6 +209,21 @@ fn require_pixels(spec: &SensorSpec, model: &Model, camera: usize) -> Result<(),
     match camera.resolution.contains(&0) {
         true => Err(spec.error(format!("the camera \"{}\" has no pixels", camera.name))),
         false => Ok(()),
+    }
+}
+
+fn find_mesh(spec: &SensorSpec, model: &Model, name: &str) -> Result<usize, BuildError> {
+    let found = model.meshes.iter().position(|mesh| mesh.name == name);
+    found.ok_or_else(|| spec.error(format!("there is no mesh \"{name}\"")))
+}
+
+/// What nothing can touch feels nothing.
+fn require_collider(spec: &SensorSpec, model: &Model, geom: usize) -> Result<(), BuildError> {
+    let body = &model.bodies[model.geoms[geom].body];
+    let collides = |geom: &Geom| geom.contype != 0 || geom.conaffinity != 0;
+    match model.geoms[body.geoms.clone()].iter().any(collides) {
+        true => Ok(()),
+        false => Err(spec.error("the geom's body needs a geom that can collide")),
     }
 }
 

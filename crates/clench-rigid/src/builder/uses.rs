@@ -80,6 +80,7 @@ fn geoms_of(subject: &SensorSubject) -> Vec<&str> {
                 _ => None,
             })
             .collect(),
+        SensorSubject::Taxels { geom, .. } => vec![geom],
         _ => Vec::new(),
     }
 }

@@ -40,6 +40,8 @@ pub enum Attachment {
     Geoms,
     /// The contacts between two sides.
     Contacts,
+    /// The vertices of a mesh in the frame of a geom.
+    Taxels,
     /// Numbers of a user's program: it is zero here.
     User,
 }
@@ -61,6 +63,7 @@ impl fmt::Display for Attachment {
             Attachment::Rays => "a site or a camera",
             Attachment::Geoms => "two geoms or bodies",
             Attachment::Contacts => "two sides of contacts",
+            Attachment::Taxels => "a mesh and a geom",
             Attachment::User => "numbers of a user's own",
         })
     }
@@ -198,6 +201,9 @@ sensor_kinds! {
     FromTo "fromto" Geoms 6 Real;
     /// What contacts between two sides are and do: a fixed number of them, zeros where there are fewer.
     Contact "contact" Contacts 0 Real;
+    /// How deep each vertex of a mesh in a geom's frame is in what touches the geom's body, m; then how fast each slides there along
+    /// its first tangent, and along its second, m/s.
+    Tactile "tactile" Taxels 0 Real;
     /// Potential energy, J.
     PotentialEnergy "e_potential" Nothing 1 Real;
     /// Kinetic energy, J.

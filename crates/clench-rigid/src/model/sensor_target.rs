@@ -179,4 +179,11 @@ pub enum SensorTarget {
     Geoms([Range<usize>; 2]),
     /// Contacts.
     Contacts(ContactQuery),
+    /// What the vertices of a mesh feel.
+    Taxels {
+        /// The mesh.
+        mesh: usize,
+        /// The geom in whose frame its vertices stand.
+        geom: usize,
+    },
 }

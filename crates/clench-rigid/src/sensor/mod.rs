@@ -1,7 +1,7 @@
 //! What sensors measure, evaluated after a forward pass and before the state moves on.
 //!
 //! The kinds are a table in `model/sensor.rs`; here stands how each is read. A file a subject: frames in motion, forces between
-//! bodies, limits, volumes of sites, distances, rays.
+//! bodies, limits, volumes of sites, distances, rays, skins that feel.
 
 pub(crate) mod bodies;
 mod camera;
@@ -12,6 +12,7 @@ mod limit;
 mod ray;
 mod reading;
 pub(crate) mod readings;
+pub(crate) mod tactile;
 mod volume;
 
 use crate::model::{Model, Params, Sensor, SensorData, SensorKind};

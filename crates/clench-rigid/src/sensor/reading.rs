@@ -50,6 +50,7 @@ impl<'a, T: Real> Reading<'a, T> {
             SensorTarget::Projection { site, camera } => self.project(*site, *camera, out),
             SensorTarget::Rays { source, fields } => self.read_rays(*source, fields, out),
             SensorTarget::Contacts(query) => self.read_contacts(query, out),
+            &SensorTarget::Taxels { mesh, geom } => self.read_taxels(mesh, geom, out),
             SensorTarget::Geoms(sets) => self.read_distance(sensor, sets, out),
         }
     }

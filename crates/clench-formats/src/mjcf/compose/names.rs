@@ -145,13 +145,18 @@ impl Namespace<'_> {
     pub(super) fn rename_tree(&self, element: &mut Element) {
         self.rename(element);
         self.rename_attribute(element, "target");
+        self.rename_assets_of(element);
+        for child in &mut element.children {
+            self.rename_tree(child);
+        }
+    }
+
+    /// Renames the assets that an element of another model refers to.
+    pub(super) fn rename_assets_of(&self, element: &mut Element) {
         if self.foreign {
             for asset in ["mesh", "hfield", "material", "texture"] {
                 self.rename_attribute(element, asset);
             }
-        }
-        for child in &mut element.children {
-            self.rename_tree(child);
         }
     }
 

@@ -74,6 +74,7 @@ pub(super) fn copy(
         return None;
     }
     namespace.rename(&mut copy);
+    namespace.rename_assets_of(&mut copy);
     Some(copy)
 }
 

@@ -25,9 +25,9 @@ pub(super) const RULES: &[Rule] = &[
     ignored("layer", "texture role", ""),
     Rule {
         element: "mesh",
-        read: "name class file content_type builtin params vertex face refpos refquat scale inertia maxhullvert \
-            material",
-        ignored: "normal texcoord smoothnormal",
+        read: "name class file content_type builtin params vertex face normal refpos refquat scale inertia \
+            maxhullvert material",
+        ignored: "texcoord smoothnormal",
         later_children: "plugin",
         ..NONE
     },

@@ -69,7 +69,7 @@ pub(super) const RULES: &[Rule] = &[
     section("extension", "", "plugin"),
     section("deformable", "skin", "flex"),
     // Which kinds of sensor there are, and with which attributes, says the table of sensors.
-    section("sensor", "", "tactile plugin"),
+    section("sensor", "", "plugin"),
     section("keyframe", "key", ""),
     Rule {
         element: "key",

@@ -106,11 +106,17 @@ fn scale_actuator(
     let command = Command::new(actuator, written);
     // What cannot be counted is refused when the model is built.
     let states = command.states(actuator, written, along).unwrap_or_default();
+    let is_servo = |actuator: &ActuatorSpec| actuator.gainprm[0] == -actuator.biasprm[1];
+    let was_servo = actuator.gain == GainKind::Fixed && is_servo(actuator);
     scale_gain(actuator, command, along);
     scale_bias(actuator, along);
     scale_setpoints(actuator, along);
     let first = states.controls.first().copied().unwrap_or(1.0);
     let activation = states.activations.first().copied().unwrap_or(1.0);
+    // As in MuJoCo, a servo that is none once it is scaled inherits no range.
+    if was_servo && !is_servo(actuator) {
+        actuator.inheritrange = 0.0;
+    }
     actuator.ctrlrange = match actuator.gain {
         GainKind::Pid => actuator.ctrlrange.map(|end| end * along.coordinate),
         _ => actuator.ctrlrange.map(|end| end * first),

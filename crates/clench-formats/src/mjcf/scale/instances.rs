@@ -3,7 +3,10 @@
 use super::{FrameId, Frames, located};
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_rigid::builder::{HeightFieldSpec, MeshSpec, ModelBuilder};
+use clench_rigid::builder::{
+    GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder,
+};
+use std::collections::HashSet;
 
 impl Frames {
     /// The name of a mesh or height field in the size that a frame asks for: its own for the first size that is asked for, and one
@@ -21,6 +24,37 @@ impl Frames {
         });
         if number > 0 {
             *asset = instance_name(asset, number);
+        }
+    }
+
+    /// Remembers a geom, number `geom` of a body, if its mesh decides how its density is scaled.
+    pub(in crate::mjcf) fn add_mesh(
+        &mut self,
+        spec: &GeomSpec,
+        body: usize,
+        geom: usize,
+        frame: FrameId,
+    ) {
+        let length = self.scale(frame).length;
+        let has_density = matches!(spec.mass, GeomMass::Density(_)) && !spec.shellinertia;
+        if length != 1.0 && has_density && !spec.mesh.is_empty() {
+            self.meshes.push((body, geom, length));
+        }
+    }
+
+    /// The density of a shell is mass over area, not over volume.
+    pub(super) fn weigh_shells(&self, builder: &mut ModelBuilder) {
+        let shells: HashSet<&str> = (builder.meshes.iter())
+            .filter(|mesh| mesh.inertia == MeshInertia::Shell)
+            .map(|mesh| mesh.name.as_str())
+            .collect();
+        for &(body, geom, length) in &self.meshes {
+            let geom = &mut builder.bodies[body].geoms[geom];
+            if let GeomMass::Density(density) = &mut geom.mass
+                && shells.contains(geom.mesh.as_str())
+            {
+                *density *= length;
+            }
         }
     }
 

@@ -75,8 +75,8 @@ impl Frames {
 /// What becomes of a number: it is multiplied by the first, and the second is added.
 type Map = (f64, f64);
 
-fn states(actuators: &[States], which: impl Fn(&States) -> &[f64]) -> Vec<Map> {
-    (actuators.iter().flat_map(|states| which(states)))
+fn states(actuators: &[States], which: impl Fn(&States) -> &Vec<f64>) -> Vec<Map> {
+    (actuators.iter().flat_map(which))
         .map(|&factor| linear(factor))
         .collect()
 }

@@ -210,6 +210,8 @@ pub(super) struct Frames {
     mocaps: Vec<FrameId>,
     /// The lengths of a mesh or height field in the order of the elements that are it.
     instances: BTreeMap<String, Vec<f64>>,
+    /// Scaled geoms that are meshes and have the mass of a density: body, number in it, and scale of lengths.
+    meshes: Vec<(usize, usize, f64)>,
 }
 
 /// A kind of element that others name.
@@ -233,6 +235,7 @@ impl Default for Frames {
             all_joints: Vec::new(),
             mocaps: Vec::new(),
             instances: BTreeMap::new(),
+            meshes: Vec::new(),
         }
     }
 }
@@ -310,7 +313,7 @@ impl Frames {
     /// Scales all that names what is in the frames.
     ///
     /// # Errors
-    /// Actuators whose parameters cannot be scaled, and what takes more memory than is left.
+    /// Actuators and sensors that cannot be scaled, and what takes more memory than is left.
     pub(super) fn scale_rest(
         mut self,
         shortcuts: &[Shortcut],
@@ -321,10 +324,11 @@ impl Frames {
             return Ok(());
         }
         self.make_instances(builder, spending)?;
+        self.weigh_shells(builder);
         self.scale_tendons(builder);
         self.scale_pairs(builder);
         self.scale_equalities(builder);
-        self.scale_sensors(builder);
+        self.scale_sensors(builder)?;
         let actuators = self.scale_actuators(shortcuts, builder)?;
         self.scale_keyframes(&actuators, builder)
     }

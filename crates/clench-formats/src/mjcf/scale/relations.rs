@@ -1,6 +1,7 @@
 //! Pairs, tendons, equalities and sensors.
 
-use super::{Along, Coordinate, FrameId, Frames, Scale};
+use super::{Along, Coordinate, FrameId, Frames, Scale, located};
+use crate::LoadError;
 use clench_rigid::builder::{
     ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName, GeomsName, ModelBuilder,
     SensorSpec, SensorSubject, TendonSpec, WrapSpec,
@@ -163,12 +164,21 @@ impl Frames {
         equality.solimp[2] *= width;
     }
 
-    pub(super) fn scale_sensors(&self, builder: &mut ModelBuilder) {
+    /// # Errors
+    /// A sensor that feels with a mesh, whose points would have to be scaled.
+    pub(super) fn scale_sensors(&self, builder: &mut ModelBuilder) -> Result<(), LoadError> {
         for sensor in &mut builder.sensors {
+            if let SensorSubject::Taxels { geom, .. } = &sensor.subject
+                && self.of(&self.geoms, geom) != Scale::ONE
+            {
+                let message = "a tactile sensor cannot be scaled";
+                return Err(located(&sensor.origin, "sensor", &sensor.name, message));
+            }
             let factor = self.of_sensor(sensor);
             sensor.cutoff *= factor;
             sensor.noise *= factor;
         }
+        Ok(())
     }
 }
 

@@ -28,6 +28,7 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
         inertia,
         max_hull_vertices,
         // What is only seen is not in a saved model.
+        tangents,
         texcoords: _,
         face_texcoords: _,
         origin: _,
@@ -50,6 +51,13 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
         tag = tag.integer("maxhullvert", *bound as i64);
     }
     tag = tag.singles("vertex", vertices.as_flattened().iter().copied());
+    if !tangents.is_empty() {
+        // Of a normal nobody asks: any stands in its place.
+        let frames = tangents
+            .iter()
+            .flat_map(|[a, b]| [a.cross(*b), *a, *b].map(Vec3::to_array));
+        tag = tag.singles("normal", frames.flatten());
+    }
     if !faces.is_empty() {
         tag = tag.integers("face", faces.as_flattened().iter().map(|&v| v.into()));
     }

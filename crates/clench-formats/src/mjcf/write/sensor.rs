@@ -66,6 +66,9 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
                 tag.words("data", fields.iter().map(|field| field.name()))
             }
             (SensorTarget::Contacts(query), _) => write_contacts(model, query, tag)?,
+            (SensorTarget::Taxels { mesh, geom }, _) => tag
+                .text("mesh", &model.meshes[*mesh].name)
+                .text("geom", named("geom", &model.geoms[*geom].name, *geom)?),
             (SensorTarget::Geoms([first, second]), _) => {
                 let set = |geoms| geoms_name(model, geoms).ok_or_else(|| no_name(sensor, index));
                 let ([of1, name1], [of2, name2]) = (set(first)?, set(second)?);
@@ -123,6 +126,7 @@ fn element_name(model: &Model, attachment: Attachment, index: usize) -> Option<(
         | Attachment::Projection
         | Attachment::Rays
         | Attachment::Contacts
+        | Attachment::Taxels
         | Attachment::Geoms
         | Attachment::User => return None,
     };

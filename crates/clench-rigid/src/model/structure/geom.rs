@@ -57,6 +57,8 @@ pub struct Mesh {
     pub texcoords: Vec<[f32; 2]>,
     /// Which of these each corner of each triangle has; as many as `faces` where there are any.
     pub face_texcoords: Vec<[u32; 3]>,
+    /// Two tangents at each vertex, unit vectors; none where its author gave none.
+    pub tangents: Vec<[Vec3<f64>; 2]>,
     /// What collides, and the volume of sites; `None` where no geom with this mesh collides and no site is it.
     pub hull: Option<Hull>,
     /// As its author gave it, which is what a saved model says.

@@ -4,7 +4,7 @@ use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
     CameraLens, CameraSpec, CameraTracking, ContactQuerySpec, ContactSideName, FrameKind,
-    FrameName, GeomsName, ModelBuilder, SensorSpec, SensorSubject, SiteSpec,
+    FrameName, GeomsName, MeshSpec, ModelBuilder, SensorSpec, SensorSubject, SiteSpec,
 };
 use clench_rigid::model::{
     Attachment, ContactField, ContactReduction, RayField, SensorData, SensorKind,
@@ -80,6 +80,27 @@ fn contact_queries() -> impl Iterator<Item = SensorSubject> {
     })
 }
 
+/// A mesh with tangents, and names of the geoms in whose frames it feels.
+fn add_skin(b: &mut ModelBuilder) {
+    let corners = [
+        [-0.3, -0.3, -0.3],
+        [0.4, 0.0, 0.0],
+        [0.0, 0.4, 0.0],
+        [0.0, 0.0, 0.4],
+    ];
+    let tangents = [Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.0, 0.6, -0.8)];
+    b.meshes.push(MeshSpec {
+        name: "skin".into(),
+        vertices: corners.map(Vec3::from_f64).to_vec(),
+        tangents: vec![tangents; corners.len()],
+        ..MeshSpec::default()
+    });
+    for name in ["trunk", "hand"] {
+        let body = b.bodies.iter_mut().find(|found| found.name == name);
+        body.expect("it is there").geoms[0].name = name.into();
+    }
+}
+
 /// Adds a sensor of every kind to [`everything`](super::everything), those of frames with and without a reference.
 pub fn add(b: &mut ModelBuilder) {
     let trunk = b.bodies.iter_mut().find(|found| found.name == "trunk");
@@ -99,6 +120,7 @@ pub fn add(b: &mut ModelBuilder) {
             ..SiteSpec::default()
         });
     }
+    add_skin(b);
     let frame = |kind, name: &str| FrameName {
         kind,
         name: name.into(),
@@ -169,6 +191,15 @@ pub fn add(b: &mut ModelBuilder) {
             Attachment::Contacts => {
                 for query in contact_queries() {
                     sensor.subject = query;
+                    b.sensors.push(sensor.clone());
+                }
+            }
+            Attachment::Taxels => {
+                for geom in ["trunk", "hand"] {
+                    sensor.subject = SensorSubject::Taxels {
+                        mesh: "skin".into(),
+                        geom: geom.into(),
+                    };
                     b.sensors.push(sensor.clone());
                 }
             }
