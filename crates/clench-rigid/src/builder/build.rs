@@ -10,7 +10,7 @@ use super::{
 };
 use crate::State;
 use crate::dynamics::{com, kinematics, tendon, transmission};
-use crate::model::{Model, Params, RowPattern, Visuals};
+use crate::model::{Model, Params, RowPattern, SameFrames, Visuals};
 use crate::stages::Positions;
 use clench_math::Vec3;
 use clench_solver::Tree;
@@ -55,6 +55,7 @@ impl ModelBuilder {
         model.visuals = palette.visuals();
 
         bodies::add_all(self, &order, &assets, &mut model)?;
+        model.same_frames = SameFrames::of(&model.params);
         assets.keep(self, &mut model);
         invweight0::require_inertia(&model, &order)?;
         invweight0::masses(self, &mut model);
@@ -139,6 +140,7 @@ impl ModelBuilder {
                 override_friction: contacts.friction,
                 ..Params::default()
             },
+            same_frames: SameFrames::default(),
             notes: self.notes.clone(),
             left_out: self.left_out.clone(),
             custom: self.custom.clone(),

@@ -7,6 +7,8 @@
 //! The joints' own rotations come first, in a pass of their own: they do not depend on one another, and so do not wait for
 //! one another, as poses along a chain do.
 //!
+//! What is trivial in every environment ([`SameFrames`](crate::model::SameFrames)) is not composed but copied.
+//!
 //! Poses are computed for the bodies in some ranges only. The ranges leave out trees that sleep where they slept in the last pass: their
 //! poses of that pass still hold.
 
@@ -82,9 +84,13 @@ fn body_pose<T: Real>(
         Some(m) => (state.mocap_pos[m], state.mocap_quat[m].normalize()),
         None => (params.body_pos[b], params.body_quat[b]),
     };
+    let same = &model.same_frames;
     if body.parent != 0 {
         xpos = pos.xpos[body.parent] + pos.xmat[body.parent] * xpos;
-        xquat = pos.xquat[body.parent] * xquat;
+        xquat = match same.bodies[b] {
+            true => pos.xquat[body.parent],
+            false => pos.xquat[body.parent] * xquat,
+        };
     }
     for j in body.joints.clone() {
         let joint = &model.joints[j];
@@ -95,13 +101,19 @@ fn body_pose<T: Real>(
             pos.xaxis[j] = params.jnt_axis[j];
             continue;
         }
-        let xanchor = xpos + xquat.rotate(params.jnt_pos[j]);
+        let centred = same.joints[j];
+        let xanchor = match centred {
+            true => xpos,
+            false => xpos + xquat.rotate(params.jnt_pos[j]),
+        };
         let xaxis = xquat.rotate(params.jnt_axis[j]);
         if joint.kind == JointKind::Slide {
             xpos += xaxis * (state.qpos[joint.qpos] - params.qpos0[joint.qpos]);
         } else {
             xquat = xquat * pos.jnt_turn[j];
-            xpos = xanchor - xquat.rotate(params.jnt_pos[j]);
+            if !centred {
+                xpos = xanchor - xquat.rotate(params.jnt_pos[j]);
+            }
         }
         pos.xanchor[j] = xanchor;
         pos.xaxis[j] = xaxis;
@@ -117,9 +129,11 @@ fn attached_poses<T: Real>(
     part: &Range<usize>,
     pos: &mut Positions<T>,
 ) {
+    let same = &model.same_frames;
     for b in part.clone() {
         let body = &model.bodies[b];
         let (xpos, xquat, xmat) = (pos.xpos[b], pos.xquat[b], pos.xmat[b]);
+        let body_axes = (xquat, xmat);
         if body.simple_inertia {
             (pos.xipos[b], pos.ximat[b]) = (xpos, xmat);
         } else {
@@ -128,11 +142,20 @@ fn attached_poses<T: Real>(
         }
         for g in body.geoms.clone() {
             pos.geom_xpos[g] = xpos + xmat * params.geom_pos[g];
-            pos.geom_xmat[g] = (xquat * params.geom_quat[g]).to_matrix();
+            pos.geom_xmat[g] = attached_axes(same.geoms[g], body_axes, params.geom_quat[g]);
         }
         for s in body.sites.clone() {
             pos.site_xpos[s] = xpos + xmat * params.site_pos[s];
-            pos.site_xmat[s] = (xquat * params.site_quat[s]).to_matrix();
+            pos.site_xmat[s] = attached_axes(same.sites[s], body_axes, params.site_quat[s]);
         }
+    }
+}
+
+/// The axes of a frame that stands as `quat` on a body of axes `xquat` and `xmat`, or along them.
+#[inline(always)]
+fn attached_axes<T: Real>(same: bool, (xquat, xmat): (Quat<T>, Mat3<T>), quat: Quat<T>) -> Mat3<T> {
+    match same {
+        true => xmat,
+        false => (xquat * quat).to_matrix(),
     }
 }

@@ -173,13 +173,14 @@ impl<T: Real> Params<T> {
 impl Model {
     /// Updates the structure of a model whose environments get parameters of their own. Structure lets a step leave out what the model's
     /// own numbers make zero: dry friction of a dof or tendon, inertia and damping that an actuator reflects, the offset of an inertial
-    /// frame. Where a number in `row` is not zero, the step must no longer leave it out. The model is copied at most once, and only if
+    /// frame, [trivial poses](super::SameFrames). Where a number in `row` is not zero, the step must no longer leave it out. The model is copied at most once, and only if
     /// something changes.
     pub(crate) fn clear_structural_guarantees<S: Scalar>(
         model: &mut Arc<Model>,
         field: ParamField,
         row: &[S],
     ) {
+        Model::restrict_same_frames(model, field, row);
         let nonzero = |numbers: &[S]| numbers.iter().any(|&x| x != S::ZERO);
         let bodies = || model.bodies.iter().enumerate();
         let changes: Vec<usize> = match field {

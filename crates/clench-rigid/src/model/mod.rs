@@ -10,12 +10,14 @@ pub(crate) mod flat;
 mod lookup;
 mod params;
 mod rule;
+mod same_frame;
 mod sensor;
 mod sensor_target;
 mod structure;
 
 pub use custom::{Custom, TupleEntry};
 pub use params::{ParamField, Params};
+pub use same_frame::SameFrames;
 pub use sensor::{Attachment, Sensor, SensorData, SensorKind};
 pub use sensor_target::{
     ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, RayField, RaySource,
@@ -110,6 +112,8 @@ pub struct Model {
     pub budget: Budget,
     /// Every number of the model.
     pub params: Params<f64>,
+    /// Which of its fixed poses are trivial.
+    pub same_frames: SameFrames,
     /// Things worth telling the user once.
     pub notes: Vec<String>,
     /// What was left out of the file because it is not supported yet, each with its place.

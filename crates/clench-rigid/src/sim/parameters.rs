@@ -51,6 +51,7 @@ impl<T: Precision> Sim<T> {
     /// derived anew, as [`set_param`](Self::set_param) does.
     pub fn params_mut(&mut self) -> &mut Params<T> {
         self.forget();
+        Model::forget_same_frames(&mut self.model);
         &mut self.params
     }
 
