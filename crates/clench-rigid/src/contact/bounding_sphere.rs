@@ -9,11 +9,11 @@ use clench_math::{Real, Vec3, kernel};
 /// A sphere about a geom's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoundingSphere<T> {
-    center: Vec3<T>,
+    pub(super) center: Vec3<T>,
     /// Radius that holds the shape; 0 for a plane.
     radius: T,
     /// The same radius with the geom's share of margin and gap.
-    reach: T,
+    pub(super) reach: T,
 }
 
 /// Replaces the spheres of some geoms of a configuration; the first time it must be all.

@@ -1,6 +1,7 @@
 //! What the detection of contacts keeps between steps, and how much it may find.
 
 use super::Candidate;
+use super::body_pairs::BodyPairs;
 use super::bounding_sphere::BoundingSphere;
 use super::dynamic_broad_phase::DynamicBroadPhase;
 use super::pair_clock::PairClock;
@@ -59,6 +60,8 @@ pub struct Collision<T: Real> {
     pub excess: T,
     /// Pairs to look at, in canonical order.
     pub(super) candidates: Vec<Candidate>,
+    /// The same by the bodies of their geoms, where they are listed once.
+    pub(super) body_pairs: BodyPairs<T>,
     /// Those of them that may touch now.
     pub(super) near: Vec<u32>,
     /// Finds the candidates of a large model anew each step; those of a small one never change.
@@ -81,11 +84,13 @@ impl<T: Real> Collision<T> {
         let broad_phase = listed
             .is_none()
             .then(|| Box::new(DynamicBroadPhase::new(model)));
+        let candidates = listed.unwrap_or_default();
         Collision {
             given: false,
             overflow: T::Mask::splat(false),
             excess: T::ZERO,
-            candidates: listed.unwrap_or_default(),
+            body_pairs: BodyPairs::new(model, &candidates),
+            candidates,
             broad_phase,
             near: Vec::new(),
             spheres: Vec::new(),

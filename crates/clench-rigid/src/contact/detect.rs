@@ -12,6 +12,7 @@ use crate::stages::Positions;
 use crate::workspace::Workspace;
 use clench_collide::{ContactPoint, Contacts, SeparatingAxis, collide_again, multiccd_matters};
 use clench_math::{Mask, Real, kernel};
+use std::ops::Range;
 
 /// Tells which bodies are awake: two that both sleep make no contact.
 struct Awake<'a, T: Real> {
@@ -54,24 +55,22 @@ pub fn detect<T: Real>(
     if !settings.flags.constraint || !settings.flags.contact {
         return;
     }
+    collision.near.clear();
     let spheres = &mut collision.spheres;
     if let Some(broad_phase) = &mut collision.broad_phase {
         broad_phase.update(model, params, pos, spheres);
         let too_many = broad_phase.find(model, &mut collision.candidates);
         collision.record_excess(too_many, Excess::Pairs);
+        let all = 0..collision.candidates.len();
+        find_near(params, pos, &awake, all, collision);
     } else {
-        bounding_sphere::update(model, params, pos, 0..model.geoms.len(), spheres);
-    }
-    collision.near.clear();
-    for (index, candidate) in collision.candidates.iter().enumerate() {
-        let awake = awake.of(candidate);
-        if !awake.any() {
-            continue;
-        }
-        let range = || contact_range(model, params, candidate).1;
-        let near = may_touch(candidate, &collision.spheres, pos, range);
-        if (awake & near).any() {
-            collision.near.push(index as u32);
+        let body_pairs = &mut collision.body_pairs;
+        bounding_sphere::update(model, params, pos, body_pairs.geoms(), spheres);
+        body_pairs.update(spheres);
+        for run in 0..body_pairs.len() {
+            if let Some(candidates) = collision.body_pairs.near(run) {
+                find_near(params, pos, &awake, candidates, collision);
+            }
         }
     }
     ws.clock.lap(Stage::BroadPhase as usize);
@@ -102,6 +101,29 @@ pub fn detect<T: Real>(
         contacts.iter_mut().for_each(|c| c.active &= within);
     }
     ws.clock.lap(Stage::NarrowPhase as usize);
+}
+
+/// Adds those of some candidates that may touch in any lane to the list of those that do.
+#[inline(always)]
+fn find_near<T: Real>(
+    params: &Params<T>,
+    pos: &Positions<T>,
+    awake: &Awake<T>,
+    candidates: Range<usize>,
+    collision: &mut Collision<T>,
+) {
+    for index in candidates {
+        let candidate = &collision.candidates[index];
+        let awake_in = awake.of(candidate);
+        if !awake_in.any() {
+            continue;
+        }
+        let range = || contact_range(awake.model, params, candidate).1;
+        let near = may_touch(candidate, &collision.spheres, pos, range);
+        if (awake_in & near).any() {
+            collision.near.push(index as u32);
+        }
+    }
 }
 
 /// The points of one candidate.

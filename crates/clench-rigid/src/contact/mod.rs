@@ -1,6 +1,7 @@
 //! From geoms to contacts: which pairs may touch, where they do, and with what parameters. The constraint that a
 //! contact becomes is `constraint::contact`.
 
+mod body_pairs;
 mod bounding_sphere;
 pub(crate) mod collision;
 mod detect;
