@@ -101,17 +101,21 @@ macro_rules! declare_inputs {
             false
         }
 
-        /// Shows every number of a state but its time to `visit`: field, its bound, index of the first number in the field, numbers.
+        /// Shows every number of a state but its time to `visit`, of the groups that are wanted: field, its bound, index of the first
+        /// number in the field, numbers.
         #[inline(always)]
         fn each_input<T: Real>(
             s: &State<T>,
+            wanted: impl Fn(&'static str) -> bool,
             mut visit: impl FnMut(&'static str, Bound, usize, &[T]),
         ) {
-            $($(kind::$kind::numbers::<T>(
-                &s.$name,
-                #[inline(always)]
-                |start, numbers| visit(stringify!($name), Bound::$bound, start, numbers),
-            );)*)*
+            $(if wanted(stringify!($group)) {
+                $(kind::$kind::numbers::<T>(
+                    &s.$name,
+                    #[inline(always)]
+                    |start, numbers| visit(stringify!($name), Bound::$bound, start, numbers),
+                );)*
+            })*
         }
     };
 }
@@ -142,15 +146,35 @@ fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
     mask
 }
 
-/// The lanes whose state a step can start from.
+/// The group of fields that are mostly zero.
+const OCCASIONAL: &str = "occasional";
+
+/// Whether an occasional input is anything but zero.
+pub(crate) fn has_occasional<S: Scalar>(s: &State<S>) -> bool {
+    let mut bits = 0;
+    each_input(
+        s,
+        |group| group == OCCASIONAL,
+        #[inline(always)]
+        |_, _, _, numbers| {
+            for x in numbers {
+                bits |= x.to_f64().to_bits();
+            }
+        },
+    );
+    bits != 0
+}
+
+/// The lanes whose state a step can start from. Where `occasional` is false, all [occasional inputs](has_occasional) are zero.
 #[kernel]
-pub(crate) fn good_inputs<T: Real>(s: &State<T>) -> T::Mask {
+pub(crate) fn good_inputs<T: Real>(s: &State<T>, occasional: bool) -> T::Mask {
     let mut good = T::Mask::splat(true);
     for lane in 0..T::LANES {
         good.set_lane(lane, s.time.lane(lane).is_finite());
     }
     each_input(
         s,
+        |group| occasional || group != OCCASIONAL,
         #[inline(always)]
         |_, bound, _, values| good &= within(values, bound),
     );
@@ -161,7 +185,8 @@ pub(crate) fn good_inputs<T: Real>(s: &State<T>) -> T::Mask {
 pub(crate) fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> Fault {
     let time = s.time.lane(lane);
     let mut found = (!time.is_finite()).then_some(("time", 0, time));
-    each_input(s, |field, bound, start, values| {
+    let every_group = |_| true;
+    each_input(s, every_group, |field, bound, start, values| {
         if found.is_none()
             && let Some((i, value)) = first_beyond(values, lane, bound)
         {

@@ -222,7 +222,8 @@ impl<T: Precision> Sim<T> {
 
     pub(crate) fn check_present(&self) -> Result<(), SimError> {
         check::check_lengths(&self.model, &self.state)?;
-        if check::good_inputs(&self.state) {
+        let occasional = check::has_occasional(&self.state);
+        if check::good_inputs(&self.state, occasional) {
             return Ok(());
         }
         Err(check::input_fault(&self.model, &self.state, 0).into())

@@ -147,7 +147,7 @@ where
         (start, step): (Start, usize),
         job: &Job<T::Scalar>,
     ) -> bool {
-        let good = check::good_inputs(&self.state);
+        let good = check::good_inputs(&self.state, self.has_occasional);
         if !good.all() {
             for (lane, env) in group.iter().filter(|&(lane, _)| !good.lane(lane)) {
                 let fault = check::input_fault(job.model, &self.state, lane);
@@ -333,7 +333,7 @@ where
                 return;
             }
             self.gather(&group, &asking.rows);
-            let good = check::good_inputs(&self.state);
+            let good = check::good_inputs(&self.state, self.has_occasional);
             if good.all() {
                 break good;
             }
