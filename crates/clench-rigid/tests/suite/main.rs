@@ -13,6 +13,7 @@ mod batch_single;
 mod batch_sleeping;
 mod batch_states;
 mod batches;
+mod body_pairs;
 mod budget;
 mod build_inertia;
 mod build_invweight0;
