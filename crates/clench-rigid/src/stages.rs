@@ -121,7 +121,7 @@ pub struct Forces<T> {
     pub qfrc_smooth: Vec<T>,
     /// Forces of actuators (nout): one each, but three of an orientation servo.
     pub actuator_force: Vec<T>,
-    /// Total force of the actuators of each tendon with a limit on it, after all limits (ntendon).
+    /// Total force of the actuators of each tendon with a limit on it, after all limits, without cogging and friction of motors (ntendon).
     pub ten_actuator_force: Vec<T>,
     /// Controls as they act: delayed, and within their ranges (nu).
     pub ctrl: Vec<T>,

@@ -59,6 +59,10 @@ pub fn actuation<T: Real>(
                 _ => out[0] = out[0].clamp(range[0], range[1]),
             }
         }
+        // A tendon's range, as an actuator's own, holds what a motor's current pulls with, without its cogging and friction.
+        if let Some(t) = limited_tendon(model, actuator.transmission) {
+            force.ten_actuator_force[t] += force.actuator_force[first];
+        }
         if actuator.bias == BiasKind::DcMotor && !actuator.disabled {
             let (act_dot, length) = (&force.act_dot, pos.actuator_length[first]);
             let given = ActuatorInputs {
@@ -67,9 +71,6 @@ pub fn actuation<T: Real>(
             };
             force.actuator_force[first] +=
                 dc_motor::mechanical_force(model, params, given, act_dot, u, length);
-        }
-        if let Some(t) = limited_tendon(model, actuator.transmission) {
-            force.ten_actuator_force[t] += force.actuator_force[first];
         }
         for output in actuator.outputs.clone() {
             for (dof, arm) in moment(model, pos, output) {
@@ -82,7 +83,7 @@ pub fn actuation<T: Real>(
 
 /// The tendon that an actuator pulls on, if their total force is limited.
 #[inline(always)]
-fn limited_tendon(model: &Model, transmission: Transmission) -> Option<usize> {
+pub(super) fn limited_tendon(model: &Model, transmission: Transmission) -> Option<usize> {
     match transmission {
         Transmission::Tendon(t) if model.tendons[t].actfrclimited => Some(t),
         _ => None,

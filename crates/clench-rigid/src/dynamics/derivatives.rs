@@ -5,6 +5,7 @@
 //! its slope: s′ JᵀJ.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion, scaling_error};
+use crate::dynamics::actuation::limited_tendon;
 use crate::dynamics::ellipsoid::ellipsoid_rates;
 use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
 use crate::dynamics::gain::{unlimited_force, unlimited_slope};
@@ -108,24 +109,23 @@ fn actuator_derivative<T: Real>(
         };
         held |= saturated(limited, params.actuator_forcerange[u]);
     }
+    if let Some(t) = limited_tendon(model, actuator.transmission) {
+        held |= reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
+    }
     let slope = match is_motor {
         true => T::select(held, T::ZERO, slope) + dc_motor::mechanical_slope(model, params, u),
         false => T::select(held, T::ZERO, slope),
     };
-    let mut held = T::Mask::splat(false);
     match actuator.transmission {
-        Transmission::Tendon(t) if model.tendons[t].actfrclimited => {
-            held |= reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
-        }
         Transmission::Joint(j) | Transmission::JointInParent(j)
             if model.joints[j].actfrclimited =>
         {
             let total = force.qfrc_actuator[model.joints[j].dof];
-            held |= saturated(total, params.jnt_actfrcrange[j]);
+            let held = saturated(total, params.jnt_actfrcrange[j]);
+            T::select(held, T::ZERO, slope)
         }
-        _ => {}
+        _ => slope,
     }
-    T::select(held, T::ZERO, slope)
 }
 
 /// Whether a sum of forces that were scaled into a range is at one of its ends. As in MuJoCo, where actuators reach the

@@ -3,6 +3,7 @@
 use super::{FrameId, Frames, located};
 use crate::LoadError;
 use crate::spending::Spending;
+use clench_collide::ShapeKind;
 use clench_rigid::builder::{
     GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder,
 };
@@ -37,7 +38,7 @@ impl Frames {
     ) {
         let length = self.scale(frame).length;
         let has_density = matches!(spec.mass, GeomMass::Density(_)) && !spec.shellinertia;
-        if length != 1.0 && has_density && !spec.mesh.is_empty() {
+        if length != 1.0 && has_density && spec.kind == ShapeKind::Mesh {
             self.meshes.push((body, geom, length));
         }
     }
