@@ -12,7 +12,7 @@ from random_models import harmless
 from random_models.actuation import Actuation
 from random_models.preamble import Preamble
 from random_models.relations import Relations
-from random_models.sensing import Sensing
+from random_models.sensing import RARE, Sensing
 from random_models.tree import Tree
 from random_models.values import VALUES, Draw, text
 
@@ -60,7 +60,7 @@ class Generator(Preamble, Tree, Relations, Actuation, Sensing):
         draw = self.last
         sections = [*self.root.iter("sensor"), *self.root.iter("default")]
         for element in (element for section in sections for element in section if section.tag == "sensor" or element.tag == "tendon"):
-            if draw.chance(0.1):
+            if draw.chance(0.5 if element.tag in RARE else 0.1):
                 element.set("user", text(*(draw.number(-1, 1) for _ in range(draw.randint(1, 3)))))
         if draw.chance(0.1):
             self.add(self.root, "size", nuser_sensor=draw.choice((-1, 3, 4)))
