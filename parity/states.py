@@ -71,6 +71,7 @@ def disturbed(model, data, rng, number):
         "qpos": data.qpos,
         "qvel": data.qvel,
         "act": data.act,
+        "plastic": data.plastic,
         "ctrl": data.ctrl,
         "qfrc_applied": qfrc_applied,
         "xfrc_applied": xfrc_applied,

@@ -64,7 +64,7 @@ def test_what_is_supported_is_listed():
     assert listed[0] == "spatial" and all(line.startswith("  ") for line in listed[1:])
     words = {line.split()[0]: line.split()[1:] for line in listed[1:]}
     assert words.keys() == {"children", "read", "ignored", "refused"}
-    assert "range" in words["read"] and "springyield=0" in words["refused"]
+    assert "range" in words["read"] and "springyield" in words["read"]
     assert len(program.run("mjcf").stdout.splitlines()) > 100
 
 

@@ -14,7 +14,7 @@ import urdf
 from compare import assert_close, largest
 
 PRECISION = 1e-6  # what follows from meshes, whose vertices have 24 bits
-SIZES = ("nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ntendon", "neq", "npair", "nexclude", "nsensor", "nkey")
+SIZES = ("nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ntendon", "neq", "npair", "nexclude", "nsensor", "nkey", "nplastic")
 # Fields of a model that act on motion and that MuJoCo does not compute by the way.
 FIELDS = (
     "qpos0 qpos_spring body_parentid body_mocapid body_mass body_subtreemass body_ipos body_gravcomp body_invweight0 jnt_type "
@@ -28,7 +28,8 @@ FIELDS = (
     "actuator_actlimited actuator_ctrlrange actuator_forcerange actuator_actrange actuator_actearly eq_type eq_obj1id eq_obj2id "
     "eq_objtype eq_active0 eq_solref eq_solimp eq_data pair_dim pair_geom1 pair_geom2 pair_solref pair_solreffriction pair_friction "
     "pair_solimp pair_margin pair_gap sensor_type sensor_objid sensor_objtype sensor_refid sensor_reftype sensor_cutoff key_time "
-    "key_qpos key_qvel key_act key_ctrl body_user jnt_user geom_user site_user cam_user tendon_user actuator_user sensor_user"
+    "key_qpos key_qvel key_act key_ctrl key_plastic jnt_springyield jnt_plasticadr tendon_springyield tendon_plasticadr "
+    "body_user jnt_user geom_user site_user cam_user tendon_user actuator_user sensor_user"
 ).split()
 OPTIONS = ("timestep", "gravity", "wind", "magnetic", "density", "viscosity", "integrator", "cone", "impratio")
 # They choose between algorithms that look for the same contacts, and are not in a model of ours.

@@ -29,7 +29,8 @@ mod tests {
             "\"<joint\"",
             "\"</worldbody>\"",
             "\" condim='\"",
-            "\" springyield='0\"",
+            "\" springyield='\"",
+            "\" ipc='disable\"",
         ] {
             assert!(dictionary.lines().any(|line| line == word), "{word}");
         }

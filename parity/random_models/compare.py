@@ -185,7 +185,7 @@ def stepped(model, state):
     mujoco.mj_step(model, data)
     if any(w.number for w in data.warning) or model.opt.timestep * largest(data.qvel, state["qvel"]) > FASTEST:
         return None, None
-    after = {"time": data.time, **{name: getattr(data, name).tolist() for name in ("qpos", "qvel", "act")}}
+    after = {"time": data.time, **{name: getattr(data, name).tolist() for name in ("qpos", "qvel", "act", "plastic")}}
     return oracle.results(model, data, state), after
 
 
@@ -217,6 +217,7 @@ def random_state(model, draw, rng):
         "qpos": data.qpos,
         "qvel": draw.choice((0, 0.1, 1, 5)) * rng.standard_normal(model.nv),
         "act": draw.choice((0, 1)) * rng.standard_normal(model.na),
+        "plastic": data.plastic,
         "ctrl": controls(model, draw, rng),
         "qfrc_applied": pulled * np.diag(inertia) * rng.standard_normal(model.nv),
         "xfrc_applied": xfrc_applied,
@@ -318,6 +319,7 @@ def next_state(model, what, question, ours):
     travel = step * (speed + largest(theirs.qvel))
     assert_close(what + "next qpos", ours["qpos"], question.after["qpos"], NEXT, travel + 1e-6)
     assert_close(what + "next act", ours["act"], question.after["act"], NEXT, 1.0)
+    assert_close(what + "next plastic", ours["plastic"], question.after["plastic"], NEXT, 1.0)
     assert_close(what + "next time", ours["time"], question.after["time"], NEXT, step)
 
 

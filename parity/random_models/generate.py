@@ -70,7 +70,7 @@ def with_keyframe(root, model, draw):
     """Adds a keyframe to the file of a compiled model, which knows how many numbers it needs."""
     section = ET.SubElement(root, "keyframe")
     key = ET.SubElement(section, "key", name="key")
-    lengths = {"qpos": model.nq, "qvel": model.nv, "act": model.na, "ctrl": model.nu, "mpos": 3 * model.nmocap, "mquat": 4 * model.nmocap}
+    lengths = {"qpos": model.nq, "qvel": model.nv, "act": model.na, "ctrl": model.nu, "mpos": 3 * model.nmocap, "mquat": 4 * model.nmocap, "plastic": model.nplastic}
     for name, length in lengths.items():
         if length and draw.chance(0.5):
             key.set(name, text(*(draw.gauss(0, 0.5) for _ in range(length))))

@@ -78,6 +78,8 @@ class Preamble(Maker):
             if tag == "geom" and self.draw.chance(0.3):
                 element.set("type", self.draw.choice(PRIMITIVES))
                 element.set("size", vector(0.03, 0.15)(self.draw))
+            if self.last.chance({"joint": 0.15, "tendon": 0.2}.get(tag, 0)):
+                element.set("springyield", text(self.last.number(0.01, 0.3)))
             if tag == "dcmotor":
                 self.constants(element)
             if tag in ("damper", "adhesion"):  # limits the controls of the whole class

@@ -37,6 +37,8 @@ class Relations(Maker):
         for _ in range(draw.randint(1, 3)):
             tendon = self.classed(self.add(section, draw.choice(kinds), name=self.always("tendon")))
             self.fill(tendon)
+            if self.last.chance(0.25):
+                tendon.set("springyield", text(self.last.number(0.005, 0.2)))
             if tendon.tag == "fixed":
                 for joint in draw.sample(joints, draw.randint(1, min(3, len(joints)))):
                     self.add(tendon, "joint", joint=joint, coef=VALUES["fixed/joint"]["coef"](draw))

@@ -133,10 +133,19 @@ class Tree(Maker):
             for name in ("ref", "springref"):
                 if kind == "slide" and name in joint.attrib:
                     joint.set(name, number(-0.2, 0.2)(draw))
+            if self.last.chance(0.15):
+                self.yielding(joint, kind)
             if len(kinds) > 1:  # two axes in one direction would move no mass against each other
                 joint.set("axis", axes.pop())
             if draw.chance(0.35):
                 self.joint_range(joint, kind)
+
+    def yielding(self, joint, kind):
+        """Lets the spring of a joint yield, and sees to it that there is one."""
+        strain = self.last.number(0.01, 0.3)
+        joint.set("springyield", text(strain if kind == "slide" else self.draw.angle(strain)))
+        if "stiffness" not in joint.attrib:
+            joint.set("stiffness", text(self.last.scale(0.1, 100)))
 
     def independent_axes(self):
         """Three directions, each nearest to another axis."""

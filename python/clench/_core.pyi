@@ -146,6 +146,8 @@ class Model:
     @property
     def nhistory(self) -> int: ...
     @property
+    def nplastic(self) -> int: ...
+    @property
     def nbody(self) -> int: ...
     @property
     def njnt(self) -> int: ...
@@ -230,6 +232,7 @@ class Model:
     jnt_axis: Final[_Floats]  # (njnt, 3) Unit axis in the body frame.
     jnt_stiffness: Final[_Floats]  # (njnt,) Spring stiffness.
     jnt_stiffnesspoly: Final[_Floats]  # (njnt, 2) Coefficients of the spring's quadratic and cubic force.
+    jnt_springyield: Final[_Floats]  # (njnt,) Stretch at which the spring yields.
     jnt_range: Final[_Floats]  # (njnt, 2) Allowed positions.
     jnt_margin: Final[_Floats]  # (njnt,) Distance at which the limit appears.
     jnt_actfrcrange: Final[_Floats]  # (njnt, 2) Limits of the total actuator force.
@@ -239,6 +242,7 @@ class Model:
     jnt_bodyid: Final[_Codes]  # (njnt,) The body that it moves.
     jnt_qposadr: Final[_Codes]  # (njnt,) The first of its position coordinates.
     jnt_dofadr: Final[_Codes]  # (njnt,) The first of its degrees of freedom.
+    jnt_plasticadr: Final[_Codes]  # (njnt,) Where the state says at which position its spring rests, or -1.
     jnt_group: Final[_Codes]  # (njnt,) Group.
     jnt_limited: Final[_Flags]  # (njnt,) Whether its range is a limit.
     jnt_actfrclimited: Final[_Flags]  # (njnt,) Whether the force of its actuators is limited.
@@ -310,6 +314,7 @@ class Model:
     tendon_dampingpoly: Final[_Floats]  # (ntendon, 2) Coefficients of quadratic and cubic damping.
     tendon_armature: Final[_Floats]  # (ntendon,) Inertia of changes of the length.
     tendon_lengthspring: Final[_Floats]  # (ntendon, 2) Dead band of the spring.
+    tendon_springyield: Final[_Floats]  # (ntendon,) Stretch at which the spring yields.
     tendon_length0: Final[_Floats]  # (ntendon,) Length at qpos0.
     tendon_invweight0: Final[_Floats]  # (ntendon,) Inverse inertia at qpos0.
     tendon_range: Final[_Floats]  # (ntendon, 2) Allowed lengths.
@@ -324,6 +329,7 @@ class Model:
     tendon_user: Final[_Floats]  # (ntendon, k) The user's own numbers.
     tendon_num: Final[_Codes]  # (ntendon,) How many elements its path has.
     tendon_adr: Final[_Codes]  # (ntendon,) The first element of its path, or -1.
+    tendon_plasticadr: Final[_Codes]  # (ntendon,) Where the state says how long its spring rests, or -1.
     tendon_limited: Final[_Flags]  # (ntendon,) Whether its range is a limit.
     tendon_actfrclimited: Final[_Flags]  # (ntendon,) Whether the force of its actuators is limited.
 
@@ -410,6 +416,7 @@ class Model:
     key_qpos: Final[_Floats]  # (nkey, nq) Position coordinates.
     key_qvel: Final[_Floats]  # (nkey, nv) Velocities.
     key_act: Final[_Floats]  # (nkey, na) Activations.
+    key_plastic: Final[_Floats]  # (nkey, nplastic) Where springs that yield rest.
     key_ctrl: Final[_Floats]  # (nkey, nu) Controls.
     key_mpos: Final[_Floats]  # (nkey, nmocap, 3) Positions of mocap bodies.
     key_mquat: Final[_Floats]  # (nkey, nmocap, 4) Orientations of mocap bodies.
@@ -454,6 +461,9 @@ class Element:
     ctrlnum: Final[int]  # actuator
     outadr: Final[int]  # actuator
     outnum: Final[int]  # actuator
+    plastic: Final[_Floats]  # (nplastic,) keyframe
+    plasticadr: Final[int]  # joint, tendon
+    springyield: Final[float]  # joint, tendon
     ctrlrange: Final[_Floats]  # (2,) actuator
     cutoff: Final[float]  # sensor
     damping: Final[float]  # tendon
@@ -650,6 +660,10 @@ class StateViews:
     @act.setter
     def act(self, values: ArrayLike) -> None: ...
     @property
+    def plastic(self) -> NDArray[Any]: ...  # (nplastic,)
+    @plastic.setter
+    def plastic(self, values: ArrayLike) -> None: ...
+    @property
     def history(self) -> NDArray[Any]: ...  # (nhistory,)
     @history.setter
     def history(self, values: ArrayLike) -> None: ...
@@ -726,6 +740,7 @@ class _StateArrays:
     qpos: NDArray[Any]
     qvel: NDArray[Any]
     act: NDArray[Any]
+    plastic: NDArray[Any]
     history: NDArray[Any]
     qacc_warmstart: NDArray[Any]
     tree_asleep: NDArray[np.int32]

@@ -212,7 +212,7 @@ class ModelSpec:
             if state.qpos.ndim != 1:
                 raise ValueError("a keyframe is of one environment: take the state of batch.sim(env)")
             fields = {"mpos": state.mocap_pos, "mquat": state.mocap_quat}
-            fields.update({name: getattr(state, name) for name in ("time", "qpos", "qvel", "act", "ctrl")})
+            fields.update({name: getattr(state, name) for name in ("time", "qpos", "qvel", "act", "plastic", "ctrl")})
             kept = {name: values for name, values in fields.items() if values.size}
         return self.section("keyframe").add("key", **{**kept, **attributes})
 

@@ -18,8 +18,8 @@ __all__ = ["State"]
 
 # What the bytes hold is said by this number: readers refuse what is newer than they know. Before version 2, times were of
 # the precision of all other numbers; before version 3, nothing was delayed and nothing slept; before version 4,
-# nothing was tied together at run time.
-_VERSION = 4
+# nothing was tied together at run time; before version 5, no spring yielded.
+_VERSION = 5
 # What came with version 4, and how many numbers an element of it has.
 _SINCE_4 = {
     "dynamic_kind": (),
@@ -150,6 +150,8 @@ class State(_StateArrays):
             for name, width in _SINCE_4.items():
                 dtype = _DTYPES.get(name, arrays["qpos"].dtype)
                 arrays[name] = np.zeros((*arrays["qpos"].shape[:-1], 0, *width), dtype)
+        if version < 5 and "qpos" in arrays:
+            arrays["plastic"] = np.zeros((*arrays["qpos"].shape[:-1], 0), arrays["qpos"].dtype)
         try:
             return State(**arrays)
         except TypeError as error:

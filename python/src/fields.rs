@@ -53,6 +53,9 @@ const STRUCTURE: &[Reader] = &[
     ("jnt_bodyid", |m| codes(&m.joints, |j| id(j.body))),
     ("jnt_qposadr", |m| codes(&m.joints, |j| id(j.qpos))),
     ("jnt_dofadr", |m| codes(&m.joints, |j| id(j.dof))),
+    ("jnt_plasticadr", |m| {
+        codes(&m.joints, |j| id_or_none(j.plastic))
+    }),
     ("jnt_group", |m| codes(&m.joints, |j| j.group)),
     ("jnt_limited", |m| flags(&m.joints, |j| j.limited)),
     ("jnt_actfrclimited", |m| {
@@ -87,6 +90,9 @@ const STRUCTURE: &[Reader] = &[
     ("cam_user", |m| user_rows(&m.cameras, |c| &c.user)),
     ("tendon_num", |m| codes(&m.tendons, |t| id(t.coefs.len()))),
     ("tendon_adr", |m| codes(&m.tendons, |t| first(&t.coefs))),
+    ("tendon_plasticadr", |m| {
+        codes(&m.tendons, |t| id_or_none(t.plastic))
+    }),
     ("tendon_limited", |m| flags(&m.tendons, |t| t.limited)),
     ("tendon_actfrclimited", |m| {
         flags(&m.tendons, |t| t.actfrclimited)
@@ -168,6 +174,7 @@ const STRUCTURE: &[Reader] = &[
     ("key_qpos", |m| stored(m, &[m.nq], |k| &k.qpos)),
     ("key_qvel", |m| stored(m, &[m.nv], |k| &k.qvel)),
     ("key_act", |m| stored(m, &[m.na], |k| &k.act)),
+    ("key_plastic", |m| stored(m, &[m.nplastic], |k| &k.plastic)),
     ("key_ctrl", |m| stored(m, &[m.nu()], |k| &k.ctrl)),
     ("key_mpos", |m| stored(m, &[m.nmocap, 3], |k| &k.mocap_pos)),
     ("key_mquat", |m| {

@@ -82,6 +82,21 @@ def test_a_state_becomes_a_keyframe(name: str) -> None:
         spec.add_keyframe(clench.Batch(sim.model, 2).state)
 
 
+def test_where_springs_that_yield_rest_becomes_part_of_a_keyframe() -> None:
+    spec = clench.ModelSpec.from_file(ROOT / "parity/models/yielding.xml")
+    sim = clench.Sim(spec.build())
+    assert sim.plastic.shape == (sim.model.nplastic,) == (16,)
+    sim.reset("bent")
+    sim.step(50)
+    assert (sim.plastic != sim.model.key_plastic[0]).sum() > 8
+    spec.add_keyframe(sim.state, name="here")
+    other = clench.Sim(spec.build())
+    other.reset("here")
+    np.testing.assert_allclose(other.plastic, sim.plastic, rtol=1e-15)
+    joint = sim.model.joint("slide")
+    assert sim.plastic[joint.plasticadr] == sim.plastic[4] and joint.springyield == 0.01
+
+
 def test_numbers_of_an_element_can_be_edited() -> None:
     spec = clench.ModelSpec.from_file(ROOT / "models/humanoid.xml")
     torso = spec.body("torso")

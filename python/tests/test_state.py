@@ -188,7 +188,7 @@ def foreign() -> dict[str, bytes]:
         "a pickle": pickle.dumps([1, 2, 3]),
         "an archive": archive.getvalue(),
         "an array larger than memory": huge.getvalue(),
-        "later": repacked(data, version=np.int64(5)),
+        "later": repacked(data, version=np.int64(6)),
         "much later": repacked(data, version=np.float64(1e300)),
         "never": repacked(data, version=np.float64(np.nan)),
         "without version": repacked(data, version=None),
@@ -217,7 +217,7 @@ def test_bytes_of_something_else(name: str) -> None:
 
 
 def test_later_versions_say_so() -> None:
-    with pytest.raises(ValueError, match="version 5"):
+    with pytest.raises(ValueError, match="version 6"):
         clench.State.from_bytes(foreign()["later"])
 
 
@@ -245,6 +245,13 @@ def test_nothing_was_tied_together_before_the_fourth_version(kind: str) -> None:
     own.add_weld(0, own.model.nbody - 1)
     own.state = old
     assert own.state == state
+
+
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_no_spring_yielded_before_the_fifth_version(kind: str) -> None:
+    state = moving(kind).state
+    old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(4), plastic=None))
+    assert old == state and old.plastic.shape == (*state.qpos.shape[:-1], 0)
 
 
 @pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])

@@ -184,6 +184,7 @@ pub struct NextState {
     qpos: Vec<f64>,
     qvel: Vec<f64>,
     act: Vec<f64>,
+    plastic: Vec<f64>,
     tree_asleep: Vec<i32>,
     pose_asleep: Vec<f64>,
 }
@@ -202,6 +203,7 @@ impl NextState {
             qpos: after.qpos,
             qvel: after.qvel,
             act: after.act,
+            plastic: after.plastic,
             tree_asleep: after.tree_asleep.iter().map(|&tree| tree as i32).collect(),
             pose_asleep: after.pose_asleep,
         })

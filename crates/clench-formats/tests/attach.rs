@@ -347,6 +347,7 @@ fn keyframes(attach: &str) -> Vec<(String, f64, Vec<KeyframePart>)> {
 
 fn part(element: KeyframeElement, first: &[f64], second: &[f64]) -> KeyframePart {
     KeyframePart {
+        plastic: Vec::new(),
         element,
         first: first.to_vec(),
         second: second.to_vec(),
@@ -426,4 +427,30 @@ fn urdf_can_be_attached_and_the_model_around_says_whether_it_is_fused() {
     );
     assert_eq!(names(&fused.bodies, |b| &b.name), ["world", "P", "x_arm"]);
     assert_eq!(fused.params.body_mass[2], 2.5);
+}
+
+/// What becomes of the numbers in a model with springs of its own is MuJoCo's.
+#[test]
+fn keyframes_of_attached_models_say_where_springs_rest() {
+    let part = "<mujoco><worldbody><body name='x'>
+        <joint name='j' type='slide' springyield='.1'/><joint type='ball' springyield='.1'/><geom size='.1'/>
+      </body></worldbody>
+      <tendon><fixed name='t' springyield='1'><joint joint='j' coef='1'/></fixed></tendon>
+      <keyframe><key name='k' plastic='.4 0 1 0 0 .6 .7'/></keyframe></mujoco>";
+    let main = "<mujoco><asset><model name='part' file='part.xml'/></asset>
+      <worldbody>
+        <body><joint name='o' type='slide' springyield='.1'/><geom size='.1'/></body>
+        <attach model='part' body='x' prefix='p_'/><attach model='part' body='x' prefix='q_'/>
+      </worldbody>
+      <tendon><fixed springyield='.1'><joint joint='o' coef='1'/></fixed></tendon></mujoco>";
+    let files = Files::new(&[("main.xml", main), ("part.xml", part)]);
+    let model = files.read().unwrap().build().unwrap();
+    let found: Vec<_> = model.keyframes.iter().map(|key| &key.plastic[..]).collect();
+    let (turned, plain) = ([0.4, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0]);
+    let (given, none) = ([0.6, 0.7], [0.0, 0.0]);
+    let expected = [
+        [&[0.0], &turned[..], &plain, &none, &given, &none].concat(),
+        [&[0.0], &plain[..], &turned, &none, &none, &given].concat(),
+    ];
+    assert_eq!(found, expected);
 }

@@ -99,7 +99,7 @@ fn every_kind_of_element_has_defaults() {
            <site pos='1 2 3'/>
            <pair condim='6' friction='0.5'/>
            <equality active='false' solref='0.5'/>
-           <tendon stiffness='4' springlength='1'/>
+           <tendon stiffness='4' springlength='1' springyield='2'/>
          </default>
          <worldbody><site/><body name='b'><joint name='j'/></body></worldbody>
          <contact><pair geom1='a' geom2='b' friction='0.1 0.2'/></contact>
@@ -119,7 +119,10 @@ fn every_kind_of_element_has_defaults() {
         (tendon.stiffness, tendon.damping),
         ([4.0, 0.0, 0.0], [5.0, 0.0, 0.0])
     );
-    assert_eq!(tendon.springlength, Some([1.0, 1.0]));
+    assert_eq!(
+        (tendon.springlength, tendon.springyield),
+        (Some([1.0, 1.0]), 2.0)
+    );
 }
 
 /// A class may say what no element of the model could be, as long as none is.

@@ -326,16 +326,11 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ("<geom type='sdf' mesh='m'/>", "geom"),
         ("<frame scale='1 2 3' scaling='geometry'/>", "frame"),
         ("<flexcomp/>", "flexcomp"),
-        ("<body><joint springyield='1'/></body>", "joint"),
     ] {
         expect(line, element, later);
     }
     for (line, element) in [
         ("<sensor><plugin/></sensor>", "plugin"),
-        (
-            "<tendon><spatial springyield='1'><site site='a'/></spatial></tendon>",
-            "spatial",
-        ),
         ("<deformable><flex/></deformable>", "flex"),
         ("<extension><plugin/></extension>", "plugin"),
         ("<equality><flex/></equality>", "flex"),
@@ -351,9 +346,6 @@ fn what_is_not_supported_is_accepted_where_it_does_nothing() {
     read_str(
         "<mujoco>
            <option><flag ipc='disable' invdiscrete='enable'/></option>
-           <worldbody>
-             <body><joint springyield='0'/></body>
-           </worldbody>
          </mujoco>",
     )
     .unwrap();

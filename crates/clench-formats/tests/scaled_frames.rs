@@ -189,3 +189,32 @@ fn what_cannot_be_scaled_is_refused() {
     );
     load(&with("scale='2' scaling='geometry'"));
 }
+
+/// The numbers are MuJoCo's.
+#[test]
+fn yields_and_where_springs_rest_are_scaled_along_what_they_measure() {
+    let model = load(
+        "<compiler angle='radian'/>
+         <worldbody><site name='w'/>
+           <frame scale='2'><body>
+             <joint name='a' type='slide' springyield='.1' springref='.3'/><joint type='hinge' springyield='.2'/>
+             <geom size='.1'/><site name='s' pos='1 0 0'/>
+           </body></frame>
+           <frame scale='2' scaling='geometry'><body>
+             <joint type='slide' axis='1 0 0' springyield='.1'/><joint type='ball' springyield='.2'/><geom size='.1'/>
+           </body></frame>
+         </worldbody>
+         <tendon>
+           <fixed springyield='.2' springlength='.3'><joint joint='a' coef='1'/></fixed>
+           <spatial springyield='.2' springlength='.3'><site site='w'/><site site='s'/></spatial>
+         </tendon>
+         <keyframe><key plastic='.5 .6 .7 1 0 0 1 .8 .9 1.1 1.2'/></keyframe>",
+    );
+    assert_eq!(model.params.jnt_springyield, [0.2, 0.2, 0.2, 0.2]);
+    assert_eq!(model.params.tendon_springyield, [0.4, 0.2]);
+    let half = 0.5_f64.sqrt();
+    let expected = [1.0, 0.6, 1.4, half, 0.0, 0.0, half, 1.6, 1.8, 1.1, 1.2];
+    let found = &model.keyframes[0].plastic;
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-15;
+    assert!(found.iter().zip(&expected).all(near), "{found:?}");
+}

@@ -271,7 +271,7 @@ fn fixed_tendons_sum_joints() {
 fn spatial_tendons_pass_sites_geoms_and_pulleys() {
     let model = read(
         "<default><tendon armature='0.1' width='1'/></default>
-         <tendon><spatial name='t' stiffness='1 2' damping='0 0 3' springlength='0.1 0.2' rgba='1 0 0 1'>
+         <tendon><spatial name='t' stiffness='1 2' damping='0 0 3' springlength='0.1 0.2' springyield='0.3' rgba='1 0 0 1'>
            <pulley divisor='2'/><site site='a'/><geom geom='g' sidesite='s'/><site site='b'/>
            <pulley divisor='0.5'/><site site='a'/><geom geom='h'/><site site='c'/>
          </spatial></tendon>",
@@ -298,8 +298,8 @@ fn spatial_tendons_pass_sites_geoms_and_pulleys() {
         ([1.0, 2.0, 0.0], [0.0, 0.0, 3.0])
     );
     assert_eq!(
-        (tendon.armature, tendon.springlength),
-        (0.1, Some([0.1, 0.2]))
+        (tendon.armature, tendon.springlength, tendon.springyield),
+        (0.1, Some([0.1, 0.2]), 0.3)
     );
 }
 
@@ -307,7 +307,7 @@ fn spatial_tendons_pass_sites_geoms_and_pulleys() {
 fn keyframes_are_read_and_filled_up() {
     let model = read(
         "<size nkey='3'/>
-         <keyframe><key name='home' time='2' qpos='1 2' ctrl='3' mpos='0 0 1' mquat='1 0 0 0'/></keyframe>",
+         <keyframe><key name='home' time='2' qpos='1 2' ctrl='3' mpos='0 0 1' mquat='1 0 0 0' plastic='4 5'/></keyframe>",
     );
     assert_eq!(model.keyframes.len(), 3);
     let home = &model.keyframes[0];
@@ -317,4 +317,5 @@ fn keyframes_are_read_and_filled_up() {
         (Some(&[1.0, 2.0][..]), None)
     );
     assert_eq!(home.mocap_pos.as_deref(), Some(&[0.0, 0.0, 1.0][..]));
+    assert_eq!(home.plastic.as_deref(), Some(&[4.0, 5.0][..]));
 }

@@ -167,11 +167,11 @@ fn a_full_inertia_turns_with_its_frame() {
 fn degrees_concern_limits_and_references_of_hinges_but_not_slides() {
     let model = world(
         "<body>
-           <joint type='hinge' range='-90 45' ref='180' springref='90'/>
+           <joint type='hinge' range='-90 45' ref='180' springref='90' springyield='90'/>
            <joint type='hinge' range='-90 45' limited='false'/>
-           <joint type='slide' range='-90 45' ref='180' springref='90'/>
+           <joint type='slide' range='-90 45' ref='180' springref='90' springyield='90'/>
          </body>
-         <body><joint type='ball' range='0 90' ref='1'/></body>",
+         <body><joint type='ball' range='0 90' ref='1' springyield='45'/></body>",
     );
     let joints = &model.bodies[1].joints;
     assert_eq!(joints[0].range, [-FRAC_PI_2, FRAC_PI_4]);
@@ -181,6 +181,8 @@ fn degrees_concern_limits_and_references_of_hinges_but_not_slides() {
     assert_eq!((joints[2].reference, joints[2].springref), (180.0, 90.0));
     let ball = &model.bodies[2].joints[0];
     assert_eq!((ball.range, ball.reference), ([0.0, FRAC_PI_2], 1.0));
+    let yields = [&joints[0], &joints[2], ball].map(|joint| joint.springyield);
+    assert_eq!(yields, [FRAC_PI_2, 90.0, FRAC_PI_4]);
 }
 
 #[test]

@@ -63,6 +63,11 @@ rules! {
         let reflected = |&u: &usize| m.params.actuator_armature[u] != 0.0;
         m.params.tendon_armature[t] != 0.0 || m.tendons[t].reflecting.iter().any(reflected)
     });
+    "springs that yield are not there yet": |s| {
+        let joint_of = |j: usize| joint(s.model, j);
+        let yields = s.model.joints.iter().position(|joint| joint.plastic.is_some());
+        yields.map(joint_of).or_else(|| tendon(s.model, |m, t| m.tendons[t].plastic.is_some()))
+    };
     "servos of orientations are not there yet": |s| actuator(s.model, |m, u| {
         let transmission = m.actuators[u].transmission;
         matches!(transmission, Transmission::Rotation(_) | Transmission::RotationInFrame(_))

@@ -96,7 +96,7 @@ pub fn state_energy<T: Real>(
     let bodies = 0..model.nbody();
     poses(model, params, state, from_ref(&bodies), position);
     mass_matrix(model, params, position, mass);
-    energy(model, params, position, mass, &state.qpos, &state.qvel)
+    energy(model, params, position, mass, state)
 }
 
 /// What depends on velocities besides: velocities of bodies, tendons and actuators, passive and bias forces.

@@ -41,6 +41,11 @@ impl Model {
     fn na(&self) -> usize {
         self.0.na
     }
+    /// int : Numbers that say where springs that yield rest.
+    #[getter]
+    fn nplastic(&self) -> usize {
+        self.0.nplastic
+    }
     /// int : Number of bodies, the world included.
     #[getter]
     fn nbody(&self) -> usize {

@@ -26,6 +26,7 @@ pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadE
     element.set_number("margin", &mut joint.margin)?;
     element.set_number("ref", &mut joint.reference)?;
     element.set_number("springref", &mut joint.springref)?;
+    element.set_number("springyield", &mut joint.springyield)?;
     element.overlay("stiffness", &mut joint.stiffness)?;
     element.overlay("damping", &mut joint.damping)?;
     element.set_numbers("springdamper", &mut joint.springdamper)?;
@@ -54,12 +55,15 @@ pub(crate) fn read_free(element: &Element) -> Result<JointSpec, LoadError> {
 
 /// Turns angles into radians and carries the joint along with the frame that it is written in.
 ///
-/// As in MuJoCo, degrees concern the range of hinge and ball joints where it is a limit, and the reference angles of
-/// hinge joints.
+/// As in MuJoCo, degrees concern the range of hinge and ball joints where it is a limit, their yield, and the reference
+/// angles of hinge joints.
 pub(crate) fn finish(mut joint: JointSpec, compiler: &CompilerOptions, frame: &Pose) -> JointSpec {
     let limits = joint.limited != Some(false);
     if limits && matches!(joint.kind, JointKind::Hinge | JointKind::Ball) {
         joint.range = joint.range.map(|angle| compiler.radians(angle));
+    }
+    if matches!(joint.kind, JointKind::Hinge | JointKind::Ball) {
+        joint.springyield = compiler.radians(joint.springyield);
     }
     if joint.kind == JointKind::Hinge {
         joint.reference = compiler.radians(joint.reference);

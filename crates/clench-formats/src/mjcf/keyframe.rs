@@ -11,6 +11,7 @@ pub(crate) fn read(element: &Element) -> Result<KeyframeSpec, LoadError> {
         qpos: element.list("qpos")?,
         qvel: element.list("qvel")?,
         act: element.list("act")?,
+        plastic: element.list("plastic")?,
         ctrl: element.list("ctrl")?,
         mocap_pos: element.list("mpos")?,
         mocap_quat: element.list("mquat")?,

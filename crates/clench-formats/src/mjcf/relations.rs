@@ -52,7 +52,7 @@ pub(crate) fn shortcuts(root: &Element) -> Vec<Shortcut> {
     tags.map(Option::unwrap_or_default).collect()
 }
 
-fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadError> {
+pub(crate) fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadError> {
     let draft = sources.of(element).classes.of(element)?.tendon.clone();
     let mut tendon = tendon::read(element, draft)?;
     let settle = |what, range, said| sources.settle_limit(element, what, range, said);

@@ -13,6 +13,7 @@ pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<
     element.set_tristate("actuatorfrclimited", &mut tendon.actuatorfrclimited)?;
     element.set_number("margin", &mut tendon.margin)?;
     element.overlay("stiffness", &mut tendon.stiffness)?;
+    element.set_number("springyield", &mut tendon.springyield)?;
     element.overlay("damping", &mut tendon.damping)?;
     element.set_number("armature", &mut tendon.armature)?;
     element.set_number("frictionloss", &mut tendon.frictionloss)?;

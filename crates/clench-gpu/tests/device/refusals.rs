@@ -54,6 +54,24 @@ fn what_is_not_there_yet_is_refused_by_name() {
                 "",
                 "",
                 "",
+                "<tendon><fixed name='soft' springyield='0.1'><joint joint='hinge' coef='1'/></fixed></tendon>",
+            ),
+            "tendon \"soft\": springs that yield",
+        ),
+        (
+            model(
+                "",
+                "",
+                "<body><joint name='soft' springyield='0.1'/><geom size='0.1'/></body>",
+                "",
+            ),
+            "joint \"soft\": springs that yield",
+        ),
+        (
+            model(
+                "",
+                "",
+                "",
                 "<actuator><motor name='late' joint='hinge' delay='0.1' nsample='100'/></actuator>",
             ),
             "actuator \"late\": actuators with delays",

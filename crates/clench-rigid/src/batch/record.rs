@@ -103,7 +103,8 @@ impl<S: Precision> Batch<S> {
 
     /// As [`rollout`](Self::rollout), with all environments running from states of which `initial` holds what moves, environment
     /// after environment (n, 1 + nq + nv + na): time, positions, velocities, activations. The solver starts anew, so that what
-    /// comes out depends on no earlier step; applied forces, mocap poses and switches are those in [`state`](Self::state).
+    /// comes out depends on no earlier step; all else, such as applied forces, mocap poses, switches, and where springs that yield rest, is
+    /// as [`state`](Self::state) has it.
     ///
     /// # Errors
     /// As [`rollout`](Self::rollout), and a wrong number of initial numbers; the states are then as before.

@@ -59,7 +59,7 @@ fn check_budget(builder: &ModelBuilder, what: &str, count: u64) -> Result<(), Bu
 /// # Errors
 /// More memory for them than the budget has.
 pub(super) fn keyframes(builder: &ModelBuilder, model: &Model) -> Result<(), BuildError> {
-    let numbers = model.nq + model.nv + model.na + model.nu() + 7 * model.nmocap;
+    let numbers = model.nq + model.nv + model.na + model.nplastic + model.nu() + 7 * model.nmocap;
     let bytes = (builder.keyframes.len() as u64).saturating_mul(8 * numbers as u64);
     let most = builder.budget.bytes;
     match builder.keyframes.last() {

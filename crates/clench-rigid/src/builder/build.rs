@@ -115,6 +115,7 @@ impl ModelBuilder {
             nq: 0,
             nv: 0,
             na: 0,
+            nplastic: 0,
             nhistory: 0,
             nmocap: 0,
             tree: Arc::default(),

@@ -129,6 +129,7 @@ fn check_joint(j: &JointSpec) -> Result<(), BuildError> {
     j.require_finite("axis", &j.axis.to_array())?;
     j.require_finite("ref", &[j.reference])?;
     j.require_finite("springref", &[j.springref])?;
+    j.require_not_negative("springyield", &[j.springyield])?;
     j.require_finite("margin", &[j.margin])?;
     j.require_finite("stiffness", &j.stiffness)?;
     j.require_finite("damping", &j.damping)?;
@@ -224,6 +225,7 @@ fn check_tendon(t: &TendonSpec) -> Result<(), BuildError> {
     t.require_not_negative("armature", &[t.armature])?;
     t.require_not_negative("frictionloss", &[t.frictionloss])?;
     t.require_finite("springlength", &t.springlength.unwrap_or_default())?;
+    t.require_not_negative("springyield", &[t.springyield])?;
     check_softness(
         t,
         &[t.solref_limit, t.solref_friction],

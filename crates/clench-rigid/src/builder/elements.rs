@@ -106,6 +106,8 @@ pub struct JointSpec {
     pub reference: f64,
     /// Position at which the spring rests.
     pub springref: f64,
+    /// Stretch, m or rad, at which the spring yields, so that its rest follows; 0 where it never does.
+    pub springyield: f64,
     /// Coefficients of the spring, which pulls with a x + b x² + c x³ at a displacement x, N/m or N m/rad.
     pub stiffness: [f64; 3],
     /// Coefficients of the damper, which brakes with a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
@@ -149,6 +151,7 @@ impl Default for JointSpec {
             margin: 0.0,
             reference: 0.0,
             springref: 0.0,
+            springyield: 0.0,
             stiffness: [0.0; 3],
             damping: [0.0; 3],
             springdamper: [0.0; 2],

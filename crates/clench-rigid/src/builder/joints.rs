@@ -13,7 +13,7 @@ const MIN_AXIS_LENGTH: f64 = 1e-7;
 /// Adds a joint of body `b`, whose pose in its parent is `pose`.
 ///
 /// # Errors
-/// An axis without direction, ranges that do not rise, a spring-damper that is not positive.
+/// An axis without direction, ranges that do not rise, a spring-damper that is not positive, a free joint whose spring yields.
 pub(super) fn add(
     builder: &ModelBuilder,
     spec: &JointSpec,
@@ -26,6 +26,7 @@ pub(super) fn add(
     }
     let autolimits = builder.compiler.autolimits;
     let (limited, actfrclimited) = limits(spec, autolimits)?;
+    let plastic = plastic(spec, model)?;
     let joint = model.joints.len();
     model.joints.push(Joint {
         name: spec.name.clone(),
@@ -33,6 +34,7 @@ pub(super) fn add(
         body: b,
         qpos: model.nq,
         dof: model.nv,
+        plastic,
         limited,
         actfrclimited,
         actgravcomp: spec.actuatorgravcomp,
@@ -47,6 +49,19 @@ pub(super) fn add(
     }
     model.nq += spec.kind.nq();
     Ok(())
+}
+
+/// The place of where the spring rests in the state, if it yields: a position, or the orientation of a ball joint.
+fn plastic(spec: &JointSpec, model: &mut Model) -> Result<Option<usize>, BuildError> {
+    if spec.springyield == 0.0 {
+        return Ok(None);
+    }
+    if spec.kind == JointKind::Free {
+        return Err(spec.error("springyield has no meaning for a free joint"));
+    }
+    let start = model.nplastic;
+    model.nplastic += spec.kind.nq();
+    Ok(Some(start))
 }
 
 /// Whether the range limits positions, and actuator forces. Free joints are never limited; ball joints by their angle,
@@ -100,6 +115,7 @@ fn push_params(
     let [linear, higher @ ..] = spec.stiffness;
     p.jnt_stiffness.push(linear);
     p.jnt_stiffnesspoly.push(higher);
+    p.jnt_springyield.push(spec.springyield);
     p.jnt_range.push(spec.range);
     p.jnt_margin.push(spec.margin);
     p.jnt_actfrcrange.push(spec.actuatorfrcrange);

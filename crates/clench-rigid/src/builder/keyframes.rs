@@ -22,6 +22,7 @@ pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), B
             qpos: complete(spec, "qpos", 1, &spec.qpos, &initial.qpos)?,
             qvel: complete(spec, "qvel", 1, &spec.qvel, &initial.qvel)?,
             act: complete(spec, "act", 1, &spec.act, &initial.act)?,
+            plastic: complete(spec, "plastic", 1, &spec.plastic, &initial.plastic)?,
             ctrl: complete(spec, "ctrl", 1, &spec.ctrl, &vec![0.0; model.nu()])?,
             mocap_pos: complete(
                 spec,
@@ -83,27 +84,43 @@ fn insert(
     keyframe: &mut Keyframe,
 ) -> Result<(), BuildError> {
     let unknown = || spec.error(format!("there is no {:?}", part.element));
-    let (into, ranges) = match part.element {
+    let yielding = |place: Option<usize>, count| place.map_or(0..0, |at| at..at + count);
+    let (into, ranges, plastic) = match part.element {
         KeyframeElement::Joint(j) => {
             let joint = model.joints.get(j).ok_or_else(unknown)?;
-            let (q, v) = (joint.qpos, joint.dof);
-            let ranges = [q..q + joint.kind.nq(), v..v + joint.kind.nv()];
-            ([&mut keyframe.qpos, &mut keyframe.qvel], ranges)
+            let (q, v, kind) = (joint.qpos, joint.dof, joint.kind);
+            let ranges = [q..q + kind.nq(), v..v + kind.nv()];
+            let plastic = yielding(joint.plastic, kind.nq());
+            ([&mut keyframe.qpos, &mut keyframe.qvel], ranges, plastic)
         }
         KeyframeElement::Actuator(a) => {
             let actuator = model.actuators.get(a).ok_or_else(unknown)?;
             let ranges = [actuator.controls.clone(), actuator.acts.clone()];
-            ([&mut keyframe.ctrl, &mut keyframe.act], ranges)
+            ([&mut keyframe.ctrl, &mut keyframe.act], ranges, 0..0)
         }
         KeyframeElement::Mocap(k) if k < model.nmocap => {
             let ranges = [3 * k..3 * k + 3, 4 * k..4 * k + 4];
             let into = [&mut keyframe.mocap_pos, &mut keyframe.mocap_quat];
-            (into, ranges)
+            (into, ranges, 0..0)
         }
         KeyframeElement::Mocap(_) => return Err(unknown()),
+        KeyframeElement::Tendon(t) => {
+            let tendon = model.tendons.get(t).ok_or_else(unknown)?;
+            let plastic = yielding(tendon.plastic, 2);
+            (
+                [&mut keyframe.qpos, &mut keyframe.qvel],
+                [0..0, 0..0],
+                plastic,
+            )
+        }
     };
-    let given = [&part.first, &part.second];
-    for ((values, range), given) in into.into_iter().zip(ranges).zip(given) {
+    let [first, second] = into;
+    let [of_first, of_second] = ranges;
+    for (values, range, given) in [
+        (first, of_first, &part.first),
+        (second, of_second, &part.second),
+        (&mut keyframe.plastic, plastic, &part.plastic),
+    ] {
         if given.is_empty() {
             continue;
         }
@@ -124,6 +141,11 @@ fn normalize_quats(model: &Model, keyframe: &mut Keyframe) {
             JointKind::Free => normalize(&mut keyframe.qpos[joint.qpos + 3..]),
             JointKind::Ball => normalize(&mut keyframe.qpos[joint.qpos..]),
             JointKind::Slide | JointKind::Hinge => {}
+        }
+    }
+    for joint in &model.joints {
+        if let (JointKind::Ball, Some(start)) = (joint.kind, joint.plastic) {
+            normalize(&mut keyframe.plastic[start..]);
         }
     }
     keyframe.mocap_quat.chunks_exact_mut(4).for_each(normalize);

@@ -55,6 +55,8 @@ pub struct TendonSpec {
     pub armature: f64,
     /// Dead band of the spring; `None`: the length where the springs of joints rest.
     pub springlength: Option<[f64; 2]>,
+    /// Stretch at which the spring yields, so that its dead band follows; 0 where it never does.
+    pub springyield: f64,
     /// Dry friction.
     pub frictionloss: f64,
     /// Limit reference dynamics.
@@ -89,6 +91,7 @@ impl Default for TendonSpec {
             damping: [0.0; 3],
             armature: 0.0,
             springlength: None,
+            springyield: 0.0,
             frictionloss: 0.0,
             solref_limit: DEFAULT_SOLREF,
             solimp_limit: DEFAULT_SOLIMP,
@@ -331,6 +334,8 @@ pub struct KeyframePart {
     pub first: Vec<f64>,
     /// Its part of `qvel`, `act` or `mocap_quat`; empty as in the initial state.
     pub second: Vec<f64>,
+    /// Its part of `plastic`; empty as in the initial state.
+    pub plastic: Vec<f64>,
 }
 
 /// An element that has a part of the state, by its number among those of the model, bodies being in the model's order.
@@ -342,6 +347,8 @@ pub enum KeyframeElement {
     Actuator(usize),
     /// A mocap body, with a position and an orientation.
     Mocap(usize),
+    /// A tendon, whose spring may yield.
+    Tendon(usize),
 }
 
 /// A stored state; what is `None` is as in the initial state.
@@ -357,6 +364,8 @@ pub struct KeyframeSpec {
     pub qvel: Option<Vec<f64>>,
     /// Activations (na).
     pub act: Option<Vec<f64>>,
+    /// Where springs that yield rest (nplastic).
+    pub plastic: Option<Vec<f64>>,
     /// Controls (nu).
     pub ctrl: Option<Vec<f64>>,
     /// Mocap positions (3 nmocap).

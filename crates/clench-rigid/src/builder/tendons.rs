@@ -34,11 +34,15 @@ pub(super) fn add_all(
         if spec.springlength.is_some_and(|[low, high]| low > high) {
             return Err(spec.error("springlength must not fall"));
         }
+        let yields = spec.springyield > 0.0;
+        let plastic = yields.then_some(model.nplastic);
+        model.nplastic += if yields { 2 } else { 0 };
         let start = model.params.wrap_coef.len();
         let tendon = Tendon {
             name: spec.name.clone(),
             coefs: start..start + path.len(),
             path,
+            plastic,
             limited,
             actfrclimited,
             frictionloss: spec.frictionloss > 0.0,
@@ -188,6 +192,7 @@ fn push_params(spec: &TendonSpec, model: &mut Model) {
     let [linear, higher @ ..] = spec.damping;
     p.tendon_damping.push(linear);
     p.tendon_dampingpoly.push(higher);
+    p.tendon_springyield.push(spec.springyield);
     p.tendon_armature.push(spec.armature);
     p.tendon_range.push(spec.range);
     p.tendon_margin.push(spec.margin);

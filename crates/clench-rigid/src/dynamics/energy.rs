@@ -5,6 +5,7 @@ use crate::dynamics::spring::{
 };
 use crate::model::{Model, Params};
 use crate::stages::Positions;
+use crate::state::State;
 use clench_math::{Real, kernel};
 use clench_solver::TreeMatrix;
 
@@ -17,15 +18,14 @@ pub struct Energy<T> {
     pub kinetic: T,
 }
 
-/// The energy at the positions of `pos` and `qpos`, with velocities `qvel` and the mass matrix at those positions.
+/// The energy of a state, with its positions `pos` and the mass matrix there.
 #[kernel]
 pub fn energy<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
     mass: &TreeMatrix<T>,
-    qpos: &[T],
-    qvel: &[T],
+    state: &State<T>,
 ) -> Energy<T> {
     let mut potential = T::ZERO;
     if model.flags.gravity {
@@ -34,21 +34,26 @@ pub fn energy<T: Real>(
         }
     }
     if model.flags.spring {
-        potential += spring_energy(model, params, pos, qpos);
+        potential += spring_energy(model, params, pos, state);
     }
     Energy {
         potential,
-        kinetic: kinetic_energy(model, mass, qvel),
+        kinetic: kinetic_energy(model, mass, &state.qvel),
     }
 }
 
 /// The energy of every spring.
 #[inline(always)]
-fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>, qpos: &[T]) -> T {
+fn spring_energy<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    state: &State<T>,
+) -> T {
     let mut energy = T::ZERO;
     for j in 0..model.joints.len() {
         let spring = joint_spring(params, j);
-        energy += match joint_stretch(model, params, qpos, j) {
+        energy += match joint_stretch(model, params, state, j) {
             None => T::ZERO,
             Some(JointStretch::Scalar(x)) => spring.energy(x),
             Some(JointStretch::Rotation(turn)) => spring.energy(turn.norm()),
@@ -58,7 +63,8 @@ fn spring_energy<T: Real>(model: &Model, params: &Params<T>, pos: &Positions<T>,
         };
     }
     for (t, &length) in pos.ten_length.iter().enumerate() {
-        energy += tendon_spring(params, t).energy(tendon_stretch(params, t, length));
+        let stretch = tendon_stretch(model, params, &state.plastic, t, length);
+        energy += tendon_spring(params, t).energy(stretch);
     }
     energy
 }

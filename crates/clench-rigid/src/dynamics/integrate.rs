@@ -5,6 +5,7 @@ use super::integration::Integration;
 use super::setpoint::nearest_setpoint;
 use crate::dynamics::activation::next_activation;
 use crate::dynamics::orientation;
+use crate::dynamics::plastic::{Lengths, yield_springs};
 use crate::model::{GainKind, JointKind, Model, Params};
 use crate::stages::{Positions, Velocities};
 use crate::state::State;
@@ -139,7 +140,8 @@ pub fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
     }
 }
 
-/// Activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit Euler), then time.
+/// Activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit Euler), then
+/// where springs rest, then time.
 #[inline(always)]
 pub fn advance_semi_implicit<T: Real>(
     model: &Model,
@@ -152,5 +154,14 @@ pub fn advance_semi_implicit<T: Real>(
     advance_activations(model, params, at, act_dot, &mut state.act);
     add_scaled(&mut state.qvel, &ws.integration.qacc, h);
     integrate_positions(model, &mut state.qpos, &state.qvel, h);
+    let motion = (&state.qpos[..], &state.qvel[..]);
+    yield_springs(
+        model,
+        params,
+        &ws.sleep,
+        Lengths::of(&ws.position),
+        motion,
+        &mut state.plastic,
+    );
     advance_time(model, params, &ws.sensors.measured, state);
 }

@@ -1,6 +1,7 @@
 //! The memory of the integrators.
 
 use super::coriolis::Coriolis;
+use super::plastic::has_yielding_tendons;
 use crate::model::{Integrator, Model};
 use clench_math::Real;
 use clench_solver::{TreeFactor, TreeLu, TreeMatrix};
@@ -24,6 +25,8 @@ pub struct Integration<T> {
     pub start: Rates<T>,
     /// Runge–Kutta: the velocities of actuators (nout) at the start of the step.
     pub actuator_velocity: Vec<T>,
+    /// Runge–Kutta: lengths of tendons at the start of the step, and their gradients; empty where no tendon's spring yields.
+    pub tendons: [Vec<T>; 2],
     /// Runge–Kutta: the rates of the present stage.
     pub stage: Rates<T>,
     /// Runge–Kutta: the weighted mean of all stages' rates.
@@ -67,6 +70,10 @@ impl<T: Real> Integration<T> {
             offset: T::ZERO,
             start: Rates::new(model, model.nq),
             actuator_velocity: vec![T::ZERO; model.nout()],
+            tendons: match has_yielding_tendons(model) {
+                true => [model.tendons.len(), model.tendon_dofs.len()].map(|n| vec![T::ZERO; n]),
+                false => Default::default(),
+            },
             stage: Rates::new(model, model.nv),
             mean: Rates::new(model, model.nv),
         }

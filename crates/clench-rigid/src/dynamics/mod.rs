@@ -37,6 +37,7 @@ pub mod muscle;
 pub mod orientation;
 pub mod passive;
 pub mod pid;
+pub mod plastic;
 pub mod polynomial;
 pub mod project;
 pub mod reflected;

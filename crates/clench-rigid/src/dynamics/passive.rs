@@ -36,7 +36,7 @@ pub fn passive_forces<T: Real>(
         return;
     }
     if model.flags.spring {
-        springs(model, params, pos, &state.qpos, &mut force.qfrc_spring);
+        springs(model, params, pos, state, &mut force.qfrc_spring);
     }
     if model.flags.damper {
         dampers(model, params, pos, vel, &state.qvel, &mut force.qfrc_damper);
@@ -59,13 +59,13 @@ fn springs<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
-    qpos: &[T],
+    state: &State<T>,
     qfrc: &mut [T],
 ) {
     for (j, joint) in model.joints.iter().enumerate() {
         let spring = joint_spring(params, j);
         let qfrc = &mut qfrc[joint.dof..];
-        match joint_stretch(model, params, qpos, j) {
+        match joint_stretch(model, params, state, j) {
             None => {}
             Some(JointStretch::Scalar(x)) => qfrc[0] += -x * spring.stiffness(x),
             Some(JointStretch::Rotation(turn)) => pull_back(&spring, turn, qfrc),
@@ -76,7 +76,7 @@ fn springs<T: Real>(
         }
     }
     for t in 0..model.tendons.len() {
-        let stretch = tendon_stretch(params, t, pos.ten_length[t]);
+        let stretch = tendon_stretch(model, params, &state.plastic, t, pos.ten_length[t]);
         let force = -stretch * tendon_spring(params, t).stiffness(stretch);
         add_tendon_force(model, pos, t, force, qfrc);
     }

@@ -13,6 +13,7 @@ use super::integration::{Integration, Rates};
 use crate::dynamics::integrate::{
     add_scaled, advance_activations, advance_time, integrate_positions,
 };
+use crate::dynamics::plastic::{Lengths, yield_springs};
 use crate::model::{JointKind, Model, Params};
 use crate::profile::Stage;
 use crate::state::State;
@@ -75,6 +76,12 @@ pub fn rk4<T: Real>(
     swap(first, &mut ws.velocity.actuator_velocity);
     add_scaled(&mut state.qvel, &mean.velocity, h);
     integrate_positions(model, &mut state.qpos, &mean.position, h);
+    let [length, jacobian] = &ws.integration.tendons;
+    let (start, motion) = (
+        Lengths { length, jacobian },
+        (&state.qpos[..], &mean.position[..]),
+    );
+    yield_springs(model, params, &ws.sleep, start, motion, &mut state.plastic);
     advance_time(model, params, &ws.sensors.measured, state);
 }
 
@@ -84,11 +91,16 @@ fn begin<T: Real>(state: &State<T>, ws: &mut Workspace<T>) {
     let Integration {
         start,
         actuator_velocity,
+        tendons: [length, jacobian],
         stage,
         mean,
         ..
     } = &mut ws.integration;
     actuator_velocity.copy_from_slice(&ws.velocity.actuator_velocity);
+    if !length.is_empty() {
+        length.copy_from_slice(&ws.position.ten_length);
+        jacobian.copy_from_slice(&ws.position.ten_jacobian);
+    }
     start.position.copy_from_slice(&state.qpos);
     start.velocity.copy_from_slice(&state.qvel);
     start.activation.copy_from_slice(&state.act);

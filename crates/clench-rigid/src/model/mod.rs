@@ -88,6 +88,8 @@ pub struct Model {
     pub nv: usize,
     /// Activations.
     pub na: usize,
+    /// Numbers that say where springs that yield rest.
+    pub nplastic: usize,
     /// Numbers in buffers of past values.
     pub nhistory: usize,
     /// Mocap bodies.

@@ -132,6 +132,8 @@ params! {
     jnt_stiffness: Vec<T>, Finite;
     /// Coefficients of the spring's quadratic and cubic force.
     jnt_stiffnesspoly: Vec<[T; 2]>, Finite;
+    /// Stretch at which the spring yields.
+    jnt_springyield: Vec<T>, IfModel;
     /// Allowed positions.
     jnt_range: Vec<[T; 2]>, Range;
     /// Distance at which the limit appears.
@@ -231,6 +233,8 @@ params! {
     tendon_armature: Vec<T>, IfModel;
     /// Dead band of the spring.
     tendon_lengthspring: Vec<[T; 2]>, Range;
+    /// Stretch at which the spring yields.
+    tendon_springyield: Vec<T>, IfModel;
     /// Length at qpos0.
     tendon_length0: Vec<T>, Finite;
     /// Inverse inertia at qpos0.

@@ -40,7 +40,13 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let (model, params, ws) = (s.model, s.params, &s.ws);
     let mut force = T::ZERO;
     if model.flags.spring {
-        let stretch = tendon_stretch(params, t, ws.position.ten_length[t]);
+        let stretch = tendon_stretch(
+            model,
+            params,
+            &s.state.plastic,
+            t,
+            ws.position.ten_length[t],
+        );
         force -= stretch * tendon_spring(params, t).stiffness(stretch);
     }
     if model.flags.damper {

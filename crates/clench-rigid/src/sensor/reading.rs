@@ -57,7 +57,7 @@ impl<'a, T: Real> Reading<'a, T> {
 
     fn read_whole(&self, kind: SensorKind, out: &mut [T]) {
         let (pos, mass, state) = (&self.ws.position, &self.ws.problem.mass, self.state);
-        let energy = || energy(self.model, self.params, pos, mass, &state.qpos, &state.qvel);
+        let energy = || energy(self.model, self.params, pos, mass, state);
         match kind {
             SensorKind::PotentialEnergy => out[0] = energy().potential,
             SensorKind::KineticEnergy => out[0] = energy().kinetic,

@@ -3,6 +3,7 @@
 pub mod kind;
 mod table;
 
+use crate::dynamics::plastic;
 use crate::model::{ControlInput, Joint, Keyframe, Model};
 use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast};
 use kind::Kind;
@@ -15,6 +16,7 @@ pub enum Size {
     Positions,
     Dofs,
     Activations,
+    Plastic,
     Actuators,
     History,
     Bodies,
@@ -32,6 +34,7 @@ impl Size {
             Size::Positions => "nq",
             Size::Dofs => "nv",
             Size::Activations => "na",
+            Size::Plastic => "nplastic",
             Size::Actuators => "nu",
             Size::History => "nhistory",
             Size::Bodies => "nbody",
@@ -48,6 +51,7 @@ impl Size {
             Size::Positions => model.nq,
             Size::Dofs => model.nv,
             Size::Activations => model.na,
+            Size::Plastic => model.nplastic,
             Size::Actuators => model.nu(),
             Size::History => model.nhistory,
             Size::Bodies => model.nbody(),
@@ -172,6 +176,7 @@ impl<T: Real> State<T> {
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
         broadcast(&model.params.qpos0, &mut state.qpos);
+        plastic::relax(model, &mut state.plastic);
         for actuator in &model.actuators {
             if actuator.inputs.first() == Some(&ControlInput::Quaternion) {
                 state.ctrl[actuator.controls.start] = T::ONE; // No rotation.
@@ -237,6 +242,7 @@ impl<T: Real> State<T> {
             (&mut self.qpos, &key.qpos),
             (&mut self.qvel, &key.qvel),
             (&mut self.act, &key.act),
+            (&mut self.plastic, &key.plastic),
             (&mut self.ctrl, &key.ctrl),
         ] {
             broadcast(from, to);

@@ -24,6 +24,9 @@ macro_rules! state_fields {
                 qvel set_qvel: Number, Dofs, Near;
                 /// Activations of actuators (na).
                 act set_act: Number, Activations, Finite;
+                /// Where springs that yield rest (nplastic): the position of a slide or hinge joint, the orientation of a ball joint (a unit
+                /// quaternion, w first), the ends of a tendon's dead band. Joints first, in order.
+                plastic set_plastic: Number, Plastic, Finite;
                 /// Buffers of past values of delayed actuators (nhistory): see the module `history`.
                 history set_history: Number, History, Finite;
                 /// Acceleration of the previous step, where the solver starts (nv).

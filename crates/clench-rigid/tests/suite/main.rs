@@ -49,3 +49,4 @@ mod statics;
 mod tendons;
 mod terrain;
 mod wrapping;
+mod yielding;

@@ -91,11 +91,11 @@ impl Composer<'_, '_> {
                 self.shared.spending,
             )
             .map_err(|excess| element.error(excess))?;
-        let own_actuators = self.list("actuator").len();
+        let own = ["tendon", "actuator"].map(|section| self.list(section).len());
         for section in &model.children {
             self.copy_section(element, section, namespace)?;
         }
-        self.attach_keyframes(element, part, &mut frame, own_actuators, namespace)?;
+        self.attach_keyframes(element, part, &mut frame, own, namespace)?;
         Ok(frame)
     }
 

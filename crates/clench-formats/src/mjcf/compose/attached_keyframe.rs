@@ -17,4 +17,5 @@ pub(super) struct Fragment {
     pub(super) number: u32,
     pub(super) first: Vec<f64>,
     pub(super) second: Vec<f64>,
+    pub(super) plastic: Vec<f64>,
 }

@@ -1,7 +1,7 @@
 //! Keyframes of attached models.
 //!
 //! A keyframe is the numbers of a whole model, one after the other. Before a model is attached, its keyframes are cut into what each
-//! says of single joints, mocap bodies and actuators, and these elements are numbered; the number goes with an element wherever it is
+//! says of single joints, mocap bodies, tendons and actuators, and these elements are numbered; the number goes with an element wherever it is
 //! copied. In the end a keyframe says what it says of those elements that are there. As in MuJoCo 4.0 keyframes are named with the
 //! prefix of the attachment, and of replicas the first is meant.
 
@@ -43,7 +43,7 @@ pub(super) fn cut(
 fn number(root: &mut Element, shared: &mut Shared) {
     let tree = root.children.iter_mut();
     let mut pending: Vec<&mut Element> = tree
-        .filter(|section| ["worldbody", "actuator"].contains(&section.tag.as_str()))
+        .filter(|section| ["worldbody", "tendon", "actuator"].contains(&section.tag.as_str()))
         .flat_map(|section| &mut section.children)
         .collect();
     while let Some(element) = pending.pop() {
@@ -62,6 +62,8 @@ struct Layout {
     actuators: Vec<(u32, [usize; 2])>,
     /// Number of each mocap body.
     mocaps: Vec<(u32, [usize; 2])>,
+    /// Number of each joint and tendon, and how many numbers say where its spring rests; 0 where that does not yield.
+    springs: Vec<(u32, usize)>,
 }
 
 impl Layout {
@@ -73,8 +75,15 @@ impl Layout {
             reader.read_world(section)?;
         }
         let (numbers, _) = reader.finish();
-        let kinds = bodies.iter().flat_map(|body| &body.joints);
-        let sizes = kinds.map(|joint| [joint.kind.nq(), joint.kind.nv()]);
+        let joints = || bodies.iter().flat_map(|body| &body.joints);
+        let sizes = joints().map(|joint| [joint.kind.nq(), joint.kind.nv()]);
+        let yielding = |spring: f64, count| if spring > 0.0 { count } else { 0 };
+        let rests = joints().map(|joint| yielding(joint.springyield, joint.kind.nq()));
+        let mut springs: Vec<_> = numbers.joints.iter().copied().zip(rests).collect();
+        for element in entries(root, "tendon") {
+            let spec = relations::read_tendon(element, &shared.sources)?;
+            springs.push((element.number, yielding(spec.springyield, 2)));
+        }
         let mut actuators = Vec::new();
         for element in entries(root, "actuator") {
             let spec = relations::read_actuator(element, &shared.sources)?;
@@ -87,6 +96,7 @@ impl Layout {
             joints: numbers.joints.into_iter().zip(sizes).collect(),
             actuators,
             mocaps: numbers.mocaps.into_iter().map(|n| (n, [3, 4])).collect(),
+            springs,
         })
     }
 
@@ -113,17 +123,8 @@ impl Layout {
         for (elements, names, given) in vectors {
             let given = given.map(Option::unwrap_or_default);
             for k in [0, 1] {
-                let mut end = 0;
-                let mut ends = elements.iter().map(|(_, counts)| {
-                    end += counts[k];
-                    end
-                });
-                let count = given[k].len();
-                if count > 0 && !ends.any(|end| end == count) {
-                    let what =
-                        "which is more than the model has, or ends within one of its elements";
-                    return Err(element.error(format!("{} has {count} numbers, {what}", names[k])));
-                }
+                let counts = elements.iter().map(|(_, counts)| counts[k]);
+                require_whole(element, names[k], &given[k], counts)?;
             }
             let mut rest = given.each_ref().map(Vec::as_slice);
             for &(number, counts) in elements {
@@ -132,11 +133,44 @@ impl Layout {
                     number,
                     first,
                     second,
+                    plastic: Vec::new(),
                 });
             }
         }
+        let given = spec.plastic.take().unwrap_or_default();
+        let counts = self.springs.iter().map(|&(_, count)| count);
+        require_whole(element, "plastic", &given, counts)?;
+        let mut rest = given.as_slice();
+        for &(number, count) in self.springs.iter().filter(|(_, count)| *count > 0) {
+            parts.push(Fragment {
+                number,
+                first: Vec::new(),
+                second: Vec::new(),
+                plastic: take(&mut rest, count),
+            });
+        }
         Ok(AttachedKeyframe { spec, parts })
     }
+}
+
+/// Refuses a vector that ends within an element, of which each has so many numbers.
+fn require_whole(
+    element: &Element,
+    name: &str,
+    given: &[f64],
+    counts: impl Iterator<Item = usize>,
+) -> Result<(), LoadError> {
+    let mut end = 0;
+    let mut ends = counts.map(|count| {
+        end += count;
+        end
+    });
+    let count = given.len();
+    if count == 0 || ends.any(|end| end == count) {
+        return Ok(());
+    }
+    let what = "which is more than the model has, or ends within one of its elements";
+    Err(element.error(format!("{name} has {count} numbers, {what}")))
 }
 
 /// Takes the first numbers of a vector; none where it has fewer, as where a keyframe says only how the state begins.
@@ -151,21 +185,23 @@ fn take(rest: &mut &[f64], count: usize) -> Vec<f64> {
 }
 
 impl Composer<'_, '_> {
-    /// Adds the keyframes of a model of which this part of the tree and these last actuators are copies.
+    /// Adds the keyframes of a model of which this part of the tree and these last tendons and actuators are copies.
     pub(super) fn attach_keyframes(
         &mut self,
         element: &Element,
         model: &Part,
         tree: &mut Element,
-        actuators_before: usize,
+        [tendons_before, actuators_before]: [usize; 2],
         namespace: &Namespace,
     ) -> Result<(), LoadError> {
         if model.keyframes.is_empty() {
             return Ok(());
         }
-        let mut list = std::mem::take(self.list("actuator"));
+        let mut tendons = std::mem::take(self.list("tendon"));
+        let mut actuators = std::mem::take(self.list("actuator"));
         let mut pending = vec![tree];
-        pending.extend(list.iter_mut().skip(actuators_before));
+        pending.extend(tendons.iter_mut().skip(tendons_before));
+        pending.extend(actuators.iter_mut().skip(actuators_before));
         let mut renumbered = HashMap::new();
         while let Some(copy) = pending.pop() {
             if copy.number != 0 {
@@ -174,7 +210,8 @@ impl Composer<'_, '_> {
             }
             pending.extend(&mut copy.children);
         }
-        *self.list("actuator") = list;
+        *self.list("tendon") = tendons;
+        *self.list("actuator") = actuators;
         for keyframe in &model.keyframes {
             let mut copy = keyframe.clone();
             copy.parts
@@ -211,8 +248,9 @@ pub(crate) fn resolve(
     };
     mean(numbers.joints, KeyframeElement::Joint);
     mean(numbers.mocaps, KeyframeElement::Mocap);
-    let actuators = entries(root, "actuator").map(|actuator| actuator.number);
-    mean(actuators.collect(), KeyframeElement::Actuator);
+    let listed = |section| entries(root, section).map(|entry| entry.number).collect();
+    mean(listed("actuator"), KeyframeElement::Actuator);
+    mean(listed("tendon"), KeyframeElement::Tendon);
     let spec = |keyframe: &AttachedKeyframe| KeyframeSpec {
         parts: (keyframe.parts.iter())
             .filter_map(|part| {
@@ -220,6 +258,7 @@ pub(crate) fn resolve(
                     element: *meant.get(&part.number)?,
                     first: part.first.clone(),
                     second: part.second.clone(),
+                    plastic: part.plastic.clone(),
                 })
             })
             .collect(),

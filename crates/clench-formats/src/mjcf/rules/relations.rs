@@ -18,9 +18,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "spatial",
         read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction user",
+            frictionloss springlength springyield solreflimit solimplimit solreffriction solimpfriction user",
         ignored: "group width material rgba",
-        later: "springyield=0",
         children: "site geom pulley",
         ..NONE
     },
@@ -42,9 +41,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "fixed",
         read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction user",
+            frictionloss springlength springyield solreflimit solimplimit solreffriction solimpfriction user",
         ignored: "group",
-        later: "springyield=0",
         children: "joint",
         ..NONE
     },
@@ -56,9 +54,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "default/tendon",
         read: "limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength solreflimit solimplimit solreffriction solimpfriction user",
+            frictionloss springlength springyield solreflimit solimplimit solreffriction solimpfriction user",
         ignored: "group width material rgba",
-        later: "springyield=0",
         ..NONE
     },
 ];

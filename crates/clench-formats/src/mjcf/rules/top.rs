@@ -73,8 +73,7 @@ pub(super) const RULES: &[Rule] = &[
     section("keyframe", "key", ""),
     Rule {
         element: "key",
-        read: "name time qpos qvel act ctrl mpos mquat",
-        later: "plastic",
+        read: "name time qpos qvel act plastic ctrl mpos mquat",
         ..NONE
     },
     section("custom", "numeric text tuple", ""),

@@ -49,8 +49,7 @@ pub(super) const RULES: &[Rule] = &[
         element: "joint",
         read: "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit \
             solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref \
-            armature damping frictionloss user",
-        later: "springyield=0",
+            springyield armature damping frictionloss user",
         ..NONE
     },
     Rule {

@@ -30,6 +30,7 @@ impl Scale {
         joint.margin *= along.coordinate;
         joint.reference *= along.coordinate;
         joint.springref *= along.coordinate;
+        joint.springyield *= along.coordinate;
         joint.solimp_limit[2] *= along.coordinate;
         joint.solimp_friction[2] *= along.coordinate;
         joint.actuatorfrcrange = joint.actuatorfrcrange.map(|end| end * along.force);

@@ -1,13 +1,13 @@
 //! Stored states.
 
 use super::actuators::States;
-use super::{FrameId, Frames, located};
+use super::{FrameId, Frames, PlacedJoint, located};
 use crate::LoadError;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::JointKind;
 
 impl Frames {
-    /// Scales what keyframes say of positions, velocities, controls and activations.
+    /// Scales what keyframes say of positions, velocities, springs, controls and activations.
     ///
     /// # Errors
     /// Keyframes of attached models.
@@ -18,10 +18,19 @@ impl Frames {
     ) -> Result<(), LoadError> {
         // Joints are numbered by body, and those of one body as they are read.
         let mut joints = self.all_joints.clone();
-        joints.sort_by_key(|&(body, ..)| body);
-        let (mut qpos, mut qvel) = (Vec::new(), Vec::new());
-        for (_, frame, kind) in joints {
+        joints.sort_by_key(|joint| joint.body);
+        let (mut qpos, mut qvel, mut plastic) = (Vec::new(), Vec::new(), Vec::new());
+        for joint in joints {
+            let PlacedJoint { frame, kind, .. } = joint;
             let length = self.scale(frame).length;
+            if joint.yields {
+                let along = if kind == JointKind::Slide {
+                    length
+                } else {
+                    1.0
+                };
+                plastic.extend(vec![linear(along); kind.nq()]);
+            }
             match kind {
                 JointKind::Free => {
                     qpos.extend(self.moved(frame));
@@ -42,6 +51,12 @@ impl Frames {
                 }
             }
         }
+        for (tendon, &(frame, coordinate)) in builder.tendons.iter().zip(&self.all_tendons) {
+            if tendon.springyield > 0.0 {
+                let along = self.scale(frame).along(coordinate);
+                plastic.extend([linear(along.coordinate); 2]);
+            }
+        }
         let mocaps = self.mocaps.iter();
         let mocap_pos: Vec<Map> = mocaps.flat_map(|&frame| self.moved(frame)).collect();
         let control = states(actuators, |states| &states.controls);
@@ -54,6 +69,7 @@ impl Frames {
             }
             apply(&mut keyframe.qpos, &qpos);
             apply(&mut keyframe.qvel, &qvel);
+            apply(&mut keyframe.plastic, &plastic);
             apply(&mut keyframe.ctrl, &control);
             apply(&mut keyframe.act, &activation);
             apply(&mut keyframe.mocap_pos, &mocap_pos);

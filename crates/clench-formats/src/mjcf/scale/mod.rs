@@ -204,14 +204,26 @@ pub(super) struct Frames {
     sites: BTreeMap<String, FrameId>,
     cameras: BTreeMap<String, FrameId>,
     tendons: BTreeMap<String, (FrameId, Coordinate)>,
-    /// Of all joints their body, in the order in which they are read.
-    all_joints: Vec<(usize, FrameId, JointKind)>,
+    /// All joints, in the order in which they are read.
+    all_joints: Vec<PlacedJoint>,
+    /// Of all tendons, in order.
+    all_tendons: Vec<(FrameId, Coordinate)>,
     /// Of all mocap bodies.
     mocaps: Vec<FrameId>,
     /// The lengths of a mesh or height field in the order of the elements that are it.
     instances: BTreeMap<String, Vec<f64>>,
     /// Scaled geoms that are meshes and have the mass of a density: body, number in it, and scale of lengths.
     meshes: Vec<(usize, usize, f64)>,
+}
+
+/// What a joint's numbers in keyframes follow.
+#[derive(Clone, Copy, Debug)]
+struct PlacedJoint {
+    body: usize,
+    frame: FrameId,
+    kind: JointKind,
+    /// Whether its spring yields.
+    yields: bool,
 }
 
 /// A kind of element that others name.
@@ -233,6 +245,7 @@ impl Default for Frames {
             cameras: BTreeMap::new(),
             tendons: BTreeMap::new(),
             all_joints: Vec::new(),
+            all_tendons: Vec::new(),
             mocaps: Vec::new(),
             instances: BTreeMap::new(),
             meshes: Vec::new(),
@@ -292,7 +305,12 @@ impl Frames {
     }
 
     pub(super) fn add_joint(&mut self, joint: &JointSpec, body: usize, frame: FrameId) {
-        self.all_joints.push((body, frame, joint.kind));
+        self.all_joints.push(PlacedJoint {
+            body,
+            frame,
+            kind: joint.kind,
+            yields: joint.springyield > 0.0,
+        });
         if frame != 0 && !joint.name.is_empty() {
             self.joints.insert(joint.name.clone(), (frame, joint.kind));
         }

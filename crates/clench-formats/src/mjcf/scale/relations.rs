@@ -97,6 +97,7 @@ impl Frames {
             }
             scale_tendon(tendon, along);
             tendon.width *= scale.length;
+            self.all_tendons.push((frame, coordinate));
             self.tendons
                 .insert(tendon.name.clone(), (frame, coordinate));
         }
@@ -251,6 +252,7 @@ fn scale_tendon(tendon: &mut TendonSpec, along: Along) {
     tendon.springlength = tendon
         .springlength
         .map(|rest| rest.map(|end| end * along.coordinate));
+    tendon.springyield *= along.coordinate;
     tendon.margin *= along.coordinate;
     tendon.solimp_limit[2] *= along.coordinate;
     tendon.solimp_friction[2] *= along.coordinate;

@@ -124,6 +124,7 @@ fn write_keyframes(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
             qpos,
             qvel,
             act,
+            plastic,
             ctrl,
             mocap_pos,
             mocap_quat,
@@ -134,6 +135,7 @@ fn write_keyframes(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
             .numbers_unless("qpos", qpos, &[])
             .numbers_unless("qvel", qvel, &[])
             .numbers_unless("act", act, &[])
+            .numbers_unless("plastic", plastic, &[])
             .numbers_unless("ctrl", ctrl, &[])
             .numbers_unless("mpos", mocap_pos, &[])
             .numbers_unless("mquat", mocap_quat, &[])

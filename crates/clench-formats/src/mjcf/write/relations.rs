@@ -52,6 +52,7 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
     let Tendon {
         name,
         path,
+        plastic: _,
         coefs,
         limited,
         actfrclimited,
@@ -87,6 +88,7 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
         )
         .number_unless("armature", p.tendon_armature[t], 0.0)
         .numbers("springlength", &p.tendon_lengthspring[t])
+        .number_unless("springyield", p.tendon_springyield[t], 0.0)
         .number_unless("frictionloss", p.tendon_frictionloss[t], 0.0)
         .numbers_unless("solreflimit", &p.tendon_solref_lim[t], &DEFAULT_SOLREF)
         .numbers_unless("solimplimit", &p.tendon_solimp_lim[t], &DEFAULT_SOLIMP)

@@ -41,6 +41,7 @@ fn fate(field: ParamField) -> Fate {
         F::jnt_pos | F::jnt_range => WrittenIfAny,
         F::jnt_axis => InPart,
         F::jnt_stiffness | F::jnt_stiffnesspoly | F::jnt_margin | F::jnt_actfrcrange => Written,
+        F::jnt_springyield | F::tendon_springyield => WrittenIfAny,
         F::jnt_solref | F::jnt_solimp => Written,
         F::dof_armature | F::dof_damping | F::dof_dampingpoly | F::dof_frictionloss => Written,
         F::dof_solref | F::dof_solimp => Written,

@@ -120,6 +120,7 @@ fn write_joint(model: &Model, j: usize, xml: &mut Xml) -> Result<(), SaveError> 
         body: _,
         qpos,
         dof,
+        plastic: _,
         limited,
         actfrclimited,
         actgravcomp,
@@ -169,6 +170,7 @@ fn write_joint(model: &Model, j: usize, xml: &mut Xml) -> Result<(), SaveError> 
         .number_unless("margin", p.jnt_margin[j], 0.0)
         .numbers_unless("solreflimit", &p.jnt_solref[j], &DEFAULT_SOLREF)
         .numbers_unless("solimplimit", &p.jnt_solimp[j], &DEFAULT_SOLIMP)
+        .number_unless("springyield", p.jnt_springyield[j], 0.0)
         .polynomial("stiffness", stiffness)
         .polynomial("damping", damping)
         .number_unless("armature", p.dof_armature[d], 0.0)

@@ -87,6 +87,8 @@ pub struct Joint {
     pub qpos: usize,
     /// First degree of freedom.
     pub dof: usize,
+    /// The first number in [`State::plastic`](crate::State::plastic) of where its spring rests; none where the spring does not yield.
+    pub plastic: Option<usize>,
     /// Its range is a limit.
     pub limited: bool,
     /// Its total actuator force is limited.

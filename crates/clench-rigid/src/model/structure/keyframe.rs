@@ -13,6 +13,8 @@ pub struct Keyframe {
     pub qvel: Vec<f64>,
     /// (na).
     pub act: Vec<f64>,
+    /// (nplastic).
+    pub plastic: Vec<f64>,
     /// (nu).
     pub ctrl: Vec<f64>,
     /// (3 nmocap).

@@ -30,6 +30,8 @@ pub struct Tendon {
     pub path: Vec<Wrap>,
     /// Where the numbers of the path's elements are in `params.wrap_coef`.
     pub coefs: Range<usize>,
+    /// The first number in [`State::plastic`](crate::State::plastic) of its spring's dead band; none where the spring does not yield.
+    pub plastic: Option<usize>,
     /// Its range is a limit.
     pub limited: bool,
     /// Its total actuator force is limited.

@@ -165,6 +165,7 @@ pub fn assert_state<S: Precision>(
         ("qpos", &rows.qpos, &expected.qpos),
         ("qvel", &rows.qvel, &expected.qvel),
         ("act", &rows.act, &expected.act),
+        ("plastic", &rows.plastic, &expected.plastic),
         ("history", &rows.history, &expected.history),
         ("ctrl", &rows.ctrl, &expected.ctrl),
         ("qfrc_applied", &rows.qfrc_applied, &expected.qfrc_applied),

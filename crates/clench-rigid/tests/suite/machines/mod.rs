@@ -7,7 +7,7 @@ use clench_rigid::builder::{
     ActuatorSpec, BodySpec, GeomSpec, JointSpec, ModelBuilder, TendonSpec, TransmissionSpec,
     WrapSpec,
 };
-use clench_rigid::model::{BiasKind, DynamicsKind, Flags, GainKind};
+use clench_rigid::model::{BiasKind, DynamicsKind, Flags, GainKind, JointKind};
 
 /// A world without contacts and other constraints.
 pub fn world(name: &str) -> ModelBuilder {
@@ -120,6 +120,9 @@ pub fn everything() -> ModelBuilder {
             joint.stiffness = [2.0, 0.5, 3.0];
             joint.springref = 0.2;
             joint.damping = [0.3, 0.1, 0.02];
+            if joint.kind != JointKind::Free {
+                joint.springyield = 0.15;
+            }
         }
     }
     let knee = &mut b.bodies[6].joints[0];
@@ -220,6 +223,7 @@ fn add_strings(b: &mut ModelBuilder) {
         string.stiffness = [3.0, 0.4, 1.5];
         string.damping = [0.2, 0.1, 0.03];
         string.springlength = Some([0.3, 0.5]);
+        string.springyield = 0.05;
         b.tendons.push(string);
     }
     b.tendons[1].armature = 0.3;
