@@ -60,11 +60,15 @@ def test_contacts_are_listed():
 
 
 def test_what_is_supported_is_listed():
-    listed = program.run("mjcf", "spatial").stdout.splitlines()
-    assert listed[0] == "spatial" and all(line.startswith("  ") for line in listed[1:])
-    words = {line.split()[0]: line.split()[1:] for line in listed[1:]}
-    assert words.keys() == {"children", "read", "ignored", "refused"}
+    def listed(element):
+        lines = program.run("mjcf", element).stdout.splitlines()
+        assert lines[0] == element and all(line.startswith("  ") for line in lines[1:])
+        return {line.split()[0]: line.split()[1:] for line in lines[1:]}
+
+    words = listed("spatial")
+    assert words.keys() == {"children", "read", "ignored"}
     assert "range" in words["read"] and "springyield" in words["read"]
+    assert "speculative=disable" in listed("flag")["refused"]
     assert len(program.run("mjcf").stdout.splitlines()) > 100
 
 

@@ -51,9 +51,13 @@ class Generator(Preamble, Tree, Relations, Actuation, Sensing):
         if draw.chance(0.7):
             return
         for frame in self.root.iter("frame"):
+            # Lengths of what is given in pixels MuJoCo rounds to single precision on the way.
+            pixels = any({"focalpixel", "principalpixel"}.intersection(camera.keys()) for camera in frame.iter("camera"))
             for name, value in VALUES["scaled frame"].items():
                 if draw.chance(0.5):
-                    frame.set(name, value(draw))
+                    drawn = value(draw)
+                    if not pixels:
+                        frame.set(name, drawn)
 
     def number_elements(self):
         """Sensors, and tendons of some classes, have numbers of the user's."""

@@ -95,7 +95,14 @@ impl ActuatorDraft {
             Shortcut::DcMotor => self.read_dc_motor(element, inherited)?,
             Shortcut::Adhesion => shortcut::read_adhesion(element, inherited)?,
         };
-        self.parameters = parameters;
+        self.parameters = match shortcut {
+            // It changes what its class says, one by one.
+            Shortcut::General => parameters,
+            _ => ActuatorParams {
+                shortcut,
+                ..parameters
+            },
+        };
         match shortcut {
             Shortcut::Damper | Shortcut::Adhesion => self.require_positive_controls(element)?,
             _ => {}

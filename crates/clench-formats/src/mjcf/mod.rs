@@ -115,7 +115,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         keyframe::pad(size, &mut builder.keyframes)?;
         custom::read_widths(size, &mut builder.user_widths)?;
     }
-    let shortcuts = relations::shortcuts(root);
+    let shortcuts = relations::shortcuts(root, sources)?;
     frames.scale_rest(&shortcuts, &mut builder, spending)?;
     builder.custom = custom::read(root, spending)?;
     if builder.compiler.fusestatic {

@@ -46,10 +46,19 @@ pub(crate) fn read(
     Ok(())
 }
 
-/// Which elements the actuators are written with.
-pub(crate) fn shortcuts(root: &Element) -> Vec<Shortcut> {
-    let tags = entries(root, "actuator").map(|element| Shortcut::from_tag(&element.tag));
-    tags.map(Option::unwrap_or_default).collect()
+/// The shortcuts that wrote the parameters of the actuators, themselves or in their class.
+///
+/// # Errors
+/// A class that is not there.
+pub(crate) fn shortcuts(root: &Element, sources: &Sources) -> Result<Vec<Shortcut>, LoadError> {
+    let of_element = |element: &Element| match Shortcut::from_tag(&element.tag) {
+        None | Some(Shortcut::General) => {
+            let classes = &sources.of(element).classes;
+            Ok(classes.of(element)?.actuator.parameters.shortcut)
+        }
+        Some(shortcut) => Ok(shortcut),
+    };
+    entries(root, "actuator").map(of_element).collect()
 }
 
 pub(crate) fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadError> {

@@ -72,6 +72,8 @@ pub(crate) struct ActuatorParams {
     pub actdim: i32,
     /// What the controls are; `None`: what is usual.
     pub inputs: Option<Inputs>,
+    /// The shortcut that wrote them, which also says what the control is where `inputs` do not.
+    pub shortcut: Shortcut,
 }
 
 /// Leading entries, then zeros.
@@ -95,6 +97,7 @@ impl Default for ActuatorParams {
             actearly: general.actearly,
             actdim: -1,
             inputs: None,
+            shortcut: Shortcut::General,
         }
     }
 }

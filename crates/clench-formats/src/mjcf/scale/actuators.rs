@@ -146,15 +146,17 @@ impl Command {
     fn new(actuator: &ActuatorSpec, written: Shortcut) -> Self {
         use ControlInput::{Position, Velocity};
         let single = [GainKind::Fixed, GainKind::Affine].contains(&actuator.gain);
-        match (written, actuator.inputs.as_deref()) {
-            (Shortcut::Position | Shortcut::Velocity | Shortcut::IntVelocity, _) => {
+        match (actuator.inputs.as_deref(), written) {
+            _ if !single => Command::Number,
+            (Some([Position | Velocity]), _) => Command::Coordinate,
+            // A pressure is an input without a part in the force of its own.
+            (Some([]), _) => Command::Pressure,
+            (Some(_), _) => Command::Number,
+            (None, Shortcut::Position | Shortcut::Velocity | Shortcut::IntVelocity) => {
                 Command::Coordinate
             }
-            (Shortcut::Cylinder, _) => Command::Pressure,
-            (_, Some([Position | Velocity])) if single => Command::Coordinate,
-            // A pressure is an input without a part in the force of its own.
-            (_, Some([])) if single => Command::Pressure,
-            _ => Command::Number,
+            (None, Shortcut::Cylinder) => Command::Pressure,
+            (None, _) => Command::Number,
         }
     }
 
