@@ -248,9 +248,10 @@ impl ContactLine {
             active: match self.exclude {
                 0 => true,
                 1 => self.dist >= self.includemargin,
-                3 => geoms
-                    .iter()
-                    .all(|&g| model.bodies[model.geoms[g].body].weld == 0),
+                3 => {
+                    let [first, second] = geoms.map(|g| model.bodies[model.geoms[g].body].weld);
+                    first == second
+                }
                 _ => false,
             },
             dim: self.dim,
