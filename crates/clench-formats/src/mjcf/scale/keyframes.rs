@@ -16,41 +16,7 @@ impl Frames {
         actuators: &[States],
         builder: &mut ModelBuilder,
     ) -> Result<(), LoadError> {
-        // Joints are numbered by body, and those of one body as they are read.
-        let mut joints = self.all_joints.clone();
-        joints.sort_by_key(|joint| joint.body);
-        let (mut qpos, mut qvel, mut plastic) = (Vec::new(), Vec::new(), Vec::new());
-        for joint in joints {
-            let PlacedJoint { frame, kind, .. } = joint;
-            let length = self.scale(frame).length;
-            if joint.yields {
-                let along = if kind == JointKind::Slide {
-                    length
-                } else {
-                    1.0
-                };
-                plastic.extend(vec![linear(along); kind.nq()]);
-            }
-            match kind {
-                JointKind::Free => {
-                    qpos.extend(self.moved(frame));
-                    qpos.extend([linear(1.0); 4]);
-                    qvel.extend([length, length, length, 1.0, 1.0, 1.0].map(linear));
-                }
-                JointKind::Ball => {
-                    qpos.extend([linear(1.0); 4]);
-                    qvel.extend([linear(1.0); 3]);
-                }
-                JointKind::Slide => {
-                    qpos.push(linear(length));
-                    qvel.push(linear(length));
-                }
-                JointKind::Hinge => {
-                    qpos.push(linear(1.0));
-                    qvel.push(linear(1.0));
-                }
-            }
-        }
+        let [qpos, qvel, mut plastic] = self.of_joints();
         for (tendon, &(frame, coordinate)) in builder.tendons.iter().zip(&self.all_tendons) {
             if tendon.springyield > 0.0 {
                 let along = self.scale(frame).along(coordinate);
@@ -79,6 +45,42 @@ impl Frames {
 }
 
 impl Frames {
+    /// What becomes of the positions, the velocities and the springs of joints.
+    fn of_joints(&self) -> [Vec<Map>; 3] {
+        // Joints are numbered by body, and those of one body as they are read.
+        let mut joints = self.all_joints.clone();
+        joints.sort_by_key(|joint| joint.body);
+        let (mut qpos, mut qvel, mut plastic) = (Vec::new(), Vec::new(), Vec::new());
+        for PlacedJoint {
+            frame,
+            kind,
+            yields,
+            ..
+        } in joints
+        {
+            let length = self.scale(frame).length;
+            let along = match kind {
+                JointKind::Slide => length,
+                _ => 1.0,
+            };
+            match kind {
+                JointKind::Free => {
+                    qpos.extend(self.moved(frame));
+                    qpos.extend([linear(1.0); 4]);
+                    qvel.extend([length, length, length, 1.0, 1.0, 1.0].map(linear));
+                }
+                _ => {
+                    qpos.extend(vec![linear(along); kind.nq()]);
+                    qvel.extend(vec![linear(along); kind.nv()]);
+                }
+            }
+            if yields {
+                plastic.extend(vec![linear(along); kind.nq()]);
+            }
+        }
+        [qpos, qvel, plastic]
+    }
+
     /// What becomes of the position of something in the world that a frame carries: it moves with the frame, and away from it.
     fn moved(&self, frame: FrameId) -> [Map; 3] {
         let frame = &self.list[frame];
@@ -91,6 +93,7 @@ impl Frames {
 /// What becomes of a number: it is multiplied by the first, and the second is added.
 type Map = (f64, f64);
 
+/// What becomes of the controls or activations of all actuators.
 fn states(actuators: &[States], which: impl Fn(&States) -> &Vec<f64>) -> Vec<Map> {
     (actuators.iter().flat_map(which))
         .map(|&factor| linear(factor))

@@ -165,6 +165,8 @@ impl Frames {
         equality.solimp[2] *= width;
     }
 
+    /// Scales the cutoff and the noise of each sensor.
+    ///
     /// # Errors
     /// A sensor that feels with a mesh, whose points would have to be scaled.
     pub(super) fn scale_sensors(&self, builder: &mut ModelBuilder) -> Result<(), LoadError> {
