@@ -11,6 +11,30 @@ pub(crate) struct Elevation {
     pub heights: Vec<f64>,
 }
 
+/// Heights that are no further apart than this are equal, in MuJoCo as here.
+const FLAT: f32 = 1e-14;
+
+impl Elevation {
+    /// The same heights as parts between the lowest, 0, and the highest, 1, in single precision: to its last bit decides what a
+    /// ray meets, and MuJoCo's compiler has no more. Heights that are not finite stay as they are, for the model to refuse.
+    pub(crate) fn in_parts(mut self) -> Self {
+        let singles = || self.heights.iter().map(|&height| height as f32);
+        let low = singles().fold(f32::INFINITY, f32::min);
+        let span = singles().fold(f32::NEG_INFINITY, f32::max) - low;
+        if span.is_finite() {
+            let part = |height: f32| {
+                if span > FLAT {
+                    (height - low) / span
+                } else {
+                    0.0
+                }
+            };
+            self.heights = singles().map(|height| f64::from(part(height))).collect();
+        }
+        self
+    }
+}
+
 /// What a height takes in all, bytes: it stands in the builder and in the model, and is a pixel before.
 pub(crate) const HEIGHT: u64 = 24;
 

@@ -38,6 +38,7 @@ pub(crate) fn read(
     if name.is_empty() {
         return Err(element.error("a height field needs a name or a file"));
     }
+    let found = found.in_parts();
     Ok(HeightFieldSpec {
         name,
         rows: found.rows,
