@@ -218,7 +218,11 @@ fn scale_gain(actuator: &mut ActuatorSpec, command: Command, along: Along) {
     }
 }
 
+/// As in MuJoCo, a bias is left as it is where gain or bias is a muscle's and the other is not.
 fn scale_bias(actuator: &mut ActuatorSpec, along: Along) {
+    if (actuator.gain == GainKind::Muscle) != (actuator.bias == BiasKind::Muscle) {
+        return;
+    }
     let gain = match actuator.bias {
         BiasKind::So3 => along.turning(),
         _ => along.gain(),
