@@ -285,7 +285,7 @@ fn spring_dampers(springdampers: &[[f64; 2]], model: &mut Model) {
 }
 
 /// A servo of gain kp that moves the inertia m = (J M⁻¹ Jᵀ)⁻¹ is an oscillator, whose damping ratio is kv / (2 √(kp m)). Of an orientation
-/// servo J M⁻¹ Jᵀ is the mean about its three axes.
+/// servo J M⁻¹ Jᵀ is the mean about its three axes. A servo that moves nothing is not damped.
 fn servo_damping(
     builder: &ModelBuilder,
     inverse: &mut InverseInertia,
@@ -304,8 +304,11 @@ fn servo_damping(
         }
         // The gain of what pulls back is this too.
         let stiffness = -spec.biasprm[1];
-        let reflected = 1.0 / weight.max(MIN_INERTIA);
-        model.params.actuator_biasprm[u][2] = -2.0 * ratio * (stiffness * reflected).sqrt();
+        model.params.actuator_biasprm[u][2] = if weight > MIN_INERTIA {
+            -2.0 * ratio * (stiffness * (1.0 / weight)).sqrt()
+        } else {
+            0.0
+        };
     }
 }
 
