@@ -18,25 +18,22 @@ import agreement
 import oracle
 import program
 from compare import assert_close, largest, looser
+from random_models.undecided import IDLE, held_by_rounding, is_undecided
 from random_models.values import Draw
 from test_own_contacts import CLOSED_FORM, SAME_POINT
 
 STEPS = 3
 ITERATIONS = 60  # of MuJoCo's solver, which goes on after it has converged
+COMPILED = 1e-15  # tolerance of the solver while MuJoCo compiles
+SEARCHES = 35  # iterations of its search for distances of convex shapes, to SEARCHED metres, as where the model says nothing
+SEARCHED = 1e-6
 FASTEST = 1.0  # radians or metres a step
 OF_MESHES = 1e4  # times what is allowed elsewhere
 STIFFEST = 1e12  # D of bodies that have no inverse inertia in some direction: their centre of mass is on the axis
-IDLE = 1e-14  # metres: a lever that is nothing but rounding
 STILL = 1e-11  # m/s² or rad/s² for a newton
-OVERDAMPED = 1e6  # N s/m
 NEXT = 1e-8  # of what a step changes
 FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
 CLEARLY = 1e-6  # metres: whether a contact exists is certain
-LIMITS_OF_TENDONS = (
-    mujoco.mjtSensor.mjSENS_TENDONLIMITPOS,
-    mujoco.mjtSensor.mjSENS_TENDONLIMITVEL,
-    mujoco.mjtSensor.mjSENS_TENDONLIMITFRC,
-)
 # What only MuJoCo takes: a `general` of a motor's class that changes one kind of three, and computes with what is left of the motor.
 REFUSED_HERE = ("dcmotor must be the kind of dynamics, gain and bias",)
 FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
@@ -75,25 +72,27 @@ class Question:
 
 
 def compiled(text):
-    """MuJoCo's model of a text, made to solve as exactly as it can."""
+    """MuJoCo's model of a text, made to solve as exactly as it can, and to search no less than is usual."""
     try:
-        model = oracle.exact(mujoco.MjModel.from_xml_string(text))
+        spec = mujoco.MjSpec.from_string(text)
+        # The compiler simulates to find length ranges, which are known no better than that.
+        spec.option.tolerance = min(spec.option.tolerance, COMPILED)
+        model = oracle.exact(spec.compile())
     except (ValueError, RuntimeError) as error:  # Its compiler may fail without saying why.
         raise Refused(str(error)) from None
     model.opt.iterations = ITERATIONS
+    model.opt.ccd_iterations = max(model.opt.ccd_iterations, SEARCHES)
+    model.opt.ccd_tolerance = min(model.opt.ccd_tolerance, SEARCHED)
     if strong_by_rounding(model):
         raise Refused("an actuator that moves nothing pulls with a quotient of roundings")
     return model
 
 
 def strong_by_rounding(model):
-    """Whether an actuator that accelerates the model by rounding alone has numbers that follow from it: the peak force of a muscle
-    (scale / acc0), or the damping of a servo by its ratio.
-    """
+    """Whether a muscle that accelerates the model by rounding alone has a peak force that follows from it (scale / acc0)."""
     by_scale = (model.actuator_gaintype == mujoco.mjtGain.mjGAIN_MUSCLE) & (model.actuator_gainprm[:, 2] < 0)
     by_scale |= (model.actuator_biastype == mujoco.mjtBias.mjBIAS_MUSCLE) & (model.actuator_biasprm[:, 2] < 0)
-    by_ratio = (model.actuator_biastype == mujoco.mjtBias.mjBIAS_AFFINE) & (model.actuator_biasprm[:, 2] < -OVERDAMPED)
-    return bool(((by_scale | by_ratio) & (model.actuator_acc0[model.actuator_outadr] < STILL)).any())
+    return bool((by_scale & (model.actuator_acc0[model.actuator_outadr] < STILL)).any())
 
 
 def examine(text, seed):
@@ -180,10 +179,12 @@ def without_contacts(model):
 
 
 def stepped(model, state):
-    """MuJoCo's results on a state and the state one step later, None where it complains or something turns too fast to be integrated."""
+    """MuJoCo's results on a state and the state one step later, None where it complains, an activation becomes no number (of which it
+    says nothing) or something turns too fast to be integrated."""
     data = oracle.assigned(model, state)
     mujoco.mj_step(model, data)
-    if any(w.number for w in data.warning) or model.opt.timestep * largest(data.qvel, state["qvel"]) > FASTEST:
+    complains = any(w.number for w in data.warning) or not np.isfinite(data.act).all()
+    if complains or model.opt.timestep * largest(data.qvel, state["qvel"]) > FASTEST:
         return None, None
     after = {"time": data.time, **{name: getattr(data, name).tolist() for name in ("qpos", "qvel", "act", "plastic")}}
     return oracle.results(model, data, state), after
@@ -241,36 +242,18 @@ def judge(model, question, ours):
     if not question.own:
         if pushed_by_rounding(theirs):
             return
+        held = held_by_rounding(theirs)
         drop_idle_rows(ours, theirs)
+        clear_rounding(ours, theirs)
         agreement.constraint_rows(what, ours, theirs)
     if oracle.distance_to_optimum(theirs) > agreement.SOLVED / 10 or largest(theirs.efc_D) > STIFFEST:
         return  # MuJoCo has not converged, or rounding decides the forces of rows that are as good as rigid
     agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
     if not question.own:
         forces(what, ours, theirs)
-        agreement.sensors(model, what, ours, theirs, is_undecided=lambda sensor: is_undecided(model, sensor, theirs))
+        agreement.sensors(model, what, ours, theirs, is_undecided=lambda sensor: is_undecided(model, sensor, theirs, held))
     if question.after is not None:
         next_state(model, what, question, ours["next"])
-
-
-def is_undecided(model, sensor, theirs):
-    """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, the
-    limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths)."""
-    kind = mujoco.mjtSensor(model.sensor_type[sensor])
-    if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
-        return True
-    if kind == mujoco.mjtSensor.mjSENS_GEOMDIST and theirs.sensordata[model.sensor_adr[sensor]] < 0:
-        return True
-    if kind in LIMITS_OF_TENDONS and theirs.sensordata[model.sensor_adr[sensor]] != 0:
-        limits = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)  # of tendons that move something
-        return model.sensor_objid[sensor] not in theirs.efc_id[limits]
-    ends = ((model.sensor_objtype, model.sensor_objid), (model.sensor_reftype, model.sensor_refid))
-    for kind, index in ends:
-        if kind[sensor] == mujoco.mjtObj.mjOBJ_BODY and index[sensor] >= 0:
-            moments = np.sort(model.body_inertia[index[sensor]])
-            if (np.diff(moments) <= 1e-6 * moments[-1]).any():
-                return True
-    return False
 
 
 def forces(what, ours, theirs):
@@ -300,6 +283,15 @@ def drop_idle_rows(ours, theirs):
     kept = acted_on(list(zip(theirs.efc_type, theirs.efc_id)), theirs.jacobian, contact)
     for name in ("jacobian", *(name for name in vars(theirs) if name.startswith("efc_"))):
         setattr(theirs, name, getattr(theirs, name)[kept])
+
+
+def clear_rounding(ours, theirs):
+    """Makes zero what has no digits in either engine: rows of contacts between bodies that cannot move along them."""
+    if len(ours["jacobian"]) != len(theirs.jacobian):
+        return
+    for own, other in zip(ours["jacobian"], theirs.jacobian):
+        if largest(own, other, floor=0) <= IDLE:
+            own[:] = other[:] = [0.0] * len(own)
 
 
 def acted_on(sources, jacobian, contact):

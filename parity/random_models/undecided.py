@@ -1,0 +1,77 @@
+"""Sensors of which MuJoCo's numbers need not be ours, since rounding decides them or MuJoCo does not find what it looks for."""
+
+import mujoco
+import numpy as np
+
+import oracle
+
+IDLE = 1e-14  # metres: a lever that is nothing but rounding
+HELD = 1e-9  # newtons
+LIMITS_OF_TENDONS = (
+    mujoco.mjtSensor.mjSENS_TENDONLIMITPOS,
+    mujoco.mjtSensor.mjSENS_TENDONLIMITVEL,
+    mujoco.mjtSensor.mjSENS_TENDONLIMITFRC,
+)
+BETWEEN_BODIES = (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE)
+OF_TENDONS = (mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON, mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)
+
+
+def is_undecided(model, sensor, theirs, held):
+    """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, the
+    limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and so are forces between bodies where rounding
+    `held` such a tendon; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), and
+    that a capsule goes through a box not at all."""
+    kind = mujoco.mjtSensor(model.sensor_type[sensor])
+    if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
+        return True
+    if kind == mujoco.mjtSensor.mjSENS_GEOMDIST:
+        return theirs.sensordata[model.sensor_adr[sensor]] < 0 or pierces(model, sensor, theirs)
+    if kind in BETWEEN_BODIES:
+        return held
+    if kind in LIMITS_OF_TENDONS and theirs.sensordata[model.sensor_adr[sensor]] != 0:
+        limits = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)  # of tendons that move something
+        return model.sensor_objid[sensor] not in theirs.efc_id[limits]
+    ends = ((model.sensor_objtype, model.sensor_objid), (model.sensor_reftype, model.sensor_refid))
+    for kind, index in ends:
+        if kind[sensor] == mujoco.mjtObj.mjOBJ_BODY and index[sensor] >= 0:
+            moments = np.sort(model.body_inertia[index[sensor]])
+            if (np.diff(moments) <= 1e-6 * moments[-1]).any():
+                return True
+    return False
+
+
+def held_by_rounding(theirs):
+    """Whether friction or a limit holds a tendon that moves nothing: that it is a constraint at all, rounding decides, and what it asks
+    for is a quotient of roundings. It moves nothing, and yet is a force between the bodies of its ends."""
+    tendons = np.isin(theirs.efc_type, [int(kind) for kind in OF_TENDONS])
+    idle = np.abs(theirs.jacobian).max(axis=1, initial=0) <= IDLE
+    return bool((np.abs(theirs.efc_force[tendons & idle]) > HELD).any())
+
+
+def pierces(model, sensor, theirs):
+    """Whether a sensor of distances looks at a box and a capsule whose axis goes through the box: MuJoCo compares the axis with the box's
+    edges and the axis's ends with its faces, and so says that they are apart, or less deep in each other than they are."""
+    data = oracle.assigned(model, theirs.state)
+    mujoco.mj_kinematics(model, data)
+    first = geoms(model, model.sensor_objtype[sensor], model.sensor_objid[sensor])
+    second = geoms(model, model.sensor_reftype[sensor], model.sensor_refid[sensor])
+    pairs = [pair for a in first for b in second for pair in ((a, b), (b, a))]
+    return any(goes_through(model, data, capsule, box) for capsule, box in pairs)
+
+
+def geoms(model, kind, index):
+    """The geoms of what a sensor looks at, a geom or a body."""
+    if kind == mujoco.mjtObj.mjOBJ_GEOM:
+        return [index]
+    return range(model.body_geomadr[index], model.body_geomadr[index] + model.body_geomnum[index])
+
+
+def goes_through(model, data, capsule, box):
+    """Whether the axis of a capsule meets a box."""
+    kinds = (model.geom_type[capsule], model.geom_type[box])
+    if kinds != (mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_BOX):
+        return False
+    half = model.geom_size[capsule, 1] * np.reshape(data.geom_xmat[capsule], (3, 3))[:, 2]
+    end = data.geom_xpos[capsule] - half
+    met = mujoco.mju_rayGeom(data.geom_xpos[box], data.geom_xmat[box], model.geom_size[box], end, 2 * half, kinds[1], None)
+    return 0 <= met <= 1
