@@ -31,7 +31,7 @@ pub(crate) struct Step<T: Real> {
 /// How precisely a ray is searched.
 #[derive(Clone, Copy)]
 pub(crate) struct Precision<T> {
-    /// Most evaluations.
+    /// Most evaluations. With none the search ends at its first guess, unless the cost has risen there.
     pub evaluations: usize,
     /// The slope counts as zero below this times the length of p.
     pub slope: T,
@@ -117,7 +117,7 @@ impl<T: Real> Ray<T> {
             evaluations: T::ZERO,
             cut: descends,
         };
-        if !descends.any() || precision.evaluations == 0 {
+        if !descends.any() {
             return step;
         }
         let count = |mask| T::select(mask, T::ONE, T::ZERO);

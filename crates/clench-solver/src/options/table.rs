@@ -29,7 +29,7 @@ macro_rules! solver_options {
                 /// Stop where gradient norm and last improvement (CG: the duality gap), over mean inertia × nv, are below; 1e-8, but 1e-5 in
                 /// single precision. Zero asks for the working precision.
                 tolerance: f64 = 1e-8 => 1e-5, NotNegative, Given("tolerance"), Attribute("tolerance");
-                /// Most evaluations of a line search; 50.
+                /// Most evaluations of a line search; 50. With none it takes its first guess, as MuJoCo's does, if the cost falls there.
                 ls_iterations: usize = 50, Any, Given("ls-iterations"), Attribute("ls_iterations");
                 /// Slope at which a line search stops, relative to the tolerance; 0.01.
                 ls_tolerance: f64 = 0.01, NotNegative, Given("ls-tolerance"), Attribute("ls_tolerance");
