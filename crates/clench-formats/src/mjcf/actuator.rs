@@ -97,7 +97,11 @@ impl ActuatorDraft {
         };
         self.parameters = match shortcut {
             // It changes what its class says, one by one.
-            Shortcut::General => parameters,
+            Shortcut::General => ActuatorParams {
+                saturation: (parameters.saturation)
+                    .map(|_| (self.spec.forcerange, self.spec.forcelimited)),
+                ..parameters
+            },
             _ => ActuatorParams {
                 shortcut,
                 ..parameters
@@ -117,20 +121,24 @@ impl ActuatorDraft {
         self.settle_inheritrange(element)
     }
 
-    /// `dcmotor`: its saturation is a limit of the force.
+    /// `dcmotor`: its saturation is a limit of the force, and comes with what its class lends, whatever limit others of the class have.
     fn read_dc_motor(
         &mut self,
         element: &Element,
         inherited: ActuatorParams,
     ) -> Result<ActuatorParams, LoadError> {
         let damping = self.spec.damping[0];
-        let (parameters, saturation) = controller::read_dc_motor(element, inherited, damping)?;
-        match saturation {
-            Saturation::Inherited => {}
-            Saturation::None => (self.spec.forcerange, self.spec.forcelimited) = ([0.0; 2], None),
-            Saturation::Torque(torque) => {
-                (self.spec.forcerange, self.spec.forcelimited) = ([-torque, torque], Some(true));
+        let (mut parameters, saturation) = controller::read_dc_motor(element, inherited, damping)?;
+        parameters.saturation = match saturation {
+            Saturation::Inherited => inherited.saturation,
+            Saturation::None => {
+                (self.spec.forcerange, self.spec.forcelimited) = ([0.0; 2], None);
+                None
             }
+            Saturation::Torque(torque) => Some(([-torque, torque], Some(true))),
+        };
+        if let Some(limit) = parameters.saturation {
+            (self.spec.forcerange, self.spec.forcelimited) = limit;
         }
         Ok(parameters)
     }

@@ -70,6 +70,8 @@ pub(crate) struct ActuatorParams {
     pub inheritrange: f64,
     pub actearly: bool,
     pub actdim: i32,
+    /// The range of forces, and whether it limits them, where the saturation of a `dcmotor` is part of the parameters.
+    pub saturation: Option<([f64; 2], Option<bool>)>,
     /// What the controls are; `None`: what is usual.
     pub inputs: Option<Inputs>,
     /// The shortcut that wrote them, which also says what the control is where `inputs` do not.
@@ -96,6 +98,7 @@ impl Default for ActuatorParams {
             inheritrange: general.inheritrange,
             actearly: general.actearly,
             actdim: -1,
+            saturation: None,
             inputs: None,
             shortcut: Shortcut::General,
         }

@@ -82,6 +82,32 @@ fn the_options_of_a_dc_motor_overwrite_those_of_its_class() {
 }
 
 #[test]
+fn a_class_lends_the_saturation_of_its_motor() {
+    let range = |within: &str, element: &str| {
+        let classes = format!(
+            "<dcmotor resistance='2' motorconst='.5' saturation='0 4'/><default class='c'>\
+             <motor forcerange='-.4 .2'/>{within}</default>"
+        );
+        let found = actuator(&classes, &format!("<{element} class='c' joint='j'/>"));
+        (found.forcerange, found.forcelimited)
+    };
+    let lent = ([-2.0, 2.0], Some(true));
+    assert_eq!(range("", "motor"), ([-0.4, 0.2], Some(true)));
+    assert_eq!(range("", "dcmotor"), lent);
+    assert_eq!(range("", "dcmotor motorconst='3'"), lent);
+    assert_eq!(range("<dcmotor cogging='1'/>", "motor"), lent);
+    assert_eq!(
+        range("<dcmotor saturation='0'/>", "motor"),
+        ([0.0; 2], None)
+    );
+    // A `general` that is a motor by its class lends what it makes of the range.
+    let classes = "<dcmotor resistance='2' motorconst='.5' saturation='2'/><default class='b'>\
+        <general forcerange='-5 6'/><default class='c'><motor forcerange='-.4 .2'/></default></default>";
+    let found = actuator(classes, "<dcmotor class='c' joint='j'/>");
+    assert_eq!(found.forcerange, [-5.0, 6.0]);
+}
+
+#[test]
 fn an_input_only_says_what_it_is_where_the_gain_scales_it() {
     assert_eq!(
         actuator("", "<general joint='j' input='pos'/>")
