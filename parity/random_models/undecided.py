@@ -7,6 +7,7 @@ import oracle
 
 IDLE = 1e-14  # metres: a lever that is nothing but rounding
 HELD = 1e-9  # newtons
+NEARER = 1e-3  # metres
 LIMITS_OF_TENDONS = (
     mujoco.mjtSensor.mjSENS_TENDONLIMITPOS,
     mujoco.mjtSensor.mjSENS_TENDONLIMITVEL,
@@ -19,13 +20,13 @@ OF_TENDONS = (mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON, mujoco.mjtConstraint
 def is_undecided(model, sensor, theirs, held):
     """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, the
     limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and so are forces between bodies where rounding
-    `held` such a tendon; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), and
-    that a capsule goes through a box not at all."""
+    `held` such a tendon; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), that
+    a capsule goes through a box not at all, and of a height field what is near among the first of its cells alone."""
     kind = mujoco.mjtSensor(model.sensor_type[sensor])
     if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
         return True
     if kind == mujoco.mjtSensor.mjSENS_GEOMDIST:
-        return theirs.sensordata[model.sensor_adr[sensor]] < 0 or pierces(model, sensor, theirs)
+        return theirs.sensordata[model.sensor_adr[sensor]] < 0 or pierces(model, sensor, theirs) or cut_short(model, sensor, theirs)
     if kind in BETWEEN_BODIES:
         return held
     if kind in LIMITS_OF_TENDONS and theirs.sensordata[model.sensor_adr[sensor]] != 0:
@@ -53,10 +54,30 @@ def pierces(model, sensor, theirs):
     edges and the axis's ends with its faces, and so says that they are apart, or less deep in each other than they are."""
     data = oracle.assigned(model, theirs.state)
     mujoco.mj_kinematics(model, data)
-    first = geoms(model, model.sensor_objtype[sensor], model.sensor_objid[sensor])
-    second = geoms(model, model.sensor_reftype[sensor], model.sensor_refid[sensor])
+    first, second = both(model, sensor)
     pairs = [pair for a in first for b in second for pair in ((a, b), (b, a))]
     return any(goes_through(model, data, capsule, box) for capsule, box in pairs)
+
+
+def cut_short(model, sensor, theirs):
+    """Whether a sensor of distances looks at a height field that MuJoCo does not look at all of: it stops at fifty cells within the
+    cutoff, near or far, so that with a cutoff just above what it found it finds another distance."""
+    if not any((model.geom_type[list(side)] == mujoco.mjtGeom.mjGEOM_HFIELD).any() for side in both(model, sensor)):
+        return False
+    found = theirs.sensordata[model.sensor_adr[sensor]]
+    cutoff = model.sensor_cutoff[sensor]
+    model.sensor_cutoff[sensor] = min(cutoff, found * (1 + NEARER) + NEARER)
+    again = oracle.reference(model, theirs.state).sensordata[model.sensor_adr[sensor]]
+    model.sensor_cutoff[sensor] = cutoff
+    return abs(again - found) > NEARER
+
+
+def both(model, sensor):
+    """The geoms on both sides of a sensor of distances."""
+    return (
+        geoms(model, model.sensor_objtype[sensor], model.sensor_objid[sensor]),
+        geoms(model, model.sensor_reftype[sensor], model.sensor_refid[sensor]),
+    )
 
 
 def geoms(model, kind, index):
