@@ -23,7 +23,7 @@ pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) 
             principal,
         } => {
             // In single precision, as by MuJoCo's compiler: the picture of an orthographic camera is so many metres high.
-            let half_angle = (0.5 * sensorsize[1]).atan2(focal[1]) as f32;
+            let half_angle = (0.5 * sensorsize[1] as f32).atan2(focal[1] as f32);
             let numbers = [focal[0], focal[1], principal[0], principal[1]];
             let fovy = 2.0 * f64::from(half_angle).to_degrees();
             (fovy, sensorsize, numbers)
