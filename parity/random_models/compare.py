@@ -251,7 +251,7 @@ def judge(model, question, ours):
     agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
     if not question.own:
         forces(what, ours, theirs)
-        agreement.sensors(model, what, ours, theirs, is_undecided=lambda sensor: is_undecided(model, sensor, theirs, held))
+        agreement.sensors(model, what, ours, theirs, is_undecided=lambda sensor: is_undecided(model, sensor, ours, theirs, held))
     if question.after is not None:
         next_state(model, what, question, ours["next"])
 

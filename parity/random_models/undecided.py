@@ -8,6 +8,8 @@ import oracle
 IDLE = 1e-14  # metres: a lever that is nothing but rounding
 HELD = 1e-9  # newtons
 NEARER = 1e-3  # metres
+NEXT_TO = 1e-10  # metres
+JUMP = 1e-6  # metres
 LIMITS_OF_TENDONS = (
     mujoco.mjtSensor.mjSENS_TENDONLIMITPOS,
     mujoco.mjtSensor.mjSENS_TENDONLIMITVEL,
@@ -17,16 +19,19 @@ BETWEEN_BODIES = (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE)
 OF_TENDONS = (mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON, mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)
 
 
-def is_undecided(model, sensor, theirs, held):
+def is_undecided(model, sensor, ours, theirs, held):
     """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, the
     limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and so are forces between bodies where rounding
     `held` such a tendon; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), that
-    a capsule goes through a box not at all, and of a height field what is near among the first of its cells alone."""
+    a capsule goes through a box not at all, and of a height field what is near among the first of its cells alone; and a ray that starts on
+    a surface, or passes an edge, meets it or not."""
     kind = mujoco.mjtSensor(model.sensor_type[sensor])
     if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
         return True
     if kind == mujoco.mjtSensor.mjSENS_GEOMDIST:
         return theirs.sensordata[model.sensor_adr[sensor]] < 0 or pierces(model, sensor, theirs) or cut_short(model, sensor, theirs)
+    if kind == mujoco.mjtSensor.mjSENS_RANGEFINDER:
+        return jumps(model, sensor, ours, theirs)
     if kind in BETWEEN_BODIES:
         return held
     if kind in LIMITS_OF_TENDONS and theirs.sensordata[model.sensor_adr[sensor]] != 0:
@@ -70,6 +75,24 @@ def cut_short(model, sensor, theirs):
     again = oracle.reference(model, theirs.state).sensordata[model.sensor_adr[sensor]]
     model.sensor_cutoff[sensor] = cutoff
     return abs(again - found) > NEARER
+
+
+def jumps(model, sensor, ours, theirs):
+    """Whether rays meet something else than MuJoCo's, and MuJoCo's do too from a place next to the sensor's, less apart than lengths are
+    known."""
+    numbers = slice(model.sensor_adr[sensor], model.sensor_adr[sensor] + model.sensor_dim[sensor])
+    expected = theirs.sensordata[numbers]
+    if np.allclose(ours["sensordata"][numbers], expected, rtol=0, atol=JUMP):
+        return False
+    places = model.site_pos if model.sensor_objtype[sensor] == mujoco.mjtObj.mjOBJ_SITE else model.cam_pos
+    index = model.sensor_objid[sensor]
+    place = places[index].copy()
+    found = []
+    for step in [*np.eye(3), *-np.eye(3)]:
+        places[index] = place + NEXT_TO * step
+        found.append(oracle.reference(model, theirs.state).sensordata[numbers])
+    places[index] = place
+    return bool((np.abs(np.array(found) - expected) > JUMP).any())
 
 
 def both(model, sensor):
