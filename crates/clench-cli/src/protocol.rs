@@ -250,7 +250,8 @@ impl ContactLine {
                 1 => self.dist >= self.includemargin,
                 3 => {
                     let [first, second] = geoms.map(|g| model.bodies[model.geoms[g].body].weld);
-                    first == second
+                    let stands = |body: usize| model.bodies[body].dofs.is_empty();
+                    first == second || stands(first) && stands(second)
                 }
                 _ => false,
             },
