@@ -13,13 +13,16 @@ from random_models.actuation import Actuation
 from random_models.preamble import Preamble
 from random_models.relations import Relations
 from random_models.sensing import RARE, Sensing
+from random_models.stretching import stretch_frames
 from random_models.tree import Tree
 from random_models.values import VALUES, Draw, text
 
 
 def generate(seed):
     """The root element of the model of a seed."""
-    return Generator(Draw(seed), Draw(f"{seed} later"), Draw(f"{seed} last")).model()
+    root = Generator(Draw(seed), Draw(f"{seed} later"), Draw(f"{seed} last")).model()
+    stretch_frames(root, seed)
+    return root
 
 
 class Generator(Preamble, Tree, Relations, Actuation, Sensing):

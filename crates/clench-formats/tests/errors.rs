@@ -324,7 +324,6 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
     let later = "not supported yet";
     for (line, element) in [
         ("<geom type='sdf' mesh='m'/>", "geom"),
-        ("<frame scale='1 2 3' scaling='geometry'/>", "frame"),
         ("<flexcomp/>", "flexcomp"),
     ] {
         expect(line, element, later);

@@ -170,13 +170,13 @@ fn what_cannot_be_scaled_is_refused() {
         ("massscale='-1'", "massscale cannot be negative"),
         ("scaling='other'", "not one of similar, geometry"),
         ("scale='1 2 3'", "needs scaling \"geometry\""),
-        ("scale='1 2 3' scaling='geometry'", "is not supported yet"),
+        ("scale='1 2 3' scaling='geometry'", "use an ellipsoid"),
     ] {
         let text = refused(&format!(
             "<worldbody><frame name='f' {frame}>{geom}</frame></worldbody>"
         ));
         assert!(
-            text.contains("frame \"f\"") && text.contains(words),
+            text.contains(words) && (text.contains("frame \"f\"") || text.contains("geom")),
             "{text}"
         );
     }
@@ -217,4 +217,92 @@ fn yields_and_where_springs_rest_are_scaled_along_what_they_measure() {
     let found = &model.keyframes[0].plastic;
     let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-15;
     assert!(found.iter().zip(&expected).all(near), "{found:?}");
+}
+
+/// The numbers are MuJoCo's.
+#[test]
+fn scales_that_differ_between_axes_act_by_axis() {
+    let model = load(
+        "<worldbody><frame scale='1 2 3' scaling='geometry'>
+           <body pos='1 1 1' quat='1 0 0 1'>
+             <joint type='slide' axis='1 0 0' range='0 1' limited='true'/><joint type='slide' axis='0 0 1' range='0 1' limited='true'/>
+             <geom type='box' size='.1 .2 .3' pos='1 2 0' mass='1' friction='1 1 1'/>
+             <site size='.1' pos='1 0 0'/>
+           </body>
+         </frame></worldbody>",
+    );
+    let near = |v: Vec3<f64>, expected: [f64; 3]| {
+        let apart = v - Vec3::from_array(expected);
+        apart.dot(apart) < 1e-20
+    };
+    let (params, cube_root) = (&model.params, 6.0_f64.cbrt());
+    assert!(near(params.body_pos[1], [1.0, 2.0, 3.0]));
+    // In the axes of the body, which is turned, the scale is 2 1 3.
+    assert!(near(params.geom_size[0], [0.2, 0.2, 0.9]));
+    assert!(near(params.geom_pos[0], [2.0, 2.0, 0.0]));
+    assert!((params.jnt_range[0][1] - 2.0).abs() < 1e-12);
+    assert!((params.jnt_range[1][1] - 3.0).abs() < 1e-12);
+    assert!((params.body_mass[1] - 6.0).abs() < 1e-12);
+    // What has no direction follows the cube root of the product.
+    assert!((params.geom_friction[0][1] - cube_root).abs() < 1e-12);
+    assert!((params.site_size[0].x - 0.1 * cube_root).abs() < 1e-12);
+}
+
+#[test]
+fn what_scales_by_axis_would_deform_is_refused() {
+    for (scale, part, words) in [
+        ("2 2 3", "<geom size='1'/>", "use an ellipsoid"),
+        (
+            "1 2 3",
+            "<geom type='capsule' size='1 1'/>",
+            "across its axis",
+        ),
+        (
+            "1 2 3",
+            "<geom type='box' fromto='0 0 0 0 0 1' size='1'/>",
+            "across its axis",
+        ),
+        (
+            "2 2 3",
+            "<geom type='cylinder' size='1 1' euler='0 30 0'/>",
+            "across its axis",
+        ),
+        (
+            "2 3 2",
+            "<geom type='box' size='1 1 1' euler='0 0 30'/>",
+            "not aligned",
+        ),
+        (
+            "2 2 3",
+            "<geom type='plane' size='1 1 1' euler='0 30 0'/>",
+            "not aligned",
+        ),
+        ("1 2 3", "<joint axis='1 1 0'/>", "not aligned"),
+        ("1 2 3", "<joint type='slide' axis='1 0 1'/>", "not aligned"),
+    ] {
+        let text = refused(&format!(
+            "<worldbody><frame scale='{scale}' scaling='geometry'><body>{part}</body></frame></worldbody>"
+        ));
+        assert!(text.contains(words), "{part}: {text}");
+    }
+    // An angle of less than 0.0349, and scales that differ by less than that share of the larger one, are as good as none.
+    load(
+        "<worldbody><frame scale='1 1.036 3' scaling='geometry'>
+           <geom type='cylinder' size='1 1' quat='1 0.002 0 0'/><geom type='box' size='1 1 1' euler='0 0 1'/>
+         </frame></worldbody>",
+    );
+}
+
+#[test]
+fn a_stretched_mesh_keeps_its_outside() {
+    let mesh = "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1' scale='1 -1 1'/></asset>";
+    let geom = "<geom type='mesh' mesh='m' density='1' euler='0 0 30'/>";
+    let model = load(&format!(
+        "{mesh}<worldbody><frame scale='1 2 3' scaling='geometry'><body><joint type='ball'/>{geom}</body></frame></worldbody>"
+    ));
+    assert!(
+        (model.params.body_mass[1] - 1.0).abs() < 1e-6,
+        "{}",
+        model.params.body_mass[1]
+    );
 }

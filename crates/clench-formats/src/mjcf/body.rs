@@ -8,6 +8,7 @@ use super::joint;
 use super::orientation::{Orientation, Pose};
 use super::scale::{FrameId, Frames, Named};
 use super::source::Sources;
+use super::stretch::Stretch;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_math::{Mat3, Quat, Vec3};
@@ -59,6 +60,13 @@ struct Place {
     frame: Pose,
     /// The innermost frame that scales it.
     scale: FrameId,
+}
+
+impl Place {
+    /// What the frames around make of positions in the axes of the body.
+    fn in_body(&self) -> Stretch {
+        self.frame.stretch.turned(self.frame.quat.conjugate())
+    }
 }
 
 /// An element whose children are being read.
@@ -153,14 +161,14 @@ impl<'a> BodyReader<'a> {
         element: &'e Element,
         place: &Place,
     ) -> Result<Level<'e>, LoadError> {
-        self.push_body(element, place)?;
+        let stretch = self.push_body(element, place)?;
         let inside = Place {
             body: self.bodies.len() - 1,
             class: self
                 .classes(element)
                 .named_by(element, "childclass", place.class)?,
             frame: Pose {
-                scale: place.frame.scale,
+                stretch,
                 ..Pose::IDENTITY
             },
             scale: place.scale,
@@ -172,7 +180,8 @@ impl<'a> BodyReader<'a> {
         })
     }
 
-    fn push_body(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+    /// Reads a body without its contents, and gives what the frames around it make of positions in its axes.
+    fn push_body(&mut self, element: &Element, place: &Place) -> Result<Stretch, LoadError> {
         let written = Pose::read(element, self.compiler(element))?;
         let pose = place.frame.then(written);
         let mut body = BodySpec {
@@ -180,7 +189,7 @@ impl<'a> BodyReader<'a> {
             parent: place.body,
             pos: pose.pos,
             quat: pose.quat,
-            written: Some((written.pos * place.frame.scale, written.quat)),
+            written: Some((place.frame.stretch.apply(written.pos), written.quat)),
             compiler: self.own_settings(element),
             origin: Some(element.origin.clone()),
             ..BodySpec::default()
@@ -199,9 +208,9 @@ impl<'a> BodyReader<'a> {
         if body.mocap {
             self.mocaps.push(element.number);
         }
-        self.frames.add_body(&body.name, place.scale, body.mocap);
+        self.frames.add_body(&body, place.scale, pose.stretch);
         self.bodies.push(body);
-        Ok(())
+        Ok(pose.stretch)
     }
 
     fn enter_frame<'e>(
@@ -212,8 +221,7 @@ impl<'a> BodyReader<'a> {
         let mut frame = place
             .frame
             .then(Pose::read(element, self.compiler(element))?);
-        let scale = self.frames.enter(element, place.scale, frame.pos)?;
-        frame.scale = self.frames.scale(scale).length;
+        let scale = self.frames.enter(element, place.scale, &mut frame)?;
         let class = self
             .classes(element)
             .named_by(element, "class", place.class)?;
@@ -259,7 +267,7 @@ impl<'a> BodyReader<'a> {
         let pose = place.frame.then(Pose {
             pos: Vec3::from_array(element.required_numbers("pos")?),
             quat: orientation.resolve(self.compiler(element), element)?,
-            scale: 1.0,
+            ..Pose::IDENTITY
         });
         let [mass] = element.required_numbers("mass")?;
         let inertia = read_inertia(element, &place.frame)?;
@@ -274,7 +282,8 @@ impl<'a> BodyReader<'a> {
             inertia,
             origin: Some(element.origin.clone()),
         };
-        self.frames.scale(place.scale).inertial(&mut inertial);
+        let scale = self.frames.scale(place.scale);
+        scale.inertial(&mut inertial, place.in_body());
         body.inertial = Some(inertial);
         Ok(())
     }
@@ -330,8 +339,10 @@ impl<'a> BodyReader<'a> {
             origin: Some(element.origin.clone()),
             ..joint
         };
-        self.frames.scale(place.scale).joint(&mut joint);
-        self.frames.add_joint(&joint, place.body, place.scale);
+        let scaled = self.frames.scale(place.scale);
+        let length = scaled.joint(&mut joint, place.in_body());
+        let length = length.map_err(|reason| element.error(reason))?;
+        (self.frames).add_joint(&joint, place.body, place.scale, length);
         self.bodies[place.body].joints.push(joint);
         Ok(())
     }
@@ -343,10 +354,12 @@ impl<'a> BodyReader<'a> {
         geom.read(element)?;
         let bytes = size_of::<GeomSpec>() + geom.text_length();
         self.charge(element, bytes, &[])?;
-        let mut geom = geom.finish(element, self.compiler(element), self.palette, &place.frame)?;
-        self.frames.scale(place.scale).geom(&mut geom);
-        self.frames.instance(&mut geom.mesh, place.scale);
-        self.frames.instance(&mut geom.hfield, place.scale);
+        let (mut geom, deformation) =
+            geom.finish(element, self.compiler(element), self.palette, &place.frame)?;
+        let scaled = self.frames.scale(place.scale).geom(&mut geom, deformation);
+        scaled.map_err(|reason| element.error(reason))?;
+        self.frames.instance(&mut geom.mesh, deformation.stretch);
+        self.frames.instance(&mut geom.hfield, deformation.stretch);
         self.frames.add(Named::Geom, &geom.name, place.scale);
         let number = self.bodies[place.body].geoms.len();
         (self.frames).add_mesh(&geom, place.body, number, place.scale);
@@ -359,9 +372,9 @@ impl<'a> BodyReader<'a> {
             .site
             .clone();
         site.read(element)?;
-        let mut site = site.finish(element, self.compiler(element), &place.frame)?;
-        self.frames.scale(place.scale).site(&mut site);
-        self.frames.instance(&mut site.mesh, place.scale);
+        let (mut site, deformation) = site.finish(element, self.compiler(element), &place.frame)?;
+        self.frames.scale(place.scale).site(&mut site, deformation);
+        self.frames.instance(&mut site.mesh, deformation.stretch);
         self.frames.add(Named::Site, &site.name, place.scale);
         self.charge(element, size_of::<SiteSpec>(), &[&site.name])?;
         self.bodies[place.body].sites.push(site);

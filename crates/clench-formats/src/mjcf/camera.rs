@@ -90,7 +90,7 @@ impl CameraDraft {
         let pose = frame.then(Pose {
             pos: Vec3::from_array(self.pos),
             quat: self.orientation.resolve(compiler, element)?,
-            scale: 1.0,
+            ..Pose::IDENTITY
         });
         Ok(CameraSpec {
             name: element.string("name"),

@@ -4,6 +4,7 @@ use super::appearance::{Palette, read_appearance};
 use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::{Orientation, Pose, segment};
+use super::stretch::{Deformation, Stretch};
 use crate::LoadError;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
@@ -111,31 +112,32 @@ impl GeomDraft {
         self.spec.mesh.len() + self.spec.hfield.len()
     }
 
-    /// The geom in its body: shorthand resolved, carried along with the frame that it is written in.
+    /// The geom in its body: shorthand resolved, carried along with the frame that it is written in, and what the frames around it make of its
+    /// shape.
     pub(super) fn finish(
         mut self,
         element: &Element,
         compiler: &CompilerOptions,
         palette: &Palette,
         frame: &Pose,
-    ) -> Result<GeomSpec, LoadError> {
+    ) -> Result<(GeomSpec, Deformation), LoadError> {
         self.spec.kind = known_kind(self.kind, element)?;
-        let pose = match self.fromto {
+        let (pose, deformation) = match self.fromto {
             Some(_) if !self.spec.mesh.is_empty() => {
                 return Err(element.error("fromto and mesh cannot both be given"));
             }
             Some(points) => {
-                place_segment(points, self.pos, self.spec.kind, &mut self.size, element)?
+                let size = &mut self.size;
+                place_segment(points, self.pos, self.spec.kind, size, element, frame)?
             }
-            None => Pose {
+            None => frame.carry(Pose {
                 pos: Vec3::from_array(self.pos),
                 quat: self.orientation.resolve(compiler, element)?,
-                scale: 1.0,
-            },
+                ..Pose::IDENTITY
+            }),
         };
-        let pose = frame.then(pose);
         let appearance = palette.of_geom(self.spec.appearance, &self.spec.mesh);
-        Ok(GeomSpec {
+        let spec = GeomSpec {
             name: element.string("name"),
             visible: palette.shows(&appearance),
             appearance,
@@ -148,22 +150,38 @@ impl GeomDraft {
             },
             origin: Some(element.origin.clone()),
             ..self.spec
-        })
+        };
+        Ok((spec, deformation))
     }
 }
 
-/// The pose of a shape that stretches between two points, whose distance becomes its size along z.
+/// The pose in the body of a shape that stretches between two points of a frame, whose distance becomes its size along z. Where the
+/// frame has scales that differ, it is the points that are mapped.
 pub(crate) fn place_segment(
     points: [f64; 6],
     pos: [f64; 3],
     kind: ShapeKind,
     size: &mut [f64; 3],
     element: &Element,
-) -> Result<Pose, LoadError> {
+    frame: &Pose,
+) -> Result<(Pose, Deformation), LoadError> {
     if pos != [0.0; 3] {
         return Err(element.error("pos and fromto cannot both be given"));
     }
-    let (pose, half_length) = segment(points, element)?;
+    let (written, mut half_length) = segment(points, element)?;
+    let (mut pose, mut deformation) = frame.carry(written);
+    if let Stretch::General(map) = frame.stretch {
+        let [x0, y0, z0, x1, y1, z1] = points;
+        let [from, to] = [Vec3::new(x0, y0, z0), Vec3::new(x1, y1, z1)].map(|point| map * point);
+        let mapped = [from.x, from.y, from.z, to.x, to.y, to.z];
+        let (between, half) = segment(mapped, element)?;
+        let rigid = Pose {
+            stretch: Stretch::NONE,
+            ..*frame
+        };
+        (pose, half_length) = (rigid.then(between), half);
+        deformation.segment = true;
+    }
     match kind {
         ShapeKind::Capsule | ShapeKind::Cylinder => size[1] = half_length,
         ShapeKind::Ellipsoid | ShapeKind::Box => *size = [size[0], size[0], half_length],
@@ -171,7 +189,7 @@ pub(crate) fn place_segment(
             return Err(element.error("fromto needs a capsule, cylinder, box or ellipsoid"));
         }
     }
-    Ok(pose)
+    Ok((pose, deformation))
 }
 
 /// Contact bits: a 32-bit integer, of which the bits count.

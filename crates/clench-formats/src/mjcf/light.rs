@@ -66,7 +66,7 @@ impl LightDraft {
         let pose = frame.then(Pose {
             pos: Vec3::from_array(self.pos),
             quat: Quat::IDENTITY,
-            scale: 1.0,
+            ..Pose::IDENTITY
         });
         LightSpec {
             name: element.string("name"),

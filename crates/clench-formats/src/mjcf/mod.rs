@@ -37,6 +37,7 @@ mod sensor;
 mod shortcut;
 mod site;
 mod source;
+mod stretch;
 mod support;
 mod tendon;
 mod texture;

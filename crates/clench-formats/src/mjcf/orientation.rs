@@ -2,6 +2,7 @@
 
 use super::compiler::CompilerOptions;
 use super::document::Element;
+use super::stretch::{Deformation, Stretch};
 use crate::LoadError;
 use clench_math::{Mat3, Quat, Vec3};
 
@@ -102,15 +103,15 @@ fn columns(x: Vec3<f64>, y: Vec3<f64>, z: Vec3<f64>) -> Mat3<f64> {
 pub(crate) struct Pose {
     pub pos: Vec3<f64>,
     pub quat: Quat<f64>,
-    /// By what positions in it are multiplied before anything else.
-    pub scale: f64,
+    /// What becomes of positions in it before anything else.
+    pub stretch: Stretch,
 }
 
 impl Pose {
     pub(crate) const IDENTITY: Pose = Pose {
         pos: Vec3::ZERO,
         quat: Quat::IDENTITY,
-        scale: 1.0,
+        stretch: Stretch::NONE,
     };
 
     /// The pose that an element writes in `pos` and one of the orientation attributes.
@@ -120,7 +121,7 @@ impl Pose {
         Ok(Pose {
             pos: Vec3::from_array(element.numbers("pos")?.unwrap_or_default()),
             quat: orientation.resolve(compiler, element)?,
-            scale: 1.0,
+            stretch: Stretch::NONE,
         })
     }
 
@@ -129,13 +130,23 @@ impl Pose {
         Pose {
             pos: self.point(inner.pos),
             quat: (self.quat * inner.quat).normalize(),
-            scale: self.scale * inner.scale,
+            stretch: self.stretch.turned(inner.quat).after(inner.stretch),
         }
+    }
+
+    /// The same of a shape, with what becomes of it.
+    pub(crate) fn carry(&self, shape: Pose) -> (Pose, Deformation) {
+        let pose = self.then(shape);
+        let deformation = Deformation {
+            stretch: pose.stretch,
+            segment: false,
+        };
+        (pose, deformation)
     }
 
     /// A point of the frame in its parent.
     pub(crate) fn point(&self, local: Vec3<f64>) -> Vec3<f64> {
-        self.pos + self.quat.rotate(local * self.scale)
+        self.pos + self.quat.rotate(self.stretch.apply(local))
     }
 }
 
@@ -152,7 +163,7 @@ pub(crate) fn segment(
     let pose = Pose {
         pos: (from + to) * 0.5,
         quat: Quat::from_two_vectors(Vec3::new(0.0, 0.0, 1.0), axis),
-        scale: 1.0,
+        stretch: Stretch::NONE,
     };
     Ok((pose, length * 0.5))
 }

@@ -5,6 +5,7 @@ use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::geom::{known_kind, place_segment, read_kind};
 use super::orientation::{Orientation, Pose};
+use super::stretch::Deformation;
 use crate::LoadError;
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
@@ -64,24 +65,24 @@ impl SiteDraft {
         read_appearance(element, &mut self.appearance)
     }
 
-    /// The site in its body, carried along with the frame that it is written in.
+    /// The site in its body, carried along with the frame that it is written in, and what the frames around it make of its
+    /// shape.
     pub(super) fn finish(
         mut self,
         element: &Element,
         compiler: &CompilerOptions,
         frame: &Pose,
-    ) -> Result<SiteSpec, LoadError> {
+    ) -> Result<(SiteSpec, Deformation), LoadError> {
         let kind = known_kind(self.kind, element)?;
-        let pose = match self.fromto {
-            Some(points) => place_segment(points, self.pos, kind, &mut self.size, element)?,
-            None => Pose {
+        let (pose, deformation) = match self.fromto {
+            Some(points) => place_segment(points, self.pos, kind, &mut self.size, element, frame)?,
+            None => frame.carry(Pose {
                 pos: Vec3::from_array(self.pos),
                 quat: self.orientation.resolve(compiler, element)?,
-                scale: 1.0,
-            },
+                ..Pose::IDENTITY
+            }),
         };
-        let pose = frame.then(pose);
-        Ok(SiteSpec {
+        let spec = SiteSpec {
             name: element.string("name"),
             pos: pose.pos,
             quat: pose.quat,
@@ -92,6 +93,7 @@ impl SiteDraft {
             appearance: self.appearance,
             user: self.user,
             origin: Some(element.origin.clone()),
-        })
+        };
+        Ok((spec, deformation))
     }
 }

@@ -181,6 +181,6 @@ pub(super) fn read_origin(element: &Element) -> Result<Pose, LoadError> {
     Ok(Pose {
         pos: Vec3::from_array(origin.numbers("xyz")?.unwrap_or_default()),
         quat: quat.normalize(),
-        scale: 1.0,
+        ..Pose::IDENTITY
     })
 }

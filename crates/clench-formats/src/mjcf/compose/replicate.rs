@@ -66,7 +66,7 @@ impl Composer<'_, '_> {
             step: Pose {
                 pos: Vec3::from_array(element.numbers("offset")?.unwrap_or_default()),
                 quat: compiler.euler(euler),
-                scale: 1.0,
+                ..Pose::IDENTITY
             },
             displaced: Pose::IDENTITY,
         })

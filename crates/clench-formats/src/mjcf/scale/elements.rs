@@ -1,7 +1,9 @@
 //! What stands in the tree: joints, geoms, sites, cameras, lights, inertias. Their positions are scaled with the frame.
 
 use super::{Coordinate, Scale};
+use crate::mjcf::stretch::{Deformation, Stretch, nearly_equal};
 use clench_collide::ShapeKind;
+use clench_math::{Mat3, Vec3};
 use clench_rigid::builder::{
     CameraLens, CameraSpec, GeomMass, GeomSpec, InertiaSpec, InertialSpec, JointSpec, LightSpec,
     SiteSpec,
@@ -20,12 +22,24 @@ impl Coordinate {
 }
 
 impl Scale {
-    /// As in MuJoCo, what a free joint has along its degrees of freedom stays as it is.
-    pub(in crate::mjcf) fn joint(self, joint: &mut JointSpec) {
+    /// As in MuJoCo, what a free joint has along its degrees of freedom stays as it is. Gives the factor of lengths along its axis.
+    ///
+    /// # Errors
+    /// An axis that the frame, whose map in the axes of the body this is, turns.
+    pub(in crate::mjcf) fn joint(
+        self,
+        joint: &mut JointSpec,
+        stretch: Stretch,
+    ) -> Result<f64, &'static str> {
         let Some(coordinate) = Coordinate::of_joint(joint.kind) else {
-            return;
+            return Ok(1.0);
         };
-        let along = self.along(coordinate);
+        let length = match joint.kind {
+            JointKind::Ball => Some(self.length),
+            _ => stretch.factor_along(joint.axis),
+        };
+        let length = length.ok_or("its axis is not aligned with the axes of the scale")?;
+        let along = self.along_direction(coordinate, length);
         joint.range = joint.range.map(|end| end * along.coordinate);
         joint.margin *= along.coordinate;
         joint.reference *= along.coordinate;
@@ -38,10 +52,25 @@ impl Scale {
         joint.armature *= along.gain();
         along.polynomial(&mut joint.stiffness);
         along.polynomial(&mut joint.damping);
+        Ok(length)
     }
 
-    pub(in crate::mjcf) fn geom(self, geom: &mut GeomSpec) {
-        geom.size = geom.size * self.length;
+    /// Scales a geom.
+    ///
+    /// # Errors
+    /// A shape that would be another one.
+    pub(in crate::mjcf) fn geom(
+        self,
+        geom: &mut GeomSpec,
+        deformation: Deformation,
+    ) -> Result<(), &'static str> {
+        let stretch = deformation.stretch;
+        geom.size = match stretch {
+            Stretch::Uniform(_) => geom.size * self.length,
+            // What is fitted to a mesh has its size from that.
+            Stretch::General(_) if !geom.mesh.is_empty() => geom.size,
+            Stretch::General(_) => self.shape(geom.kind, geom.size, deformation)?,
+        };
         geom.mass = match geom.mass {
             GeomMass::Mass(mass) => GeomMass::Mass(mass * self.mass),
             GeomMass::Density(density) => {
@@ -56,20 +85,58 @@ impl Scale {
         geom.solimp[2] *= self.length;
         geom.adhesion *= self.force(1);
         let [x, y, z, ..] = &mut geom.surfacevel;
-        for linear in [x, y, z] {
-            *linear *= self.length;
-        }
+        let linear = stretch.apply(Vec3::new(*x, *y, *z));
+        [*x, *y, *z] = linear.to_array();
+        Ok(())
     }
 
-    pub(in crate::mjcf) fn site(self, site: &mut SiteSpec) {
-        // Numbers that its kind does not use stay as they are written.
-        let used = match site.kind {
-            ShapeKind::Sphere => 1,
-            ShapeKind::Capsule | ShapeKind::Cylinder => 2,
-            _ => 3,
+    /// The size of a shape after a map that differs between its axes.
+    fn shape(
+        self,
+        kind: ShapeKind,
+        size: Vec3<f64>,
+        deformation: Deformation,
+    ) -> Result<Vec3<f64>, &'static str> {
+        let stretch = deformation.stretch;
+        let [x, y, z] = stretch.factors().to_array();
+        let factors = match kind {
+            ShapeKind::Sphere => [(x * y * z).cbrt(), 1.0, 1.0],
+            // The third number of a plane is not part of its shape.
+            ShapeKind::Plane => [x, y, self.length],
+            ShapeKind::HeightField | ShapeKind::Mesh => [1.0; 3],
+            _ => along_and_across(kind, deformation),
         };
-        for size in &mut site.size[..used] {
-            *size *= self.length;
+        let (axes, equal): (usize, &[f64]) = match kind {
+            ShapeKind::Sphere => (3, &[x, y, z]),
+            ShapeKind::Capsule | ShapeKind::Cylinder => (3, &[x, y]),
+            ShapeKind::Box | ShapeKind::Ellipsoid if deformation.segment => (3, &[x, y]),
+            ShapeKind::Box | ShapeKind::Ellipsoid | ShapeKind::HeightField => (3, &[]),
+            ShapeKind::Plane => (2, &[]),
+            ShapeKind::Mesh => (0, &[]),
+        };
+        if !nearly_equal(equal) {
+            return Err(match kind {
+                ShapeKind::Sphere => {
+                    "a sphere has only one scale: use an ellipsoid where it differs between axes"
+                }
+                _ => "its shape can only have the same scale in all directions across its axis",
+            });
+        }
+        if !stretch.keeps_axes(axes) {
+            return Err("its shape is not aligned with the axes of the scale");
+        }
+        Ok(size.scale_by(Vec3::from_array(factors)))
+    }
+
+    /// Scales a site. It only marks a place: where it would get another shape, it has the sizes along its axes.
+    pub(in crate::mjcf) fn site(self, site: &mut SiteSpec, deformation: Deformation) {
+        // Numbers that its kind does not use stay as they are written.
+        let factors = match site.kind {
+            ShapeKind::Sphere => [self.length, 1.0, 1.0],
+            kind => along_and_across(kind, deformation),
+        };
+        for (size, factor) in site.size.iter_mut().zip(factors) {
+            *size *= factor;
         }
     }
 
@@ -92,12 +159,57 @@ impl Scale {
         *quadratic /= self.length * self.length;
     }
 
-    pub(in crate::mjcf) fn inertial(self, inertial: &mut InertialSpec) {
-        let moments = self.mass * self.length * self.length;
+    /// Scales the inertia of a body, in whose axes the frame has this map.
+    pub(in crate::mjcf) fn inertial(self, inertial: &mut InertialSpec, stretch: Stretch) {
         inertial.mass *= self.mass;
+        if self.by_axis {
+            inertial.inertia = self.stretched(inertial, stretch);
+            return;
+        }
+        let moments = self.mass * self.length * self.length;
         inertial.inertia = match inertial.inertia {
             InertiaSpec::Diagonal(given) => InertiaSpec::Diagonal(given.map(|i| i * moments)),
             InertiaSpec::Full(given) => InertiaSpec::Full(given.map(|i| i * moments)),
         };
+    }
+
+    /// The inertia after a map A: the second moments of mass Σ = ½ tr(I) − I become A Σ Aᵀ, times the factor of masses.
+    fn stretched(self, inertial: &InertialSpec, stretch: Stretch) -> InertiaSpec {
+        let inertia = match inertial.inertia {
+            InertiaSpec::Diagonal(moments) => {
+                let axes = inertial.quat.normalize().to_matrix();
+                axes * (Mat3::diagonal(Vec3::from_array(moments)) * axes.transpose())
+            }
+            InertiaSpec::Full([xx, yy, zz, xy, xz, yz]) => Mat3::from_rows(
+                Vec3::new(xx, xy, xz),
+                Vec3::new(xy, yy, yz),
+                Vec3::new(xz, yz, zz),
+            ),
+        };
+        let from_trace = |matrix: Mat3<f64>, share: f64| {
+            let [a, b, c] = matrix.rows;
+            let trace = share * (a.x + b.y + c.z);
+            let rows = Mat3::diagonal(Vec3::new(trace, trace, trace)).rows;
+            Mat3::from_rows(rows[0] - a, rows[1] - b, rows[2] - c)
+        };
+        let map = stretch.to_matrix();
+        let moments = map * (from_trace(inertia, 0.5) * map.transpose());
+        let [a, b, c] = from_trace(moments, 1.0).rows;
+        InertiaSpec::Full([a.x, b.y, c.z, a.y, a.z, b.z].map(|i| i * self.mass))
+    }
+}
+
+/// The factors of the sizes of a shape that has an axis or three.
+fn along_and_across(kind: ShapeKind, deformation: Deformation) -> [f64; 3] {
+    let [x, y, z] = deformation.stretch.factors().to_array();
+    let across = match deformation.stretch {
+        Stretch::Uniform(factor) => factor,
+        Stretch::General(_) => (x * y).sqrt(),
+    };
+    match (kind, deformation.segment) {
+        (ShapeKind::Capsule | ShapeKind::Cylinder, false) => [across, z, 1.0],
+        (ShapeKind::Capsule | ShapeKind::Cylinder, true) => [across, 1.0, 1.0],
+        (_, false) => [x, y, z],
+        (_, true) => [across, across, 1.0],
     }
 }

@@ -2,26 +2,27 @@
 
 use super::{FrameId, Frames, located};
 use crate::LoadError;
+use crate::mjcf::stretch::Stretch;
 use crate::spending::Spending;
 use clench_collide::ShapeKind;
+use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
     GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder,
 };
 use std::collections::HashSet;
 
 impl Frames {
-    /// The name of a mesh or height field in the size that a frame asks for: its own for the first size that is asked for, and one
-    /// made of that and a number for each other.
-    pub(in crate::mjcf) fn instance(&mut self, asset: &mut String, frame: FrameId) {
+    /// The name of a mesh or height field in the shape that a frame asks for, whose map in its axes is this: its own for the first one
+    /// that is asked for, and one made of that and a number for each other.
+    pub(in crate::mjcf) fn instance(&mut self, asset: &mut String, stretch: Stretch) {
         if asset.is_empty() {
             return;
         }
-        let length = self.scale(frame).length;
-        let lengths = self.instances.entry(asset.clone()).or_default();
-        let known = lengths.iter().position(|&other| other == length);
+        let shapes = self.instances.entry(asset.clone()).or_default();
+        let known = shapes.iter().position(|&other| other == stretch);
         let number = known.unwrap_or_else(|| {
-            lengths.push(length);
-            lengths.len() - 1
+            shapes.push(stretch);
+            shapes.len() - 1
         });
         if number > 0 {
             *asset = instance_name(asset, number);
@@ -68,33 +69,38 @@ impl Frames {
         builder: &mut ModelBuilder,
         spending: &mut Spending,
     ) -> Result<(), LoadError> {
-        for (name, lengths) in &self.instances {
+        for (name, shapes) in &self.instances {
             let mesh = (builder.meshes.iter()).position(|mesh| mesh.name == *name);
             if let Some(place) = mesh {
                 let mesh = builder.meshes[place].clone();
-                builder.meshes[place].scale = mesh.scale * lengths[0];
-                for (number, &length) in lengths.iter().enumerate().skip(1) {
+                stretch_mesh(&mut builder.meshes[place], shapes[0]);
+                for (number, &shape) in shapes.iter().enumerate().skip(1) {
                     let bytes = 24 * mesh.vertices.len() + 12 * mesh.faces.len();
                     let taken = spending.bytes(bytes as u64);
                     taken.map_err(|excess| located(&mesh.origin, "mesh", name, excess))?;
-                    builder.meshes.push(MeshSpec {
+                    let mut copy = MeshSpec {
                         name: instance_name(name, number),
-                        scale: mesh.scale * length,
                         ..mesh.clone()
-                    });
+                    };
+                    stretch_mesh(&mut copy, shape);
+                    builder.meshes.push(copy);
                 }
             }
             let field = (builder.height_fields.iter()).position(|field| field.name == *name);
             if let Some(place) = field {
                 let field = builder.height_fields[place].clone();
-                let sized = |length: f64| field.size.map(|size| size * length);
-                builder.height_fields[place].size = sized(lengths[0]);
-                for (number, &length) in lengths.iter().enumerate().skip(1) {
+                let sized = |shape: Stretch| {
+                    let [x, y, z] = shape.factors().to_array();
+                    let [half_x, half_y, top, base] = field.size;
+                    [half_x * x, half_y * y, top * z, base * z]
+                };
+                builder.height_fields[place].size = sized(shapes[0]);
+                for (number, &shape) in shapes.iter().enumerate().skip(1) {
                     let taken = spending.bytes(8 * field.heights.len() as u64);
                     taken.map_err(|excess| located(&field.origin, "hfield", name, excess))?;
                     builder.height_fields.push(HeightFieldSpec {
                         name: instance_name(name, number),
-                        size: sized(length),
+                        size: sized(shape),
                         ..field.clone()
                     });
                 }
@@ -102,6 +108,30 @@ impl Frames {
         }
         Ok(())
     }
+}
+
+/// Gives a mesh the shape that a map makes of it.
+fn stretch_mesh(mesh: &mut MeshSpec, stretch: Stretch) {
+    let along_axes = Stretch::along_axes(stretch.factors());
+    if stretch == along_axes {
+        mesh.scale = mesh.scale.scale_by(stretch.factors());
+        return;
+    }
+    // The vertices are written as they end up, but for the signs of a scale that mirrors, which also turns the triangles.
+    let back = mesh.refquat.normalize().conjugate();
+    let signs = Vec3::from_array(mesh.scale.to_array().map(|x| 1.0_f64.copysign(x)));
+    for vertex in &mut mesh.vertices {
+        let placed = back.rotate(*vertex - mesh.refpos).scale_by(mesh.scale);
+        *vertex = stretch.apply(placed).scale_by(signs);
+    }
+    let inverse = Vec3::from_array(mesh.scale.to_array().map(|x| 1.0 / x));
+    for tangent in mesh.tangents.iter_mut().flatten() {
+        let placed = back.rotate(*tangent).scale_by(inverse);
+        *tangent = stretch.normal(placed).scale_by(signs);
+    }
+    mesh.refpos = Vec3::ZERO;
+    mesh.refquat = Quat::IDENTITY;
+    mesh.scale = signs;
 }
 
 /// The name of an asset in one of its sizes, as MuJoCo gives it.

@@ -3,6 +3,8 @@
 use super::actuators::States;
 use super::{FrameId, Frames, PlacedJoint, located};
 use crate::LoadError;
+use crate::mjcf::stretch::Stretch;
+use clench_math::Vec3;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::JointKind;
 
@@ -20,11 +22,11 @@ impl Frames {
         for (tendon, &(frame, coordinate)) in builder.tendons.iter().zip(&self.all_tendons) {
             if tendon.springyield > 0.0 {
                 let along = self.scale(frame).along(coordinate);
-                plastic.extend([linear(along.coordinate); 2]);
+                plastic.extend([Map::Number(along.coordinate); 2]);
             }
         }
         let mocaps = self.mocaps.iter();
-        let mocap_pos: Vec<Map> = mocaps.flat_map(|&frame| self.moved(frame)).collect();
+        let mocap_pos: Vec<Map> = mocaps.map(|&frame| self.moved(frame)).collect();
         let control = states(actuators, |states| &states.controls);
         let activation = states(actuators, |states| &states.activations);
         for keyframe in &mut builder.keyframes {
@@ -54,59 +56,86 @@ impl Frames {
         for PlacedJoint {
             frame,
             kind,
+            length,
             yields,
             ..
         } in joints
         {
-            let length = self.scale(frame).length;
             let along = match kind {
                 JointKind::Slide => length,
                 _ => 1.0,
             };
             match kind {
                 JointKind::Free => {
-                    qpos.extend(self.moved(frame));
-                    qpos.extend([linear(1.0); 4]);
-                    qvel.extend([length, length, length, 1.0, 1.0, 1.0].map(linear));
+                    qpos.push(self.moved(frame));
+                    qpos.extend([Map::Number(1.0); 4]);
+                    qvel.push(Map::Point(self.list[frame].stretch, Vec3::ZERO));
+                    qvel.extend([Map::Number(1.0); 3]);
                 }
                 _ => {
-                    qpos.extend(vec![linear(along); kind.nq()]);
-                    qvel.extend(vec![linear(along); kind.nv()]);
+                    qpos.extend(vec![Map::Number(along); kind.nq()]);
+                    qvel.extend(vec![Map::Number(along); kind.nv()]);
                 }
             }
             if yields {
-                plastic.extend(vec![linear(along); kind.nq()]);
+                plastic.extend(vec![Map::Number(along); kind.nq()]);
             }
         }
         [qpos, qvel, plastic]
     }
 
     /// What becomes of the position of something in the world that a frame carries: it moves with the frame, and away from it.
-    fn moved(&self, frame: FrameId) -> [Map; 3] {
+    fn moved(&self, frame: FrameId) -> Map {
         let frame = &self.list[frame];
-        let length = frame.scale.length;
-        let offset = frame.position - frame.unscaled * length;
-        offset.to_array().map(|offset| (length, offset))
+        let offset = frame.position - frame.stretch.apply(frame.unscaled);
+        Map::Point(frame.stretch, offset)
     }
 }
 
-/// What becomes of a number: it is multiplied by the first, and the second is added.
-type Map = (f64, f64);
+/// What becomes of the next numbers.
+#[derive(Clone, Copy, Debug)]
+enum Map {
+    /// One is multiplied by this.
+    Number(f64),
+    /// Three are a point: they are mapped, and this is added.
+    Point(Stretch, Vec3<f64>),
+}
+
+impl Map {
+    /// Maps the first of these numbers, and gives the others. Where a point is cut short, as it can be in a keyframe that
+    /// is refused when the model is built, it stays.
+    fn apply(self, numbers: &mut [f64]) -> &mut [f64] {
+        match self {
+            Map::Number(factor) => match numbers {
+                [first, rest @ ..] => {
+                    *first *= factor;
+                    rest
+                }
+                [] => numbers,
+            },
+            Map::Point(stretch, offset) => match numbers {
+                [x, y, z, rest @ ..] => {
+                    let point = stretch.apply(Vec3::new(*x, *y, *z)) + offset;
+                    [*x, *y, *z] = point.to_array();
+                    rest
+                }
+                _ => &mut [],
+            },
+        }
+    }
+}
 
 /// What becomes of the controls or activations of all actuators.
 fn states(actuators: &[States], which: impl Fn(&States) -> &Vec<f64>) -> Vec<Map> {
     (actuators.iter().flat_map(which))
-        .map(|&factor| linear(factor))
+        .map(|&factor| Map::Number(factor))
         .collect()
-}
-
-fn linear(factor: f64) -> Map {
-    (factor, 0.0)
 }
 
 /// Numbers of another count than the maps are told of when the model is built.
 fn apply(numbers: &mut Option<Vec<f64>>, maps: &[Map]) {
-    for (number, (factor, offset)) in numbers.iter_mut().flatten().zip(maps) {
-        *number = *number * factor + offset;
+    let mut rest = numbers.as_deref_mut().unwrap_or_default();
+    for map in maps {
+        rest = map.apply(rest);
     }
 }

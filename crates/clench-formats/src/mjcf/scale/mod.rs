@@ -3,7 +3,8 @@
 //! A frame multiplies lengths by s and masses by m, which is s³ where the file does not say. What follows depends on the policy. With
 //! `similar` the frame changes the units of length and mass: a quantity of dimension Lᵃ Mᵇ Tᶜ becomes sᵃ mᵇ as large. With `geometry`
 //! only lengths, masses and inertias change; forces, stiffnesses, dampings and gains stay. Frames in frames multiply, each by its own
-//! policy. What names elements of the tree (pairs, tendons, equalities, actuators, sensors, keyframes) follows the scale of
+//! policy. Scales that differ between axes, which only `geometry` takes, act by axis on positions, sizes and the travel of slides; whatever
+//! has no direction follows the cube root of their product, and what they would deform is refused. What names elements of the tree (pairs, tendons, equalities, actuators, sensors, keyframes) follows the scale of
 //! these: a geometric mean where two of them differ, and for a tendon the frames that hold all that it passes. The dimensions are
 //! those of MuJoCo's table of units (XMLunits), the rules for two scales were found beside MuJoCo 4.0.
 
@@ -14,18 +15,20 @@ mod keyframes;
 mod relations;
 
 use super::document::Element;
+use super::orientation::Pose;
 use super::shortcut::Shortcut;
+use super::stretch::Stretch;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_math::Vec3;
-use clench_rigid::builder::{BuildError, JointSpec, ModelBuilder, Origin};
+use clench_rigid::builder::{BodySpec, BuildError, JointSpec, ModelBuilder, Origin};
 use clench_rigid::model::JointKind;
 use std::collections::BTreeMap;
 
 /// By what the frames around an element multiply its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
-    /// Lengths.
+    /// Lengths that have no direction.
     pub length: f64,
     /// Masses.
     pub mass: f64,
@@ -33,6 +36,8 @@ pub(super) struct Scale {
     unit_length: f64,
     /// The unit of mass that forces follow.
     unit_mass: f64,
+    /// Whether a frame's scale differs between axes, even where another makes up for it.
+    by_axis: bool,
 }
 
 impl Scale {
@@ -41,10 +46,11 @@ impl Scale {
         mass: 1.0,
         unit_length: 1.0,
         unit_mass: 1.0,
+        by_axis: false,
     };
 
-    /// What a frame says.
-    fn read(element: &Element) -> Result<Scale, LoadError> {
+    /// What a frame says, and what it makes of positions.
+    fn read(element: &Element) -> Result<(Scale, Stretch), LoadError> {
         let axes = match element.list("scale")?.unwrap_or_default()[..] {
             [] => [1.0; 3],
             [all] => [all; 3],
@@ -56,26 +62,28 @@ impl Scale {
         }
         let policies = [("similar", true), ("geometry", false)];
         let similar = element.keyword("scaling", &policies)?.unwrap_or(true);
-        let [length, y, z] = axes;
-        if y != length || z != length {
-            return Err(element.error(match similar {
-                true => "a scale that differs between axes needs scaling \"geometry\"",
-                false => "a scale that differs between axes is not supported yet",
-            }));
+        let [x, y, z] = axes;
+        let differ = y != x || z != x;
+        if differ && similar {
+            let message = "a scale that differs between axes needs scaling \"geometry\"";
+            return Err(element.error(message));
         }
+        let length = if differ { (x * y * z).cbrt() } else { x };
         let mut mass = 0.0;
         element.set_number("massscale", &mut mass)?;
         element.refuse_negative(&["massscale"])?;
         if mass == 0.0 {
-            mass = length * length * length;
+            mass = x * y * z;
         }
         let (unit_length, unit_mass) = if similar { (length, mass) } else { (1.0, 1.0) };
-        Ok(Scale {
+        let scale = Scale {
             length,
             mass,
             unit_length,
             unit_mass,
-        })
+            by_axis: differ,
+        };
+        Ok((scale, Stretch::along_axes(Vec3::from_array(axes))))
     }
 
     /// The scale of a frame in this one.
@@ -97,6 +105,7 @@ impl Scale {
             mass: combine(self.mass, other.mass),
             unit_length: combine(self.unit_length, other.unit_length),
             unit_mass: combine(self.unit_mass, other.unit_mass),
+            by_axis: self.by_axis || other.by_axis,
         }
     }
 
@@ -107,9 +116,14 @@ impl Scale {
 
     /// The same along a coordinate: forces and lengths, or torques and angles.
     fn along(self, coordinate: Coordinate) -> Along {
+        self.along_direction(coordinate, self.length)
+    }
+
+    /// The same in a direction in which lengths have this factor.
+    fn along_direction(self, coordinate: Coordinate, length: f64) -> Along {
         match coordinate {
             Coordinate::Length => Along {
-                coordinate: self.length,
+                coordinate: length,
                 unit: self.unit_length,
                 force: self.force(1),
                 pressure: self.force(-1),
@@ -178,6 +192,8 @@ struct Frame {
     /// Its position in the body, and what it would be without scales.
     position: Vec3<f64>,
     unscaled: Vec3<f64>,
+    /// What becomes of directions in it, in the axes of the body.
+    stretch: Stretch,
 }
 
 impl Frame {
@@ -186,11 +202,12 @@ impl Frame {
         scale: Scale::ONE,
         position: Vec3::ZERO,
         unscaled: Vec3::ZERO,
+        stretch: Stretch::NONE,
     };
 
     /// Where a point in the frame lies without scales.
     fn unscaled(self, point: Vec3<f64>) -> Vec3<f64> {
-        self.unscaled + (point - self.position) * (1.0 / self.scale.length)
+        self.unscaled + self.stretch.undo(point - self.position)
     }
 }
 
@@ -198,8 +215,9 @@ impl Frame {
 #[derive(Debug)]
 pub(super) struct Frames {
     list: Vec<Frame>,
-    bodies: BTreeMap<String, FrameId>,
-    joints: BTreeMap<String, (FrameId, JointKind)>,
+    /// With what becomes of positions in their axes.
+    bodies: BTreeMap<String, (FrameId, Stretch)>,
+    joints: BTreeMap<String, PlacedJoint>,
     geoms: BTreeMap<String, FrameId>,
     sites: BTreeMap<String, FrameId>,
     cameras: BTreeMap<String, FrameId>,
@@ -210,18 +228,20 @@ pub(super) struct Frames {
     all_tendons: Vec<(FrameId, Coordinate)>,
     /// Of all mocap bodies.
     mocaps: Vec<FrameId>,
-    /// The lengths of a mesh or height field in the order of the elements that are it.
-    instances: BTreeMap<String, Vec<f64>>,
+    /// The shapes of a mesh or height field in the order of the elements that are it.
+    instances: BTreeMap<String, Vec<Stretch>>,
     /// Scaled geoms that are meshes and have the mass of a density: body, number in it, and scale of lengths.
     meshes: Vec<(usize, usize, f64)>,
 }
 
-/// What a joint's numbers in keyframes follow.
+/// What a joint's numbers follow.
 #[derive(Clone, Copy, Debug)]
 struct PlacedJoint {
     body: usize,
     frame: FrameId,
     kind: JointKind,
+    /// The factor of lengths along its axis.
+    length: f64,
     /// Whether its spring yields.
     yields: bool,
 }
@@ -254,23 +274,25 @@ impl Default for Frames {
 }
 
 impl Frames {
-    /// Reads what a frame in another, at this position in the body, says of its scale.
+    /// Reads what a frame in another says of its scale, and adds it to what its pose in the body makes of positions.
     pub(super) fn enter(
         &mut self,
         element: &Element,
         outer: FrameId,
-        position: Vec3<f64>,
+        pose: &mut Pose,
     ) -> Result<FrameId, LoadError> {
-        let own = Scale::read(element)?;
+        let (own, stretch) = Scale::read(element)?;
         if own == Scale::ONE {
             return Ok(outer);
         }
+        pose.stretch = pose.stretch.after(stretch);
         let around = self.list[outer];
         self.list.push(Frame {
             outer,
             scale: around.scale.then(own),
-            position,
-            unscaled: around.unscaled(position),
+            position: pose.pos,
+            unscaled: around.unscaled(pose.pos),
+            stretch: pose.stretch.turned(pose.quat.conjugate()),
         });
         Ok(self.list.len() - 1)
     }
@@ -295,24 +317,34 @@ impl Frames {
         a
     }
 
-    pub(super) fn add_body(&mut self, name: &str, frame: FrameId, mocap: bool) {
-        if frame != 0 && !name.is_empty() {
-            self.bodies.insert(name.to_owned(), frame);
+    /// Remembers a body in a frame, with what becomes of positions in its axes.
+    pub(super) fn add_body(&mut self, body: &BodySpec, frame: FrameId, stretch: Stretch) {
+        if frame != 0 && !body.name.is_empty() {
+            self.bodies.insert(body.name.clone(), (frame, stretch));
         }
-        if mocap {
+        if body.mocap {
             self.mocaps.push(frame);
         }
     }
 
-    pub(super) fn add_joint(&mut self, joint: &JointSpec, body: usize, frame: FrameId) {
-        self.all_joints.push(PlacedJoint {
+    /// Remembers a joint in a frame, with what it says of lengths along its axis.
+    pub(super) fn add_joint(
+        &mut self,
+        joint: &JointSpec,
+        body: usize,
+        frame: FrameId,
+        length: f64,
+    ) {
+        let placed = PlacedJoint {
             body,
             frame,
             kind: joint.kind,
+            length,
             yields: joint.springyield > 0.0,
-        });
+        };
+        self.all_joints.push(placed);
         if frame != 0 && !joint.name.is_empty() {
-            self.joints.insert(joint.name.clone(), (frame, joint.kind));
+            self.joints.insert(joint.name.clone(), placed);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Along, Coordinate, FrameId, Frames, Scale, located};
 use crate::LoadError;
+use crate::mjcf::stretch::Stretch;
 use clench_rigid::builder::{
     ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName, GeomsName, ModelBuilder,
     SensorSpec, SensorSubject, TendonSpec, WrapSpec,
@@ -15,7 +16,13 @@ impl Frames {
     }
 
     pub(super) fn of_body(&self, name: &str) -> Scale {
-        self.of(&self.bodies, name)
+        self.scale(self.bodies.get(name).map_or(0, |&(frame, _)| frame))
+    }
+
+    /// What becomes of positions in the axes of a body.
+    fn in_body(&self, name: &str) -> Stretch {
+        let found = self.bodies.get(name);
+        found.map_or(Stretch::NONE, |&(_, stretch)| stretch)
     }
 
     pub(super) fn of_site(&self, name: &str) -> Scale {
@@ -24,18 +31,18 @@ impl Frames {
 
     /// What a joint's coordinate is multiplied by, and forces along it.
     pub(super) fn of_joint(&self, name: &str) -> Along {
-        let found = self.joints.get(name).copied();
-        let (frame, coordinate) = found.map_or((0, Coordinate::Angle), |(frame, kind)| {
-            let coordinate = Coordinate::of_joint(kind);
-            (frame, coordinate.unwrap_or(Coordinate::Angle))
-        });
-        self.scale(frame).along(coordinate)
+        let Some(joint) = self.joints.get(name) else {
+            return Scale::ONE.along(Coordinate::Angle);
+        };
+        let coordinate = Coordinate::of_joint(joint.kind).unwrap_or(Coordinate::Angle);
+        let scale = self.scale(joint.frame);
+        scale.along_direction(coordinate, joint.length)
     }
 
     /// The scale of a free joint in a frame, if it is one.
     pub(super) fn of_free_joint(&self, name: &str) -> Option<Scale> {
-        let (frame, kind) = *self.joints.get(name)?;
-        (kind == JointKind::Free).then(|| self.scale(frame))
+        let joint = self.joints.get(name)?;
+        (joint.kind == JointKind::Free).then(|| self.scale(joint.frame))
     }
 
     /// What a tendon's length is multiplied by, and forces along it.
@@ -69,7 +76,7 @@ impl Frames {
         for tendon in &mut builder.tendons {
             let frames = tendon.path.iter().filter_map(|wrap| match wrap {
                 WrapSpec::Joint { joint, .. } => {
-                    Some(self.joints.get(joint).map_or(0, |&(frame, _)| frame))
+                    Some(self.joints.get(joint).map_or(0, |placed| placed.frame))
                 }
                 WrapSpec::Site(site) => Some(self.sites.get(site).copied().unwrap_or(0)),
                 WrapSpec::Geom { geom, .. } => Some(self.geoms.get(geom).copied().unwrap_or(0)),
@@ -77,11 +84,9 @@ impl Frames {
             });
             let frame = frames.reduce(|a, b| self.common(a, b)).unwrap_or(0);
             let turns = |wrap: &WrapSpec| match wrap {
-                WrapSpec::Joint { joint, .. } => {
-                    (self.joints.get(joint)).is_some_and(|(_, kind)| {
-                        Coordinate::of_joint(*kind) != Some(Coordinate::Length)
-                    })
-                }
+                WrapSpec::Joint { joint, .. } => (self.joints.get(joint)).is_some_and(|placed| {
+                    Coordinate::of_joint(placed.kind) != Some(Coordinate::Length)
+                }),
                 _ => false,
             };
             let coordinate = match tendon.path.iter().all(turns) {
@@ -112,9 +117,8 @@ impl Frames {
     fn scale_equality(&self, equality: &mut EqualitySpec) {
         let width = match &mut equality.kind {
             EqualityKind::Connect(ConnectAnchor::Bodies { body1, anchor, .. }) => {
-                let scale = self.of_body(body1);
-                *anchor = *anchor * scale.length;
-                scale.length
+                *anchor = self.in_body(body1).apply(*anchor);
+                self.of_body(body1).length
             }
             EqualityKind::Connect(ConnectAnchor::Sites { site1, site2 }) => {
                 self.of_site(site1).mean(self.of_site(site2)).length
@@ -130,17 +134,16 @@ impl Frames {
                         body2,
                         anchor,
                     } => {
-                        let second = self.of_body(body2);
-                        *anchor = *anchor * second.length;
-                        [self.of_body(body1), second]
+                        *anchor = self.in_body(body2).apply(*anchor);
+                        if let Some((pos, _)) = relpose {
+                            *pos = self.in_body(body1).apply(*pos);
+                        }
+                        [body1, body2].map(|name| self.of_body(name))
                     }
                     ConnectAnchor::Sites { site1, site2 } => {
                         [site1, site2].map(|name| self.of_site(name))
                     }
                 };
-                if let Some((pos, _)) = relpose {
-                    *pos = *pos * first.length;
-                }
                 let between = first.mean(second).length;
                 *torquescale *= between;
                 between
