@@ -104,3 +104,63 @@ fn keyframes_of_attached_models_say_where_springs_rest() {
     ];
     assert_eq!(found, expected);
 }
+
+/// Numbers are scaled where the elements end up, those that the keyframe leaves out are not.
+#[test]
+fn keyframes_of_attached_models_are_scaled_with_what_they_place() {
+    let part = "<mujoco>
+      <worldbody>
+        <body pos='1 0 0'><joint name='s' type='slide' axis='0 1 0' springyield='.1' springref='.2' stiffness='1'/>
+          <geom type='box' size='.1 .1 .1'/></body>
+        <body pos='0 1 0'><freejoint/><geom type='box' size='.1 .1 .1'/></body>
+        <body mocap='true'/>
+      </worldbody>
+      <tendon><fixed springyield='.1' stiffness='1'><joint joint='s' coef='1'/></fixed></tendon>
+      <actuator><intvelocity joint='s' kp='1' actrange='-1 1'/><motor joint='s'/></actuator>
+      <keyframe>
+        <key qpos='1 3 4 5 1 0 0 0' qvel='1 3 4 5 6 7 8' ctrl='1 2' act='1' mpos='1 2 3' mquat='0 1 0 0' plastic='1 2 3'/>
+        <key qpos='1'/>
+      </keyframe></mujoco>";
+    let root = 6.0_f64.cbrt();
+    let main = |frame: &str| {
+        format!(
+            "<mujoco><asset><model name='part' file='part.xml'/></asset>
+             <worldbody><frame {frame} pos='10 0 0' euler='0 0 90'><attach model='part' prefix='x_'/></frame></worldbody></mujoco>"
+        )
+    };
+    for (frame, [y, z], linear, plastic) in [
+        ("scale='2'", [8.0, 10.0], [6.0, 8.0, 10.0], [2.0, 4.0, 6.0]),
+        (
+            "scale='1 2 3' scaling='geometry'",
+            [4.0, 15.0],
+            [6.0, 4.0, 15.0],
+            [2.0, 2.0 * root, 3.0 * root],
+        ),
+    ] {
+        let main = main(frame);
+        let files = Files::new(&[("main.xml", main.as_str()), ("part.xml", part)]);
+        let model = files.read().unwrap().build().unwrap();
+        let [key, short] = &model.keyframes[..] else {
+            panic!("{} keyframes", model.keyframes.len())
+        };
+        let [u, v, w] = linear;
+        near(&key.qpos, &[2.0, -4.0, y, z, 1.0, 0.0, 0.0, 0.0]);
+        near(&key.qvel, &[2.0, u, v, w, 6.0, 7.0, 8.0]);
+        near(&key.ctrl, &[2.0, 2.0]);
+        near(&key.act, &[2.0]);
+        near(&key.plastic, &plastic);
+        let [_, height] = [y, z].map(|x| x / 5.0);
+        near(&key.mocap_pos, &[-8.0, y / 2.0, 3.0 * height]);
+        near(&key.mocap_quat, &[0.0, 1.0, 0.0, 0.0]);
+        near(&short.qpos, &[&[2.0], &model.params.qpos0[1..]].concat());
+    }
+}
+
+fn near(found: &[f64], expected: &[f64]) {
+    let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12;
+    assert_eq!(found.len(), expected.len());
+    assert!(
+        found.iter().zip(expected).all(close),
+        "{found:?} {expected:?}"
+    );
+}

@@ -1,87 +1,67 @@
-//! Stored states.
+//! Stored states. What attached models say of theirs is scaled where the elements end up, as in MuJoCo 4.0.
 
 use super::actuators::States;
-use super::{FrameId, Frames, PlacedJoint, located};
-use crate::LoadError;
+use super::{FrameId, Frames, PlacedJoint};
 use crate::mjcf::stretch::Stretch;
 use clench_math::Vec3;
-use clench_rigid::builder::ModelBuilder;
+use clench_rigid::builder::{KeyframeElement, KeyframePart, KeyframeSpec, ModelBuilder};
 use clench_rigid::model::JointKind;
 
 impl Frames {
-    /// Scales what keyframes say of positions, velocities, springs, controls and activations.
-    ///
-    /// # Errors
-    /// Keyframes of attached models.
-    pub(super) fn scale_keyframes(
-        &self,
-        actuators: &[States],
-        builder: &mut ModelBuilder,
-    ) -> Result<(), LoadError> {
-        let [qpos, qvel, mut plastic] = self.of_joints();
-        for (tendon, &(frame, coordinate)) in builder.tendons.iter().zip(&self.all_tendons) {
-            if tendon.springyield > 0.0 {
-                let along = self.scale(frame).along(coordinate);
-                plastic.extend([Map::Number(along.coordinate); 2]);
-            }
-        }
-        let mocaps = self.mocaps.iter();
-        let mocap_pos: Vec<Map> = mocaps.map(|&frame| self.moved(frame)).collect();
-        let control = states(actuators, |states| &states.controls);
-        let activation = states(actuators, |states| &states.activations);
+    /// Scales what keyframes say of positions, velocities, springs, controls and activations, whether of the whole model or, where
+    /// they come from attached models, of single elements.
+    pub(super) fn scale_keyframes(&self, actuators: &[States], builder: &mut ModelBuilder) {
+        let maps = Maps {
+            joints: self.of_joints(),
+            mocaps: self.mocaps.iter().map(|&frame| self.moved(frame)).collect(),
+            tendons: self.of_tendons(builder),
+            actuators,
+        };
         for keyframe in &mut builder.keyframes {
-            if !keyframe.parts.is_empty() {
-                let message =
-                    "keyframes of attached models beside frames with a scale are not supported yet";
-                return Err(located(&keyframe.origin, "key", &keyframe.name, message));
-            }
-            apply(&mut keyframe.qpos, &qpos);
-            apply(&mut keyframe.qvel, &qvel);
-            apply(&mut keyframe.plastic, &plastic);
-            apply(&mut keyframe.ctrl, &control);
-            apply(&mut keyframe.act, &activation);
-            apply(&mut keyframe.mocap_pos, &mocap_pos);
+            maps.apply(keyframe);
         }
-        Ok(())
     }
-}
 
-impl Frames {
-    /// What becomes of the positions, the velocities and the springs of joints.
-    fn of_joints(&self) -> [Vec<Map>; 3] {
+    /// What becomes of the state of joints.
+    fn of_joints(&self) -> Vec<OfJoint> {
         // Joints are numbered by body, and those of one body as they are read.
         let mut joints = self.all_joints.clone();
         joints.sort_by_key(|joint| joint.body);
-        let (mut qpos, mut qvel, mut plastic) = (Vec::new(), Vec::new(), Vec::new());
-        for PlacedJoint {
-            frame,
-            kind,
-            length,
-            yields,
-            ..
-        } in joints
-        {
-            let along = match kind {
-                JointKind::Slide => length,
-                _ => 1.0,
-            };
-            match kind {
-                JointKind::Free => {
-                    qpos.push(self.moved(frame));
-                    qpos.extend([Map::Number(1.0); 4]);
-                    qvel.push(Map::Point(self.list[frame].stretch, Vec3::ZERO));
-                    qvel.extend([Map::Number(1.0); 3]);
-                }
-                _ => {
-                    qpos.extend(vec![Map::Number(along); kind.nq()]);
-                    qvel.extend(vec![Map::Number(along); kind.nv()]);
-                }
-            }
-            if yields {
-                plastic.extend(vec![Map::Number(along); kind.nq()]);
-            }
+        joints
+            .into_iter()
+            .map(|joint| self.of_placed(joint))
+            .collect()
+    }
+
+    fn of_placed(&self, joint: PlacedJoint) -> OfJoint {
+        let PlacedJoint { frame, kind, .. } = joint;
+        let along = match kind {
+            JointKind::Slide => joint.length,
+            _ => 1.0,
+        };
+        let numbers = |count| vec![Map::Number(along); count];
+        let (mut qpos, mut qvel) = (numbers(kind.nq()), numbers(kind.nv()));
+        if kind == JointKind::Free {
+            qpos.splice(..3, [self.moved(frame)]);
+            qvel.splice(..3, [Map::Point(self.list[frame].stretch, Vec3::ZERO)]);
         }
-        [qpos, qvel, plastic]
+        OfJoint {
+            qpos,
+            qvel,
+            plastic: numbers(if joint.yields { kind.nq() } else { 0 }),
+        }
+    }
+
+    /// What becomes of where the springs of tendons rest; nothing where they do not yield.
+    fn of_tendons(&self, builder: &ModelBuilder) -> Vec<Vec<Map>> {
+        let tendons = builder.tendons.iter().zip(&self.all_tendons);
+        tendons
+            .map(|(tendon, &(frame, coordinate))| {
+                let along = self.scale(frame).along(coordinate);
+                let count = if tendon.springyield > 0.0 { 2 } else { 0 };
+                vec![Map::Number(along.coordinate); count]
+            })
+            .collect()
     }
 
     /// What becomes of the position of something in the world that a frame carries: it moves with the frame, and away from it.
@@ -89,6 +69,67 @@ impl Frames {
         let frame = &self.list[frame];
         let offset = frame.position - frame.stretch.apply(frame.unscaled);
         Map::Point(frame.stretch, offset)
+    }
+}
+
+/// What becomes of the state of a joint.
+struct OfJoint {
+    qpos: Vec<Map>,
+    qvel: Vec<Map>,
+    plastic: Vec<Map>,
+}
+
+/// What becomes of the state of each element.
+struct Maps<'a> {
+    joints: Vec<OfJoint>,
+    mocaps: Vec<Map>,
+    tendons: Vec<Vec<Map>>,
+    actuators: &'a [States],
+}
+
+impl Maps<'_> {
+    fn apply(&self, keyframe: &mut KeyframeSpec) {
+        let joints = || self.joints.iter();
+        apply(&mut keyframe.qpos, joints().flat_map(|joint| &joint.qpos));
+        apply(&mut keyframe.qvel, joints().flat_map(|joint| &joint.qvel));
+        let springs = joints().flat_map(|joint| &joint.plastic);
+        apply(
+            &mut keyframe.plastic,
+            springs.chain(self.tendons.iter().flatten()),
+        );
+        let controls = self.actuators.iter().flat_map(|of| numbers(&of.controls));
+        apply(&mut keyframe.ctrl, &controls.collect::<Vec<_>>());
+        let activations = self
+            .actuators
+            .iter()
+            .flat_map(|of| numbers(&of.activations));
+        apply(&mut keyframe.act, &activations.collect::<Vec<_>>());
+        apply(&mut keyframe.mocap_pos, &self.mocaps);
+        for part in &mut keyframe.parts {
+            self.apply_to_part(part);
+        }
+    }
+
+    fn apply_to_part(&self, part: &mut KeyframePart) {
+        match part.element {
+            KeyframeElement::Joint(joint) => {
+                let joint = &self.joints[joint];
+                map_numbers(&mut part.first, &joint.qpos);
+                map_numbers(&mut part.second, &joint.qvel);
+                map_numbers(&mut part.plastic, &joint.plastic);
+            }
+            KeyframeElement::Actuator(actuator) => {
+                let states = &self.actuators[actuator];
+                map_numbers(&mut part.first, &numbers(&states.controls));
+                map_numbers(&mut part.second, &numbers(&states.activations));
+            }
+            KeyframeElement::Mocap(mocap) => {
+                map_numbers(&mut part.first, &self.mocaps[mocap..=mocap]);
+            }
+            KeyframeElement::Tendon(tendon) => {
+                map_numbers(&mut part.plastic, &self.tendons[tendon]);
+            }
+        }
     }
 }
 
@@ -125,16 +166,18 @@ impl Map {
     }
 }
 
-/// What becomes of the controls or activations of all actuators.
-fn states(actuators: &[States], which: impl Fn(&States) -> &Vec<f64>) -> Vec<Map> {
-    (actuators.iter().flat_map(which))
-        .map(|&factor| Map::Number(factor))
-        .collect()
+/// Numbers that are multiplied by these.
+fn numbers(factors: &[f64]) -> Vec<Map> {
+    factors.iter().map(|&factor| Map::Number(factor)).collect()
+}
+
+fn apply<'a>(given: &mut Option<Vec<f64>>, maps: impl IntoIterator<Item = &'a Map>) {
+    map_numbers(given.as_deref_mut().unwrap_or_default(), maps);
 }
 
 /// Numbers of another count than the maps are told of when the model is built.
-fn apply(numbers: &mut Option<Vec<f64>>, maps: &[Map]) {
-    let mut rest = numbers.as_deref_mut().unwrap_or_default();
+fn map_numbers<'a>(numbers: &mut [f64], maps: impl IntoIterator<Item = &'a Map>) {
+    let mut rest = numbers;
     for map in maps {
         rest = map.apply(rest);
     }

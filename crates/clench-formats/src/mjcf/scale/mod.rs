@@ -380,7 +380,8 @@ impl Frames {
         self.scale_equalities(builder);
         self.scale_sensors(builder)?;
         let actuators = self.scale_actuators(shortcuts, builder)?;
-        self.scale_keyframes(&actuators, builder)
+        self.scale_keyframes(&actuators, builder);
+        Ok(())
     }
 }
 
