@@ -2,89 +2,76 @@
 
 use super::rule::{NONE, Rule, section};
 
+/// What an actuator reads: what all of them do, what the named groups of attributes are, and what it alone does.
+macro_rules! reads {
+    ($($group:ident)*: $own:literal) => {
+        concat!("name class group nsample interp delay ctrlrange user ", $(group!($group), " ",)* $own)
+    };
+}
+
+macro_rules! group {
+    (moves) => {
+        "joint jointinparent tendon cranksite slidersite cranklength gear damping armature lengthrange"
+    };
+    (sites) => {
+        "site refsite"
+    };
+    (forces) => {
+        "forcerange forcelimited"
+    };
+}
+
+const fn actuator(element: &'static str, read: &'static str) -> Rule {
+    Rule {
+        element,
+        read,
+        ..NONE
+    }
+}
+
 pub(super) const RULES: &[Rule] = &[
     section(
         "actuator",
         "general motor position velocity intvelocity orientation damper cylinder muscle pid dcmotor adhesion",
         "plugin",
     ),
-    Rule {
-        element: "general",
-        read: "name class group nsample interp delay joint jointinparent tendon body site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited ctrllimited \
-            actlimited actrange actdim actearly dyntype dynprm gaintype gainprm biastype biasprm inheritrange \
-            input velrange ffrange user",
-        ..NONE
-    },
-    Rule {
-        element: "motor",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited ctrllimited user",
-        ..NONE
-    },
-    Rule {
-        element: "position",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited ctrllimited kp kv \
-            dampratio timeconst inheritrange user",
-        ..NONE
-    },
-    Rule {
-        element: "velocity",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited ctrllimited kv user",
-        ..NONE
-    },
-    Rule {
-        element: "intvelocity",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited ctrllimited \
-            actlimited actrange kp kv dampratio inheritrange user",
-        ..NONE
-    },
-    Rule {
-        element: "orientation",
-        read: "name class group nsample interp delay joint site refsite ctrlrange forcerange forcelimited kp kv \
-            dampratio input user",
-        ..NONE
-    },
-    Rule {
-        element: "damper",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited kv user",
-        ..NONE
-    },
-    Rule {
-        element: "cylinder",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited ctrllimited \
-            timeconst area diameter bias user",
-        ..NONE
-    },
-    Rule {
-        element: "muscle",
-        read: "name class group nsample interp delay joint jointinparent tendon cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited \
-            ctrllimited timeconst tausmooth range force scale lmin lmax vmax fpmax fvmax user",
-        ..NONE
-    },
-    Rule {
-        element: "pid",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange forcerange forcelimited \
-            ctrllimited kp kv dampratio ki imax slewmax input posrange velrange ffrange inheritrange user",
-        ..NONE
-    },
-    Rule {
-        element: "dcmotor",
-        read: "name class group nsample interp delay joint jointinparent tendon site refsite cranksite slidersite \
-            cranklength gear damping armature lengthrange ctrlrange ctrllimited motorconst resistance \
-            nominal saturation inductance cogging controller thermal lugre input user",
-        ..NONE
-    },
-    Rule {
-        element: "adhesion",
-        read: "name class group nsample interp delay body ctrlrange forcerange forcelimited gain user",
-        ..NONE
-    },
+    actuator(
+        "general",
+        reads!(moves sites forces: "body ctrllimited actlimited actrange actdim actearly dyntype dynprm \
+             gaintype gainprm biastype biasprm inheritrange input velrange ffrange"),
+    ),
+    actuator("motor", reads!(moves sites forces: "ctrllimited")),
+    actuator(
+        "position",
+        reads!(moves sites forces: "ctrllimited kp kv dampratio timeconst inheritrange"),
+    ),
+    actuator("velocity", reads!(moves sites forces: "ctrllimited kv")),
+    actuator(
+        "intvelocity",
+        reads!(moves sites forces: "ctrllimited actlimited actrange kp kv dampratio inheritrange"),
+    ),
+    actuator(
+        "orientation",
+        reads!(sites forces: "joint kp kv dampratio input"),
+    ),
+    actuator("damper", reads!(moves sites forces: "kv")),
+    actuator(
+        "cylinder",
+        reads!(moves sites forces: "ctrllimited timeconst area diameter bias"),
+    ),
+    actuator(
+        "muscle",
+        reads!(moves forces: "ctrllimited timeconst tausmooth range force scale lmin lmax vmax fpmax fvmax"),
+    ),
+    actuator(
+        "pid",
+        reads!(moves sites forces: "ctrllimited kp kv dampratio ki imax slewmax input posrange velrange ffrange \
+             inheritrange"),
+    ),
+    actuator(
+        "dcmotor",
+        reads!(moves sites: "ctrllimited motorconst resistance nominal saturation inductance cogging controller \
+             thermal lugre input"),
+    ),
+    actuator("adhesion", reads!(forces: "body gain")),
 ];
