@@ -119,7 +119,10 @@ fn soak<S: Precision>(plan: &Plan) {
     let (mut grown, mut warm) = (0, 0);
     for step in 0..plan.steps {
         control(&mut batch, &mut dice);
+        // What a step keeps of a failure, its place in the model, a reset gives back.
+        let heap = ALLOCATOR.allocated();
         reset(&mut batch, &mut ledger, &mut watch, &mut dice);
+        grown += ALLOCATOR.allocated() as isize - heap as isize;
         watch.copy_controls(&batch);
         give_poison(&mut batch, &mut ledger, &mut watch, &mut dice);
         ledger.before_step(&batch);
