@@ -286,12 +286,16 @@ def drop_idle_rows(ours, theirs):
 
 
 def clear_rounding(ours, theirs):
-    """Makes zero what has no digits in either engine: rows of contacts between bodies that cannot move along them."""
+    """Makes zero what has no digits in either engine: rows of contacts between bodies that cannot move along them, and the velocities
+    that they give."""
     if len(ours["jacobian"]) != len(theirs.jacobian):
         return
-    for own, other in zip(ours["jacobian"], theirs.jacobian):
+    still = IDLE * (1 + np.abs(theirs.qvel).sum())
+    for k, (row, own, other) in enumerate(zip(ours["constraints"], ours["jacobian"], theirs.jacobian)):
         if largest(own, other, floor=0) <= IDLE:
             own[:] = other[:] = [0.0] * len(own)
+            if largest(row["vel"], theirs.efc_vel[k], floor=0) <= still:
+                row["vel"] = theirs.efc_vel[k] = 0.0
 
 
 def acted_on(sources, jacobian, contact):
