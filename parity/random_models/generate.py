@@ -46,6 +46,7 @@ class Generator(Preamble, Tree, Relations, Actuation, Sensing):
             harmless.decorate(self.root, draw)
         self.scale_frames()
         self.number_elements()
+        self.enclose()
         return self.root
 
     def scale_frames(self):

@@ -1,7 +1,7 @@
 """The sensors of a random model."""
 
 from random_models import harmless
-from random_models.maker import Maker
+from random_models.maker import PRIMITIVES, Maker
 from random_models.values import VALUES, text
 
 # Few models have a tendon whose range counts, which these measure.
@@ -38,6 +38,14 @@ class Sensing(Maker):
                 sensor.set("data", " ".join(kept) or "found")
 
         self.skins(section)
+
+    def enclose(self):
+        """Some sensors ask how far a geom or a site juts out of a round site, where no rounding decides which way the search takes."""
+        kinds = {element.get("name"): element.get("type") for element in self.root.iter() if element.tag in ("geom", "site")}
+        for sensor in [element for section in self.root.iter("sensor") for element in section if element.tag == "insidesite"]:
+            bounded = sensor.get("objtype") in ("geom", "site") and kinds.get(sensor.get("objname")) in (*PRIMITIVES, "mesh")
+            if bounded and kinds.get(sensor.get("site")) == "ellipsoid" and self.last.chance(0.7):
+                sensor.set("enclosed", "true")
 
     def skins(self, section):
         """Sensors that feel with a mesh in the frame of a geom."""

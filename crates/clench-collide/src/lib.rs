@@ -1,7 +1,7 @@
 //! Collision detection: shapes and poses in, contact points out. No joints, no bodies.
 //!
-//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`ray`] where a ray hits
-//! one, [`near`] and [`BroadPhase`] find the pairs worth asking about. Contacts and rays are generic over [`Real`](clench_math::Real):
+//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`protrusion`] how far one juts out of
+//! the other, [`ray`] where a ray hits one, [`near`] and [`BroadPhase`] find the pairs worth asking about. Contacts and rays are generic over [`Real`](clench_math::Real):
 //! one call serves one environment (`f64`) or several side by side, where each contact point says in which of them it exists.
 //! Which points a pair yields follows MuJoCo 4.0.
 //!
@@ -31,6 +31,7 @@ mod height_field;
 mod hull;
 mod narrow;
 mod pose;
+mod protrusion;
 mod ray;
 mod shape;
 
@@ -42,6 +43,7 @@ pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};
 pub use narrow::{SeparatingAxis, collide, collide_again, multiccd_matters, supported};
 pub use pose::Pose;
+pub use protrusion::{Ascent, protrusion, protrusion_of_points};
 pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, UnitRay, ray};
 pub use shape::{
     Capsule, Cuboid, Cylinder, Ellipsoid, Mesh, Plane, Shape, ShapeKind, Sphere, Terrain,

@@ -11,7 +11,7 @@ const BODIES: &str = "<asset><mesh name='skin' builtin='plate' params='2 3'/></a
     <camera name='eye' resolution='3 2'/>
     <camera name='blind' resolution='0 2'/><camera name='huge' resolution='99999 99999'/>
     <body name='hand'><joint name='ball' type='ball'/><geom name='fist' size='.1'/></body></body>
-    <body><geom name='air' contype='0' conaffinity='0' size='1'/></body></worldbody>
+    <body><geom name='air' contype='0' conaffinity='0' size='1'/></body><body name='bare'/></worldbody>
     <actuator><motor name='motor' joint='hinge'/></actuator>";
 
 fn model(sensors: &str) -> Result<clench_rigid::Model, String> {
@@ -113,8 +113,20 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
             "not one of dist, dir",
         ),
         (
-            "<insidesite site='tip' objtype='body' objname='arm' enclosed='true'/>",
-            "enclosed is not supported yet",
+            "<insidesite site='tip' objtype='xbody' objname='bare' enclosed='true'/>",
+            "the body \"bare\" has no geom",
+        ),
+        (
+            "<insidesite site='tip' objtype='xbody' objname='world' enclosed='true'/>",
+            "the geom \"floor\" is not a bounded convex shape",
+        ),
+        (
+            "<insidesite site='tip' objtype='camera' objname='eye' enclosed='true'/>",
+            "a camera has no extent",
+        ),
+        (
+            "<insidesite site='tip' objtype='geom' objname='rod' enclosed='yes'/>",
+            "enclosed",
         ),
         ("<contact geom1='no'/>", "there is no geom \"no\""),
         (

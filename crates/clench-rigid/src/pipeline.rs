@@ -138,7 +138,7 @@ pub fn forward<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     forward_dynamics(model, params, settings, state, ws);
-    sensor::evaluate(model, params, state, ws);
+    sensor::evaluate(model, params, settings, state, ws);
     ws.clock.lap(Stage::Sensors as usize);
 }
 
@@ -225,7 +225,7 @@ pub fn step_from_forces<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     from_forces(model, params, settings, state, ws);
-    sensor::evaluate(model, params, state, ws);
+    sensor::evaluate(model, params, settings, state, ws);
     ws.clock.lap(Stage::Sensors as usize);
     if settings.flags.sleep {
         sleep::fall_asleep(model, params, settings, state, ws);

@@ -35,10 +35,7 @@ const ACTUATOR: Rule = rule!("actuator");
 const BODY: Rule = rule!("body");
 const FRAME: Rule = rule!("objtype objname reftype refname");
 const WORLD_FRAME: Rule = rule!("objtype objname");
-const INSIDE: Rule = Rule {
-    later: "enclosed=false",
-    ..rule!("site objtype objname")
-};
+const INSIDE: Rule = rule!("site objtype objname enclosed");
 const GEOMS: Rule = rule!("geom1 geom2 body1 body2");
 /// What the user's numbers belong to and when they are computed matters to the user's program alone.
 const USER: Rule = Rule {
@@ -96,10 +93,15 @@ pub(crate) fn read(element: &Element, kind: SensorKind) -> Result<SensorSpec, Lo
             object: read_object(element)?,
             reference: read_frame(element, "reftype", "refname")?,
         },
-        Attachment::Inside => SensorSubject::Inside {
-            site: element.required_text("site")?.to_owned(),
-            object: read_object(element)?,
-        },
+        Attachment::Inside => {
+            let mut enclosed = false;
+            element.set_boolean("enclosed", &mut enclosed)?;
+            SensorSubject::Inside {
+                site: element.required_text("site")?.to_owned(),
+                object: read_object(element)?,
+                enclosed,
+            }
+        }
         Attachment::Projection => SensorSubject::Projection {
             site: element.required_text("site")?.to_owned(),
             camera: element.required_text("camera")?.to_owned(),

@@ -64,7 +64,8 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
             let reference = reference.map_or(Some(none), |other| frame(m, other))?;
             (1, frame(m, *object)?, reference)
         }
-        SensorTarget::Inside { site, object } => (0, frame(m, *object)?, [4, *site, 0]),
+        SensorTarget::Inside { enclosed: true, .. } => return None,
+        SensorTarget::Inside { site, object, .. } => (0, frame(m, *object)?, [4, *site, 0]),
         SensorTarget::Element(e) => match sensor.kind {
             Kind::Accelerometer
             | Kind::Velocimeter

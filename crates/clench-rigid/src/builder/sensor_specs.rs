@@ -100,6 +100,9 @@ pub enum SensorSubject {
         site: String,
         /// The object.
         object: FrameName,
+        /// Whether its whole extent counts: how far it juts out is measured, m, rather than whether its position is inside. Then it
+        /// is a site, a geom, the geoms of a body (`Inertial`), or those of a body and all below it (`Body`), and all of them are bounded.
+        enclosed: bool,
     },
     /// A site as a camera sees it.
     Projection {

@@ -11,7 +11,7 @@ use crate::model::{
     Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, Geom,
     JointKind, Model, RayField, RaySource, Sensor, SensorData, SensorKind, SensorTarget,
 };
-use crate::sensor::tactile;
+use crate::sensor::{enclosed, tactile};
 use clench_collide::ShapeKind;
 use std::ops::Range;
 use std::sync::Arc;
@@ -39,6 +39,7 @@ pub(super) fn add_all(
         }
         let data = match spec.subject {
             SensorSubject::User(_, data) => data,
+            SensorSubject::Inside { enclosed: true, .. } => SensorData::Real,
             _ => spec.kind.data(),
         };
         let dim = dim(spec, &target, model)
@@ -140,10 +141,7 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
                 reference: reference.as_ref().map(find).transpose()?,
             })
         }
-        (Attachment::Inside, Of::Inside { site, object }) => Ok(SensorTarget::Inside {
-            site: names.sites.find(site, spec)?,
-            object: frame(spec, names, object)?,
-        }),
+        (Attachment::Inside, Of::Inside { .. }) => inside(spec, names, model),
         (Attachment::Projection, Of::Projection { site, camera }) => {
             let camera = names.cameras.find(camera, spec)?;
             require_pixels(spec, model, camera)?;
@@ -185,6 +183,62 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
             Ok(SensorTarget::Geoms(sets))
         }
         _ => Err(spec.error(format!("must be attached to {attachment}"))),
+    }
+}
+
+/// A site, and what may be inside it or must be enclosed by it: then all of that is bounded and convex.
+fn inside(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTarget, BuildError> {
+    let SensorSubject::Inside {
+        site,
+        object,
+        enclosed,
+    } = &spec.subject
+    else {
+        return Err(spec.error(format!("must be attached to {}", Attachment::Inside)));
+    };
+    let name = &object.name;
+    let site = names.sites.find(site, spec)?;
+    let object = frame(spec, names, object)?;
+    if *enclosed {
+        if let FrameObject::Camera(_) = object {
+            return Err(spec.error("a camera has no extent that could be enclosed"));
+        }
+        let is_body = matches!(object, FrameObject::Inertial(_) | FrameObject::Body(_));
+        if is_body && enclosed::geoms_of(model, object).next().is_none() {
+            return Err(spec.error(format!("the body \"{name}\" has no geom to be enclosed")));
+        }
+        for geom in enclosed::geoms_of(model, object) {
+            let geom = &model.geoms[geom];
+            require_bounded(spec, "geom", &geom.name, geom.kind)?;
+        }
+        let inner = match object {
+            FrameObject::Site(inner) => Some(inner),
+            _ => None,
+        };
+        for site in inner.into_iter().chain([site]) {
+            let site = &model.sites[site];
+            require_bounded(spec, "site", &site.name, site.kind)?;
+        }
+    }
+    Ok(SensorTarget::Inside {
+        site,
+        object,
+        enclosed: *enclosed,
+    })
+}
+
+/// A plane and a height field enclose nothing and are not enclosed.
+fn require_bounded(
+    spec: &SensorSpec,
+    element: &str,
+    name: &str,
+    kind: ShapeKind,
+) -> Result<(), BuildError> {
+    match kind {
+        ShapeKind::Plane | ShapeKind::HeightField => Err(spec.error(format!(
+            "the {element} \"{name}\" is not a bounded convex shape, of which alone can be told whether it is enclosed"
+        ))),
+        _ => Ok(()),
     }
 }
 

@@ -191,7 +191,8 @@ sensor_kinds! {
     SubtreeLinVel "subtreelinvel" Body 3 Real;
     /// Angular momentum of a body and all below it about their centre of mass, kg m²/s.
     SubtreeAngMom "subtreeangmom" Body 3 Real;
-    /// 1 where an object's position is inside the site's volume, else 0.
+    /// 1 where an object's position is inside the site's volume, else 0; or, of one that is to be enclosed, how far it juts out of that volume,
+    /// negative by its clearance where it lies inside, m.
     InsideSite "insidesite" Inside 1 Positive;
     /// Smallest signed distance of two geoms or sets of geoms, at most the cutoff, m.
     Distance "distance" Geoms 1 Real;

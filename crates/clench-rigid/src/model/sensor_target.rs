@@ -160,6 +160,9 @@ pub enum SensorTarget {
         site: usize,
         /// The object.
         object: FrameObject,
+        /// Whether its whole extent counts: how far it juts out is measured, rather than whether its position is inside. It is then no
+        /// camera; of a body it is the geoms, with `Inertial` the body's own, with `Body` those of all below it too.
+        enclosed: bool,
     },
     /// Where a camera sees a site.
     Projection {

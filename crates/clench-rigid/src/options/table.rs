@@ -28,6 +28,11 @@ macro_rules! rigid_options {
                 friction_cone: FrictionCone = FrictionCone::Pyramidal, Any, Given("cone"), Attribute("cone");
                 /// Ratio of friction to normal impedance in elliptic contacts; 1.
                 impratio: f64 = 1.0, Positive, Given("impratio"), Attribute("impratio");
+                /// Most directions that a sensor `insidesite` that is `enclosed` tries from each of its starts; 35. (MuJoCo's bound of
+                /// collisions too; those here have none.)
+                ccd_iterations: usize = 35, Any, Given("ccd-iterations"), Attribute("ccd_iterations");
+                /// Relative slope, and step in rad, at which that search ends; 1e-6.
+                ccd_tolerance: f64 = 1e-6, NotNegative, Given("ccd-tolerance"), Attribute("ccd_tolerance");
                 /// Whether a simulation that diverges goes on from its initial state, and counts how often, where it would stop with an
                 /// error; false.
                 autoreset: bool = false, Any, Sets("autoreset", Truth(true)),

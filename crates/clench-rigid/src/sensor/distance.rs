@@ -53,16 +53,24 @@ impl<T: Real> Reading<'_, T> {
     }
 
     /// A geom in one lane, with a hull even if it does not collide.
-    fn solid(&self, geom: usize, lane: usize) -> (Shape<'_, T::Scalar>, Pose<T::Scalar>) {
-        let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
+    pub(super) fn solid(
+        &self,
+        geom: usize,
+        lane: usize,
+    ) -> (Shape<'_, T::Scalar>, Pose<T::Scalar>) {
         let (shape, pose) = (self.geoms().solid(geom), self.geoms().pose(geom));
-        let pose = Pose {
-            position: vector(pose.position),
-            rotation: Mat3 {
-                rows: pose.rotation.rows.map(vector),
-            },
-        };
-        (shape.lane(lane), pose)
+        (shape.lane(lane), lane_of(&pose, lane))
+    }
+}
+
+/// A pose in one lane.
+pub(super) fn lane_of<T: Real>(pose: &Pose<T>, lane: usize) -> Pose<T::Scalar> {
+    let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
+    Pose {
+        position: vector(pose.position),
+        rotation: Mat3 {
+            rows: pose.rotation.rows.map(vector),
+        },
     }
 }
 

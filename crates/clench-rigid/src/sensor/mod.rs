@@ -1,12 +1,13 @@
 //! What sensors measure, evaluated after a forward pass and before the state moves on.
 //!
 //! The kinds are a table in `model/sensor.rs`; here stands how each is read. A file a subject: frames in motion, forces between
-//! bodies, limits, volumes of sites, distances, rays, skins that feel.
+//! bodies, limits, volumes of sites and what juts out of them, distances, rays, skins that feel.
 
 pub(crate) mod bodies;
 mod camera;
 mod contact;
 mod distance;
+pub(crate) mod enclosed;
 mod frame;
 mod limit;
 mod ray;
@@ -16,6 +17,7 @@ pub(crate) mod tactile;
 mod volume;
 
 use crate::model::{Model, Params, Sensor, SensorData, SensorKind};
+use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
@@ -27,6 +29,7 @@ pub use readings::SensorReadings;
 pub(crate) fn evaluate<T: Real>(
     model: &Model,
     params: &Params<T>,
+    settings: &StepSettings,
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
@@ -42,6 +45,7 @@ pub(crate) fn evaluate<T: Real>(
     let source = Reading {
         model,
         params,
+        settings,
         state,
         ws,
     };

@@ -5,6 +5,7 @@ use crate::dynamics::energy::energy;
 use crate::dynamics::frames::Frames;
 use crate::geometry::Geoms;
 use crate::model::{FrameObject, Model, Params, Sensor, SensorKind, SensorTarget, Transmission};
+use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
@@ -14,6 +15,7 @@ use clench_math::{Quat, Real, Vec3, kernel};
 pub(super) struct Reading<'a, T: Real> {
     pub(super) model: &'a Model,
     pub(super) params: &'a Params<T>,
+    pub(super) settings: &'a StepSettings,
     pub(super) state: &'a State<T>,
     pub(super) ws: &'a Workspace<T>,
 }
@@ -44,8 +46,15 @@ impl<'a, T: Real> Reading<'a, T> {
             SensorTarget::Frame { object, reference } => {
                 self.read_frame(sensor.kind, *object, *reference, out);
             }
-            SensorTarget::Inside { site, object } => {
-                out[0] = self.is_inside(*site, self.position(*object));
+            &SensorTarget::Inside {
+                site,
+                object,
+                enclosed,
+            } => {
+                out[0] = match enclosed {
+                    true => self.protrusion(site, object),
+                    false => self.is_inside(site, self.position(object)),
+                };
             }
             SensorTarget::Projection { site, camera } => self.project(*site, *camera, out),
             SensorTarget::Rays { source, fields } => self.read_rays(*source, fields, out),

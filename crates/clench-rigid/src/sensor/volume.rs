@@ -50,6 +50,20 @@ impl<T: Real> Reading<'_, T> {
         T::select(shape.contains(point), T::ONE, T::ZERO)
     }
 
+    /// A site's volume and where it is, that of a mesh with the hull in the frame of the hull.
+    pub(super) fn solid_volume(&self, site: usize) -> (Shape<'_, T>, Pose<T>) {
+        let (shape, pose) = self.volume(site);
+        let Some(mesh) = self.model.sites[site].mesh else {
+            return (shape, pose);
+        };
+        let mesh = &self.model.meshes[mesh];
+        let pose = Pose {
+            position: pose.point(Vec3::from_f64(mesh.pos.to_array())),
+            rotation: pose.rotation * axes_of(mesh),
+        };
+        (hull_of(mesh, shape.size()), pose)
+    }
+
     fn volume(&self, site: usize) -> (Shape<'static, T>, Pose<T>) {
         let shape = Shape::new(self.model.sites[site].kind, self.params.site_size[site]);
         (shape, self.site_pose(site))
@@ -72,11 +86,20 @@ fn in_frame_of_hull<T: Real>(
     extent: Vec3<T>,
     point: Vec3<T>,
 ) -> (Shape<'_, T>, Vec3<T>) {
-    let shape = Shape::Mesh(Mesh {
+    let offset = point - Vec3::from_f64(mesh.pos.to_array());
+    (hull_of(mesh, extent), axes_of(mesh).transpose_mul(offset))
+}
+
+#[inline(always)]
+fn hull_of<T: Real>(mesh: &model::Mesh, extent: Vec3<T>) -> Shape<'_, T> {
+    Shape::Mesh(Mesh {
         hull: mesh.hull.as_ref(),
         extent,
-    });
-    let axes = Mat3::from_f64(mesh.quat.to_matrix().rows.map(Vec3::to_array));
-    let offset = point - Vec3::from_f64(mesh.pos.to_array());
-    (shape, axes.transpose_mul(offset))
+    })
+}
+
+/// The axes of a mesh's hull in the frame of a site.
+#[inline(always)]
+fn axes_of<T: Real>(mesh: &model::Mesh) -> Mat3<T> {
+    Mat3::from_f64(mesh.quat.to_matrix().rows.map(Vec3::to_array))
 }

@@ -46,7 +46,7 @@ pub(crate) fn idle<T: Real>(
     if !ws.sleep.at_rest {
         clear(model, params, settings, state, ws);
     }
-    sensor::evaluate(model, params, state, ws);
+    sensor::evaluate(model, params, settings, state, ws);
     state.pass(params.timestep);
     hold(model, state, ws);
     state.qacc_warmstart.fill(T::ZERO);

@@ -28,10 +28,9 @@ pub(super) const RULES: &[Rule] = &[
         element: "option",
         read: "timestep gravity wind magnetic density viscosity integrator cone jacobian solver impratio tolerance \
             ls_tolerance noslip_tolerance iterations ls_iterations noslip_iterations o_margin o_solref o_solimp \
-            o_friction actuatorgroupdisable sleep_tolerance",
-        // MuJoCo's general collision stops at a tolerance or after so many iterations; ours goes on to the last digit.
-        // The rest is for signed distance fields, which are refused where a file asks for them.
-        ignored: "ccd_tolerance ccd_iterations sdf_iterations sdf_initpoints",
+            o_friction actuatorgroupdisable sleep_tolerance ccd_tolerance ccd_iterations",
+        // For signed distance fields, which are refused where a file asks for them.
+        ignored: "sdf_iterations sdf_initpoints",
         once: "flag",
         ..NONE
     },

@@ -46,9 +46,20 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
                     None => tag,
                 }
             }
-            (SensorTarget::Inside { site, object }, _) => {
+            (
+                SensorTarget::Inside {
+                    site,
+                    object,
+                    enclosed,
+                },
+                _,
+            ) => {
                 let tag = tag.text("site", named("site", &model.sites[*site].name, *site)?);
-                write_frame(model, *object, ["objtype", "objname"], tag)?
+                let tag = write_frame(model, *object, ["objtype", "objname"], tag)?;
+                match enclosed {
+                    true => tag.boolean("enclosed", true),
+                    false => tag,
+                }
             }
             (SensorTarget::Projection { site, camera }, _) => tag
                 .text("site", named("site", &model.sites[*site].name, *site)?)

@@ -157,10 +157,20 @@ pub fn add(b: &mut ModelBuilder) {
                 };
             }
             Attachment::Inside => {
-                sensor.subject = SensorSubject::Inside {
+                let inside = |object, enclosed| SensorSubject::Inside {
                     site: "palm".into(),
                     object,
+                    enclosed,
                 };
+                for object in [
+                    frame(FrameKind::Body, "arm"),
+                    frame(FrameKind::Inertial, "hand"),
+                    frame(FrameKind::Site, "imu"),
+                ] {
+                    sensor.subject = inside(object, true);
+                    b.sensors.push(sensor.clone());
+                }
+                sensor.subject = inside(object, false);
             }
             Attachment::Geoms => {
                 sensor.subject = SensorSubject::Geoms([
