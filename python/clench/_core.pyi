@@ -369,8 +369,9 @@ class Model:
     sensor_dim: Final[_Codes]  # (nsensor,) How many numbers.
     sensor_cutoff: Final[_Floats]  # (nsensor,) Bound of its numbers, where positive.
     sensor_delay: Final[_Floats]  # (nsensor,) How late it tells what it measures, s; only where it keeps past values.
-    sensor_interval: Final[_Floats]  # (nsensor,) How often it measures, s, without MuJoCo's phase; zero: every step.
+    sensor_interval: Final[_Floats]  # (nsensor,) How often it measures, s; zero: every step. (MuJoCo has the phase beside it.)
     sensor_noise: Final[_Floats]  # (nsensor,) Standard deviation of the noise that is expected; none is added.
+    sensor_phase: Final[_Floats]  # (nsensor,) When one that measures at intervals did so last before time zero, s; zero: one period before.
     sensor_user: Final[_Floats]  # (nsensor, k) The user's own numbers.
 
     eq_anchor1: Final[_Floats]  # (neq, 3) Anchor or weld point in the first body's frame.

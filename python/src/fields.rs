@@ -154,6 +154,7 @@ const STRUCTURE: &[Reader] = &[
     ("sensor_dim", |m| codes(&m.sensors, |s| id(s.numbers.len()))),
     ("sensor_cutoff", |m| reals(&m.sensors, |s| s.cutoff)),
     ("sensor_noise", |m| reals(&m.sensors, |s| s.noise)),
+    ("sensor_phase", |m| reals(&m.sensors, |s| s.phase)),
     ("sensor_user", |m| user_rows(&m.sensors, |s| &s.user)),
     ("eq_type", |m| {
         codes(&m.equalities, |e| equality(e.target).0)
