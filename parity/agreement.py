@@ -85,7 +85,8 @@ def sensors(model, what, ours, theirs, solved=10 * SOLVED, is_undecided=lambda s
         expected = theirs.sensordata[numbers]
         if is_undecided(k):
             continue
-        if kind in SEARCHED:
+        enclosed = kind == mujoco.mjtSensor.mjSENS_INSIDESITE and model.sensor_intprm[k, 0]
+        if kind in SEARCHED or enclosed:
             tolerance = SEARCH
         elif model.sensor_needstage[k] == mujoco.mjtStage.mjSTAGE_ACC:
             tolerance = solved

@@ -106,7 +106,8 @@ def examine(text, seed):
         file.write(text)
         file.flush()
         lines = "".join(json.dumps(q.state) + "\n" for q in questions)
-        done = program.run("forward", file.name, *FLAGS, stdin=lines)
+        bounds = ("--ccd-iterations", model.opt.ccd_iterations, "--ccd-tolerance", model.opt.ccd_tolerance)
+        done = program.run("forward", file.name, *FLAGS, *bounds, stdin=lines)
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     for question, ours in zip(questions, answers):
         try:

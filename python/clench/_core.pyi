@@ -599,6 +599,8 @@ class RigidOptions:
         max_contacts: SupportsIndex | Literal["auto"] | None = None,
         friction_cone: Literal["pyramidal", "elliptic"] | None = None,
         impratio: SupportsFloat | None = None,
+        ccd_iterations: SupportsIndex | None = None,
+        ccd_tolerance: SupportsFloat | None = None,
         autoreset: bool | np.bool_ | None = None,
         # </arguments of options>
     ) -> Self: ...
@@ -635,6 +637,10 @@ class RigidOptions:
     def friction_cone(self) -> Literal["pyramidal", "elliptic"] | None: ...
     @property
     def impratio(self) -> float | None: ...
+    @property
+    def ccd_iterations(self) -> int | None: ...
+    @property
+    def ccd_tolerance(self) -> float | None: ...
     @property
     def autoreset(self) -> bool | None: ...
     # </attributes of options>

@@ -51,6 +51,8 @@ OPTIONS = {
     "impratio": (1e-300, 1, 10, 1e300),
     "islands": (True, False, "auto"),
     "warmstart": (True, False),
+    "ccd_iterations": (0, 1, 35, 2**31 - 1),
+    "ccd_tolerance": (0, 1e-6, 1e300),
     "autoreset": (True, False),
 }
 COSTS = ("quadratic", "one_sided", "huber", "pyramid", "elliptic")

@@ -33,7 +33,7 @@ def of_type(*kinds: str) -> list[str]:
 COUNTS = of_type("int", 'int or "auto"')
 BOOLEANS = of_type("bool")
 SWITCHES = of_type('bool or "auto"')
-NOT_NEGATIVE = ["tolerance", "ls_tolerance", "noslip_tolerance", "constraint_timeconst"]
+NOT_NEGATIVE = ["tolerance", "ls_tolerance", "noslip_tolerance", "constraint_timeconst", "ccd_tolerance"]
 
 
 def test_what_is_set_is_kept_and_nothing_else() -> None:

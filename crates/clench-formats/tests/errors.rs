@@ -341,6 +341,14 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
 }
 
 #[test]
+fn speculative_contacts_are_refused_with_the_reason() {
+    let text = "<mujoco><option>\n<flag speculative='enable'/></option></mujoco>";
+    let error = read_str(text).expect_err("not there yet");
+    assert_eq!(error.line, Some(2), "{error}");
+    assert!(error.to_string().contains("may still change"), "{error}");
+}
+
+#[test]
 fn what_is_not_supported_is_accepted_where_it_does_nothing() {
     read_str(
         "<mujoco>

@@ -164,7 +164,10 @@ fn check_attribute(
         if later == name {
             return match is_harmless(value, harmless) {
                 true => Ok(()),
-                false => Err(element.error(format!("the attribute {name} is not supported yet"))),
+                false => Err(element.error(format!(
+                    "the attribute {name} is not supported yet{}",
+                    reason(name)
+                ))),
             };
         }
     }
@@ -173,6 +176,14 @@ fn check_attribute(
     let known = words(rule.read).chain(words(rule.ignored)).chain(later);
     let hint = suggestion(name, known);
     Err(element.error(format!("unknown attribute \"{name}\"{hint}")))
+}
+
+/// Why an attribute is not supported, where that is for a reason of its own.
+fn reason(name: &str) -> &'static str {
+    match name {
+        "speculative" => ": MuJoCo 4.0 says of these contacts that their behavior may still change",
+        _ => "",
+    }
 }
 
 fn reject_in_default(element: &Element) -> Result<(), LoadError> {
