@@ -40,12 +40,19 @@ class Sensing(Maker):
         self.skins(section)
 
     def enclose(self):
-        """Some sensors ask how far a geom or a site juts out of a round site, where no rounding decides which way the search takes."""
-        kinds = {element.get("name"): element.get("type") for element in self.root.iter() if element.tag in ("geom", "site")}
-        for sensor in [element for section in self.root.iter("sensor") for element in section if element.tag == "insidesite"]:
-            bounded = sensor.get("objtype") in ("geom", "site") and kinds.get(sensor.get("objname")) in (*PRIMITIVES, "mesh")
-            if bounded and kinds.get(sensor.get("site")) == "ellipsoid" and self.last.chance(0.7):
-                sensor.set("enclosed", "true")
+        """Sensors of how far a geom or a site juts out of a round site, where no rounding decides which way the search takes."""
+        draw = self.last
+        sections = list(self.root.iter("sensor"))
+        classed = any(element.get("type") for default in self.root.iter("default") for element in default if element.tag in ("geom", "site"))
+        kinds = {(element.tag, element.get("name")): element.get("type", "sphere") for element in self.root.iter() if element.tag in ("geom", "site")}
+        named = [("geom", name) for name, _ in self.geoms] + [("site", name) for name, _ in self.sites]
+        bounded = [pair for pair in named if kinds.get(pair) in (*PRIMITIVES, "mesh")]
+        round_ = [name for of, name in bounded if of == "site" and kinds[of, name] in ("sphere", "ellipsoid")]
+        if not sections or classed or not round_ or draw.chance(0.5):
+            return
+        for _ in range(draw.randint(1, 3)):
+            of, name = draw.choice(bounded)
+            self.add(sections[-1], "insidesite", site=draw.choice(round_), objtype=of, objname=name, enclosed="true")
 
     def skins(self, section):
         """Sensors that feel with a mesh in the frame of a geom."""
