@@ -5,7 +5,7 @@
 
 from random_models import rules, search
 
-SEEDS = range(1, 1601)  # of these MuJoCo compiles a thousand
+SEEDS = range(1, 1701)  # of these MuJoCo compiles a thousand
 MIN_COMPARED = 1000
 # MuJoCo ends the process where touch is felt in a mesh; `models/sensors.xml` has such a site.
 NEVER = {("site", "mesh")}

@@ -13,7 +13,7 @@ TURNS = ("1 0 0 0", "1 0 0 1", "1 1 0 0", "0 1 0 0", "0.5 -0.5 0.5 0.5", "0 0 0.
 def stretch_frames(root, seed):
     """Some frames of some models get a scale for each axis."""
     draw = Draw(f"{seed} axes")
-    if draw.chance(0.6):
+    if draw.chance(0.85):
         return
     frames = [frame for frame in root.iter("frame") if frame.get("scaling") != "similar" or draw.chance(0.5)]
     for frame in frames:
@@ -43,8 +43,8 @@ def align(element, draw, round_about_z):
     if element.tag in ("body", "frame") or element.tag == "geom" and "mesh" not in element.attrib:
         for name in ORIENTATIONS:
             element.attrib.pop(name, None)
-        if "fromto" not in element.attrib and not round_about_z:
-            element.set("quat", draw.choice(TURNS))
+        if "fromto" not in element.attrib:
+            element.set("quat", text(1, 0, 0, draw.number(-1, 1)) if round_about_z else draw.choice(TURNS))
     if element.tag == "replicate":
         element.attrib.pop("euler", None)
     if element.tag == "joint" and element.get("type") in (None, "hinge", "slide"):
