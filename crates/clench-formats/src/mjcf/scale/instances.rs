@@ -9,7 +9,7 @@ use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
     GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder,
 };
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 impl Frames {
     /// The name of a mesh or height field in the shape that a frame asks for, whose map in its axes is this: its own for the first one
@@ -22,7 +22,11 @@ impl Frames {
         let known = shapes.iter().position(|&other| other == stretch);
         let number = known.unwrap_or_else(|| {
             shapes.push(stretch);
-            shapes.len() - 1
+            let number = shapes.len() - 1;
+            if number > 0 {
+                self.made.push((asset.clone(), number));
+            }
+            number
         });
         if number > 0 {
             *asset = instance_name(asset, number);
@@ -69,45 +73,59 @@ impl Frames {
         builder: &mut ModelBuilder,
         spending: &mut Spending,
     ) -> Result<(), LoadError> {
-        for (name, shapes) in &self.instances {
-            let mesh = (builder.meshes.iter()).position(|mesh| mesh.name == *name);
-            if let Some(place) = mesh {
-                let mesh = builder.meshes[place].clone();
-                stretch_mesh(&mut builder.meshes[place], shapes[0]);
-                for (number, &shape) in shapes.iter().enumerate().skip(1) {
-                    let bytes = 24 * mesh.vertices.len() + 12 * mesh.faces.len();
-                    let taken = spending.bytes(bytes as u64);
-                    taken.map_err(|excess| located(&mesh.origin, "mesh", name, excess))?;
-                    let mut copy = MeshSpec {
-                        name: instance_name(name, number),
-                        ..mesh.clone()
-                    };
-                    stretch_mesh(&mut copy, shape);
-                    builder.meshes.push(copy);
-                }
-            }
-            let field = (builder.height_fields.iter()).position(|field| field.name == *name);
-            if let Some(place) = field {
-                let field = builder.height_fields[place].clone();
-                let sized = |shape: Stretch| {
-                    let [x, y, z] = shape.factors().to_array();
-                    let [half_x, half_y, top, base] = field.size;
-                    [half_x * x, half_y * y, top * z, base * z]
+        let meshes = numbered(builder.meshes.iter().map(|mesh| &mesh.name));
+        let fields = numbered(builder.height_fields.iter().map(|field| &field.name));
+        for (name, number) in &self.made {
+            let shape = self.instances[name][*number];
+            if let Some(&place) = meshes.get(name) {
+                let mesh = &builder.meshes[place];
+                let bytes = 24 * mesh.vertices.len() + 12 * mesh.faces.len();
+                let taken = spending.bytes(bytes as u64);
+                taken.map_err(|excess| located(&mesh.origin, "mesh", name, excess))?;
+                let mut copy = MeshSpec {
+                    name: instance_name(name, *number),
+                    ..mesh.clone()
                 };
-                builder.height_fields[place].size = sized(shapes[0]);
-                for (number, &shape) in shapes.iter().enumerate().skip(1) {
-                    let taken = spending.bytes(8 * field.heights.len() as u64);
-                    taken.map_err(|excess| located(&field.origin, "hfield", name, excess))?;
-                    builder.height_fields.push(HeightFieldSpec {
-                        name: instance_name(name, number),
-                        size: sized(shape),
-                        ..field.clone()
-                    });
-                }
+                stretch_mesh(&mut copy, shape);
+                builder.meshes.push(copy);
+            }
+            if let Some(&place) = fields.get(name) {
+                let field = &builder.height_fields[place];
+                let taken = spending.bytes(8 * field.heights.len() as u64);
+                taken.map_err(|excess| located(&field.origin, "hfield", name, excess))?;
+                let mut copy = HeightFieldSpec {
+                    name: instance_name(name, *number),
+                    ..field.clone()
+                };
+                stretch_field(&mut copy, shape);
+                builder.height_fields.push(copy);
+            }
+        }
+        for (name, shapes) in &self.instances {
+            if let Some(&place) = meshes.get(name) {
+                stretch_mesh(&mut builder.meshes[place], shapes[0]);
+            }
+            if let Some(&place) = fields.get(name) {
+                stretch_field(&mut builder.height_fields[place], shapes[0]);
             }
         }
         Ok(())
     }
+}
+
+/// Assets by name; of one name, the first.
+fn numbered<'a>(
+    names: impl DoubleEndedIterator<Item = &'a String> + ExactSizeIterator,
+) -> HashMap<String, usize> {
+    let names = names.enumerate().rev();
+    names.map(|(place, name)| (name.clone(), place)).collect()
+}
+
+/// Gives a height field the sizes that a map makes of its own.
+fn stretch_field(field: &mut HeightFieldSpec, stretch: Stretch) {
+    let [x, y, z] = stretch.factors().to_array();
+    let [half_x, half_y, top, base] = field.size;
+    field.size = [half_x * x, half_y * y, top * z, base * z];
 }
 
 /// Gives a mesh the shape that a map makes of it.

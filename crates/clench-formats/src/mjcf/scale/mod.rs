@@ -230,6 +230,8 @@ pub(super) struct Frames {
     mocaps: Vec<FrameId>,
     /// The shapes of a mesh or height field in the order of the elements that are it.
     instances: BTreeMap<String, Vec<Stretch>>,
+    /// The shapes after the first ones, in the order in which they were asked for.
+    made: Vec<(String, usize)>,
     /// Scaled geoms that are meshes and have the mass of a density: body, number in it, and scale of lengths.
     meshes: Vec<(usize, usize, f64)>,
 }
@@ -268,6 +270,7 @@ impl Default for Frames {
             all_tendons: Vec::new(),
             mocaps: Vec::new(),
             instances: BTreeMap::new(),
+            made: Vec::new(),
             meshes: Vec::new(),
         }
     }
