@@ -521,6 +521,7 @@ class Element:
     obj1id: Final[int]  # equality
     obj2id: Final[int]  # equality
     parentid: Final[int]  # body
+    phase: Final[float]  # sensor
     polycoef: Final[_Floats]  # (5,) equality
     pos: Final[_Floats]  # (3,) body, joint, geom, site, camera, mesh
     pos0: Final[_Floats]  # (3,) camera
