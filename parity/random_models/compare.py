@@ -34,8 +34,8 @@ STILL = 1e-11  # m/s² or rad/s² for a newton
 NEXT = 1e-8  # of what a step changes
 FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
 CLEARLY = 1e-6  # metres: whether a contact exists is certain
-# What only MuJoCo takes: a `general` of a motor's class that changes one kind of three, and computes with what is left of the motor.
-REFUSED_HERE = ("dcmotor must be the kind of dynamics, gain and bias",)
+# What only MuJoCo takes: a `general` of a motor's class that changes the kind of gain, and keeps the motor's bias.
+REFUSED_HERE = ("a bias of the kind dcmotor needs a gain of that kind",)
 FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
 
 

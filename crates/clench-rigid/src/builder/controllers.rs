@@ -34,11 +34,7 @@ pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller
         _ if spec.bias == BiasKind::So3 => {
             Err(spec.error("so3 must be the kind of gain and bias, or of none of them"))
         }
-        GainKind::DcMotor if motor == [true; 3] => dc_motor(spec, first),
-        _ if motor != [false; 3] => {
-            Err(spec
-                .error("dcmotor must be the kind of dynamics, gain and bias, or of none of them"))
-        }
+        _ if motor != [false; 3] => parts_of_motor(spec, first),
         _ => Ok(Controller {
             inputs: vec![ControlInput::Command],
             states: ControllerStates::default(),
@@ -130,13 +126,46 @@ fn pid(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
     })
 }
 
+/// A motor, or what a `general` of its class leaves of it: its dynamics, gain and bias each do their part, as in MuJoCo, which asks that
+/// there are as many activations as the motor's parameters speak of. A motor's bias needs its gain here, for what MuJoCo makes of the
+/// derivatives of another gain's force where a range limits it is not known.
+fn parts_of_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    if spec.bias == BiasKind::DcMotor && spec.gain != GainKind::DcMotor {
+        return Err(spec.error("a bias of the kind dcmotor needs a gain of that kind"));
+    }
+    let controller = match spec.gain {
+        GainKind::DcMotor => dc_motor(spec, first)?,
+        _ => Controller {
+            inputs: vec![ControlInput::Command],
+            ..motor_states(spec, first)
+        },
+    };
+    if spec.dynamics == DynamicsKind::DcMotor && !spec.actearly {
+        return Err(spec.error("actearly cannot be false for a dcmotor"));
+    }
+    let states = controller.states;
+    if spec.gain != GainKind::DcMotor && (states.slew.is_some() || states.integral.is_some()) {
+        return Err(spec.error("a controller of a dcmotor needs a gain of that kind"));
+    }
+    let count = match spec.dynamics {
+        DynamicsKind::None => 0,
+        DynamicsKind::DcMotor => controller.count,
+        DynamicsKind::User => spec.actdim.unwrap_or(1),
+        _ => 1,
+    };
+    if count != controller.count {
+        return Err(spec.error(format!(
+            "its dynamics have {count} activations, but its parameters are those of a dcmotor with {}",
+            controller.count
+        )));
+    }
+    Ok(controller)
+}
+
 fn dc_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
     use ControlInput::{Feedforward, Position, Velocity, Voltage};
     let [_, constant, _, _, kp, ki, kd, ..] = spec.gainprm;
-    let [te, _, thermal, _, _, bristle, _, slewmax, ..] = spec.dynprm;
-    if !spec.actearly {
-        return Err(spec.error("actearly cannot be false for a dcmotor"));
-    }
+    let slewmax = spec.dynprm[7];
     let inputs = inputs(
         spec,
         &[Voltage],
@@ -153,19 +182,28 @@ fn dc_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError>
     if ki > 0.0 && !inputs.contains(&Position) {
         return Err(spec.error("ki of a dcmotor needs the input pos"));
     }
+    Ok(Controller {
+        inputs,
+        ..motor_states(spec, first)
+    })
+}
+
+/// The activations that the parameters of a motor speak of, without its inputs.
+fn motor_states(spec: &ActuatorSpec, first: usize) -> Controller {
+    let [te, _, thermal, _, _, bristle, _, slewmax, ..] = spec.dynprm;
     let mut numbers = Numbering { first, count: 0 };
     let states = ControllerStates {
         slew: numbers.next_if(slewmax > 0.0),
-        integral: numbers.next_if(ki > 0.0),
+        integral: numbers.next_if(spec.gainprm[5] > 0.0),
         temperature: numbers.next_if(thermal > 0.0),
         bristle: numbers.next_if(bristle > 0.0),
         current: numbers.next_if(te > 0.0),
     };
-    Ok(Controller {
-        inputs,
+    Controller {
+        inputs: Vec::new(),
         states,
         count: numbers.count,
-    })
+    }
 }
 
 /// The inputs that the author names, or the usual ones.

@@ -95,10 +95,23 @@ pub fn input<T: Real>(
     let actuator = &model.actuators[u];
     let input = match actuator.act() {
         None => given.ctrl[actuator.controls.start],
-        Some(a) if actuator.actearly => {
-            next_activation(model, params, u, a, (given.act[a], act_dot[a]), at.velocity)
-        }
-        Some(a) => given.act[a],
+        Some(a) => acting(model, params, given, act_dot, (u, a), at),
     };
     nearest_setpoint(model, params, u, input, at.length)
+}
+
+/// Activation `a` of actuator `u` as its gain takes it: of the end of the step with `actearly`.
+#[inline(always)]
+pub fn acting<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: ActuatorInputs<'_, T>,
+    act_dot: &[T],
+    (u, a): (usize, usize),
+    at: ActuatorMotion<T>,
+) -> T {
+    match model.actuators[u].actearly {
+        true => next_activation(model, params, u, a, (given.act[a], act_dot[a]), at.velocity),
+        false => given.act[a],
+    }
 }

@@ -16,7 +16,7 @@
 
 use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
-use crate::model::{ControlInput, Model, Params};
+use crate::model::{BiasKind, ControlInput, Model, Params};
 use clench_math::Real;
 
 /// Divisors are at least so large (MuJoCo's `mjMINVAL`).
@@ -88,15 +88,13 @@ impl<T: Real> Circuit<T> {
         (self.voltage - self.constant * velocity) / self.resistance
     }
 
-    /// i̇, and where its bound does not hold it.
+    /// i̇, within its bound.
     #[inline(always)]
-    fn current_rate(&self, prm: &[T; 10], current: T, velocity: T) -> (T, T::Mask) {
+    fn current_rate(&self, prm: &[T; 10], current: T, velocity: T) -> T {
         let rate = (self.steady_current(velocity) - current) / prm[0];
         let bound = prm[1];
-        let bounded = bound.gt(T::ZERO);
-        let held = bounded & rate.abs().ge(bound);
         let limited = rate.max(-bound).min(bound);
-        (T::select(bounded, limited, rate), !held)
+        T::select(bound.gt(T::ZERO), limited, rate)
     }
 }
 
@@ -132,7 +130,7 @@ pub fn activation_rates<T: Real>(
         act_dot[a] = bristle_decay(params, u, at.velocity) * given.act[a] + at.velocity;
     }
     if let Some(a) = states.current {
-        act_dot[a] = circuit.current_rate(prm, given.act[a], at.velocity).0;
+        act_dot[a] = circuit.current_rate(prm, given.act[a], at.velocity);
     }
 }
 
@@ -178,9 +176,41 @@ pub fn next_activation<T: Real>(
     next
 }
 
-/// The torque of the current, with the current as of the end of the step where it is a state.
+/// The gain of a motor, and the voltage: K, which multiplies the current where that is a state, else K / R, which multiplies the voltage.
 #[inline(always)]
-pub fn electrical_force<T: Real>(
+pub fn gain_and_voltage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: ActuatorInputs<'_, T>,
+    u: usize,
+    at: ActuatorMotion<T>,
+) -> (T, T) {
+    let circuit = Circuit::new(model, params, given, u, at);
+    let gain = match model.actuators[u].states.current {
+        Some(_) => circuit.constant,
+        None => circuit.constant / divisor(circuit.resistance),
+    };
+    (gain, circuit.voltage)
+}
+
+/// What back-EMF takes from the force of an actuator with this gain: nothing where the current is a state, whose equation has it.
+#[inline(always)]
+pub fn back_emf<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    u: usize,
+    gain: T,
+    at: ActuatorMotion<T>,
+) -> T {
+    match model.actuators[u].states.current {
+        Some(_) => T::ZERO,
+        None => gain * params.actuator_gainprm[u][1] * at.velocity,
+    }
+}
+
+/// ∂force/∂velocity of a motor's gain, and of its back-EMF where its bias is a motor's.
+#[inline(always)]
+pub fn electrical_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -189,38 +219,21 @@ pub fn electrical_force<T: Real>(
     at: ActuatorMotion<T>,
 ) -> T {
     let circuit = Circuit::new(model, params, given, u, at);
-    match model.actuators[u].states.current {
-        Some(a) => {
-            let rates = (given.act[a], act_dot[a]);
-            circuit.constant * next_activation(model, params, u, a, rates, at.velocity)
+    let actuator = &model.actuators[u];
+    let steady = |net: T| circuit.constant * net / divisor(circuit.resistance);
+    match actuator.states.current {
+        None if actuator.bias == BiasKind::DcMotor => {
+            steady(circuit.voltage_slope - circuit.constant)
         }
-        None => {
-            let gain = circuit.constant / divisor(circuit.resistance);
-            gain * circuit.voltage - gain * circuit.constant * at.velocity
-        }
-    }
-}
-
-/// ∂force/∂velocity of the current's torque.
-#[inline(always)]
-pub fn electrical_slope<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
-    u: usize,
-    at: ActuatorMotion<T>,
-) -> T {
-    let circuit = Circuit::new(model, params, given, u, at);
-    let net = circuit.voltage_slope - circuit.constant;
-    let steady = circuit.constant * net / divisor(circuit.resistance);
-    match model.actuators[u].states.current {
-        None => steady,
+        None => steady(circuit.voltage_slope),
+        Some(_) if !actuator.actearly => T::ZERO,
         Some(a) => {
             let prm = &params.actuator_dynprm[u];
             let te = divisor(prm[0]);
             let share = T::ONE - (-params.timestep / te).exp();
-            let free = circuit.current_rate(prm, given.act[a], at.velocity).1;
-            T::select(free, steady * share, T::ZERO)
+            let held = prm[1].gt(T::ZERO) & act_dot[a].abs().ge(prm[1]);
+            let slope = steady(circuit.voltage_slope - circuit.constant);
+            T::select(held, T::ZERO, slope * share)
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::dynamics::gain::{unlimited_force, unlimited_slope};
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
 use crate::dynamics::transmission::moment;
 use crate::dynamics::{dc_motor, orientation, tendon};
-use crate::model::{GainKind, Model, Params, Transmission};
+use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Force, Mask, Motion, Real, kernel};
@@ -98,7 +98,8 @@ fn actuator_derivative<T: Real>(
         act: &state.act,
     };
     let slope = unlimited_slope(model, params, given, act_dot, u, at);
-    let is_motor = actuator.gain == GainKind::DcMotor;
+    // The bias of a motor needs its gain.
+    let is_motor = actuator.bias == BiasKind::DcMotor;
     let saturated = |value: T, [low, high]: [T; 2]| value.le(low) | value.ge(high);
     let mut held = T::Mask::splat(false);
     if actuator.forcelimited {
@@ -112,9 +113,12 @@ fn actuator_derivative<T: Real>(
     if let Some(t) = limited_tendon(model, actuator.transmission) {
         held |= reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
     }
-    let slope = match is_motor {
-        true => T::select(held, T::ZERO, slope) + dc_motor::mechanical_slope(model, params, u),
-        false => T::select(held, T::ZERO, slope),
+    // As in MuJoCo, friction counts here with a motor's gain, though it is part of its bias.
+    let friction = || dc_motor::mechanical_slope(model, params, u);
+    let slope = match actuator.gain {
+        GainKind::DcMotor if is_motor => T::select(held, T::ZERO, slope) + friction(),
+        GainKind::DcMotor => T::select(held, T::ZERO, slope + friction()),
+        _ => T::select(held, T::ZERO, slope),
     };
     match actuator.transmission {
         Transmission::Joint(j) | Transmission::JointInParent(j)

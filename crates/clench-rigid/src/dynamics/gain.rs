@@ -1,7 +1,7 @@
 //! Gains and biases of actuators, force = gain · input + bias, and how the force changes with velocity.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion};
-use crate::dynamics::activation::input;
+use crate::dynamics::activation::{acting, input};
 use crate::dynamics::muscle::Muscle;
 use crate::dynamics::{dc_motor, pid};
 use crate::model::{BiasKind, GainKind, Model, Params};
@@ -20,19 +20,29 @@ pub fn unlimited_force<T: Real>(
     let affine = |prm: &[T; 10]| prm[0] + prm[1] * at.length + prm[2] * at.velocity;
     let input = || input(model, params, given, act_dot, u, at);
     let (gainprm, biasprm) = (&params.actuator_gainprm[u], &params.actuator_biasprm[u]);
-    let active = match model.actuators[u].gain {
-        GainKind::Fixed => gainprm[0] * input(),
-        GainKind::Affine => affine(gainprm) * input(),
-        GainKind::Muscle => Muscle::new(params, u, gainprm, at.length).gain(at.velocity) * input(),
-        GainKind::DcMotor => dc_motor::electrical_force(model, params, given, act_dot, u, at),
-        GainKind::Pid => pid::force(model, params, given, act_dot, u, at),
-        GainKind::User => input(),
-        GainKind::So3 => T::ZERO, // Has a torque of three parts, see `orientation`.
+    let (gain, input) = match model.actuators[u].gain {
+        GainKind::Fixed => (gainprm[0], input()),
+        GainKind::Affine => (affine(gainprm), input()),
+        GainKind::Muscle => {
+            let muscle = Muscle::new(params, u, gainprm, at.length);
+            (muscle.gain(at.velocity), input())
+        }
+        GainKind::DcMotor => {
+            let (gain, voltage) = dc_motor::gain_and_voltage(model, params, given, u, at);
+            let current = model.actuators[u].states.current;
+            let current = current.map(|a| acting(model, params, given, act_dot, (u, a), at));
+            (gain, current.unwrap_or(voltage))
+        }
+        GainKind::Pid => (T::ONE, pid::force(model, params, given, act_dot, u, at)),
+        GainKind::User => (T::ONE, input()),
+        GainKind::So3 => (T::ZERO, T::ZERO), // Has a torque of three parts, see `orientation`.
     };
+    let active = gain * input;
     match model.actuators[u].bias {
-        BiasKind::None | BiasKind::DcMotor | BiasKind::So3 | BiasKind::User => active,
+        BiasKind::None | BiasKind::So3 | BiasKind::User => active,
         BiasKind::Affine => active + affine(biasprm),
         BiasKind::Muscle => active + Muscle::new(params, u, biasprm, at.length).bias(),
+        BiasKind::DcMotor => active - dc_motor::back_emf(model, params, u, gain, at),
     }
 }
 
@@ -54,7 +64,7 @@ pub fn unlimited_slope<T: Real>(
         GainKind::Muscle => {
             Muscle::new(params, u, gainprm, at.length).gain_slope(at.velocity) * input()
         }
-        GainKind::DcMotor => dc_motor::electrical_slope(model, params, given, u, at),
+        GainKind::DcMotor => dc_motor::electrical_slope(model, params, given, act_dot, u, at),
     };
     match model.actuators[u].bias {
         BiasKind::Affine => params.actuator_biasprm[u][2] + by_gain,

@@ -51,9 +51,10 @@ impl<T: Real> Setpoints<T> {
                 ControlInput::Position => setpoints.position = value,
                 ControlInput::Velocity => setpoints.velocity = value,
                 ControlInput::Feedforward => setpoints.feedforward = value,
-                ControlInput::Voltage | ControlInput::Command => setpoints.voltage = value,
-                // Of orientation servos, which have no controller.
-                ControlInput::RotationVector | ControlInput::Quaternion => {}
+                ControlInput::Voltage => setpoints.voltage = value,
+                // Of orientation servos and plain gains, which have no controller.
+                ControlInput::Command | ControlInput::RotationVector | ControlInput::Quaternion => {
+                }
             }
         }
         setpoints
