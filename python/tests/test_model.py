@@ -353,12 +353,12 @@ def test_a_saved_model_is_the_model(path: Path) -> None:
     model = clench.Model.from_file(path)
     again = clench.Model.from_xml(model.to_xml())
     # Vertices of meshes that frames shear are numbers of double precision, of which files keep single precision (docs/saving.md).
-    tolerance = {"rtol": 1e-6, "atol": 1e-7} if path.stem == "stretched_frames" else {"rtol": 1e-9, "atol": 1e-12}
+    rtol, atol = (1e-6, 1e-7) if path.stem == "stretched_frames" else (1e-9, 1e-12)
     for field in clench.PARAMETERS:
         if field == "actuator_cranklength":  # A class may give one to what is no slider-crank, where it means nothing.
             continue
         before, after = getattr(model, field), getattr(again, field)
-        np.testing.assert_allclose(after, before, **tolerance, err_msg=field)
+        np.testing.assert_allclose(after, before, rtol=rtol, atol=atol, err_msg=field)
 
 
 def test_models_load_in_many_threads() -> None:
