@@ -1,8 +1,8 @@
 //! Collision detection: shapes and poses in, contact points out. No joints, no bodies.
 //!
-//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`protrusion`] how far one juts out of
-//! the other, [`ray`] where a ray hits one, [`near`] and [`BroadPhase`] find the pairs worth asking about. Contacts and rays are generic over [`Real`](clench_math::Real):
-//! one call serves one environment (`f64`) or several side by side, where each contact point says in which of them it exists.
+//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`protrusion`] how far one juts
+//! out of the other, [`ray`] where a ray hits one, [`near`] and [`BroadPhase`] find the pairs worth asking about. Contacts and rays
+//! are generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or several side by side, where each contact point says in which of them it exists.
 //! Which points a pair yields follows MuJoCo 4.0.
 //!
 //! ```

@@ -164,6 +164,9 @@ fn climb<S: Scalar>(offset: impl Fn(Vec3<S>) -> Vec3<S>, start: Vec3<S>, search:
             along = along * (S::ONE / length);
         }
         let next = summit + along * step;
+        if next == summit {
+            break; // The step is less than rounding.
+        }
         u = next * (S::ONE / next.norm());
     }
     best

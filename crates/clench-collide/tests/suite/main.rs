@@ -8,6 +8,7 @@ mod distance;
 mod hulls;
 mod invariance;
 mod patches;
+mod protrusion;
 mod ray_triangles;
 mod rays;
 mod resting;

@@ -1,0 +1,31 @@
+//! How far shapes jut out of each other; `parity/test_enclosed.py` holds the numbers beside MuJoCo's.
+
+use clench_collide::{Ascent, Pose, Shape, ShapeKind, protrusion};
+use clench_math::{Quat, Vec3};
+
+/// How far a turned ellipsoid juts out of a box.
+fn out(search: Ascent) -> f64 {
+    let egg = Shape::new(ShapeKind::Ellipsoid, Vec3::new(0.1, 0.2, 0.3));
+    let pose = Pose {
+        position: Vec3::new(0.35, 0.1, -0.2),
+        rotation: Quat::from_f64([0.9, 0.1, -0.3, 0.2])
+            .normalize()
+            .to_matrix(),
+    };
+    let outer = Shape::new(ShapeKind::Box, Vec3::new(0.4, 0.5, 0.6));
+    protrusion(&egg, &pose, &outer, &Pose::IDENTITY, search).expect("both are bounded")
+}
+
+#[test]
+fn a_search_without_bounds_ends_where_it_cannot_rise() {
+    let unbounded = Ascent {
+        iterations: usize::MAX,
+        tolerance: 0.0,
+    };
+    let usual = Ascent {
+        iterations: 300,
+        tolerance: 1e-9,
+    };
+    assert!(out(unbounded) >= out(usual));
+    assert!((out(unbounded) - out(usual)).abs() < 1e-6);
+}
