@@ -248,6 +248,7 @@ impl ContactLine {
             active: match self.exclude {
                 0 => true,
                 1 => self.dist >= self.includemargin,
+                // Of geoms that move as one, or of which neither has dofs: a mocap body beside the world.
                 3 => {
                     let [first, second] = geoms.map(|g| model.bodies[model.geoms[g].body].weld);
                     let stands = |body: usize| model.bodies[body].dofs.is_empty();

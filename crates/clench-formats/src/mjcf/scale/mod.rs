@@ -3,8 +3,9 @@
 //! A frame multiplies lengths by s and masses by m, which is s³ where the file does not say. What follows depends on the policy. With
 //! `similar` the frame changes the units of length and mass: a quantity of dimension Lᵃ Mᵇ Tᶜ becomes sᵃ mᵇ as large. With `geometry`
 //! only lengths, masses and inertias change; forces, stiffnesses, dampings and gains stay. Frames in frames multiply, each by its own
-//! policy. Scales that differ between axes, which only `geometry` takes, act by axis on positions, sizes and the travel of slides; whatever
-//! has no direction follows the cube root of their product, and what they would deform is refused. What names elements of the tree (pairs, tendons, equalities, actuators, sensors, keyframes) follows the scale of
+//! policy. Scales that differ between axes, which only `geometry` takes, act by axis on positions, sizes and the travel of slides;
+//! whatever has no direction follows the cube root of their product, and what they would deform is refused. What names elements of the
+//! tree (pairs, tendons, equalities, actuators, sensors, keyframes) follows the scale of
 //! these: a geometric mean where two of them differ, and for a tendon the frames that hold all that it passes. The dimensions are
 //! those of MuJoCo's table of units (XMLunits), the rules for two scales were found beside MuJoCo 4.0.
 
