@@ -123,13 +123,9 @@ fn those_of_a_runner() {
     agree(&own("runner"));
 }
 
-#[test]
-fn a_sensor_that_is_not_read_yet_is_named() {
-    let file = own("sensors").replace(
-        "<user dim=\"2\"/>",
-        "<rangefinder name=\"eye\" site=\"imu\"/>",
-    );
-    let model = text(&file);
+/// What is said of the sensor `eye`, which is not read yet.
+fn refused(sensor: &str, kind: &str) {
+    let model = text(&own("sensors").replace("<user dim=\"2\"/>", sensor));
     if common::batch(&model, 1).is_none() {
         return;
     }
@@ -137,10 +133,17 @@ fn a_sensor_that_is_not_read_yet_is_named() {
     let error = batch
         .expect("a device")
         .record(&["sensordata"])
-        .expect_err("rays")
+        .expect_err(kind)
         .to_string();
-    assert!(
-        error.contains("cannot read rangefinder sensor \"eye\" yet"),
-        "{error}"
+    let expected = format!("cannot read {kind} sensor \"eye\" yet");
+    assert!(error.contains(&expected), "{error}");
+}
+
+#[test]
+fn a_sensor_that_is_not_read_yet_is_named() {
+    refused("<rangefinder name='eye' site='imu'/>", "rangefinder");
+    refused(
+        "<insidesite name='eye' site='imu' objtype='site' objname='imu' enclosed='true'/>",
+        "insidesite",
     );
 }
