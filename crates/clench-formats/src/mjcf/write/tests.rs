@@ -3,7 +3,9 @@
 use super::SaveModel;
 use crate::{Loader, load_str};
 use clench_math::Vec3;
-use clench_rigid::model::{Body, Geom, HeightField, Joint, Mesh, ParamField, Sensor, SensorKind};
+use clench_rigid::model::{
+    Body, Geom, HeightField, Joint, Mesh, ParamField, Sensor, SensorKind, SensorTarget,
+};
 use clench_rigid::{Model, Sim};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -361,6 +363,20 @@ fn what_is_saved_moves_as_before() {
         sim.state.qpos
     };
     assert_near("qpos", &run(again), &run(model), 1e-9);
+}
+
+#[test]
+fn what_is_to_be_enclosed_comes_back_with_the_bounds_of_its_search() {
+    let text = "<mujoco><option ccd_iterations='7' ccd_tolerance='0.25'/>
+      <worldbody><site name='room' size='1'/><body name='b'><freejoint/><geom size='0.1'/></body></worldbody>
+      <sensor><insidesite site='room' objtype='body' objname='b' enclosed='true'/></sensor></mujoco>";
+    let again = saved("enclosed", &load_str(text).expect("a model"));
+    let SensorTarget::Inside { enclosed, .. } = again.sensors[0].target else {
+        panic!("{:?}", again.sensors[0].target);
+    };
+    assert!(enclosed);
+    let bounds = (again.options.ccd_iterations, again.options.ccd_tolerance);
+    assert_eq!(bounds, (Some(7), Some(0.25)));
 }
 
 #[test]
