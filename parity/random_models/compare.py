@@ -183,11 +183,11 @@ def without_contacts(model):
 
 
 def stepped(model, state):
-    """MuJoCo's results on a state and the state one step later, None where it complains, an activation becomes no number (of which it
-    says nothing) or something turns too fast to be integrated."""
+    """MuJoCo's results on a state and the state one step later, None where it complains, something becomes no number (of which it says
+    nothing if it is an activation, or in a stage of RK4) or turns too fast to be integrated."""
     data = oracle.assigned(model, state)
     mujoco.mj_step(model, data)
-    complains = any(w.number for w in data.warning) or not np.isfinite(data.act).all()
+    complains = any(w.number for w in data.warning) or not all(np.isfinite(x).all() for x in (data.qpos, data.qvel, data.act))
     if complains or model.opt.timestep * largest(data.qvel, state["qvel"]) > FASTEST:
         return None, None
     after = {"time": data.time, **{name: getattr(data, name).tolist() for name in ("qpos", "qvel", "act", "plastic")}}
@@ -252,6 +252,8 @@ def judge(model, question, ours):
         agreement.constraint_rows(what, ours, theirs)
     if oracle.distance_to_optimum(theirs) > agreement.SOLVED / 10 or largest(theirs.efc_D) > STIFFEST:
         return  # MuJoCo has not converged, or rounding decides the forces of rows that are as good as rigid
+    if largest(theirs.qacc_smooth, theirs.efc_aref, floor=0) < STILL:
+        return  # nothing but rounding asks for an acceleration, and what is light takes it up
     agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
     if not question.own:
         forces(what, ours, theirs)

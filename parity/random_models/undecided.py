@@ -24,7 +24,7 @@ def is_undecided(model, sensor, ours, theirs, held):
     limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and so are forces between bodies where rounding
     `held` such a tendon; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), that
     a capsule goes through a box not at all, and of a height field what is near among the first of its cells alone; and a ray that starts on
-    a surface, or passes an edge, meets it or not."""
+    a surface, or passes an edge, meets it or not; and a camera of the world stands still where bodies may sleep."""
     kind = mujoco.mjtSensor(model.sensor_type[sensor])
     if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
         return True
@@ -34,6 +34,8 @@ def is_undecided(model, sensor, ours, theirs, held):
         return jumps(model, sensor, ours, theirs)
     if kind in BETWEEN_BODIES:
         return held
+    if kind == mujoco.mjtSensor.mjSENS_CAMPROJECTION:
+        return stands_still(model, model.sensor_refid[sensor])
     if kind in LIMITS_OF_TENDONS and theirs.sensordata[model.sensor_adr[sensor]] != 0:
         limits = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)  # of tendons that move something
         return model.sensor_objid[sensor] not in theirs.efc_id[limits]
@@ -87,12 +89,22 @@ def jumps(model, sensor, ours, theirs):
     places = model.site_pos if model.sensor_objtype[sensor] == mujoco.mjtObj.mjOBJ_SITE else model.cam_pos
     index = model.sensor_objid[sensor]
     place = places[index].copy()
+    frames = model.site_sameframe.copy()
+    model.site_sameframe[:] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # or a site that stands where its body does would not move
     found = []
     for step in [*np.eye(3), *-np.eye(3)]:
         places[index] = place + NEXT_TO * step
         found.append(oracle.reference(model, theirs.state).sensordata[numbers])
     places[index] = place
+    model.site_sameframe[:] = frames
     return bool((np.abs(np.array(found) - expected) > JUMP).any())
+
+
+def stands_still(model, camera):
+    """Whether a camera that follows bodies is fixed to the world of a model that may sleep: MuJoCo places it when it resets, and then no more."""
+    fixed = model.body_weldid[model.cam_bodyid[camera]] == 0
+    sleeps = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP
+    return bool(sleeps and fixed and model.cam_mode[camera] != mujoco.mjtCamLight.mjCAMLIGHT_FIXED)
 
 
 def both(model, sensor):
