@@ -9,6 +9,7 @@ mod ellipse;
 mod epa;
 mod gjk;
 mod largest_gap;
+mod overlap;
 mod pair;
 mod patch;
 mod polytope;

@@ -1,5 +1,5 @@
 // The points of a contact: where the features of two bodies overlap, seen along the normal. Sister of
-// `clench-collide/src/narrow/convex/patch.rs`.
+// `clench-collide/src/narrow/convex/overlap.rs` and `patch.rs`.
 
 // Shares of the smaller body: points nearer to each other are one; a patch may miss the deepest point by so much.
 const SAME_SPOT: f32 = 1e-5;

@@ -1,0 +1,232 @@
+//! Where two features overlap when they are projected along the normal.
+//!
+//! At each corner of the overlap the contact's distance is the difference of the features' heights. For many corners stand
+//! a few points on the outline (see [`Outline`]), and the deepest.
+
+use super::clipping::ProjectedFeature;
+use super::pair::{Pair, Vertex, across};
+use super::simplex::Simplex;
+use crate::PATCH_POINTS;
+use crate::narrow::outline::Outline;
+use crate::narrow::polygon::{CAPACITY, Polygon};
+use crate::shape::Feature;
+use arrayvec::ArrayVec;
+use clench_math::{Mat3, Scalar, Vec3};
+
+/// Points of a patch are merged where they are nearer to each other than this share of the smaller body.
+const SAME_POINT: f64 = 1e-5;
+/// The deepest point of a patch may be less deep than the pair by at most this share of the smaller body.
+const MAX_MISS: f64 = 1e-6;
+
+/// A point of the patch, projected along the normal.
+#[derive(Clone, Copy)]
+pub(super) struct PatchPoint<S> {
+    /// Where it is across the normal.
+    pub x: S,
+    pub y: S,
+    /// Where the surfaces of both bodies are along the normal.
+    pub heights: (S, S),
+}
+
+impl<S: Scalar> PatchPoint<S> {
+    fn distance(&self) -> S {
+        self.heights.1 - self.heights.0
+    }
+    /// The same with another distance.
+    fn at_distance(&self, distance: S) -> Self {
+        let middle = (self.heights.0 + self.heights.1) * S::new(0.5);
+        let half = distance * S::new(0.5);
+        PatchPoint {
+            heights: (middle - half, middle + half),
+            ..*self
+        }
+    }
+}
+
+/// The corners of an overlap, and one more point.
+pub(super) type PatchPoints<S> = ArrayVec<PatchPoint<S>, { CAPACITY + 1 }>;
+
+/// Two features of a pair, projected along the normal of the largest gap.
+pub(super) struct Overlap<'a, S> {
+    pair: &'a Pair<'a, S>,
+    /// Two directions across the normal, and the normal.
+    view: Mat3<S>,
+    features: [ProjectedFeature<S>; 2],
+    /// The gap of the cores along the normal.
+    gap: S,
+    /// The deepest point may be less deep than the pair by so much, m.
+    slack: S,
+}
+
+impl<'a, S: Scalar> Overlap<'a, S> {
+    /// The features of both bodies, each in its body's frame, along the unit normal `n`.
+    pub(super) fn new(
+        pair: &'a Pair<'a, S>,
+        features: [&Feature<S>; 2],
+        n: Vec3<S>,
+        gap: S,
+    ) -> Self {
+        let (side, other) = across(n);
+        let view = Mat3::from_rows(side, other, n);
+        let [a, b] = features;
+        let of_b = (view * pair.offset, view * pair.rotation);
+        Overlap {
+            pair,
+            features: [
+                ProjectedFeature::new(a, Vec3::ZERO, &view, false),
+                ProjectedFeature::new(b, of_b.0, &of_b.1, true),
+            ],
+            view,
+            gap,
+            slack: (pair.smallest * S::new(MAX_MISS)).max(pair.tolerance),
+        }
+    }
+
+    /// The points of the patch that are at most `reach` apart; `simplex` tells the nearest points of the cores where the features
+    /// do not.
+    pub(super) fn points(&self, simplex: &Simplex<S>, reach: S) -> PatchPoints<S> {
+        let (over, mut found) = self.corners();
+        let lowest = deepest(&found, self.pair.tolerance);
+        let lowest = match lowest.filter(|point| point.distance() <= self.gap + self.slack) {
+            Some(lowest) => lowest,
+            None => {
+                found.insert(0, self.witness(simplex));
+                found[0]
+            }
+        };
+        let same = self.pair.smallest * S::new(SAME_POINT);
+        if lowest.distance() > reach {
+            // The features are further apart than the bodies: one point stands for the patch.
+            found.clear();
+            found.push(lowest.at_distance(self.gap));
+        } else if found.len() > PATCH_POINTS {
+            found = self.sample(&Outline::around(over.corners(), same), lowest);
+        }
+        found.retain(|point| point.distance() <= reach);
+        merge(&mut found, same);
+        found
+    }
+
+    /// A place in the projection, in the first body's frame.
+    pub(super) fn unproject(&self, place: Vec3<S>) -> Vec3<S> {
+        self.view.transpose_mul(place)
+    }
+
+    /// The point of the patch at a place of the projection.
+    fn at(&self, place: &Vec3<S>) -> PatchPoint<S> {
+        let [a, b] = &self.features;
+        let on_a = a.height(*place);
+        // Just beyond a corner the features' planes go on, but the bodies do not.
+        let on_b = b.height(*place).max(on_a + self.gap);
+        PatchPoint {
+            x: place.x,
+            y: place.y,
+            heights: (on_a, on_b),
+        }
+    }
+
+    /// The overlap, and the points at its corners.
+    fn corners(&self) -> (Polygon<S>, PatchPoints<S>) {
+        let [a, b] = &self.features;
+        let (mut over, mut found) = (Polygon::empty(), PatchPoints::new());
+        // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
+        for beyond in [S::ZERO, self.pair.tolerance, self.slack] {
+            found.clear();
+            a.overlap(b, beyond, &mut over);
+            found.extend(over.corners().iter().map(|place| self.at(place)));
+            let touches = |point: &PatchPoint<S>| point.distance() <= self.gap + self.slack;
+            if found.iter().any(touches) {
+                break;
+            }
+        }
+        (over, found)
+    }
+
+    /// The nearest points of the cores: those that support the normal if they face each other, else as the simplex has them.
+    fn witness(&self, simplex: &Simplex<S>) -> PatchPoint<S> {
+        let pair = self.pair;
+        let n = self.view.rows[2];
+        let Vertex { w, a, b } = pair.vertex(n);
+        let (mut on_a, mut on_b) = (a, b);
+        if (w - n * self.gap).norm() > pair.smallest * S::new(MAX_MISS) {
+            (on_a, on_b) = simplex.nearest();
+        }
+        let on_b = pair.offset + pair.rotation * on_b;
+        let middle = self.view * ((on_a + on_b) * S::new(0.5));
+        let witness = PatchPoint {
+            x: middle.x,
+            y: middle.y,
+            heights: (middle.z, middle.z),
+        };
+        witness.at_distance(self.gap)
+    }
+
+    /// The direction in which points of an outline begin, which turns with a body: to the first corner of a round cap, or along the
+    /// first edge.
+    fn first_direction(&self) -> Vec3<S> {
+        let [a, b] = &self.features;
+        let cap = b.cap_direction().filter(|_| !a.is_cap());
+        cap.unwrap_or_else(|| a.direction())
+    }
+
+    /// At most [`PATCH_POINTS`] points: all corners of the outline if they are no more, else some of it. If these miss the lowest
+    /// point they are seen from its direction, and it is one of them.
+    fn sample(&self, outline: &Outline<S>, lowest: PatchPoint<S>) -> PatchPoints<S> {
+        let from = |first| -> PatchPoints<S> {
+            let places = outline.sample(first);
+            places.iter().map(|place| self.at(place)).collect()
+        };
+        let few = outline.corners().len() <= PATCH_POINTS;
+        let mut found: PatchPoints<S> = if few {
+            outline.corners().iter().map(|p| self.at(p)).collect()
+        } else {
+            from(self.first_direction())
+        };
+        let missed = least_distance(&found) - lowest.distance();
+        if missed > self.slack && few && found.len() < PATCH_POINTS {
+            found.push(lowest);
+        } else if missed > self.slack {
+            let middle = outline.middle();
+            found = from(Vec3::new(lowest.x - middle.x, lowest.y - middle.y, S::ZERO));
+            found[0] = lowest;
+        }
+        // What is left of the difference is too small to move a point for, but the contact has the true depth.
+        let least = least_distance(&found);
+        if let Some(point) = found.iter_mut().find(|s| s.distance() <= least) {
+            *point = point.at_distance(least.min(lowest.distance()));
+        }
+        found
+    }
+}
+
+/// Merges points that coincide into the deepest of them.
+fn merge<S: Scalar>(found: &mut PatchPoints<S>, same: S) {
+    let mut kept = 0;
+    for k in 0..found.len() {
+        let point = found[k];
+        let near = |s: &PatchPoint<S>| {
+            (s.x - point.x).squared() + (s.y - point.y).squared() <= same * same
+        };
+        match found[..kept].iter().position(near) {
+            Some(twin) if point.distance() < found[twin].distance() => found[twin] = point,
+            Some(_) => {}
+            None => {
+                found[kept] = point;
+                kept += 1;
+            }
+        }
+    }
+    found.truncate(kept);
+}
+
+fn least_distance<S: Scalar>(found: &PatchPoints<S>) -> S {
+    let distances = found.iter().map(PatchPoint::distance);
+    distances.fold(S::INFINITY, |least, d| least.min(d))
+}
+
+/// The first of the deepest points; those that the tolerance cannot tell apart are equally deep.
+fn deepest<S: Scalar>(found: &PatchPoints<S>, tolerance: S) -> Option<PatchPoint<S>> {
+    let least = least_distance(found) + tolerance;
+    let mut found = found.iter().copied();
+    found.find(|point| point.distance() <= least)
+}
