@@ -37,6 +37,7 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         | SimError::Backend(_) => classes::ClenchError::new_err(text),
         SimError::Option(_)
         | SimError::UnsupportedPair(_)
+        | SimError::NotDiscrete(_)
         | SimError::WrongLength { .. }
         | SimError::OutOfRange { .. }
         | SimError::Parameter { .. }

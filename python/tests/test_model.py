@@ -271,6 +271,7 @@ def test_options_and_integrator_of_a_file() -> None:
     assert model.options.iterations == 7 and model.options.friction_cone == "elliptic" and model.options.impratio == 2.0
     assert model.options.noslip_tolerance is None
     assert clench.Model.from_xml("<mujoco/>").integrator == "Euler"
+    assert clench.Model.from_xml("<mujoco><option integrator='discrete'/></mujoco>").integrator == "discrete"
     assert repr(model) == '<clench.Model "m": nbody=1, njnt=0, ngeom=0, nq=0, nv=0, nu=0>'
 
 

@@ -333,11 +333,26 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
         ("<deformable><flex/></deformable>", "flex"),
         ("<extension><plugin/></extension>", "plugin"),
         ("<equality><flex/></equality>", "flex"),
-        ("<option integrator='discrete'/>", "option"),
         ("<option><flag speculative='enable'/></option>", "flag"),
     ] {
         expect_section(line, element, later);
     }
+}
+
+#[test]
+fn what_the_integrator_discrete_cannot_go_with_is_refused() {
+    for (options, words) in [
+        ("<option integrator='discrete' solver='PGS'/>", "PGS"),
+        (
+            "<option integrator='discrete'><flag sleep='enable' island='disable'/></option>",
+            "islands",
+        ),
+    ] {
+        let error = read_str(&format!("<mujoco>\n{options}</mujoco>")).expect_err("refused");
+        assert_eq!(error.line, Some(2), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
+    read_str("<mujoco><option integrator='discrete' solver='CG'/></mujoco>").unwrap();
 }
 
 #[test]

@@ -38,6 +38,9 @@ rules! {
     "the integrator `implicit` is not there yet; `Euler`, `implicitfast` and `RK4` are": |s| {
         (s.model.integrator == Integrator::Implicit).then(|| "option integrator".to_owned())
     };
+    "the integrator `discrete` is not there yet; `Euler`, `implicitfast` and `RK4` are": |s| {
+        (s.model.integrator == Integrator::Discrete).then(|| "option integrator".to_owned())
+    };
     "Newton is the only solver": |s| {
         let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
         cg.then(|| "option constraint_solver".to_owned())

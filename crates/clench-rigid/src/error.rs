@@ -2,6 +2,7 @@
 
 use crate::budget::RAISE;
 use crate::contact::UnsupportedPair;
+use crate::dynamics::discrete_limits::NotDiscrete;
 use crate::options::OptionError;
 use clench_math::Instructions;
 use std::sync::Arc;
@@ -15,6 +16,9 @@ pub enum SimError {
     /// Shapes that may meet and cannot be collided.
     #[error(transparent)]
     UnsupportedPair(#[from] UnsupportedPair),
+    /// Something that the integrator `discrete` cannot be combined with.
+    #[error(transparent)]
+    NotDiscrete(#[from] NotDiscrete),
     /// An input of the wrong length.
     #[error("{field} has {found} numbers where the model needs {expected}")]
     WrongLength {

@@ -10,14 +10,16 @@
 //! is τ, what actuators and applied forces must give. Forward dynamics with that τ find the same acceleration.
 //!
 //! A step does not advance the velocity by the acceleration a that forward dynamics find, where forces are taken at its end: by
-//! a′ with M′ a′ = M a, M′ = M − h ∂τ/∂v as its integrator has it. From (v₁ − v₀)/h = a′ the acceleration a is found first.
+//! a′ with M′ a′ = M a, M′ = M − h ∂τ/∂v as its integrator has it. From (v₁ − v₀)/h = a′ the acceleration a is found first. With the
+//! integrator `discrete` both are the same, and its metric takes the place of M.
 
 use crate::constraint::assemble;
 use crate::contact::detect;
 use crate::dynamics::actuation::actuation;
 use crate::dynamics::adhesion::adhesion;
+use crate::dynamics::discrete::{add_metric_forces, enter_metric};
 use crate::dynamics::euler::damped_inertia;
-use crate::dynamics::implicit::{full_inertia, gyroscopic_product, symmetric_inertia};
+use crate::dynamics::implicit::{add_gyroscopic_products, full_inertia, symmetric_inertia};
 use crate::model::{Integrator, Model, Params};
 use crate::pipeline::{position_stage, velocity_stage};
 use crate::settings::StepSettings;
@@ -61,7 +63,12 @@ pub fn inverse<T: Real>(
     adhesion(model, &ws.contacts, &mut ws.position);
     velocity_stage(model, params, state, ws);
     ws.qacc.copy_from_slice(qacc);
-    if given == Acceleration::Discrete {
+    if ws.metric.acts() {
+        // The derivatives of actuators depend on their forces.
+        let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
+        actuation(model, params, state, pos, vel, T::ZERO, force);
+        enter_metric(model, params, state, ws);
+    } else if given == Acceleration::Discrete {
         make_continuous(model, params, state, ws);
     }
     assemble(model, params, settings, state, ws);
@@ -70,6 +77,9 @@ pub fn inverse<T: Real>(
     let constraint = ws.solver.qfrc_constraint();
     ws.qfrc_constraint.copy_from_slice(constraint);
     applied_forces(model, ws, qfrc_inverse);
+    if ws.metric.acts() {
+        add_metric_forces(model, params, &state.qvel, ws, qfrc_inverse);
+    }
 }
 
 /// τ = M a + bias − passive − Jᵀ f.
@@ -103,14 +113,14 @@ fn make_continuous<T: Real>(
             symmetric_inertia(model, params, state, ws);
             let matrix = &ws.integration.matrix;
             matrix.mul(tree, &ws.qacc, &mut ws.integration.qacc);
-            gyroscopic_product(model, params, &state.qvel, ws);
+            add_gyroscopic_products(model, params, &state.qvel, ws);
         }
         Integrator::Implicit => {
             full_inertia(model, params, state, ws);
             let matrix = &ws.integration.full;
             matrix.mul(tree, &ws.qacc, &mut ws.integration.qacc);
         }
-        Integrator::Rk4 => return,
+        Integrator::Rk4 | Integrator::Discrete => return,
     }
     ws.qacc.copy_from_slice(&ws.integration.qacc);
     ws.problem.mass_factor.solve(tree, &mut ws.qacc);

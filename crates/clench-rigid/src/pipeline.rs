@@ -7,6 +7,7 @@ use crate::dynamics::adhesion::adhesion;
 use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::bias::bias_forces;
 use crate::dynamics::com::com_positions;
+use crate::dynamics::discrete::{discrete, enter_metric};
 use crate::dynamics::energy::{Energy, energy};
 use crate::dynamics::euler::euler;
 use crate::dynamics::implicit::{implicit, implicit_fast};
@@ -49,13 +50,16 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
     let (pos, parts) = (&mut ws.position, ws.sleep.parts());
     poses(model, params, state, parts, pos);
     ws.clock.lap(Stage::Kinematics as usize);
-    mass_matrix(model, params, pos, &mut ws.problem.mass);
+    let (mass, factor) = match ws.metric.acts() {
+        true => (&mut ws.metric.mass, &mut ws.metric.mass_factor),
+        false => (&mut ws.problem.mass, &mut ws.problem.mass_factor),
+    };
+    mass_matrix(model, params, pos, mass);
     ws.clock.lap(Stage::Inertia as usize);
     ws.singular = !if ws.articulated.is_empty() {
-        ws.problem.factor_mass()
+        factor.factor(&model.tree, mass)
     } else {
-        let (bodies, factor) = (&mut ws.articulated, &mut ws.problem.mass_factor);
-        articulated_factor(model, params, &ws.position, |_| T::ZERO, bodies, factor)
+        articulated_factor(model, params, pos, |_| T::ZERO, &mut ws.articulated, factor)
     };
     ws.clock.lap(Stage::MassFactorization as usize);
 }
@@ -125,7 +129,11 @@ pub fn force_stage<T: Real>(
     let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
     actuation(model, params, state, pos, vel, ws.integration.offset, force);
     smooth_forces(model, state, pos, force);
-    smooth_acceleration(model, force, &mut ws.problem);
+    ws.problem.qacc_smooth.copy_from_slice(&force.qfrc_smooth);
+    if ws.metric.acts() {
+        enter_metric(model, params, state, ws);
+    }
+    smooth_acceleration(model, &mut ws.problem);
     ws.clock.lap(Stage::Force as usize);
 }
 
@@ -234,6 +242,7 @@ pub fn step_from_forces<T: Real>(
         Integrator::Euler => euler(model, params, state, ws),
         Integrator::ImplicitFast => implicit_fast(model, params, state, ws),
         Integrator::Implicit => implicit(model, params, state, ws),
+        Integrator::Discrete => discrete(model, params, state, ws),
         Integrator::Rk4 => rk4(model, params, state, ws, |state, ws| {
             forward_dynamics(model, params, settings, state, ws);
         }),

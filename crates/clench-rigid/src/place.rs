@@ -47,9 +47,10 @@ pub(crate) fn massless<T: Real>(model: &Model, ws: &Workspace<T>, lane: usize) -
         Integrator::Euler | Integrator::ImplicitFast | Integrator::Implicit => {
             bad_pivot(&model.tree, &ws.integration.matrix, lane)
         }
+        Integrator::Discrete => bad_pivot(&model.tree, &ws.problem.mass, lane),
         Integrator::Rk4 => None,
     };
-    let dof = bad_pivot(&model.tree, &ws.problem.mass, lane).or_else(implicit)?;
+    let dof = bad_pivot(&model.tree, ws.mass(), lane).or_else(implicit)?;
     joint_of(model, "qvel", dof)
 }
 

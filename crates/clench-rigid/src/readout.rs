@@ -110,7 +110,7 @@ pub fn jacobian<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
 
 /// The mass matrix of lane `lane`, dense (nv × nv).
 pub fn mass_matrix<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
-    let dense = ws.problem.mass.to_dense(ws.problem.tree());
+    let dense = ws.mass().to_dense(ws.problem.tree());
     dense.iter().map(|x| x.lane(lane).to_f64()).collect()
 }
 

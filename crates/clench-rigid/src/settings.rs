@@ -2,6 +2,7 @@
 
 use crate::Model;
 use crate::contact::check_supported;
+use crate::dynamics::discrete_limits::check_discrete;
 use crate::error::SimError;
 use crate::model::Flags;
 use crate::options::{FrictionCone, MaxContacts, OptionError, RigidOptions};
@@ -74,9 +75,10 @@ impl StepSettings {
     /// The same for a model whose contacts are then sought.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and shapes that may meet and cannot be collided.
+    /// As [`new`](Self::new), what the integrator cannot be combined with, and shapes that may meet and cannot be collided.
     pub(crate) fn supported<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, SimError> {
         let settings = StepSettings::new::<T>(model, user)?;
+        check_discrete(model, &settings)?;
         if settings.flags.constraint && settings.flags.contact {
             check_supported(model)?;
         }

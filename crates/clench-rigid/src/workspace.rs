@@ -6,12 +6,13 @@ use crate::contact::Contact;
 use crate::contact::collision::Collision;
 use crate::dynamics::articulated::{ArticulatedInertia, articulated_bodies};
 use crate::dynamics::integration::Integration;
+use crate::dynamics::metric::Metric;
 use crate::profile::{Profile, StepClock};
 use crate::sensor::readings::SensorReadings;
 use crate::sleep::Sleep;
 pub use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real};
-use clench_solver::{Problem, Solver, TreeMatrix};
+use clench_solver::{Problem, Solver, TreeFactor, TreeMatrix};
 
 /// Everything derived from model and state.
 #[derive(Debug)]
@@ -46,6 +47,8 @@ pub struct Workspace<T: Real> {
     pub articulated: Vec<ArticulatedInertia<T>>,
     /// Scratch of the energy of a state, made when it is first asked for.
     pub energy: Option<Box<EnergyScratch<T>>>,
+    /// What the integrator `discrete` adds to the mass matrix.
+    pub metric: Metric<T>,
     /// Scratch of integrators.
     pub integration: Integration<T>,
     /// Times the stages of a step while it runs. The solver and the detection of contacts have clocks of their own.
@@ -97,9 +100,26 @@ impl<T: Real> Workspace<T> {
             sensors: SensorReadings::new(model),
             articulated: articulated_bodies(model),
             energy: None,
+            metric: Metric::new(model),
             integration: Integration::new(model),
             clock: StepClock::default(),
             singular: T::Mask::splat(false),
+        }
+    }
+
+    /// The mass matrix, whatever metric the problem is solved in.
+    pub fn mass(&self) -> &TreeMatrix<T> {
+        match self.metric.acts() {
+            true => &self.metric.mass,
+            false => &self.problem.mass,
+        }
+    }
+
+    /// The factor of the mass matrix.
+    pub fn mass_factor(&self) -> &TreeFactor<T> {
+        match self.metric.acts() {
+            true => &self.metric.mass_factor,
+            false => &self.problem.mass_factor,
         }
     }
 

@@ -89,6 +89,7 @@ fn every_kind_of_constraint_and_integrator_allocates_nothing() {
         Integrator::ImplicitFast,
         Integrator::Implicit,
         Integrator::Rk4,
+        Integrator::Discrete,
     ] {
         let mut builder = everything();
         builder.physics.integrator = integrator;

@@ -313,7 +313,7 @@ impl Model {
     fn options(&self) -> RigidOptions {
         RigidOptions(self.0.options)
     }
-    /// str : How time advances: "Euler", "implicitfast", "implicit" or "RK4".
+    /// str : How time advances: "Euler", "implicitfast", "implicit", "discrete" or "RK4".
     #[getter]
     fn integrator(&self) -> &'static str {
         match self.0.integrator {
@@ -321,6 +321,7 @@ impl Model {
             Integrator::ImplicitFast => "implicitfast",
             Integrator::Implicit => "implicit",
             Integrator::Rk4 => "RK4",
+            Integrator::Discrete => "discrete",
         }
     }
 

@@ -8,6 +8,7 @@ use crate::LoadError;
 use clench_rigid::builder::{ContactOverride, DEFAULT_SOLIMP, DEFAULT_SOLREF, ModelBuilder};
 use clench_rigid::model::{Flags, Integrator};
 use clench_rigid::options::{Mjcf, OptionValue, RigidOption, RigidOptions};
+use clench_solver::Switch;
 
 /// What MJCF means where it is silent: 100 iterations and time constants as they are written.
 ///
@@ -66,6 +67,18 @@ impl OptionReader {
         }
         if builder.physics.flags.sleep && builder.physics.integrator == Integrator::Rk4 {
             let message = "the flag sleep and the integrator RK4 cannot go together: what falls asleep would wake in the next step";
+            return Err(element.error(message));
+        }
+        if builder.physics.integrator == Integrator::Discrete && self.replaced_solver {
+            let message = "the solver PGS and the integrator discrete cannot go together: MuJoCo then steps in another metric, without \
+                 tendons and actuators; choose Newton or CG";
+            return Err(element.error(message));
+        }
+        if builder.physics.integrator == Integrator::Discrete
+            && builder.physics.flags.sleep
+            && builder.options.islands == Some(Switch::Off)
+        {
+            let message = "the integrator discrete needs islands where the flag sleep is on: what its metric couples must sleep and wake together";
             return Err(element.error(message));
         }
         Ok(())
@@ -134,20 +147,13 @@ fn read_physics(element: &Element, builder: &mut ModelBuilder) -> Result<(), Loa
     element.set_number("viscosity", &mut physics.viscosity)?;
     element.set_number("sleep_tolerance", &mut physics.sleep_tolerance)?;
     let integrators = [
-        ("Euler", Some(Integrator::Euler)),
-        ("RK4", Some(Integrator::Rk4)),
-        ("implicitfast", Some(Integrator::ImplicitFast)),
-        ("implicit", Some(Integrator::Implicit)),
-        ("discrete", None),
+        ("Euler", Integrator::Euler),
+        ("RK4", Integrator::Rk4),
+        ("implicitfast", Integrator::ImplicitFast),
+        ("implicit", Integrator::Implicit),
+        ("discrete", Integrator::Discrete),
     ];
-    match element.keyword("integrator", &integrators)? {
-        Some(Some(integrator)) => physics.integrator = integrator,
-        Some(None) => {
-            let name = element.string("integrator");
-            return Err(element.error(format!("the integrator \"{name}\" is not supported yet")));
-        }
-        None => {}
-    }
+    element.set_keyword("integrator", &integrators, &mut physics.integrator)?;
     for group in element.integers("actuatorgroupdisable")? {
         match u32::try_from(group) {
             Ok(group @ 0..=30) if !physics.disabled_actuator_groups.contains(&group) => {

@@ -29,6 +29,10 @@ fn what_is_not_there_yet_is_refused_by_name() {
     let hills = "<geom name='hills' type='hfield' hfield='hills'/>";
     for (text_of_model, words) in [
         (
+            model("<option integrator='discrete'/>", "", "", ""),
+            "option integrator: the integrator `discrete`",
+        ),
+        (
             model("<option integrator='implicit'/>", "", "", ""),
             "option integrator: the integrator `implicit`",
         ),

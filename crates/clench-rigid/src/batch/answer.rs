@@ -184,11 +184,11 @@ impl<S: Scalar + Shared> Asking<'_, S> {
             }
             Question::MulMass => {
                 out.resize(model.nv, T::ZERO);
-                ws.problem.mass.mul(&model.tree, given, out);
+                ws.mass().mul(&model.tree, given, out);
             }
             Question::SolveMass => {
                 out.extend_from_slice(given);
-                ws.problem.mass_factor.solve(&model.tree, out);
+                ws.mass_factor().solve(&model.tree, out);
             }
             Question::Rays { frame, filter } => cast(geoms, frame, given, filter, out),
             Question::Heights { geom, frame } => sample(geoms, geom, frame, given, out),

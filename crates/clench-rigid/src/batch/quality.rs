@@ -4,7 +4,7 @@
 //! regularization of its row, f its force, and k d the stiffness of its own solref and solimp (see `constraint::softness`):
 //!
 //! ```text
-//! at rest        aref = −k d r = −R f:                      r = R f / (k d)
+//! at rest        aref = −k d r = −R f:                      r = R f / (k d), times β under the integrator `discrete`
 //! in an impact   critically damped, r″ = −k d r − b r′:     r ≤ v / (e √(k d)) at an approach of v
 //! ```
 //!
@@ -256,7 +256,12 @@ fn explained<T: Real>(
 ) -> f64 {
     let number = |x: T| x.lane(lane).to_f64();
     let min_timeconst = results.settings.constraint_timeconst;
-    let soft = Softness::new(solref.map(number), solimp.map(number), found, min_timeconst);
+    let (solref, solimp) = (solref.map(number), solimp.map(number));
+    let soft = Softness::new(solref, solimp, found, min_timeconst);
+    let beta = match results.ws.metric.acts() {
+        true => implicit_factor(results, lane, block, soft, solref),
+        false => 1.0,
+    };
     let block = results.ws.problem.block(block);
     let force = number(results.ws.solver.force()[block.rows()][row]).abs();
     // Each edge of a pyramid carries its share of the normal force.
@@ -265,8 +270,25 @@ fn explained<T: Real>(
     } else {
         1
     };
-    let at_rest = force / (shares as f64 * number(block.d[row])) / soft.stiffness;
+    let at_rest = beta * force / (shares as f64 * number(block.d[row])) / soft.stiffness;
     at_rest + IMPACT_SPEED / (E * soft.stiffness.sqrt())
+}
+
+/// By what a step that takes rows at its end has divided R of those of a block.
+fn implicit_factor<T: Real>(
+    results: StepResults<T>,
+    lane: usize,
+    block: usize,
+    soft: Softness<f64>,
+    solref: [f64; 2],
+) -> f64 {
+    let h = results.params.timestep.lane(lane).to_f64();
+    let soft = match results.ws.record.blocks[block].source {
+        ConstraintSource::Equality(_) | ConstraintSource::Dynamic { .. } => soft,
+        _ if results.settings.flags.refsafe => soft.resolved(solref, h),
+        _ => soft,
+    };
+    1.0 + h * soft.damping + h * h * soft.stiffness
 }
 
 /// How bad something is.

@@ -188,6 +188,7 @@ fn push_body(model: &mut Model, spec: &BodySpec, parent: usize, simple_inertia: 
         mocap: spec.mocap.then_some(model.nmocap),
         last_dof: parent_body.and_then(|above| above.last_dof),
         simple_inertia,
+        diagonal_inertia: false,
         fluid_ellipsoids: false,
         never_simple: spec.never_simple,
         user: Arc::clone(&spec.user),

@@ -87,10 +87,15 @@ pub(super) fn derive(
 ) -> Result<(), BuildError> {
     let mut inverse = InverseInertia::new(model, pose0)?;
     let with_inertia = bodies_of_tendons_with_inertia(model, pose0);
-    let sliders: Vec<bool> = (order.iter().enumerate())
-        .map(|(b, &old)| {
-            !builder.bodies[old].never_simple && !with_inertia[b] && slides_alone(model, b)
-        })
+    for (b, &old) in order.iter().enumerate() {
+        let may = !builder.bodies[old].never_simple && !with_inertia[b];
+        model.bodies[b].diagonal_inertia = may && moves_alone(model, b);
+    }
+    let slides = |j: usize| model.joints[j].kind == JointKind::Slide;
+    let bodies = model.bodies.iter();
+    // MuJoCo takes 1/mass for their weights, in every direction and without armature (its `body_simple` of level two).
+    let sliders: Vec<bool> = bodies
+        .map(|body| body.diagonal_inertia && body.joints.clone().all(slides))
         .collect();
     dof_weights(&mut inverse, &sliders, model);
     body_weights(&mut inverse, &sliders, pose0, model);
@@ -245,27 +250,34 @@ fn bodies_of_tendons_with_inertia(model: &Model, pose0: &Positions<f64>) -> Vec<
     found
 }
 
-/// Whether the body only slides along coordinate axes of the world or of a body fixed to it, and carries nothing: then
-/// MuJoCo takes 1/mass for its weights, in every direction and without armature (its `body_simple` of level two).
-fn slides_alone(model: &Model, b: usize) -> bool {
+/// Whether the body moves alone, carrying nothing, along and about coordinate axes of its own through its centre of mass: along
+/// those of the world or of a body fixed to it, and then about one, or about all by a ball or free joint.
+fn moves_alone(model: &Model, b: usize) -> bool {
     let body = &model.bodies[b];
     let p = &model.params;
     let on_fixed = {
         let parent = &model.bodies[body.parent];
         body.root == b || parent.parent == 0 && parent.joints.is_empty()
     };
-    let slides = |j: usize| {
-        let leans = p.jnt_axis[j]
-            .to_array()
-            .iter()
-            .filter(|a| a.abs() > ALIGNED)
-            .count();
-        model.joints[j].kind == JointKind::Slide && leans == 1 && is_null_position(p.jnt_pos[j])
+    let is_aligned = |j: usize| {
+        let axis = p.jnt_axis[j].to_array();
+        axis.iter().filter(|a| a.abs() > ALIGNED).count() == 1
+    };
+    let mut turned = false;
+    let mut is_simple = |j: usize| {
+        let kind = model.joints[j].kind;
+        let straight = match kind {
+            JointKind::Hinge | JointKind::Slide => is_aligned(j),
+            JointKind::Ball | JointKind::Free => true,
+        };
+        let simple = !turned && straight && is_null_position(p.jnt_pos[j]);
+        turned |= matches!(kind, JointKind::Ball | JointKind::Hinge);
+        simple
     };
     !body.joints.is_empty()
         && on_fixed
         && is_null(p.body_ipos[b], p.body_iquat[b])
-        && body.joints.clone().all(slides)
+        && body.joints.clone().all(&mut is_simple)
         && model.bodies.get(b + 1).is_none_or(|next| next.parent != b)
 }
 

@@ -197,7 +197,7 @@ impl<'a> Search<'a> {
         for (dof, arm) in arms() {
             self.force[dof] = arm;
         }
-        ws.problem.mass_factor.solve(&model.tree, &mut self.force);
+        ws.mass_factor().solve(&model.tree, &mut self.force);
         let accel = direction * settings.accel / norm(&self.force).max(MIN_NORM);
         self.force.fill(0.0);
         for (dof, arm) in arms() {

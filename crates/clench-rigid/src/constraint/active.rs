@@ -41,6 +41,15 @@ impl<T: Real> ConstraintContext<'_, T> {
         awake
     }
 
+    /// How soft a limit or a contact is, after the rule that keeps springs from being stiffer than a step resolves.
+    #[inline(always)]
+    pub(super) fn resolved(&self, soft: Softness<T>, solref: [T; 2]) -> Softness<T> {
+        match self.metric {
+            Some(_) if self.settings.flags.refsafe => soft.resolved(solref, self.params.timestep),
+            _ => soft,
+        }
+    }
+
     /// How soft an equality is at a violation of this size, and the record of its block.
     #[inline(always)]
     pub(super) fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {

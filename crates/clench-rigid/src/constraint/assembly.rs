@@ -1,6 +1,7 @@
 //! Where constraints put their rows: the convex problem, and beside it what a reader wants to know of each row.
 
 use super::exact::ExactDiagonal;
+use super::implicit::ImplicitRows;
 use super::row::Row;
 use super::softness::{is_single, least_regularization};
 use clench_math::{Mask, Real};
@@ -70,6 +71,8 @@ pub(super) struct Assembly<'a, T: Real> {
     pub dof_invweight0: &'a [T],
     /// Computes the inverse inertia that each row sees at present, with the flag `diagexact`.
     pub exact: Option<ExactDiagonal<'a, T>>,
+    /// Takes rows at the end of the step, with the integrator `discrete`.
+    pub implicit: Option<ImplicitRows<'a, T>>,
 }
 
 impl<T: Real> Assembly<'_, T> {
@@ -112,6 +115,11 @@ impl<T: Real> Assembly<'_, T> {
             let matrix = (&*target.jacobian, &dofs[..]);
             exact.regularize(cost, rows, matrix, block.impedance, &mut r);
         }
+        if let Some(implicit) = &self.implicit {
+            let estimated = self.exact.is_none();
+            let matrix = (&*target.jacobian, &dofs[..]);
+            implicit.regularize(cost, rows, matrix, (block.impedance, estimated), &mut r);
+        }
         if is_single::<T>() {
             raise_regularization(
                 cost,
@@ -128,7 +136,11 @@ impl<T: Real> Assembly<'_, T> {
             for (&j, &dof) in jacobian.iter().zip(&*dofs) {
                 velocity += j * self.qvel[dof as usize];
             }
-            target.aref[i] = row.aref - row.damping * velocity + r[i] * row.pull;
+            let asked = match &self.implicit {
+                Some(implicit) => implicit.reference(row, velocity),
+                None => row.aref - row.damping * velocity,
+            };
+            target.aref[i] = asked + r[i] * row.pull;
             target.r[i] = r[i];
             target.d[i] = T::select(block.active, T::ONE / r[i], T::ZERO);
             target.shape[i] = row.shape;

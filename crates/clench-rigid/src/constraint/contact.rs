@@ -60,6 +60,7 @@ pub(super) fn push<T: Real>(
         contact.dist - contact.includemargin,
         context.min_timeconst,
     );
+    let soft = context.resolved(soft, contact.solref);
     let weight = |body: usize| context.params.body_invweight0[body][0];
     let a0 = weight(bodies[0]) + weight(bodies[1]);
     let (cost, rows) = rows(context, contact, &soft, a0);
@@ -120,6 +121,7 @@ fn rows<T: Real>(
             );
             rows[0].shape = mu[0] * (r1 / normal.r).sqrt();
             for (row, &mu_j) in rows[1..].iter_mut().zip(&mu) {
+                row.stiffness = T::ZERO;
                 row.damping = damping;
                 row.r = r1 * mu[0] * mu[0] / (mu_j * mu_j);
                 row.shape = mu_j;

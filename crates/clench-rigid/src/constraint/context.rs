@@ -1,5 +1,6 @@
 //! What all kinds of constraint read.
 
+use crate::dynamics::metric::Metric;
 use crate::model::{Model, Params};
 use crate::settings::StepSettings;
 use crate::sleep::Sleep;
@@ -20,4 +21,6 @@ pub(super) struct ConstraintContext<'a, T: Real> {
     pub(super) min_timeconst: T,
     /// Ratio of friction to normal impedance.
     pub(super) impratio: T,
+    /// The metric of steps that take constraints at their end.
+    pub(super) metric: Option<&'a Metric<T>>,
 }

@@ -83,6 +83,7 @@ impl<T: Real> Friction<T> {
         let soft = Softness::new(self.solref, self.solimp, T::ZERO, context.min_timeconst);
         let row = Row {
             shape: self.loss,
+            stiffness: T::ZERO,
             ..Row::new(&soft, T::ZERO, T::ZERO, self.a0)
         };
         let block = BlockRecord {

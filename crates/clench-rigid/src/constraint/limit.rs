@@ -149,6 +149,7 @@ impl<T: Real> Limit<'_, T> {
     ) {
         let violation = dist - self.margin;
         let soft = Softness::new(*self.solref, *self.solimp, violation, context.min_timeconst);
+        let soft = context.resolved(soft, *self.solref);
         let row = Row::new(&soft, dist, self.margin, self.a0);
         let block = BlockRecord {
             source: self.source,

@@ -13,6 +13,7 @@ pub(crate) mod dynamic;
 mod exact;
 mod friction;
 mod held;
+mod implicit;
 mod joint_equality;
 mod limit;
 mod row;
@@ -27,6 +28,7 @@ pub use softness::Softness;
 pub(crate) use weld::weld_torque;
 
 use crate::contact::Contact;
+use crate::dynamics::discrete::{append_couplings, couple_smooth, spin_freely, subtract_couplings};
 use crate::model::{EqualityTarget, Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
@@ -37,6 +39,7 @@ use clench_math::{Mask, Real, kernel};
 use coordinate::Coordinate;
 use exact::ExactDiagonal;
 use held::Held;
+use implicit::ImplicitRows;
 
 /// Turns the constraints of a configuration into blocks, solves the problem, and leaves the acceleration in `ws.qacc`
 /// and the constraint forces along dofs in `ws.qfrc_constraint`.
@@ -50,7 +53,14 @@ pub fn constraint_stage<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
+    let in_metric = ws.metric.acts();
+    if in_metric {
+        couple_smooth(model, &settings.solver, ws);
+    }
     assemble(model, params, settings, state, ws);
+    if in_metric {
+        append_couplings(model, ws);
+    }
     ws.clock.lap(Stage::Assembly as usize);
     let warmstart = Some(&state.qacc_warmstart[..]);
     (ws.solver.solve(&ws.problem, &settings.solver, warmstart))
@@ -58,6 +68,11 @@ pub fn constraint_stage<T: Real>(
     ws.qacc.copy_from_slice(ws.solver.qacc());
     ws.qfrc_constraint
         .copy_from_slice(ws.solver.qfrc_constraint());
+    if in_metric {
+        let (problem, qfrc) = (&ws.problem, &mut ws.qfrc_constraint);
+        subtract_couplings(problem, &ws.record, ws.solver.force(), qfrc);
+        spin_freely(model, params, &state.qvel, ws);
+    }
     ws.clock.lap(Stage::Solve as usize);
 }
 
@@ -83,14 +98,15 @@ pub fn assemble<T: Real>(
         position: &ws.position,
         velocity: &ws.velocity,
         sleep: &ws.sleep,
-        min_timeconst: min_timeconst(params, settings),
+        min_timeconst: min_timeconst(params, settings, ws.metric.acts()),
         impratio: T::new(settings.impratio),
+        metric: ws.metric.acts().then_some(&ws.metric),
     };
     // Rows are appended to the problem while the factor of its mass is read.
     let factor = std::mem::take(&mut ws.problem.mass_factor);
     let exact = settings.flags.diagexact.then(|| ExactDiagonal {
         tree: &model.tree,
-        factor: &factor,
+        factor: ws.metric.backbone_factor().unwrap_or(&factor),
         impratio: context.impratio,
         scratch: &mut ws.integration.qacc,
     });
@@ -100,6 +116,12 @@ pub fn assemble<T: Real>(
         qvel: &state.qvel,
         dof_invweight0: &params.dof_invweight0,
         exact,
+        implicit: context.metric.map(|metric| ImplicitRows {
+            tree: &model.tree,
+            metric,
+            timestep: params.timestep,
+            impratio: context.impratio,
+        }),
     };
     if settings.flags.equality {
         push_equalities(&context, &mut out);
@@ -121,9 +143,10 @@ pub fn assemble<T: Real>(
 }
 
 #[inline(always)]
-fn min_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings) -> T {
+fn min_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings, in_metric: bool) -> T {
     let floor = T::new(settings.constraint_timeconst);
-    if settings.flags.refsafe {
+    // Steps that take constraints at their end are stable with any.
+    if settings.flags.refsafe && !in_metric {
         floor.max(params.timestep * T::new(2.0))
     } else {
         floor

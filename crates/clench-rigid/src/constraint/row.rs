@@ -12,6 +12,8 @@ pub(super) struct Row<T> {
     pub aref: T,
     /// Damping b: the rest of the reference acceleration is −b v.
     pub damping: T,
+    /// Stiffness k d, of which steps that take the spring at their end need more than `aref`.
+    pub stiffness: T,
     /// Regularization.
     pub r: T,
     /// The part of its velocity that is not J v: that of surfaces which move by themselves.
@@ -30,6 +32,7 @@ impl<T: Real> Row<T> {
             pos,
             aref: -soft.stiffness * (pos - margin),
             damping: soft.damping,
+            stiffness: soft.stiffness,
             r: soft.regularization(a0),
             drift: T::ZERO,
             pull: T::ZERO,

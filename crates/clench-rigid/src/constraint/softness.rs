@@ -15,6 +15,16 @@
 //! a = d (−b v − k d r) + (1 − d) a_unc whatever its size: at dmax, a spring-damper of the given time constant. The rules
 //! and limits are MuJoCo 4.0's (Computation, "Constraint model"), with one of our own: no time constant is shorter than
 //! `constraint_timeconst`.
+//!
+//! Under the integrator `discrete` the spring-damper is taken at the end of the step, at the violation r + h v⁺ and the rate v⁺ = v + h a,
+//! which is solved for a:
+//!
+//! ```text
+//! aref = (−b v − k d (r + h v)) / β        R = A (1 − d) / (d β)        β = 1 + h b + h² k d
+//! ```
+//!
+//! R is not below that of the largest impedance. A is A₀ times Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ, what the metric M̂ takes from the inverse
+//! inertia. All rows of a cone have the R that their normal, or the first edge of a pyramid, gives it.
 
 use clench_math::{Mask, Real, Scalar, array};
 
@@ -67,6 +77,28 @@ impl<T: Real> Softness<T> {
         T::select(given, damping, self.damping)
     }
 
+    /// The same for a step that takes the spring at its end, of length `timestep`: a spring of time constant and damping ratio `solref`
+    /// that the step cannot resolve is the stiffest that it can, at the same damping ratio.
+    ///
+    /// Its end of the step is where it rests if (1 + κ) v = −κ x / h: not beyond, and not thrown back, up to κ = h² k d = 1.
+    #[inline(always)]
+    #[must_use]
+    pub fn resolved(self, solref: [T; 2], timestep: T) -> Self {
+        let standard = solref[0].gt(T::ZERO) | is_mixed(solref);
+        let kappa = timestep * timestep * self.stiffness;
+        let stiff = standard & kappa.gt(T::ONE);
+        if !stiff.any() {
+            return self;
+        }
+        let per_square = T::ONE / (timestep * timestep);
+        let slower = (T::ONE / T::select(stiff, kappa, T::ONE)).sqrt();
+        Softness {
+            stiffness: T::select(stiff, per_square, self.stiffness),
+            damping: self.damping * slower,
+            ..self
+        }
+    }
+
     /// R of a row that sees the inverse inertia `a0`.
     #[inline(always)]
     pub fn regularization(&self, a0: T) -> T {
@@ -77,7 +109,21 @@ impl<T: Real> Softness<T> {
 /// R of a row of impedance `d` that sees the inverse inertia `a`.
 #[inline(always)]
 pub fn inverse_weight<T: Real>(d: T, a: T) -> T {
-    ((T::ONE - d) * a / d).max(T::new(MIN_VALUE))
+    above_least((T::ONE - d) * a / d)
+}
+
+/// By what R of a row of impedance `d` is multiplied where its spring-damper is taken at the end of a step, which divides what it asks
+/// for by `beta`: as much, but not below R of the largest impedance.
+#[inline(always)]
+pub fn implicit_share<T: Real>(d: T, beta: T) -> T {
+    let most = T::new(IMPEDANCE_RANGE[1]);
+    (T::ONE / beta).max(d * (T::ONE - most) / (most * (T::ONE - d)))
+}
+
+/// R, or the least that there is.
+#[inline(always)]
+pub fn above_least<T: Real>(r: T) -> T {
+    r.max(T::new(MIN_VALUE))
 }
 
 /// Whether numbers `T` are of single precision, whose rounding needs floors and factors of its own.

@@ -12,7 +12,7 @@
 //!
 //! Summed over the bodies below the later one of two dofs i and j, B and I give both entries of the pair.
 
-use crate::dynamics::ellipsoid::ellipsoid_rates;
+use crate::dynamics::ellipsoid::{FluidForces, ellipsoid_rates};
 use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
 use crate::model::{JointKind, Model, Params};
 use crate::stages::{Positions, Velocities};
@@ -89,7 +89,8 @@ fn sum_rates<T: Real>(
     }
     if fluid_acts(model, params) {
         for b in (1..model.nbody()).filter(|&b| model.bodies[b].fluid_ellipsoids) {
-            let [_, skew] = symmetric_and_skew(ellipsoid_rates(model, params, pos, vel, b));
+            let all = ellipsoid_rates(model, params, (pos, vel), b, FluidForces::All);
+            let [_, skew] = symmetric_and_skew(all);
             for (sum, column) in rates[b].iter_mut().zip(skew) {
                 *sum -= column;
             }

@@ -38,6 +38,8 @@ struct Circuit<T> {
     voltage: T,
     /// ∂V/∂ω.
     voltage_slope: T,
+    /// ∂V/∂l.
+    voltage_length_slope: T,
 }
 
 impl<T: Real> Circuit<T> {
@@ -54,6 +56,7 @@ impl<T: Real> Circuit<T> {
         let [cold, constant, tempcoef, reftemp, kp, ki, kd, vmax, ..] = *gain;
         let setpoints = Setpoints::new(model, params, given, u);
         let (mut voltage, mut voltage_slope) = (T::ZERO, T::ZERO);
+        let mut voltage_length_slope = T::ZERO;
         let controlled =
             |input: &ControlInput| !matches!(input, ControlInput::Voltage | ControlInput::Command);
         if actuator.inputs.iter().any(controlled) {
@@ -67,6 +70,7 @@ impl<T: Real> Circuit<T> {
             let bounded = vmax.gt(T::ZERO);
             let beyond = bounded & voltage.abs().ge(vmax);
             voltage_slope = T::select(beyond, T::ZERO, constant - per_torque * kd);
+            voltage_length_slope = T::select(beyond, T::ZERO, -per_torque * kp);
             voltage = T::select(bounded, voltage.max(-vmax).min(vmax), voltage);
         }
         let resistance = match actuator.states.temperature {
@@ -79,6 +83,7 @@ impl<T: Real> Circuit<T> {
             resistance,
             constant,
             voltage_slope,
+            voltage_length_slope,
         }
     }
 
@@ -220,20 +225,50 @@ pub fn electrical_slope<T: Real>(
 ) -> T {
     let circuit = Circuit::new(model, params, given, u, at);
     let actuator = &model.actuators[u];
-    let steady = |net: T| circuit.constant * net / divisor(circuit.resistance);
+    let net = match actuator.states.current {
+        None if actuator.bias != BiasKind::DcMotor => circuit.voltage_slope,
+        _ => circuit.voltage_slope - circuit.constant,
+    };
+    by_voltage(model, params, act_dot, u, &circuit, net)
+}
+
+/// ∂force/∂length of a motor's gain.
+#[inline(always)]
+pub fn electrical_length_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: ActuatorInputs<'_, T>,
+    act_dot: &[T],
+    u: usize,
+    at: ActuatorMotion<T>,
+) -> T {
+    let circuit = Circuit::new(model, params, given, u, at);
+    let net = circuit.voltage_length_slope;
+    by_voltage(model, params, act_dot, u, &circuit, net)
+}
+
+/// How the force changes where the voltage that drives the current changes by `net`: a current that is a state follows it within
+/// the step alone, with `actearly`.
+#[inline(always)]
+fn by_voltage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    act_dot: &[T],
+    u: usize,
+    circuit: &Circuit<T>,
+    net: T,
+) -> T {
+    let actuator = &model.actuators[u];
+    let steady = circuit.constant * net / divisor(circuit.resistance);
     match actuator.states.current {
-        None if actuator.bias == BiasKind::DcMotor => {
-            steady(circuit.voltage_slope - circuit.constant)
-        }
-        None => steady(circuit.voltage_slope),
+        None => steady,
         Some(_) if !actuator.actearly => T::ZERO,
         Some(a) => {
             let prm = &params.actuator_dynprm[u];
             let te = divisor(prm[0]);
             let share = T::ONE - (-params.timestep / te).exp();
             let held = prm[1].gt(T::ZERO) & act_dot[a].abs().ge(prm[1]);
-            let slope = steady(circuit.voltage_slope - circuit.constant);
-            T::select(held, T::ZERO, slope * share)
+            T::select(held, T::ZERO, steady * share)
         }
     }
 }
@@ -266,4 +301,11 @@ pub fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: usize) ->
         Some(_) => -params.actuator_dynprm[u][6],
         None => T::ZERO,
     }
+}
+
+/// ∂force/∂length of cogging.
+#[inline(always)]
+pub fn cogging_slope<T: Real>(params: &Params<T>, u: usize, length: T) -> T {
+    let [amplitude, poles, phase, ..] = params.actuator_biasprm[u];
+    amplitude * poles * (poles * length + phase).sin_cos().1
 }

@@ -4,15 +4,13 @@
 //! factors without fill (both as in MuJoCo's `implicitfast`). A force s along a generalized velocity J v contributes
 //! its slope: s′ JᵀJ.
 
-use super::actuator::{ActuatorInputs, ActuatorMotion, scaling_error};
-use crate::dynamics::actuation::limited_tendon;
-use crate::dynamics::ellipsoid::ellipsoid_rates;
+use super::actuator_slopes::velocity_slope;
+use crate::dynamics::ellipsoid::{FluidForces, ellipsoid_rates};
 use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
-use crate::dynamics::gain::{unlimited_force, unlimited_slope};
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
+use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
-use crate::dynamics::{dc_motor, orientation, tendon};
-use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::model::{Model, Params};
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Force, Mask, Motion, Real, kernel};
@@ -30,17 +28,13 @@ pub fn add_velocity_derivatives<T: Real>(
 ) {
     if model.flags.actuation {
         for u in 0..model.actuators.len() {
-            let slope = actuator_derivative(model, params, state, (pos, vel, force), u);
+            let slope = velocity_slope(model, params, state, (pos, vel, force), u);
             for output in model.actuators[u].outputs.clone() {
                 add_outer(model, moment(model, pos, output), slope * scale, matrix);
             }
         }
     }
-    if fluid_acts(model, params) {
-        for b in 1..model.nbody() {
-            add_fluid(model, params, pos, vel, b, scale, matrix);
-        }
-    }
+    add_fluid_derivatives(model, params, (pos, vel), FluidForces::All, scale, matrix);
     if model.flags.damper {
         for (i, &v) in state.qvel.iter().enumerate() {
             if let Some(diagonal) = matrix.row_mut(&model.tree, i).last_mut() {
@@ -51,6 +45,33 @@ pub fn add_velocity_derivatives<T: Real>(
             let damping = tendon_damper(model, params, t).damping_slope(velocity);
             let row = tendon::gradient(model, pos, t);
             add_outer(model, row, -damping * scale, matrix);
+        }
+    }
+}
+
+/// Which entries of a body's part of the matrix are meant.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    All,
+    Diagonal,
+}
+
+/// Adds what the medium has in D, or its drag alone, times `scale`. As in MuJoCo, drag of a body whose mass matrix is diagonal is then
+/// diagonal too.
+#[inline(always)]
+pub fn add_fluid_derivatives<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
+    forces: FluidForces,
+    scale: T,
+    matrix: &mut TreeMatrix<T>,
+) {
+    if fluid_acts(model, params) {
+        for b in 1..model.nbody() {
+            let alone = model.bodies[b].diagonal_inertia && forces == FluidForces::Drag;
+            let part = if alone { Part::Diagonal } else { Part::All };
+            add_fluid(model, params, (pos, vel), b, (forces, part), scale, matrix);
         }
     }
 }
@@ -76,89 +97,26 @@ pub fn add_outer<T: Real>(
     }
 }
 
-/// ∂force/∂velocity of actuator `u`; zero where a limit of the actuator, its tendon or its joint holds the force.
-#[inline(always)]
-fn actuator_derivative<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    state: &State<T>,
-    (pos, vel, force): (&Positions<T>, &Velocities<T>, &Forces<T>),
-    u: usize,
-) -> T {
-    let actuator = &model.actuators[u];
-    if actuator.disabled {
-        return T::ZERO;
-    }
-    if actuator.gain == GainKind::So3 {
-        return orientation::slope(model, params, u, &force.actuator_force);
-    }
-    let (act_dot, at) = (&force.act_dot, ActuatorMotion::of(model, pos, vel, u));
-    let given = ActuatorInputs {
-        ctrl: &force.ctrl,
-        act: &state.act,
-    };
-    let slope = unlimited_slope(model, params, given, act_dot, u, at);
-    // The bias of a motor needs its gain.
-    let is_motor = actuator.bias == BiasKind::DcMotor;
-    let saturated = |value: T, [low, high]: [T; 2]| value.le(low) | value.ge(high);
-    let mut held = T::Mask::splat(false);
-    if actuator.forcelimited {
-        // Cogging and friction of a motor come after its limit, which holds its current alone.
-        let limited = match is_motor {
-            true => unlimited_force(model, params, given, act_dot, u, at),
-            false => force.actuator_force[actuator.outputs.start],
-        };
-        held |= saturated(limited, params.actuator_forcerange[u]);
-    }
-    if let Some(t) = limited_tendon(model, actuator.transmission) {
-        held |= reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
-    }
-    // As in MuJoCo, friction counts here with a motor's gain, though it is part of its bias.
-    let friction = || dc_motor::mechanical_slope(model, params, u);
-    let slope = match actuator.gain {
-        GainKind::DcMotor if is_motor => T::select(held, T::ZERO, slope) + friction(),
-        GainKind::DcMotor => T::select(held, T::ZERO, slope + friction()),
-        _ => T::select(held, T::ZERO, slope),
-    };
-    match actuator.transmission {
-        Transmission::Joint(j) | Transmission::JointInParent(j)
-            if model.joints[j].actfrclimited =>
-        {
-            let total = force.qfrc_actuator[model.joints[j].dof];
-            let held = saturated(total, params.jnt_actfrcrange[j]);
-            T::select(held, T::ZERO, slope)
-        }
-        _ => slope,
-    }
-}
-
-/// Whether a sum of forces that were scaled into a range is at one of its ends. As in MuJoCo, where actuators reach the
-/// range of their tendon and one of them is then cut by its own, what is left of the sum decides.
-#[inline(always)]
-fn reached<T: Real>(sum: T, [low, high]: [T; 2]) -> T::Mask {
-    let rounding = scaling_error::<T>();
-    sum.le(low + low.abs() * rounding) | sum.ge(high - high.abs() * rounding)
-}
-
 /// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i. Of ellipsoids' forces
 /// only what is symmetric is counted.
 #[inline(always)]
 fn add_fluid<T: Real>(
     model: &Model,
     params: &Params<T>,
-    pos: &Positions<T>,
-    vel: &Velocities<T>,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
     b: usize,
+    (forces, part): (FluidForces, Part),
     scale: T,
     matrix: &mut TreeMatrix<T>,
 ) {
     if model.bodies[b].fluid_ellipsoids {
-        let [rates, _] = symmetric_and_skew(ellipsoid_rates(model, params, pos, vel, b));
+        let rates = ellipsoid_rates(model, params, (pos, vel), b, forces);
+        let [rates, _] = symmetric_and_skew(rates);
         add_along_chain(
             model,
             pos,
             b,
-            scale,
+            (part, scale),
             matrix,
             #[inline(always)]
             |axis| {
@@ -175,7 +133,7 @@ fn add_fluid<T: Real>(
             model,
             pos,
             b,
-            scale,
+            (part, scale),
             matrix,
             #[inline(always)]
             |axis| drag.derivative(model, pos, axis),
@@ -189,7 +147,7 @@ fn add_along_chain<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     b: usize,
-    scale: T,
+    (part, scale): (Part, T),
     matrix: &mut TreeMatrix<T>,
     change: impl Fn(Motion<T>) -> Force<T>,
 ) {
@@ -197,7 +155,12 @@ fn add_along_chain<T: Real>(
     while let Some(i) = chain {
         let force = change(pos.cdof[i]);
         let entries = matrix.row_mut(&model.tree, i);
-        for (entry, &j) in entries.iter_mut().zip(model.tree.row(i)) {
+        let skipped = match part {
+            Part::All => 0,
+            Part::Diagonal => entries.len() - 1,
+        };
+        let entries = entries.iter_mut().zip(model.tree.row(i));
+        for (entry, &j) in entries.skip(skipped) {
             *entry += scale * pos.cdof[j as usize].dot(force);
         }
         chain = model.dofs[i].parent;

@@ -141,9 +141,15 @@ impl<T: Real> Ellipsoid<T> {
         self.to_world(model, pos, torque, force)
     }
 
-    /// The change of [`force`](Self::force) with a change `motion` of the body's velocity.
+    /// The change of [`force`](Self::force), or of its drag alone, with a change `motion` of the body's velocity.
     #[inline(always)]
-    pub fn derivative(&self, model: &Model, pos: &Positions<T>, motion: Motion<T>) -> Force<T> {
+    pub fn derivative(
+        &self,
+        model: &Model,
+        pos: &Positions<T>,
+        forces: FluidForces,
+        motion: Motion<T>,
+    ) -> Force<T> {
         let Motion {
             angular: w,
             linear: v,
@@ -154,6 +160,18 @@ impl<T: Real> Ellipsoid<T> {
             angular: dw,
             linear: dv,
         } = local_velocity(motion, arm, &pos.geom_xmat[self.geom]);
+        let flow = self.flow();
+        let (change, dspeed) = self.flow_derivative(&flow, dv);
+        let [widest, blunt] = self.drag;
+        let ddrag = dspeed * (widest + blunt * flow.area) + flow.speed * blunt * change.area;
+        let drag = -(v * ddrag) - dv * self.linear_drag(&flow);
+        let resisted = w.scale_by(self.angular_drag);
+        let size = resisted.norm();
+        let slope = resisted.dot(dw.scale_by(self.angular_drag)) / positive(size);
+        let turning = -(w * slope) - dw * (self.viscous[1] + size);
+        if forces == FluidForces::Drag {
+            return self.to_world(model, pos, turning, drag);
+        }
         let (momentum, spin) = (
             v.scale_by(self.virtual_mass),
             w.scale_by(self.virtual_inertia),
@@ -162,27 +180,18 @@ impl<T: Real> Ellipsoid<T> {
             dv.scale_by(self.virtual_mass),
             dw.scale_by(self.virtual_inertia),
         );
-        let flow = self.flow();
-        let (change, dspeed) = self.flow_derivative(&flow, dv);
         let (normal, dnormal) = (flow.normal, change.normal);
         let turned = normal.cross(v);
         let dturned = dnormal.cross(v) + normal.cross(dv);
         let dlift =
             turned.cross(v) * change.lift + (dturned.cross(v) + turned.cross(dv)) * flow.lift;
-        let [widest, blunt] = self.drag;
-        let ddrag = dspeed * (widest + blunt * flow.area) + flow.speed * blunt * change.area;
         let force = dmomentum.cross(w)
             + momentum.cross(dw)
             + (dw.cross(v) + w.cross(dv)) * self.magnus
             + dlift * self.kutta
-            - v * ddrag
-            - dv * self.linear_drag(&flow);
-        let resisted = w.scale_by(self.angular_drag);
-        let size = resisted.norm();
-        let slope = resisted.dot(dw.scale_by(self.angular_drag)) / positive(size);
-        let torque = dmomentum.cross(v) + momentum.cross(dv) + dspin.cross(w) + spin.cross(dw)
-            - w * slope
-            - dw * (self.viscous[1] + size);
+            + drag;
+        let torque =
+            dmomentum.cross(v) + momentum.cross(dv) + dspin.cross(w) + spin.cross(dw) + turning;
         self.to_world(model, pos, torque, force)
     }
 
@@ -246,21 +255,30 @@ fn positive<T: Real>(x: T) -> T {
     T::select(x.gt(T::ZERO), x, T::ONE)
 }
 
+/// Which forces of the medium are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FluidForces {
+    /// All.
+    All,
+    /// Drag, without lift and added mass. On inertia boxes nothing else acts.
+    Drag,
+}
+
 /// How the fluid forces on the ellipsoids of body `b` change with its velocity: for each component of a motion about the reference
 /// point of its tree, the change of the force about that point.
 #[inline(always)]
 pub fn ellipsoid_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    pos: &Positions<T>,
-    vel: &Velocities<T>,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
     b: usize,
+    forces: FluidForces,
 ) -> [Force<T>; 6] {
     let mut rates = [Force::ZERO; 6];
     for geom in ellipsoids(model, b) {
         let ellipsoid = Ellipsoid::new(model, params, pos, vel, b, geom);
         for (c, rate) in rates.iter_mut().enumerate() {
-            *rate += ellipsoid.derivative(model, pos, Motion::component(c));
+            *rate += ellipsoid.derivative(model, pos, forces, Motion::component(c));
         }
     }
     rates

@@ -1,4 +1,4 @@
-//! Gains and biases of actuators, force = gain · input + bias, and how the force changes with velocity.
+//! Gains and biases of actuators, force = gain · input + bias, and how the force changes with velocity and with length.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::activation::{acting, input};
@@ -71,5 +71,35 @@ pub fn unlimited_slope<T: Real>(
         BiasKind::None | BiasKind::Muscle | BiasKind::DcMotor | BiasKind::So3 | BiasKind::User => {
             by_gain
         }
+    }
+}
+
+/// ∂force/∂length of [`unlimited_force`].
+#[inline(always)]
+pub fn unlimited_length_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: ActuatorInputs<'_, T>,
+    act_dot: &[T],
+    u: usize,
+    at: ActuatorMotion<T>,
+) -> T {
+    let (gainprm, biasprm) = (&params.actuator_gainprm[u], &params.actuator_biasprm[u]);
+    let input = || input(model, params, given, act_dot, u, at);
+    let by_gain = match model.actuators[u].gain {
+        GainKind::Fixed | GainKind::Pid | GainKind::So3 | GainKind::User => T::ZERO,
+        GainKind::Affine => gainprm[1] * input(),
+        GainKind::Muscle => {
+            let muscle = Muscle::new(params, u, gainprm, at.length);
+            muscle.gain_length_slope(at.velocity) * input()
+        }
+        GainKind::DcMotor => {
+            dc_motor::electrical_length_slope(model, params, given, act_dot, u, at)
+        }
+    };
+    match model.actuators[u].bias {
+        BiasKind::Affine => biasprm[1] + by_gain,
+        BiasKind::Muscle => by_gain + Muscle::new(params, u, biasprm, at.length).bias_slope(),
+        BiasKind::None | BiasKind::DcMotor | BiasKind::So3 | BiasKind::User => by_gain,
     }
 }

@@ -12,12 +12,12 @@
 //! The force acts along the joint's translations, the moment t + s×f about its rotations. (M − h D + h ∂bias/∂v) a = τ is
 //! then a 6 × 6 system apart from all others. It need not be symmetric, so it has what a medium adds to D that is not.
 
-use crate::dynamics::ellipsoid::ellipsoid_rates;
+use crate::dynamics::ellipsoid::{FluidForces, ellipsoid_rates};
 use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
 use crate::model::{JointKind, Model, Params};
 use crate::stages::{Positions, Velocities};
-use crate::workspace::Workspace;
 use clench_math::{Force, Real, Vec3, kernel};
+use clench_solver::TreeMatrix;
 
 /// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
 #[inline(always)]
@@ -28,48 +28,57 @@ pub fn is_free_tree(model: &Model, j: usize) -> bool {
         && (after >= model.nv || tree.tree_of(after) != tree.tree_of(joint.dof))
 }
 
-/// Replaces the joint's part of `integration.qacc`.
+/// The joint's part of the acceleration (nv) that `force` (nv) causes, with M − h D in `matrix`. Of the medium `fluid` has what is
+/// not symmetric in D, if that counts.
 #[kernel]
 pub fn solve_gyroscopic<T: Real>(
     model: &Model,
     params: &Params<T>,
     j: usize,
     qvel: &[T],
-    ws: &mut Workspace<T>,
-) {
+    (pos, vel): (&Positions<T>, &Velocities<T>),
+    fluid: FluidForces,
+    (matrix, force): (&TreeMatrix<T>, impl Fn(usize) -> T),
+) -> [T; 6] {
     let dof = model.joints[j].dof;
-    let matrix = &ws.integration.matrix;
     let mut rows = [[T::ZERO; 7]; 6];
     for (r, row) in rows.iter_mut().enumerate() {
         for (c, entry) in row[..6].iter_mut().enumerate() {
             *entry = matrix.row(&model.tree, dof + r.max(c))[r.min(c)];
         }
-        row[6] = ws.force.qfrc_smooth[dof + r] + ws.qfrc_constraint[dof + r];
+        row[6] = force(dof + r);
     }
-    add_bias_derivative(model, params, j, qvel, &ws.position, &mut rows);
-    subtract_skew_drag(model, params, j, (&ws.position, &ws.velocity), &mut rows);
-    let x = solve6(rows);
-    ws.integration.qacc[dof..dof + 6].copy_from_slice(&x);
+    add_bias_derivative(model, params, j, qvel, pos, &mut rows);
+    if fluid == FluidForces::All {
+        subtract_skew_drag(model, params, j, (pos, vel), &mut rows);
+    }
+    solve6(rows)
 }
 
-/// Adds h ∂bias/∂v, less what of h D is not symmetric, times the joint's part of `ws.qacc` to that of `integration.qacc`.
+/// The joint's part of h ∂bias/∂v, less what of h D is not symmetric, if that counts, times `x` (nv).
 #[inline(always)]
-pub(crate) fn add_gyroscopic_product<T: Real>(
+pub(crate) fn gyroscopic_product<T: Real>(
     model: &Model,
     params: &Params<T>,
     j: usize,
     qvel: &[T],
-    ws: &mut Workspace<T>,
-) {
+    (pos, vel): (&Positions<T>, &Velocities<T>),
+    fluid: FluidForces,
+    x: &[T],
+) -> [T; 6] {
     let dof = model.joints[j].dof;
     let mut rows = [[T::ZERO; 7]; 6];
-    add_bias_derivative(model, params, j, qvel, &ws.position, &mut rows);
-    subtract_skew_drag(model, params, j, (&ws.position, &ws.velocity), &mut rows);
-    for (r, row) in rows.iter().enumerate() {
-        for (&entry, &x) in row[..6].iter().zip(&ws.qacc[dof..]) {
-            ws.integration.qacc[dof + r] += entry * x;
+    add_bias_derivative(model, params, j, qvel, pos, &mut rows);
+    if fluid == FluidForces::All {
+        subtract_skew_drag(model, params, j, (pos, vel), &mut rows);
+    }
+    let mut product = [T::ZERO; 6];
+    for (row, sum) in rows.iter().zip(&mut product) {
+        for (&entry, &x) in row[..6].iter().zip(&x[dof..]) {
+            *sum += entry * x;
         }
     }
+    product
 }
 
 /// Adds h ∂bias/∂v.
@@ -119,7 +128,8 @@ fn subtract_skew_drag<T: Real>(
         if !model.bodies[b].fluid_ellipsoids {
             continue;
         }
-        let [_, skew] = symmetric_and_skew(ellipsoid_rates(model, params, pos, vel, b));
+        let rates = ellipsoid_rates(model, params, (pos, vel), b, FluidForces::All);
+        let [_, skew] = symmetric_and_skew(rates);
         for (c, axis) in axes.iter().enumerate() {
             let mut change = Force::ZERO;
             for (x, column) in axis.to_array().into_iter().zip(skew) {

@@ -9,8 +9,9 @@
 use super::integration::Integration;
 use crate::dynamics::coriolis::add_bias_derivatives;
 use crate::dynamics::derivatives::add_velocity_derivatives;
-use crate::dynamics::gyroscopic::{add_gyroscopic_product, is_free_tree, solve_gyroscopic};
-use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit, sum_forces};
+use crate::dynamics::ellipsoid::FluidForces;
+use crate::dynamics::gyroscopic::{gyroscopic_product, is_free_tree, solve_gyroscopic};
+use crate::dynamics::integrate::{add_scaled, advance_semi_implicit, solve_implicit, sum_forces};
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -28,9 +29,22 @@ pub fn implicit_fast<T: Real>(
     let Integration { matrix, factor, .. } = &mut ws.integration;
     ws.singular |= !factor.factor(&model.tree, matrix);
     solve_implicit(&model.tree, ws);
-    for j in 0..model.joints.len() {
+    let Workspace {
+        position: pos,
+        velocity: vel,
+        force,
+        qfrc_constraint,
+        integration,
+        ..
+    } = &mut *ws;
+    let total = |i: usize| force.qfrc_smooth[i] + qfrc_constraint[i];
+    for (j, joint) in model.joints.iter().enumerate() {
         if is_free_tree(model, j) {
-            solve_gyroscopic(model, params, j, &state.qvel, ws);
+            let system = (&integration.matrix, total);
+            let stages = (pos as &_, vel as &_);
+            let fluid = FluidForces::All;
+            let x = solve_gyroscopic(model, params, j, &state.qvel, stages, fluid, system);
+            integration.qacc[joint.dof..joint.dof + 6].copy_from_slice(&x);
         }
     }
     advance_semi_implicit(model, params, state, ws);
@@ -95,15 +109,18 @@ pub(crate) fn symmetric_inertia<T: Real>(
 
 /// Adds to `integration.qacc`, M − h D times `ws.qacc`, what gyroscopic forces of free bodies add to the product.
 #[kernel]
-pub(crate) fn gyroscopic_product<T: Real>(
+pub(crate) fn add_gyroscopic_products<T: Real>(
     model: &Model,
     params: &Params<T>,
     qvel: &[T],
     ws: &mut Workspace<T>,
 ) {
-    for j in 0..model.joints.len() {
+    let stages = (&ws.position, &ws.velocity);
+    for (j, joint) in model.joints.iter().enumerate() {
         if is_free_tree(model, j) {
-            add_gyroscopic_product(model, params, j, qvel, ws);
+            let fluid = FluidForces::All;
+            let product = gyroscopic_product(model, params, j, qvel, stages, fluid, &ws.qacc);
+            add_scaled(&mut ws.integration.qacc[joint.dof..], &product, T::ONE);
         }
     }
 }

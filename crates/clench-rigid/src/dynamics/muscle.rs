@@ -101,6 +101,40 @@ impl<T: Real> Muscle<T> {
         T::select(slack, T::ZERO, -self.peak_force * self.fpmax * force)
     }
 
+    /// ∂gain/∂length.
+    #[inline(always)]
+    pub fn gain_length_slope(&self, velocity: T) -> T {
+        let slope = self.active_by_length_slope() / divisor(self.resting);
+        -self.peak_force * slope * self.by_velocity(velocity).0
+    }
+
+    /// ∂bias/∂length.
+    #[inline(always)]
+    pub fn bias_slope(&self) -> T {
+        let bend = T::new(0.5) * (T::ONE + self.lmax);
+        let width = divisor(bend - T::ONE);
+        let bent = (self.length - T::ONE) / (width * width);
+        let slope = T::select(self.length.le(bend), bent, T::ONE / width);
+        let force = -self.peak_force * self.fpmax * slope / divisor(self.resting);
+        T::select(self.length.le(T::ONE), T::ZERO, force)
+    }
+
+    /// The derivative of FL by L.
+    #[inline(always)]
+    fn active_by_length_slope(&self) -> T {
+        let (half, l) = (T::new(0.5), self.length);
+        let (left, right) = (half * (self.lmin + T::ONE), half * (T::ONE + self.lmax));
+        let per = |x: T, width: T| x / (divisor(width) * divisor(width));
+        let rising = per(l - self.lmin, left - self.lmin);
+        let before = per(T::ONE - l, T::ONE - left);
+        let after = -per(l - T::ONE, right - T::ONE);
+        let falling = -per(self.lmax - l, self.lmax - right);
+        let top = T::select(l.le(T::ONE), before, after);
+        let slope = T::select(l.gt(right), falling, top);
+        let slope = T::select(l.le(left), rising, slope);
+        T::select(l.lt(self.lmin) | l.gt(self.lmax), T::ZERO, slope)
+    }
+
     /// FL.
     #[inline(always)]
     fn active_by_length(&self) -> T {

@@ -75,15 +75,27 @@ pub fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
 /// ∂torque/∂ω, the same about each axis; zero where the limit holds the torque.
 #[inline(always)]
 pub fn slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
-    let actuator = &model.actuators[u];
     let slope = params.actuator_biasprm[u][2];
+    T::select(is_held(model, params, u, forces), T::ZERO, slope)
+}
+
+/// ∂torque/∂angle for small angles from the target, likewise.
+#[inline(always)]
+pub fn length_slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
+    let slope = -params.actuator_gainprm[u][0];
+    T::select(is_held(model, params, u, forces), T::ZERO, slope)
+}
+
+/// Lanes in which the limit holds the torque.
+#[inline(always)]
+fn is_held<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T::Mask {
+    let actuator = &model.actuators[u];
     if !actuator.forcelimited {
-        return slope;
+        return T::Mask::splat(false);
     }
     let norm = Vec3::from_slice(&forces[actuator.outputs.clone()]).norm();
     // In MuJoCo rounding decides whether a torque that was scaled to its limit is there.
-    let end = params.actuator_forcerange[u][1] * (T::ONE - scaling_error());
-    T::select(norm.ge(end), T::ZERO, slope)
+    norm.ge(params.actuator_forcerange[u][1] * (T::ONE - scaling_error()))
 }
 
 /// Takes whole turns off a rotation vector of more than half a turn, which stands for the same orientation then.

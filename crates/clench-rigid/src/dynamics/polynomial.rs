@@ -1,7 +1,7 @@
 //! Springs and dampers whose force is a polynomial (MuJoCo 4.0, *Computation*, "Polynomial forces").
 //!
 //! ```text
-//! spring at the displacement x:   f = −(a x + b x² + c x³)      energy  ½ a x² + ⅓ b x³ + ¼ c x⁴
+//! spring at the displacement x:   f = −(a x + b x² + c x³)      energy  ½ a x² + ⅓ b x³ + ¼ c x⁴     −∂f/∂x = a + 2 b x + 3 c x²
 //! damper at the velocity v:       f = −(a v + b v |v| + c v³)   −∂f/∂v = a + 2 b |v| + 3 c v²
 //! ```
 //!
@@ -46,6 +46,13 @@ impl<T: Real> Polynomial<T> {
         self.linear + x * (b + x * c)
     }
 
+    /// Minus the change of a spring's force with its displacement `x`: a + 2 b x + 3 c x².
+    #[inline(always)]
+    pub fn stiffness_slope(&self, x: T) -> T {
+        let [b, c] = self.higher;
+        self.linear + x * (T::new(2.0) * b + x * (T::new(3.0) * c))
+    }
+
     /// The energy in a spring of displacement `x`.
     #[inline(always)]
     pub fn energy(&self, x: T) -> T {
@@ -63,8 +70,6 @@ impl<T: Real> Polynomial<T> {
     /// Minus the change of a damper's force with its velocity `v`: a + 2 b |v| + 3 c v².
     #[inline(always)]
     pub fn damping_slope(&self, v: T) -> T {
-        let [b, c] = self.higher;
-        let v = v.abs();
-        self.linear + v * (T::new(2.0) * b + v * (T::new(3.0) * c))
+        self.stiffness_slope(v.abs())
     }
 }

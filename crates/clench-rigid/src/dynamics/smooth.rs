@@ -30,9 +30,8 @@ pub fn smooth_forces<T: Real>(
     project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_smooth);
 }
 
-/// `qacc_smooth = M⁻¹ qfrc_smooth`, by the factor that the position stage left.
-pub fn smooth_acceleration<T: Real>(model: &Model, force: &Forces<T>, problem: &mut Problem<T>) {
-    problem.qacc_smooth.copy_from_slice(&force.qfrc_smooth);
+/// Turns the forces in `qacc_smooth` into the acceleration that they cause, by the factor of the problem.
+pub fn smooth_acceleration<T: Real>(model: &Model, problem: &mut Problem<T>) {
     problem
         .mass_factor
         .solve(&model.tree, &mut problem.qacc_smooth);

@@ -21,7 +21,7 @@ impl<T: Precision> Sim<T> {
         check_values("x", x, self.model().nv)?;
         check_length("product", product.len(), x.len())?;
         self.require(Extent::Positions)?;
-        let mass = &self.workspace().problem.mass;
+        let mass = self.workspace().mass();
         mass.mul(&self.model().tree, x, product);
         Ok(())
     }
@@ -38,7 +38,7 @@ impl<T: Precision> Sim<T> {
             let (time, place) = (self.state.time, massless(model, ws, 0));
             return Err(Fault::Singular { time, place }.into());
         }
-        ws.problem.mass_factor.solve(&model.tree, x);
+        ws.mass_factor().solve(&model.tree, x);
         Ok(())
     }
 

@@ -9,6 +9,8 @@ pub(super) fn active_blocks<T: Real>(
     ws: &Workspace<T>,
     lane: usize,
 ) -> impl Iterator<Item = (usize, Block<'_, T>)> {
-    let blocks = ws.problem.blocks().enumerate();
-    blocks.filter(move |&(i, _)| ws.record.blocks[i].active.lane(lane))
+    // After those of constraints the problem may have blocks of the metric.
+    let blocks = ws.problem.blocks().take(ws.record.blocks.len());
+    let acts = move |&(i, _): &(usize, Block<'_, T>)| ws.record.blocks[i].active.lane(lane);
+    blocks.enumerate().filter(acts)
 }

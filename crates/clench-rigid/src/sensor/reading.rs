@@ -65,7 +65,7 @@ impl<'a, T: Real> Reading<'a, T> {
     }
 
     fn read_whole(&self, kind: SensorKind, out: &mut [T]) {
-        let (pos, mass, state) = (&self.ws.position, &self.ws.problem.mass, self.state);
+        let (pos, mass, state) = (&self.ws.position, self.ws.mass(), self.state);
         let energy = || energy(self.model, self.params, pos, mass, state);
         match kind {
             SensorKind::PotentialEnergy => out[0] = energy().potential,

@@ -174,6 +174,7 @@ fn every_kind_of_constraint_with_every_integrator() {
         Integrator::ImplicitFast,
         Integrator::Implicit,
         Integrator::Rk4,
+        Integrator::Discrete,
     ] {
         let mut builder = everything();
         builder.options = RigidOptions::new();

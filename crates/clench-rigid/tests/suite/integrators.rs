@@ -81,6 +81,7 @@ fn euler_and_implicit_are_of_first_order() {
         Integrator::Euler,
         Integrator::ImplicitFast,
         Integrator::Implicit,
+        Integrator::Discrete,
     ] {
         let ratio = error_ratio(integrator, 0.001);
         assert!((1.8..2.2).contains(&ratio), "{integrator:?}: {ratio}");
@@ -166,6 +167,7 @@ fn damping_is_taken_at_the_end_of_the_step() {
         Integrator::Euler,
         Integrator::ImplicitFast,
         Integrator::Implicit,
+        Integrator::Discrete,
     ] {
         builder.physics.integrator = integrator;
         assert!((velocity_after_step(&builder) - implicit).abs() < 1e-15);

@@ -76,6 +76,7 @@ fn discrete_inverse_dynamics_find_them_from_the_change_of_velocity() {
         Integrator::Euler,
         Integrator::ImplicitFast,
         Integrator::Implicit,
+        Integrator::Discrete,
     ] {
         let mut builder = everything();
         builder.physics.integrator = integrator;

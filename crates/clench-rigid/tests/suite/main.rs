@@ -23,6 +23,7 @@ mod common;
 mod constraints;
 mod contacts;
 mod delays;
+mod discrete;
 mod divergence;
 mod dynamic_constraints;
 mod frames;

@@ -40,6 +40,7 @@ fn compare<S: Precision>() {
         Integrator::ImplicitFast,
         Integrator::Implicit,
         Integrator::Rk4,
+        Integrator::Discrete,
     ] {
         let mut builder = machines::everything();
         builder.physics.integrator = integrator;

@@ -63,6 +63,7 @@ fn write_option(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
         Integrator::ImplicitFast => "implicitfast",
         Integrator::Implicit => "implicit",
         Integrator::Rk4 => "RK4",
+        Integrator::Discrete => "discrete",
     };
     let mut tag = xml
         .tag("option")

@@ -51,6 +51,7 @@ fn write_body(model: &Model, b: usize, xml: &mut Xml) -> Result<(), SaveError> {
         mocap,
         last_dof: _,
         simple_inertia: _,
+        diagonal_inertia: _,
         fluid_ellipsoids: _,
         never_simple,
         user,

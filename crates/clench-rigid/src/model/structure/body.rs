@@ -64,6 +64,8 @@ pub struct Body {
     pub last_dof: Option<usize>,
     /// The inertial frame coincides with the body frame.
     pub simple_inertia: bool,
+    /// Its part of the mass matrix is diagonal wherever it is, and MuJoCo keeps nothing but the diagonal of it (its `body_simple`).
+    pub diagonal_inertia: bool,
     /// Some of its geoms feel a surrounding medium as ellipsoids, and it does not as a box.
     pub fluid_ellipsoids: bool,
     /// Its constraints are scaled by the mean over all directions, even where it only slides along coordinate axes.

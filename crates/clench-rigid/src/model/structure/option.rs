@@ -12,6 +12,9 @@ pub enum Integrator {
     Implicit,
     /// Fourth-order Runge–Kutta.
     Rk4,
+    /// Velocity stepping: constraints are solved for in a metric that has the damping and the stiffness of smooth forces, and what is
+    /// found is the step.
+    Discrete,
 }
 
 /// Feature switches: MuJoCo's disable flags, said positively and on by default, and of its enable flags those that act on motion

@@ -1,0 +1,95 @@
+//! Rows whose spring-damper is taken at the end of the step, in the metric of the integrator `discrete`; the formulas are derived in
+//! `softness`.
+
+use super::row::Row;
+use super::softness::{above_least, implicit_share};
+use crate::dynamics::metric::Metric;
+use clench_math::Real;
+use clench_solver::{Cost, Tree};
+
+/// What such rows are computed with.
+pub(super) struct ImplicitRows<'a, T: Real> {
+    pub tree: &'a Tree,
+    pub metric: &'a Metric<T>,
+    /// h, s.
+    pub timestep: T,
+    /// Ratio of friction to normal impedance.
+    pub impratio: T,
+}
+
+impl<T: Real> ImplicitRows<'_, T> {
+    /// The reference acceleration of a row of this velocity.
+    #[inline(always)]
+    pub(super) fn reference(&self, row: &Row<T>, velocity: T) -> T {
+        let rate = row.damping + self.timestep * row.stiffness;
+        (row.aref - rate * velocity) / self.beta(row)
+    }
+
+    /// 1 + h b + h² k d.
+    #[inline(always)]
+    fn beta(&self, row: &Row<T>) -> T {
+        let h = self.timestep;
+        T::ONE + h * row.damping + h * h * row.stiffness
+    }
+
+    /// Changes R of the rows of a block of impedance `d`. Where it was `estimated` at the initial configuration, it is corrected by
+    /// what the metric takes from the inverse inertia.
+    #[inline(always)]
+    pub(super) fn regularize(
+        &self,
+        cost: Cost,
+        rows: &[Row<T>],
+        (jacobian, dofs): (&[T], &[u32]),
+        (d, estimated): (T, bool),
+        r: &mut [T],
+    ) {
+        let share = |row: &Row<T>, first: &[T], other: &[T], factor: T| {
+            let implicit = implicit_share(d, self.beta(row));
+            match estimated {
+                true => implicit * self.taken(first, other, factor, dofs),
+                false => implicit,
+            }
+        };
+        let n = dofs.len();
+        // What a cone's rows are multiples of, in units of its first row's R.
+        let (share, unit) = match cost {
+            Cost::Quadratic | Cost::OneSided | Cost::Huber => {
+                for (i, row) in rows.iter().enumerate() {
+                    let share = share(row, &jacobian[i * n..(i + 1) * n], &[], T::ZERO);
+                    r[i] = above_least(r[i] * share);
+                }
+                return;
+            }
+            Cost::Pyramid => {
+                let (normal, tangent) = (&jacobian[..n], &jacobian[n..2 * n]);
+                let mu = rows[1].shape;
+                let unit = T::ONE / (T::new(2.0) * (mu * mu / self.impratio));
+                (share(&rows[0], normal, tangent, mu), unit)
+            }
+            Cost::Elliptic => (share(&rows[0], &jacobian[..n], &[], T::ZERO), T::ONE),
+        };
+        let first = r[0] * unit;
+        let whole = above_least(first * share) / first;
+        for r in &mut r[..rows.len()] {
+            *r *= whole;
+        }
+    }
+
+    /// Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ of J = row + factor · other; one where nothing moves.
+    #[inline(always)]
+    fn taken(&self, row: &[T], other: &[T], factor: T, dofs: &[u32]) -> T {
+        let (mut before, mut after) = (T::ZERO, T::ZERO);
+        for (i, (&dof, &arm)) in dofs.iter().zip(row).enumerate() {
+            let dof = dof as usize;
+            let arm = match other.get(i) {
+                Some(&other) => arm + factor * other,
+                None => arm,
+            };
+            let inertia = self.metric.mass.values[self.tree.row_start(dof + 1) - 1];
+            before += arm * arm / inertia;
+            after += arm * arm / (inertia + self.metric.added[dof]);
+        }
+        let moves = before.gt(T::ZERO);
+        T::select(moves, after / T::select(moves, before, T::ONE), T::ONE)
+    }
+}

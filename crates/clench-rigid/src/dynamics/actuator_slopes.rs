@@ -1,0 +1,138 @@
+//! How the force of an actuator changes with its velocity and with its length, after all limits: where a limit of the actuator, its
+//! tendon or its joint holds the force, it does not change.
+
+use super::actuator::{ActuatorInputs, ActuatorMotion, scaling_error};
+use crate::dynamics::actuation::limited_tendon;
+use crate::dynamics::gain::{unlimited_force, unlimited_length_slope, unlimited_slope};
+use crate::dynamics::{dc_motor, orientation};
+use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::stages::{Forces, Positions, Velocities};
+use crate::state::State;
+use clench_math::{Mask, Real};
+
+/// ∂force/∂velocity of actuator `u`.
+#[inline(always)]
+pub fn velocity_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    (pos, vel, force): (&Positions<T>, &Velocities<T>, &Forces<T>),
+    u: usize,
+) -> T {
+    let actuator = &model.actuators[u];
+    if actuator.disabled {
+        return T::ZERO;
+    }
+    if actuator.gain == GainKind::So3 {
+        return orientation::slope(model, params, u, &force.actuator_force);
+    }
+    let at = ActuatorMotion::of(model, pos, vel, u);
+    let given = inputs(state, force);
+    let slope = unlimited_slope(model, params, given, &force.act_dot, u, at);
+    let held = is_held(model, params, given, force, u, at);
+    // As in MuJoCo, friction counts here with a motor's gain, though it is part of its bias.
+    let friction = || dc_motor::mechanical_slope(model, params, u);
+    let slope = match (actuator.gain, actuator.bias) {
+        // The bias of a motor needs its gain. No limit holds what it adds.
+        (GainKind::DcMotor, BiasKind::DcMotor) => T::select(held, T::ZERO, slope) + friction(),
+        (GainKind::DcMotor, _) => T::select(held, T::ZERO, slope + friction()),
+        _ => T::select(held, T::ZERO, slope),
+    };
+    unless_joint_holds(model, params, force, u, slope)
+}
+
+/// ∂force/∂length of actuator `u`. Of an orientation servo it is that for small angles, the same about each axis.
+#[inline(always)]
+pub fn length_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    (pos, vel, force): (&Positions<T>, &Velocities<T>, &Forces<T>),
+    u: usize,
+) -> T {
+    let actuator = &model.actuators[u];
+    if actuator.disabled {
+        return T::ZERO;
+    }
+    if actuator.gain == GainKind::So3 {
+        return orientation::length_slope(model, params, u, &force.actuator_force);
+    }
+    let at = ActuatorMotion::of(model, pos, vel, u);
+    let given = inputs(state, force);
+    let slope = unlimited_length_slope(model, params, given, &force.act_dot, u, at);
+    let held = is_held(model, params, given, force, u, at);
+    let slope = T::select(held, T::ZERO, slope);
+    let slope = match actuator.bias {
+        BiasKind::DcMotor => slope + dc_motor::cogging_slope(params, u, at.length),
+        _ => slope,
+    };
+    unless_joint_holds(model, params, force, u, slope)
+}
+
+#[inline(always)]
+fn inputs<'a, T: Real>(state: &'a State<T>, force: &'a Forces<T>) -> ActuatorInputs<'a, T> {
+    ActuatorInputs {
+        ctrl: &force.ctrl,
+        act: &state.act,
+    }
+}
+
+/// Lanes in which the force is at an end of its own range, or with those of other actuators at an end of their tendon's.
+#[inline(always)]
+fn is_held<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: ActuatorInputs<'_, T>,
+    force: &Forces<T>,
+    u: usize,
+    at: ActuatorMotion<T>,
+) -> T::Mask {
+    let actuator = &model.actuators[u];
+    let mut held = T::Mask::splat(false);
+    if actuator.forcelimited {
+        // Cogging and friction of a motor come after its limit, which holds its current alone.
+        let limited = match actuator.bias {
+            BiasKind::DcMotor => unlimited_force(model, params, given, &force.act_dot, u, at),
+            _ => force.actuator_force[actuator.outputs.start],
+        };
+        held |= is_saturated(limited, params.actuator_forcerange[u]);
+    }
+    if let Some(t) = limited_tendon(model, actuator.transmission) {
+        held |= is_reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
+    }
+    held
+}
+
+/// The slope, or zero in lanes in which the range of the actuator's joint holds the sum of all that act on it.
+#[inline(always)]
+fn unless_joint_holds<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    force: &Forces<T>,
+    u: usize,
+    slope: T,
+) -> T {
+    match model.actuators[u].transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j)
+            if model.joints[j].actfrclimited =>
+        {
+            let total = force.qfrc_actuator[model.joints[j].dof];
+            let held = is_saturated(total, params.jnt_actfrcrange[j]);
+            T::select(held, T::ZERO, slope)
+        }
+        _ => slope,
+    }
+}
+
+#[inline(always)]
+fn is_saturated<T: Real>(value: T, [low, high]: [T; 2]) -> T::Mask {
+    value.le(low) | value.ge(high)
+}
+
+/// Whether a sum of forces that were scaled into a range is at one of its ends. As in MuJoCo, where actuators reach the
+/// range of their tendon and one of them is then cut by its own, what is left of the sum decides.
+#[inline(always)]
+fn is_reached<T: Real>(sum: T, [low, high]: [T; 2]) -> T::Mask {
+    let rounding = scaling_error::<T>();
+    sum.le(low + low.abs() * rounding) | sum.ge(high - high.abs() * rounding)
+}

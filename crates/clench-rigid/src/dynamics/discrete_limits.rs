@@ -1,0 +1,98 @@
+//! What the integrator `discrete` cannot be combined with.
+
+use crate::dynamics::metric::Along;
+use crate::model::{BiasKind, GainKind, Integrator, Model};
+use crate::settings::StepSettings;
+use clench_solver::Switch;
+
+/// Something that the integrator `discrete` cannot be combined with.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the integrator discrete cannot go with {with}: {reason}")]
+pub struct NotDiscrete {
+    /// What it is.
+    pub with: String,
+    /// Why it cannot.
+    pub reason: &'static str,
+}
+
+/// Refuses what a model is asked to do beside stepping in the metric.
+///
+/// # Errors
+/// The first such combination.
+pub fn check_discrete(model: &Model, settings: &StepSettings) -> Result<(), NotDiscrete> {
+    if model.integrator != Integrator::Discrete {
+        return Ok(());
+    }
+    let refuse = |with: String, reason| Err(NotDiscrete { with, reason });
+    if settings.flags.sleep && settings.solver.islands == Switch::Off {
+        let reason = "what its metric couples must sleep and wake together";
+        return refuse("sleep without islands".to_owned(), reason);
+    }
+    let coupling = terms(model).find(|along| ntree(model, *along) > 1);
+    if let (true, Some(along)) = (settings.flags.sleep, coupling) {
+        let reason = "it couples trees in the metric, which would have to sleep and wake together, and that is not there yet";
+        return refuse(format!("sleep and {}", name(model, along)), reason);
+    }
+    let coupling = terms(model).find(|along| along.dofs(model).len() > 1);
+    if let (true, Some(along)) = (settings.solver.noslip_iterations > 0, coupling) {
+        let reason =
+            "it couples dofs in the metric, for which the sweeps without slip are not there yet";
+        return refuse(
+            format!("noslip_iterations and {}", name(model, along)),
+            reason,
+        );
+    }
+    Ok(())
+}
+
+/// The tendons and lengths of actuators that may add to the metric.
+fn terms(model: &Model) -> impl Iterator<Item = Along> + '_ {
+    let tendons = (0..model.tendons.len()).filter(|&t| acts_on_tendon(model, t));
+    let outputs = (model.actuators.iter())
+        .filter(|actuator| {
+            let constant = matches!(
+                actuator.gain,
+                GainKind::Fixed | GainKind::User | GainKind::Pid
+            );
+            !constant || !matches!(actuator.bias, BiasKind::None | BiasKind::User)
+        })
+        .flat_map(|actuator| actuator.outputs.clone());
+    (tendons.map(Along::Tendon)).chain(outputs.map(Along::Output))
+}
+
+/// Whether tendon `t` has a spring or a damper.
+fn acts_on_tendon(model: &Model, t: usize) -> bool {
+    let p = &model.params;
+    let any = |linear: f64, higher: [f64; 2]| linear != 0.0 || higher != [0.0; 2];
+    let springs = model.flags.spring && any(p.tendon_stiffness[t], p.tendon_stiffnesspoly[t]);
+    let dampers = model.flags.damper
+        && (any(p.tendon_damping[t], p.tendon_dampingpoly[t])
+            || !model.tendons[t].reflecting.is_empty());
+    springs || dampers
+}
+
+/// How many trees a term acts on.
+fn ntree(model: &Model, along: Along) -> usize {
+    let dofs = along.dofs(model).iter();
+    let mut trees: Vec<usize> = dofs.map(|&dof| model.tree.tree_of(dof as usize)).collect();
+    trees.sort_unstable();
+    trees.dedup();
+    trees.len()
+}
+
+/// What errors call the tendon or actuator of a term.
+fn name(model: &Model, along: Along) -> String {
+    let (kind, index, name) = match along {
+        Along::Tendon(t) => ("tendon", t, &model.tendons[t].name),
+        Along::Output(output) => {
+            let mut actuators = model.actuators.iter();
+            let u = actuators.position(|actuator| actuator.outputs.contains(&output));
+            let u = u.unwrap_or_default();
+            ("actuator", u, &model.actuators[u].name)
+        }
+    };
+    match name.as_str() {
+        "" => format!("{kind} {index}"),
+        name => format!("{kind} \"{name}\""),
+    }
+}

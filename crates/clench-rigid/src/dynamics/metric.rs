@@ -1,0 +1,375 @@
+//! The metric in which the integrator `discrete` solves for accelerations.
+//!
+//! A step takes smooth forces at its end, to first order in velocities and positions. With B = −∂τ/∂v and K = −∂τ/∂q, what of them is
+//! symmetric and positive semidefinite,
+//!
+//! ```text
+//! M̂ a = τ − h K v + Jᵀf        M̂ = M + h B + h² K
+//! ```
+//!
+//! and a is the change of the velocity in the step over h. Each term is as in MuJoCo 4.0, beside which these rules were found: slopes
+//! of springs and dampers of joints, on the diagonal, of a ball or free joint the same in all directions; the drag of a medium;
+//! and s JᵀJ of tendons and actuators, s = h b + h² k with b and k the slopes of their forces with velocity and length. A slope that
+//! would take from the metric counts as zero.
+//!
+//! What couples dofs of different branches does not fit into the pattern of M. It is given to the solver as rows of a quadratic cost,
+//! ½ s (J a − J a_s)², which with ½ (a − a_s)ᵀ(M̂ − Σ s JᵀJ)(a − a_s) makes the cost in the whole metric about the acceleration a_s
+//! without constraints.
+
+use crate::dynamics::actuator_slopes::{length_slope, velocity_slope};
+use crate::dynamics::derivatives::{add_fluid_derivatives, add_outer};
+use crate::dynamics::ellipsoid::FluidForces;
+use crate::dynamics::reflected::{dof_damper, tendon_damper};
+use crate::dynamics::spring::{
+    JointStretch, joint_spring, joint_stretch, tendon_spring, tendon_stretch,
+};
+use crate::dynamics::tendon;
+use crate::dynamics::transmission::moment;
+use crate::model::{Integrator, Model, Params};
+use crate::stages::{Forces, Positions, Velocities};
+use crate::state::State;
+use clench_math::{Mask, Real, Vec3, kernel};
+use clench_solver::{Tree, TreeFactor, TreeMatrix};
+
+/// What the forces of a term act along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// The length of a tendon.
+    Tendon(usize),
+    /// A length of an actuator, one of `Model::nout`.
+    Output(usize),
+}
+
+impl Along {
+    /// The dofs that it depends on, ascending.
+    pub fn dofs(self, model: &Model) -> &[u32] {
+        match self {
+            Along::Tendon(t) => model.tendon_dofs.dofs(t),
+            Along::Output(output) => model.actuator_dofs.dofs(output),
+        }
+    }
+}
+
+/// Memory of the metric; empty but for [`Integrator::Discrete`].
+#[derive(Clone, Debug)]
+pub struct Metric<T: Real> {
+    /// M. The problem has what of M̂ fits into its pattern.
+    pub mass: TreeMatrix<T>,
+    /// Its factor.
+    pub mass_factor: TreeFactor<T>,
+    /// −h K v (nv).
+    pub shift: Vec<T>,
+    /// Diagonal of M̂ − M (nv).
+    pub added: Vec<T>,
+    /// M̂ with what tendons and actuators have on the diagonal alone, which MuJoCo's exact inverse inertias are of; empty where nothing
+    /// asks for it.
+    backbone: TreeMatrix<T>,
+    /// Its factor.
+    backbone_factor: TreeFactor<T>,
+    /// What may couple dofs of different branches.
+    pub couplings: Vec<Along>,
+    /// s of each.
+    pub scales: Vec<T>,
+    /// Lanes in which terms of tendons and actuators act on a tree, once they are known (ntree); then also constraints.
+    pub touched: Vec<T::Mask>,
+    /// Which of `couplings` a tendon is (ntendon).
+    of_tendon: Vec<Option<usize>>,
+    /// Which of them an actuator's length is (nout).
+    of_output: Vec<Option<usize>>,
+    acts: bool,
+}
+
+impl<T: Real> Metric<T> {
+    /// Room for the metric of a model.
+    pub fn new(model: &Model) -> Self {
+        let acts = model.integrator == Integrator::Discrete;
+        let numbers = if acts { model.nv } else { 0 };
+        let mut metric = Metric {
+            mass: TreeMatrix::default(),
+            mass_factor: TreeFactor::default(),
+            shift: vec![T::ZERO; numbers],
+            added: vec![T::ZERO; numbers],
+            backbone: TreeMatrix::default(),
+            backbone_factor: TreeFactor::default(),
+            couplings: Vec::new(),
+            scales: Vec::new(),
+            touched: Vec::new(),
+            of_tendon: Vec::new(),
+            of_output: Vec::new(),
+            acts,
+        };
+        if !acts {
+            return metric;
+        }
+        metric.mass = TreeMatrix::zeros(&model.tree);
+        metric.mass_factor = TreeFactor::zeros(&model.tree);
+        metric.touched = vec![T::Mask::splat(false); model.ntree()];
+        let tendons = (0..model.tendons.len()).map(Along::Tendon);
+        let terms = tendons.chain((0..model.nout()).map(Along::Output));
+        if model.flags.diagexact && terms.clone().any(|along| along.dofs(model).len() > 1) {
+            metric.backbone = TreeMatrix::zeros(&model.tree);
+            metric.backbone_factor = TreeFactor::zeros(&model.tree);
+        }
+        let couplings = &mut metric.couplings;
+        let mut place = |along: Along| {
+            let fits = is_chain(&model.tree, along.dofs(model));
+            (!fits).then(|| {
+                couplings.push(along);
+                couplings.len() - 1
+            })
+        };
+        let tendons = (0..model.tendons.len()).map(Along::Tendon);
+        metric.of_tendon = tendons.map(&mut place).collect();
+        let outputs = (0..model.nout()).map(Along::Output);
+        metric.of_output = outputs.map(&mut place).collect();
+        metric.scales = vec![T::ZERO; metric.couplings.len()];
+        metric
+    }
+
+    /// Whether the model steps in this metric.
+    pub fn acts(&self) -> bool {
+        self.acts
+    }
+
+    /// The factor of M̂ without what tendons and actuators couple, where it differs from that of the problem.
+    pub fn backbone_factor(&self) -> Option<&TreeFactor<T>> {
+        (!self.backbone.values.is_empty()).then_some(&self.backbone_factor)
+    }
+
+    /// Factors that matrix. False in lanes where it is not positive definite.
+    pub fn factor_backbone(&mut self, tree: &Tree) -> T::Mask {
+        match self.backbone.values.is_empty() {
+            true => T::Mask::splat(true),
+            false => self.backbone_factor.factor(tree, &self.backbone),
+        }
+    }
+
+    /// Whether any coupling between branches acts in any lane.
+    pub fn is_coupled(&self) -> bool {
+        self.scales.iter().any(|scale| !scale.eq(T::ZERO).all())
+    }
+}
+
+/// Whether each of these dofs, given in ascending order, is above the next.
+fn is_chain(tree: &Tree, dofs: &[u32]) -> bool {
+    let above = |pair: &[u32]| tree.row(pair[1] as usize).contains(&pair[0]);
+    dofs.windows(2).all(above)
+}
+
+/// The dofs that a term acts on, with J along each.
+#[inline(always)]
+pub fn each_arm<T: Real>(
+    model: &Model,
+    pos: &Positions<T>,
+    along: Along,
+    mut visit: impl FnMut(usize, T),
+) {
+    match along {
+        Along::Tendon(t) => tendon::gradient(model, pos, t).for_each(|(dof, arm)| visit(dof, arm)),
+        Along::Output(output) => moment(model, pos, output).for_each(|(dof, arm)| visit(dof, arm)),
+    }
+}
+
+/// Turns M in `mass` into what of M̂ fits into its pattern; leaves the rest in `metric`.
+#[kernel]
+pub fn add_metric<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    (pos, vel, force): (&Positions<T>, &Velocities<T>, &Forces<T>),
+    metric: &mut Metric<T>,
+    mass: &mut TreeMatrix<T>,
+) {
+    mass.values.copy_from_slice(&metric.mass.values);
+    metric.shift.fill(T::ZERO);
+    metric.scales.fill(T::ZERO);
+    metric.touched.fill(T::Mask::splat(false));
+    let h = params.timestep;
+    if model.flags.spring {
+        for j in 0..model.joints.len() {
+            add_joint_spring(model, params, state, j, metric, mass);
+        }
+    }
+    if model.flags.damper {
+        for (i, &v) in state.qvel.iter().enumerate() {
+            let slope = dof_damper(model, params, i).damping_slope(v);
+            *diagonal(&model.tree, mass, i) += h * slope.max(T::ZERO);
+        }
+    }
+    add_fluid_derivatives(model, params, (pos, vel), FluidForces::Drag, -h, mass);
+    let backbone = metric.backbone.values.iter_mut();
+    backbone
+        .zip(&mass.values)
+        .for_each(|(to, &from)| *to = from);
+    for (i, added) in metric.added.iter_mut().enumerate() {
+        *added = T::ZERO;
+        *added -= *diagonal(&model.tree, &mut metric.mass, i);
+    }
+    for t in 0..model.tendons.len() {
+        let slopes = tendon_slopes(model, params, state, (pos, vel), t);
+        let term = Term::new(h, slopes, vel.ten_velocity[t]);
+        let place = metric.of_tendon[t];
+        term.add(model, pos, Along::Tendon(t), place, metric, mass);
+    }
+    if model.flags.actuation {
+        for (u, actuator) in model.actuators.iter().enumerate() {
+            let stages = (pos, vel, force);
+            let slopes = [
+                -length_slope(model, params, state, stages, u),
+                -velocity_slope(model, params, state, stages, u),
+            ];
+            for output in actuator.outputs.clone() {
+                let term = Term::new(h, slopes, vel.actuator_velocity[output]);
+                let place = metric.of_output[output];
+                term.add(model, pos, Along::Output(output), place, metric, mass);
+            }
+        }
+    }
+    for (i, added) in metric.added.iter_mut().enumerate() {
+        *added += *diagonal(&model.tree, mass, i);
+    }
+}
+
+#[inline(always)]
+fn diagonal<'a, T: Real>(tree: &Tree, matrix: &'a mut TreeMatrix<T>, dof: usize) -> &'a mut T {
+    &mut matrix.values[tree.row_start(dof + 1) - 1]
+}
+
+/// Adds the spring of joint `j`.
+#[inline(always)]
+fn add_joint_spring<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    j: usize,
+    metric: &mut Metric<T>,
+    mass: &mut TreeMatrix<T>,
+) {
+    let Some(stretch) = joint_stretch(model, params, state, j) else {
+        return;
+    };
+    let (spring, h, first) = (
+        joint_spring(params, j),
+        params.timestep,
+        model.joints[j].dof,
+    );
+    let mut add = |x: T, dofs: std::ops::Range<usize>| {
+        let slope = h * spring.stiffness_slope(x).max(T::ZERO);
+        for i in dofs {
+            metric.shift[i] -= slope * state.qvel[i];
+            *diagonal(&model.tree, mass, i) += h * slope;
+        }
+    };
+    let length = |x: Vec3<T>| x.norm();
+    match stretch {
+        JointStretch::Scalar(x) => add(x, first..first + 1),
+        JointStretch::Rotation(turn) => add(length(turn), first..first + 3),
+        JointStretch::Pose(shift, turn) => {
+            add(length(shift), first..first + 3);
+            add(length(turn), first + 3..first + 6);
+        }
+    }
+}
+
+/// −∂force/∂length and −∂force/∂velocity of tendon `t`. Within its dead band a spring has no slope.
+#[inline(always)]
+fn tendon_slopes<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
+    t: usize,
+) -> [T; 2] {
+    let mut slopes = [T::ZERO; 2];
+    let spring = tendon_spring(params, t);
+    if model.flags.spring && !spring.is_zero() {
+        let stretch = tendon_stretch(model, params, &state.plastic, t, pos.ten_length[t]);
+        let slack = stretch.eq(T::ZERO);
+        slopes[0] = T::select(slack, T::ZERO, spring.stiffness_slope(stretch));
+    }
+    if model.flags.damper {
+        let damper = tendon_damper(model, params, t);
+        slopes[1] = damper.damping_slope(vel.ten_velocity[t]);
+    }
+    slopes
+}
+
+/// A term s JᵀJ of the metric, and its share of −h K v, which is `shift` Jᵀ.
+struct Term<T> {
+    scale: T,
+    shift: T,
+}
+
+impl<T: Real> Term<T> {
+    /// From the slopes of the force with length and velocity, both negated, at a velocity.
+    #[inline(always)]
+    fn new(h: T, [length, velocity]: [T; 2], rate: T) -> Self {
+        let stiffness = h * length.max(T::ZERO);
+        Term {
+            scale: h * stiffness + h * velocity.max(T::ZERO),
+            shift: -stiffness * rate,
+        }
+    }
+
+    /// Adds it to the matrix, or to the couplings where it is one, `place`.
+    #[inline(always)]
+    fn add(
+        &self,
+        model: &Model,
+        pos: &Positions<T>,
+        along: Along,
+        place: Option<usize>,
+        metric: &mut Metric<T>,
+        mass: &mut TreeMatrix<T>,
+    ) {
+        if self.scale.eq(T::ZERO).all() {
+            return;
+        }
+        let Metric {
+            shift,
+            added,
+            scales,
+            touched,
+            backbone,
+            ..
+        } = metric;
+        let acts = self.scale.gt(T::ZERO);
+        for &dof in along.dofs(model) {
+            touched[model.tree.tree_of(dof as usize)] |= acts;
+        }
+        each_arm(
+            model,
+            pos,
+            along,
+            #[inline(always)]
+            |dof, arm| shift[dof] += self.shift * arm,
+        );
+        if !backbone.values.is_empty() {
+            each_arm(
+                model,
+                pos,
+                along,
+                #[inline(always)]
+                |dof, arm| *diagonal(&model.tree, backbone, dof) += self.scale * arm * arm,
+            );
+        }
+        match (place, along) {
+            (Some(place), _) => {
+                scales[place] = self.scale;
+                each_arm(
+                    model,
+                    pos,
+                    along,
+                    #[inline(always)]
+                    |dof, arm| added[dof] += self.scale * arm * arm,
+                );
+            }
+            (None, Along::Tendon(t)) => {
+                add_outer(model, tendon::gradient(model, pos, t), self.scale, mass);
+            }
+            (None, Along::Output(output)) => {
+                add_outer(model, moment(model, pos, output), self.scale, mass);
+            }
+        }
+    }
+}
