@@ -6,6 +6,7 @@ import types
 import mujoco
 import numpy as np
 
+import discrete
 import states
 from compare import largest
 
@@ -52,14 +53,24 @@ def results(model, data, state):
     mujoco.mj_fullM(model, data, mass)
     forces = [f"qfrc_{name}" for name in ("constraint", "bias", "passive", "actuator", "smooth")]
     efc = ("type", "id", "pos", "vel", "aref", "D", "KBIP", "margin", "force")
+    smooth = data.qacc_smooth.copy()
+    metric, shift, still = mass, 0.0, np.zeros(model.nv, dtype=bool)
+    if model.opt.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE:
+        metric, shift = discrete.metric(model, data, mass)
+        still = discrete.untouched(model, data, jacobian(model, data))
+        smooth = discrete.smooth_acceleration(data, metric, shift)
     return types.SimpleNamespace(
         state=state,
         mass=mass,
+        metric=metric,
+        shift=shift,
+        still=still,
+        qacc_smooth=smooth,
         jacobian=jacobian(model, data),
         sensordata=data.sensordata.copy(),
         contacts=[contact(model, data, k) for k in range(data.ncon)],
         qvel=np.array(state["qvel"]) if "qvel" in state else np.zeros(model.nv),
-        **{name: getattr(data, name).copy() for name in ("qacc", "qacc_smooth", *forces)},
+        **{name: getattr(data, name).copy() for name in ("qacc", *forces)},
         **{f"efc_{name}": getattr(data, f"efc_{name}")[: data.nefc].copy() for name in efc},
     )
 
@@ -107,8 +118,9 @@ def distance_to_optimum(result):
     The gradient g of the convex cost at qacc gives it: the error e = H⁻¹g has ‖e‖ ≤ ‖M⁻¹g‖ in the norm of M, since
     H = M + JᵀWJ is never less than M.
     """
-    gradient = result.mass @ result.qacc - result.qfrc_smooth - result.qfrc_constraint
-    error = np.linalg.solve(result.mass, gradient)
+    gradient = result.metric @ result.qacc - result.qfrc_smooth - result.shift - result.qfrc_constraint
+    gradient[result.still] = 0.0
+    error = np.linalg.solve(result.metric, gradient)
     return np.abs(error).max() / acceleration_scale(result)
 
 

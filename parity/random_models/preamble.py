@@ -40,10 +40,16 @@ class Preamble(Maker):
         if any(option.get("integrator") == "RK4" for option in self.root.iter("option")):
             for flags in self.root.iter("flag"):
                 flags.attrib.pop("sleep", None)  # is refused beside it
+        if any(option.get("integrator") == "discrete" for option in self.root.iter("option")):
+            for option in self.root.iter("option"):
+                if option.get("solver") == "PGS":
+                    del option.attrib["solver"]  # steps in another metric, and is refused beside it
+                for flags in option.iter("flag"):
+                    flags.attrib.pop("sleep", None)  # is refused where the metric couples trees
 
     def implicit(self):
         """Whether the integrator knows how forces change with velocities."""
-        return any(option.get("integrator", "").startswith("implicit") for option in self.root.iter("option"))
+        return any(option.get("integrator") in ("implicit", "implicitfast", "discrete") for option in self.root.iter("option"))
 
     def sleeps(self):
         """Whether islands at rest sleep."""

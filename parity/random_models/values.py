@@ -212,7 +212,7 @@ VALUES = {
         "density": scale(0.1, 1500),
         "viscosity": scale(1e-4, 2),
         "sleep_tolerance": usually(scale(1e-5, 0.1), "0", "-1"),
-        "integrator": one_of("Euler", "RK4", "implicitfast", "implicit"),
+        "integrator": one_of("Euler", "RK4", "implicitfast", "implicit", "discrete"),
         "cone": one_of("pyramidal", "elliptic"),
         "jacobian": one_of("dense", "sparse", "auto"),
         "solver": one_of("Newton", "CG", "PGS"),
