@@ -5,6 +5,7 @@ import pathlib
 import re
 
 import mujoco
+import numpy as np
 import pytest
 
 import agreement
@@ -15,7 +16,10 @@ from compare import assert_close, largest
 
 # Rounding decides in MuJoCo whether a torque at its limit counts in the metric.
 UNDECIDED = ("orientations",)
-FLAGS = ("--solver", "newton", "--iterations", 300, *program.EXACT, "--mass", "--jacobian", "--step")
+FLAGS = (*program.EXACT, "--mass", "--jacobian", "--step")
+SOLVERS = {"newton": 300, "cg": 3000}
+STEPS = 200
+NEAR = 1e-10  # of what is compared after that many steps: rounding, and what motion makes of it
 
 
 def discrete(path, folder, options=""):
@@ -31,10 +35,11 @@ def discrete(path, folder, options=""):
     return copy
 
 
-def compare(path, cone, rollouts=3, samples=2):
+def compare(path, cone, rollouts=3, samples=2, solver="newton"):
     """Everything that both say of sampled states, and of the step from them."""
     model, found = oracle.load(path, cone), 0
-    with program.Forward(path, "--cone", cone, *FLAGS) as forward:
+    flags = ("--cone", cone, "--solver", solver, "--iterations", SOLVERS[solver], *FLAGS)
+    with program.Forward(path, *flags) as forward:
         for k, state in enumerate(states.sample(path, rollouts, samples, may_be_unstable=True)):
             theirs = oracle.reference(model, state)
             data = oracle.assigned(model, state)
@@ -65,3 +70,66 @@ def test_as_mujoco(model, cone, tmp_path):
 @pytest.mark.parametrize("name", ["tendons", "spatial_tendons", "joints", "contacts", "equalities", "transmissions"])
 def test_with_flags(name, flag, tmp_path):
     compare(discrete(program.ROOT / f"parity/models/{name}.xml", tmp_path, f"<flag {flag}/>"), "elliptic", 2, 1)
+
+
+@pytest.mark.parametrize("name", ["tendons", "spatial_tendons", "contacts", "equalities", "transmissions", "reflected"])
+def test_with_conjugate_gradients(name, tmp_path):
+    compare(discrete(program.ROOT / f"parity/models/{name}.xml", tmp_path), "elliptic", 2, 1, "cg")
+
+
+@pytest.mark.parametrize("name", ["models/humanoid", "models/arm_and_box", "models/pinch", "parity/models/joints"])
+def test_without_slip(name, cone, tmp_path):
+    path, sweeps = discrete(program.ROOT / f"{name}.xml", tmp_path), 100
+    model = oracle.load(path, cone)
+    model.opt.noslip_iterations, model.opt.noslip_tolerance = sweeps, 0.0
+    flags = ("--cone", cone, "--iterations", SOLVERS["newton"], "--noslip-iterations", sweeps, "--noslip-tolerance", 0)
+    with program.Forward(path, *flags, *program.EXACT) as forward:
+        for k, state in enumerate(states.sample(path, 2, 2)):
+            theirs = oracle.reference(model, state)
+            agreement.acceleration(f"state {k}: ", forward(oracle.fed(state, theirs)), theirs)
+
+
+@pytest.mark.parametrize("name", ["joints", "spatial_tendons", "controllers", "muscles", "equalities", "contacts", "medium", "transmissions"])
+def test_trajectory(name, tmp_path):
+    """Step by step from the initial state with own contacts: one environment, and environments in lanes."""
+    path = discrete(program.ROOT / f"parity/models/{name}.xml", tmp_path)
+    model = oracle.load(path)
+    data, expected = mujoco.MjData(model), []
+    for _ in range(STEPS):
+        mujoco.mj_step(model, data)
+        expected.append(data.qpos.copy())
+    flags = ("--steps", STEPS, "--iterations", SOLVERS["newton"], *program.EXACT)
+    alone, _ = program.simulate(path, *flags)
+    assert_close("qpos", alone["qpos"][-STEPS:], expected, NEAR, 1.0)
+    many, _ = program.simulate(path, *flags, "--envs", 5)
+    for env in range(5):
+        assert np.array_equal(many["qpos"][env], alone["qpos"]), f"environment {env}"
+
+
+@pytest.mark.parametrize("name", ["stack_and_ball"])
+def test_sleep(name, tmp_path):
+    """Trees fall asleep in the same step."""
+    path, steps = discrete(program.ROOT / f"parity/sleeping/{name}.xml", tmp_path), 1200
+    model = oracle.load(path)
+    data, expected = mujoco.MjData(model), []
+    for _ in range(steps):
+        mujoco.mj_step(model, data)
+        expected.append(data.tree_asleep.copy())
+    record, _ = program.simulate(path, "--steps", steps, "--iterations", SOLVERS["newton"], *program.EXACT)
+    assert (np.array(expected)[-1] >= 0).all(), "all sleeps in the end"
+    assert np.array_equal(record["tree_asleep"], expected)
+
+
+@pytest.mark.parametrize(
+    "name, options, words",
+    [
+        ("models/tendons", "<flag sleep='enable'/>", ""),
+        ("sleeping/couplings", "", 'sleep and tendon "spring"'),
+        ("models/contacts", "<flag sleep='enable' island='disable'/>", "islands"),
+    ],
+)
+def test_what_is_refused(name, options, words, tmp_path):
+    """What couples trees cannot sleep with it yet, and nothing sleeps without islands, which MuJoCo refuses too."""
+    path = discrete(program.ROOT / f"parity/{name}.xml", tmp_path, options)
+    done = program.run("simulate", path, "--steps", 1)
+    assert (done.returncode == 0) == (words == "") and words in done.stderr, done.stderr
