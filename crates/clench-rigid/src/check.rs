@@ -165,6 +165,19 @@ pub(crate) fn has_occasional<S: Scalar>(s: &State<S>) -> bool {
     bits != 0
 }
 
+/// Whether all occasional inputs are as `wanted`, which is shown some numbers at a time.
+#[inline(always)]
+pub(crate) fn are_occasional<T: Real>(s: &State<T>, wanted: impl Fn(&[T]) -> bool) -> bool {
+    let mut all = true;
+    each_input(
+        s,
+        |group| group == OCCASIONAL,
+        #[inline(always)]
+        |_, _, _, numbers| all &= wanted(numbers),
+    );
+    all
+}
+
 /// The lanes whose state a step can start from. Where `occasional` is false, all [occasional inputs](has_occasional) are zero.
 #[kernel]
 pub(crate) fn good_inputs<T: Real>(s: &State<T>, occasional: bool) -> T::Mask {

@@ -53,6 +53,11 @@ impl<T: Scalar> Known<T> {
         self.mocap_quat.clone_from(&state.mocap_quat);
     }
 
+    /// Whether everything is known of the state that was noted last.
+    pub(crate) fn holds_everything(&self) -> bool {
+        self.extent == Extent::Everything
+    }
+
     /// How much is known of this state.
     pub(crate) fn extent(&self, state: &State<T>) -> Extent {
         let placed = self.qpos == state.qpos

@@ -15,6 +15,7 @@ pub mod constraint;
 pub mod contact;
 pub mod dynamics;
 mod error;
+mod fixed;
 mod geometry;
 pub mod history;
 pub mod ik;

@@ -12,7 +12,7 @@ use crate::dynamics::energy::{Energy, energy};
 use crate::dynamics::euler::euler;
 use crate::dynamics::implicit::{implicit, implicit_fast};
 use crate::dynamics::inertia::composite_inertia;
-use crate::dynamics::kinematics::kinematics;
+use crate::dynamics::kinematics::{Computed, kinematics};
 use crate::dynamics::passive::passive_forces;
 use crate::dynamics::rk4::rk4;
 use crate::dynamics::smooth::{smooth_acceleration, smooth_forces};
@@ -29,7 +29,6 @@ use crate::workspace::{EnergyScratch, Workspace};
 use crate::{sensor, sleep};
 use clench_math::Real;
 use clench_solver::TreeMatrix;
-use std::ops::Range;
 use std::slice::from_ref;
 
 /// What depends on positions: poses, spatial inertias and dof axes, tendons and transmissions, and the mass matrix with
@@ -40,15 +39,20 @@ pub fn position_stage<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
-    ws.sleep.forget();
+    ws.forget_poses();
     positions(model, params, state, ws);
 }
 
-/// The same, but the poses of trees that sleep where they slept in the last pass are taken from the workspace:
-/// [`Sleep::parts`](sleep::Sleep::parts) leaves them out.
+/// The same, but the poses of what is fixed to the world, and of trees that sleep where they slept in the last pass, are taken from the
+/// workspace: [`Sleep::parts`](sleep::Sleep::parts) leaves them out.
 fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
-    let (pos, parts) = (&mut ws.position, ws.sleep.parts());
-    poses(model, params, state, parts, pos);
+    let computed = Computed {
+        parts: ws.sleep.parts(&ws.fixed),
+        fixed: !ws.fixed.known(),
+    };
+    let pos = &mut ws.position;
+    poses(model, params, state, computed, pos);
+    ws.fixed.note();
     ws.clock.lap(Stage::Kinematics as usize);
     let (mass, factor) = match ws.metric.acts() {
         true => (&mut ws.metric.mass, &mut ws.metric.mass_factor),
@@ -64,16 +68,16 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
     ws.clock.lap(Stage::MassFactorization as usize);
 }
 
-/// Poses of the bodies in the ranges `parts`; tendons and transmissions.
+/// Poses of some bodies; tendons and transmissions.
 fn poses<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
-    parts: &[Range<usize>],
+    computed: Computed,
     pos: &mut Positions<T>,
 ) {
-    kinematics(model, params, state, parts, pos);
-    com_positions(model, params, parts, pos);
+    kinematics(model, params, state, computed, pos);
+    com_positions(model, params, computed.parts, pos);
     tendons(model, params, &state.qpos, pos);
     transmissions(model, params, &state.qpos, pos);
 }
@@ -98,7 +102,8 @@ pub fn state_energy<T: Real>(
 ) -> Energy<T> {
     let EnergyScratch { position, mass } = scratch;
     let bodies = 0..model.nbody();
-    poses(model, params, state, from_ref(&bodies), position);
+    let all = Computed::all(from_ref(&bodies));
+    poses(model, params, state, all, position);
     mass_matrix(model, params, position, mass);
     energy(model, params, position, mass, state)
 }
@@ -175,7 +180,7 @@ pub fn before_forces<T: Real>(
     let sleep = settings.flags.sleep;
     if sleep {
         sleep::wake_touched(model, state, ws);
-        ws.sleep.find_parts(model, state);
+        ws.sleep.find_parts(model, state, &ws.fixed);
     }
     positions(model, params, state, ws);
     if sleep {
@@ -216,12 +221,30 @@ pub fn step<T: Real>(
     state: &mut State<T>,
     ws: &mut Workspace<T>,
 ) {
+    if rest(model, params, settings, state, ws) {
+        return;
+    }
     if settings.flags.sleep && sleep::is_idle(model, state, ws) {
         sleep::idle(model, params, settings, state, ws);
         return;
     }
     before_forces(model, params, settings, state, ws);
     step_from_forces(model, params, settings, state, ws);
+}
+
+/// Does a step that finds everything asleep as the last one left it, so that nothing changes but time. Whether it was one.
+pub fn rest<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) -> bool {
+    let rests = settings.flags.sleep && sleep::rests(model, state, ws);
+    if rests {
+        sleep::pass_time(model, params, settings, state, ws);
+    }
+    rests
 }
 
 /// The rest of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)

@@ -5,6 +5,7 @@ mod halves;
 mod parameters;
 mod pushes;
 mod quality;
+mod rest;
 
 pub use dynamic::DynamicConstraint;
 
@@ -125,6 +126,10 @@ impl<T: Precision> Sim<T> {
 
     fn try_step(&mut self) -> Result<(), SimError> {
         self.ws.clock.start();
+        if self.rest() {
+            self.ws.clock.lap(Stage::Rows as usize);
+            return Ok(());
+        }
         self.check_present()?;
         self.last_good.copy_moving_from(&self.state);
         self.ws.clock.lap(Stage::Rows as usize);
@@ -200,7 +205,7 @@ impl<T: Precision> Sim<T> {
     fn forget(&mut self) {
         self.halfway = false;
         self.known.forget();
-        self.ws.sleep.forget();
+        self.ws.forget_poses();
     }
 
     /// Computes what the workspace must hold for the present state, unless it holds it already.
@@ -214,7 +219,7 @@ impl<T: Precision> Sim<T> {
         self.check_present()?;
         self.halfway = false;
         self.ws.clock.start();
-        self.ws.sleep.forget();
+        self.ws.forget_poses();
         T::position_stage(&self.model, &self.params, &self.state, &mut self.ws);
         self.known.note(Extent::Positions, &self.state);
         Ok(())

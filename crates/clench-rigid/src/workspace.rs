@@ -7,6 +7,7 @@ use crate::contact::collision::Collision;
 use crate::dynamics::articulated::{ArticulatedInertia, articulated_bodies};
 use crate::dynamics::integration::Integration;
 use crate::dynamics::metric::Metric;
+use crate::fixed::FixedPoses;
 use crate::profile::{Profile, StepClock};
 use crate::sensor::readings::SensorReadings;
 use crate::sleep::Sleep;
@@ -41,6 +42,8 @@ pub struct Workspace<T: Real> {
     pub read: bool,
     /// Which trees are awake.
     pub sleep: Sleep<T>,
+    /// Whether the poses of what is fixed to the world are known.
+    pub fixed: FixedPoses,
     /// What sensors measure.
     pub sensors: SensorReadings<T>,
     /// Scratch of the factorization by articulated bodies (nbody); empty in a model whose mass matrix is factored otherwise.
@@ -97,6 +100,7 @@ impl<T: Real> Workspace<T> {
             qfrc_constraint: zeros(nv),
             read: true,
             sleep: Sleep::new(model),
+            fixed: FixedPoses::new(model),
             sensors: SensorReadings::new(model),
             articulated: articulated_bodies(model),
             energy: None,
@@ -105,6 +109,13 @@ impl<T: Real> Workspace<T> {
             clock: StepClock::default(),
             singular: T::Mask::splat(false),
         }
+    }
+
+    /// Has the next pass compute all poses, because what is here was computed from other parameters, or has to be known of a state
+    /// whatever it was computed from.
+    pub(crate) fn forget_poses(&mut self) {
+        self.sleep.forget();
+        self.fixed.forget();
     }
 
     /// The mass matrix, whatever metric the problem is solved in.

@@ -129,7 +129,7 @@ impl<S: Scalar + Shared> Asking<'_, S> {
         }
         match self.question {
             Question::Acceleration(..) => {
-                ws.sleep.forget();
+                ws.forget_poses();
                 forward(self.model, params, self.settings, state, ws);
                 update_body_forces(self.model, params, state, ws);
             }

@@ -56,6 +56,14 @@ pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {
         ws: &mut Workspace<Self>,
         qfrc_inverse: &mut [Self],
     );
+    /// [`pipeline::rest`] of one environment.
+    fn rest(
+        model: &Model,
+        params: &Params<Self>,
+        settings: &StepSettings,
+        state: &mut State<Self>,
+        ws: &mut Workspace<Self>,
+    ) -> bool;
     /// [`pipeline::before_forces`] of one environment.
     fn before_forces(
         model: &Model,
@@ -128,6 +136,15 @@ macro_rules! lanewise {
                 qfrc_inverse: &mut [$scalar],
             ) {
                 inverse::inverse(model, params, settings, state, given, ws, qfrc_inverse);
+            }
+            fn rest(
+                model: &Model,
+                params: &Params<$scalar>,
+                settings: &StepSettings,
+                state: &mut State<$scalar>,
+                ws: &mut Workspace<$scalar>,
+            ) -> bool {
+                pipeline::rest(model, params, settings, state, ws)
             }
             fn before_forces(
                 model: &Model,

@@ -86,7 +86,7 @@ where
             }
         }
         if !rows.params.is_empty() {
-            self.ws.sleep.forget();
+            self.ws.forget_poses();
         }
         let has_occasional = (group.iter()).any(|(_, env)| rows.inputs.has_occasional(env));
         if has_occasional {

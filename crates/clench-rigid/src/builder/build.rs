@@ -162,7 +162,8 @@ fn pose(model: &Model, qpos: &[f64]) -> Positions<f64> {
     let mut pos = Positions::new(model);
     let all = 0..model.nbody();
     let parts = std::slice::from_ref(&all);
-    kinematics::kinematics(model, params, &state, parts, &mut pos);
+    let all = kinematics::Computed::all(parts);
+    kinematics::kinematics(model, params, &state, all, &mut pos);
     com::com_positions(model, params, parts, &mut pos);
     tendon::tendons(model, params, &state.qpos, &mut pos);
     transmission::transmissions(model, params, &state.qpos, &mut pos);

@@ -58,7 +58,7 @@ pub fn detect<T: Real>(
     collision.near.clear();
     let spheres = &mut collision.spheres;
     if let Some(broad_phase) = &mut collision.broad_phase {
-        broad_phase.update(model, params, pos, spheres);
+        broad_phase.update(model, params, pos, ws.fixed.version(), spheres);
         let too_many = broad_phase.find(model, &mut collision.candidates);
         collision.record_excess(too_many, Excess::Pairs);
         let all = 0..collision.candidates.len();

@@ -9,8 +9,8 @@ use crate::stages::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
 use clench_math::{Mask, Real, Vec3, kernel};
 
-/// Finds candidates. What stands still is looked at again only where its pose, size or margin in any environment is another than
-/// before, as that of a group of other environments may be.
+/// Finds candidates. What stands still is compared with what it was only after its poses were computed anew, and looked at again only
+/// where its pose, size or margin in any environment is another than before, as that of a group of other environments may be.
 #[derive(Clone, Debug)]
 pub(super) struct DynamicBroadPhase<T> {
     broad_phase: BroadPhase,
@@ -22,6 +22,8 @@ pub(super) struct DynamicBroadPhase<T> {
     /// The geoms that stand still, and what their bounds were made of.
     statics: Vec<usize>,
     seen: Vec<Placement<T>>,
+    /// The [version](crate::fixed::FixedPoses::version) of the poses that they were compared with.
+    version: u64,
 }
 
 /// What the bound of a geom follows from.
@@ -58,12 +60,12 @@ impl<T: Real> Placement<T> {
 
 fn mobility(model: &Model, geom: &Geom) -> Mobility {
     let weld = &model.bodies[model.bodies[geom.body].weld];
-    if !weld.dofs.is_empty() {
-        Mobility::Moving
-    } else if weld.mocap.is_some() {
+    if model.is_fixed(geom.body) {
+        Mobility::Static
+    } else if weld.dofs.is_empty() {
         Mobility::Placed
     } else {
-        Mobility::Static
+        Mobility::Moving
     }
 }
 
@@ -85,25 +87,26 @@ impl<T: Real> DynamicBroadPhase<T> {
             margins: Vec::new(),
             hits: Vec::new(),
             seen: Vec::new(),
+            version: 0,
         }
     }
 
-    /// Takes over where geoms are, and keeps their bounding spheres up to date.
+    /// Takes over where geoms are, with the version of the poses of what is fixed, and keeps their bounding spheres up to date.
     #[kernel]
     pub fn update(
         &mut self,
         model: &Model,
         params: &Params<T>,
         pos: &Positions<T>,
+        version: u64,
         spheres: &mut Vec<BoundingSphere<T>>,
     ) {
         let placement = |geom: usize| Placement::of(model, params, pos, geom);
-        let seen = self.statics.iter().zip(&self.seen);
+        let mut seen = self.statics.iter().zip(&self.seen);
         let unchanged = self.seen.len() == self.statics.len()
             && self.bounds.len() == model.geoms.len()
-            && seen
-                .into_iter()
-                .all(|(&geom, seen)| placement(geom).same(seen));
+            && (version == self.version || seen.all(|(&geom, seen)| placement(geom).same(seen)));
+        self.version = version;
         let bound = |g: usize| Bound::new(&shape(model, params, g), &pose(pos, g));
         if unchanged {
             for &g in self.broad_phase.mobile() {

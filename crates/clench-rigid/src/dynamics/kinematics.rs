@@ -9,8 +9,8 @@
 //!
 //! What is trivial in every environment ([`SameFrames`](crate::model::SameFrames)) is not composed but copied.
 //!
-//! Poses are computed for the bodies in some ranges only. The ranges leave out trees that sleep where they slept in the last pass: their
-//! poses of that pass still hold.
+//! Poses are computed for the bodies in some ranges only. The ranges leave out what is fixed to the world, and trees that sleep where they
+//! slept in the last pass: their poses of that pass still hold.
 
 use crate::model::{JointKind, Model, Params};
 use crate::stages::Positions;
@@ -18,7 +18,23 @@ use crate::state::State;
 use clench_math::{Mat3, Quat, Real, Vec3, kernel};
 use std::ops::Range;
 
-/// Poses of the bodies in the ranges `parts`, and of inertial frames, joints, geoms and sites on them, from `state.qpos` and the mocap poses.
+/// The poses that a pass computes.
+#[derive(Clone, Copy, Debug)]
+pub struct Computed<'a> {
+    /// Ranges of the bodies whose poses they are.
+    pub parts: &'a [Range<usize>],
+    /// Those of geoms and sites on bodies that are fixed to the world are among them.
+    pub fixed: bool,
+}
+
+impl<'a> Computed<'a> {
+    /// All poses on the bodies in some ranges.
+    pub fn all(parts: &'a [Range<usize>]) -> Self {
+        Computed { parts, fixed: true }
+    }
+}
+
+/// Poses of bodies, and of inertial frames, joints, geoms and sites on them, from `state.qpos` and the mocap poses.
 ///
 /// Quaternions need not be of unit length: they are read normalized, and never written.
 #[kernel]
@@ -26,13 +42,13 @@ pub fn kinematics<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
-    parts: &[Range<usize>],
+    computed: Computed,
     pos: &mut Positions<T>,
 ) {
     pos.xpos[0] = Vec3::ZERO;
     pos.xquat[0] = Quat::IDENTITY;
     pos.xmat[0] = Mat3::IDENTITY;
-    for part in parts {
+    for part in computed.parts {
         let joints = model.joints_of(part);
         let turns = &mut pos.jnt_turn[joints.clone()];
         joint_turns(model, params, &state.qpos, joints, turns);
@@ -42,7 +58,7 @@ pub fn kinematics<T: Real>(
             pos.xquat[b] = xquat;
             pos.xmat[b] = xquat.to_matrix();
         }
-        attached_poses(model, params, part, pos);
+        attached_poses(model, params, (part, computed.fixed), pos);
     }
 }
 
@@ -121,16 +137,19 @@ fn body_pose<T: Real>(
     (xpos, xquat)
 }
 
-/// Inertial frames, geoms and sites, each fixed to its body.
+/// Inertial frames, geoms and sites, each fixed to its body; those on bodies that are `fixed` to the world only if they are wanted.
 #[inline(always)]
 fn attached_poses<T: Real>(
     model: &Model,
     params: &Params<T>,
-    part: &Range<usize>,
+    (part, fixed): (&Range<usize>, bool),
     pos: &mut Positions<T>,
 ) {
     let same = &model.same_frames;
     for b in part.clone() {
+        if !fixed && model.is_fixed(b) {
+            continue;
+        }
         let body = &model.bodies[b];
         let (xpos, xquat, xmat) = (pos.xpos[b], pos.xquat[b], pos.xmat[b]);
         let body_axes = (xquat, xmat);

@@ -17,7 +17,7 @@ use super::{Ik, IkSolution, IkStatus, IkTarget};
 use crate::dynamics::com::com_positions;
 use crate::dynamics::frames::Frames;
 use crate::dynamics::integrate::integrate_positions;
-use crate::dynamics::kinematics::kinematics;
+use crate::dynamics::kinematics::{Computed, kinematics};
 use crate::model::{JointKind, Model, Params};
 use crate::stages::Positions;
 use crate::state::State;
@@ -225,7 +225,7 @@ impl<T: Real> Search<T> {
     fn evaluate(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
         let pos = &mut self.position;
         let all = std::slice::from_ref(&self.all);
-        kinematics(model, params, &self.state, all, pos);
+        kinematics(model, params, &self.state, Computed::all(all), pos);
         com_positions(model, params, all, pos);
         let frames = Frames { model, params, pos };
         let goals = (ik, &self.goals[..]);

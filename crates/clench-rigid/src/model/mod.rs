@@ -131,6 +131,12 @@ impl Model {
     pub fn nbody(&self) -> usize {
         self.bodies.len()
     }
+    /// Whether nothing can move a body: neither joints nor the user, who moves mocap bodies.
+    #[inline(always)]
+    pub(crate) fn is_fixed(&self, body: usize) -> bool {
+        let weld = &self.bodies[self.bodies[body].weld];
+        weld.dofs.is_empty() && weld.mocap.is_none()
+    }
     /// The joints of consecutive bodies.
     #[inline(always)]
     pub(crate) fn joints_of(&self, bodies: &Range<usize>) -> Range<usize> {

@@ -6,15 +6,68 @@
 //! the step is done in full once, unless nobody reads the workspace.
 
 use super::wake::wake_coupled;
-use super::{Sleep, hold, mocap_pose, wake_touched};
+use super::{Sleep, hold, is_blank, mocap_pose, wake_touched};
+use crate::check::are_occasional;
 use crate::constraint::assemble;
+use crate::fixed::FixedPoses;
 use crate::model::{Model, Params};
 use crate::sensor;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Clock, Mask, Real, kernel};
 use std::ops::Range;
+
+/// Whether a step finds everything asleep and as the last pass left it, so that nothing but time changes. What can act on sleepers in
+/// other ways than by forces on them, or is written in every step, is looked at by [`is_idle`].
+#[kernel]
+pub(crate) fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> bool {
+    let sleep = &ws.sleep;
+    let bare = model.actuators.is_empty()
+        && model.equalities.is_empty()
+        && model.nhistory == 0
+        && state.plastic.is_empty();
+    bare && !ws.collision.given
+        && sleep.rests_as_before(model, state)
+        && all_same(&state.tree_asleep, &sleep.counters)
+        && all_same(&state.pose_asleep, &sleep.pose)
+        && all_blank(&state.qvel)
+        && all_blank(&state.qacc_warmstart)
+        && all_blank(&state.qfrc_applied)
+        && are_occasional(state, all_blank)
+        && (0..T::LANES).all(|lane| state.time.lane(lane).is_finite())
+}
+
+/// So many numbers are looked at before anyone asks whether they are as they should be.
+const BLOCK: usize = 256;
+
+/// Whether two arrays hold the same numbers in all lanes.
+#[inline(always)]
+fn all_same<T: Real>(one: &[T], other: &[T]) -> bool {
+    let same = |same: T::Mask, (a, b): (&T, &T)| same & a.eq(*b);
+    let mut blocks = one.chunks(BLOCK).zip(other.chunks(BLOCK));
+    blocks.all(|(a, b)| a.iter().zip(b).fold(T::Mask::splat(true), same).all())
+}
+
+/// Whether all bits of all numbers are zero.
+#[inline(always)]
+fn all_blank<T: Real>(numbers: &[T]) -> bool {
+    let mut blocks = numbers.chunks(BLOCK);
+    let and_blank = |blank: T::Mask, x: &T| blank & is_blank(*x);
+    blocks.all(|block| block.iter().fold(T::Mask::splat(true), and_blank).all())
+}
+
+/// Does a step that changes nothing but time.
+pub(crate) fn pass_time<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    sensor::evaluate(model, params, settings, state, ws);
+    state.pass(params.timestep);
+}
 
 /// Whether a step only lets time pass. Actuators and mocap bodies act on what sleeps, or may touch it, and past values are
 /// written in every step, so a model that has them is looked at in full.
@@ -46,8 +99,7 @@ pub(crate) fn idle<T: Real>(
     if !ws.sleep.at_rest {
         clear(model, params, settings, state, ws);
     }
-    sensor::evaluate(model, params, settings, state, ws);
-    state.pass(params.timestep);
+    pass_time(model, params, settings, state, ws);
     hold(model, state, ws);
     state.qacc_warmstart.fill(T::ZERO);
 }
@@ -93,32 +145,39 @@ impl<T: Real> Sleep<T> {
         self.at_rest = self.all_asleep().all();
     }
 
-    /// Ranges of the bodies whose poses the position stage computes: all but those of trees on the world that sleep where they slept in
-    /// the last pass.
-    pub(crate) fn parts(&self) -> &[Range<usize>] {
-        &self.parts
+    /// Ranges of the bodies whose poses the position stage computes: all but those of trees on the world that are known to be fixed, or
+    /// that sleep where they slept in the last pass.
+    pub(crate) fn parts<'a>(&'a self, fixed: &'a FixedPoses) -> &'a [Range<usize>] {
+        match self.enabled {
+            true => &self.parts,
+            false => fixed.parts(),
+        }
     }
 
     /// Finds [`parts`](Self::parts) for a state.
-    pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>) {
+    pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>, fixed: &FixedPoses) {
         self.parts.clear();
-        let mut start = 0;
-        for (tree, awake) in model.trees.iter().zip(&self.awake) {
-            let apart = !awake.any() && model.bodies[tree.bodies.start].parent == 0;
-            if apart && self.placed && self.lies_as_before(tree.qpos.clone(), state) {
-                if start < tree.bodies.start {
-                    self.parts.push(start..tree.bodies.start);
+        let mut trees = model.trees.iter().zip(&self.awake).peekable();
+        for part in fixed.parts() {
+            let mut start = part.start;
+            while let Some((tree, awake)) = trees.next_if(|(tree, _)| tree.bodies.end <= part.end) {
+                let apart = !awake.any() && model.bodies[tree.bodies.start].parent == 0;
+                if apart && self.placed && self.lies_as_before(tree.qpos.clone(), state) {
+                    if start < tree.bodies.start {
+                        self.parts.push(start..tree.bodies.start);
+                    }
+                    start = tree.bodies.end;
                 }
-                start = tree.bodies.end;
+            }
+            if start < part.end {
+                self.parts.push(start..part.end);
             }
         }
-        self.parts.push(start..model.nbody());
     }
 
     /// Whether positions are those of the last pass.
     fn lies_as_before(&self, qpos: Range<usize>, state: &State<T>) -> bool {
-        let pairs = self.pose[qpos.clone()].iter().zip(&state.qpos[qpos]);
-        pairs.fold(true, |same, (one, other)| same && one.eq(*other).all())
+        all_same(&self.pose[qpos.clone()], &state.qpos[qpos])
     }
 
     /// Whether all trees slept in the last pass where they sleep now, and no mocap body has moved.

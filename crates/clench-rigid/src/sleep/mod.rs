@@ -13,7 +13,7 @@ mod idle;
 mod wake;
 
 pub(crate) use fall::{fall_asleep, hold};
-pub(crate) use idle::{idle, is_idle};
+pub(crate) use idle::{idle, is_idle, pass_time, rests};
 pub(crate) use wake::{wake_coupled, wake_in_state, wake_pulled, wake_touched, wake_touching};
 
 use crate::model::Model;

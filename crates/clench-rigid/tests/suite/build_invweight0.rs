@@ -27,7 +27,8 @@ fn positions(model: &Model) -> (Positions<f64>, Vec<f64>) {
     let mut pos = Positions::new(model);
     let bodies = 0..model.nbody();
     let parts = std::slice::from_ref(&bodies);
-    kinematics::kinematics(model, &model.params, &State::new(model), parts, &mut pos);
+    let all = kinematics::Computed::all(parts);
+    kinematics::kinematics(model, &model.params, &State::new(model), all, &mut pos);
     com::com_positions(model, &model.params, parts, &mut pos);
     let mut mass = TreeMatrix::zeros(&model.tree);
     inertia::composite_inertia(model, &model.params, &mut pos, &mut mass);

@@ -37,6 +37,7 @@ mod muscles;
 mod orientation_servos;
 mod queries;
 mod reflected;
+mod resting;
 mod scenes;
 mod selection;
 mod simulation;

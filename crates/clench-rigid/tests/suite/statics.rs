@@ -1,8 +1,9 @@
-//! Scenes of many geoms that stand still, which are looked at once and not in each step.
+//! What stands still: its poses are computed once, and many geoms of it are looked at once and not in each step.
 
-use crate::scenes::{add, cuboid, free, sphere, world};
+use crate::scenes::{add, cuboid, free, joint, sphere, world};
 use clench_math::Vec3;
-use clench_rigid::builder::{BodySpec, GeomSpec, ModelBuilder};
+use clench_rigid::builder::{BodySpec, GeomSpec, ModelBuilder, SiteSpec};
+use clench_rigid::model::JointKind;
 use clench_rigid::{Batch, Sim};
 use std::sync::Arc;
 
@@ -96,5 +97,56 @@ fn environments_with_their_own_scenes_move_as_if_alone() {
             bits(&sim.state.qpos),
             "{env}"
         );
+    }
+}
+
+/// A table with a box fixed on it, a pedestal with a pendulum on it, and a free ball, each body with a site.
+fn furniture() -> ModelBuilder {
+    let mut b = world();
+    let block = || vec![cuboid([0.1, 0.2, 0.1])];
+    let table = add(&mut b, 0, "", [0.3, 0.1, 0.2], vec![], block());
+    add(&mut b, table, "", [0.0, 0.05, 0.2], vec![], block());
+    let pedestal = add(&mut b, 0, "", [2.0, 0.0, 0.2], vec![], block());
+    let hinge = vec![joint(JointKind::Hinge, "", [0.0, 1.0, 0.0])];
+    add(
+        &mut b,
+        pedestal,
+        "",
+        [0.3, 0.0, 0.5],
+        hinge,
+        vec![sphere(0.1)],
+    );
+    add(&mut b, 0, "", [0.3, 0.1, 2.0], free(), vec![sphere(0.1)]);
+    for body in &mut b.bodies {
+        body.sites.push(SiteSpec {
+            pos: Vec3::new(0.01, 0.02, 0.03),
+            ..SiteSpec::default()
+        });
+    }
+    b
+}
+
+#[test]
+fn what_is_fixed_stands_where_parameters_put_it() {
+    for sleep in [false, true] {
+        let mut b = furniture();
+        b.physics.flags.sleep = sleep;
+        let mut sim = crate::scenes::sim(&b);
+        for by in [0.0, 0.5, 0.0, -0.25] {
+            let mut pos = sim.param("body_pos").expect("a field");
+            pos.iter_mut().skip(3).for_each(|x| *x += by);
+            if by != 0.0 {
+                sim.set_param("body_pos", &pos).expect("finite");
+            }
+            sim.step().expect("finite");
+            sim.step().expect("finite");
+            sim.forward().expect("finite");
+            let mut fresh = crate::scenes::sim(&b);
+            fresh.set_param("body_pos", &pos).expect("finite");
+            (fresh.set_configuration(&sim.state.qpos, &sim.state.qvel)).expect("finite");
+            fresh.forward().expect("finite");
+            let positions = |sim: &Sim| format!("{:?}", sim.workspace().position);
+            assert_eq!(positions(&sim), positions(&fresh), "by {by}, sleep {sleep}");
+        }
     }
 }
