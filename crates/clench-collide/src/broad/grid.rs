@@ -24,6 +24,8 @@ pub(super) struct Grid {
     wide: Vec<u32>,
     /// Whether a box is one of them.
     is_wide: Vec<bool>,
+    /// The cubes that hold the corners of each other box, those of fixed ones first.
+    reaches: Vec<Reach>,
     /// Where the entries of a bucket begin, and those of the next.
     starts: Vec<u32>,
     entries: Vec<Entry>,
@@ -45,14 +47,42 @@ struct Entry {
     shape: u32,
 }
 
-/// The cubes that hold the corners of a box.
-fn cubes(one: &Aabb, per_metre: f64) -> (Cube, Cube) {
-    (cube(one.low, per_metre), cube(one.high, per_metre))
+/// The cubes that a shape reaches into.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    low: Cube,
+    high: Cube,
+    shape: u32,
+}
+
+impl Reach {
+    fn new(shape: usize, one: &Aabb, per_metre: f64) -> Self {
+        Reach {
+            low: cube(one.low, per_metre),
+            high: cube(one.high, per_metre),
+            shape: shape as u32,
+        }
+    }
+
+    fn cubes(&self) -> impl Iterator<Item = Cube> {
+        let Reach { low, high, .. } = *self;
+        let [along_x, along_y, along_z] = [0, 1, 2].map(|axis| low[axis]..=high[axis]);
+        along_x.flat_map(move |x| {
+            let along_z = along_z.clone();
+            (along_y.clone()).flat_map(move |y| along_z.clone().map(move |z| [x, y, z]))
+        })
+    }
 }
 
 /// The cube that a point is in.
 fn cube(point: [f64; 3], per_metre: f64) -> Cube {
-    point.map(|x| (x * per_metre).floor() as i32)
+    point.map(|x| floor(x * per_metre))
+}
+
+/// The largest whole number up to x, which is within [`MAX_CELL`].
+fn floor(x: f64) -> i32 {
+    let whole = x as i32;
+    whole - i32::from(f64::from(whole) > x)
 }
 
 impl Grid {
@@ -99,34 +129,24 @@ impl Grid {
     fn list(&mut self, Boxes { all, fixed }: Boxes, per_metre: f64) {
         let Grid {
             is_wide,
+            reaches,
             starts,
             entries,
             ..
         } = self;
         let buckets = (BUCKETS_PER_SHAPE * all.len()).next_power_of_two();
-        let each = |put: &mut dyn FnMut(usize, Entry)| {
-            // Buckets are filled from their ends.
-            let fixed_first = (0..all.len()).filter(|&index| fixed[index]);
-            let moving = (0..all.len()).filter(|&index| !fixed[index]);
-            for index in fixed_first.chain(moving) {
-                let one = &all[index];
-                if is_wide[index] {
-                    continue;
-                }
-                let (low, high) = cubes(one, per_metre);
-                for x in low[0]..=high[0] {
-                    for y in low[1]..=high[1] {
-                        for z in low[2]..=high[2] {
-                            let (cube, shape) = ([x, y, z], index as u32);
-                            put(bucket(cube, buckets), Entry { cube, shape });
-                        }
-                    }
-                }
-            }
-        };
+        // Buckets are filled from their ends.
+        reaches.clear();
+        for is_fixed in [true, false] {
+            let of_kind = |&index: &usize| fixed[index] == is_fixed && !is_wide[index];
+            let shapes = (0..all.len()).filter(of_kind);
+            reaches.extend(shapes.map(|index| Reach::new(index, &all[index], per_metre)));
+        }
         starts.clear();
         starts.resize(buckets + 1, 0);
-        each(&mut |bucket, _| starts[bucket] += 1);
+        for cube in reaches.iter().flat_map(Reach::cubes) {
+            starts[bucket(cube, buckets)] += 1;
+        }
         let mut end = 0;
         for start in starts.iter_mut() {
             end += *start;
@@ -135,10 +155,13 @@ impl Grid {
         entries.clear();
         entries.resize(end as usize, Entry::default());
         // From the end of each bucket to its beginning, which is where `starts` then points.
-        each(&mut |bucket, entry| {
-            starts[bucket] -= 1;
-            entries[starts[bucket] as usize] = entry;
-        });
+        for reach in reaches.iter() {
+            for cube in reach.cubes() {
+                let (shape, start) = (reach.shape, &mut starts[bucket(cube, buckets)]);
+                *start -= 1;
+                entries[*start as usize] = Entry { cube, shape };
+            }
+        }
     }
 
     /// Pairs that share a cube.

@@ -84,11 +84,12 @@ impl BroadPhase {
             self.boxes.push(aabb(shape));
         }
         pairs.clear();
-        let mut counter = Counter::new(most);
+        let mut counter = Counter::<T>::new(most);
         let mut check = |i: u32, j: u32| {
             let (i, j) = (i.min(j), i.max(j));
             let (a, b) = (i as usize, j as usize);
-            if allowed(i, j) && counter.admits(&bounds[a], &bounds[b], margins[a] + margins[b]) {
+            let near = near(&bounds[a], &bounds[b], margins[a] + margins[b]);
+            if near.any() && allowed(i, j) && counter.admits(near) {
                 pairs.push((i, j));
             }
         };
@@ -126,10 +127,10 @@ impl<T: Real> Counter<T> {
         }
     }
 
-    /// Whether two shapes are near in an environment that may have another pair.
-    #[kernel]
-    fn admits(&mut self, a: &Bound<T>, b: &Bound<T>, margin: T) -> bool {
-        let found = near(a, b, margin) & !self.over;
+    /// Whether an environment in which two shapes are near may have another pair.
+    #[inline(always)]
+    fn admits(&mut self, near: T::Mask) -> bool {
+        let found = near & !self.over;
         self.count += T::select(found, T::ONE, T::ZERO);
         self.over |= self.count.gt(self.most);
         found.any()
