@@ -22,6 +22,8 @@ class EnvStatus(IntEnum):
     """It had more contacts than `max_contacts` allows."""
     OVER_BUDGET = 5
     """Its step asked for more than the budget that the model was loaded with."""
+    UNFINISHED = 6
+    """The graphics device ended its step before the end, as Mesa's software device does with very long ones."""
 
 
 class IkStatus(IntEnum):

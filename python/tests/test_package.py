@@ -126,6 +126,7 @@ def test_status_codes() -> None:
         ("DIVERGED", 3),
         ("CONTACT_OVERFLOW", 4),
         ("OVER_BUDGET", 5),
+        ("UNFINISHED", 6),
     ]
 
 

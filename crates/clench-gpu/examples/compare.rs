@@ -38,12 +38,9 @@ fn main() {
         d.iter().map(of).fold(0.0f64, f64::max)
     };
     for (name, found) in common::distances(&batch, &states) {
-        let far = found.iter().filter(|d| {
-            !d.is_near(
-                common::usual_noise(&found),
-                common::tolerance(batch.model()),
-            )
-        });
+        let far = found
+            .iter()
+            .filter(|d| !d.is_near(common::usual_noise(&found), common::TOLERANCE));
         println!(
             "{name:18} from single precision {:8.1e}, from double {:8.1e}; these from each other {:8.1e}; {} states beyond",
             worst(&found, |d| d.single),

@@ -93,6 +93,7 @@ impl GpuBatch {
         for env in (0..self.count).filter(|&env| running[env]) {
             let trouble = faults[env].map(|fault| match fault {
                 GpuFault::Singular => Trouble::Singular,
+                GpuFault::Unfinished => Trouble::Unfinished,
                 GpuFault::ContactOverflow { limit } => Trouble::ContactOverflow { limit },
                 GpuFault::Diverged => {
                     let detail = |k: usize| details.as_ref().map_or(0, |all| all[k][env]);

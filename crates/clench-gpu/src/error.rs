@@ -161,4 +161,7 @@ pub enum GpuFault {
         /// How many there may be.
         limit: usize,
     },
+    /// The device ended a loop before its end.
+    #[error("the device ended a loop before its end (Mesa's software device grants 65,535 turns)")]
+    Unfinished,
 }

@@ -2,6 +2,7 @@
 //! the names under which fields are read and written follow from these tables.
 
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity};
+use clench_rigid::dynamics::articulated::articulated_bodies;
 use clench_rigid::model::Model;
 
 /// A field: so many numbers for each environment, from a place on.
@@ -83,6 +84,8 @@ fields! {
     subtree_com: 3 * m.nbody();
     cinert: 10 * m.nbody();
     crb: 10 * m.nbody();
+    /// Inertias of articulated bodies, where paths are long.
+    articulated: 27 * articulated_bodies::<f32>(m).len();
     cdof: 6 * m.nv;
     cdof_dot: 6 * m.nv;
     cvel: 6 * m.nbody();

@@ -54,7 +54,7 @@ kernels! {
     RESTART = "restart", Thread: "restart";
     /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
     POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "wrap", "tendon",
-        "transmission", "inertia";
+        "transmission", "articulated", "inertia";
     /// Contacts.
     CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/convex", "box_box", "detect";
@@ -74,12 +74,12 @@ kernels! {
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Thread: "tree", "activation", "verdict", "integrate", "euler";
+    EULER = "euler", Thread: "tree", "articulated", "activation", "verdict", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
-    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "chains", "muscle", "activation", "gain", "verdict", "integrate", "derivatives",
+    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "activation", "gain", "verdict", "integrate", "derivatives",
         "gyroscopic", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "activation", "verdict", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "activation", "verdict", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.
@@ -90,13 +90,14 @@ pub(crate) struct Memory<'a> {
     pub reports: &'a Fields,
 }
 
-/// The codes of `reports`, in the order of [`GpuFault`](crate::GpuFault); what is aside does not take part in a call.
-const FAULTS: [&str; 5] = [
+/// The codes of `reports`: those of [`GpuFault`](crate::GpuFault), and of what is aside and does not take part in a call.
+const FAULTS: [&str; 6] = [
     "RUNNING",
     "SINGULAR",
     "DIVERGED",
     "CONTACT_OVERFLOW",
     "ASIDE",
+    "UNFINISHED",
 ];
 /// The code of an environment that does not take part in a call.
 pub(crate) const ASIDE: u32 = 4;

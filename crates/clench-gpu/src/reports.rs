@@ -35,6 +35,7 @@ impl GpuBatch {
             0 | ASIDE => None,
             1 => Some(GpuFault::Singular),
             3 => Some(GpuFault::ContactOverflow { limit }),
+            5 => Some(GpuFault::Unfinished),
             _ => Some(GpuFault::Diverged),
         };
         Ok(self.report(word)?.iter().map(fault).collect())

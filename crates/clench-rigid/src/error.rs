@@ -232,6 +232,15 @@ pub enum Fault {
         /// How many may be.
         limit: u64,
     },
+    /// A device ended a step before its end, as Mesa's software device does after 65,535 turns of loops.
+    #[error(
+        "in the step from t = {time} s the device ended a loop before its end (Mesa's software device grants 65,535 turns): a card or the \
+         processor can do it"
+    )]
+    Unfinished {
+        /// Time of the last good state, s.
+        time: f64,
+    },
 }
 
 fn at(place: &Option<Arc<str>>) -> String {

@@ -65,5 +65,6 @@ fn code(status: &EnvStatus) -> i8 {
         EnvStatus::Failed(Fault::Diverged { .. }) => 3,
         EnvStatus::Failed(Fault::ContactOverflow { .. }) => 4,
         EnvStatus::Failed(Fault::OverBudget { .. }) => 5,
+        EnvStatus::Failed(Fault::Unfinished { .. }) => 6,
     }
 }

@@ -171,4 +171,5 @@ fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_i
     for (var b = lane; b < nblock; b += GROUP) {
         finish_block(b);
     }
+    note_end();
 }

@@ -132,4 +132,5 @@ fn constraints(@builtin(global_invocation_id) id: vec3u) {
     }
     reports[NBLOCK * envs + env] = nblock;
     reports[NROW * envs + env] = nrow;
+    note_end();
 }

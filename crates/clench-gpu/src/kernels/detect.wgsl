@@ -93,4 +93,5 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     reports[NCON * envs + env] = found;
+    note_end();
 }

@@ -44,4 +44,5 @@ fn forces(@builtin(global_invocation_id) id: vec3u) {
     bias_forces();
     actuation();
     smooth_acceleration();
+    note_end();
 }

@@ -22,7 +22,18 @@ fn composite_inertia() {
     }
 }
 
+// Nothing is added to the diagonal of M.
+fn added_inertia(i: u32) -> f32 {
+    return 0.0;
+}
+
 fn factor_mass() {
+    if (LONG_PATHS) {
+        if (!articulated_factor()) {
+            trouble(SINGULAR);
+        }
+        return;
+    }
     for (var p = 0u; p < bound(NNZ); p++) {
         put(QLD + p, fetch(QM + p));
     }
@@ -43,4 +54,5 @@ fn positions(@builtin(global_invocation_id) id: vec3u) {
     factor_mass();
     tendons();
     transmissions();
+    note_end();
 }

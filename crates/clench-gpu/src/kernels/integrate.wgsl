@@ -69,6 +69,7 @@ fn advance_activations(rates: u32) {
 
 // Lets the step count, or takes it back where it led nowhere.
 fn finish_step() {
+    note_end();
     judge_results();
     for (var i = 0u; i < bound(NV); i++) {
         keep(QACC_WARMSTART + i, fetch(QACC + i));
@@ -91,6 +92,25 @@ fn damping_slope(law: u32, velocity: f32) -> f32 {
     return parameter(law) + v * (2.0 * parameter(law + 1u) + v * 3.0 * parameter(law + 2u));
 }
 
+// What damping adds to the diagonal of M.
+fn added_inertia(i: u32) -> f32 {
+    return TIMESTEP * damping_slope(DOF_DAMPER + 3u * i, given(QVEL + i));
+}
+
+// Factors M + h B into QLD; false where a pivot is not positive.
+fn factor_damped() -> bool {
+    if (LONG_PATHS) {
+        return articulated_factor();
+    }
+    for (var p = 0u; p < bound(NNZ); p++) {
+        put(QLD + p, fetch(QM + p));
+    }
+    for (var i = 0u; i < bound(NV); i++) {
+        add(QLD + words[TREE_START + i + 1u] - 1u, added_inertia(i));
+    }
+    return factor_tree();
+}
+
 // The acceleration that advances the velocity: damping is implicit, so it solves (M + h B) a = τ + Jᵀf.
 fn damped_acceleration() {
     if (!IMPLICIT_DAMPING) {
@@ -99,15 +119,10 @@ fn damped_acceleration() {
         }
         return;
     }
-    for (var p = 0u; p < bound(NNZ); p++) {
-        put(QLD + p, fetch(QM + p));
-    }
     for (var i = 0u; i < bound(NV); i++) {
-        let slope = damping_slope(DOF_DAMPER + 3u * i, given(QVEL + i));
-        add(QLD + words[TREE_START + i + 1u] - 1u, TIMESTEP * slope);
         put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
     }
-    if (!factor_tree()) {
+    if (!factor_damped()) {
         trouble(SINGULAR);
     }
     solve_tree(RATE);

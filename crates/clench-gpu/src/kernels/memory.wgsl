@@ -133,6 +133,18 @@ fn block(b: u32, field: u32) -> u32 {
     return u32(row(BLOCKS + BLOCK_SIZE * b + field));
 }
 
+// Notes it where the device ended a loop before its end. Mesa's software device grants a thread so many turns of loops in all, and ends
+// every later loop after its first: this one tells.
+fn note_end() {
+    var turns = 0u;
+    for (var k = 0u; k < bound(4u); k++) {
+        turns += 1u;
+    }
+    if (turns < 4u && reports[STATUS * envs + env] == RUNNING) {
+        trouble(UNFINISHED);
+    }
+}
+
 // The end of a loop, told in a way that no compiler knows before: it would write the loop out, and take ten times as long.
 fn bound(n: u32) -> u32 {
     return n + words[ZERO];

@@ -21,10 +21,6 @@ fn model(option: &str, geom: &str, in_world: &str, after: &str) -> String {
 
 #[test]
 fn what_is_not_there_yet_is_refused_by_name() {
-    let chain = |n: usize| {
-        let open = "<body pos='0 0 0.1'><joint/><geom size='0.01' contype='0' conaffinity='0'/>";
-        open.repeat(n) + &"</body>".repeat(n)
-    };
     let terrain = "<asset><hfield name='hills' nrow='2' ncol='2' size='1 1 1 1'/></asset>";
     let hills = "<geom name='hills' type='hfield' hfield='hills'/>";
     for (text_of_model, words) in [
@@ -93,7 +89,6 @@ fn what_is_not_there_yet_is_refused_by_name() {
             model("", "", hills, terrain),
             "heightfield geom \"hills\" and",
         ),
-        (model("", "", &chain(27), ""), "a path of more than 26 dofs"),
         (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),
             "model: a model without",

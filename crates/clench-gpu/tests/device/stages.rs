@@ -34,6 +34,11 @@ fn a_planar_runner() {
 }
 
 #[test]
+fn a_serpent_whose_path_is_long() {
+    agree(&text(&own("serpent")), 40, 0.3);
+}
+
+#[test]
 fn one_of_each_joint_shape_actuator_and_constraint() {
     agree(&text(&own("medley")), 100, 0.7);
 }

@@ -94,4 +94,6 @@ pub enum Trouble {
         /// How many that is.
         limit: usize,
     },
+    /// The device ended a loop before its end.
+    Unfinished,
 }

@@ -223,7 +223,10 @@ impl<S: Precision> Batch<S> {
                 continue;
             };
             mirror.running[env] = false;
-            let bounded = matches!(trouble, Trouble::ContactOverflow { .. });
+            let bounded = matches!(
+                trouble,
+                Trouble::ContactOverflow { .. } | Trouble::Unfinished
+            );
             if may_restart && !bounded {
                 mirror.restarted[env] = true;
             } else if pass != Pass::Query {
@@ -237,6 +240,7 @@ impl<S: Precision> Batch<S> {
     fn fault(&self, trouble: Trouble, time: f64) -> Fault {
         match trouble {
             Trouble::Singular => Fault::Singular { time, place: None },
+            Trouble::Unfinished => Fault::Unfinished { time },
             Trouble::ContactOverflow { limit } => Fault::ContactOverflow { time, limit },
             Trouble::Diverged {
                 field,

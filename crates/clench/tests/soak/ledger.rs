@@ -145,7 +145,9 @@ impl<S: Precision> Ledger<S> {
             Fault::Diverged { .. } => self.diverged += 1,
             Fault::Singular { .. } => self.singular += 1,
             Fault::ContactOverflow { .. } => self.overflows += 1,
-            Fault::OverBudget { .. } => panic!("environment {env}: {fault}"),
+            Fault::OverBudget { .. } | Fault::Unfinished { .. } => {
+                panic!("environment {env}: {fault}")
+            }
         }
     }
 
