@@ -72,6 +72,7 @@ enum Command {
     Convert(convert::Arguments),
     /// List the graphics devices that `simulate --device gpu` can step on
     #[cfg(feature = "gpu")]
+    #[command(long_flag = "list-devices")]
     Devices,
     /// Say what of MJCF is read, what is ignored, and what is refused
     Mjcf(mjcf::Arguments),

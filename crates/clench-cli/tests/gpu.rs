@@ -50,3 +50,23 @@ fn a_run_on_a_device_is_recorded() {
     assert!(told.contains("4 rows are recorded"), "{told}");
     assert!(path.metadata().expect("a record").len() > 0);
 }
+
+/// Both list the same devices, or say in the same words that there are none.
+#[test]
+fn devices_are_listed_by_command_and_by_flag() {
+    let list = |argument: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_clench"));
+        let output = program.arg(argument).output().expect("the program starts");
+        let (told, said) = (output.stdout, output.stderr);
+        let text = [told, said].map(|text| String::from_utf8_lossy(&text).into_owned());
+        (output.status.code(), text)
+    };
+    let (code, text) = list("devices");
+    let [told, said] = &text;
+    match code {
+        Some(0) => assert!(!told.trim().is_empty(), "{said}"),
+        Some(_) => assert!(said.contains("mesa-vulkan-drivers"), "{said}"),
+        None => panic!("it ended by a signal: {said}"),
+    }
+    assert_eq!(list("--list-devices"), (code, text));
+}
