@@ -1,4 +1,4 @@
-"""One environment, one thread: Clench and MuJoCo's rollout from the model's initial state."""
+"""One environment, one thread: Clench and MuJoCo's rollout from the model's initial state, or a given one."""
 
 import time
 
@@ -31,9 +31,11 @@ def compare(path, args):
 class Rollout:
     """MuJoCo's rollout module on the calling thread."""
 
-    def __init__(self, path, solver, controls):
+    def __init__(self, path, solver, controls, state=None):
         self.model = load(path, solver)
         self.data = mujoco.MjData(self.model)
+        if state is not None:
+            self.data.qpos[:], self.data.qvel[:] = np.split(state, [self.model.nq])
         self.controls = controls[None]
         size = mujoco.mj_stateSize(self.model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
         self.start = np.empty((1, size))
@@ -41,19 +43,30 @@ class Rollout:
         self.states = np.empty((1, len(controls), size))
         self.sensors = np.empty((1, len(controls), self.model.nsensordata))
         self.pool = rollout.Rollout(nthread=0)
+        self.gradients = []  # where each step's solve ended: the scaled norm, the largest of the islands
         self.contacts, self.iterations = self.statistics(controls)
 
     def statistics(self, controls):
         """Mean contacts and iterations a step (a Runge–Kutta step reports its last stage), and a sanity check."""
         data, contacts, iterations = mujoco.MjData(self.model), 0, 0
+        mujoco.mj_setState(self.model, data, self.start[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
         for control in controls:
             data.ctrl[:] = control
             mujoco.mj_step(self.model, data)
             contacts += data.ncon
-            iterations += int(data.solver_niter[: max(1, data.nisland)].sum())
+            counts = data.solver_niter[: max(1, data.nisland)]
+            iterations += int(counts.sum())
+            self.gradients.append(self.last_gradient(data, counts))
         if any(w.number for w in data.warning):
             raise Unmeasured("MuJoCo warns of an unstable motion: these controls measure nothing")
         return contacts / len(controls), iterations / len(controls)
+
+    @staticmethod
+    def last_gradient(data, counts):
+        """The largest of what the islands' solves ended with; of some islands MuJoCo keeps no record."""
+        history = data.solver.gradient.reshape(len(data.solver_niter), -1)
+        ends = [row[min(count, len(row)) - 1] for row, count in zip(history, counts, strict=False) if count]
+        return max(ends, default=0.0)
 
     def run(self):
         begin = time.perf_counter()

@@ -7,8 +7,8 @@ read the same file with its integrator, tolerance and iterations; where the file
 which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
 vector environments beside gymnasium's (vector.py), heaps of bodies (heaps.py), collision pair by pair (pairs.py), and what the
 viewer's frames cost (view.py).
-`--only public` goes through all models of the public packages (public_models.py), and `--only gpu` measures a graphics device (gpu.py):
-these take a while, or a card, so the whole run leaves them out.
+`--only public` goes through all models of the public packages (public_models.py), `--only families` through scenes of manipulation and of
+many bodies (families.py), and `--only gpu` measures a graphics device (gpu.py): these take a while, or a card, so the whole run leaves them out.
 """
 
 import argparse
@@ -20,6 +20,7 @@ import sys
 import alone
 import batch
 import calls
+import families
 import gpu
 import heaps
 import pairs
@@ -30,7 +31,7 @@ from scene import Unmeasured, find
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
 # Comparisons that are run only if they are asked for.
-ALONE = ["gpu", "public"]
+ALONE = ["families", "gpu", "public"]
 DEFAULT_TASKS = ["HalfCheetah-v5", "Humanoid-v5"]
 
 
@@ -49,6 +50,7 @@ def main():
         "heaps": (heaps.compare, heaps.SCENES),
         "pairs": (pairs.compare, ["all pairs"]),
         "view": (view.compare, ["the viewer"]),
+        "families": (families.compare, ["all scenes"]),
         "gpu": (gpu.compare, models),
         "public": (public_models.compare, ["all models"]),
     }.items():
@@ -69,8 +71,9 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "gpu", "public"], help="one of the comparisons")
-    parser.add_argument("--filter", default="", metavar="TEXT", help="public models whose file has this in its name")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "families", "gpu", "public"], help="one of the comparisons")
+    parser.add_argument("--filter", default="", metavar="TEXT", help="public models, or scenes of the families, with this in their name")
+    parser.add_argument("--docs", action="store_true", help="write docs/families.md and its plots anew")
     parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
     parser.add_argument("--batch-steps", type=int, default=500, help="steps a run of the batch (default: %(default)s)")

@@ -1,0 +1,133 @@
+"""docs/families.md and its plots, from the figures of families.py."""
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
+
+COLORS = {"mujoco": "#888888", "clench": "#c04020", "clench f64": "#c04020", "clench f32": "#e0a030"}
+FIELDS = [("contacts_mean", ".0f"), ("iterations_mean", ".1f"), ("gradient_median", ".0e")]
+SMALL = 0.03  # of a step: stages that never take more are drawn as one
+
+
+PAGE = """# Scenes of manipulation and of many bodies
+
+Written by `cargo xtask bench --only families --docs`, on {machine}, beside MuJoCo {mujoco}; `bench/families.py` says how each is timed. What
+the figures mean, and where aims are missed, says [performance.md](performance.md).
+
+One environment: microseconds a step, MuJoCo's time over Clench's, mean contacts and iterations of the solver a step, and the scaled
+gradient that solves end with (the median; MuJoCo's and Clench's).
+
+{alone}
+
+Environments in a batch, one thread: MuJoCo's time (its own batch) over Clench's.
+
+{many}
+
+{left_out}
+
+![Where a step of one environment spends its time](families-stages.svg)
+
+![Time a step by bodies, contacts, environments and threads](families-growth.svg)
+"""
+
+
+def draw(record, folder):
+    """Writes families.md, families-stages.svg and families-growth.svg."""
+    scenes = list(dict.fromkeys(row["scene"] for row in record["rows"] if row["family"] != "environments"))
+    machine = "{processors} processors ({machine})".format(**record["machine"])
+    parts = {"machine": machine, "mujoco": record["machine"]["mujoco"], "alone": alone(record["rows"], scenes), "many": many(record["rows"], scenes)}
+    left_out = [f"- {reason}" for reason in record["not_measured"]]
+    parts["left_out"] = "\n".join(["Not measured, since MuJoCo takes too long:", "", *left_out] if left_out else [])
+    (folder / "families.md").write_text(PAGE.format(**parts))
+    plt.rcParams |= {"svg.hashsalt": "clench", "font.size": 8, "axes.spines.top": False, "axes.spines.right": False}
+    stages(record["stages"], folder / "families-stages.svg")
+    growth(record["rows"], folder / "families-growth.svg")
+
+
+def alone(rows, scenes):
+    """A line a scene, of one environment."""
+    lines = ["| scene | dofs | MuJoCo µs | Clench µs | ratio | contacts | iterations | gradient |", "| --- " * 8 + "|"]
+    for scene in scenes:
+        found = {row["engine"]: row for row in rows if row["scene"] == scene and row["envs"] == 1 and row["family"] != "environments"}
+        theirs, ours = found.get("mujoco"), found["clench"]
+        micro = f"{theirs['microseconds']:.1f}" if theirs else ""
+        ratio = f"{ours['ratio']:.2f}" if theirs else ""
+        both = lambda name, form: " / ".join(format(row[name], form) for row in (theirs, ours) if row)
+        numbers = [f"{ours['microseconds']:.1f}", ratio, *(both(*field) for field in FIELDS)]
+        lines.append(f"| {scene} | {ours['nv']} | {micro} | " + " | ".join(numbers) + " |")
+    return "\n".join(lines)
+
+
+def many(rows, scenes):
+    """A line a scene, of batches."""
+    columns = [(envs, engine) for envs in (64, 256) for engine in ("clench f64", "clench f32")]
+    heads = [f"{envs}, {engine.removeprefix('clench ')}" for envs, engine in columns]
+    lines = ["| scene | " + " | ".join(heads) + " |", "| --- " * (1 + len(heads)) + "|"]
+    for scene in scenes:
+        of_scene = [row for row in rows if row["scene"] == scene and row["family"] != "environments"]
+        found = {(row["envs"], row["engine"]): f"{row['ratio']:.2f}" for row in of_scene if row["ratio"]}
+        if any(column in found for column in columns):
+            lines.append(f"| {scene} | " + " | ".join(found.get(column, "") for column in columns) + " |")
+    return "\n".join(lines)
+
+
+def stages(profiles, path):
+    """Where a step of one environment spends its time, a bar a scene."""
+    share = {scene: {stage: time / sum(profile.values()) for stage, time in profile.items()} for scene, profile in profiles.items()}
+    names = list(dict.fromkeys(stage for profile in share.values() for stage in profile))
+    drawn = [name for name in names if max(profile.get(name, 0) for profile in share.values()) >= SMALL]
+    figure, axes = plt.subplots(figsize=(8, 0.3 * len(share) + 1.5))
+    scenes = list(share)[::-1]
+    left = [0.0] * len(scenes)
+    colors = plt.get_cmap("tab20").colors
+    for color, name in enumerate(drawn):
+        widths = [100 * share[scene].get(name, 0) for scene in scenes]
+        axes.barh(scenes, widths, left=left, label=name, color=colors[color % len(colors)])
+        left = [a + b for a, b in zip(left, widths, strict=True)]
+    axes.barh(scenes, [100 - x for x in left], left=left, label="the rest", color="#dddddd")
+    axes.set_xlabel("% of a step of one environment")
+    axes.set_xlim(0, 100)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    save(figure, path)
+
+
+def growth(rows, path):
+    """Time a step by bodies, by contacts, by environments and by threads."""
+    figure, axes = plt.subplots(2, 2, figsize=(8, 6))
+    single = [row for row in rows if row["envs"] == 1 and row["family"] == "large"]
+    piles = [row for row in single if row["scene"].startswith("pile")]
+    for engine in ("mujoco", "clench"):
+        line(axes[0, 0], [row for row in piles if row["engine"] == engine], lambda row: row["nv"] / 6, engine)
+        dots = [row for row in single if row["engine"] == engine and row["contacts_mean"] > 0]
+        axes[0, 1].plot(*points(dots, lambda row: row["contacts_mean"]), "o", color=COLORS[engine], label=engine, markersize=4)
+    copies = [row for row in rows if row["family"] == "environments"]
+    one = [row for row in copies if row["threads"] == 1]
+    for engine in ("mujoco", "clench f64", "clench f32"):
+        line(axes[1, 0], [row for row in one if row["engine"] == engine], lambda row: row["envs"], engine)
+    most = max((row["envs"] for row in copies), default=0)
+    for engine in ("clench f64", "clench f32"):
+        line(axes[1, 1], [row for row in copies if row["engine"] == engine and row["envs"] == most], lambda row: row["threads"], engine)
+    titles = ["bodies of a pile", "contacts of large scenes", "environments of an arm and a box", f"threads, {most} environments of it"]
+    for axis, title in zip(axes.flat, titles, strict=True):
+        axis.set_xlabel(title)
+        axis.set_ylabel("µs a step")
+        axis.set_xscale("log")
+        axis.set_yscale("log")
+        axis.legend(frameon=False)
+    save(figure, path)
+
+
+def line(axis, rows, across, engine):
+    axis.plot(*points(rows, across), "o-", color=COLORS[engine], label=engine, markersize=4)
+
+
+def points(rows, across):
+    ordered = sorted((across(row), row["microseconds"]) for row in rows)
+    return [x for x, _ in ordered], [y for _, y in ordered]
+
+
+def save(figure, path):
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+    plt.close(figure)
