@@ -216,9 +216,13 @@ fn environments_come_and_go_without_leaks() {
         batch.sim(3).expect("it exists");
     };
     round();
-    let before = bytes();
-    (0..10).for_each(|_| round());
-    // What threads leave to be freed later is less than a tenth of any of these batches.
-    let leaked = bytes() - before;
+    // What threads leave to be freed later comes and goes, and is usually less than a tenth of any of these batches; what leaks is
+    // there whenever one looks.
+    let growth = |_| {
+        let before = bytes();
+        (0..10).for_each(|_| round());
+        bytes() - before
+    };
+    let leaked = (0..3).map(growth).min().expect("three");
     assert!(leaked < 20_000, "{leaked} bytes");
 }
