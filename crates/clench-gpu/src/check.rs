@@ -1,7 +1,7 @@
 //! What of a model the device cannot do yet, as one table. Nothing is ignored: what is not refused here, the kernels do.
 
 use crate::error::{GpuError, Refusal};
-use clench_collide::ShapeKind;
+use clench_collide::{MAX_POINTS, ShapeKind};
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::{
     BiasKind, DynamicsKind, EqualityTarget, GainKind, Integrator, Model, Transmission,
@@ -109,7 +109,7 @@ pub(crate) const METHODS: [&str; 10] = [
 /// How the contacts of a pair of shapes are found, in the order of [`METHODS`], and how many there are at most; none where that is
 /// not there yet. The order of the shapes is that of [`ShapeKind`].
 fn method(kinds: [ShapeKind; 2]) -> Option<(usize, usize)> {
-    use ShapeKind::{Box, Capsule, Cylinder, Ellipsoid, Mesh, Plane, Sphere};
+    use ShapeKind::{Box, Capsule, Cylinder, Ellipsoid, HeightField, Mesh, Plane, Sphere};
     Some(match kinds {
         [Plane, Sphere | Ellipsoid] => (0, 1),
         [Plane, Capsule] => (0, 2),
@@ -128,6 +128,10 @@ fn method(kinds: [ShapeKind; 2]) -> Option<(usize, usize)> {
         | [Sphere, Mesh] => (9, 1),
         [Capsule, Mesh] => (9, 3),
         [Cylinder, Cylinder | Box | Mesh] | [Box | Mesh, Mesh] => (9, 8),
+        [
+            HeightField,
+            Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh,
+        ] => (9, MAX_POINTS),
         _ => return None,
     })
 }

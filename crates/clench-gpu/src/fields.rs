@@ -120,6 +120,8 @@ fields! {
     qfrc_smooth: m.nv;
     qacc_smooth: m.nv;
     polytope: c.polytope;
+    /// Contacts on terrain while they are gathered.
+    terrain: c.terrain;
     contacts: CONTACT_SIZE * c.contacts;
     qacc: m.nv;
     qfrc_constraint: m.nv;

@@ -57,7 +57,7 @@ kernels! {
         "transmission", "articulated", "inertia";
     /// Contacts.
     CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
-        "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/convex", "box_box", "detect";
+        "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
     FORCES = "forces", Thread: "tree", "chains", "velocity", "adhesion", "passive", "tendon_forces", "muscle", "activation", "gain",
         "actuation", "forces";

@@ -28,6 +28,15 @@ impl GpuBatch {
         self.faults("status")
     }
 
+    /// What went wrong in each environment's last step or forward pass; nothing where all is well. A forward pass stops no
+    /// environment, so that its faults are not among the [`statuses`](Self::statuses).
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn last_faults(&self) -> Result<Vec<Option<GpuFault>>, GpuError> {
+        self.faults("trouble")
+    }
+
     /// The faults that the codes of a word stand for.
     pub(crate) fn faults(&self, word: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
         let limit = self.capacity.contacts;

@@ -242,6 +242,32 @@ fn a_body_sunk_into_fine_cells_is_lifted_out() {
     assert!((c.distance + 0.08).abs() < 1e-12 && (c.frame.rows[0].z - 1.0).abs() < 1e-12);
 }
 
+/// Where an edge of the body crosses from one triangle to the next, rounding must not lose the point.
+#[test]
+fn single_precision_finds_the_points_of_a_box_that_double_precision_finds() {
+    let mut random = Random(5);
+    for k in 0..200 {
+        let ground = rough(&mut random, 6, 7, 0.1);
+        let shape = Shape::new(ShapeKind::Box, Vec3::new(0.12, 0.08, 0.05));
+        let pose = Pose {
+            position: Vec3::new(random.range(-0.3, 0.3), random.range(-0.2, 0.2), 0.12),
+            rotation: random.rotation(),
+        };
+        let found = touch(&ground, &shape, &pose, 1e-3);
+        let mut single = Contacts::<f32>::new();
+        collide(
+            &Shape::height_field(&ground),
+            &Pose::IDENTITY,
+            &shape.resized(Vec3::from_f64(shape.size().to_array())),
+            &convert_pose(&pose),
+            1e-3,
+            &mut single,
+        );
+        let counts = [found.as_slice().len(), single.as_slice().len()];
+        assert_eq!(counts[0], counts[1], "state {k}");
+    }
+}
+
 /// Hulls, and everything in three number types, moved about.
 #[test]
 fn contacts_move_with_both_and_are_the_same_in_lanes() {

@@ -5,7 +5,12 @@ var<private> found: u32;
 var<private> first_of_pair: u32;
 
 // Adds a contact of a pair; `tangent` is the first of the two. Of a pair that is to have but one contact, the first of the deepest stays.
+// Those of a triangle of terrain are not contacts yet.
 fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent: vec3f) {
+    if (ANY_TERRAIN && on_terrain) {
+        add_to_patch(TerrainPoint(position, normal, distance));
+        return;
+    }
     if (DEEPEST_ALONE && found > first_of_pair && words[PAIR_DEEPEST + pair] == 1u) {
         if (distance >= fetch(CONTACTS + CONTACT_SIZE * first_of_pair + 1u)) {
             return;

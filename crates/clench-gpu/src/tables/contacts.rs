@@ -2,7 +2,7 @@
 
 use super::{Capacity, Tables};
 use crate::check::{METHODS, may_be_general, method_of_pair, points_of_pair};
-use clench_collide::{PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
+use clench_collide::{MAX_POINTS, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
 use clench_rigid::contact::{Candidate, contact_params, contact_range};
 use clench_rigid::model::Model;
 use clench_rigid::options::MaxContacts;
@@ -19,6 +19,12 @@ const CAP_CORNERS: usize = 16;
 const MAX_FACE_CORNERS: usize = 24;
 /// Corners of a box's face.
 const BOX_CORNERS: usize = 4;
+/// Numbers of a contact on terrain while it is gathered: position, normal, distance.
+const TERRAIN_POINT_SIZE: usize = 7;
+/// Contacts of a feature that is clipped to a triangle: each side of that adds a corner.
+const FACE_LIST_POINTS: usize = MAX_FACE_CORNERS + 3;
+/// Contacts of a feature and the ground below a triangle.
+const PATCH_LIST_POINTS: usize = 2 * PATCH_POINTS;
 /// Numbers of a contact: pair, distance, position, normal, two tangents.
 pub(crate) const CONTACT_SIZE: usize = 14;
 
@@ -60,6 +66,7 @@ impl Tables {
     ) {
         for (name, kind) in [
             ("PLANE", ShapeKind::Plane),
+            ("HEIGHT_FIELD", ShapeKind::HeightField),
             ("SPHERE", ShapeKind::Sphere),
             ("CAPSULE", ShapeKind::Capsule),
             ("ELLIPSOID", ShapeKind::Ellipsoid),
@@ -106,6 +113,20 @@ impl Tables {
         } else {
             0
         };
+        // Two manifolds with a point more than there is room for, and both lists.
+        let on_terrain = |c: &Candidate| c.kinds[0] == ShapeKind::HeightField;
+        let any_terrain = candidates.iter().any(on_terrain);
+        let points = 2 * (MAX_POINTS + 1) + FACE_LIST_POINTS + PATCH_LIST_POINTS;
+        capacity.terrain = if any_terrain {
+            points * TERRAIN_POINT_SIZE
+        } else {
+            0
+        };
+        self.flag("ANY_TERRAIN", any_terrain);
+        self.count("MAX_TERRAIN_POINTS", MAX_POINTS);
+        self.count("TERRAIN_POINT_SIZE", TERRAIN_POINT_SIZE);
+        self.count("FACE_LIST_POINTS", FACE_LIST_POINTS);
+        self.count("PATCH_LIST_POINTS", PATCH_LIST_POINTS);
         self.words("PAIR_DIM", candidates.iter().map(dim));
         let range = |c: &Candidate| contact_range::<f64>(m, &m.params, c).1;
         self.numbers("PAIR_RANGE", candidates.iter().map(range));
@@ -129,7 +150,7 @@ impl Tables {
     /// What general pairs have: hulls, curved shapes, faces that may lie on each other, and room for their corners. The data of shapes,
     /// which no environment has of its own, stand behind all parameters.
     pub(crate) fn shapes(&mut self, m: &Model, candidates: &[Candidate]) {
-        use ShapeKind::{Box, Cylinder, Ellipsoid, Mesh, Plane, Sphere};
+        use ShapeKind::{Box, Cylinder, Ellipsoid, HeightField, Mesh, Plane, Sphere};
         let hull_corners = self.hulls(m, candidates);
         let general = || candidates.iter().filter(|c| may_be_general(c.kinds));
         let has = |kind: ShapeKind| general().any(|c| c.kinds.contains(&kind));
@@ -142,7 +163,8 @@ impl Tables {
         self.flag("CURVED_PAIRS", has(Ellipsoid) || has(Cylinder));
         self.flag("FLAT_PAIRS", general().any(|c| flat(&c)));
         self.flag("ANY_CAP_PATCHES", flat_with(Cylinder));
-        let polyhedral = |c: &Candidate| c.kinds[0] == Cylinder && matches!(c.kinds[1], Box | Mesh);
+        let polyhedral =
+            |c: &Candidate| matches!(c.kinds, [Cylinder, Box | Mesh] | [HeightField, Cylinder]);
         self.flag("ANY_CYLINDER_POLYHEDRON", candidates.iter().any(polyhedral));
         let cylinders = |c: &Candidate| c.kinds == [Cylinder, Cylinder];
         self.flag("ANY_CYLINDER_PAIR", candidates.iter().any(cylinders));

@@ -1,7 +1,7 @@
-//! Convex polyhedra: the hulls of meshes that may touch, once each, and boxes that cylinders may touch.
+//! Convex polyhedra: the hulls of meshes that may touch, once each, and boxes that cylinders may touch; and height fields.
 
 use super::{Tables, starts};
-use clench_collide::{Hull, ShapeKind, convex_hull};
+use clench_collide::{HeightField, Hull, ShapeKind, convex_hull};
 use clench_math::Vec3;
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::Model;
@@ -102,6 +102,11 @@ impl Tables {
                         of_geom[g] = self.hull(&hull);
                     }
                 }
+                (ShapeKind::HeightField, _) => {
+                    if let Some(field) = m.heights(g) {
+                        of_geom[g] = self.height_field(field);
+                    }
+                }
                 _ => {}
             }
         }
@@ -130,6 +135,17 @@ impl Tables {
             hull.support(Vec3::new(sign(0), sign(1), sign(2)))
         }));
         self.add_words(parts)
+    }
+
+    /// Adds a height field: rows, columns, and where its sizes are, behind which its heights follow, m.
+    fn height_field(&mut self, field: &HeightField) -> usize {
+        let [x, y, elevation, base] = field.size();
+        let (rows, columns) = (field.rows(), field.columns());
+        let step = |half: f64, count: usize| 2.0 * half / (count - 1) as f64;
+        let sizes = [x, y, step(x, columns), step(y, rows), elevation, base];
+        let heights = field.heights().iter().map(|height| elevation * height);
+        let place = self.add_numbers(sizes.into_iter().chain(heights));
+        self.add_words([rows, columns, place])
     }
 
     /// Adds lists of numbers: where each begins and the last ends, then all of them.

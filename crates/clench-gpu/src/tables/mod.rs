@@ -50,6 +50,8 @@ pub(crate) struct Capacity {
     pub rows: usize,
     /// Numbers of the polytope of overlapping shapes.
     pub polytope: usize,
+    /// Numbers of the contacts on terrain while they are gathered.
+    pub terrain: usize,
 }
 
 impl Tables {

@@ -21,8 +21,6 @@ fn model(option: &str, geom: &str, in_world: &str, after: &str) -> String {
 
 #[test]
 fn what_is_not_there_yet_is_refused_by_name() {
-    let terrain = "<asset><hfield name='hills' nrow='2' ncol='2' size='1 1 1 1'/></asset>";
-    let hills = "<geom name='hills' type='hfield' hfield='hills'/>";
     for (text_of_model, words) in [
         (
             model("<option integrator='discrete'/>", "", "", ""),
@@ -84,10 +82,6 @@ fn what_is_not_there_yet_is_refused_by_name() {
                 "<actuator><dcmotor name='motor' joint='hinge' motorconst='0.1' resistance='1'/></actuator>",
             ),
             "actuator \"motor\": controllers and motors",
-        ),
-        (
-            model("", "", hills, terrain),
-            "heightfield geom \"hills\" and",
         ),
         (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),

@@ -65,10 +65,13 @@ fn support(body: Body, d: vec3f, side: vec3f) -> vec3f {
     if (ANY_MESH && body.kind == MESH) {
         return vertex_of_hull(body.hull, furthest_of_hull(body.hull, side));
     }
+    if (ANY_TERRAIN && body.kind == PRISM) {
+        return prism[furthest_of_prism(side)];
+    }
     return support_without_hull(body, d, side);
 }
 
-// The same for all but meshes.
+// The same for all but meshes and terrain.
 fn support_without_hull(body: Body, d: vec3f, side: vec3f) -> vec3f {
     let s = body.size;
     switch body.kind {

@@ -38,27 +38,19 @@ fn find_largest_gap(range: f32) -> bool {
     return best.gap - radii <= range;
 }
 
-// The contacts of a pair; `given_gap` where the largest gap is in `best` already, its normal in the first shape's frame.
-fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
-    let first = body_of(words[PAIR_GEOM + 2u * pair]);
-    let second = body_of(words[PAIR_GEOM + 2u * pair + 1u]);
-    let back = transpose(a.axes);
-    var turn = back * b.axes;
-    var offset = back * (b.center - a.center);
-    if (first.kind == SPHERE) {
-        turn = b.axes;
-        offset = b.center - a.center;
-    }
-    begin_pair(first, second, turn, offset);
+// Finds the largest gap of the two bodies, unless it is in `best` already, and begins a simplex there. False if they are more than
+// `range` apart.
+fn find_touching(given_gap: bool, range: f32) -> bool {
     var certain = given_gap;
     var direct = Gap(vec3f(), -UNMOVABLE, false);
-    if (ANY_CYLINDER_POLYHEDRON && has_creases(first, second)) {
+    if (ANY_CYLINDER_POLYHEDRON && has_creases(body_a, body_b)) {
         direct = polyhedron_gap(range);
-    } else if (ANY_CYLINDER_PAIR && first.kind == CYLINDER && second.kind == CYLINDER) {
+    } else if (ANY_CYLINDER_PAIR && body_a.kind == CYLINDER && body_b.kind == CYLINDER) {
         direct = cylinders_gap();
     }
     if (direct.gap > range) {
-        return;
+        best = direct;
+        return false;
     }
     // For bodies that are apart it gives no distance.
     if (direct.settled && direct.gap <= 0.0) {
@@ -67,7 +59,7 @@ fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
     }
     if (!certain) {
         if (!find_largest_gap(range)) {
-            return;
+            return false;
         }
         certain = direct.gap > best.gap + exactness;
         if (certain) {
@@ -78,5 +70,59 @@ fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
     if (certain) {
         begin_simplex(touching_vertex);
     }
-    add_contacts(pair, a, range);
+    return true;
+}
+
+// The contacts of a pair; `given_gap` where the largest gap is in `best` already, its normal in the first shape's frame. A height field
+// is its triangles, one a round: what is called here has one place, for its text is long.
+fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
+    let geom = words[PAIR_GEOM + 2u * pair];
+    let first = body_of(geom);
+    let second = body_of(words[PAIR_GEOM + 2u * pair + 1u]);
+    let back = transpose(a.axes);
+    var turn = back * b.axes;
+    var offset = back * (b.center - a.center);
+    if (first.kind == SPHERE) {
+        turn = b.axes;
+        offset = b.center - a.center;
+    }
+    begin_pair(first, second, turn, offset);
+    var frame = a;
+    var given = given_gap;
+    on_terrain = ANY_TERRAIN && first.kind == HEIGHT_FIELD;
+    if (on_terrain) {
+        frame.axes = mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        begin_terrain(geom, second, turn, offset, range);
+    }
+    for (var round = 0u; on_terrain || round < 1u; round++) {
+        var rest = SEARCH;
+        if (on_terrain) {
+            if (!find_round()) {
+                break;
+            }
+            rest = begin_round(second, turn);
+            frame.center = triangle_origin;
+            given = rest == SHARED;
+        }
+        if (rest != NOTHING) {
+            var touches = find_touching(given, range);
+            if (on_terrain) {
+                if (touches) {
+                    touches = classify();
+                } else {
+                    apart_along = best.normal;
+                }
+            }
+            if (touches) {
+                add_contacts(pair, frame, range);
+            }
+        }
+        if (on_terrain) {
+            end_round();
+        }
+    }
+    if (on_terrain) {
+        on_terrain = false;
+        end_terrain(pair, a);
+    }
 }

@@ -22,7 +22,77 @@ struct Crossed {
 var<private> largest_gap: Gap;
 var<private> bar: f32;
 
+// An edge between two faces: a point of it, its direction, their cross product, the faces, the cosine and the sine of the angle between
+// their normals.
+struct Crease {
+    start: vec3f,
+    edge: vec3f,
+    moment: vec3f,
+    faces: vec2u,
+    turn: vec2f,
+}
+
+// A polyhedron is a hull, or, in the place of none, the ground below a triangle of terrain, which comes first.
+fn is_ground(hull: u32) -> bool {
+    return ANY_TERRAIN && hull == NONE;
+}
+
+fn vertices_of(hull: u32) -> u32 {
+    if (is_ground(hull)) {
+        return 6u;
+    }
+    return words[hull + HULL_VERTEX_COUNT];
+}
+
+fn vertex_of(hull: u32, k: u32) -> vec3f {
+    if (is_ground(hull)) {
+        return prism[k];
+    }
+    return vertex_of_hull(hull, k);
+}
+
+fn faces_of(hull: u32) -> u32 {
+    if (is_ground(hull)) {
+        return PRISM_FACES;
+    }
+    return words[hull + HULL_FACE_COUNT];
+}
+
+fn plane_of(hull: u32, face: u32) -> vec4f {
+    if (is_ground(hull)) {
+        return plane_of_prism(face);
+    }
+    return plane_of_hull(hull, face);
+}
+
+fn creases_of(hull: u32) -> u32 {
+    if (is_ground(hull)) {
+        return PRISM_EDGES;
+    }
+    return words[hull + HULL_CREASE_COUNT];
+}
+
+fn crease_of(hull: u32, k: u32) -> Crease {
+    if (is_ground(hull)) {
+        let edge = edge_of_prism(k);
+        let start = prism[edge.x];
+        let along = direction(prism[edge.y] - start).xyz;
+        let cosine = dot(plane_of_prism(edge.z).xyz, plane_of_prism(edge.w).xyz);
+        let turn = vec2f(cosine, sqrt(max(1.0 - cosine * cosine, 0.0)));
+        return Crease(start, along, cross(start, along), edge.zw, turn);
+    }
+    let place = words[hull + HULL_CREASES] + 8u * k;
+    let start = shape3(place);
+    let along = shape3(place + 3u);
+    let faces = words[hull + HULL_CREASE_FACES] + 2u * k;
+    let turn = vec2f(numbers[place + 6u], numbers[place + 7u]);
+    return Crease(start, along, cross(start, along), vec2u(words[faces], words[faces + 1u]), turn);
+}
+
 fn has_creases(a: Body, b: Body) -> bool {
+    if (ANY_TERRAIN && a.kind == PRISM) {
+        return b.kind == CYLINDER;
+    }
     return a.kind == CYLINDER && b.hull != NONE && words[b.hull + HULL_CREASE_COUNT] > 0u;
 }
 
@@ -44,13 +114,13 @@ fn cross_face(c: Cylinder, plane: vec4f) -> Crossed {
 
 // The caps, and the corner nearest to the axis against the side.
 fn offer_corners(c: Cylinder, hull: u32) {
-    let count = words[hull + HULL_VERTEX_COUNT];
+    let count = vertices_of(hull);
     var low = UNMOVABLE;
     var high = -UNMOVABLE;
     var least = UNMOVABLE;
     var corner = vec3f();
     for (var k = 0u; k < count; k++) {
-        let arm = vertex_of_hull(hull, k) - c.center;
+        let arm = vertex_of(hull, k) - c.center;
         let along = dot(c.axis, arm);
         low = min(low, along);
         high = max(high, along);
@@ -71,7 +141,7 @@ fn offer_corners(c: Cylinder, hull: u32) {
     if (away.w - c.size.x > largest_gap.gap) {
         var nearest = UNMOVABLE;
         for (var k = 0u; k < count; k++) {
-            nearest = min(nearest, dot(normal, vertex_of_hull(hull, k)));
+            nearest = min(nearest, dot(normal, vertex_of(hull, k)));
         }
         offer(nearest - dot(normal, c.center) - c.size.x, normal);
     }
@@ -151,36 +221,39 @@ fn may_touch_edge(within: f32, crossed: Crossed, turn: vec2f, depth: f32) -> boo
 
 // The largest gap of the pair's cylinder and polyhedron if it is not positive, else one that is; one beyond `limit` will do.
 fn polyhedron_gap(limit: f32) -> Gap {
-    let hull = body_b.hull;
+    var hull = body_b.hull;
     let back = transpose(turn_b);
-    let c = Cylinder(back * vec3f(0.0, 0.0, 1.0), -(back * offset_b), body_a.size);
+    var c = Cylinder(back * vec3f(0.0, 0.0, 1.0), -(back * offset_b), body_a.size);
+    let ground = ANY_TERRAIN && body_a.kind == PRISM;
+    if (ground) {
+        hull = NONE;
+        c = Cylinder(turn_b[2], offset_b, body_b.size);
+    }
     largest_gap = Gap(vec3f(0.0, 0.0, 1.0), -UNMOVABLE, false);
     bar = -UNMOVABLE;
-    for (var face = 0u; face < words[hull + HULL_FACE_COUNT] && largest_gap.gap <= limit; face++) {
-        let plane = plane_of_hull(hull, face);
+    for (var face = 0u; face < faces_of(hull) && largest_gap.gap <= limit; face++) {
+        let plane = plane_of(hull, face);
         offer(-cross_face(c, plane).depth, -plane.xyz);
     }
     if (largest_gap.gap <= limit) {
         offer_corners(c, hull);
-        for (var k = 0u; k < words[hull + HULL_CREASE_COUNT]; k++) {
-            let place = words[hull + HULL_CREASES] + 8u * k;
-            let start = shape3(place);
-            let edge = shape3(place + 3u);
-            let turn = vec2f(numbers[place + 6u], numbers[place + 7u]);
-            let moment = cross(start, edge);
-            let faces = words[hull + HULL_CREASE_FACES] + 2u * k;
-            let m = plane_of_hull(hull, words[faces]);
-            let n = plane_of_hull(hull, words[faces + 1u]);
+        for (var k = 0u; k < creases_of(hull); k++) {
+            let crease = crease_of(hull, k);
+            let m = plane_of(hull, crease.faces.x);
+            let n = plane_of(hull, crease.faces.y);
             let across_m = cross_face(c, m);
             let across_n = cross_face(c, n);
             // How far within the edge the cylinder touches each face.
-            let within_m = dot(edge, across_m.moment) + dot(m.xyz, moment);
-            let within_n = -dot(edge, across_n.moment) - dot(n.xyz, moment);
+            let within_m = dot(crease.edge, across_m.moment) + dot(m.xyz, crease.moment);
+            let within_n = -dot(crease.edge, across_n.moment) - dot(n.xyz, crease.moment);
             let depth = max(-bar, 0.0);
-            if (may_touch_edge(within_m, across_m, turn, depth) && may_touch_edge(within_n, across_n, turn, depth)) {
-                offer_edge(c, start, edge, m.xyz, n.xyz);
+            if (may_touch_edge(within_m, across_m, crease.turn, depth) && may_touch_edge(within_n, across_n, crease.turn, depth)) {
+                offer_edge(c, crease.start, crease.edge, m.xyz, n.xyz);
             }
         }
+    }
+    if (ground) {
+        return Gap(-largest_gap.normal, largest_gap.gap, true);
     }
     return Gap(turn_b * largest_gap.normal, largest_gap.gap, true);
 }

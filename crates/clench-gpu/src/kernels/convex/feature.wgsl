@@ -75,6 +75,9 @@ fn feature_of(body: Body, d: vec3f, place: u32) -> Feature {
     if (ANY_MESH && body.kind == MESH) {
         return feature_of_hull(body, d, place);
     }
+    if (ANY_TERRAIN && body.kind == PRISM) {
+        return feature_of_prism(d, place);
+    }
     if (ANY_CAP_PATCHES && body.kind == CYLINDER && abs(d.z) >= FACE_COSINE) {
         return cap_feature(body.size, d, place);
     }

@@ -374,10 +374,12 @@ fn used(name: &str, mut row: Vec<f64>, solve: &GpuSolve, nv: usize) -> Vec<f64> 
 /// Largest difference of a field, over its largest number.
 pub const TOLERANCE: f64 = 1e-4;
 
-/// Asserts that no environment stands still.
+/// Asserts that no environment stands still, and that the last pass went well in all.
 pub fn assert_all_run(batch: &GpuBatch) {
-    let statuses = batch.statuses().expect("a device");
-    assert!(statuses.iter().all(Option::is_none), "{statuses:?}");
+    for faults in [batch.statuses(), batch.last_faults()] {
+        let faults = faults.expect("a device");
+        assert!(faults.iter().all(Option::is_none), "{faults:?}");
+    }
 }
 
 /// Random states of a model on the device, after a forward pass.

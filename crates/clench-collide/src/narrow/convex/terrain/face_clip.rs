@@ -5,9 +5,9 @@ use super::manifold::Manifold;
 use crate::narrow::convex::body::Body;
 use crate::narrow::convex::pair::across;
 use crate::narrow::{per_lane::Point, polygon::Polygon};
-use clench_math::{Mat3, Scalar, Vec3};
+use clench_math::{Mat3, Real, Scalar, Vec3};
 
-/// A corner this far outside a triangle, as a share of the body, still belongs to it.
+/// A corner this far outside a triangle, as a share of the body, still belongs to it, or as far as rounding may put it there.
 const BESIDE: f64 = 1e-9;
 
 /// A triangle, and the body in its frame.
@@ -74,7 +74,8 @@ impl<S: Scalar> FaceClip<'_, S> {
     fn side(&self, from: Vec3<S>, to: Vec3<S>) -> Side<S> {
         let out = (to - from).cross(self.normal);
         let size = out.x.abs().max(out.y.abs()).max(out.z.abs());
-        let slack = self.body.bounding_radius * S::new(BESIDE) * size;
+        let beside = Real::max(S::new(BESIDE), S::EPSILON * S::new(8.0));
+        let slack = self.body.bounding_radius * beside * size;
         Side {
             out,
             limit: out.dot(from) + slack,

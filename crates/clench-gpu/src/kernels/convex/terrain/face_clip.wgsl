@@ -1,0 +1,98 @@
+// The feature of a body that faces a triangle, clipped to it. Sister of `clench-collide/src/narrow/convex/terrain/face_clip.rs`.
+
+// A corner this far outside a triangle, as a share of the body, still belongs to it: more than rounding.
+const BESIDE: f32 = 1e-6;
+
+// The contacts of the face with the body's feature, in memory; and whether there are any, were it but on the border between faces of one
+// plane, where the cut has no corner.
+var<private> face_list_count: u32;
+var<private> face_touches: bool;
+
+// The contact below a point of the body's core, in the triangle's frame.
+fn contact_below(point: vec3f) -> TerrainPoint {
+    let height = dot(triangle_normal, point);
+    let distance = height - body_b.radius;
+    let down = height - distance * 0.5;
+    return TerrainPoint(triangle_origin + point - triangle_normal * down, triangle_normal, distance);
+}
+
+fn add_to_face(point: vec3f, range: f32) {
+    let contact = contact_below(point);
+    if (contact.distance <= range) {
+        face_touches = true;
+        put_terrain_point(FACE_LIST + TERRAIN_POINT_SIZE * face_list_count, contact);
+        face_list_count++;
+    }
+}
+
+// The line of the side opposite to corner `k`: out of it, and in w how far along that it is with some slack.
+fn side_of_triangle(k: u32) -> vec4f {
+    let start = triangle[(k + 1u) % 3u];
+    let out = cross(triangle[(k + 2u) % 3u] - start, triangle_normal);
+    return vec4f(out, dot(out, start) + slack_of_side(out));
+}
+
+fn slack_of_side(out: vec3f) -> f32 {
+    return body_b.reach * BESIDE * max(abs(out.x), max(abs(out.y), abs(out.z)));
+}
+
+// Whether the plane of the triangle ends at one of the sides that a place is on.
+fn face_ends_at(place: vec3f) -> bool {
+    for (var k = 0u; k < bound(3u); k++) {
+        let side = side_of_triangle(k);
+        let on_side = dot(side.xyz, place) > side.w - slack_of_side(side.xyz) * 4.0;
+        if (on_side && abs(rise_across(k)) > SAME_DIRECTION) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Lists a contact for each corner of the body's feature, clipped to the triangle, that is near enough.
+fn find_face_contacts(range: f32) {
+    face_list_count = 0u;
+    face_touches = false;
+    let first = FEATURE_CORNERS;
+    let feature = feature_of(body_b, -(triangle_normal * turn_b), first);
+    // How far all corners are beyond each side at least.
+    var beyond = vec3f(UNMOVABLE);
+    for (var k = 0u; k < feature.count; k++) {
+        let place = offset_b + turn_b * feature_corners[first + k];
+        feature_corners[first + k] = place;
+        for (var side = 0u; side < bound(3u); side++) {
+            let line = side_of_triangle(side);
+            beyond[side] = min(beyond[side], dot(line.xyz, place) - line.w);
+        }
+    }
+    if (any(beyond > vec3f())) {
+        return;
+    }
+    if (feature.count == 1u) {
+        add_to_face(feature_corners[first], range);
+        return;
+    }
+    let frame = across(triangle_normal);
+    let view = transpose(mat3x3f(frame.e, frame.f, triangle_normal));
+    polygon_count = 0u;
+    for (var k = 0u; k < feature.count; k++) {
+        push_corner(view * feature_corners[first + k]);
+    }
+    let own = polygon;
+    for (var k = 0u; k < bound(3u); k++) {
+        let line = side_of_triangle(k);
+        clip_polygon(vec2f(dot(line.xyz, frame.e), dot(line.xyz, frame.f)), line.w);
+    }
+    for (var k = 0u; k < polygon_count; k++) {
+        let corner = polygon[k];
+        let place = corner * view;
+        var is_own = false;
+        for (var other = 0u; other < feature.count; other++) {
+            is_own = is_own || all(own[other] == corner);
+        }
+        if (is_own || face_ends_at(place)) {
+            add_to_face(place, range);
+        } else if (corner.z - body_b.radius <= range) {
+            face_touches = true;
+        }
+    }
+}

@@ -1,0 +1,293 @@
+// The contact manifold on terrain: points on one plane are replaced by the corners of their convex hull, and of more than there is
+// room for, those nearest to each other are dropped. Sister of `clench-collide/src/narrow/convex/terrain/manifold.rs`.
+//
+// Two manifolds are in memory of the environment: of contacts that count, and of those whose depth may not be the smallest.
+
+const COUNTED: u32 = 0u;
+const PROVISIONAL: u32 = 1u;
+// Points nearer to each other than this share of the body's size are one.
+const SAME_POINT: f32 = 1e-5;
+// Directions count as one up to this angle, rad.
+const SAME_DIRECTION: f32 = 100.0 * 1.1920929e-7;
+// Points of a facet, a new one among them.
+const FACET_POINTS: u32 = PATCH_POINTS + 1u;
+
+// A contact in the field's frame.
+struct TerrainPoint {
+    position: vec3f,
+    normal: vec3f,
+    distance: f32,
+}
+
+var<private> manifold_counts: array<u32, 2>;
+// The size of the body, and how exact distances are, m.
+var<private> terrain_size: f32;
+var<private> terrain_tolerance: f32;
+
+// The points on one plane of the terrain and a new one; where they are across the normal; their hull, by number.
+var<private> facet: array<TerrainPoint, FACET_POINTS>;
+var<private> facet_count: u32;
+var<private> facet_at: array<vec2f, FACET_POINTS>;
+var<private> facet_hull: array<u32, 2u * FACET_POINTS + 2u>;
+var<private> facet_hull_count: u32;
+
+fn terrain_point(place: u32) -> TerrainPoint {
+    return TerrainPoint(fetch3(place), fetch3(place + 3u), fetch(place + 6u));
+}
+
+fn put_terrain_point(place: u32, point: TerrainPoint) {
+    put3(place, point.position);
+    put3(place + 3u, point.normal);
+    put(place + 6u, point.distance);
+}
+
+// Where a point of a manifold is in memory.
+fn manifold_point(manifold: u32, k: u32) -> u32 {
+    return TERRAIN + TERRAIN_POINT_SIZE * (manifold * (MAX_TERRAIN_POINTS + 1u) + k);
+}
+
+// The distance of the deepest point that counts.
+fn deepest_of_manifold() -> f32 {
+    var least = UNMOVABLE;
+    for (var k = 0u; k < manifold_counts[COUNTED]; k++) {
+        least = min(least, fetch(manifold_point(COUNTED, k) + 6u));
+    }
+    return least;
+}
+
+// The point of a contact that lies on the terrain.
+fn ground_of(point: TerrainPoint) -> vec3f {
+    return point.position - point.normal * (point.distance * 0.5);
+}
+
+fn is_on_plane(p: TerrainPoint, point: TerrainPoint) -> bool {
+    let turn = p.normal - point.normal;
+    let apart = abs(dot(ground_of(p) - ground_of(point), point.normal));
+    return dot(turn, turn) <= SAME_DIRECTION * SAME_DIRECTION && apart <= terrain_size * SAME_POINT;
+}
+
+fn is_same_point(p: TerrainPoint, q: TerrainPoint) -> bool {
+    let apart = p.position - q.position;
+    let same = terrain_size * SAME_POINT;
+    return dot(apart, apart) <= same * same;
+}
+
+// Whether a point lies within the area of the facet, or on one of its points, and no deeper.
+fn is_redundant(point: TerrainPoint) -> bool {
+    var least = UNMOVABLE;
+    var twin = NONE;
+    var within = facet_count > 2u;
+    var start = facet[max(facet_count, 1u) - 1u].position;
+    for (var k = 0u; k < facet_count; k++) {
+        let other = facet[k];
+        least = min(least, other.distance);
+        if (twin == NONE && is_same_point(other, point)) {
+            twin = k;
+        }
+        let side = other.position - start;
+        let size = max(abs(side.x), max(abs(side.y), abs(side.z)));
+        let turn = dot(cross(side, point.position - start), other.normal);
+        within = within && turn >= -terrain_size * SAME_POINT * size;
+        start = other.position;
+    }
+    if (point.distance < least - terrain_tolerance) {
+        return false;
+    }
+    if (twin != NONE) {
+        return facet[twin].distance <= point.distance + terrain_tolerance;
+    }
+    return within;
+}
+
+// Adds a point to a manifold, unless it is redundant.
+fn add_to_manifold(manifold: u32, point: TerrainPoint) {
+    // The points on its plane are next to each other, around their area.
+    let count = manifold_counts[manifold];
+    var start = 0u;
+    while (start < count && !is_on_plane(terrain_point(manifold_point(manifold, start)), point)) {
+        start++;
+    }
+    facet_count = 0u;
+    while (start + facet_count < count && facet_count < PATCH_POINTS) {
+        let other = terrain_point(manifold_point(manifold, start + facet_count));
+        if (!is_on_plane(other, point)) {
+            break;
+        }
+        facet[facet_count] = other;
+        facet_count++;
+    }
+    if (is_redundant(point)) {
+        return;
+    }
+    // The facet leaves the manifold and comes back behind all others.
+    var left = start;
+    for (var k = start + facet_count; k < count; k++) {
+        put_terrain_point(manifold_point(manifold, left), terrain_point(manifold_point(manifold, k)));
+        left++;
+    }
+    // A point in the same place is not as deep.
+    var kept = 0u;
+    for (var k = 0u; k < facet_count; k++) {
+        if (!is_same_point(facet[k], point)) {
+            facet[kept] = facet[k];
+            kept++;
+        }
+    }
+    facet[kept] = point;
+    facet_count = kept + 1u;
+    find_corners_of_facet();
+    for (var k = 0u; k < facet_hull_count; k++) {
+        put_terrain_point(manifold_point(manifold, left), facet[facet_hull[k]]);
+        left++;
+        if (left > MAX_TERRAIN_POINTS) {
+            thin_out(manifold);
+            left--;
+        }
+    }
+    manifold_counts[manifold] = left;
+}
+
+// Leaves the corners of the area that the points of the facet span, and the deepest of them, in the hull.
+fn find_corners_of_facet() {
+    facet_hull_count = 0u;
+    if (facet_count < 3u) {
+        for (var k = 0u; k < facet_count; k++) {
+            push_to_hull(k);
+        }
+        return;
+    }
+    sort_facet();
+    let lowest = deepest_of_facet();
+    for (var way = 0u; way < bound(2u); way++) {
+        let begin = facet_hull_count;
+        for (var k = 0u; k < facet_count; k++) {
+            extend_hull(begin, select(k, facet_count - 1u - k, way == 1u));
+        }
+        // The last begins the way back, and its last began this.
+        facet_hull_count = max(facet_hull_count - 1u, begin + way);
+    }
+    var has_deepest = false;
+    for (var k = 0u; k < facet_hull_count; k++) {
+        has_deepest = has_deepest || facet[facet_hull[k]].distance <= facet[lowest].distance + terrain_tolerance;
+    }
+    if (!has_deepest) {
+        for (var k = facet_hull_count; k > 0u; k--) {
+            facet_hull[k] = facet_hull[k - 1u];
+        }
+        facet_hull[0] = lowest;
+        facet_hull_count++;
+    }
+    while (facet_hull_count > PATCH_POINTS) {
+        remove_least_corner();
+    }
+}
+
+fn push_to_hull(k: u32) {
+    facet_hull[facet_hull_count] = k;
+    facet_hull_count++;
+}
+
+// Puts the points of the facet in order along the first direction across the normal, then along the second.
+fn sort_facet() {
+    let frame = across(facet[0].normal);
+    for (var k = 0u; k < facet_count; k++) {
+        let point = facet[k];
+        let at = vec2f(dot(frame.e, point.position), dot(frame.f, point.position));
+        var place = k;
+        while (place > 0u) {
+            let before = facet_at[place - 1u];
+            if (before.x < at.x || (before.x == at.x && before.y <= at.y)) {
+                break;
+            }
+            facet[place] = facet[place - 1u];
+            facet_at[place] = before;
+            place--;
+        }
+        facet[place] = point;
+        facet_at[place] = at;
+    }
+}
+
+// Adds a point to the chain from `begin` on, to the right of which no point lies (Andrew 1979). Those less off it than what counts
+// as one are left out.
+fn extend_hull(begin: u32, k: u32) {
+    let at = facet_at[k];
+    while (facet_hull_count >= begin + 2u) {
+        let p = facet_at[facet_hull[facet_hull_count - 2u]];
+        let q = facet_at[facet_hull[facet_hull_count - 1u]];
+        if (turn_of(q - p, at - p) > terrain_size * SAME_POINT * length(at - p)) {
+            break;
+        }
+        facet_hull_count--;
+    }
+    push_to_hull(k);
+}
+
+// The first of the deepest points of the facet; what the tolerance cannot tell apart is as deep.
+fn deepest_of_facet() -> u32 {
+    var lowest = 0u;
+    for (var k = 1u; k < facet_count; k++) {
+        if (facet[k].distance < facet[lowest].distance - terrain_tolerance) {
+            lowest = k;
+        }
+    }
+    return lowest;
+}
+
+// Removes the corner of the hull that spans the smallest triangle with its neighbours, but not the deepest.
+fn remove_least_corner() {
+    var lowest = 0u;
+    for (var k = 1u; k < facet_hull_count; k++) {
+        if (facet[facet_hull[k]].distance < facet[facet_hull[lowest]].distance - terrain_tolerance) {
+            lowest = k;
+        }
+    }
+    var least = UNMOVABLE;
+    var removed = 0u;
+    for (var k = 0u; k < facet_hull_count; k++) {
+        let p = facet_at[facet_hull[select(k, facet_hull_count, k == 0u) - 1u]];
+        let q = facet_at[facet_hull[k]];
+        let r = facet_at[facet_hull[select(k + 1u, 0u, k + 1u == facet_hull_count)]];
+        let area = abs(turn_of(q - p, r - p));
+        if (k != lowest && area < least) {
+            least = area;
+            removed = k;
+        }
+    }
+    facet_hull_count--;
+    for (var k = removed; k < facet_hull_count; k++) {
+        facet_hull[k] = facet_hull[k + 1u];
+    }
+}
+
+// Of one point more than there is room for, removes one of the two that are nearest to each other: the shallower, between equals the
+// one nearer to the middle.
+fn thin_out(manifold: u32) {
+    let count = MAX_TERRAIN_POINTS + 1u;
+    var nearest = UNMOVABLE;
+    var pair = vec2u(0u, 1u);
+    var middle_of_all = vec3f();
+    for (var i = 0u; i < count; i++) {
+        let p = terrain_point(manifold_point(manifold, i));
+        middle_of_all += p.position;
+        for (var j = i + 1u; j < count; j++) {
+            let q = terrain_point(manifold_point(manifold, j));
+            let turn = (p.normal - q.normal) * terrain_size;
+            let apart = p.position - q.position;
+            let distance = dot(apart, apart) + dot(turn, turn);
+            if (distance < nearest) {
+                nearest = distance;
+                pair = vec2u(i, j);
+            }
+        }
+    }
+    middle_of_all /= f32(count);
+    let p = terrain_point(manifold_point(manifold, pair.x));
+    let q = terrain_point(manifold_point(manifold, pair.y));
+    let deeper = q.distance - p.distance;
+    let out = vec2f(length(p.position - middle_of_all), length(q.position - middle_of_all));
+    let removes_first = select((out.x < out.y), (deeper < 0.0), (abs(deeper) > terrain_tolerance));
+    for (var k = select(pair.y, pair.x, removes_first); k + 1u < count; k++) {
+        put_terrain_point(manifold_point(manifold, k), terrain_point(manifold_point(manifold, k + 1u)));
+    }
+}
