@@ -68,7 +68,7 @@ fn creases(hull: &Hull) -> Vec<Crease> {
 }
 
 impl Tables {
-    /// The polyhedra of a model's pairs, and which of them each geom is: `NONE` where it is none. Gives the most corners of a face.
+    /// The polyhedra and height fields of a model's pairs, and which of them each geom is: `NONE` where it is none. Gives the most corners of a face.
     pub(super) fn hulls(&mut self, m: &Model, candidates: &[Candidate]) -> usize {
         for (offset, name) in PARTS.iter().enumerate() {
             self.count(name, offset);

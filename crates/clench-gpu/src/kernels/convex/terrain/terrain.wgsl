@@ -212,12 +212,11 @@ fn classify() -> bool {
     if (patch_is == KNOWN) {
         return true;
     }
-    let feature = feature_of_triangle(best);
     if (length(best.normal - triangle_normal) <= FACE_NORMAL_RATIO * SAME_DIRECTION) {
         patch_is = ALONG_NORMAL;
         return true;
     }
-    if (admits_normal(feature)) {
+    if (admits_normal(feature_of_triangle(best))) {
         patch_is = ADMITTED;
         return true;
     }
@@ -229,7 +228,7 @@ fn classify() -> bool {
     return best.gap - body_b.radius < rejected.distance;
 }
 
-// Lists a contact of the present triangle's patch.
+// Lists a contact of the present triangle's patch; a patch has fewer than there is room for.
 fn add_to_patch(point: TerrainPoint) {
     if (patch_count < PATCH_LIST_POINTS) {
         put_terrain_point(PATCH_LIST + TERRAIN_POINT_SIZE * patch_count, point);
