@@ -134,15 +134,15 @@ pub(crate) fn read_position(
 ) -> Result<ActuatorParams, LoadError> {
     let mut parameters = read_servo(element, inherited)?;
     let filtered = inherited.dynamics == DynamicsKind::FilterExact;
-    let mut timeconst = if filtered { inherited.dynprm[0] } else { 0.0 };
-    element.set_number("timeconst", &mut timeconst)?;
-    if timeconst < 0.0 {
-        return Err(element.error("timeconst cannot be negative"));
-    }
+    let inherited = filtered.then_some(inherited.dynprm[0]);
+    let Some(timeconst) = not_negative(element, "timeconst")?.or(inherited) else {
+        return Ok(parameters);
+    };
     if timeconst > 0.0 {
         parameters.dynamics = DynamicsKind::FilterExact;
-        parameters.dynprm = params([timeconst]);
     }
+    // A class hands it on even where it is zero.
+    parameters.dynprm = params([timeconst]);
     Ok(parameters)
 }
 

@@ -126,6 +126,15 @@ fn position_pulls_to_its_target() {
     );
     let quick = actuator("", "<position joint='j' timeconst='0'/>");
     assert_eq!(quick.dynamics, DynamicsKind::None);
+    let class = "<position timeconst='0'/>";
+    let filter = actuator(class, "<general joint='j' dyntype='filter'/>");
+    assert_eq!(filter.dynprm[0], 0.0, "a class hands its zero on");
+    let unfiltered = actuator(class, "<position joint='j'/>");
+    assert_eq!(
+        (unfiltered.dynamics, unfiltered.dynprm[0]),
+        (DynamicsKind::None, 1.0),
+        "a servo of its own begins anew"
+    );
     assert!(rejected("<position joint='j' kv='1' dampratio='1'/>").contains("both"));
     assert!(rejected("<position joint='j' kv='-1'/>").contains("negative"));
 }
