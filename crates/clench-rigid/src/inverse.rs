@@ -67,7 +67,7 @@ pub fn inverse<T: Real>(
         // The derivatives of actuators depend on their forces.
         let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
         actuation(model, params, state, pos, vel, T::ZERO, force);
-        enter_metric(model, params, state, ws);
+        enter_metric(model, params, settings, state, ws);
     } else if given == Acceleration::Discrete {
         make_continuous(model, params, state, ws);
     }

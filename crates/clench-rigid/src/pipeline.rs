@@ -128,6 +128,7 @@ pub fn velocity_stage<T: Real>(
 pub fn force_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
+    settings: &StepSettings,
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
@@ -136,7 +137,7 @@ pub fn force_stage<T: Real>(
     smooth_forces(model, state, pos, force);
     ws.problem.qacc_smooth.copy_from_slice(&force.qfrc_smooth);
     if ws.metric.acts() {
-        enter_metric(model, params, state, ws);
+        enter_metric(model, params, settings, state, ws);
     }
     smooth_acceleration(model, &mut ws.problem);
     ws.clock.lap(Stage::Force as usize);
@@ -205,7 +206,7 @@ fn from_forces<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
-    force_stage(model, params, state, ws);
+    force_stage(model, params, settings, state, ws);
     constraint_stage(model, params, settings, state, ws);
     if settings.flags.sleep {
         ws.sleep.still(model, &mut ws.qacc);

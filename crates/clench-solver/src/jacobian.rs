@@ -307,6 +307,16 @@ macro_rules! with_dim {
     };
 }
 
+impl<T: Real> StoredRows<T> {
+    /// `out += Jᵀ f` of some of the blocks.
+    #[kernel]
+    pub(crate) fn add_transposed_of(&self, blocks: &[BlockIndex], f: &[T], out: &mut [T]) {
+        for b in blocks {
+            with_dim!(b.dim, DIM => self.add_transposed_block::<DIM>(b, f, out));
+        }
+    }
+}
+
 impl<T: Real> Jacobian<T> for StoredRows<T> {
     #[kernel]
     fn mul(&self, x: &[T], out: &mut [T]) {
@@ -317,9 +327,7 @@ impl<T: Real> Jacobian<T> for StoredRows<T> {
 
     #[kernel]
     fn add_transposed(&self, f: &[T], out: &mut [T]) {
-        for b in &self.blocks {
-            with_dim!(b.dim, DIM => self.add_transposed_block::<DIM>(b, f, out));
-        }
+        self.add_transposed_of(&self.blocks, f, out);
     }
 
     #[kernel]

@@ -23,6 +23,7 @@ mod islands;
 mod iterate;
 mod jacobian;
 mod line_search;
+mod metric_terms;
 mod minimum_degree;
 mod newton;
 mod noslip;

@@ -10,10 +10,15 @@
 //! each pair of opposing edges with their sum σ fixed, which leaves friction along one row free within ±μ σ. The
 //! acceleration a is carried along, so that an update costs one row of J and one of M⁻¹Jᵀ. As in MuJoCo, the
 //! regularization cost that is dropped counts towards the first sweep's improvement.
+//!
+//! Where the metric has terms beside M, MuJoCo's sweeps see another matrix in its place
+//! ([`Problem::noslip_factor`]): the acceleration that is carried along is a_unc + M'⁻¹Jᵀf, and what the forces do in the
+//! whole metric is found once they stand.
 
 use crate::costs::MAX_DIM;
 use crate::iterate::{Iterate, dot};
 use crate::jacobian::{BlockIndex, Jacobian};
+use crate::metric_terms::MetricTerms;
 use crate::{Cost, Problem, Settings, SolveStats};
 use clench_math::{Mask, Real, Scalar, kernel};
 
@@ -36,6 +41,9 @@ pub(crate) struct Noslip<T> {
     frictions: Vec<Friction<T>>,
     /// M⁻¹Jᵀ, one row of nv for each friction row.
     responses: Vec<T>,
+    terms: MetricTerms<T>,
+    /// The acceleration at which the solve ended, in a metric.
+    solved: Vec<T>,
 }
 
 impl<T: Real> Noslip<T> {
@@ -60,6 +68,8 @@ impl<T: Real> Noslip<T> {
             .fold(T::Mask::splat(false), |live, f| {
                 live | problem.rows(&f.block).d[0].gt(T::ZERO)
             });
+        let frictional = live;
+        self.leave_metric(problem, iterate);
         let tolerance = T::new(settings.noslip_tolerance);
         let mut improvement = regularization_cost(problem, &iterate.force, edges);
         for _ in 0..settings.noslip_iterations {
@@ -74,10 +84,38 @@ impl<T: Real> Noslip<T> {
             improvement = T::ZERO;
         }
         write_edges(problem, &iterate.force, edges);
+        self.return_to_metric(problem, iterate, frictional);
         iterate.qfrc_constraint.fill(T::ZERO);
         problem
             .jacobian
             .add_transposed(&iterate.force, &mut iterate.qfrc_constraint);
+    }
+
+    /// Replaces the acceleration in the metric by the one that sweeps begin with.
+    #[inline(always)]
+    fn leave_metric(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>) {
+        if problem.noslip_factor.is_empty() {
+            return;
+        }
+        self.solved.clone_from(&iterate.qacc);
+        pull_of_constraints(problem, &iterate.force, &mut iterate.qacc);
+        (problem.noslip_factor).solve(problem.tree(), &mut iterate.qacc);
+        for (a, &smooth) in iterate.qacc.iter_mut().zip(&problem.qacc_smooth) {
+            *a += smooth;
+        }
+    }
+
+    /// Finds what the forces that the sweeps have found do in the metric, in the lanes that have friction.
+    #[inline(always)]
+    fn return_to_metric(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, lanes: T::Mask) {
+        if problem.noslip_factor.is_empty() {
+            return;
+        }
+        pull_of_constraints(problem, &iterate.force, &mut iterate.qacc);
+        (self.terms).accelerate(problem, lanes, &mut iterate.qacc, &mut iterate.force);
+        for (a, &solved) in iterate.qacc.iter_mut().zip(&self.solved) {
+            *a = T::select(lanes, *a, solved);
+        }
     }
 
     /// Lists the friction rows, dry friction first, and computes their responses.
@@ -113,9 +151,11 @@ impl<T: Real> Noslip<T> {
             for (&dof, &j) in row(i) {
                 self.responses[start + dof as usize] = j;
             }
-            problem
-                .mass_factor
-                .solve(problem.tree(), &mut self.responses[start..]);
+            let factor = match problem.noslip_factor.is_empty() {
+                true => &problem.mass_factor,
+                false => &problem.noslip_factor,
+            };
+            factor.solve(problem.tree(), &mut self.responses[start..]);
             for k in first..block.dim {
                 for (&dof, &j) in row(k) {
                     a[k - first][i - first] += j * self.responses[start + dof as usize];
@@ -212,6 +252,14 @@ impl<T: Real> Friction<T> {
         }
         target
     }
+}
+
+/// Jᵀ f of the constraints, without what terms of the metric pull with.
+#[inline(always)]
+fn pull_of_constraints<T: Real>(problem: &Problem<T>, force: &[T], out: &mut [T]) {
+    out.fill(T::ZERO);
+    let (constraints, _) = problem.constraints_and_terms();
+    problem.jacobian.add_transposed_of(constraints, force, out);
 }
 
 /// J a − aref of a block's friction rows.
@@ -351,11 +399,12 @@ fn shifted_minimum<T: Real>(
     (g, dot(&g[..n], &g[..n]), dot(&half[..n], &half[..n]))
 }
 
-/// ½ Σ R f² over all rows, for pyramids over their edges.
+/// ½ Σ R f² over all rows of constraints, for pyramids over their edges.
 #[inline(always)]
 fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) -> T {
     let mut sum = T::ZERO;
-    for b in &problem.jacobian.blocks {
+    let (constraints, _) = problem.constraints_and_terms();
+    for b in constraints {
         if b.cost == Cost::Pyramid {
             let edges = &edges[b.active_start..b.active_start + 2 * (b.dim - 1)];
             sum += problem.r[b.row] * dot(edges, edges);

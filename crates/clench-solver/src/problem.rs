@@ -16,6 +16,9 @@ pub struct Problem<T> {
     pub mass: TreeMatrix<T>,
     /// The factorization of M; see [`factor_mass`](Self::factor_mass).
     pub mass_factor: TreeFactor<T>,
+    /// The factorization of what `noslip` takes for M, where that is another matrix: MuJoCo's sweeps see of the couplings of a metric
+    /// their diagonal alone. Empty where it is M.
+    pub noslip_factor: TreeFactor<T>,
     /// Unconstrained acceleration a_unc = M⁻¹ τ, length nv.
     pub qacc_smooth: Vec<T>,
     pub(crate) jacobian: StoredRows<T>,
@@ -25,6 +28,8 @@ pub struct Problem<T> {
     pub(crate) shape: Vec<T>,
     /// Total number of pieces.
     pub(crate) nactive: usize,
+    /// How many blocks are constraints. Those after them are terms of the metric.
+    pub(crate) nconstraint: Option<usize>,
     /// The first block that was pushed with an impossible size.
     pub(crate) malformed: Option<(usize, &'static str)>,
 }
@@ -94,6 +99,7 @@ impl<T: Real> Problem<T> {
         Problem {
             mass: TreeMatrix::zeros(&tree),
             mass_factor: TreeFactor::zeros(&tree),
+            noslip_factor: TreeFactor::default(),
             qacc_smooth: vec![T::ZERO; tree.nv()],
             tree,
             jacobian: StoredRows::default(),
@@ -102,6 +108,7 @@ impl<T: Real> Problem<T> {
             d: Vec::new(),
             shape: Vec::new(),
             nactive: 0,
+            nconstraint: None,
             malformed: None,
         }
     }
@@ -136,7 +143,20 @@ impl<T: Real> Problem<T> {
         self.d.clear();
         self.shape.clear();
         self.nactive = 0;
+        self.nconstraint = None;
         self.malformed = None;
+    }
+
+    /// From here on the blocks that are pushed are terms ½ D (J a − aref)² of the metric: M with the sum of their D JᵀJ is the matrix
+    /// of the motion, and aref = J a_unc. `noslip` tells them from constraints.
+    pub fn begin_metric_terms(&mut self) {
+        self.nconstraint = Some(self.nblock());
+    }
+
+    /// The blocks that are constraints, and those that are terms of the metric.
+    pub(crate) fn constraints_and_terms(&self) -> (&[BlockIndex], &[BlockIndex]) {
+        let blocks = &self.jacobian.blocks;
+        blocks.split_at(self.nconstraint.unwrap_or(blocks.len()))
     }
 
     /// Appends a block of `dim` rows (1 to 6) that acts on `dofs` (ascending) and returns it to be filled in.
@@ -238,6 +258,12 @@ impl<T: Real> Problem<T> {
         }
         self.mass_factor
             .gather(from, &whole.mass_factor, dofs, transfer);
+        if whole.noslip_factor.is_empty() {
+            self.noslip_factor.clear();
+        } else {
+            self.noslip_factor
+                .gather(from, &whole.noslip_factor, dofs, transfer);
+        }
         self.gather_blocks(whole, part, transfer);
     }
 
@@ -250,6 +276,8 @@ impl<T: Real> Problem<T> {
         transfer: impl Transfer<L, T>,
     ) {
         self.clear_constraints();
+        self.nconstraint =
+            (whole.nconstraint).map(|count| part.blocks.partition_point(|&k| (k as usize) < count));
         for &k in part.blocks {
             let b = &whole.jacobian.blocks[k as usize];
             let lanes = part.lanes & part.acting[k as usize];

@@ -59,7 +59,7 @@ pub fn constraint_stage<T: Real>(
     }
     assemble(model, params, settings, state, ws);
     if in_metric {
-        append_couplings(model, ws);
+        append_couplings(model, &settings.solver, ws);
     }
     ws.clock.lap(Stage::Assembly as usize);
     let warmstart = Some(&state.qacc_warmstart[..]);

@@ -11,6 +11,7 @@ use crate::dynamics::gyroscopic::{gyroscopic_product, is_free_tree, solve_gyrosc
 use crate::dynamics::integrate::{add_scaled, advance_semi_implicit};
 use crate::dynamics::metric::{Metric, add_metric, each_arm};
 use crate::model::{Model, Params};
+use crate::settings::StepSettings;
 use crate::stages::Positions;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -26,13 +27,17 @@ const EXACT_STEPS: usize = 4;
 pub fn enter_metric<T: Real>(
     model: &Model,
     params: &Params<T>,
+    settings: &StepSettings,
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
     let stages = (&ws.position, &ws.velocity, &ws.force);
     let mass = &mut ws.problem.mass;
     add_metric(model, params, state, stages, &mut ws.metric, mass);
-    ws.singular |= !(ws.problem.factor_mass() & ws.metric.factor_backbone(&model.tree));
+    ws.singular |= !ws.problem.factor_mass();
+    if settings.flags.diagexact || settings.solver.noslip_iterations > 0 {
+        ws.singular |= !ws.metric.factor_backbone(&model.tree);
+    }
     add_scaled(&mut ws.problem.qacc_smooth, &ws.metric.shift, T::ONE);
 }
 
@@ -60,7 +65,12 @@ pub fn couple_smooth<T: Real>(model: &Model, settings: &Settings, ws: &mut Works
 
 /// Appends the couplings of the metric to the constraints of the problem, about the acceleration without constraints, in lanes that
 /// have any.
-pub fn append_couplings<T: Real>(model: &Model, ws: &mut Workspace<T>) {
+pub fn append_couplings<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
+    ws.problem.noslip_factor.clear();
+    if let (true, Some(factor)) = (settings.noslip_iterations > 0, ws.metric.backbone_factor()) {
+        ws.problem.noslip_factor.copy_from(factor);
+    }
+    ws.problem.begin_metric_terms();
     if !ws.metric.is_coupled() {
         return;
     }

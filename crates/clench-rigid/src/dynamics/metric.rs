@@ -61,8 +61,8 @@ pub struct Metric<T: Real> {
     pub shift: Vec<T>,
     /// Diagonal of M̂ − M (nv).
     pub added: Vec<T>,
-    /// M̂ with what tendons and actuators have on the diagonal alone, which MuJoCo's exact inverse inertias are of; empty where nothing
-    /// asks for it.
+    /// M̂ with what tendons and actuators have on the diagonal alone, which MuJoCo's exact inverse inertias and its sweeps without slip
+    /// are of; empty where that is M̂.
     backbone: TreeMatrix<T>,
     /// Its factor.
     backbone_factor: TreeFactor<T>,
@@ -106,7 +106,7 @@ impl<T: Real> Metric<T> {
         metric.touched = vec![T::Mask::splat(false); model.ntree()];
         let tendons = (0..model.tendons.len()).map(Along::Tendon);
         let terms = tendons.chain((0..model.nout()).map(Along::Output));
-        if model.flags.diagexact && terms.clone().any(|along| along.dofs(model).len() > 1) {
+        if terms.clone().any(|along| along.dofs(model).len() > 1) {
             metric.backbone = TreeMatrix::zeros(&model.tree);
             metric.backbone_factor = TreeFactor::zeros(&model.tree);
         }

@@ -32,6 +32,26 @@ impl<T: Real> TreeFactor<T> {
         factor
     }
 
+    /// Whether it is a factor of nothing.
+    pub fn is_empty(&self) -> bool {
+        self.diagonal.is_empty()
+    }
+
+    /// Becomes a factor of nothing, and keeps its memory.
+    pub fn clear(&mut self) {
+        self.lower.clear();
+        self.scaled.clear();
+        self.diagonal.clear();
+        self.inverse.clear();
+    }
+
+    /// Becomes the same as another, in the memory that it has.
+    pub fn copy_from(&mut self, other: &TreeFactor<T>) {
+        self.lower.clone_from(&other.lower);
+        self.diagonal.clone_from(&other.diagonal);
+        self.inverse.clone_from(&other.inverse);
+    }
+
     #[inline(always)]
     pub(crate) fn resize(&mut self, tree: &Tree) {
         self.lower.resize(tree.nnz(), T::ZERO);
