@@ -177,7 +177,7 @@ fn couplings_in_lanes<S: Precision>(rigid: &RigidOptions) {
     let (mut slack, mut rubs) = (0, 0);
     let ends: Vec<State<S>> = (0..ENVS)
         .map(|env| {
-            let alone = Sim::<S>::with_options(Arc::clone(&model), rigid.clone());
+            let alone = Sim::<S>::with_options(Arc::clone(&model), *rigid);
             let mut sim = alone.expect("valid");
             sim.state = start(env);
             for _ in 0..40 {
@@ -192,7 +192,7 @@ fn couplings_in_lanes<S: Precision>(rigid: &RigidOptions) {
         assert!((100..ENVS * 40 - 100).contains(&count), "{count}");
     }
     for instructions in Instructions::all_available() {
-        let options = with(instructions, 1, rigid.clone());
+        let options = with(instructions, 1, *rigid);
         let mut batch = Batch::<S>::with_options(Arc::clone(&model), ENVS, options).expect("valid");
         for env in 0..ENVS {
             batch.state.write(env, &start(env)).expect("valid");
