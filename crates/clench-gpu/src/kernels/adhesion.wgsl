@@ -1,6 +1,7 @@
 // Transmissions to contacts: a body is drawn to whatever it touches. Sister of `dynamics/adhesion.rs`.
 
 // Moment arms, over all dofs, of an actuator on the contacts of `body`: minus the mean rate at which the bodies come apart there.
+// A contact within one rigid body has no share, unless it is within the gap.
 fn contact_arms(u: u32, body: u32) {
     let arms = ACTUATOR_MOMENT + words[ACTUATOR_ROW + u];
     clear_dofs(arms);
@@ -11,6 +12,10 @@ fn contact_arms(u: u32, body: u32) {
         let a = words[PAIR_BODY + 2u * pair];
         let b = words[PAIR_BODY + 2u * pair + 1u];
         if (a != body && b != body) {
+            continue;
+        }
+        let margin = parameter(PAIR_PRM + PAIR_PRM_SIZE * pair);
+        if (move_alike(a, b) && fetch(place + 1u) < margin) {
             continue;
         }
         count += 1.0;

@@ -5,6 +5,15 @@ fn moves(body: u32, dof: u32) -> bool {
     return ((words[DOF_MASK + MASK_WORDS * body + (dof >> 5u)] >> (dof & 31u)) & 1u) == 1u;
 }
 
+// Whether each dof moves both bodies or neither.
+fn move_alike(a: u32, b: u32) -> bool {
+    var alike = true;
+    for (var i = 0u; i < MASK_WORDS; i++) {
+        alike = alike && words[DOF_MASK + MASK_WORDS * a + i] == words[DOF_MASK + MASK_WORDS * b + i];
+    }
+    return alike;
+}
+
 // From the reference point of the tree of body `b` to a point.
 fn offset_of(b: u32, point: vec3f) -> vec3f {
     return point - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);

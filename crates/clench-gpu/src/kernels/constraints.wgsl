@@ -82,7 +82,7 @@ fn push_contact(contact: u32) {
     let prm = PAIR_PRM + PAIR_PRM_SIZE * pair;
     let distance = fetch(place + 1u);
     let margin = parameter(prm);
-    if (distance >= margin) {
+    if (distance >= margin || move_alike(words[PAIR_BODY + 2u * pair], words[PAIR_BODY + 2u * pair + 1u])) {
         return;
     }
     let a0 = parameter(prm + 1u);

@@ -2,13 +2,14 @@
 //!
 //! The force is shared equally by all contacts of the body, those among them that are within the gap and carry no force yet. Along
 //! a contact's normal n, from its first body to the second, the bodies come apart with n · (v₂ − v₁): the moment arms are minus
-//! the mean of that over the contacts, and zero where there is none. Gears do not count.
+//! the mean of that over the contacts, and zero where there is none. Gears do not count. As in MuJoCo a contact within one rigid body,
+//! which a pair can ask for, has no share, unless it is within the gap.
 
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use crate::model::{Model, Transmission};
 use crate::stages::Positions;
-use clench_math::{Real, kernel};
+use clench_math::{Mask, Real, kernel};
 
 /// Moment arms of all actuators on contacts, once these are found.
 #[kernel]
@@ -39,10 +40,12 @@ fn body_arms<T: Real>(
         if !bodies.contains(&body) {
             continue;
         }
-        let share = T::select(contact.active, T::ONE, T::ZERO);
+        let chains = Chains::new(model, bodies).without_common();
+        let nothing_moves = chains.parts().iter().all(|(part, _)| part.is_empty());
+        let shares = contact.active & !(contact.acts() & T::Mask::splat(nothing_moves));
+        let share = T::select(shares, T::ONE, T::ZERO);
         count += share;
         let normal = contact.frame.rows[0] * share;
-        let chains = Chains::new(model, bodies).without_common();
         for (part, side) in chains.parts() {
             let (body, along) = match side {
                 Side::Second => (bodies[1], -normal),
