@@ -60,10 +60,10 @@ pub(super) fn push<T: Real>(
         contact.dist - contact.includemargin,
         context.min_timeconst,
     );
-    let soft = context.resolved(soft, contact.solref);
+    let resolved = context.resolved(soft, contact.solref);
     let weight = |body: usize| context.params.body_invweight0[body][0];
     let a0 = weight(bodies[0]) + weight(bodies[1]);
-    let (cost, rows) = rows(context, contact, &soft, a0);
+    let (cost, rows) = rows(context, contact, [&soft, &resolved], a0);
     let block = BlockRecord {
         source: ConstraintSource::Contact(index),
         active,
@@ -76,14 +76,16 @@ pub(super) fn push<T: Real>(
     });
 }
 
+/// The rows of a contact, from how soft it is and what of that the step resolves. Friction of an elliptic cone has no spring, and so
+/// damping as it is asked for.
 #[inline(always)]
 fn rows<T: Real>(
     context: &ConstraintContext<T>,
     contact: &Contact<T>,
-    soft: &Softness<T>,
+    [soft, resolved]: [&Softness<T>; 2],
     a0: T,
 ) -> (Cost, [Row<T>; MAX_DIM]) {
-    let mut normal = Row::new(soft, contact.dist, contact.includemargin, a0);
+    let mut normal = Row::new(resolved, contact.dist, contact.includemargin, a0);
     let slip = Row {
         pos: T::ZERO,
         aref: T::ZERO,

@@ -7,6 +7,9 @@ use crate::dynamics::metric::Metric;
 use clench_math::Real;
 use clench_solver::{Cost, Tree};
 
+/// Rows that see no more inverse inertia than this (1/kg, 1/(kg m²)) move nothing (MuJoCo's `mjMINVAL`).
+const MIN_INVERSE_INERTIA: f64 = 1e-15;
+
 /// What such rows are computed with.
 pub(super) struct ImplicitRows<'a, T: Real> {
     pub tree: &'a Tree,
@@ -75,7 +78,7 @@ impl<T: Real> ImplicitRows<'_, T> {
         }
     }
 
-    /// Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ of J = row + factor · other; one where nothing moves.
+    /// Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ of J = row + factor · other; one where nothing moves but by rounding.
     #[inline(always)]
     fn taken(&self, row: &[T], other: &[T], factor: T, dofs: &[u32]) -> T {
         let (mut before, mut after) = (T::ZERO, T::ZERO);
@@ -89,7 +92,7 @@ impl<T: Real> ImplicitRows<'_, T> {
             before += arm * arm / inertia;
             after += arm * arm / (inertia + self.metric.added[dof]);
         }
-        let moves = before.gt(T::ZERO);
+        let moves = before.gt(T::new(MIN_INVERSE_INERTIA));
         T::select(moves, after / T::select(moves, before, T::ONE), T::ONE)
     }
 }
