@@ -112,6 +112,14 @@ impl<'a> Search<'a> {
             actuation: false,
             ..Flags::default()
         };
+        // Flags of a file may have become options.
+        model.options = RigidOptions {
+            disable_constraint: None,
+            enable_joint_limit: None,
+            warmstart: None,
+            islands: None,
+            ..model.options
+        };
         if model.integrator == Integrator::Rk4 {
             model.integrator = Integrator::Euler;
         }

@@ -82,6 +82,21 @@ fn a_length_range_that_is_not_given_is_as_far_as_the_limits_yield() {
 }
 
 #[test]
+fn a_model_without_constraints_has_the_length_ranges_that_it_would_have_with_them() {
+    let free = slider(muscle(), |b| {
+        b.physics.flags.constraint = false;
+        b.options.disable_constraint = Some(true);
+        b.options.enable_joint_limit = Some(false);
+    });
+    let (free, held) = (
+        free.expect("valid"),
+        slider(muscle(), |_| ()).expect("valid"),
+    );
+    let range = |model: &Model| model.params.actuator_lengthrange[0];
+    assert_eq!(range(&free), range(&held));
+}
+
+#[test]
 fn a_length_without_end_is_an_error_that_says_so() {
     let endless = slider(muscle(), |b| b.bodies[1].joints[0].limited = Some(false));
     assert!(endless.unwrap_err().contains("did not settle"));
