@@ -22,7 +22,7 @@ OF_TENDONS = (mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON, mujoco.mjtConstraint
 def is_undecided(model, sensor, ours, theirs, held):
     """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, the
     limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and so are forces between bodies where rounding
-    `held` such a tendon; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), that
+    `held` such a tendon, or tied a body to itself; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), that
     a capsule goes through a box not at all, and of a height field what is near among the first of its cells alone; and a ray that starts on
     a surface, or passes an edge, meets it or not; and a camera of the world stands still where bodies may sleep."""
     kind = mujoco.mjtSensor(model.sensor_type[sensor])
@@ -49,11 +49,13 @@ def is_undecided(model, sensor, ours, theirs, held):
 
 
 def held_by_rounding(theirs):
-    """Whether friction or a limit holds a tendon that moves nothing: that it is a constraint at all, rounding decides, and what it asks
-    for is a quotient of roundings. It moves nothing, and yet is a force between the bodies of its ends."""
+    """Whether friction or a limit holds a tendon that moves nothing, or an equality ties a body to itself: that it is a constraint at all,
+    rounding decides, and what it asks for is a quotient of roundings. It moves nothing, and yet is a force between the bodies of its ends."""
     tendons = np.isin(theirs.efc_type, [int(kind) for kind in OF_TENDONS])
     idle = np.abs(theirs.jacobian).max(axis=1, initial=0) <= IDLE
-    return bool((np.abs(theirs.efc_force[tendons & idle]) > HELD).any())
+    equality = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+    alone = equality & ~np.isin(theirs.efc_id, theirs.efc_id[equality & ~idle])
+    return bool((np.abs(theirs.efc_force[idle & (tendons | alone)]) > HELD).any())
 
 
 def pierces(model, sensor, theirs):
