@@ -10,6 +10,9 @@ pub fn budget() -> Budget {
     Budget::default().times(1.0 / 256.0)
 }
 
+/// What is said of a model whose mass matrix is singular, but for rounding.
+const SINGULAR: &str = "the mass matrix is not positive definite";
+
 /// Steps of a trial.
 const STEPS: usize = 3;
 
@@ -17,12 +20,17 @@ const STEPS: usize = 3;
 pub fn run(model: Model) {
     // What cannot be said in MJCF is an error; what is said can be read, within what a file may ask for.
     if let Ok(text) = model.to_mjcf() {
-        let again = clench::load_str_within(&text, Budget::default());
-        let again = again.unwrap_or_else(|error| panic!("a saved model is refused: {error}"));
-        assert_eq!(
-            (again.nq, again.nv, again.nu()),
-            (model.nq, model.nv, model.nu())
-        );
+        match clench::load_str_within(&text, Budget::default()) {
+            Ok(again) => assert_eq!(
+                (again.nq, again.nv, again.nu()),
+                (model.nq, model.nv, model.nu())
+            ),
+            // Where inertias are further apart than numbers have digits, rounding decides it, and saved orientations are rounded.
+            Err(error) => assert!(
+                error.message.contains(SINGULAR),
+                "a saved model is refused: {error}"
+            ),
+        }
     }
     let Ok(mut sim) = Sim::<f64>::new(Arc::new(model)) else {
         return;
