@@ -35,8 +35,9 @@ NEXT = 1e-8  # of what a step changes
 FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
 PARALLEL = 1e-6  # cosine: what is less is a right angle
 CLEARLY = 1e-6  # metres: whether a contact exists is certain
-# What only MuJoCo takes: a `general` of a motor's class that changes the kind of gain, and keeps the motor's bias.
-REFUSED_HERE = ("a bias of the kind dcmotor needs a gain of that kind",)
+# What only MuJoCo takes: a `general` of a motor's class that changes the kind of gain, and keeps the motor's bias, or that changes the
+# kind of dynamics.
+REFUSED_HERE = ("a bias of the kind dcmotor needs a gain of that kind", "but its parameters are those of a dcmotor")
 FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
 
 
