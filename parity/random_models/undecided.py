@@ -10,6 +10,7 @@ HELD = 1e-9  # newtons
 NEARER = 1e-3  # metres
 NEXT_TO = 1e-10  # metres
 JUMP = 1e-6  # metres
+LENS = 1e-6  # of lengths and angles that a camera sees
 LIMITS_OF_TENDONS = (
     mujoco.mjtSensor.mjSENS_TENDONLIMITPOS,
     mujoco.mjtSensor.mjSENS_TENDONLIMITVEL,
@@ -35,7 +36,7 @@ def is_undecided(model, sensor, ours, theirs, held):
     if kind in BETWEEN_BODIES:
         return held
     if kind == mujoco.mjtSensor.mjSENS_CAMPROJECTION:
-        return stands_still(model, model.sensor_refid[sensor])
+        return stands_still(model, model.sensor_refid[sensor]) or seen_alike(model, sensor, ours, theirs)
     if kind in LIMITS_OF_TENDONS and theirs.sensordata[model.sensor_adr[sensor]] != 0:
         limits = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)  # of tendons that move something
         return model.sensor_objid[sensor] not in theirs.efc_id[limits]
@@ -83,11 +84,11 @@ def cut_short(model, sensor, theirs):
 
 def jumps(model, sensor, ours, theirs):
     """Whether rays meet something else than MuJoCo's, and MuJoCo's do too from a place next to the sensor's, less apart than lengths are
-    known."""
+    known; or rays of a camera meet the same within what MuJoCo knows of its lens."""
     numbers = slice(model.sensor_adr[sensor], model.sensor_adr[sensor] + model.sensor_dim[sensor])
     expected = theirs.sensordata[numbers]
     if np.allclose(ours["sensordata"][numbers], expected, rtol=0, atol=JUMP):
-        return False
+        return model.sensor_objtype[sensor] == mujoco.mjtObj.mjOBJ_CAMERA and seen_alike(model, sensor, ours, theirs)
     places = model.site_pos if model.sensor_objtype[sensor] == mujoco.mjtObj.mjOBJ_SITE else model.cam_pos
     index = model.sensor_objid[sensor]
     place = places[index].copy()
@@ -100,6 +101,12 @@ def jumps(model, sensor, ours, theirs):
     places[index] = place
     model.site_sameframe[:] = frames
     return bool((np.abs(np.array(found) - expected) > JUMP).any())
+
+
+def seen_alike(model, sensor, ours, theirs):
+    """Whether a camera sees the same as far as its lens is known, which MuJoCo stores in single precision."""
+    numbers = slice(model.sensor_adr[sensor], model.sensor_adr[sensor] + model.sensor_dim[sensor])
+    return np.allclose(ours["sensordata"][numbers], theirs.sensordata[numbers], rtol=LENS, atol=LENS)
 
 
 def stands_still(model, camera):

@@ -146,14 +146,15 @@ pub(crate) fn read_position(
     Ok(parameters)
 }
 
-/// `intvelocity`: a servo whose target is the integral of the control.
+/// `intvelocity`: a servo whose target is the integral of the control. What is filtered in its class leaves its time constant to it, as to
+/// `position`, and so to others of its class.
 pub(crate) fn read_intvelocity(
     element: &Element,
     inherited: ActuatorParams,
 ) -> Result<ActuatorParams, LoadError> {
     Ok(ActuatorParams {
         dynamics: DynamicsKind::Integrator,
-        ..read_servo(element, inherited)?
+        ..read_position(element, inherited)?
     })
 }
 
@@ -232,26 +233,28 @@ pub(crate) fn read_cylinder(
     Ok(parameters)
 }
 
-/// `muscle`: dynamics, gain and bias of a muscle. Of its own attributes those that are negative count as not given.
+/// `muscle`: dynamics, gain and bias of a muscle. Of its own attributes those that are negative are what they usually are, whatever its class says.
 pub(crate) fn read_muscle(
     element: &Element,
     inherited: ActuatorParams,
 ) -> Result<ActuatorParams, LoadError> {
+    let usual_dynprm = params([0.01, 0.04]);
+    let usual_prm = params([0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2]);
     let (mut dynprm, mut prm) = match inherited.gain {
         GainKind::Muscle => (inherited.dynprm, inherited.gainprm),
-        _ => (
-            params([0.01, 0.04]),
-            params([0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2]),
-        ),
+        _ => (usual_dynprm, usual_prm),
     };
-    for (name, first) in [("timeconst", &mut dynprm), ("range", &mut prm)] {
-        let given = element.numbers::<2>(name)?.unwrap_or([-1.0; 2]);
-        overwrite(&mut first[..2], &given);
+    if let Some(timeconst) = element.numbers::<2>("timeconst")? {
+        overwrite(&mut dynprm[..2], &timeconst, &usual_dynprm);
+    }
+    if let Some(range) = element.numbers::<2>("range")? {
+        overwrite(&mut prm[..2], &range, &usual_prm);
     }
     let names = ["force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"];
-    for (name, target) in names.into_iter().zip(&mut prm[2..]) {
-        let given = element.numbers::<1>(name)?.unwrap_or([-1.0]);
-        overwrite(std::slice::from_mut(target), &given);
+    for (k, name) in (2..).zip(names) {
+        if let Some(value) = element.numbers::<1>(name)? {
+            overwrite(&mut prm[k..=k], &value, &usual_prm[k..]);
+        }
     }
     if let Some(tausmooth) = not_negative(element, "tausmooth")? {
         dynprm[2] = tausmooth;
@@ -267,11 +270,10 @@ pub(crate) fn read_muscle(
     })
 }
 
-fn overwrite(targets: &mut [f64], given: &[f64]) {
-    for (target, &value) in targets.iter_mut().zip(given) {
-        if value >= 0.0 {
-            *target = value;
-        }
+/// Takes the numbers that are given, and in place of those that are negative the usual ones.
+fn overwrite(targets: &mut [f64], given: &[f64], usual: &[f64]) {
+    for ((target, &given), &usual) in targets.iter_mut().zip(given).zip(usual) {
+        *target = if given < 0.0 { usual } else { given };
     }
 }
 

@@ -148,6 +148,9 @@ fn the_other_shortcuts() {
         (servo(&integrated), integrated.dynamics),
         ([4.0, -4.0, 0.0], DynamicsKind::Integrator)
     );
+    let class = "<general dyntype='filterexact' dynprm='0.5 0.6'/><intvelocity/>";
+    let filter = actuator(class, "<general joint='j' dyntype='filter'/>");
+    assert_eq!(filter.dynprm[..2], [0.5, 0.0], "its class's time constant");
     let damper = actuator("", "<damper joint='j' kv='2' ctrlrange='0 1'/>");
     assert_eq!((damper.gain, damper.gainprm[2]), (GainKind::Affine, -2.0));
     assert_eq!(damper.ctrllimited, Some(true));
@@ -177,8 +180,8 @@ fn a_muscle_has_one_law_for_gain_and_bias() {
         "<muscle force='7' timeconst='1 2' scale='3'/>",
         "<muscle joint='j' timeconst='-1 0.3' tausmooth='0.2' range='0.8 1.1' force='-5' lmin='0.4' vmax='2'/>",
     );
-    assert_eq!(own.dynprm[..3], [1.0, 0.3, 0.2]);
-    let expected = [0.8, 1.1, 7.0, 3.0, 0.4, 1.6, 2.0, 1.3, 1.2, 0.0];
+    assert_eq!(own.dynprm[..3], [0.01, 0.3, 0.2]);
+    let expected = [0.8, 1.1, -1.0, 3.0, 0.4, 1.6, 2.0, 1.3, 1.2, 0.0];
     assert_eq!((own.gainprm, own.biasprm), (expected, expected));
     assert!(rejected("<muscle joint='j' tausmooth='-1'/>").contains("negative"));
 }
