@@ -3,6 +3,9 @@
 use crate::spending::Spending;
 use std::io::Cursor;
 
+/// Bytes of an entry of a palette.
+const PALETTE_ENTRY: usize = 3;
+
 /// An image of 8 bits a sample.
 pub(crate) struct Image {
     /// Pixels in a row.
@@ -25,6 +28,13 @@ impl Image {
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
         decoder.set_transformations(png::Transformations::normalize_to_color8());
         let mut reader = decoder.read_info().map_err(wrong)?;
+        // The decoder takes the entries of a palette for whole.
+        let palette = reader.info().palette.as_ref().map_or(0, |p| p.len());
+        if palette % PALETTE_ENTRY != 0 {
+            return Err(format!(
+                "not a valid PNG image: a palette of {palette} bytes"
+            ));
+        }
         let (width, height) = reader.info().size();
         let pixels = u64::from(width).saturating_mul(u64::from(height));
         spending
