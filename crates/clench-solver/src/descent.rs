@@ -4,7 +4,7 @@ use crate::costs::Totals;
 use crate::iterate::{Iterate, dot};
 use crate::line_search::{Precision, Step};
 use crate::ray::Ray;
-use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Status};
+use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Status, Threads};
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// How an algorithm chooses where to search.
@@ -35,6 +35,8 @@ pub(crate) struct SolverState<T: Real> {
     pub ray: Ray<T>,
     pub stats: SolveStats<T>,
     pub clock: SolveClock,
+    /// Who shares the work on a large Hessian.
+    pub threads: Threads,
 }
 
 /// Where each lane stands.

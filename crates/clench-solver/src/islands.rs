@@ -13,7 +13,7 @@ use crate::problem::{Part, Problem};
 use crate::results::Results;
 use crate::slot::Slot;
 use crate::transfer::{AllLanes, OneLane, Transfer};
-use crate::{Settings, SolveClock};
+use crate::{Settings, SolveClock, Threads};
 use clench_math::{Mask, Real};
 
 /// The partition, and a compact problem for each part.
@@ -32,7 +32,7 @@ struct TreeLists {
     dofs: Lists,
     /// The blocks whose first dof is the tree's.
     blocks: Lists,
-    /// The index of each dof in the island at hand.
+    /// The index of each dof in the island that was listed last of those that have it.
     local: Vec<u32>,
 }
 
@@ -47,15 +47,12 @@ struct Slots<T: Real> {
     taken: usize,
 }
 
-/// A solve of all islands.
-struct Job<'a, T: Real> {
-    problem: &'a Problem<T>,
-    settings: &'a Settings,
-    warmstart: Option<&'a [T]>,
-    partition: &'a Partition<T>,
-    lists: &'a mut TreeLists,
-    clock: &'a mut SolveClock,
-    results: &'a mut Results<T>,
+/// A solve of all islands: what it reads.
+pub(crate) struct Job<'a, T: Real> {
+    pub problem: &'a Problem<T>,
+    pub settings: &'a Settings,
+    pub warmstart: Option<&'a [T]>,
+    pub threads: &'a Threads,
 }
 
 /// Whether so many lanes solve an island of so many dofs faster side by side than one after the other in scalars. With
@@ -77,96 +74,91 @@ impl<T: Real> Islands<T> {
     }
 
     /// Solves each island and adds it to the results.
-    pub(crate) fn solve(
-        &mut self,
-        problem: &Problem<T>,
-        settings: &Settings,
-        warmstart: Option<&[T]>,
-        clock: &mut SolveClock,
-        results: &mut Results<T>,
-    ) {
-        self.lists.fill(problem);
-        self.slots.start(problem.tree().ntree());
-        let mut job = Job {
-            problem,
-            settings,
-            warmstart,
-            partition: &self.partition,
-            lists: &mut self.lists,
-            clock,
-            results,
-        };
-        for island in self.partition.islands() {
-            let dofs = job.lists.count_dofs(self.partition.trees(island));
+    pub(crate) fn solve(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
+        self.lists.fill(job.problem);
+        self.slots.start(job.problem.tree().ntree());
+        if T::LANES == 1 {
+            self.solve_at_once(job, clock, results);
+        } else {
+            self.solve_in_turn(job, clock, results);
+        }
+    }
+
+    /// Solves the islands of a single environment, which have no dof in common, on all threads.
+    fn solve_at_once(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
+        let (partition, lists, slots) = (&self.partition, &mut self.lists, &mut self.slots);
+        for island in partition.islands() {
+            let slot = slots.take(partition.trees(island));
+            lists.list(partition, island, island.lanes, &mut slots.slots[slot]);
+        }
+        let (all, local) = (T::Mask::splat(true), &lists.local[..]);
+        (job.threads).for_each(&mut slots.slots, |slot| {
+            if slot.taken {
+                job.solve(partition, local, all, slot, AllLanes);
+            }
+        });
+        slots.restart();
+        for island in partition.islands() {
+            let slot = slots.take(partition.trees(island));
+            let slot = &mut slots.slots[slot];
+            clock.absorb(&mut slot.work.state.clock);
+            results.add(job.problem, slot, all, partition.acting(), AllLanes);
+        }
+    }
+
+    /// Solves the islands of lanes one after the other: those that several lanes have side by side.
+    fn solve_in_turn(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
+        let (partition, lists) = (&self.partition, &mut self.lists);
+        for island in partition.islands() {
+            let dofs = lists.count_dofs(partition.trees(island));
             if worth_lanes::<T>(island.lanes.count(), dofs) {
-                let slot = self.slots.slot(self.partition.trees(island));
-                job.solve(island, island.lanes, slot, AllLanes);
+                let slot = self.slots.take(partition.trees(island));
+                let slot = &mut self.slots.slots[slot];
+                lists.list(partition, island, island.lanes, slot);
+                job.solve(partition, &lists.local, island.lanes, slot, AllLanes);
+                clock.absorb(&mut slot.work.state.clock);
+                let acting = partition.acting();
+                results.add(job.problem, slot, island.lanes, acting, AllLanes);
                 continue;
             }
             for k in (0..T::LANES).filter(|&k| island.lanes.lane(k)) {
-                let mut lane = T::Mask::splat(false);
+                let (mut lane, slot) = (T::Mask::splat(false), &mut self.scalar);
                 lane.set_lane(k, true);
-                job.solve(island, lane, &mut self.scalar, OneLane(k));
+                lists.list(partition, island, lane, slot);
+                job.solve(partition, &lists.local, lane, slot, OneLane(k));
+                clock.absorb(&mut slot.work.state.clock);
+                results.add(job.problem, slot, lane, partition.acting(), OneLane(k));
             }
         }
     }
 }
 
 impl<T: Real> Job<'_, T> {
-    /// Solves an island for some of the lanes that have it.
+    /// Solves an island, whose dofs and blocks are listed in the slot, for some of the lanes that have it.
     fn solve<F: Real>(
-        &mut self,
-        island: &Island<T>,
+        &self,
+        partition: &Partition<T>,
+        local: &[u32],
         lanes: T::Mask,
         slot: &mut Slot<F>,
         transfer: impl Transfer<T, F>,
     ) {
-        self.gather(island, lanes, slot, transfer);
+        let part = Part {
+            dofs: &slot.dofs,
+            local,
+            blocks: &slot.blocks,
+            acting: partition.acting(),
+            lanes,
+        };
+        slot.problem.gather(self.problem, &part, transfer);
         let warmstart = self.warmstart.map(|warm| {
             slot.warmstart.clear();
             let dofs = slot.dofs.iter().map(|&dof| dof as usize);
             (slot.warmstart).extend(dofs.map(|dof| transfer.take(warm[dof])));
             &slot.warmstart[..]
         });
-        std::mem::swap(&mut slot.work.state.clock, self.clock);
+        slot.work.state.threads.clone_from(self.threads);
         slot.work.run(&slot.problem, self.settings, warmstart);
-        std::mem::swap(&mut slot.work.state.clock, self.clock);
-        let acting = self.partition.acting();
-        (self.results).add(self.problem, slot, lanes, acting, transfer);
-    }
-
-    /// Copies the dofs and blocks of an island into a slot.
-    fn gather<F: Real>(
-        &mut self,
-        island: &Island<T>,
-        lanes: T::Mask,
-        slot: &mut Slot<F>,
-        transfer: impl Transfer<T, F>,
-    ) {
-        let acting = self.partition.acting();
-        slot.dofs.clear();
-        slot.blocks.clear();
-        for &tree in self.partition.trees(island) {
-            slot.dofs.extend(self.lists.dofs.iter(tree));
-            let blocks = self.lists.blocks.iter(tree);
-            (slot.blocks).extend(blocks.filter(|&k| (acting[k as usize] & lanes).any()));
-        }
-        slot.blocks.sort_unstable();
-        if self.partition.is_ascending(island) {
-            // The dofs of two trees may alternate.
-            slot.dofs.sort_unstable();
-        }
-        for (local, &dof) in slot.dofs.iter().enumerate() {
-            self.lists.local[dof as usize] = local as u32;
-        }
-        let part = Part {
-            dofs: &slot.dofs,
-            local: &self.lists.local,
-            blocks: &slot.blocks,
-            acting,
-            lanes,
-        };
-        slot.problem.gather(self.problem, &part, transfer);
     }
 }
 
@@ -187,6 +179,32 @@ impl TreeLists {
         }
     }
 
+    /// Lists in a slot the dofs of an island and the blocks that act on it in some lanes.
+    fn list<T: Real, F: Real>(
+        &mut self,
+        partition: &Partition<T>,
+        island: &Island<T>,
+        lanes: T::Mask,
+        slot: &mut Slot<F>,
+    ) {
+        let acting = partition.acting();
+        slot.dofs.clear();
+        slot.blocks.clear();
+        for &tree in partition.trees(island) {
+            slot.dofs.extend(self.dofs.iter(tree));
+            let blocks = self.blocks.iter(tree);
+            (slot.blocks).extend(blocks.filter(|&k| (acting[k as usize] & lanes).any()));
+        }
+        slot.blocks.sort_unstable();
+        if partition.is_ascending(island) {
+            // The dofs of two trees may alternate.
+            slot.dofs.sort_unstable();
+        }
+        for (local, &dof) in slot.dofs.iter().enumerate() {
+            self.local[dof as usize] = local as u32;
+        }
+    }
+
     fn count_dofs(&self, trees: &[u32]) -> usize {
         trees.iter().map(|&t| self.dofs.iter(t).count()).sum()
     }
@@ -196,11 +214,17 @@ impl<T: Real> Slots<T> {
     /// Gives out all slots anew.
     fn start(&mut self, trees: usize) {
         self.single.resize(trees, None);
+        self.slots.iter_mut().for_each(|slot| slot.taken = false);
+        self.restart();
+    }
+
+    /// Gives out the slots of the same islands again.
+    fn restart(&mut self) {
         self.taken = 0;
     }
 
     /// The slot of the next island.
-    fn slot(&mut self, trees: &[u32]) -> &mut Slot<T> {
+    fn take(&mut self, trees: &[u32]) -> usize {
         let new = self.slots.len() as u32;
         let slot = match *trees {
             [tree] => *self.single[tree as usize].get_or_insert(new),
@@ -215,6 +239,7 @@ impl<T: Real> Slots<T> {
         if slot == new {
             self.slots.push(Slot::default());
         }
-        &mut self.slots[slot as usize]
+        self.slots[slot as usize].taken = true;
+        slot as usize
     }
 }

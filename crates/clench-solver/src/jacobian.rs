@@ -40,8 +40,8 @@ pub(crate) trait Jacobian<T: Real> {
     fn add_transposed(&self, f: &[T], out: &mut [T]);
     /// `out += |J|ᵀ |f|`: the size of what `Jᵀ f` sums up.
     fn add_transposed_sizes(&self, f: &[T], out: &mut [T]);
-    /// `hessian += Jᵀ W J`, in a pattern that holds an entry for each two dofs of a block. `weigh` writes the Hessian block of a
-    /// constraint.
+    /// `hessian += Jᵀ W J`, in a pattern that holds an entry for each two dofs of a block, or those rows of it that it holds. `weigh`
+    /// writes the Hessian block of a constraint. (Inlined: the caller chooses the instructions.)
     fn add_gram(
         &self,
         weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
@@ -52,23 +52,62 @@ pub(crate) trait Jacobian<T: Real> {
 
 /// Where the entries of a symmetric matrix are stored.
 pub(crate) trait Pattern {
-    /// Adds `entry(c)` to what row `dofs.last()` has in the column of each `dofs[c]`; the dofs are ascending.
-    fn add_to_row<T: Real>(&self, dofs: &[u32], values: &mut [T], entry: impl Fn(usize) -> T);
+    /// Whether it holds the rows of any of these dofs.
+    #[inline(always)]
+    fn holds_any(&self, _dofs: &[u32]) -> bool {
+        true
+    }
+    /// Calls `act` for parts of the lower triangle over `dofs`, ascending, that cover those of its rows which are held.
+    fn each_part(&self, dofs: &[u32], act: impl FnMut(&Part));
+}
+
+/// Entries of some rows, by their places among the dofs, in columns that are stored next to each other.
+pub(crate) struct Part {
+    pub rows: Range<usize>,
+    /// The columns, if `triangle` is not set; else each row ends with its diagonal.
+    pub columns: Range<usize>,
+    pub triangle: bool,
+    /// Where the first entry is, and how much further that of the next row.
+    pub place: usize,
+    pub stride: usize,
+}
+
+impl Part {
+    /// The columns of a row, and where its first entry is.
+    #[inline(always)]
+    pub(crate) fn row(&self, row: usize) -> (Range<usize>, usize) {
+        let end = if self.triangle {
+            row + 1
+        } else {
+            self.columns.end
+        };
+        let place = self.place + (row - self.rows.start) * self.stride;
+        (self.columns.start..end, place)
+    }
 }
 
 impl Pattern for Tree {
     #[inline(always)]
-    fn add_to_row<T: Real>(&self, dofs: &[u32], values: &mut [T], entry: impl Fn(usize) -> T) {
-        let Some(&dof) = dofs.last() else { return };
-        let start = self.row_start(dof as usize);
-        if self.depth(dof as usize) + 1 == dofs.len() {
-            // The whole path.
-            for (c, value) in values[start..start + dofs.len()].iter_mut().enumerate() {
-                *value += entry(c);
-            }
-        } else {
-            for (c, &column) in dofs.iter().enumerate() {
-                values[start + self.depth(column as usize)] += entry(c);
+    fn each_part(&self, dofs: &[u32], mut act: impl FnMut(&Part)) {
+        for (row, &dof) in dofs.iter().enumerate() {
+            let start = self.row_start(dof as usize);
+            let whole = self.depth(dof as usize) == row;
+            let mut first = 0;
+            while first <= row {
+                let place = self.depth(dofs[first] as usize);
+                let follows = |&k: &usize| self.depth(dofs[k] as usize) == place + k - first;
+                let end = match whole {
+                    true => row + 1,
+                    false => (first..=row).take_while(follows).count() + first,
+                };
+                act(&Part {
+                    rows: row..row + 1,
+                    columns: first..end,
+                    triangle: false,
+                    place: start + place,
+                    stride: 0,
+                });
+                first = end;
             }
         }
     }
@@ -110,26 +149,46 @@ impl<T: Real> StoredRows<T> {
         &mut self.values[block.value..]
     }
 
-    /// Appends a copy of another problem's block, at the row and piece given; its dofs may be numbered in another order.
+    /// Appends a copy of another problem's block with these `values`, at the row and piece given; its dofs may be numbered in another
+    /// order.
     #[inline(always)]
-    pub(crate) fn push_copy(
+    pub(crate) fn push_copy<L: Copy>(
         &mut self,
         block: &BlockIndex,
-        row: usize,
-        active_start: usize,
+        (row, active_start): (usize, usize),
         dofs: impl Iterator<Item = u32>,
-        values: impl Iterator<Item = T>,
+        values: &[L],
+        number: impl Fn(L) -> T,
     ) {
+        let (dof, value) = (self.dofs.len(), self.values.len());
         self.blocks.push(BlockIndex {
             row,
             active_start,
-            dof: self.dofs.len(),
-            value: self.values.len(),
+            dof,
+            value,
             ..*block
         });
         self.dofs.extend(dofs);
-        self.values.extend(values);
-        self.sort_last();
+        let dofs = &mut self.dofs[dof..];
+        // Of two trees that which came first there may come second here.
+        let descends = |pair: &[u32]| pair[0] > pair[1];
+        let first = dofs.windows(2).position(descends).map_or(0, |k| k + 1);
+        dofs.rotate_left(first);
+        let ascend = dofs.is_sorted();
+        self.values.resize(value + values.len(), T::ZERO);
+        let rows = values.chunks_exact(block.ndof.max(1));
+        for (to, row) in self.values[value..]
+            .chunks_exact_mut(block.ndof.max(1))
+            .zip(rows)
+        {
+            let (before, after) = row.split_at(first);
+            for (to, &j) in to.iter_mut().zip(after.iter().chain(before)) {
+                *to = number(j);
+            }
+        }
+        if !ascend {
+            self.sort_last();
+        }
     }
 
     /// Puts the columns of the last block into the order of their dofs.
@@ -206,31 +265,37 @@ impl<T: Real> StoredRows<T> {
         hessian: &mut [T],
     ) {
         let rows = self.rows::<DIM>(b);
-        let dofs = self.dofs(b);
-        for k in 0..dofs.len() {
-            let wj = weigh_column::<T, DIM>(weight, form, &array(|i| rows[i][k]));
-            let mut rows = rows;
-            for row in &mut rows {
-                *row = &row[..=k];
-            }
-            pattern.add_to_row(
-                &dofs[..=k],
-                hessian,
-                #[inline(always)]
-                |c| weighted(&wj, &rows, c),
-            );
-        }
+        pattern.each_part(
+            self.dofs(b),
+            #[inline(always)]
+            |part| {
+                for k in part.rows.clone() {
+                    let wj = weigh_column::<T, DIM>(weight, form, &array(|i| rows[i][k]));
+                    let (columns, place) = part.row(k);
+                    let values = &mut hessian[place..place + columns.len()];
+                    let rows: [&[T]; DIM] = array(|i| &rows[i][columns.clone()]);
+                    add_weighted(&wj, &rows, values);
+                }
+            },
+        );
     }
 }
 
-/// The product of column `c` of some rows with a column of weights.
+/// Adds to each value the product of its column of some rows with a column of weights.
 #[inline(always)]
-fn weighted<T: Real, const DIM: usize>(weights: &[T; DIM], rows: &[&[T]; DIM], c: usize) -> T {
-    let mut sum = weights[0] * rows[0][c];
-    for i in 1..DIM {
-        sum += weights[i] * rows[i][c];
+fn add_weighted<T: Real, const DIM: usize>(
+    weights: &[T; DIM],
+    rows: &[&[T]; DIM],
+    values: &mut [T],
+) {
+    let rows: [&[T]; DIM] = array(|i| &rows[i][..values.len()]);
+    for c in 0..values.len() {
+        let mut sum = weights[0] * rows[0][c];
+        for i in 1..DIM {
+            sum += weights[i] * rows[i][c];
+        }
+        values[c] += sum;
     }
-    sum
 }
 
 /// W j for one column of a block.
@@ -343,7 +408,7 @@ impl<T: Real> Jacobian<T> for StoredRows<T> {
         }
     }
 
-    #[kernel]
+    #[inline(always)]
     fn add_gram(
         &self,
         mut weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
@@ -351,7 +416,8 @@ impl<T: Real> Jacobian<T> for StoredRows<T> {
         hessian: &mut [T],
     ) {
         let mut weight = [[T::ZERO; MAX_DIM]; MAX_DIM];
-        for b in &self.blocks {
+        let held = |b: &&BlockIndex| pattern.holds_any(self.dofs(b));
+        for b in self.blocks.iter().filter(held) {
             let form = weigh(b, &mut weight);
             if form != Form::Zero {
                 with_dim!(b.dim, DIM => self.add_gram_block::<DIM>(b, &weight, form, pattern, hessian));

@@ -74,6 +74,7 @@ impl<T: Real> Direction<T> for Newton<T> {
             ray,
             stats,
             clock,
+            threads,
         } = state;
         let stale = convergence.live & !convergence.same_hessian;
         let updated = self.update(
@@ -87,7 +88,7 @@ impl<T: Real> Direction<T> for Newton<T> {
             self.hessian.factor(
                 problem,
                 rebuild,
-                clock,
+                (threads, clock),
                 #[inline(always)]
                 |b, weight| {
                     let y = &iterate.residual[b.rows()];

@@ -40,7 +40,8 @@ pub struct Partition<T: Real> {
     leader: Vec<u32>,
     by_leader: Lists,
     elimination: MinimumDegree,
-    ranks: Vec<u32>,
+    /// The order of elimination of each lane.
+    orders: Vec<Order>,
     /// The trees of a block, those of an island.
     members: Vec<u32>,
 }
@@ -50,6 +51,15 @@ pub struct Partition<T: Real> {
 struct Coupling<T: Real> {
     trees: [u32; 2],
     lanes: T::Mask,
+}
+
+/// An order of elimination, kept while the couplings of its lane stay: those of a heap at rest seldom change.
+#[derive(Clone, Debug, Default)]
+struct Order {
+    trees: usize,
+    couplings: Vec<[u32; 2]>,
+    /// The rank of each tree.
+    ranks: Vec<u32>,
 }
 
 /// Islands of more trees are ordered so that eliminating them fills little; smaller ones have little to gain.
@@ -67,7 +77,7 @@ impl<T: Real> Default for Partition<T> {
             leader: Vec::new(),
             by_leader: Lists::default(),
             elimination: MinimumDegree::default(),
-            ranks: Vec::new(),
+            orders: Vec::new(),
             members: Vec::new(),
         }
     }
@@ -183,7 +193,7 @@ impl<T: Real> Partition<T> {
                     ordered = true;
                 }
                 // The tree to be eliminated first comes last.
-                let ranks = &self.ranks;
+                let ranks = &self.orders[lane].ranks;
                 (self.members).sort_unstable_by_key(|&tree| Reverse(ranks[tree as usize]));
             }
             self.add(first, lane);
@@ -201,13 +211,23 @@ impl<T: Real> Partition<T> {
 
     /// Finds the order in which to eliminate the trees of a lane.
     fn order(&mut self, lane: usize) {
-        self.elimination.clear(self.constrained.len());
-        for coupling in self.couplings.iter().filter(|c| c.lanes.lane(lane)) {
-            let [a, b] = coupling.trees.map(|tree| tree as usize);
-            self.elimination.couple(a, b);
+        let trees = self.constrained.len();
+        self.orders.resize_with(T::LANES, Order::default);
+        let order = &mut self.orders[lane];
+        let acting = self.couplings.iter().filter(|c| c.lanes.lane(lane));
+        let couplings = acting.map(|coupling| coupling.trees);
+        if order.trees == trees && couplings.clone().eq(order.couplings.iter().copied()) {
+            return;
         }
-        self.ranks.clear();
-        self.ranks.extend_from_slice(self.elimination.ranks());
+        order.trees = trees;
+        order.couplings.clear();
+        order.couplings.extend(couplings);
+        self.elimination.clear(trees);
+        for &[a, b] in &order.couplings {
+            self.elimination.couple(a as usize, b as usize);
+        }
+        order.ranks.clear();
+        order.ranks.extend_from_slice(self.elimination.ranks());
     }
 
     /// Adds `members`, an island of a lane whose lowest tree is `first`.

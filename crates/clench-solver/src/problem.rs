@@ -282,16 +282,13 @@ impl<T: Real> Problem<T> {
             let b = &whole.jacobian.blocks[k as usize];
             let lanes = part.lanes & part.acting[k as usize];
             let dofs = whole.jacobian.dofs(b).iter();
-            let values = whole.jacobian.values(b).iter();
             self.jacobian.push_copy(
                 b,
-                self.aref.len(),
-                self.nactive,
+                (self.aref.len(), self.nactive),
                 dofs.map(|&dof| part.local[dof as usize]),
-                values.map(
-                    #[inline(always)]
-                    |&j| transfer.take_in(lanes, j, L::ZERO),
-                ),
+                whole.jacobian.values(b),
+                #[inline(always)]
+                |j| transfer.take_in(lanes, j, L::ZERO),
             );
             self.nactive += b.active_range().len();
             for (to, from, absent) in [

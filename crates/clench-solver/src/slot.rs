@@ -9,6 +9,8 @@ use std::sync::Arc;
 /// Memory for an island.
 #[derive(Clone, Debug)]
 pub(crate) struct Slot<F: Real> {
+    /// Whether an island of the present solve has it.
+    pub taken: bool,
     /// Its dofs in the whole problem, in the order that they have here; its blocks, ascending.
     pub dofs: Vec<u32>,
     pub blocks: Vec<u32>,
@@ -20,6 +22,7 @@ pub(crate) struct Slot<F: Real> {
 impl<F: Real> Default for Slot<F> {
     fn default() -> Self {
         Slot {
+            taken: false,
             dofs: Vec::new(),
             blocks: Vec::new(),
             problem: Problem::new(Arc::new(Tree::dense(0))),

@@ -1,11 +1,12 @@
 //! The solver: which parts of a problem are solved together, and where the results lie.
 
 use crate::check::check_length;
-use crate::islands::Islands;
+use crate::descent::SolverState;
+use crate::islands::{Islands, Job};
 use crate::results::Results;
 use crate::stopwatch::SolveClock;
 use crate::workspace::Workspace;
-use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Switch, Tree};
+use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Switch, Threads, Tree};
 use clench_math::Real;
 
 /// Solves [`Problem`]s; keeps its memory between solves.
@@ -33,6 +34,12 @@ impl<T: Real> Solver<T> {
         }
     }
 
+    /// Has threads share the work of solves from now on: islands, and the Hessian of a large one. Results stay the same to the bit. (Of
+    /// lanes, islands are solved one after the other.)
+    pub fn set_threads(&mut self, threads: Threads) {
+        self.whole.state.threads = threads;
+    }
+
     /// Minimises. `warmstart` (length nv) is taken where it costs less than the unconstrained acceleration.
     ///
     /// # Errors
@@ -53,8 +60,14 @@ impl<T: Real> Solver<T> {
             self.results.reset(problem);
         } else if parts && self.islands.find(problem) {
             self.results.reset(problem);
-            let clock = &mut self.whole.state.clock;
-            (self.islands).solve(problem, settings, warmstart, clock, &mut self.results);
+            let SolverState { clock, threads, .. } = &mut self.whole.state;
+            let job = Job {
+                problem,
+                settings,
+                warmstart,
+                threads,
+            };
+            self.islands.solve(&job, clock, &mut self.results);
         } else {
             self.whole.run(problem, settings, warmstart);
             self.results.set(&self.whole);

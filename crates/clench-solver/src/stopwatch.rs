@@ -57,6 +57,16 @@ impl<const N: usize> Stopwatch<N> {
         }
     }
 
+    /// Takes the time that another has measured, and lets that one run if this one does.
+    pub fn absorb(&mut self, other: &mut Self) {
+        for (spent, other) in self.spent.iter_mut().zip(&mut other.spent) {
+            *spent += std::mem::take(other);
+        }
+        if other.running != self.running {
+            other.run(self.running);
+        }
+    }
+
     /// The time spent in each part.
     pub fn spent(&self) -> &[Duration; N] {
         &self.spent

@@ -3,13 +3,13 @@
 use super::rank_one::each_of_change;
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, Jacobian};
-use crate::sparse::{SparseFactor, SparsePattern};
-use crate::{Problem, SolveClock, SolvePart, Tree};
+use crate::sparse::{SparseFactor, SparsePattern, Window};
+use crate::{Problem, SolveClock, SolvePart, Threads, Tree};
 use clench_math::{Mask, Real, kernel};
 
 /// H and its factor over a sparse pattern.
 #[derive(Clone, Debug, Default)]
-pub(super) struct FilledForm<T> {
+pub(super) struct FilledForm<T: 'static> {
     pattern: SparsePattern,
     factor: SparseFactor<T>,
     /// Where some lanes are factored while others keep what they have.
@@ -18,13 +18,35 @@ pub(super) struct FilledForm<T> {
     direction: Vec<T>,
 }
 
+/// So that threads are done together though rows differ.
+const PIECES_PER_THREAD: usize = 2;
+
+/// Calls `work` for so many windows, with their values.
+fn split<T: Real>(
+    threads: &Threads,
+    window: Window,
+    values: &mut [T],
+    pieces: usize,
+    work: &(impl Fn(&Window, &mut [T]) + Sync),
+) {
+    if pieces <= 1 {
+        return work(&window, values);
+    }
+    let (one, other, count) = window.halves();
+    let (values_of_one, values_of_other) = values.split_at_mut(count);
+    threads.join(
+        || split(threads, one, values_of_one, pieces / 2, work),
+        || split(threads, other, values_of_other, pieces - pieces / 2, work),
+    );
+}
+
 impl<T: Real> FilledForm<T> {
     /// Fits the pattern to that of M with couplings. False where it would have more than `most` entries.
     pub(super) fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
         if !self.pattern.analyse(tree, couplings, most) {
             return false;
         }
-        self.factor.clear(&self.pattern);
+        self.factor.resize(&self.pattern);
         self.direction.clear();
         self.direction.resize(tree.nv(), T::ZERO);
         true
@@ -46,20 +68,37 @@ impl<T: Real> FilledForm<T> {
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
-        clock: &mut SolveClock,
-        weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
+        crew: (&Threads, &mut SolveClock),
+        weigh: impl Fn(&BlockIndex, &mut Weight<T>) -> Form + Sync,
     ) {
-        let pattern = &self.pattern;
+        let (pattern, (threads, clock)) = (&self.pattern, crew);
         let factor = if mask.all() {
             &mut self.factor
         } else {
+            self.spare.resize(pattern);
             &mut self.spare
         };
-        factor.clear(pattern);
-        factor.add_matrix(pattern, problem.tree(), &problem.mass);
-        (problem.jacobian).add_gram(weigh, pattern, factor.values_mut());
+        let assemble = |window: &Window, values: &mut [T]| {
+            window.set_matrix(problem.tree(), &problem.mass, values);
+            // The columns of a body follow each other: even of a single environment they fill registers.
+            T::vectorize_rows(
+                #[inline(always)]
+                || problem.jacobian.add_gram(&weigh, window, values),
+            );
+        };
+        let pieces = match threads.count() {
+            1 => 1,
+            count => count * PIECES_PER_THREAD,
+        };
+        split(
+            threads,
+            pattern.window(),
+            factor.values_mut(),
+            pieces,
+            &assemble,
+        );
         clock.lap(SolvePart::Hessian as usize);
-        factor.factor_safely(pattern);
+        factor.factor_safely(pattern, threads);
         if !mask.all() {
             self.factor.take(mask, &self.spare);
         }

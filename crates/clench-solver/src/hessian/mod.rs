@@ -12,14 +12,14 @@ mod rank_one;
 
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::{BlockIndex, StoredRows};
-use crate::{Problem, SolveClock, Tree};
+use crate::{Problem, SolveClock, Threads, Tree};
 use clench_math::Real;
 use filled::FilledForm;
 use paths::PathForm;
 
 /// H and its factor.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Hessian<T> {
+pub(crate) struct Hessian<T: 'static> {
     paths: PathForm<T>,
     filled: FilledForm<T>,
     is_filled: bool,
@@ -84,19 +84,20 @@ impl<T: Real> Hessian<T> {
         self.paths.rebuild(tree, &self.found, most)
     }
 
-    /// Factors H = M + Jᵀ W J in the lanes of `mask`. `weigh` writes the Hessian block of a constraint.
+    /// Factors H = M + Jᵀ W J in the lanes of `mask`, by the threads and on the clock of `crew`. `weigh` writes the Hessian block of a
+    /// constraint.
     #[inline(always)]
     pub(crate) fn factor(
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
-        clock: &mut SolveClock,
-        weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
+        crew: (&Threads, &mut SolveClock),
+        weigh: impl Fn(&BlockIndex, &mut Weight<T>) -> Form + Sync,
     ) {
         if self.is_filled {
-            self.filled.factor(problem, mask, clock, weigh);
+            self.filled.factor(problem, mask, crew, weigh);
         } else {
-            self.paths.factor(problem, mask, clock, weigh);
+            self.paths.factor(problem, mask, crew.1, weigh);
         }
     }
 

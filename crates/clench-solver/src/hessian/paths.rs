@@ -47,9 +47,11 @@ impl<T: Real> PathForm<T> {
         weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
     ) {
         self.set(problem.tree(), &problem.mass);
-        problem
-            .jacobian
-            .add_gram(weigh, &self.tree, &mut self.matrix.values);
+        let (tree, values) = (&self.tree, &mut self.matrix.values);
+        T::vectorize(
+            #[inline(always)]
+            || problem.jacobian.add_gram(weigh, tree, values),
+        );
         clock.lap(SolvePart::Hessian as usize);
         if mask.all() {
             self.factor.factor_safely(&self.tree, &self.matrix);

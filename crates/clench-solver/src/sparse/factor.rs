@@ -1,33 +1,37 @@
 //! The factorization H = LᵀDL of what a [`SparsePattern`] stores.
 //!
-//! A supernode's rows are done when their turn comes; what they take off the rows above, `A_ij −= L_ki U_kj` with U = D L, is subtracted at once,
-//! in tiles that stay in registers. Every entry is changed by the rows below in the same order as over a [`Tree`](crate::Tree), from the last
-//! to the first, and by each alone, **so that both give the same bits**.
+//! A supernode's rows are done once what the rows below take off them, `A_ij −= L_ki U_kj` with U = D L, is subtracted, in tiles that stay in
+//! registers, and their own block is factored. (This is the left-looking form: Davis, *Direct Methods for Sparse Linear Systems*, 2006, §4.8.)
+//! Every entry is changed by the rows below in the same order as over a [`Tree`](crate::Tree), from the last to the first, and by each alone,
+//! **so that both give the same bits**, and so do any number of threads, which share the supernodes ([`Elimination`]).
 
+use super::elimination::{Elimination, Open, Spare};
 use super::pattern::{MAX_DOFS, SparsePattern, Supernode};
 use super::tiles::{NARROW, Rows, Tiles};
-use crate::jacobian::Pattern;
-use crate::{Tree, TreeMatrix};
+use crate::Threads;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
 /// The matrix, and in its place the factor.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SparseFactor<T> {
+pub(crate) struct SparseFactor<T: 'static> {
     /// The blocks of the supernodes, row by row: of the matrix, then of L.
     pub(super) values: Vec<T>,
+    /// The same of U, as of the factorization: updates leave it alone.
+    upper: Vec<T>,
     /// The diagonal of the matrix, then D; 1 / D.
     diagonal: Vec<T>,
     pub(super) inverse: Vec<T>,
-    /// U of the supernode at hand; of a solve, the numbers in its columns.
-    upper: Vec<T>,
+    /// Of a solve, the numbers in a supernode's columns.
     pub(super) gathered: Vec<T>,
+    spare: Spare<T>,
 }
 
 impl<T: Real> SparseFactor<T> {
-    /// Becomes the zero matrix over `pattern`.
-    pub(crate) fn clear(&mut self, pattern: &SparsePattern) {
-        self.values.clear();
-        self.values.resize(pattern.nnz(), T::ZERO);
+    /// Makes room for a matrix over `pattern`.
+    pub(crate) fn resize(&mut self, pattern: &SparsePattern) {
+        for v in [&mut self.values, &mut self.upper] {
+            v.resize(pattern.nnz(), T::ZERO);
+        }
         for v in [&mut self.diagonal, &mut self.inverse] {
             v.resize(pattern.nv(), T::ZERO);
         }
@@ -38,115 +42,26 @@ impl<T: Real> SparseFactor<T> {
         &mut self.values
     }
 
-    /// Adds a matrix over `tree`, whose entries `pattern` holds.
-    #[kernel]
-    pub fn add_matrix(&mut self, pattern: &SparsePattern, tree: &Tree, matrix: &TreeMatrix<T>) {
-        for dof in 0..tree.nv() {
-            let row = matrix.row(tree, dof);
-            pattern.add_to_row(
-                tree.row(dof),
-                &mut self.values,
-                #[inline(always)]
-                |c| row[c],
-            );
-        }
-    }
-
     /// Factors the matrix; a pivot that rounding has consumed is replaced by the diagonal it came from.
-    pub(crate) fn factor_safely(&mut self, pattern: &SparsePattern) {
-        // Its tiles have columns enough to fill registers with, even of a single environment.
-        T::vectorize_rows(
-            #[inline(always)]
-            || self.factor_rows(pattern),
+    pub(crate) fn factor_safely(&mut self, pattern: &SparsePattern, threads: &Threads) {
+        let (memory, spare) = (
+            [
+                &mut self.values[..],
+                &mut self.upper,
+                &mut self.diagonal,
+                &mut self.inverse,
+            ],
+            &mut self.spare,
         );
-    }
-
-    #[inline(always)]
-    fn factor_rows(&mut self, pattern: &SparsePattern) {
-        for s in pattern.supernodes() {
-            for m in 0..s.len {
-                self.diagonal[s.first + m] = self.values[s.start + m * s.width() + s.shared() + m];
-            }
-        }
-        for s in pattern.supernodes() {
-            self.factor_block(s);
-            self.update_ancestors(pattern, s);
-        }
-    }
-
-    /// Turns the rows of a supernode, from which all rows below are taken off, into those of L, and leaves those of U in `upper`.
-    #[inline(always)]
-    fn factor_block(&mut self, s: &Supernode) {
-        let (width, shared) = (s.width(), s.shared());
-        let floor = T::splat(T::Scalar::EPSILON);
-        let block = &mut self.values[s.block()];
-        // What row k takes off row m is this times row k. First in the columns of the supernode itself, which give the pivots.
-        let mut multipliers = [[T::ZERO; MAX_DOFS]; MAX_DOFS];
-        for m in (0..s.len).rev() {
-            let (above, below) = block.split_at_mut((m + 1) * width);
-            let row = &mut above[m * width + shared..][..=m];
-            for k in (m + 1..s.len).rev() {
-                let other = &below[(k - m - 1) * width + shared..][..=m];
-                let multiplier = other[m] * self.inverse[s.first + k];
-                multipliers[m][k] = multiplier;
-                for (x, &u) in row.iter_mut().zip(other) {
-                    *x -= multiplier * u;
-                }
-            }
-            let dof = s.first + m;
-            let (pivot, diagonal) = (row[m], self.diagonal[dof]);
-            let pivot = T::select(pivot.gt(floor * diagonal), pivot, diagonal);
-            self.diagonal[dof] = pivot;
-            self.inverse[dof] = T::ONE / pivot;
-        }
-        // Then in the columns left of them.
-        let mut column = 0;
-        while column < shared {
-            column += match shared - column {
-                NARROW.. => subtract_multiples::<T, NARROW>(block, width, column, &multipliers),
-                2.. => subtract_multiples::<T, 2>(block, width, column, &multipliers),
-                _ => subtract_multiples::<T, 1>(block, width, column, &multipliers),
-            };
-        }
-        self.upper.clear();
-        self.upper.extend_from_slice(block);
-        for (m, row) in block.chunks_exact_mut(width).enumerate() {
-            for x in row {
-                *x *= self.inverse[s.first + m];
-            }
-        }
-    }
-
-    /// Takes what the rows of a supernode take off the rows above.
-    #[inline(always)]
-    fn update_ancestors(&mut self, pattern: &SparsePattern, s: &Supernode) {
-        let (done, above) = self.values.split_at_mut(s.block().end);
-        let mut tiles = Tiles {
-            lower: &done[s.start..],
-            upper: &self.upper,
-            len: s.len,
-            width: s.width(),
-            above,
-            offset: s.block().end,
-        };
-        let runs = pattern.runs(s);
-        let columns = pattern.columns(s);
-        let mut first = 0;
-        while first < columns.len() {
-            let target = pattern.supernode_of(columns[first] as usize);
-            let end = target.first + target.len;
-            let count = columns[first..]
-                .iter()
-                .take_while(|&&dof| (dof as usize) < end)
-                .count();
-            let rows = Rows {
-                dofs: &columns[first..first + count],
-                place: first,
-                target,
-            };
-            tiles.subtract(&rows, runs, pattern.runs(target));
-            first += count;
-        }
+        Elimination::run(pattern, memory, spare, |elimination| {
+            // Its tiles have columns enough to fill registers with, even of a single environment.
+            threads.on_each(|| {
+                T::vectorize_rows(
+                    #[inline(always)]
+                    || eliminate(pattern, elimination),
+                )
+            });
+        });
     }
 
     /// Turns the factor of A into that of A + σ x xᵀ, where the last dof with a number in x (by dof) is `last`; x is zero afterwards. False in lanes
@@ -204,6 +119,80 @@ impl<T: Real> SparseFactor<T> {
             for (to, &from) in to.iter_mut().zip(from) {
                 *to = T::select(mask, from, *to);
             }
+        }
+    }
+}
+
+/// Factors supernodes until none is left that another thread does not have in hand.
+#[inline(always)]
+fn eliminate<T: Real>(pattern: &SparsePattern, elimination: &Elimination<T>) {
+    let _watch = elimination.watch();
+    while let Some((s, mut open)) = elimination.claim(pattern) {
+        for m in 0..s.len {
+            open.diagonal[m] = open.values[m * s.width() + s.shared() + m];
+        }
+        for update in pattern.updates(s) {
+            let source = &pattern.supernodes()[update.source as usize];
+            let Some(done) = elimination.wait(update.source as usize) else {
+                return;
+            };
+            let mut tiles = Tiles {
+                lower: done.lower,
+                upper: done.upper,
+                len: source.len,
+                width: source.width(),
+                above: &mut *open.values,
+                target: s,
+            };
+            let place = update.place as usize;
+            let rows = Rows {
+                dofs: &pattern.columns(source)[place..place + update.count as usize],
+                place,
+            };
+            tiles.subtract(&rows, pattern.runs(source), pattern.runs(s));
+        }
+        factor_block(s, &mut open);
+        elimination.close(open);
+    }
+}
+
+/// Turns the rows of a supernode, from which all rows below are taken off, into those of L, and leaves those of U beside them.
+#[inline(always)]
+fn factor_block<T: Real>(s: &Supernode, open: &mut Open<T>) {
+    let (width, shared) = (s.width(), s.shared());
+    let floor = T::splat(T::Scalar::EPSILON);
+    let block = &mut *open.values;
+    // What row k takes off row m is this times row k. First in the columns of the supernode itself, which give the pivots.
+    let mut multipliers = [[T::ZERO; MAX_DOFS]; MAX_DOFS];
+    for m in (0..s.len).rev() {
+        let (above, below) = block.split_at_mut((m + 1) * width);
+        let row = &mut above[m * width + shared..][..=m];
+        for k in (m + 1..s.len).rev() {
+            let other = &below[(k - m - 1) * width + shared..][..=m];
+            let multiplier = other[m] * open.inverse[k];
+            multipliers[m][k] = multiplier;
+            for (x, &u) in row.iter_mut().zip(other) {
+                *x -= multiplier * u;
+            }
+        }
+        let (pivot, diagonal) = (row[m], open.diagonal[m]);
+        let pivot = T::select(pivot.gt(floor * diagonal), pivot, diagonal);
+        open.diagonal[m] = pivot;
+        open.inverse[m] = T::ONE / pivot;
+    }
+    // Then in the columns left of them.
+    let mut column = 0;
+    while column < shared {
+        column += match shared - column {
+            NARROW.. => subtract_multiples::<T, NARROW>(block, width, column, &multipliers),
+            2.. => subtract_multiples::<T, 2>(block, width, column, &multipliers),
+            _ => subtract_multiples::<T, 1>(block, width, column, &multipliers),
+        };
+    }
+    open.upper.copy_from_slice(block);
+    for (m, row) in block.chunks_exact_mut(width).enumerate() {
+        for x in row {
+            *x *= open.inverse[m];
         }
     }
 }

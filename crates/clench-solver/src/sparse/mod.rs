@@ -6,12 +6,15 @@
 //!
 //! Here live the analysis of a pattern ([`SparsePattern`]) and its numbers ([`SparseFactor`]); nothing of costs or constraints.
 
+mod elimination;
 mod factor;
 mod pattern;
 mod solve;
 #[cfg(test)]
 mod tests;
 mod tiles;
+mod window;
 
 pub(crate) use factor::SparseFactor;
 pub(crate) use pattern::SparsePattern;
+pub(crate) use window::Window;

@@ -5,11 +5,11 @@
 //! tree). A row with the same entries as the one after it, but for that one's own column, joins its supernode. (George & Liu,
 //! *Computer Solution of Large Sparse Positive Definite Systems*, 1981; Davis, *Direct Methods for Sparse Linear Systems*, 2006, §4.)
 
+use super::window::Window;
 use crate::Tree;
-use crate::jacobian::Pattern;
+use crate::jacobian::{Part, Pattern};
 use crate::minimum_degree::merge;
 use crate::partition::Lists;
-use clench_math::Real;
 use std::ops::Range;
 
 /// The filled pattern of a symmetric matrix, in supernodes.
@@ -22,6 +22,8 @@ pub(crate) struct SparsePattern {
     /// The columns that supernodes have left of their own, ascending, and the runs in which they follow each other.
     columns: Vec<u32>,
     runs: Vec<Run>,
+    /// What each supernode has taken off by those eliminated before it.
+    updates: Vec<Update>,
     nnz: usize,
     scratch: Scratch,
 }
@@ -35,6 +37,7 @@ pub(crate) struct Supernode {
     pub len: usize,
     columns: Range<usize>,
     runs: Range<usize>,
+    updates: Range<usize>,
     /// Where its block starts among the values.
     pub start: usize,
 }
@@ -66,6 +69,16 @@ pub(crate) struct Run {
     pub len: u32,
 }
 
+/// What a supernode takes off a later one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Update {
+    /// The earlier supernode.
+    pub source: u32,
+    /// The place among its columns of the first that is a row of the later one, and how many are.
+    pub place: u32,
+    pub count: u32,
+}
+
 /// Longer supernodes are cut: a factor of more rows gains little from being one block.
 pub(super) const MAX_DOFS: usize = 12;
 
@@ -80,6 +93,13 @@ struct Scratch {
     union: Vec<u32>,
     merged: Vec<u32>,
     has_child: Vec<bool>,
+}
+
+/// Lists are counted before they are written one after the other.
+#[derive(Clone, Copy, PartialEq)]
+enum Pass {
+    Count,
+    Write,
 }
 
 impl SparsePattern {
@@ -116,12 +136,53 @@ impl SparsePattern {
                     len: 1,
                     columns: start..self.columns.len(),
                     runs: 0..0,
+                    updates: 0..0,
                     start: self.nnz,
                 });
             }
             self.supernode_of[dof] = self.supernodes.len() as u32 - 1;
         }
-        self.close(most)
+        let fits = self.close(most);
+        if fits {
+            self.list_updates();
+        }
+        fits
+    }
+
+    /// Lists what each supernode has taken off, in the order of elimination.
+    fn list_updates(&mut self) {
+        let mut count = 0;
+        for pass in [Pass::Count, Pass::Write] {
+            for source in 0..self.supernodes.len() {
+                let columns = self.supernodes[source].columns.clone();
+                let mut place = columns.start;
+                while place < columns.end {
+                    let target = self.supernode_of[self.columns[place] as usize] as usize;
+                    let target = &mut self.supernodes[target];
+                    let end = target.first + target.len;
+                    let rows = self.columns[place..columns.end].iter();
+                    let rows = rows.take_while(|&&dof| (dof as usize) < end).count();
+                    if pass == Pass::Write {
+                        self.updates[target.updates.end] = Update {
+                            source: source as u32,
+                            place: (place - columns.start) as u32,
+                            count: rows as u32,
+                        };
+                    }
+                    target.updates.end += 1;
+                    place += rows;
+                }
+            }
+            if pass == Pass::Count {
+                for s in &mut self.supernodes {
+                    let own = s.updates.len();
+                    s.updates = count..count;
+                    count += own;
+                }
+                self.updates.clear();
+                self.updates.resize(count, Update::default());
+            }
+        }
     }
 
     /// Collects in `scratch.union` the columns of row `dof` left of the diagonal.
@@ -228,16 +289,27 @@ impl SparsePattern {
     pub(crate) fn runs(&self, supernode: &Supernode) -> &[Run] {
         &self.runs[supernode.runs.clone()]
     }
+    /// What a supernode has taken off by earlier ones, in the order of elimination.
+    #[inline(always)]
+    pub(crate) fn updates(&self, supernode: &Supernode) -> &[Update] {
+        &self.updates[supernode.updates.clone()]
+    }
 
     /// The place in its supernode's rows of a column that they have.
     #[inline(always)]
-    fn place(&self, supernode: &Supernode, column: usize) -> usize {
+    pub(super) fn place(&self, supernode: &Supernode, column: usize) -> usize {
         if column >= supernode.first {
             return supernode.shared() + column - supernode.first;
         }
         let runs = self.runs(supernode);
         let run = runs[runs.partition_point(|run| run.dof as usize <= column) - 1];
         run.place as usize + column - run.dof as usize
+    }
+
+    /// All of its rows.
+    #[inline(always)]
+    pub(crate) fn window(&self) -> Window<'_> {
+        Window::new(self, 0..self.supernodes.len())
     }
 
     /// Multiplications of a factorization, about.
@@ -264,21 +336,8 @@ impl SparsePattern {
 
 impl Pattern for SparsePattern {
     #[inline(always)]
-    fn add_to_row<T: Real>(&self, dofs: &[u32], values: &mut [T], entry: impl Fn(usize) -> T) {
-        let Some(&dof) = dofs.last() else { return };
-        let s = self.supernode_of(dof as usize);
-        let start = s.start + (dof as usize - s.first) * s.width();
-        let mut first = 0;
-        while first < dofs.len() {
-            // Columns that follow each other are neighbours.
-            let follows = |pair: &&[u32]| pair[1] == pair[0] + 1;
-            let len = 1 + dofs[first..].windows(2).take_while(follows).count();
-            let place = start + self.place(s, dofs[first] as usize);
-            for (c, value) in values[place..place + len].iter_mut().enumerate() {
-                *value += entry(first + c);
-            }
-            first += len;
-        }
+    fn each_part(&self, dofs: &[u32], act: impl FnMut(&Part)) {
+        self.window().each_part(dofs, act);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::jacobian::Pattern;
 use crate::tree::CouplingScratch;
-use crate::{Tree, TreeFactor, TreeMatrix};
+use crate::{Threads, Tree, TreeFactor, TreeMatrix};
 use std::collections::BTreeSet;
 
 struct Rng(u64);
@@ -47,26 +47,45 @@ fn each(mut couplings: &[u32], mut act: impl FnMut(&[u32])) {
     }
 }
 
+/// Adds a matrix over some dofs.
+fn add(
+    pattern: &impl Pattern,
+    dofs: &[u32],
+    values: &mut [f64],
+    entry: impl Fn(usize, usize) -> f64,
+) {
+    pattern.each_part(dofs, |part| {
+        for row in part.rows.clone() {
+            let (columns, place) = part.row(row);
+            for (k, column) in columns.enumerate() {
+                values[place + k] += entry(row, column);
+            }
+        }
+    });
+}
+
 /// M + Σ w jᵀj with random numbers, in a pattern.
 fn fill(rng: &mut Rng, scene: &(Tree, Vec<u32>), pattern: &impl Pattern, values: &mut [f64]) {
     let (tree, couplings) = scene;
     for dof in 0..tree.nv() {
         let last = tree.row(dof).len() - 1;
         let row = Vec::from_iter(tree.row(dof).iter().map(|_| rng.unit() - 0.5));
-        let entry = |c: usize| if c == last { 60.0 } else { row[c] };
-        pattern.add_to_row(tree.row(dof), values, entry);
+        add(pattern, tree.row(dof), values, |k, c| match (k, c) {
+            _ if k < last => 0.0,
+            _ if c == last => 60.0,
+            _ => row[c],
+        });
     }
     each(couplings, |dofs| {
         let j = Vec::from_iter(dofs.iter().map(|_| rng.unit() - 0.5));
-        for k in 0..dofs.len() {
-            pattern.add_to_row(&dofs[..=k], values, |c| j[k] * j[c]);
-        }
+        add(pattern, dofs, values, |k, c| j[k] * j[c]);
     });
 }
 
 #[test]
 fn factors_solutions_and_updates_equal_those_over_paths_to_the_bit() {
     let mut rng = Rng(5);
+    let threads = [1, 2, 3].map(|count| Threads::new(count).unwrap());
     let mut pattern = SparsePattern::default();
     for k in 0..200 {
         let scene = random_scene(&mut rng, 1 + k / 2, k % 30);
@@ -85,9 +104,10 @@ fn factors_solutions_and_updates_equal_those_over_paths_to_the_bit() {
 
         assert!(pattern.analyse(tree, couplings, usize::MAX));
         let mut sparse = SparseFactor::default();
-        sparse.clear(&pattern);
+        sparse.resize(&pattern);
+        sparse.values_mut().fill(0.0);
         fill(&mut Rng(k as u64), &scene, &pattern, sparse.values_mut());
-        sparse.factor_safely(&pattern);
+        sparse.factor_safely(&pattern, &threads[k % 3]);
 
         let x = Vec::from_iter((0..tree.nv()).map(|_| rng.unit()));
         for sigma in [0.0, 0.7] {

@@ -1,4 +1,4 @@
-//! What a supernode that is done takes off the rows above it, in tiles that stay in registers.
+//! What a supernode that is done takes off the rows of one above it, in tiles that stay in registers.
 
 use super::pattern::{Run, Supernode};
 use clench_math::{Real, array};
@@ -7,29 +7,28 @@ use clench_math::{Real, array};
 pub(super) const NARROW: usize = 6;
 const WIDE: usize = 12;
 
-/// A supernode that is done, and the values of those above.
+/// A supernode that is done, and one above it.
 pub(super) struct Tiles<'a, T> {
-    /// L and U of it, how many rows they have, and the length of these.
+    /// L and U of the former, how many rows they have, and the length of these.
     pub lower: &'a [T],
     pub upper: &'a [T],
     pub len: usize,
     pub width: usize,
-    /// The values from `offset` on.
+    /// The block of the latter.
     pub above: &'a mut [T],
-    pub offset: usize,
+    pub target: &'a Supernode,
 }
 
-/// Rows above that lie in one supernode.
+/// Rows of the supernode above.
 pub(super) struct Rows<'a> {
     pub dofs: &'a [u32],
     /// The place of the first among the columns of the supernode that is done.
     pub place: usize,
-    pub target: &'a Supernode,
 }
 
 impl<T: Real> Tiles<'_, T> {
     /// Subtracts from some rows, up to their diagonal, what the supernode takes off. Right of the diagonal, where nothing is stored, the block
-    /// of `rows.target` takes numbers that nobody reads.
+    /// takes numbers that nobody reads.
     #[inline(always)]
     pub(super) fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
         let last = rows.place + rows.dofs.len();
@@ -40,8 +39,8 @@ impl<T: Real> Tiles<'_, T> {
             if place >= last {
                 break;
             }
-            let to = if dof >= rows.target.first {
-                rows.target.shared() + dof - rows.target.first
+            let to = if dof >= self.target.first {
+                self.target.shared() + dof - self.target.first
             } else {
                 while candidate.is_some_and(|c| ((c.dof + c.len) as usize) <= dof) {
                     candidate = candidates.next();
@@ -94,10 +93,9 @@ impl<T: Real> Tiles<'_, T> {
         from: usize,
         to: usize,
     ) {
-        let target = rows.target;
         let starts: [usize; R] = array(|r| {
-            let m = rows.dofs[row + r] as usize - target.first;
-            target.start - self.offset + m * target.width() + to
+            let m = rows.dofs[row + r] as usize - self.target.first;
+            m * self.target.width() + to
         });
         let mut sums = [[T::ZERO; N]; R];
         for r in 0..R {

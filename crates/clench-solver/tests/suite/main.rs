@@ -9,3 +9,4 @@ mod loose;
 mod noslip;
 mod optimality;
 mod single_precision;
+mod threads;

@@ -1,0 +1,118 @@
+//! Some rows of a [`SparsePattern`], so that threads can write a matrix side by side.
+
+use super::pattern::{SparsePattern, Supernode};
+use crate::jacobian::{Part, Pattern};
+use crate::{Tree, TreeMatrix};
+use clench_math::{Real, kernel};
+use std::ops::Range;
+
+/// Consecutive supernodes, whose values lie in one piece.
+#[derive(Clone)]
+pub(crate) struct Window<'a> {
+    pattern: &'a SparsePattern,
+    supernodes: Range<usize>,
+    /// Their dofs: rows are eliminated from the last to the first.
+    dofs: Range<u32>,
+    /// Where their values begin among all.
+    offset: usize,
+}
+
+impl<'a> Window<'a> {
+    /// Some supernodes of a pattern.
+    pub(super) fn new(pattern: &'a SparsePattern, supernodes: Range<usize>) -> Self {
+        let dofs = match &pattern.supernodes()[supernodes.clone()] {
+            [] => 0..0,
+            [first, .., last] => last.first..first.first + first.len,
+            [only] => only.first..only.first + only.len,
+        };
+        let first = pattern.supernodes().get(supernodes.start);
+        Window {
+            pattern,
+            dofs: dofs.start as u32..dofs.end as u32,
+            offset: first.map_or(pattern.nnz(), |s| s.start),
+            supernodes,
+        }
+    }
+
+    /// Two windows of about as many supernodes, and how many values the first has.
+    pub(crate) fn halves(self) -> (Self, Self, usize) {
+        let Range { start, end } = self.supernodes;
+        let middle = start + (end - start) / 2;
+        let one = Window::new(self.pattern, start..middle);
+        let other = Window::new(self.pattern, middle..end);
+        let count = other.offset - one.offset;
+        (one, other, count)
+    }
+
+    /// `values` becomes a matrix over `tree`, whose entries the pattern holds.
+    #[kernel]
+    pub fn set_matrix<T: Real>(&self, tree: &Tree, matrix: &TreeMatrix<T>, values: &mut [T]) {
+        values.fill(T::ZERO);
+        for dof in self.dofs.start..self.dofs.end {
+            let (columns, row) = (tree.row(dof as usize), matrix.row(tree, dof as usize));
+            let (s, start) = self.row(dof);
+            let mut first = 0;
+            while first < columns.len() {
+                let len = run_length(&columns[first..]);
+                let place = start + self.pattern.place(s, columns[first] as usize);
+                values[place..place + len].copy_from_slice(&row[first..first + len]);
+                first += len;
+            }
+        }
+    }
+
+    /// The supernode of a row, and where the row starts.
+    #[inline(always)]
+    fn row(&self, dof: u32) -> (&'a Supernode, usize) {
+        let s = self.pattern.supernode_of(dof as usize);
+        let start = s.start - self.offset + (dof as usize - s.first) * s.width();
+        (s, start)
+    }
+}
+
+/// How many of the first dofs follow each other.
+#[inline(always)]
+fn run_length(dofs: &[u32]) -> usize {
+    1 + dofs
+        .windows(2)
+        .take_while(|pair| pair[1] == pair[0] + 1)
+        .count()
+}
+
+impl Pattern for Window<'_> {
+    #[inline(always)]
+    fn holds_any(&self, dofs: &[u32]) -> bool {
+        dofs.iter().any(|dof| self.dofs.contains(dof))
+    }
+
+    #[inline(always)]
+    fn each_part(&self, dofs: &[u32], mut act: impl FnMut(&Part)) {
+        let mut row = 0;
+        while row < dofs.len() {
+            let s = self.pattern.supernode_of(dofs[row] as usize);
+            let left = s.first + s.len - dofs[row] as usize;
+            let rows = row..row + run_length(&dofs[row..]).min(left);
+            if self.dofs.contains(&dofs[row]) {
+                let (s, start) = self.row(dofs[row]);
+                let mut column = 0;
+                while column < rows.end {
+                    let own = column == row;
+                    let end = match own {
+                        true => rows.end,
+                        // Columns that follow each other are neighbours.
+                        false => column + run_length(&dofs[column..row]),
+                    };
+                    act(&Part {
+                        rows: rows.clone(),
+                        columns: column..end,
+                        triangle: own,
+                        place: start + self.pattern.place(s, dofs[column] as usize),
+                        stride: s.width(),
+                    });
+                    column = end;
+                }
+            }
+            row = rows.end;
+        }
+    }
+}

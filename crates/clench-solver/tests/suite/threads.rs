@@ -1,0 +1,45 @@
+//! Threads that share a solve change no bit of it.
+
+use crate::common::*;
+use clench_solver::{Problem, Solver, SolverOptions, Threads};
+
+/// A heap of free bodies, most of which touch; with few contacts it falls into several heaps.
+fn heap(rng: &mut Rng, bodies: usize, contacts: usize) -> Problem<f64> {
+    let parent = |i: usize| (!i.is_multiple_of(6)).then(|| i - 1);
+    let mut shape = Shape::new((0..6 * bodies).map(parent).collect(), contacts);
+    shape.cross = 0.9;
+    random_problem(rng, &shape)
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let mut rng = Rng(11);
+    let crews = [2, 3, 5].map(|count| Threads::new(count).expect("threads start"));
+    let settings = SolverOptions::new().resolve::<f64>();
+    let (mut several, mut large) = (0, 0);
+    for k in 0..40 {
+        let problem = heap(&mut rng, 30, if k % 2 == 0 { 25 } else { 90 });
+        let mut alone = Solver::new(problem.tree());
+        alone.solve(&problem, &settings, None).expect("well-formed");
+        let stats = alone.stats().lane(0);
+        several += u32::from(stats.islands > 2);
+        large += u32::from(stats.islands == 1 && stats.factorizations > 0);
+        for crew in &crews {
+            let mut shared = Solver::new(problem.tree());
+            shared.set_threads(crew.clone());
+            // The second solve finds the memory of the first.
+            for _ in 0..2 {
+                shared
+                    .solve(&problem, &settings, None)
+                    .expect("well-formed");
+                assert_eq!(shared.qacc(), alone.qacc(), "scene {k}, {}", crew.count());
+                assert_eq!(shared.force(), alone.force());
+                assert_eq!(shared.stats().lane(0), stats);
+            }
+        }
+    }
+    assert!(
+        several >= 10 && large >= 10,
+        "{several} scenes of islands, {large} of one"
+    );
+}
