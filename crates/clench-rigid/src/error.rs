@@ -96,9 +96,10 @@ pub enum SimError {
     /// What a device that steps a batch cannot do, or that it failed.
     #[error("{0}")]
     Backend(String),
-    /// A batch of several threads in a process that was forked from the one that made it: a fork does not copy threads.
+    /// A batch or simulation of several threads in a process that was forked from the one that started them: a fork does not copy threads.
     #[error(
-        "the threads of this batch are of the process that it was made in, which forked: make a batch in each process"
+        "the threads are of the process that they were started in, which forked: make a batch, or set the threads of a simulation, in \
+         each process"
     )]
     Forked,
     /// A constraint at run time that there is no slot for.

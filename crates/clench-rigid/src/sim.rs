@@ -6,6 +6,7 @@ mod parameters;
 mod pushes;
 mod quality;
 mod rest;
+mod threads;
 
 pub use dynamic::DynamicConstraint;
 
@@ -133,13 +134,7 @@ impl<T: Precision> Sim<T> {
         self.check_present()?;
         self.last_good.copy_moving_from(&self.state);
         self.ws.clock.lap(Stage::Rows as usize);
-        T::step(
-            &self.model,
-            &self.params,
-            &self.settings,
-            &mut self.state,
-            &mut self.ws,
-        );
+        self.on_threads(T::step);
         let result = self.check_result(self.last_good.time);
         self.note(&result);
         if result.is_err() {
@@ -160,13 +155,9 @@ impl<T: Precision> Sim<T> {
 
     fn try_forward(&mut self) -> Result<(), SimError> {
         self.check_present()?;
-        T::forward(
-            &self.model,
-            &self.params,
-            &self.settings,
-            &self.state,
-            &mut self.ws,
-        );
+        self.on_threads(|model, params, settings, state, ws| {
+            T::forward(model, params, settings, state, ws);
+        });
         let result = self.check_result(self.state.time);
         self.note(&result);
         result
@@ -226,6 +217,7 @@ impl<T: Precision> Sim<T> {
     }
 
     pub(crate) fn check_present(&self) -> Result<(), SimError> {
+        self.check_threads()?;
         check::check_lengths(&self.model, &self.state)?;
         let occasional = check::has_occasional(&self.state);
         if check::good_inputs(&self.state, occasional) {

@@ -13,7 +13,7 @@ use crate::sensor::readings::SensorReadings;
 use crate::sleep::Sleep;
 pub use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real};
-use clench_solver::{Problem, Solver, TreeFactor, TreeMatrix};
+use clench_solver::{Problem, Solver, Threads, TreeFactor, TreeMatrix};
 
 /// Everything derived from model and state.
 #[derive(Debug)]
@@ -137,6 +137,17 @@ impl<T: Real> Workspace<T> {
     /// Room for the energy of a state.
     pub fn energy_scratch(&mut self, model: &Model) -> &mut EnergyScratch<T> {
         (self.energy).get_or_insert_with(|| Box::new(EnergyScratch::new(model)))
+    }
+
+    /// The threads that share the work of a step.
+    pub(crate) fn threads(&self) -> &Threads {
+        &self.collision.threads
+    }
+
+    /// Has threads share the work of steps.
+    pub(crate) fn set_threads(&mut self, threads: Threads) {
+        self.collision.threads = threads.clone();
+        self.solver.set_threads(threads);
     }
 
     /// Lets the clocks of stages and of solves run, or not.

@@ -101,7 +101,7 @@ pub(crate) struct BatchArguments {
     /// Step so many environments as a batch
     #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
     pub envs: Option<u32>,
-    /// Threads of a batch [default: as many as processors]; one environment alone uses one
+    /// Threads of a batch [default: as many as processors], or that share each step of one environment alone [default: 1]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
     /// How the environments of a batch lie side by side [default: what is fastest here]

@@ -20,6 +20,7 @@ pub(crate) fn run<T: Precision>(
     options: RigidOptions,
 ) -> Result<Report> {
     let mut sim = Sim::<T>::with_options(Arc::clone(&run.model), options)?;
+    sim.set_threads(arguments.batch.threads.map_or(1, usize::from))?;
     run.starts.start(&mut sim)?;
     let mut recorder = (run.record.as_ref())
         .map(|options| RunRecorder::create(options, &run.model))

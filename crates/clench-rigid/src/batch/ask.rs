@@ -157,15 +157,11 @@ impl<S: Precision> Batch<S> {
             answers: Cells::new(&mut answers),
         };
         let (steppers, order) = (&mut self.steppers, &self.order);
-        let mut all = || {
+        self.threads.enter(|| {
             spread(steppers, order, |stepper, group| {
                 stepper.ask(group, &asking)
             })
-        };
-        match &self.pool {
-            None => all(),
-            Some(pool) => pool.install(all),
-        }
+        });
         Ok(answers)
     }
 }

@@ -56,7 +56,7 @@ use crate::model::Model;
 use crate::profile::Profile;
 use crate::settings::StepSettings;
 use crate::state::State;
-use rayon::ThreadPool;
+use clench_solver::Threads;
 use recorded_states::RecordedStates;
 use rows::{per_env, try_reserve};
 use std::fmt;
@@ -102,10 +102,10 @@ pub struct Batch<S: Precision = f64> {
     /// The environments that run, those of like contacts together.
     order: Vec<u32>,
     steppers: Vec<Box<dyn Stepper<S>>>,
-    pool: Option<Arc<ThreadPool>>,
+    threads: Threads,
     /// The device that steps in place of the threads, if there is one.
     mirror: Option<Mirror<S>>,
-    /// The process that the threads are of.
+    /// The process that the device is of.
     process: u32,
     divergence: Divergence,
     quality: Quality,
@@ -151,14 +151,11 @@ impl<S: Precision> Batch<S> {
         }
         try_reserve(count, StateRows::<S>::row_bytes(&model) + BOOKKEEPING_BYTES)?;
         let threads = options.threads(count)?;
-        let pool = (threads > 1)
-            .then(|| options.pool(threads).map(Arc::new))
-            .transpose()?;
-        // A pool has a bound of its own.
-        let threads = pool.as_ref().map_or(1, |pool| pool.current_num_threads());
-        let instructions = options.instructions::<S>(count, threads)?;
+        let instructions = options.instructions::<S>(count, threads.count())?;
         let stepper = || S::stepper(instructions, &model);
-        let steppers = (0..threads).map(|_| stepper()).collect::<Option<Vec<_>>>();
+        let steppers = (0..threads.count())
+            .map(|_| stepper())
+            .collect::<Option<Vec<_>>>();
         let initial = State::new(&model);
         let mut state = StateRows::new(&model, count)?;
         for env in 0..count {
@@ -178,16 +175,16 @@ impl<S: Precision> Batch<S> {
             sort_keys: per_env(count, || AtomicU64::new(0))?,
             order: per_env(count, || 0)?,
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
-            pool,
             mirror: None,
             process: std::process::id(),
             divergence: Divergence::default(),
             quality: Quality::default(),
             options: BatchOptions {
                 instructions: Some(instructions),
-                threads: Some(threads),
+                threads: Some(threads.count()),
                 ..options
             },
+            threads,
             model,
         })
     }
@@ -210,8 +207,8 @@ impl<S: Precision> Batch<S> {
 
     /// Without its threads, or its device, a call would wait for ever.
     fn check_threads(&self) -> Result<(), SimError> {
-        let elsewhere = self.pool.is_some() || self.mirror.is_some();
-        if elsewhere && self.process != std::process::id() {
+        let device_is_lost = self.mirror.is_some() && self.process != std::process::id();
+        if self.threads.are_lost() || device_is_lost {
             return Err(SimError::Forked);
         }
         Ok(())
@@ -250,7 +247,7 @@ impl<S: Precision> Batch<S> {
     }
     /// How many threads step.
     pub fn threads(&self) -> usize {
-        self.steppers.len()
+        self.threads.count()
     }
     /// Whether each environment runs.
     pub fn statuses(&self) -> &[EnvStatus] {

@@ -3,7 +3,7 @@
 use crate::error::SimError;
 use crate::options::RigidOptions;
 use clench_math::{Instructions, Scalar};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use clench_solver::Threads;
 use std::thread::available_parallelism;
 
 /// What a step of a group costs beside its lanes, in units of what a lane adds: groups of 1, 4 and 8 environments of a
@@ -36,7 +36,7 @@ impl Default for BatchOptions {
 }
 
 impl BatchOptions {
-    pub(super) fn threads(&self, count: usize) -> Result<usize, SimError> {
+    pub(super) fn threads(&self, count: usize) -> Result<Threads, SimError> {
         let threads = match self.threads {
             Some(0) => {
                 return Err(SimError::OutOfRange {
@@ -48,7 +48,7 @@ impl BatchOptions {
             Some(threads) => threads,
             None => available_parallelism().map_or(1, usize::from),
         };
-        Ok(threads.min(count.max(1)))
+        Threads::new(threads.min(count.max(1))).map_err(|e| SimError::Threads(e.to_string()))
     }
 
     pub(super) fn instructions<S: Scalar>(
@@ -61,14 +61,6 @@ impl BatchOptions {
             Some(chosen) => Ok(chosen),
             None => Ok(fastest::<S>(count, threads)),
         }
-    }
-
-    pub(super) fn pool(&self, threads: usize) -> Result<ThreadPool, SimError> {
-        ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .thread_name(|i| format!("clench-{i}"))
-            .build()
-            .map_err(|e| SimError::Threads(e.to_string()))
     }
 }
 

@@ -95,10 +95,8 @@ impl<S: Precision> Batch<S> {
             return done;
         }
         // All groupings of a call run inside the pool, so that its threads need not be woken for each.
-        Ok(match self.pool.clone() {
-            None => self.run_here(call, trace),
-            Some(pool) => pool.install(|| self.run_here(call, trace)),
-        })
+        let threads = self.threads.clone();
+        Ok(threads.enter(|| self.run_here(call, trace)))
     }
 
     fn run_here(&mut self, call: &Call<S>, trace: &mut [OutputRows<S>]) -> Summary {

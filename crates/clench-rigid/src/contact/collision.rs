@@ -5,13 +5,14 @@ use super::body_pairs::BodyPairs;
 use super::bounding_sphere::BoundingSphere;
 use super::dynamic_broad_phase::DynamicBroadPhase;
 use super::pair_clock::PairClock;
+use super::pair_finder::PairFinder;
 use super::select::listed_candidates;
 use super::separating_axes::SeparatingAxes;
 use crate::Budget;
 use crate::model::Model;
 use crate::options::MaxContacts;
-use clench_collide::Contacts;
 use clench_math::{Mask, Real};
+use clench_solver::Threads;
 
 /// What a step can find more of than the model's budget allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +71,9 @@ pub struct Collision<T: Real> {
     pub(super) axes: SeparatingAxes<T>,
     /// Times the narrow phase by kinds of pair.
     pub(crate) clock: PairClock,
-    pub(super) points: Contacts<T>,
+    /// Look at the pairs that are near, on threads if there are any.
+    pub(super) finders: Vec<PairFinder<T>>,
+    pub(crate) threads: Threads,
     /// How many contacts each lane has.
     pub(super) contact_count: T,
     /// How many numbers the Jacobian of the contacts has.
@@ -96,7 +99,8 @@ impl<T: Real> Collision<T> {
             spheres: Vec::new(),
             axes: SeparatingAxes::default(),
             clock: PairClock::default(),
-            points: Contacts::new(),
+            finders: Vec::new(),
+            threads: Threads::default(),
             contact_count: T::ZERO,
             jacobian_size: T::ZERO,
         }

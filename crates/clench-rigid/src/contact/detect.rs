@@ -2,7 +2,7 @@
 
 use super::bounding_sphere::{self, may_touch};
 use super::collision::{Collision, Excess};
-use super::placed_shape::{pose, shape};
+use super::pair_finder::PairFinder;
 use super::{Candidate, Contact, contact_params, contact_range, surface};
 use crate::model::{Model, Params};
 use crate::profile::Stage;
@@ -10,7 +10,7 @@ use crate::settings::StepSettings;
 use crate::sleep::Sleep;
 use crate::stages::Positions;
 use crate::workspace::Workspace;
-use clench_collide::{ContactPoint, Contacts, SeparatingAxis, collide_again, multiccd_matters};
+use clench_collide::ContactPoint;
 use clench_math::{Mask, Real, kernel};
 use std::ops::Range;
 
@@ -31,6 +31,11 @@ impl<T: Real> Awake<'_, T> {
         sleep.is_either_awake(candidate.geoms.map(|g| self.model.geoms[g as usize].body))
     }
 }
+
+/// So that threads are done together though pairs differ.
+const FINDERS_PER_THREAD: usize = 4;
+/// Fewer pairs are not worth waking a thread for.
+const MIN_PAIRS: usize = 8;
 
 /// Fills `ws.contacts` from the geoms' poses, in canonical order.
 #[kernel]
@@ -74,27 +79,19 @@ pub fn detect<T: Real>(
         }
     }
     ws.clock.lap(Stage::BroadPhase as usize);
-    collision.axes.reserve(collision.near.len());
-    collision.clock.start();
-    for near in 0..collision.near.len() {
-        let candidate = collision.candidates[collision.near[near] as usize];
-        let (axis, points) = (collision.axes.of(candidate.geoms), &mut collision.points);
-        narrow_phase(model, params, pos, &candidate, axis, points);
-        let any = |lanes: T::Mask, point: &ContactPoint<T>| lanes | point.active;
-        collision.clock.lap(candidate.kinds, T::LANES, || {
-            let points = collision.points.as_slice().iter();
-            points.fold(T::Mask::splat(false), any).count()
-        });
-        let [a, b] = candidate.kinds;
-        if !settings.flags.multiccd && multiccd_matters(a, b) {
-            collision.points.keep_deepest();
-        }
-        if !collision.points.as_slice().is_empty() {
-            push_contacts(
-                params, settings, pos, &candidate, &awake, collision, contacts,
-            );
-        }
+    find_points(model, params, settings, pos, collision);
+    let finders = std::mem::take(&mut collision.finders);
+    for (candidate, points) in finders.iter().flat_map(PairFinder::touching) {
+        let candidate = collision.candidates[candidate as usize];
+        push_contacts(
+            (params, settings, pos),
+            (&candidate, points),
+            &awake,
+            collision,
+            contacts,
+        );
     }
+    collision.finders = finders;
     // A lane over the budget fails its step: no constraint is computed for it.
     let within = collision.excess.le(T::ZERO);
     if !within.all() {
@@ -126,30 +123,39 @@ fn find_near<T: Real>(
     }
 }
 
-/// The points of one candidate.
-#[inline(always)]
-fn narrow_phase<T: Real>(
+/// Finds the points of all candidates that are near, in their order, by as many finders as are worth it.
+fn find_points<T: Real>(
     model: &Model,
     params: &Params<T>,
+    settings: &StepSettings,
     pos: &Positions<T>,
-    candidate: &Candidate,
-    axis: &mut SeparatingAxis<T>,
-    points: &mut Contacts<T>,
+    collision: &mut Collision<T>,
 ) {
-    let [a, b] = [candidate.geoms[0] as usize, candidate.geoms[1] as usize];
-    let (shape_a, shape_b) = (shape(model, params, a), shape(model, params, b));
-    let (pose_a, pose_b) = (pose(pos, a), pose(pos, b));
-    let (_, range) = contact_range(model, params, candidate);
-    collide_again(&shape_a, &pose_a, &shape_b, &pose_b, range, axis, points);
+    let (near, candidates, axes) = (&collision.near, &collision.candidates, &mut collision.axes);
+    let threads = &collision.threads;
+    axes.reserve(near.len());
+    let most = (threads.count() > 1).then_some(threads.count() * FINDERS_PER_THREAD);
+    let count = most.unwrap_or(1).min(near.len() / MIN_PAIRS).max(1);
+    let finders = &mut collision.finders;
+    finders.resize_with(count, PairFinder::default);
+    for (k, finder) in finders.iter_mut().enumerate() {
+        let pairs = near.len() * k / count..near.len() * (k + 1) / count;
+        finder.begin(&near[pairs], candidates, axes);
+    }
+    let multiccd = settings.flags.multiccd;
+    threads.for_each(finders, |finder| {
+        finder.find(model, params, multiccd, pos, candidates);
+    });
+    for finder in finders {
+        finder.end(axes, &mut collision.clock);
+    }
 }
 
 /// Adds a contact for each point of one candidate.
 #[kernel]
 fn push_contacts<T: Real>(
-    params: &Params<T>,
-    settings: &StepSettings,
-    pos: &Positions<T>,
-    candidate: &Candidate,
+    (params, settings, pos): (&Params<T>, &StepSettings, &Positions<T>),
+    (candidate, points): (&Candidate, &[ContactPoint<T>]),
     awake: &Awake<T>,
     collision: &mut Collision<T>,
     contacts: &mut Vec<Contact<T>>,
@@ -163,8 +169,7 @@ fn push_contacts<T: Real>(
     let dofs = dofs(candidate.geoms[0]) + dofs(candidate.geoms[1]);
     let geoms = candidate.geoms.map(|g| g as usize);
     let adheres = !mixed.adhesion.eq(T::ZERO);
-    for i in 0..collision.points.as_slice().len() {
-        let point = collision.points.as_slice()[i];
+    for point in points {
         // Where a contact that adheres is within the gap, it is one without friction.
         let apart = adheres & !point.distance.lt(mixed.includemargin);
         for (lanes, dim) in [(!apart, mixed.dim), (apart, 1)] {

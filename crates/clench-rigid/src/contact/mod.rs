@@ -8,6 +8,7 @@ mod detect;
 mod dynamic_broad_phase;
 mod mix;
 pub(crate) mod pair_clock;
+mod pair_finder;
 mod placed_shape;
 mod select;
 mod separating_axes;

@@ -32,6 +32,19 @@ impl PairClock {
         self.clock.run(running);
     }
 
+    /// Takes what another has counted and measured, and lets that one run if this one does.
+    pub(super) fn absorb(&mut self, other: &mut Self) {
+        self.clock.absorb(&mut other.clock);
+        for (mine, theirs) in [
+            (&mut self.near, &mut other.near),
+            (&mut self.touching, &mut other.touching),
+        ] {
+            for (mine, theirs) in mine.iter_mut().zip(theirs) {
+                *mine += std::mem::take(theirs);
+            }
+        }
+    }
+
     /// Pairs follow.
     #[inline(always)]
     pub(super) fn start(&mut self) {

@@ -31,9 +31,9 @@ impl<T: Real> SeparatingAxes<T> {
         }
     }
 
-    /// The direction of a pair.
+    /// The place of a pair's direction.
     #[inline(always)]
-    pub(super) fn of(&mut self, geoms: [u32; 2]) -> &mut SeparatingAxis<T> {
+    pub(super) fn place(&mut self, geoms: [u32; 2]) -> usize {
         let mixed = geoms[0].wrapping_mul(0x9E37_79B9) ^ geoms[1].wrapping_mul(0x85EB_CA6B);
         let mixed = mixed ^ (mixed >> 15);
         let bucket = mixed as usize & (self.buckets.len() - 1);
@@ -44,6 +44,12 @@ impl<T: Real> SeparatingAxes<T> {
         if known.is_none() {
             (*owner, *axis) = (geoms, SeparatingAxis::default());
         }
-        axis
+        bucket * WAYS + way
+    }
+
+    /// The direction at a place.
+    #[inline(always)]
+    pub(super) fn at(&mut self, place: usize) -> &mut SeparatingAxis<T> {
+        &mut self.buckets[place / WAYS][place % WAYS].1
     }
 }

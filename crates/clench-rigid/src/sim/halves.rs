@@ -14,13 +14,9 @@ impl<T: Precision> Sim<T> {
     /// As [`step`](Self::step).
     pub fn step1(&mut self) -> Result<(), SimError> {
         self.check_present()?;
-        T::before_forces(
-            &self.model,
-            &self.params,
-            &self.settings,
-            &self.state,
-            &mut self.ws,
-        );
+        self.on_threads(|model, params, settings, state, ws| {
+            T::before_forces(model, params, settings, state, ws);
+        });
         self.known.note(Extent::Positions, &self.state);
         self.halfway = true;
         Ok(())
@@ -40,13 +36,7 @@ impl<T: Precision> Sim<T> {
         self.halfway = false;
         self.check_present()?;
         self.last_good.copy_moving_from(&self.state);
-        T::step_from_forces(
-            &self.model,
-            &self.params,
-            &self.settings,
-            &mut self.state,
-            &mut self.ws,
-        );
+        self.on_threads(T::step_from_forces);
         let result = self.check_result(self.last_good.time);
         self.note(&result);
         if result.is_ok() {

@@ -1,5 +1,5 @@
 //! Tests of simulations through the crate's public face: one program, so that its generic code is compiled once for all of them. The
-//! two beside this folder count what is allocated and need programs of their own.
+//! three beside this folder count what is allocated and need programs of their own.
 
 mod actuation;
 mod batch_backend;
@@ -50,5 +50,6 @@ mod softness;
 mod statics;
 mod tendons;
 mod terrain;
+mod threads;
 mod wrapping;
 mod yielding;

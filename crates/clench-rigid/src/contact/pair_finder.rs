@@ -1,0 +1,130 @@
+//! The narrow phase over some of the pairs that are near: one thread's part of them.
+
+use super::pair_clock::PairClock;
+use super::placed_shape::{pose, shape};
+use super::separating_axes::SeparatingAxes;
+use super::{Candidate, contact_range};
+use crate::model::{Model, Params};
+use crate::stages::Positions;
+use clench_collide::{ContactPoint, Contacts, SeparatingAxis, collide_again, multiccd_matters};
+use clench_math::{Mask, Real, kernel};
+
+/// Pairs to look at, and the points found.
+#[derive(Clone, Debug)]
+pub(super) struct PairFinder<T: Real> {
+    pairs: Vec<NearPair<T>>,
+    /// The pairs that touch, each with the end of its points among `points`.
+    touching: Vec<(u32, usize)>,
+    points: Vec<ContactPoint<T>>,
+    /// The points of the pair at hand.
+    scratch: Contacts<T>,
+    clock: PairClock,
+}
+
+/// A candidate that is near, and the direction in which it was apart when a step last looked, with its place in the table of these.
+#[derive(Clone, Copy, Debug)]
+struct NearPair<T> {
+    candidate: u32,
+    place: usize,
+    axis: SeparatingAxis<T>,
+}
+
+impl<T: Real> Default for PairFinder<T> {
+    fn default() -> Self {
+        PairFinder {
+            pairs: Vec::new(),
+            touching: Vec::new(),
+            points: Vec::new(),
+            scratch: Contacts::new(),
+            clock: PairClock::default(),
+        }
+    }
+}
+
+impl<T: Real> PairFinder<T> {
+    /// Takes these of the candidates.
+    pub(super) fn begin(
+        &mut self,
+        near: &[u32],
+        candidates: &[Candidate],
+        axes: &mut SeparatingAxes<T>,
+    ) {
+        self.pairs.clear();
+        self.pairs.extend(near.iter().map(|&candidate| {
+            let place = axes.place(candidates[candidate as usize].geoms);
+            NearPair {
+                candidate,
+                place,
+                axis: *axes.at(place),
+            }
+        }));
+    }
+
+    /// Finds the points of each pair; without `multiccd` only the deepest, where MuJoCo's flag decides.
+    #[kernel]
+    pub fn find(
+        &mut self,
+        model: &Model,
+        params: &Params<T>,
+        multiccd: bool,
+        pos: &Positions<T>,
+        candidates: &[Candidate],
+    ) {
+        self.touching.clear();
+        self.points.clear();
+        self.clock.start();
+        let points = &mut self.scratch;
+        for pair in &mut self.pairs {
+            let candidate = &candidates[pair.candidate as usize];
+            narrow_phase(model, params, pos, candidate, &mut pair.axis, points);
+            self.clock.lap(candidate.kinds, T::LANES, || {
+                let none = T::Mask::splat(false);
+                let any = |lanes, point: &ContactPoint<T>| lanes | point.active;
+                points.as_slice().iter().fold(none, any).count()
+            });
+            let [a, b] = candidate.kinds;
+            if !multiccd && multiccd_matters(a, b) {
+                points.keep_deepest();
+            }
+            if !points.as_slice().is_empty() {
+                self.points.extend_from_slice(points.as_slice());
+                self.touching.push((pair.candidate, self.points.len()));
+            }
+        }
+    }
+
+    /// Gives back the directions in which pairs were apart, and the time spent.
+    pub(super) fn end(&mut self, axes: &mut SeparatingAxes<T>, clock: &mut PairClock) {
+        for pair in &self.pairs {
+            *axes.at(pair.place) = pair.axis;
+        }
+        clock.absorb(&mut self.clock);
+    }
+
+    /// The candidates that touch, with their points.
+    pub(super) fn touching(&self) -> impl Iterator<Item = (u32, &[ContactPoint<T>])> {
+        let mut start = 0;
+        self.touching.iter().map(move |&(candidate, end)| {
+            let points = &self.points[start..end];
+            start = end;
+            (candidate, points)
+        })
+    }
+}
+
+/// The points of one candidate.
+#[inline(always)]
+fn narrow_phase<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &Positions<T>,
+    candidate: &Candidate,
+    axis: &mut SeparatingAxis<T>,
+    points: &mut Contacts<T>,
+) {
+    let [a, b] = [candidate.geoms[0] as usize, candidate.geoms[1] as usize];
+    let (shape_a, shape_b) = (shape(model, params, a), shape(model, params, b));
+    let (pose_a, pose_b) = (pose(pos, a), pose(pos, b));
+    let (_, range) = contact_range(model, params, candidate);
+    collide_again(&shape_a, &pose_a, &shape_b, &pose_b, range, axis, points);
+}

@@ -1,0 +1,58 @@
+//! Threads that share the work of a step.
+
+use super::Sim;
+use crate::Precision;
+use crate::error::SimError;
+use crate::model::{Model, Params};
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_solver::Threads;
+
+/// More threads are taken for a mistake.
+const MAX_THREADS: usize = 1024;
+
+impl<T: Precision> Sim<T> {
+    /// Has so many threads share the work of each step and forward pass from now on: pairs of geoms, islands, and the Hessian of a large
+    /// island. Results stay the same to the bit. It pays for scenes of many bodies, whose steps take a millisecond or more; many environments are a
+    /// [`Batch`](crate::Batch).
+    ///
+    /// # Errors
+    /// A number that is 0 or more than 1024; threads that the system does not start.
+    pub fn set_threads(&mut self, count: usize) -> Result<(), SimError> {
+        if !(1..=MAX_THREADS).contains(&count) {
+            return Err(SimError::OutOfRange {
+                field: "threads",
+                value: count as f64,
+                range: "1 to 1024",
+            });
+        }
+        let threads = Threads::new(count).map_err(|e| SimError::Threads(e.to_string()))?;
+        self.ws.set_threads(threads);
+        Ok(())
+    }
+
+    /// How many threads share the work of a step; 1 unless [`set_threads`](Self::set_threads) was called.
+    pub fn threads(&self) -> usize {
+        self.ws.threads().count()
+    }
+
+    /// Threads of a process that this one was forked from do not answer.
+    pub(super) fn check_threads(&self) -> Result<(), SimError> {
+        match self.ws.threads().are_lost() {
+            true => Err(SimError::Forked),
+            false => Ok(()),
+        }
+    }
+
+    /// Does a pass where its parts can be shared.
+    pub(super) fn on_threads(
+        &mut self,
+        pass: impl FnOnce(&Model, &Params<T>, &StepSettings, &mut State<T>, &mut Workspace<T>) + Send,
+    ) {
+        let (model, params, settings) = (&self.model, &self.params, &self.settings);
+        let (state, ws) = (&mut self.state, &mut self.ws);
+        let threads = ws.threads().clone();
+        threads.enter(|| pass(model, params, settings, state, ws));
+    }
+}
