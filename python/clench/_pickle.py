@@ -63,11 +63,12 @@ def _changed(own: Sim | Batch) -> dict[str, Any]:
 
 
 def _reduce_sim(sim: Sim) -> tuple[Any, ...]:
-    return _sim, (sim.model, sim.options, sim.precision, _changed(sim), sim.state, sim._last_serial)
+    how = {"precision": sim.precision, "threads": sim.threads}
+    return _sim, (sim.model, sim.options, how, _changed(sim), sim.state, sim._last_serial)
 
 
-def _sim(model: Model, options: RigidOptions, precision: Any, changed: dict[str, Any], state: State, last_serial: int) -> Sim:
-    sim = Sim(model, options, precision=precision)
+def _sim(model: Model, options: RigidOptions, how: dict[str, Any], changed: dict[str, Any], state: State, last_serial: int) -> Sim:
+    sim = Sim(model, options, **how)
     for name, values in changed.items():
         sim.set_param(name, values)
     sim.state = state

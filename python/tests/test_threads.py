@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import signal
 import subprocess
@@ -306,16 +307,32 @@ while batch.time[0] == 0:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_threads_of_a_simulation_change_no_bit() -> None:
+    alone, shared = humanoid(), clench.Sim(example("humanoid"), threads=2)
+    shared.reset("crouched")
+    for sim in (alone, shared):
+        sim.step(50)
+    assert (alone.threads, shared.threads, copy.deepcopy(shared).threads) == (1, 2, 2)
+    assert same_state(alone.state, shared.state)
+    shared.threads = 1
+    assert shared.threads == 1
+    for wrong in (0, 1025):
+        with pytest.raises(ValueError, match="threads"):
+            shared.threads = wrong
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 def test_processes_that_fork() -> None:
-    """A child of a fork has no threads but the one that forked. Batches that it makes itself have theirs."""
+    """A child of a fork has no threads but the one that forked. Batches that it makes itself have theirs, and simulations whose threads it
+    sets."""
     program = """
 import os, sys
 import numpy as np
 import clench
 model = clench.Model.from_file(sys.argv[1])
 sim, alone, threaded = clench.Sim(model), clench.Batch(model, 20, threads=1), clench.Batch(model, 20, threads=2)
-for own in (sim, alone, threaded):
+shared = clench.Sim(model, threads=2)
+for own in (sim, alone, threaded, shared):
     own.step(5)
 child = os.fork()
 if child == 0:
@@ -323,11 +340,15 @@ if child == 0:
     own = clench.Batch(model, 20, threads=2)
     own.step(10)
     ok = np.array_equal(own.qpos, alone.qpos) and np.array_equal(own.qpos[0], sim.qpos)
-    try:
-        threaded.step(5)
-        ok = False
-    except clench.ClenchError as error:
-        ok = ok and "fork" in str(error)
+    for lost in (threaded, shared):
+        try:
+            lost.step(5)
+            ok = False
+        except clench.ClenchError as error:
+            ok = ok and "fork" in str(error)
+    shared.threads = 2
+    shared.step(5)
+    ok = ok and np.array_equal(shared.qpos, sim.qpos)
     os._exit(0 if ok else 1)
 threaded.step(5)
 _, status = os.waitpid(child, 0)

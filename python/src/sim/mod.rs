@@ -54,11 +54,13 @@ pub(crate) fn sensor_numbers<'py>(
 ///     Options that go before those of the model.
 /// precision : {"64", "32"}
 ///     Bits of every number.
+/// threads : int
+///     How many threads share the work of each step; see `threads`.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     Options out of range; shapes that may meet and cannot be collided.
+///     Options or a number of threads out of range; shapes that may meet and cannot be collided.
 #[pyclass(frozen, extends = StateViews, module = "clench")]
 pub(crate) struct Sim {
     inner: Arc<Mutex<AnySim>>,
@@ -111,12 +113,13 @@ impl Sim {
 #[pymethods]
 impl Sim {
     #[new]
-    #[pyo3(signature = (model, options = None, *, precision = Bits::B64),
-           text_signature = "(model, options=None, *, precision='64')")]
+    #[pyo3(signature = (model, options = None, *, precision = Bits::B64, threads = Count(1)),
+           text_signature = "(model, options=None, *, precision='64', threads=1)")]
     fn new(
         model: &Bound<'_, Model>,
         options: Option<&RigidOptions>,
         precision: Bits,
+        threads: Count,
     ) -> PyResult<PyClassInitializer<Self>> {
         let options = options.copied().unwrap_or_default();
         let (py, own) = (model.py(), model.clone().unbind());
@@ -125,7 +128,9 @@ impl Sim {
             Bits::B64 => clench::Sim::with_options(inner, given).and_then(AnySim::f64),
             Bits::B32 => clench::Sim::with_options(inner, given).and_then(AnySim::f32),
         };
-        Sim::wrap(py, sim.map_err(sim_error)?, own)
+        let mut sim = sim.map_err(sim_error)?;
+        each_sim!(&mut sim, own => own.sim.set_threads(threads.0)).map_err(sim_error)?;
+        Sim::wrap(py, sim, own)
     }
 
     /// Advances the state.
@@ -363,6 +368,20 @@ impl Sim {
     fn set_options(&self, options: &RigidOptions) -> PyResult<()> {
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => own.sim.set_options(options.0)).map_err(sim_error)
+    }
+
+    /// int : How many threads share the work of each step and forward pass, 1 to 1024. Results do not depend on it. It pays for scenes of
+    /// many bodies, whose steps take a millisecond or more; for many environments there is `Batch`.
+    #[getter]
+    fn threads(&self) -> PyResult<usize> {
+        let guard = lock(&self.inner, "simulation")?;
+        Ok(each_sim!(&*guard, own => own.sim.threads()))
+    }
+
+    #[setter]
+    fn set_threads(&self, threads: Count) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => own.sim.set_threads(threads.0)).map_err(sim_error)
     }
 
     /// str : Bits of every number, "64" or "32".
