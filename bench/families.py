@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import defaultdict
 
 import mujoco
 import numpy as np
@@ -36,6 +37,7 @@ LONGEST = {1: 20.0, 64: 3.0, 256: 3.0}  # seconds that five steps of MuJoCo may 
 BATCHES = [64, 256]
 GROWTH = [100, 200, 500, 1000]  # bodies of a pile
 ENVS = [1, 8, 64, 256, 1024]
+THREADED = plots.THREADED
 
 # Name: family, MJCF text or a public file, steps before the clock starts.
 SCENES = {
@@ -97,20 +99,21 @@ class Scene:
         self.common["nv"] = int(self.model.nv)
 
     def alone(self, left_out):
-        """One environment by both, or by Clench where MuJoCo takes too long, which is noted in `left_out`."""
-        engines = ["mujoco", "clench"]
+        """One environment by both, or by Clench where MuJoCo takes too long, which is noted in `left_out`; large scenes on all threads too."""
+        engines = ["mujoco", "clench", *[THREADED][: self.common["family"] == "large" and processors() > 1]]
         try:
             steps = self.affordable(1, 2000)
         except Unmeasured as reason:
             left_out.append(f"{self.common['scene']}: {reason}")
-            engines, steps = ["clench"], 20
+            engines, steps = engines[1:], 20
         controls = smooth_controls(self.model, steps)
         arrays = self.arrays(controls, self.state[None] if self.state is not None else None)
         make = {
             "mujoco": lambda: Rollout(self.path, NEWTON, controls, self.state),
             "clench": lambda: Clench(self.path, arrays, ["--steps", steps]),
+            THREADED: lambda: Clench(self.path, arrays, ["--steps", steps, "--threads", processors()]),
         }
-        gradients = {"mujoco": lambda engine: engine.gradients, "clench": lambda engine: recorded(engine, "gradient")}
+        gradients = defaultdict(lambda: lambda engine: recorded(engine, "gradient"), mujoco=lambda engine: engine.gradients)
         engines = {name: make[name]() for name in engines}
         seconds = alternate(engines, self.args.repeat)
         return [self.row(1, name, engine, seconds, steps, gradients[name](engine)) for name, engine in engines.items()]

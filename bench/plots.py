@@ -7,6 +7,7 @@ import matplotlib.pyplot as plt
 
 COLORS = {"mujoco": "#888888", "clench": "#c04020", "clench f64": "#c04020", "clench f32": "#e0a030"}
 FIELDS = [("contacts_mean", ".0f"), ("iterations_mean", ".1f"), ("gradient_median", ".0e")]
+THREADED = "clench, all threads"  # one environment, whose steps they share
 SMALL = 0.03  # of a step: stages that never take more are drawn as one
 
 
@@ -15,8 +16,8 @@ PAGE = """# Scenes of manipulation and of many bodies
 Written by `cargo xtask bench --only families --docs`, on {machine}, beside MuJoCo {mujoco}; `bench/families.py` says how each is timed. What
 the figures mean, and where aims are missed, says [performance.md](performance.md).
 
-One environment: microseconds a step, MuJoCo's time over Clench's, mean contacts and iterations of the solver a step, and the scaled
-gradient that solves end with (the median; MuJoCo's and Clench's).
+One environment: microseconds a step, MuJoCo's time over Clench's on one thread, Clench's time on one thread over that on all ({processors}), mean
+contacts and iterations of the solver a step, and the scaled gradient that solves end with (the median; MuJoCo's and Clench's).
 
 {alone}
 
@@ -36,7 +37,7 @@ def draw(record, folder):
     """Writes families.md, families-stages.svg and families-growth.svg."""
     scenes = list(dict.fromkeys(row["scene"] for row in record["rows"] if row["family"] != "environments"))
     machine = "{processors} processors ({machine})".format(**record["machine"])
-    parts = {"machine": machine, "mujoco": record["machine"]["mujoco"], "alone": alone(record["rows"], scenes), "many": many(record["rows"], scenes)}
+    parts = {"machine": machine, "processors": record["machine"]["processors"], "mujoco": record["machine"]["mujoco"], "alone": alone(record["rows"], scenes), "many": many(record["rows"], scenes)}
     left_out = [f"- {reason}" for reason in record["not_measured"]]
     parts["left_out"] = "\n".join(["Not measured, since MuJoCo takes too long:", "", *left_out] if left_out else [])
     (folder / "families.md").write_text(PAGE.format(**parts))
@@ -47,14 +48,16 @@ def draw(record, folder):
 
 def alone(rows, scenes):
     """A line a scene, of one environment."""
-    lines = ["| scene | dofs | MuJoCo µs | Clench µs | ratio | contacts | iterations | gradient |", "| --- " * 8 + "|"]
+    lines = ["| scene | dofs | MuJoCo µs | Clench µs | ratio | threads | contacts | iterations | gradient |", "| --- " * 9 + "|"]
     for scene in scenes:
         found = {row["engine"]: row for row in rows if row["scene"] == scene and row["envs"] == 1 and row["family"] != "environments"}
         theirs, ours = found.get("mujoco"), found["clench"]
         micro = f"{theirs['microseconds']:.1f}" if theirs else ""
         ratio = f"{ours['ratio']:.2f}" if theirs else ""
         both = lambda name, form: " / ".join(format(row[name], form) for row in (theirs, ours) if row)
-        numbers = [f"{ours['microseconds']:.1f}", ratio, *(both(*field) for field in FIELDS)]
+        shared = found.get(THREADED)
+        faster = f"{ours['microseconds'] / shared['microseconds']:.2f}" if shared else ""
+        numbers = [f"{ours['microseconds']:.1f}", ratio, faster, *(both(*field) for field in FIELDS)]
         lines.append(f"| {scene} | {ours['nv']} | {micro} | " + " | ".join(numbers) + " |")
     return "\n".join(lines)
 

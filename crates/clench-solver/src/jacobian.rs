@@ -288,14 +288,37 @@ fn add_weighted<T: Real, const DIM: usize>(
     rows: &[&[T]; DIM],
     values: &mut [T],
 ) {
-    let rows: [&[T]; DIM] = array(|i| &rows[i][..values.len()]);
-    for c in 0..values.len() {
-        let mut sum = weights[0] * rows[0][c];
-        for i in 1..DIM {
-            sum += weights[i] * rows[i][c];
-        }
-        values[c] += sum;
+    let mut column = 0;
+    while column < values.len() {
+        // As many as a free body has, which fill registers even of one environment.
+        column += match values.len() - column {
+            6.. => add_columns::<T, DIM, 6>(weights, rows, values, column),
+            2.. => add_columns::<T, DIM, 2>(weights, rows, values, column),
+            _ => add_columns::<T, DIM, 1>(weights, rows, values, column),
+        };
     }
+}
+
+/// The same for N columns; returns their number.
+#[inline(always)]
+fn add_columns<T: Real, const DIM: usize, const N: usize>(
+    weights: &[T; DIM],
+    rows: &[&[T]; DIM],
+    values: &mut [T],
+    first: usize,
+) -> usize {
+    let rows: [&[T]; DIM] = array(|i| &rows[i][first..first + N]);
+    let values = &mut values[first..first + N];
+    let mut sums: [T; N] = array(|c| weights[0] * rows[0][c]);
+    for i in 1..DIM {
+        for c in 0..N {
+            sums[c] += weights[i] * rows[i][c];
+        }
+    }
+    for c in 0..N {
+        values[c] += sums[c];
+    }
+    N
 }
 
 /// W j for one column of a block.

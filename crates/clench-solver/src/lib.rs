@@ -33,6 +33,7 @@ mod plain;
 mod problem;
 mod ray;
 mod results;
+mod runs;
 mod slot;
 mod solver;
 mod sparse;

@@ -2,6 +2,7 @@
 
 use crate::costs::{Cost, MAX_DIM, Rows};
 use crate::jacobian::{BlockIndex, StoredRows};
+use crate::runs::runs;
 use crate::transfer::Transfer;
 use crate::{Tree, TreeFactor, TreeMatrix, costs};
 use clench_math::{Real, kernel};
@@ -250,11 +251,14 @@ impl<T: Real> Problem<T> {
         }
         self.mass.values.clear();
         self.qacc_smooth.clear();
-        for &dof in dofs {
-            let row = whole.mass.row(from, dof as usize).iter();
-            self.mass.values.extend(row.map(|&m| transfer.take(m)));
-            let acceleration = whole.qacc_smooth[dof as usize];
-            self.qacc_smooth.push(transfer.take(acceleration));
+        for run in runs(dofs) {
+            let rows = from.row_start(run.start)..from.row_start(run.end);
+            for (to, from) in [
+                (&mut self.mass.values, &whole.mass.values[rows]),
+                (&mut self.qacc_smooth, &whole.qacc_smooth[run]),
+            ] {
+                to.extend(from.iter().map(|&x| transfer.take(x)));
+            }
         }
         self.mass_factor
             .gather(from, &whole.mass_factor, dofs, transfer);

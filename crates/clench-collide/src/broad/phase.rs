@@ -1,10 +1,11 @@
-//! The near pairs of a scene: a [`StaticTree`] of what stands still, a [`Grid`] of the rest.
+//! The near pairs of a scene: a [`StaticTree`] of what stands still, a [`Grid`] of clusters of the rest.
 
 use super::aabb::Aabb;
 use super::grid::{Boxes, Grid};
 use super::static_tree::StaticTree;
 use super::{Bound, near};
 use clench_math::{Mask, Real, kernel};
+use std::ops::Range;
 
 /// What a shape does in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,12 +31,87 @@ pub struct BroadPhase {
     mobile: Vec<u32>,
     boxes: Vec<Aabb>,
     placed: Vec<bool>,
+    clusters: Clusters,
     grid: Grid,
 }
 
+/// Mobile shapes that are near each other whatever moves, as those of a robot: the grid holds a box about all of them. Each is a range of
+/// their places among the mobile ones.
+#[derive(Clone, Debug, Default)]
+struct Clusters {
+    members: Vec<Range<usize>>,
+    boxes: Vec<Aabb>,
+    placed: Vec<bool>,
+}
+
+/// Larger clusters are parted: what is in the same or in neighbouring ones is compared each with each.
+const MAX_CLUSTER: usize = 32;
+
+impl Clusters {
+    /// Mobile shapes that follow each other, of one cluster and all placed or all moving.
+    fn new(mobile: &[u32], placed: &[bool], cluster: impl Fn(usize) -> usize) -> Self {
+        let mut clusters = Clusters::default();
+        for index in 0..mobile.len() {
+            let key = |index: usize| (cluster(mobile[index] as usize), placed[index]);
+            match clusters.members.last_mut() {
+                Some(last) if last.len() < MAX_CLUSTER && key(last.start) == key(index) => {
+                    last.end += 1;
+                }
+                _ => {
+                    clusters.members.push(index..index + 1);
+                    clusters.placed.push(placed[index]);
+                }
+            }
+        }
+        clusters
+    }
+
+    /// Takes over where the shapes are.
+    fn update(&mut self, boxes: &[Aabb]) {
+        let around = |members: &Range<usize>| {
+            let members = boxes[members.clone()].iter();
+            members.fold(Aabb::EMPTY, |all, one| all.union(one))
+        };
+        self.boxes.clear();
+        self.boxes.extend(self.members.iter().map(around));
+    }
+
+    /// Hands every pair of mobile shapes whose boxes overlap to `check`, once, but for two that are placed.
+    fn pairs(&self, grid: &mut Grid, boxes: &[Aabb], check: &mut impl FnMut(usize, usize)) {
+        for (members, _) in self
+            .members
+            .iter()
+            .zip(&self.placed)
+            .filter(|(_, placed)| !**placed)
+        {
+            for a in members.clone() {
+                let later = (a + 1..members.end).filter(|&b| boxes[a].overlaps(&boxes[b]));
+                later.for_each(|b| check(a, b));
+            }
+        }
+        let all = Boxes {
+            all: &self.boxes,
+            fixed: &self.placed,
+        };
+        grid.pairs(all, &mut |one, other| {
+            let (one, other) = (one as usize, other as usize);
+            let around = &self.boxes[other];
+            for a in self.members[one]
+                .clone()
+                .filter(|&a| boxes[a].overlaps(around))
+            {
+                let others = self.members[other].clone();
+                let near = others.filter(|&b| boxes[a].overlaps(&boxes[b]));
+                near.for_each(|b| check(a, b));
+            }
+        });
+    }
+}
+
 impl BroadPhase {
-    /// For scenes of shapes that can move so.
-    pub fn new(mobility: &[Mobility]) -> Self {
+    /// For scenes of shapes that can move so. Shapes that follow each other and are of the same `cluster`, a number of the caller's, are
+    /// supposed to stay near each other, which saves time and changes no pair.
+    pub fn new(mobility: &[Mobility], cluster: impl Fn(usize) -> usize) -> Self {
         let of = |wanted: fn(Mobility) -> bool| {
             let shapes = mobility.iter().enumerate();
             let wanted = shapes.filter(|&(_, &mobility)| wanted(mobility));
@@ -43,9 +119,11 @@ impl BroadPhase {
         };
         let mobile = of(|mobility| matches!(mobility, Mobility::Placed | Mobility::Moving));
         let is_placed = |&shape: &u32| mobility[shape as usize] == Mobility::Placed;
+        let placed = Vec::from_iter(mobile.iter().map(is_placed));
         BroadPhase {
             statics: of(|mobility| mobility == Mobility::Static),
-            placed: mobile.iter().map(is_placed).collect(),
+            clusters: Clusters::new(&mobile, &placed, cluster),
+            placed,
             mobile,
             ..BroadPhase::default()
         }
@@ -94,12 +172,9 @@ impl BroadPhase {
             }
         };
         let (mobile, placed) = (&self.mobile, &self.placed);
-        let boxes = Boxes {
-            all: &self.boxes,
-            fixed: placed,
-        };
-        (self.grid).pairs(boxes, &mut |i, j| {
-            check(mobile[i as usize], mobile[j as usize])
+        self.clusters.update(&self.boxes);
+        (self.clusters).pairs(&mut self.grid, &self.boxes, &mut |i, j| {
+            check(mobile[i], mobile[j]);
         });
         let moving = (0..mobile.len()).filter(|&index| !placed[index]);
         for index in moving {

@@ -79,7 +79,7 @@ fn allowed(i: u32, j: u32) -> bool {
 
 /// A broad phase of shapes that all move.
 fn all_moving(count: usize) -> BroadPhase {
-    BroadPhase::new(&vec![Mobility::Moving; count])
+    BroadPhase::new(&vec![Mobility::Moving; count], |shape| shape)
 }
 
 fn nothing_is_missed<T: Real>(seed: u64) {
@@ -249,22 +249,29 @@ fn what_is_large_or_far_or_no_number_does_not_disturb_the_rest() {
     assert!(asked <= 15 * bounds.len(), "{asked}");
 }
 
-/// Shapes stand, are placed, are left out or move by turns of four.
-fn mixed(count: usize) -> Vec<Mobility> {
+/// So many shapes in turn stand, are placed, are left out and move.
+fn mixed(count: usize, turn: usize) -> Vec<Mobility> {
     use Mobility::{Excluded, Moving, Placed, Static};
     let kinds = [Static, Placed, Excluded, Moving];
-    (0..count).map(|i| kinds[i % 4]).collect()
+    (0..count).map(|i| kinds[i / turn % 4]).collect()
 }
 
 #[test]
 fn pairs_of_mixed_scenes_are_those_of_which_one_moves() {
     let mut random = Random(36);
-    for count in [1, 2, 5, 60, 200] {
+    for (count, turn, cluster) in [
+        (1, 1, 1),
+        (2, 1, 2),
+        (5, 1, 3),
+        (60, 1, 60),
+        (200, 2, 7),
+        (300, 50, 300),
+    ] {
         let world = World::<Lanes<f64, 4>>::random(&mut random, count);
-        let mobility = mixed(count);
+        let mobility = mixed(count, turn);
         let is = |i: u32, kind: Mobility| mobility[i as usize] == kind;
         let (mut by_turns, mut all, mut again) = (Vec::new(), Vec::new(), Vec::new());
-        let mut broad_phase = BroadPhase::new(&mobility);
+        let mut broad_phase = BroadPhase::new(&mobility, |shape| shape / cluster);
         let (bounds, margins) = (&world.bounds, &world.margins);
         broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut by_turns);
         broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut again);
@@ -286,7 +293,7 @@ fn statics_that_moved_are_looked_at_again_when_that_is_said() {
         };
         Bound::<f64>::new(&ball, &pose)
     };
-    let mut broad_phase = BroadPhase::new(&[Mobility::Static, Mobility::Moving]);
+    let mut broad_phase = BroadPhase::new(&[Mobility::Static, Mobility::Moving], |shape| shape);
     let mut pairs = Vec::new();
     let mut find = |broad_phase: &mut BroadPhase, static_at: f64| {
         let bounds = [at(static_at), at(0.0)];

@@ -69,6 +69,13 @@ fn mobility(model: &Model, geom: &Geom) -> Mobility {
     }
 }
 
+/// A number that geoms share which are of one kinematic tree, or are placed together.
+fn cluster(model: &Model, geom: usize) -> usize {
+    let body = &model.bodies[model.geoms[geom].body];
+    body.last_dof
+        .map_or(body.weld, |dof| model.tree.tree_of(dof))
+}
+
 impl<T: Real> DynamicBroadPhase<T> {
     pub(super) fn new(model: &Model) -> Self {
         let roles = model.geoms.iter().zip(meet_any(model));
@@ -80,7 +87,7 @@ impl<T: Real> DynamicBroadPhase<T> {
         let explicit = model.pairs.iter().flat_map(|pair| pair.geoms);
         let listed = explicit.filter(|&geom| roles[geom] == Mobility::Excluded);
         DynamicBroadPhase {
-            broad_phase: BroadPhase::new(&roles),
+            broad_phase: BroadPhase::new(&roles, |geom| cluster(model, geom)),
             statics: (0..roles.len()).filter(is_static).collect(),
             in_pairs: listed.collect(),
             bounds: Vec::new(),

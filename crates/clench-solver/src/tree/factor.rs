@@ -6,6 +6,7 @@
 //! bits**.
 
 use super::{Tree, TreeMatrix, TreeSupernode, with_len};
+use crate::runs::runs;
 use crate::transfer::Transfer;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
@@ -220,12 +221,15 @@ impl<T: Real> TreeFactor<T> {
         self.lower.clear();
         self.diagonal.clear();
         self.inverse.clear();
-        for &dof in dofs {
-            let dof = dof as usize;
-            let row = &whole.lower[tree.starts[dof]..tree.starts[dof + 1]];
-            self.lower.extend(row.iter().map(|&l| transfer.take(l)));
-            self.diagonal.push(transfer.take(whole.diagonal[dof]));
-            self.inverse.push(transfer.take(whole.inverse[dof]));
+        for run in runs(dofs) {
+            let rows = tree.starts[run.start]..tree.starts[run.end];
+            for (to, from) in [
+                (&mut self.lower, &whole.lower[rows]),
+                (&mut self.diagonal, &whole.diagonal[run.clone()]),
+                (&mut self.inverse, &whole.inverse[run]),
+            ] {
+                to.extend(from.iter().map(|&x| transfer.take(x)));
+            }
         }
     }
 
