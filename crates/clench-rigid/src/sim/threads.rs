@@ -53,6 +53,6 @@ impl<T: Precision> Sim<T> {
         let (model, params, settings) = (&self.model, &self.params, &self.settings);
         let (state, ws) = (&mut self.state, &mut self.ws);
         let threads = ws.threads().clone();
-        threads.enter(|| pass(model, params, settings, state, ws));
+        threads.enter_awake(|| pass(model, params, settings, state, ws));
     }
 }

@@ -19,7 +19,7 @@ pub(super) struct FilledForm<T: 'static> {
 }
 
 /// So that threads are done together though rows differ.
-const PIECES_PER_THREAD: usize = 2;
+const PIECES_PER_THREAD: usize = 1;
 
 /// Calls `work` for so many windows, with their values.
 fn split<T: Real>(

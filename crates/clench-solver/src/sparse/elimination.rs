@@ -5,10 +5,10 @@
 //! claimed it, and read by the others once it is done.
 
 use super::pattern::{SparsePattern, Supernode};
-use std::hint::spin_loop;
+use crate::threads::rest;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
-use std::thread::{panicking, yield_now};
+use std::thread::panicking;
 
 /// Memory of a supernode that is being factored: its blocks of the matrix (in the end of L) and of U, its pieces of D and 1 / D.
 pub(super) struct Open<'a, T> {
@@ -46,9 +46,6 @@ pub(super) struct Elimination<'a, T> {
 /// The memory in which an elimination notes what is done, empty between eliminations.
 #[derive(Debug)]
 pub(super) struct Spare<T: 'static>(Vec<OnceLock<Done<'static, T>>>);
-
-/// Looks at a supernode that is not done this many times, some microseconds, before letting another thread of the system run.
-const SPINS: usize = 500;
 
 impl<'a, T> Elimination<'a, T> {
     /// Hands an elimination to `work`, whose threads [`claim`](Self::claim) what there is. `memory` holds the blocks of the matrix, room for
@@ -126,17 +123,13 @@ impl<'a, T> Elimination<'a, T> {
 
     #[cold]
     fn wait_long(&self, index: usize) -> Option<&Done<'a, T>> {
-        let mut spins = 0;
+        let mut looks = 0;
         while !self.abandoned.load(Ordering::Relaxed) {
             if let Some(done) = self.done[index].get() {
                 return Some(done);
             }
-            spins += 1;
-            if spins < SPINS {
-                spin_loop()
-            } else {
-                yield_now()
-            }
+            rest(looks);
+            looks += 1;
         }
         None
     }

@@ -82,7 +82,13 @@ fn run_length(dofs: &[u32]) -> usize {
 impl Pattern for Window<'_> {
     #[inline(always)]
     fn holds_any(&self, dofs: &[u32]) -> bool {
-        dofs.iter().any(|dof| self.dofs.contains(dof))
+        let (Some(first), Some(&last)) = (dofs.first(), dofs.last()) else {
+            return false;
+        };
+        // Most blocks are told by their ends.
+        last >= self.dofs.start
+            && *first < self.dofs.end
+            && (self.dofs.contains(&last) || dofs.iter().any(|dof| self.dofs.contains(dof)))
     }
 
     #[inline(always)]
