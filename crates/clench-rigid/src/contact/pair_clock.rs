@@ -32,7 +32,7 @@ impl PairClock {
         self.clock.run(running);
     }
 
-    /// Pairs follow.
+    /// Starts the clock before the first pair.
     #[inline(always)]
     pub(super) fn start(&mut self) {
         self.clock.start();

@@ -63,7 +63,7 @@ impl IkTarget {
 pub struct IkTask {
     /// What is brought to a goal.
     pub target: IkTarget,
-    /// By what each component of its error is multiplied, see [`IkTarget::weight_len`]; not negative. A component of weight 0
+    /// The weight of each component of its error, see [`IkTarget::weight_len`]; not negative. A component of weight 0
     /// does not count.
     pub weights: Vec<f64>,
 }

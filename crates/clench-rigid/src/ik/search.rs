@@ -26,7 +26,7 @@ use std::ops::Range;
 
 /// ε: damping never fades altogether, for at singular postures A alone is no matrix to solve with.
 const MIN_DAMPING: f64 = 1e-9;
-/// By what λ is multiplied where a step fails, and divided where one goes well.
+/// The factor by which λ grows where a step fails, and falls where one goes well.
 const RAISE: f64 = 8.0;
 const LOWER: f64 = 4.0;
 /// λ stays above this, or it would take many failures to raise it again.

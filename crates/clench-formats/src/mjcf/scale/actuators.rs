@@ -9,7 +9,7 @@ use clench_rigid::builder::{
 use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind, SensorKind};
 use std::collections::BTreeMap;
 
-/// By what the controls and the activations of an actuator are multiplied, in their order.
+/// The factors of the controls and the activations of an actuator, in their order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct States {
     pub controls: Vec<f64>,
@@ -160,7 +160,7 @@ impl Command {
         }
     }
 
-    /// By what it is multiplied.
+    /// Its factor.
     fn scale(self, along: Along) -> f64 {
         match self {
             Command::Coordinate => along.coordinate,
@@ -178,7 +178,7 @@ impl Command {
         }
     }
 
-    /// By what all controls and activations are multiplied.
+    /// The factors of all controls and activations.
     fn states(
         self,
         actuator: &ActuatorSpec,

@@ -26,7 +26,7 @@ use clench_rigid::builder::{BodySpec, BuildError, JointSpec, ModelBuilder, Origi
 use clench_rigid::model::JointKind;
 use std::collections::BTreeMap;
 
-/// By what the frames around an element multiply its numbers.
+/// The factors by which the frames around an element multiply its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
     /// Lengths that have no direction.
@@ -110,7 +110,7 @@ impl Scale {
         }
     }
 
-    /// By what a quantity of dimension M Lᵃ that follows forces is multiplied; any power of time may go with it.
+    /// The factor of a quantity of dimension M Lᵃ that follows forces; any power of time may go with it.
     fn force(self, lengths: i32) -> f64 {
         self.unit_mass * self.unit_length.powi(lengths)
     }
@@ -146,7 +146,7 @@ enum Coordinate {
     Angle,
 }
 
-/// By what the quantities along a coordinate are multiplied.
+/// The factors of the quantities along a coordinate.
 #[derive(Clone, Copy, Debug)]
 struct Along {
     /// Positions and velocities.

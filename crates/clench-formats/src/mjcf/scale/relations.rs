@@ -198,7 +198,7 @@ enum Dimension {
 }
 
 impl Frames {
-    /// By what the numbers of a sensor are multiplied; those of an actuator are looked at with it.
+    /// The factor of the numbers of a sensor; those of an actuator are scaled with the actuator.
     fn of_sensor(&self, sensor: &SensorSpec) -> f64 {
         use SensorKind as K;
         let element = match &sensor.subject {
