@@ -40,9 +40,9 @@ pub(crate) struct FrameTarget {
     pub(crate) position: Option<Py<PyAny>>,
     /// array_like or None : How it is to be turned.
     pub(crate) quat: Option<Py<PyAny>>,
-    /// float or array_like : By what the error of the position is multiplied.
+    /// float or array_like : Weight of the error of the position.
     pub(crate) position_cost: Py<PyAny>,
-    /// float : By what the angle that is left is multiplied.
+    /// float : Weight of the angle that is left.
     pub(crate) orientation_cost: f64,
 }
 
@@ -99,7 +99,7 @@ pub(crate) struct ComTarget {
     pub(crate) position: Py<PyAny>,
     /// str or int : The body that it is of, with all below it.
     pub(crate) body: Py<PyAny>,
-    /// float or array_like : By what the error is multiplied.
+    /// float or array_like : Weight of the error.
     pub(crate) cost: Py<PyAny>,
 }
 

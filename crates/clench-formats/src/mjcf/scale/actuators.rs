@@ -6,7 +6,7 @@ use crate::mjcf::shortcut::Shortcut;
 use clench_rigid::builder::{
     ActuatorSpec, BuildError, ModelBuilder, SensorSubject, TransmissionSpec,
 };
-use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind, SensorKind};
+use clench_rigid::model::{Attachment, BiasKind, ControlInput, DynamicsKind, GainKind};
 use std::collections::BTreeMap;
 
 /// The factors of the controls and the activations of an actuator, in their order.
@@ -38,11 +38,9 @@ impl Frames {
                 SensorSubject::Element(name) => transmissions.get(name.as_str()),
                 _ => None,
             };
-            let factor = along.map_or(1.0, |along| match sensor.kind {
-                SensorKind::ActuatorPos | SensorKind::ActuatorVel => along.coordinate,
-                SensorKind::ActuatorFrc => along.force,
-                _ => 1.0,
-            });
+            let of_actuator = sensor.kind.attachment() == Attachment::Actuator;
+            let along = along.filter(|_| of_actuator);
+            let factor = along.map_or(1.0, |along| along.of_dimension(sensor.kind.dimension()));
             sensor.cutoff *= factor;
             sensor.noise *= factor;
         }

@@ -367,7 +367,7 @@ impl Frames {
     /// Scales all that names what is in the frames.
     ///
     /// # Errors
-    /// Actuators and sensors that cannot be scaled, and what takes more memory than is left.
+    /// Equalities, actuators and sensors that cannot be scaled, and what takes more memory than is left.
     pub(super) fn scale_rest(
         mut self,
         shortcuts: &[Shortcut],
@@ -381,7 +381,7 @@ impl Frames {
         self.weigh_shells(builder);
         self.scale_tendons(builder);
         self.scale_pairs(builder);
-        self.scale_equalities(builder);
+        self.scale_equalities(builder)?;
         self.scale_sensors(builder)?;
         let actuators = self.scale_actuators(shortcuts, builder)?;
         self.scale_keyframes(&actuators, builder);
