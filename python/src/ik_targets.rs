@@ -135,7 +135,7 @@ impl ComTarget {
 pub(crate) struct PostureTarget {
     /// array_like : The positions.
     pub(crate) qpos: Py<PyAny>,
-    /// float or array_like : By what errors are multiplied.
+    /// float or array_like : Weight of errors.
     pub(crate) cost: Py<PyAny>,
 }
 
