@@ -164,10 +164,11 @@ fn cutoffs_and_noise_of_sensors_are_scaled_by_what_they_measure() {
     let model = load(
         "<worldbody><frame scale='2'>
            <body name='b'>
-             <joint name='slide' type='slide'/><joint name='hinge'/><geom name='g' size='1'/><site name='s'/>
+             <joint name='slide' type='slide'/><joint name='hinge'/><geom name='g' size='1'/>
+             <site name='s'/><site name='u' pos='1 0 0'/>
            </body>
          </frame></worldbody>
-         <tendon><spatial name='t'><site site='s'/><site site='s'/></spatial></tendon>
+         <tendon><spatial name='t'><site site='s'/><site site='u'/></spatial></tendon>
          <actuator><motor name='m' joint='slide'/></actuator>
          <sensor>
            <gyro site='s' cutoff='1'/>
