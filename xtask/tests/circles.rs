@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
 
 /// A module by its path in the crate; the root is empty.
 type Module = Vec<String>;
@@ -191,7 +192,7 @@ fn resolve(
     path: &[String],
     depth: usize,
 ) -> Option<Module> {
-    let child = |module: &Module, name: &String| [module.as_slice(), &[name.clone()]].concat();
+    let child = |module: &Module, name: &String| [module.as_slice(), from_ref(name)].concat();
     let (mut at, mut path) = (module.clone(), path);
     match path.first()?.as_str() {
         "crate" => (at, path) = (Module::new(), &path[1..]),
