@@ -112,7 +112,7 @@ def test_patches_are_as_large_as_mujocos_and_nearly_as_the_overlap(tmp_path, bel
             own = forward({"qpos": data.qpos.tolist()})["contacts"]
             assert own and all(contact["dist"] < 0 for contact in own), "it lies on the other"
             spanned, expected = area([contact["pos"] for contact in own]), area(data.contact.pos)
-            # Where MuJoCo finds next to no area, what there is of it decides alone.
+            # Where MuJoCo's points span next to no area, only the share of the true overlap, below, can judge.
             if expected > 1e-6:
                 shares.append(spanned / expected)
             whole.append(spanned / area(overlap(below, above, data.qpos)))

@@ -16,9 +16,9 @@ use pyo3::prelude::*;
 /// quat : array_like, optional
 ///     How it is to be turned (4,); in a batch also (n, 4).
 /// position_cost : float or array_like
-///     By what the error of the position is multiplied, 1/m; one number, or one for each world axis (3,), 0 where it does not count.
+///     Weight of the error of the position, 1/m; one number, or one for each world axis (3,), 0 where it does not count.
 /// orientation_cost : float
-///     By what the angle that is left is multiplied, 1/rad.
+///     Weight of the angle that is left, 1/rad.
 ///
 /// Raises
 /// ------
@@ -40,9 +40,9 @@ pub(crate) struct FrameTarget {
     pub(crate) position: Option<Py<PyAny>>,
     /// array_like or None : How it is to be turned.
     pub(crate) quat: Option<Py<PyAny>>,
-    /// float or array_like : By what the error of the position is multiplied.
+    /// float or array_like : Weight of the error of the position.
     pub(crate) position_cost: Py<PyAny>,
-    /// float : By what the angle that is left is multiplied.
+    /// float : Weight of the angle that is left.
     pub(crate) orientation_cost: f64,
 }
 
@@ -92,14 +92,14 @@ impl FrameTarget {
 /// body : str or int
 ///     The body that it is of, with all below it; by default the world, which is everything.
 /// cost : float or array_like
-///     By what the error is multiplied, 1/m; one number, or one for each world axis (3,), 0 where it does not count.
+///     Weight of the error, 1/m; one number, or one for each world axis (3,), 0 where it does not count.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct ComTarget {
     /// array_like : Where it is to be.
     pub(crate) position: Py<PyAny>,
     /// str or int : The body that it is of, with all below it.
     pub(crate) body: Py<PyAny>,
-    /// float or array_like : By what the error is multiplied.
+    /// float or array_like : Weight of the error.
     pub(crate) cost: Py<PyAny>,
 }
 
@@ -130,12 +130,12 @@ impl ComTarget {
 /// qpos : array_like
 ///     The positions (nq,); in a batch also (n, nq).
 /// cost : float or array_like
-///     By what errors are multiplied, 1/m and 1/rad; one number, or one for each dof (nv,), 0 where it does not count.
+///     Weight of errors, 1/m and 1/rad; one number, or one for each dof (nv,), 0 where it does not count.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct PostureTarget {
     /// array_like : The positions.
     pub(crate) qpos: Py<PyAny>,
-    /// float or array_like : By what errors are multiplied.
+    /// float or array_like : Weight of errors.
     pub(crate) cost: Py<PyAny>,
 }
 

@@ -4,7 +4,7 @@ import * as THREE from "three";
 import type { Frame } from "./frame.ts";
 import type { Light, Numbers3, Scene } from "./scene.ts";
 
-/** What three divides the light of lamps by on what is matt. */
+/** Matt surfaces in three.js reflect the light of a lamp divided by this. */
 const MATT = Math.PI;
 
 /** Colours of lights add up on screens. */

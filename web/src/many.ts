@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 
-/** Along which shapes stand. */
+/** The axis that shapes are drawn along before they are turned. */
 export const UP = new THREE.Vector3(0, 1, 0);
 
 /** As many of one shape as a frame needs. */

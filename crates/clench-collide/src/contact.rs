@@ -93,7 +93,7 @@ impl<T: Real> Contacts<T> {
         self.points[0] = deepest;
         self.len = 1;
     }
-    /// The point at a place that exists or follows the last, where a point is made that exists nowhere yet.
+    /// The point at `place`, which may be that after the last: there a point is added, which exists nowhere yet.
     #[inline(always)]
     pub(crate) fn slot(&mut self, place: usize) -> &mut ContactPoint<T> {
         if place == self.len {

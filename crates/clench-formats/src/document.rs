@@ -26,9 +26,9 @@ pub(crate) struct Element {
     pub attributes: Vec<(String, String)>,
     pub children: Vec<Element>,
     pub origin: Origin,
-    /// Which of the model's [`Sources`](super::source::Sources) it is read with.
+    /// Which of the model's [`Sources`](crate::mjcf::source::Sources) it is read with.
     pub source: usize,
-    /// By what number keyframes of an attached model know it; 0 where none does.
+    /// The number by which keyframes of an attached model refer to it; 0 where none does.
     pub number: u32,
 }
 

@@ -3,7 +3,7 @@
 //! MJCF, MuJoCo's own format, is read as MuJoCo 4.0 reads it: the same defaults, the same rules, the same rejections.
 //! URDF is read as MuJoCo reads it, too: bodies that no joint moves become part of their parents, what is only seen is left out,
 //! and a joint that mimics another is an equality constraint.
-//! Meshes come from STL, OBJ, MSH and Collada files, height fields from PNG images and MuJoCo's binary grids.
+//! Meshes come from STL, OBJ, MSH, Collada and glTF files, height fields from PNG images and MuJoCo's binary grids.
 //! What an MJCF file can say and this library cannot simulate yet is an error that names file, line and element, never
 //! a silent skip. What has no effect on motion is accepted by an explicit list; colours, textures and lights are kept for viewers.
 

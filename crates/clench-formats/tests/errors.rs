@@ -43,7 +43,7 @@ fn an_error_names_file_line_and_element() {
 }
 
 #[test]
-fn files_that_are_no_models() {
+fn files_that_are_no_models_are_refused() {
     let error = load("/nowhere/robot.xml").unwrap_err();
     assert_eq!(&*error.file, "/nowhere/robot.xml");
     assert!(error.message.contains("cannot read the file"), "{error}");
@@ -101,7 +101,7 @@ fn nesting_has_a_bottom() {
 }
 
 #[test]
-fn unknown_elements_and_attributes() {
+fn unknown_elements_and_attributes_are_refused() {
     expect(
         "<geoms/>",
         "geoms",
@@ -133,7 +133,7 @@ fn unknown_elements_and_attributes() {
 }
 
 #[test]
-fn numbers_that_are_none() {
+fn numbers_that_are_none_are_refused() {
     expect(
         "<geom size='1 a'/>",
         "geom",
@@ -168,7 +168,7 @@ fn numbers_that_are_none() {
 }
 
 #[test]
-fn keywords_that_are_none() {
+fn keywords_that_are_none_are_refused() {
     expect("<geom type='ball'/>", "geom", "type is \"ball\"");
     expect(
         "<body><joint limited='True'/></body>",
@@ -188,7 +188,7 @@ fn keywords_that_are_none() {
 }
 
 #[test]
-fn contradictions() {
+fn contradictory_and_missing_values_are_refused() {
     expect(
         "<body quat='1 0 0 0' euler='0 0 0'/>",
         "body",
@@ -271,7 +271,7 @@ fn contradictions() {
 }
 
 #[test]
-fn names_that_lead_nowhere() {
+fn names_that_lead_nowhere_are_refused() {
     expect("<geom class='x'/>", "geom", "no default class \"x\"");
     expect(
         "<body childclass='mian'/>",
@@ -292,7 +292,7 @@ fn names_that_lead_nowhere() {
 }
 
 #[test]
-fn classes_with_bad_names() {
+fn classes_with_bad_names_are_refused() {
     expect_section("<default class='x'/>", "default", "called \"main\"");
     expect_section("<default><default/></default>", "default", "needs a class");
     expect_section(

@@ -83,7 +83,7 @@ fn includes_cannot_recurse() {
 }
 
 #[test]
-fn includes_that_include_nothing() {
+fn includes_of_nothing_are_refused() {
     for (include, message) in [
         ("<include/>", "\"file\" is required"),
         (

@@ -160,6 +160,48 @@ fn controls_and_activations_are_scaled_by_what_they_measure() {
 }
 
 #[test]
+fn cutoffs_and_noise_of_sensors_are_scaled_by_what_they_measure() {
+    let model = load(
+        "<worldbody><frame scale='2'>
+           <body name='b'>
+             <joint name='slide' type='slide'/><joint name='hinge'/><geom name='g' size='1'/>
+             <site name='s'/><site name='u' pos='1 0 0'/>
+           </body>
+         </frame></worldbody>
+         <tendon><spatial name='t'><site site='s'/><site site='u'/></spatial></tendon>
+         <actuator><motor name='m' joint='slide'/></actuator>
+         <sensor>
+           <gyro site='s' cutoff='1'/>
+           <velocimeter site='s' cutoff='1' noise='1'/>
+           <touch site='s' cutoff='1'/>
+           <torque site='s' cutoff='1'/>
+           <subtreelinvel body='b' cutoff='1'/>
+           <subtreeangmom body='b' cutoff='1'/>
+           <framepos objtype='geom' objname='g' cutoff='1'/>
+           <jointpos joint='slide' cutoff='1'/>
+           <jointpos joint='hinge' cutoff='1'/>
+           <jointactuatorfrc joint='slide' cutoff='1'/>
+           <jointactuatorfrc joint='hinge' cutoff='1'/>
+           <tendonpos tendon='t' cutoff='1'/>
+           <tendonactuatorfrc tendon='t' cutoff='1'/>
+           <actuatorvel actuator='m' cutoff='1'/>
+           <actuatorfrc actuator='m' cutoff='1'/>
+           <clock cutoff='1'/>
+         </sensor>",
+    );
+    let (length, force, torque) = (2.0, 16.0, 32.0);
+    let cutoffs = Vec::from_iter(model.sensors.iter().map(|sensor| sensor.cutoff));
+    assert_eq!(
+        cutoffs,
+        [
+            1.0, length, force, torque, length, torque, length, length, 1.0, force, torque, length,
+            force, length, force, 1.0
+        ]
+    );
+    assert_eq!(model.sensors[1].noise, length);
+}
+
+#[test]
 fn what_cannot_be_scaled_is_refused() {
     let geom = "<body><joint name='j'/><geom size='1'/></body>";
     for (frame, words) in [

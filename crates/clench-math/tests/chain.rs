@@ -125,7 +125,7 @@ fn lanes_equal_environments_alone<S: TestScalar>() {
     });
 }
 #[test]
-fn in_lanes_as_alone() {
+fn a_chain_moves_in_lanes_as_alone() {
     lanes_equal_environments_alone::<f64>();
     lanes_equal_environments_alone::<f32>();
 }

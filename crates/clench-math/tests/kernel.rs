@@ -66,10 +66,10 @@ fn kernels_work<T: Real<Scalar = f64>>() {
 }
 
 #[test]
-fn in_scalars() {
+fn kernels_are_what_they_were_in_scalars() {
     kernels_work::<f64>();
 }
 #[test]
-fn in_lanes() {
+fn kernels_are_what_they_were_in_lanes() {
     kernels_work::<Lanes<f64, 4>>();
 }

@@ -141,17 +141,17 @@ fn operations_equal_scalars<S: TestScalar>() {
     }
 }
 #[test]
-fn operations_in_f64() {
+fn operations_in_lanes_equal_scalars_in_double_precision() {
     operations_equal_scalars::<f64>();
 }
 #[test]
-fn operations_in_f32() {
+fn operations_in_lanes_equal_scalars_in_single_precision() {
     operations_equal_scalars::<f32>();
 }
 
 /// What `Real` promises of scalars beyond the language's own operations.
 #[test]
-fn scalars_are_the_languages() {
+fn scalars_have_the_operations_of_the_language() {
     fn check<S: TestScalar>() {
         let mut random = Random::new(1);
         for _ in 0..ROUNDS {

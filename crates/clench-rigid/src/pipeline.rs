@@ -233,7 +233,7 @@ pub fn step<T: Real>(
     step_from_forces(model, params, settings, state, ws);
 }
 
-/// Does a step that finds everything asleep as the last one left it, so that nothing changes but time. Whether it was one.
+/// Does a step that finds everything asleep as the last one left it, so that nothing changes but time. Returns whether it was one.
 pub fn rest<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -78,7 +78,7 @@ impl StepSettings {
     /// As [`new`](Self::new), what the integrator cannot be combined with, and shapes that may meet and cannot be collided.
     pub(crate) fn supported<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, SimError> {
         let settings = StepSettings::new::<T>(model, user)?;
-        check_discrete(model, &settings)?;
+        check_discrete(model, settings.flags.sleep, settings.solver.islands)?;
         if settings.flags.constraint && settings.flags.contact {
             check_supported(model)?;
         }

@@ -49,7 +49,7 @@ pub struct Sim<T: Precision = f64> {
     /// Whether the workspace holds the first half of a step, and nothing after it.
     halfway: bool,
     resets: u64,
-    /// The number that the last constraint got which was added at run time.
+    /// The serial number of the constraint that was last added at run time.
     pub(crate) last_serial: u32,
     /// The workspace of inverse dynamics, made when they are first asked for: [`workspace`](Self::workspace) stays as it is.
     inverse_ws: Option<Box<Workspace<T>>>,
@@ -396,7 +396,7 @@ impl<T: Precision> Sim<T> {
         update_body_forces(&self.model, &self.params, &self.state, &mut self.ws);
     }
 
-    /// Inverse dynamics of the present state, apart from what is known.
+    /// Inverse dynamics of the present state, in a workspace of their own, so that what is known stays.
     pub(crate) fn invert(
         &mut self,
         qacc: &[T],

@@ -1,6 +1,6 @@
 //! Steps of a batch allocate nothing once warm, and an environment takes the memory that the batch says.
 
-// Of what the suite shares this program uses some.
+// This program uses only some of what the suite shares.
 #[allow(dead_code)]
 #[path = "suite/batches/mod.rs"]
 mod batches;
@@ -127,7 +127,7 @@ fn a_replay_allocates_nothing() {
         grouping: false,
         ..options
     };
-    assert_eq!(allocations_of_a_replay(&crowd(), ungrouped, 200), 0);
+    assert_eq!(allocations_of_a_replay(&many_islands(), ungrouped, 200), 0);
 }
 
 #[test]

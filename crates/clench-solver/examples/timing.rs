@@ -2,7 +2,7 @@
 //!
 //! Each line is a family of 64 random problems, cold-started. Sparse and dense factors are timed in turn.
 
-#[allow(dead_code)] // Of what the suite shares this program uses some.
+#[allow(dead_code)] // This program uses only some of what the suite shares.
 #[path = "../tests/suite/common/mod.rs"]
 mod common;
 

@@ -21,7 +21,7 @@ const SETTLED: f64 = 1e-9;
 /// How much softer the cones are at present.
 #[derive(Clone, Debug)]
 pub(crate) struct Continuation<T: Real> {
-    /// An estimate of A for each elliptic block, at the index of its piece.
+    /// An estimate of A for each elliptic block, at the index of its entry in the active set.
     inverse_inertia: Vec<T>,
     /// The part of A that is added to R; zero in lanes that solve the problem itself.
     level: T,

@@ -22,7 +22,7 @@ pub(crate) struct Iterate<T: Real> {
     pub qfrc_constraint: Vec<T>,
     /// g = M (a − a_unc) − Jᵀ f.
     pub gradient: Vec<T>,
-    /// The piece that each row or edge is on.
+    /// Which piece of its cost each row or edge is on.
     pub active_set: Vec<T>,
     pub continuation: Continuation<T>,
 }
@@ -116,7 +116,7 @@ impl<T: Real> Iterate<T> {
         blend(mask, &mut self.residual, &ray.rows);
     }
 
-    /// The cost parameters of a block, as soft as they are at present.
+    /// The cost parameters of a block, softened as the present stage of continuation asks.
     #[inline(always)]
     pub(crate) fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
         Rows {
@@ -125,7 +125,7 @@ impl<T: Real> Iterate<T> {
         }
     }
 
-    /// Evaluates every block at the residual: forces, pieces, and the constraints' part of the cost.
+    /// Evaluates every block at the residual: forces, the active set, and the constraints' part of the cost.
     #[kernel]
     pub fn evaluate(&mut self, problem: &Problem<T>) -> Totals<T> {
         let mut totals = Totals::new();

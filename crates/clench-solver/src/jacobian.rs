@@ -13,7 +13,7 @@ pub(crate) struct BlockIndex {
     pub cost: Cost,
     pub dim: usize,
     pub ndof: usize,
-    /// First row, first dof entry, first Jacobian value, first piece.
+    /// First row, first dof entry, first Jacobian value, first entry of the active set.
     pub row: usize,
     pub dof: usize,
     pub value: usize,
@@ -25,7 +25,7 @@ impl BlockIndex {
     pub(crate) fn rows(&self) -> Range<usize> {
         self.row..self.row + self.dim
     }
-    /// Its pieces among all pieces.
+    /// Its entries of the active set.
     #[inline(always)]
     pub(crate) fn active_range(&self) -> Range<usize> {
         self.active_start..self.active_start + crate::costs::active_len(self.cost, self.dim)
@@ -149,8 +149,8 @@ impl<T: Real> StoredRows<T> {
         &mut self.values[block.value..]
     }
 
-    /// Appends a copy of another problem's block with these `values`, at the row and piece given; its dofs may be numbered in another
-    /// order.
+    /// Appends a copy of another problem's block with these `values`, at the row and the entry of the active set that are given; its dofs
+    /// may be numbered in another order.
     #[inline(always)]
     pub(crate) fn push_copy<L: Copy>(
         &mut self,

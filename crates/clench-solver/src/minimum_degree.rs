@@ -10,17 +10,18 @@ use std::collections::BinaryHeap;
 /// A graph of trees, and its order of elimination.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MinimumDegree {
-    /// Of each tree, ascending; those of an eliminated one are what it coupled.
+    /// The trees that each tree is coupled with, ascending. The list of a tree that is eliminated is not changed any more.
     neighbors: Vec<Vec<u32>>,
-    /// Degree and number; of a tree's entries the last one holds.
+    /// Degrees and numbers of trees, the lowest first. A tree whose degree changes is entered again; an entry whose degree is no longer
+    /// the tree's is passed over.
     queue: BinaryHeap<Reverse<(u32, u32)>>,
-    /// When each tree goes.
+    /// The place of each tree in the order.
     rank: Vec<u32>,
     merged: Vec<u32>,
 }
 
-/// The rank of a tree that is still there.
-const LEFT: u32 = u32::MAX;
+/// The rank of a tree that is not eliminated yet.
+const NOT_ELIMINATED: u32 = u32::MAX;
 
 impl MinimumDegree {
     /// `count` trees, of which none is coupled.
@@ -43,14 +44,14 @@ impl MinimumDegree {
     pub(crate) fn ranks(&mut self) -> &[u32] {
         let count = self.neighbors.len();
         self.rank.clear();
-        self.rank.resize(count, LEFT);
+        self.rank.resize(count, NOT_ELIMINATED);
         self.queue.clear();
         let degrees = self.neighbors.iter().map(|n| n.len() as u32).zip(0..);
         self.queue.extend(degrees.map(Reverse));
         let mut next = 0;
         while let Some(Reverse((degree, tree))) = self.queue.pop() {
             let tree = tree as usize;
-            if self.rank[tree] == LEFT && self.neighbors[tree].len() == degree as usize {
+            if self.rank[tree] == NOT_ELIMINATED && self.neighbors[tree].len() == degree as usize {
                 self.rank[tree] = next;
                 next += 1;
                 self.eliminate(tree);
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_star_goes_from_its_ends() {
+    fn a_star_is_eliminated_from_its_ends() {
         let mut star = MinimumDegree::default();
         star.clear(5);
         for end in [0, 1, 3, 4] {

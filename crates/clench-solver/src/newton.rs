@@ -14,7 +14,7 @@ use clench_math::{Mask, Real, Scalar, kernel};
 #[derive(Clone, Debug)]
 pub(crate) struct Newton<T: Real> {
     hessian: Hessian<T>,
-    /// The pieces of the factored Hessian, and the lanes in which it can be updated: factored, and not curved.
+    /// The active set of the factored Hessian, and the lanes in which it can be updated: factored, and not curved.
     active_set: Vec<T>,
     updatable: T::Mask,
 }
@@ -38,8 +38,7 @@ impl<T: Real> Direction<T> for Newton<T> {
     const PATIENCE: f64 = 2.0;
 
     fn prepare(&mut self, problem: &Problem<T>, settings: &Settings) -> bool {
-        // Sparse was never slower on trees, by 4% (half-cheetah, 9 dofs) to 18% (humanoid, 23 dofs); a single chain has
-        // nothing to gain.
+        // On trees sparse was faster, by 4% (half-cheetah, 9 dofs) to 18% (humanoid, 23 dofs); a single chain has nothing to gain.
         let chain = problem.nv() * (problem.nv() + 1) / 2;
         let dense = match settings.sparse_solve {
             Switch::On => false,

@@ -17,8 +17,8 @@ pub struct Problem<T> {
     pub mass: TreeMatrix<T>,
     /// The factorization of M; see [`factor_mass`](Self::factor_mass).
     pub mass_factor: TreeFactor<T>,
-    /// The factorization of what `noslip` takes for M, where that is another matrix: MuJoCo's sweeps see of the couplings of a metric
-    /// their diagonal alone. Empty where it is M.
+    /// The factorization of the matrix that `noslip` uses in place of M, where the metric has couplings: MuJoCo's sweeps see only their
+    /// diagonal. Empty where the sweeps use M itself.
     pub noslip_factor: TreeFactor<T>,
     /// Unconstrained acceleration a_unc = M⁻¹ τ, length nv.
     pub qacc_smooth: Vec<T>,
@@ -27,7 +27,7 @@ pub struct Problem<T> {
     pub(crate) r: Vec<T>,
     pub(crate) d: Vec<T>,
     pub(crate) shape: Vec<T>,
-    /// Total number of pieces.
+    /// Length of the active set.
     pub(crate) nactive: usize,
     /// How many blocks are constraints. Those after them are terms of the metric.
     pub(crate) nconstraint: Option<usize>,

@@ -12,7 +12,7 @@ use clench_math::{Real, kernel};
 pub(crate) struct Results<T: Real> {
     pub qacc: Vec<T>,
     pub force: Vec<T>,
-    /// Edge forces of pyramids, at the index of their pieces.
+    /// Edge forces of pyramids, at the index of their entries in the active set.
     pub edges: Vec<T>,
     pub qfrc_constraint: Vec<T>,
     pub stats: SolveStats<T>,

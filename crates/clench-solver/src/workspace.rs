@@ -12,7 +12,7 @@ use clench_math::{Real, kernel};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace<T: Real> {
     pub state: SolverState<T>,
-    /// Edge forces of pyramids, at the index of their pieces.
+    /// Edge forces of pyramids, at the index of their entries in the active set.
     pub edges: Vec<T>,
     newton: Newton<T>,
     cg: Cg<T>,

@@ -1,6 +1,6 @@
 //! A solver that has seen its problems once allocates nothing when it sees them again.
 
-// Of what the suite shares this program uses some.
+// This program uses only some of what the suite shares.
 #[allow(dead_code)]
 #[path = "suite/common/mod.rs"]
 mod common;

@@ -11,7 +11,7 @@ pub fn allowance<T: Real>() -> T {
     T::ONE + T::new(1e-6).max(T::splat(T::Scalar::EPSILON) * T::new(64.0))
 }
 
-/// Where a shape can be at most.
+/// A ball and a box that hold a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound<T> {
     /// The shape's origin in the world, m.

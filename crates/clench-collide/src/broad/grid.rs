@@ -25,7 +25,7 @@ pub(super) struct Grid {
     /// Whether a box is one of them.
     is_wide: Vec<bool>,
     /// The cubes that hold the corners of each other box, those of fixed ones first.
-    reaches: Vec<Reach>,
+    ranges: Vec<CubeRange>,
     /// Where the entries of a bucket begin, and those of the next.
     starts: Vec<u32>,
     entries: Vec<Entry>,
@@ -49,15 +49,15 @@ struct Entry {
 
 /// The cubes that a shape reaches into.
 #[derive(Clone, Copy, Debug)]
-struct Reach {
+struct CubeRange {
     low: Cube,
     high: Cube,
     shape: u32,
 }
 
-impl Reach {
+impl CubeRange {
     fn new(shape: usize, one: &Aabb, per_metre: f64) -> Self {
-        Reach {
+        CubeRange {
             low: cube(one.low, per_metre),
             high: cube(one.high, per_metre),
             shape: shape as u32,
@@ -65,7 +65,7 @@ impl Reach {
     }
 
     fn cubes(&self) -> impl Iterator<Item = Cube> {
-        let Reach { low, high, .. } = *self;
+        let CubeRange { low, high, .. } = *self;
         let [along_x, along_y, along_z] = [0, 1, 2].map(|axis| low[axis]..=high[axis]);
         along_x.flat_map(move |x| {
             let along_z = along_z.clone();
@@ -129,22 +129,22 @@ impl Grid {
     fn list(&mut self, Boxes { all, fixed }: Boxes, per_metre: f64) {
         let Grid {
             is_wide,
-            reaches,
+            ranges,
             starts,
             entries,
             ..
         } = self;
         let buckets = (BUCKETS_PER_SHAPE * all.len()).next_power_of_two();
         // Buckets are filled from their ends.
-        reaches.clear();
+        ranges.clear();
         for is_fixed in [true, false] {
             let of_kind = |&index: &usize| fixed[index] == is_fixed && !is_wide[index];
             let shapes = (0..all.len()).filter(of_kind);
-            reaches.extend(shapes.map(|index| Reach::new(index, &all[index], per_metre)));
+            ranges.extend(shapes.map(|index| CubeRange::new(index, &all[index], per_metre)));
         }
         starts.clear();
         starts.resize(buckets + 1, 0);
-        for cube in reaches.iter().flat_map(Reach::cubes) {
+        for cube in ranges.iter().flat_map(CubeRange::cubes) {
             starts[bucket(cube, buckets)] += 1;
         }
         let mut end = 0;
@@ -155,9 +155,9 @@ impl Grid {
         entries.clear();
         entries.resize(end as usize, Entry::default());
         // From the end of each bucket to its beginning, which is where `starts` then points.
-        for reach in reaches.iter() {
-            for cube in reach.cubes() {
-                let (shape, start) = (reach.shape, &mut starts[bucket(cube, buckets)]);
+        for range in ranges.iter() {
+            for cube in range.cubes() {
+                let (shape, start) = (range.shape, &mut starts[bucket(cube, buckets)]);
                 *start -= 1;
                 entries[*start as usize] = Entry { cube, shape };
             }

@@ -10,13 +10,13 @@ use std::ops::Range;
 /// What a shape does in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mobility {
-    /// It makes no pair with anything, as a shape that is only seen: nothing looks at it.
+    /// It makes no pair with anything, as a shape that is only drawn.
     Excluded,
-    /// It stands where it stands: what it costs is paid once. It makes no pair with its like, nor with what is placed.
+    /// It never moves, so the tree over such shapes is built once. It makes no pair with another static shape, nor with a placed one.
     Static,
-    /// It is put where it is from outside. It makes no pair with its like, nor with what is static.
+    /// It moves only when its pose is set from outside. It makes no pair with another placed shape, nor with a static one.
     Placed,
-    /// It moves.
+    /// It moves, and may make a pair with any other that is not excluded.
     Moving,
 }
 
@@ -25,7 +25,7 @@ pub enum Mobility {
 pub struct BroadPhase {
     statics: Vec<u32>,
     tree: StaticTree,
-    /// Whether the tree is of this scene.
+    /// Whether the tree is built over the static shapes where they are.
     built: bool,
     /// The shapes that are placed or move, ascending, with their boxes, and whether they are placed.
     mobile: Vec<u32>,
@@ -109,8 +109,8 @@ impl Clusters {
 }
 
 impl BroadPhase {
-    /// For scenes of shapes that can move so. Shapes that follow each other and are of the same `cluster`, a number of the caller's, are
-    /// supposed to stay near each other, which saves time and changes no pair.
+    /// For scenes whose shapes have this mobility, in their order. Shapes that follow each other and are of the same `cluster`, a number
+    /// of the caller's, are supposed to stay near each other, which saves time and changes no pair.
     pub fn new(mobility: &[Mobility], cluster: impl Fn(usize) -> usize) -> Self {
         let of = |wanted: fn(Mobility) -> bool| {
             let shapes = mobility.iter().enumerate();
@@ -134,7 +134,7 @@ impl BroadPhase {
         &self.mobile
     }
 
-    /// Static shapes have moved after all, or have other margins: the next search looks at them again.
+    /// To be called when static shapes have moved after all, or have other margins: the next search builds their tree anew.
     pub fn forget_statics(&mut self) {
         self.built = false;
     }

@@ -3,7 +3,7 @@
 //! Directions are told apart by comparisons alone: the signs of their coordinates, which is larger than which, and in which half
 //! or quarter of the largest each is. Those of one sector lie between a few corners. Where a vertex has a neighbor that is
 //! farther along all corners, it is so along all directions between them. Vertices without such a neighbor are the sector's
-//! candidates; they hang together, so walking finds them.
+//! candidates; they are connected by edges, so walking over neighbours finds them.
 
 use super::lists::Lists;
 use clench_math::Vec3;
@@ -52,7 +52,7 @@ impl Sectors {
     }
 
     /// Vertices among which the one is that is farthest along a direction, in fours (some twice); if there is but one, it may be
-    /// only near; none for a direction that is zero or no number.
+    /// only near; none for a direction that is zero or NaN.
     #[inline]
     pub(super) fn candidates(&self, direction: Vec3<f64>) -> &[u32] {
         self.candidates.get(code(direction, self.fine))

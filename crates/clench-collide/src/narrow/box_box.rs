@@ -28,8 +28,8 @@ pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
     S::new(double).max(S::EPSILON * S::new(units))
 }
 
-/// The contacts of two boxes, unless the direction in which they were apart before shows at once that there are none. It becomes the one
-/// that is found.
+/// The contacts of two boxes. `axis`, a direction in which they were apart before, may show at once that there are none; where they are
+/// found to be apart, that direction becomes the next `axis`.
 #[kernel]
 pub(super) fn box_box<T: Real>(
     a: Placed<Cuboid<T>, T>,

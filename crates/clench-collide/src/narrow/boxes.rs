@@ -53,7 +53,7 @@ pub(super) fn boxes_near<T: Real>(
 #[inline(always)]
 fn box_near<T: Real>(shape: AnyPlaced<T>, point: Vec3<T>, reach: T) -> T::Mask {
     let (place, half) = (shape.pose.local(point), shape.shape.half_lengths());
-    // What is no number stays none and is near nothing.
+    // A NaN stays a NaN, which is near nothing.
     let mut gap = Vec3::ZERO;
     for k in 0..3 {
         gap[k] = T::ZERO.max(place[k].abs() - half[k] * allowance());

@@ -2,7 +2,7 @@
 //!
 //! Where a face of few corners lies on the plane, these and the deepest vertex; of one with many, points of its outline (see
 //! [`Outline`]). If there are fewer points than there is room for, other vertices within the margin around the deepest one:
-//! the vertices of a hull on one side of a plane hang together, so walking over neighbours finds them.
+//! the vertices of a hull on one side of a plane are connected by edges, so walking over neighbours finds them.
 
 use super::outline::Outline;
 use super::per_lane::{Point, Points, per_lane_where};
@@ -24,7 +24,7 @@ pub(super) fn plane_mesh<T: Real>(
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    // The lowest corner of the box about the mesh; what is no number is left to the search.
+    // The lowest corner of the box about the mesh; a NaN is left to the search.
     let up = b.pose.rotation.transpose_mul(a.pose.axis());
     let height = a.pose.axis().dot(b.pose.position - a.pose.position);
     let above = (height - b.shape.reach_along(up) * allowance()).gt(margin);
@@ -131,8 +131,8 @@ fn around<S: Scalar>(
     }
 }
 
-/// Points of the outline of a face with many corners, seen from its first edge. If these miss the deepest vertex they are seen from its
-/// direction, and it is one of them.
+/// A sample of the outline of a face with many corners, beginning along its first edge. Where that misses the deepest vertex, the outline is
+/// sampled anew, beginning with the deepest vertex.
 fn sample<S: Scalar>(
     hull: &Hull,
     face: usize,
@@ -163,7 +163,7 @@ fn sample<S: Scalar>(
         candidates.extend(outline.sample(first).iter().map(place));
         candidates[0] = lowest;
     } else if let Some(deepest) = candidates.iter_mut().find(|c| c.height <= least) {
-        // What is left of the difference is too little to move a point, not to be told.
+        // What is left of the difference is too small to move a point for, but the contact has the true depth.
         deepest.height = least.min(lowest.height);
     }
 }

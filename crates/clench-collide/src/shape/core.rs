@@ -38,7 +38,7 @@ pub(crate) trait Core<S: Scalar> {
         Curvature::NONE
     }
 
-    /// Whether the core is but the origin.
+    /// Whether the core is the origin alone.
     fn is_point(&self) -> bool {
         false
     }

@@ -3,9 +3,9 @@
 use super::triangles::{Triangles, points};
 use std::io::Cursor;
 
-/// What a binary file begins with: 80 bytes to please, then the number of triangles.
+/// What a binary file begins with: 80 bytes of any content, then the number of triangles.
 const HEADER: usize = 84;
-/// A triangle: normal, three corners, two bytes to please.
+/// A triangle: normal, three corners, two bytes of any content.
 const TRIANGLE: usize = 50;
 
 pub(super) fn read(mut bytes: Vec<u8>) -> Result<Triangles, String> {

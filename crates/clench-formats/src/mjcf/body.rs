@@ -32,7 +32,7 @@ pub(crate) struct BodyReader<'a> {
     frames: Frames,
 }
 
-/// By what numbers keyframes of attached models know the joints and mocap bodies of a model, in its order.
+/// The numbers by which keyframes of attached models refer to the joints and mocap bodies of a model, in its order.
 #[derive(Debug, Default)]
 pub(crate) struct Numbers {
     pub joints: Vec<u32>,

@@ -95,7 +95,7 @@ impl Stretch {
         }
     }
 
-    /// By what it multiplies lengths along each axis.
+    /// The factor of lengths along each axis.
     pub(crate) fn factors(self) -> Vec3<f64> {
         match self {
             Stretch::Uniform(factor) => Vec3::new(factor, factor, factor),
@@ -105,7 +105,7 @@ impl Stretch {
         }
     }
 
-    /// By what it multiplies lengths along a direction; `None` where it turns that.
+    /// The factor of lengths along a direction; `None` where it turns that.
     pub(crate) fn factor_along(self, direction: Vec3<f64>) -> Option<f64> {
         let matrix = match self {
             Stretch::Uniform(factor) => return Some(factor),

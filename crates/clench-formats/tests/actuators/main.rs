@@ -1,4 +1,4 @@
-//! Actuators and the laws that their shortcuts stand for; those with a controller or a motor's circuit are in `controllers`.
+//! Actuators and the parameters that their shortcuts stand for; those with a controller or a motor's circuit are in `controllers`.
 
 mod controllers;
 
@@ -43,7 +43,7 @@ fn a_motor_passes_its_control_on() {
 }
 
 #[test]
-fn transmissions() {
+fn an_actuator_acts_on_what_its_element_names() {
     let tendon = actuator("", "<motor tendon='t'/>").transmission;
     assert_eq!(tendon, TransmissionSpec::Tendon("t".into()));
     let parent = actuator("", "<motor jointinparent='j'/>").transmission;
@@ -140,7 +140,7 @@ fn position_pulls_to_its_target() {
 }
 
 #[test]
-fn the_other_shortcuts() {
+fn servos_dampers_and_cylinders_have_the_parameters_of_their_shortcuts() {
     let velocity = actuator("", "<velocity joint='j' kv='4'/>");
     assert_eq!(servo(&velocity), [4.0, 0.0, -4.0]);
     let integrated = actuator("", "<intvelocity joint='j' kp='4' actrange='-1 1'/>");
@@ -168,7 +168,7 @@ fn the_other_shortcuts() {
 
 /// Of a muscle's own attributes a negative number counts as none, which leaves the force to `scale`.
 #[test]
-fn a_muscle_has_one_law_for_gain_and_bias() {
+fn a_muscle_has_the_same_parameters_for_gain_and_bias() {
     let defaults = [0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2, 0.0];
     let plain = actuator("", "<muscle joint='j' lengthrange='0.1 0.9'/>");
     assert_eq!((plain.gainprm, plain.biasprm), (defaults, defaults));
@@ -187,7 +187,7 @@ fn a_muscle_has_one_law_for_gain_and_bias() {
 }
 
 #[test]
-fn a_muscle_takes_its_law_from_a_general_of_its_gain() {
+fn a_muscle_takes_its_parameters_from_a_general_of_its_gain() {
     let general = "<general gaintype='muscle' gainprm='0.7 1 5 6 0.3 2 3 4 5' dynprm='2 3 4'/>";
     let muscle = actuator(general, "<muscle joint='j'/>");
     assert_eq!(muscle.dynprm[..3], [2.0, 3.0, 4.0]);
@@ -197,7 +197,7 @@ fn a_muscle_takes_its_law_from_a_general_of_its_gain() {
 }
 
 #[test]
-fn a_shortcut_takes_its_law_from_its_own_kind_and_the_rest_from_any() {
+fn a_shortcut_takes_its_parameters_from_its_own_kind_and_the_rest_from_any() {
     let position = "<position kp='5' kv='2' ctrlrange='-1 1'/>";
     assert_eq!(
         servo(&actuator(position, "<position joint='j' kp='7'/>")),
@@ -219,7 +219,7 @@ fn a_shortcut_takes_its_law_from_its_own_kind_and_the_rest_from_any() {
 }
 
 #[test]
-fn a_law_is_looked_for_in_ancestor_classes() {
+fn parameters_are_looked_for_in_ancestor_classes() {
     let classes =
         "<position kp='5'/><default class='b'><velocity kv='3' ctrlrange='0 1'/></default>";
     let position = actuator(classes, "<position joint='j' class='b'/>");
@@ -230,7 +230,7 @@ fn a_law_is_looked_for_in_ancestor_classes() {
 }
 
 #[test]
-fn a_general_default_lends_its_law_where_the_gain_fits() {
+fn a_general_default_lends_its_parameters_where_the_gain_fits() {
     let stiff = "<general gainprm='400' biasprm='1 -400 -3' biastype='affine' dyntype='filter' dynprm='7'/>";
     let position = actuator(stiff, "<position joint='j'/>");
     assert_eq!(

@@ -6,7 +6,7 @@
 use super::answer::{Asking, Given, Question};
 use super::cells::Cells;
 use super::env_rows::EnvRows;
-use super::run::spread;
+use super::run::for_each_group;
 use super::{Batch, Precision, Rows};
 use crate::check::{check_length, check_values};
 use crate::error::SimError;
@@ -158,7 +158,7 @@ impl<S: Precision> Batch<S> {
         };
         let (steppers, order) = (&mut self.steppers, &self.order);
         self.threads.enter(|| {
-            spread(steppers, order, |stepper, group| {
+            for_each_group(steppers, order, |stepper, group| {
                 stepper.ask(group, &asking)
             })
         });

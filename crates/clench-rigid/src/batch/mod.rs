@@ -63,8 +63,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
-/// Bytes of memory that an environment takes beside its rows: its status, how often it was reset, the number of the last constraint that
-/// was added at run time, and its place in groups.
+/// Bytes of memory that an environment takes beside its rows: its status, how often it was reset, the serial number of the constraint
+/// that was last added at run time, and its place in groups.
 const BOOKKEEPING_BYTES: usize =
     size_of::<EnvStatus>() + size_of::<u64>() + size_of::<AtomicU64>() + 2 * size_of::<u32>();
 
@@ -90,14 +90,14 @@ pub struct Batch<S: Precision = f64> {
     settings: StepSettings,
     status: Vec<EnvStatus>,
     resets: Vec<u64>,
-    /// The number that the last constraint of each environment got which was added at run time.
+    /// For each environment the serial number of the constraint that was last added at run time.
     serials: Vec<u32>,
     params: Vec<ParamRows<S>>,
     outputs: Vec<OutputRows<S>>,
     recorded: Option<RecordedStates<S>>,
     initial: State<S>,
     scratch: State<S>,
-    /// Where each environment stands among all by its last contacts.
+    /// What environments are sorted by, so that those of like contacts come together.
     sort_keys: Vec<AtomicU64>,
     /// The environments that run, those of like contacts together.
     order: Vec<u32>,
@@ -200,12 +200,12 @@ impl<S: Precision> Batch<S> {
         envs.iter().try_for_each(|&env| self.check_env(env))
     }
 
-    /// Tables may have been exchanged, for users can write all of [`state`](Self::state).
+    /// Users can write all of [`state`](Self::state), and so put other tables in place of its own: those must have the same shapes.
     fn check_state(&self) -> Result<(), SimError> {
         self.state.check_shapes(&self.model, self.count())
     }
 
-    /// Without its threads, or its device, a call would wait for ever.
+    /// A process that was forked has neither the threads nor the device of the batch, and a call would wait for them for ever.
     fn check_threads(&self) -> Result<(), SimError> {
         let device_is_lost = self.mirror.is_some() && self.process != std::process::id();
         if self.threads.are_lost() || device_is_lost {

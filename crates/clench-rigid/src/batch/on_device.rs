@@ -56,7 +56,7 @@ impl<S: Precision> Batch<S> {
         self.mirror.as_ref().map(Mirror::name)
     }
 
-    /// Refuses what a device takes from the model once and for all.
+    /// Refuses to change what a device takes from the model when the batch is made.
     pub(super) fn check_changeable(&self, what: &'static str) -> Result<(), SimError> {
         match &self.mirror {
             None => Ok(()),

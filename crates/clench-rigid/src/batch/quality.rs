@@ -274,7 +274,7 @@ fn explained<T: Real>(
     at_rest + IMPACT_SPEED / (E * soft.stiffness.sqrt())
 }
 
-/// By what a step that takes rows at its end has divided R of those of a block.
+/// β: what a step that takes rows at its end has divided R of a block's rows by.
 fn implicit_factor<T: Real>(
     results: StepResults<T>,
     lane: usize,

@@ -135,7 +135,7 @@ pub(super) fn per_env<E>(count: usize, value: impl FnMut() -> E) -> Result<Vec<E
 pub(super) fn try_reserve(count: usize, bytes: usize) -> Result<(), SimError> {
     let mut room = Vec::<u8>::new();
     let reserved = (count.checked_mul(bytes)).map(|total| room.try_reserve_exact(total));
-    // Or the compiler would see that nobody uses it, and not ask.
+    // Without this the compiler would see that the memory is not used, and not ask for it.
     black_box(&room);
     match reserved {
         Some(Ok(())) => Ok(()),

@@ -75,7 +75,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// A forward pass that nobody notices but in outputs.
+    /// A forward pass that changes nothing but the outputs that are kept: no status, no figure, no state.
     pub(super) fn query(&mut self, mask: Option<&[bool]>) -> Result<(), SimError> {
         self.run(&Call::forward(Pass::Query, mask), &mut [])?;
         Ok(())
@@ -128,7 +128,7 @@ impl<S: Precision> Batch<S> {
                 end: call.range.end.min(first.saturating_add(STEPS_A_GROUP)),
                 steps: call.steps,
             };
-            spread(&mut self.steppers, &self.order, |stepper, group| {
+            for_each_group(&mut self.steppers, &self.order, |stepper, group| {
                 stepper.run(group, &job)
             });
             self.collect_reports(&mut summary);
@@ -173,7 +173,7 @@ impl<S: Precision> Batch<S> {
 
 /// Does a job for all environments in `order`. Groups are claimed one by one, so that threads end together though groups take
 /// unlike times.
-pub(super) fn spread<S: Precision>(
+pub(super) fn for_each_group<S: Precision>(
     steppers: &mut [Box<dyn Stepper<S>>],
     order: &[u32],
     job: impl Fn(&mut dyn Stepper<S>, &[u32]) + Sync,

@@ -140,7 +140,7 @@ where
         }
     }
 
-    /// Lets go of the environments whose state no step can start from. Whether all stay.
+    /// Removes from the group the environments whose state no step can start from. Returns whether all stay.
     fn check_inputs(
         &mut self,
         group: &mut Group<T>,
@@ -158,7 +158,7 @@ where
         good.all()
     }
 
-    /// Notes that an environment cannot go on, or that it is to start over, if it has not just done so.
+    /// Notes that an environment cannot go on; with the option `autoreset`, that it is to start over, unless it has just done so.
     fn fail(
         &mut self,
         (env, fault): (usize, Fault),
@@ -179,7 +179,7 @@ where
         }
     }
 
-    /// One step of all lanes. Environments that fail in it leave the group and keep the rows that they have. Whether all
+    /// One step of all lanes. Environments that fail in it leave the group and keep the rows that they have. Returns whether all
     /// stay.
     fn step(
         &mut self,

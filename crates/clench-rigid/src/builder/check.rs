@@ -11,7 +11,7 @@ use super::{
 use crate::model::Integrator;
 use clench_collide::ShapeKind;
 
-/// Looks at every element.
+/// Checks every element.
 ///
 /// # Errors
 /// The first number found that cannot be.

@@ -45,7 +45,7 @@ pub(super) fn add_all(
     Ok(())
 }
 
-/// Looks at the numbers of a constraint.
+/// Checks the numbers of a constraint.
 ///
 /// # Errors
 /// Numbers that its kind cannot have.

@@ -11,7 +11,7 @@ use clench_math::{Mat3, Quat, Vec3, rough_principal_axes};
 const NEGLIGIBLE: f64 = 1e-15;
 /// Triangles of less area (m²) have no side (the root of `mjMINVAL`).
 const NO_SIDE: f64 = 3.162_277_660_168_379e-8;
-/// To what part of its largest entry the inertia of vertices with 24 bits a coordinate is known (MuJoCo's measure).
+/// How exactly the inertia of vertices with 24 bits a coordinate is known, as a share of its largest entry (MuJoCo's measure).
 const UNCERTAINTY: f64 = 1e-7;
 /// By how much a principal moment may exceed the sum of the others, as part of it and in m⁵.
 const IMPLAUSIBLE: (f64, f64) = (1e-6, 1e-9);

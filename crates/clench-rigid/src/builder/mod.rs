@@ -51,6 +51,7 @@ mod invweight0;
 mod joints;
 mod keyframes;
 mod length_range;
+mod light_spec;
 mod lights;
 mod meshes;
 mod model_builder;
@@ -78,7 +79,7 @@ pub use elements::{
     InertialSpec, JointSpec, SiteSpec,
 };
 pub use error::{BuildError, Origin, shorten};
-pub use lights::LightSpec;
+pub use light_spec::LightSpec;
 pub use model_builder::ModelBuilder;
 pub use physics::{
     CompilerSpec, ContactOverride, InertiaFromGeom, LengthRangeMode, LengthRangeSpec, PhysicsSpec,

@@ -168,7 +168,7 @@ pub struct LengthRangeSpec {
     pub inttotal: f64,
     /// Time at the end over which the length must have settled, s.
     pub interval: f64,
-    /// By how much of its range it may still move then.
+    /// The share of its range that it may still move by then.
     pub tolrange: f64,
 }
 

@@ -224,6 +224,7 @@ pub enum ConnectAnchor {
 
 /// What an equality keeps equal.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum EqualityKind {
     /// Two points coincide.
     Connect(ConnectAnchor),

@@ -82,10 +82,9 @@ impl<T: Real> Assembly<'_, T> {
         &mut self.record.dofs
     }
 
-    /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` gets them and
-    /// writes its Jacobian (rows × dofs, row-major, zeros before). What nothing can change is no constraint, but for contacts, as in
-    /// MuJoCo with dense Jacobians: so a string that misses the only geom that moves is neither limited nor held, nor a point on
-    /// the axis about which alone it turns.
+    /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` gets them and writes its Jacobian (rows × dofs, row-major, zeros
+    /// before). As in MuJoCo with dense Jacobians, a block is inactive in lanes where its Jacobian is all zero, unless it is a contact: the
+    /// limit of a tendon whose path misses the only geom that moves, or a connect at a point on the only axis about which its body turns.
     #[inline(always)]
     pub(super) fn push(
         &mut self,

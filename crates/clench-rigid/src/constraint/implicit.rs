@@ -2,7 +2,7 @@
 //! `softness`.
 
 use super::row::Row;
-use super::softness::{above_least, implicit_share};
+use super::softness::{above_least, implicit_ratio};
 use crate::dynamics::metric::Metric;
 use clench_math::Real;
 use clench_solver::{Cost, Tree};
@@ -36,7 +36,7 @@ impl<T: Real> ImplicitRows<'_, T> {
     }
 
     /// Changes R of the rows of a block of impedance `d`. Where it was `estimated` at the initial configuration, it is corrected by
-    /// what the metric takes from the inverse inertia.
+    /// the share of the inverse inertia that the metric leaves.
     #[inline(always)]
     pub(super) fn regularize(
         &self,
@@ -46,20 +46,20 @@ impl<T: Real> ImplicitRows<'_, T> {
         (d, estimated): (T, bool),
         r: &mut [T],
     ) {
-        let share = |row: &Row<T>, first: &[T], other: &[T], factor: T| {
-            let implicit = implicit_share(d, self.beta(row));
+        let factor_of = |row: &Row<T>, first: &[T], other: &[T], factor: T| {
+            let implicit = implicit_ratio(d, self.beta(row));
             match estimated {
-                true => implicit * self.taken(first, other, factor, dofs),
+                true => implicit * self.inverse_inertia_ratio(first, other, factor, dofs),
                 false => implicit,
             }
         };
         let n = dofs.len();
-        // What a cone's rows are multiples of, in units of its first row's R.
-        let (share, unit) = match cost {
+        // By how much R of a cone's first row changes, and what that R is a multiple of.
+        let (factor, unit) = match cost {
             Cost::Quadratic | Cost::OneSided | Cost::Huber => {
                 for (i, row) in rows.iter().enumerate() {
-                    let share = share(row, &jacobian[i * n..(i + 1) * n], &[], T::ZERO);
-                    r[i] = above_least(r[i] * share);
+                    let factor = factor_of(row, &jacobian[i * n..(i + 1) * n], &[], T::ZERO);
+                    r[i] = above_least(r[i] * factor);
                 }
                 return;
             }
@@ -67,20 +67,20 @@ impl<T: Real> ImplicitRows<'_, T> {
                 let (normal, tangent) = (&jacobian[..n], &jacobian[n..2 * n]);
                 let mu = rows[1].shape;
                 let unit = T::ONE / (T::new(2.0) * (mu * mu / self.impratio));
-                (share(&rows[0], normal, tangent, mu), unit)
+                (factor_of(&rows[0], normal, tangent, mu), unit)
             }
-            Cost::Elliptic => (share(&rows[0], &jacobian[..n], &[], T::ZERO), T::ONE),
+            Cost::Elliptic => (factor_of(&rows[0], &jacobian[..n], &[], T::ZERO), T::ONE),
         };
         let first = r[0] * unit;
-        let whole = above_least(first * share) / first;
+        let larger = above_least(first * factor) / first;
         for r in &mut r[..rows.len()] {
-            *r *= whole;
+            *r *= larger;
         }
     }
 
     /// Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ of J = row + factor · other; one where nothing moves but by rounding.
     #[inline(always)]
-    fn taken(&self, row: &[T], other: &[T], factor: T, dofs: &[u32]) -> T {
+    fn inverse_inertia_ratio(&self, row: &[T], other: &[T], factor: T, dofs: &[u32]) -> T {
         let (mut before, mut after) = (T::ZERO, T::ZERO);
         for (i, (&dof, &arm)) in dofs.iter().zip(row).enumerate() {
             let dof = dof as usize;

@@ -23,8 +23,8 @@
 //! aref = (−b v − k d (r + h v)) / β        R = A (1 − d) / (d β)        β = 1 + h b + h² k d
 //! ```
 //!
-//! R is not below that of the largest impedance. A is A₀ times Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ, what the metric M̂ takes from the inverse
-//! inertia. All rows of a cone have the R that their normal, or the first edge of a pyramid, gives it.
+//! R is not below that of the largest impedance. A is A₀ times Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ, the share of the inverse inertia that the
+//! metric M̂ leaves. All rows of a cone have the R that their normal, or the first edge of a pyramid, gives it.
 
 use clench_math::{Mask, Real, Scalar, array};
 
@@ -80,7 +80,8 @@ impl<T: Real> Softness<T> {
     /// The same for a step that takes the spring at its end, of length `timestep`: a spring of time constant and damping ratio `solref`
     /// that the step cannot resolve is the stiffest that it can, at the same damping ratio.
     ///
-    /// Its end of the step is where it rests if (1 + κ) v = −κ x / h: not beyond, and not thrown back, up to κ = h² k d = 1.
+    /// A step of length h resolves κ = h² k d up to 1: a body that falls on such a spring rests on it after a step, neither below nor
+    /// thrown back (`tests/suite/discrete.rs`).
     #[inline(always)]
     #[must_use]
     pub fn resolved(self, solref: [T; 2], timestep: T) -> Self {
@@ -112,10 +113,10 @@ pub fn inverse_weight<T: Real>(d: T, a: T) -> T {
     above_least((T::ONE - d) * a / d)
 }
 
-/// By what R of a row of impedance `d` is multiplied where its spring-damper is taken at the end of a step, which divides what it asks
-/// for by `beta`: as much, but not below R of the largest impedance.
+/// The factor of R of a row of impedance `d` whose spring-damper is taken at the end of a step: 1 / `beta`, as its reference acceleration
+/// has, but R is not below that of the largest impedance.
 #[inline(always)]
-pub fn implicit_share<T: Real>(d: T, beta: T) -> T {
+pub fn implicit_ratio<T: Real>(d: T, beta: T) -> T {
     let most = T::new(IMPEDANCE_RANGE[1]);
     (T::ONE / beta).max(d * (T::ONE - most) / (most * (T::ONE - d)))
 }

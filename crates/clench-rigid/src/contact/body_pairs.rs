@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// Two bodies with fewer candidates are not worth a box about each.
 const WORTH_BOXES: usize = 4;
-/// The multiple of ε, as a share of coordinates, by which boxes are larger than rounding could make them too small.
+/// Boxes are enlarged by this many ε times the coordinates of their spheres, more than rounding may make them too small by.
 const ROUNDING: f64 = 8.0;
 
 /// Candidates that follow each other in the list.
@@ -20,7 +20,7 @@ struct Run {
     boxes: Option<[usize; 2]>,
 }
 
-/// What may touch at all of some geoms of a body.
+/// A box about the bounding spheres of some geoms of a body.
 #[derive(Clone, Debug)]
 struct BodyBox<T> {
     body: usize,
@@ -97,7 +97,7 @@ impl<T: Real> BodyPairs<T> {
         self.runs.len()
     }
 
-    /// Takes over where the spheres about geoms are.
+    /// Fits the boxes to the spheres about their geoms.
     #[kernel]
     pub(super) fn update(&mut self, spheres: &[BoundingSphere<T>]) {
         let rounding = T::splat(T::Scalar::EPSILON) * T::new(ROUNDING);

@@ -16,7 +16,7 @@ pub(super) struct BoundingSphere<T> {
     pub(super) reach: T,
 }
 
-/// Replaces the spheres of some geoms of a configuration. Those of geoms that were never among them are nothing.
+/// Replaces the spheres of some geoms of a configuration. Those of geoms that were never among them have no extent.
 #[kernel]
 pub(super) fn update<T: Real>(
     model: &Model,

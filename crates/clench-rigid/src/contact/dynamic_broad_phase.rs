@@ -9,19 +9,20 @@ use crate::stages::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
 use clench_math::{Mask, Real, Vec3, kernel};
 
-/// Finds candidates. What stands still is compared with what it was only after its poses were computed anew, and looked at again only
-/// where its pose, size or margin in any environment is another than before, as that of a group of other environments may be.
+/// Finds candidates. The bounds of geoms that stand still are kept from step to step. They are computed anew when the pose, size or margin of
+/// any such geom has changed in any lane, as it may have when the lanes hold another group of environments; and that is checked only after
+/// the poses of what is fixed were computed anew.
 #[derive(Clone, Debug)]
 pub(super) struct DynamicBroadPhase<T> {
     broad_phase: BroadPhase,
     bounds: Vec<Bound<T>>,
     margins: Vec<T>,
     hits: Vec<(u32, u32)>,
-    /// Geoms that only explicit pairs look at.
+    /// Geoms that only explicit pairs have.
     in_pairs: Vec<usize>,
     /// The geoms that stand still, and what their bounds were made of.
     statics: Vec<usize>,
-    seen: Vec<Placement<T>>,
+    placements: Vec<Placement<T>>,
     /// The [version](crate::fixed::FixedPoses::version) of the poses that they were compared with.
     version: u64,
 }
@@ -93,7 +94,7 @@ impl<T: Real> DynamicBroadPhase<T> {
             bounds: Vec::new(),
             margins: Vec::new(),
             hits: Vec::new(),
-            seen: Vec::new(),
+            placements: Vec::new(),
             version: 0,
         }
     }
@@ -109,10 +110,10 @@ impl<T: Real> DynamicBroadPhase<T> {
         spheres: &mut Vec<BoundingSphere<T>>,
     ) {
         let placement = |geom: usize| Placement::of(model, params, pos, geom);
-        let mut seen = self.statics.iter().zip(&self.seen);
-        let unchanged = self.seen.len() == self.statics.len()
+        let mut known = self.statics.iter().zip(&self.placements);
+        let unchanged = self.placements.len() == self.statics.len()
             && self.bounds.len() == model.geoms.len()
-            && (version == self.version || seen.all(|(&geom, seen)| placement(geom).same(seen)));
+            && (version == self.version || known.all(|(&geom, known)| placement(geom).same(known)));
         self.version = version;
         let bound = |g: usize| Bound::new(&shape(model, params, g), &pose(pos, g));
         if unchanged {
@@ -130,27 +131,27 @@ impl<T: Real> DynamicBroadPhase<T> {
             self.bounds.extend(all.clone().map(bound));
             self.margins.clear();
             (self.margins).extend(all.clone().map(|g| own_margin(model, params, g)));
-            self.seen.clear();
-            (self.seen).extend(self.statics.iter().map(|&geom| placement(geom)));
+            self.placements.clear();
+            (self.placements).extend(self.statics.iter().map(|&geom| placement(geom)));
             self.broad_phase.forget_statics();
             bounding_sphere::update(model, params, pos, all, spheres);
         }
     }
 
-    /// Replaces `candidates` by the explicit pairs and those that are near in any lane. Returns the lanes in which that are more than
-    /// the budget allows.
+    /// Replaces `candidates` by the explicit pairs and those that are near in any lane. Returns the lanes in which there are more of them
+    /// than the budget allows.
     #[kernel]
     pub fn find(&mut self, model: &Model, candidates: &mut Vec<Candidate>) -> T::Mask {
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
         let (bounds, margins, hits) = (&self.bounds, &self.margins, &mut self.hits);
         let most = model.budget.pairs();
-        let crowded = (self.broad_phase).pairs(bounds, margins, allowed, most, hits);
+        let too_many = (self.broad_phase).pairs(bounds, margins, allowed, most, hits);
         candidates.clear();
         candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
         let found =
             |&(g1, g2): &(u32, u32)| Candidate::new(model, [g1 as usize, g2 as usize], None);
         candidates.extend(hits.iter().map(found));
         candidates.sort_unstable_by_key(|c| c.order(model));
-        crowded
+        too_many
     }
 }

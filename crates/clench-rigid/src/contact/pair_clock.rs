@@ -45,7 +45,7 @@ impl PairClock {
         }
     }
 
-    /// Pairs follow.
+    /// Starts the clock before the first pair.
     #[inline(always)]
     pub(super) fn start(&mut self) {
         self.clock.start();

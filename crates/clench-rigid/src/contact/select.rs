@@ -32,11 +32,11 @@ pub struct UnsupportedPair {
     kinds: String,
 }
 
-/// More pairs than these are not listed once but looked for in each step, as a list grows with the square ...
+/// With more pairs than these the broad phase looks for them in each step: a list grows with the square of the geoms.
 const MAX_LISTED_PAIRS: usize = 1 << 13;
-/// ... and so they are with more geoms than these that stand still, of which a tree finds the few that are near.
+/// So it does with more geoms than these that stand still: a tree over them finds the few that are near.
 const MAX_LISTED_STATICS: usize = 128;
-/// With more geoms than these nobody counts the pairs.
+/// So it does, without counting the pairs, with more geoms than these.
 const MAX_COUNTED_GEOMS: usize = 1 << 10;
 
 /// All candidates of a model in which a list of them, compared in each step, is the fastest.
@@ -85,7 +85,7 @@ fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
     Some(found)
 }
 
-/// Whether each geom's type and affinity bits meet those of any geom, its own among them. One that is only seen meets none.
+/// Whether each geom's type and affinity bits meet those of any geom, its own among them. A geom that is only drawn meets none.
 pub(super) fn meet_any(model: &Model) -> Vec<bool> {
     let (mut contypes, mut conaffinities) = (0, 0);
     for geom in &model.geoms {
@@ -137,7 +137,7 @@ pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
     })
 }
 
-/// Two geoms that may collide, no explicit pair, of kinds that cannot. Most kinds can, so that few geoms are looked at.
+/// Two geoms that may collide, no explicit pair, of kinds that the narrow phase does not know. Those are few, so few geoms are compared.
 fn find_unsupported(model: &Model) -> Option<Candidate> {
     let mut kinds: Vec<(ShapeKind, Vec<usize>)> = Vec::new();
     for (g, geom) in model.geoms.iter().enumerate() {

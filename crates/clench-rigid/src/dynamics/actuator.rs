@@ -34,7 +34,7 @@ impl<T: Real> ActuatorMotion<T> {
     }
 }
 
-/// By what share a force that was scaled to the end of a range may miss it.
+/// The share by which a force that was scaled to the end of a range may miss it.
 #[inline(always)]
 pub(super) fn scaling_error<T: Real>() -> T {
     T::new(SUM_ROUNDING).max(T::splat(T::Scalar::EPSILON) * T::new(16.0))

@@ -4,7 +4,7 @@
 //! factors without fill (both as in MuJoCo's `implicitfast`). A force s along a generalized velocity J v contributes
 //! its slope: s′ JᵀJ.
 
-use super::actuator_slopes::velocity_slope;
+use super::actuator_derivatives::velocity_derivative;
 use crate::dynamics::ellipsoid::{FluidForces, ellipsoid_rates};
 use crate::dynamics::fluid::{Drag, fluid_acts, symmetric_and_skew};
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
@@ -28,7 +28,7 @@ pub fn add_velocity_derivatives<T: Real>(
 ) {
     if model.flags.actuation {
         for u in 0..model.actuators.len() {
-            let slope = velocity_slope(model, params, state, (pos, vel, force), u);
+            let slope = velocity_derivative(model, params, state, (pos, vel, force), u);
             for output in model.actuators[u].outputs.clone() {
                 add_outer(model, moment(model, pos, output), slope * scale, matrix);
             }

@@ -2,7 +2,6 @@
 
 use crate::dynamics::metric::Along;
 use crate::model::{BiasKind, GainKind, Integrator, Model, SleepPolicy};
-use crate::settings::StepSettings;
 use clench_solver::Switch;
 
 /// Something that the integrator `discrete` cannot be combined with.
@@ -15,21 +14,22 @@ pub struct NotDiscrete {
     pub reason: &'static str,
 }
 
-/// Refuses what a model is asked to do beside stepping in the metric.
+/// Refuses what a model is asked to do beside stepping in the metric: whether its trees may `sleep`, and whether `islands` are solved
+/// apart.
 ///
 /// # Errors
 /// The first such combination.
-pub fn check_discrete(model: &Model, settings: &StepSettings) -> Result<(), NotDiscrete> {
+pub fn check_discrete(model: &Model, sleep: bool, islands: Switch) -> Result<(), NotDiscrete> {
     if model.integrator != Integrator::Discrete {
         return Ok(());
     }
     let refuse = |with: String, reason| Err(NotDiscrete { with, reason });
-    if settings.flags.sleep && settings.solver.islands == Switch::Off {
+    if sleep && islands == Switch::Off {
         let reason = "what its metric couples must sleep and wake together";
         return refuse("sleep without islands".to_owned(), reason);
     }
     let coupling = terms(model).find(|along| couples_what_sleeps(model, *along));
-    if let (true, Some(along)) = (settings.flags.sleep, coupling) {
+    if let (true, Some(along)) = (sleep, coupling) {
         let reason = "it couples in the metric a tree that may sleep with another, and what a sleeping tree is to the metric is not settled: \
              MuJoCo 4.0 takes it for free in one half of a step and leaves it out of the other";
         return refuse(format!("sleep and {}", name(model, along)), reason);

@@ -7,16 +7,16 @@
 //! M̂ a = τ − h K v + Jᵀf        M̂ = M + h B + h² K
 //! ```
 //!
-//! and a is the change of the velocity in the step over h. Each term is as in MuJoCo 4.0, beside which these rules were found: slopes
+//! and a is the change of the velocity in the step over h. Each term is as in MuJoCo 4.0, beside which these rules were found: derivatives
 //! of springs and dampers of joints, on the diagonal, of a ball or free joint the same in all directions; the drag of a medium;
-//! and s JᵀJ of tendons and actuators, s = h b + h² k with b and k the slopes of their forces with velocity and length. A slope that
+//! and s JᵀJ of tendons and actuators, s = h b + h² k with b and k the derivatives of their forces by velocity and length. A derivative that
 //! would take from the metric counts as zero.
 //!
 //! What couples dofs of different branches does not fit into the pattern of M. It is given to the solver as rows of a quadratic cost,
 //! ½ s (J a − J a_s)², which with ½ (a − a_s)ᵀ(M̂ − Σ s JᵀJ)(a − a_s) makes the cost in the whole metric about the acceleration a_s
 //! without constraints.
 
-use crate::dynamics::actuator_slopes::{length_slope, velocity_slope};
+use crate::dynamics::actuator_derivatives::{length_derivative, velocity_derivative};
 use crate::dynamics::derivatives::{add_fluid_derivatives, add_outer};
 use crate::dynamics::ellipsoid::FluidForces;
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
@@ -206,20 +206,20 @@ pub fn add_metric<T: Real>(
         *added -= *diagonal(&model.tree, &mut metric.mass, i);
     }
     for t in 0..model.tendons.len() {
-        let slopes = tendon_slopes(model, params, state, (pos, vel), t);
-        let term = Term::new(h, slopes, vel.ten_velocity[t]);
+        let derivatives = tendon_derivatives(model, params, state, (pos, vel), t);
+        let term = Term::new(h, derivatives, vel.ten_velocity[t]);
         let place = metric.of_tendon[t];
         term.add(model, pos, Along::Tendon(t), place, metric, mass);
     }
     if model.flags.actuation {
         for (u, actuator) in model.actuators.iter().enumerate() {
             let stages = (pos, vel, force);
-            let slopes = [
-                -length_slope(model, params, state, stages, u),
-                -velocity_slope(model, params, state, stages, u),
+            let derivatives = [
+                -length_derivative(model, params, state, stages, u),
+                -velocity_derivative(model, params, state, stages, u),
             ];
             for output in actuator.outputs.clone() {
-                let term = Term::new(h, slopes, vel.actuator_velocity[output]);
+                let term = Term::new(h, derivatives, vel.actuator_velocity[output]);
                 let place = metric.of_output[output];
                 term.add(model, pos, Along::Output(output), place, metric, mass);
             }
@@ -271,27 +271,27 @@ fn add_joint_spring<T: Real>(
     }
 }
 
-/// −∂force/∂length and −∂force/∂velocity of tendon `t`. Within its dead band a spring has no slope.
+/// −∂force/∂length and −∂force/∂velocity of tendon `t`. Within its dead band a spring has none.
 #[inline(always)]
-fn tendon_slopes<T: Real>(
+fn tendon_derivatives<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
     (pos, vel): (&Positions<T>, &Velocities<T>),
     t: usize,
 ) -> [T; 2] {
-    let mut slopes = [T::ZERO; 2];
+    let mut derivatives = [T::ZERO; 2];
     let spring = tendon_spring(params, t);
     if model.flags.spring && !spring.is_zero() {
         let stretch = tendon_stretch(model, params, &state.plastic, t, pos.ten_length[t]);
         let slack = stretch.eq(T::ZERO);
-        slopes[0] = T::select(slack, T::ZERO, spring.stiffness_slope(stretch));
+        derivatives[0] = T::select(slack, T::ZERO, spring.stiffness_slope(stretch));
     }
     if model.flags.damper {
         let damper = tendon_damper(model, params, t);
-        slopes[1] = damper.damping_slope(vel.ten_velocity[t]);
+        derivatives[1] = damper.damping_slope(vel.ten_velocity[t]);
     }
-    slopes
+    derivatives
 }
 
 /// A term s JᵀJ of the metric, and its share of −h K v, which is `shift` Jᵀ.
@@ -301,7 +301,7 @@ struct Term<T> {
 }
 
 impl<T: Real> Term<T> {
-    /// From the slopes of the force with length and velocity, both negated, at a velocity.
+    /// From the derivatives of the force by length and velocity, both negated, at a velocity.
     #[inline(always)]
     fn new(h: T, [length, velocity]: [T; 2], rate: T) -> Self {
         let stiffness = h * length.max(T::ZERO);

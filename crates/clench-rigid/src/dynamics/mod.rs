@@ -11,7 +11,7 @@ pub mod activation;
 pub mod activation_rates;
 pub mod actuation;
 pub mod actuator;
-pub mod actuator_slopes;
+pub mod actuator_derivatives;
 pub mod adhesion;
 pub mod articulated;
 pub mod bias;

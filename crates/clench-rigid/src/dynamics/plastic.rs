@@ -10,7 +10,7 @@ use crate::dynamics::spring::{JointStretch, stretch_of_joint, stretch_outside};
 use crate::model::{Model, Params};
 use crate::sleep::Sleep;
 use crate::stages::Positions;
-use clench_math::{Mask, Quat, Real, Vec3, broadcast, kernel};
+use clench_math::{Mask, Quat, Real, Vec3, kernel};
 
 /// Lengths and gradients of tendons, as [`Positions`] has them.
 #[derive(Clone, Copy, Debug)]
@@ -27,23 +27,6 @@ impl<'a, T: Real> Lengths<'a, T> {
         Lengths {
             length: &pos.ten_length,
             jacobian: &pos.ten_jacobian,
-        }
-    }
-}
-
-/// Writes where springs rest in the model (nplastic): before anything yields.
-pub fn relax<T: Real>(model: &Model, plastic: &mut [T]) {
-    for joint in &model.joints {
-        if let Some(start) = joint.plastic {
-            let count = joint.kind.nq();
-            let rest = &model.params.qpos_spring[joint.qpos..][..count];
-            broadcast(rest, &mut plastic[start..start + count]);
-        }
-    }
-    // While a model is built, joints have their places before tendons have lengths.
-    for (tendon, &[low, high]) in model.tendons.iter().zip(&model.params.tendon_lengthspring) {
-        if let Some(start) = tendon.plastic {
-            (plastic[start], plastic[start + 1]) = (T::new(low), T::new(high));
         }
     }
 }

@@ -8,14 +8,14 @@
 //!
 //! by the method of Levenberg and Marquardt with projection onto the limits (Kanzow, Yamashita & Fukushima 2004), see `search`.
 //! Like every method that goes downhill it ends in the minimum of the valley where it began: other starts may end elsewhere, and
-//! `restarts` tries some (`spread`).
+//! `restarts` tries some (`halton`).
 //!
-//! What lives here: the tasks (this file), the linear equations of an iteration (`equations`), the iterations (`search`), other starts (`spread`). Poses
-//! and Jacobians come from `dynamics`. Loops of equality constraints, tendon limits and collisions are not looked at.
+//! What lives here: the tasks (this file), the linear equations of an iteration (`equations`), the iterations (`search`), other starts
+//! (`halton`). Poses and Jacobians come from `dynamics`. Loops of equality constraints, tendon limits and collisions are not looked at.
 
 mod equations;
+mod halton;
 mod search;
-mod spread;
 
 pub(crate) use search::Search;
 
@@ -63,7 +63,7 @@ impl IkTarget {
 pub struct IkTask {
     /// What is brought to a goal.
     pub target: IkTarget,
-    /// By what each component of its error is multiplied, see [`IkTarget::weight_len`]; not negative. A component of weight 0
+    /// The weight of each component of its error, see [`IkTarget::weight_len`]; not negative. A component of weight 0
     /// does not count.
     pub weights: Vec<f64>,
 }

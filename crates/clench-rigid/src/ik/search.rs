@@ -12,7 +12,7 @@
 //! ½ s δ·((2 − s) g + s μ δ). Dofs at a limit against which g presses are held; a step that passes a limit ends there.
 
 use super::equations::{Equations, Scratch};
-use super::spread::spread;
+use super::halton::sample_posture;
 use super::{Ik, IkSolution, IkStatus, IkTarget};
 use crate::dynamics::com::com_positions;
 use crate::dynamics::frames::Frames;
@@ -26,7 +26,7 @@ use std::ops::Range;
 
 /// ε: damping never fades altogether, for at singular postures A alone is no matrix to solve with.
 const MIN_DAMPING: f64 = 1e-9;
-/// By what λ is multiplied where a step fails, and divided where one goes well.
+/// The factor by which λ grows where a step fails, and falls where one goes well.
 const RAISE: f64 = 8.0;
 const LOWER: f64 = 4.0;
 /// λ stays above this, or it would take many failures to raise it again.
@@ -122,7 +122,7 @@ impl<T: Real> Search<T> {
                 break;
             }
             self.state.qpos.copy_from_slice(&best.qpos);
-            spread(model, params, ik, index, &mut self.state.qpos);
+            sample_posture(model, params, ik, index, &mut self.state.qpos);
             self.descend(model, params, ik, again);
             let better = again & self.here.cost.lt(best.here.cost);
             best.here.blend(better, &self.here);

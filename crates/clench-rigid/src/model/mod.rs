@@ -18,7 +18,7 @@ mod structure;
 pub use custom::{Custom, TupleEntry};
 pub use params::{ParamField, Params};
 pub use same_frame::SameFrames;
-pub use sensor::{Attachment, Sensor, SensorData, SensorKind};
+pub use sensor::{Attachment, Sensor, SensorData, SensorDimension, SensorKind};
 pub use sensor_target::{
     ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, RayField, RaySource,
     SensorTarget,

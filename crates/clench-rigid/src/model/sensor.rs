@@ -82,8 +82,26 @@ pub enum SensorData {
     Quaternion,
 }
 
+/// The dimension of a sensor's numbers, with any power of time: what becomes of its cutoff and its noise where a file scales lengths and
+/// masses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorDimension {
+    /// Neither lengths nor masses, or lengths that are not scaled.
+    None,
+    /// A length.
+    Length,
+    /// A force.
+    Force,
+    /// A torque, or an angular momentum.
+    Torque,
+    /// That of a joint, tendon or actuator: a length or an angle.
+    Coordinate,
+    /// That of a force along such a coordinate.
+    CoordinateForce,
+}
+
 macro_rules! sensor_kinds {
-    ($($(#[$doc:meta])* $kind:ident $name:literal $attachment:ident $dim:literal $data:ident;)*) => {
+    ($($(#[$doc:meta])* $kind:ident $name:literal $attachment:ident $dim:literal $data:ident $dimension:ident;)*) => {
         /// Kinds of sensor. Numbers, frames and signs are MuJoCo's.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum SensorKind {
@@ -110,109 +128,113 @@ macro_rules! sensor_kinds {
             pub fn data(self) -> SensorData {
                 match self { $(SensorKind::$kind => SensorData::$data,)* }
             }
+            /// The dimension of its numbers.
+            pub fn dimension(self) -> SensorDimension {
+                match self { $(SensorKind::$kind => SensorDimension::$dimension,)* }
+            }
         }
     };
 }
 
 sensor_kinds! {
     /// Sum of the normal forces of contacts of the site's body within the site's volume, N.
-    Touch "touch" Site 1 Positive;
+    Touch "touch" Site 1 Positive Force;
     /// Linear acceleration with gravity's upward reaction, in the site's frame, m/s².
-    Accelerometer "accelerometer" Site 3 Real;
+    Accelerometer "accelerometer" Site 3 Real Length;
     /// Linear velocity in the site's frame, m/s.
-    Velocimeter "velocimeter" Site 3 Real;
+    Velocimeter "velocimeter" Site 3 Real Length;
     /// Angular velocity in the site's frame, rad/s.
-    Gyro "gyro" Site 3 Real;
+    Gyro "gyro" Site 3 Real None;
     /// Force of the site's body on its parent through their joints, in the site's frame, N.
-    Force "force" Site 3 Real;
+    Force "force" Site 3 Real Force;
     /// The same as a torque about the site, N m.
-    Torque "torque" Site 3 Real;
+    Torque "torque" Site 3 Real Torque;
     /// The magnetic field in the site's frame.
-    Magnetometer "magnetometer" Site 3 Real;
+    Magnetometer "magnetometer" Site 3 Real None;
     /// Where rays first meet a geom: one ray along a site's z axis, or one through each pixel of a camera.
-    Rangefinder "rangefinder" Rays 0 Real;
+    Rangefinder "rangefinder" Rays 0 Real Length;
     /// Where a camera sees a site, in pixels from the upper left corner of its picture.
-    CamProjection "camprojection" Projection 2 Real;
+    CamProjection "camprojection" Projection 2 Real None;
     /// Position of a slide or hinge joint, m or rad.
-    JointPos "jointpos" ScalarJoint 1 Real;
+    JointPos "jointpos" ScalarJoint 1 Real Coordinate;
     /// Its velocity.
-    JointVel "jointvel" ScalarJoint 1 Real;
+    JointVel "jointvel" ScalarJoint 1 Real Coordinate;
     /// Actuator force along its dof, gravity compensation included where it counts as actuation, N or N m.
-    JointActuatorFrc "jointactuatorfrc" ScalarJoint 1 Real;
+    JointActuatorFrc "jointactuatorfrc" ScalarJoint 1 Real CoordinateForce;
     /// Orientation of a ball joint.
-    BallQuat "ballquat" Ball 4 Quaternion;
+    BallQuat "ballquat" Ball 4 Quaternion None;
     /// Its angular velocity in the child's frame, rad/s.
-    BallAngVel "ballangvel" Ball 3 Real;
+    BallAngVel "ballangvel" Ball 3 Real None;
     /// Distance of a joint to its limit less the margin; zero where no limit acts.
-    JointLimitPos "jointlimitpos" Joint 1 Real;
+    JointLimitPos "jointlimitpos" Joint 1 Real Coordinate;
     /// Its rate of change.
-    JointLimitVel "jointlimitvel" Joint 1 Real;
+    JointLimitVel "jointlimitvel" Joint 1 Real Coordinate;
     /// The limit's force.
-    JointLimitFrc "jointlimitfrc" Joint 1 Real;
+    JointLimitFrc "jointlimitfrc" Joint 1 Real CoordinateForce;
     /// Length of a tendon, m.
-    TendonPos "tendonpos" Tendon 1 Real;
+    TendonPos "tendonpos" Tendon 1 Real Coordinate;
     /// Its velocity, m/s.
-    TendonVel "tendonvel" Tendon 1 Real;
+    TendonVel "tendonvel" Tendon 1 Real Coordinate;
     /// Total force of its actuators, N.
-    TendonActuatorFrc "tendonactuatorfrc" Tendon 1 Real;
+    TendonActuatorFrc "tendonactuatorfrc" Tendon 1 Real CoordinateForce;
     /// Distance of a tendon to its limit less the margin; zero where no limit acts.
-    TendonLimitPos "tendonlimitpos" Tendon 1 Real;
+    TendonLimitPos "tendonlimitpos" Tendon 1 Real Coordinate;
     /// Its rate of change.
-    TendonLimitVel "tendonlimitvel" Tendon 1 Real;
+    TendonLimitVel "tendonlimitvel" Tendon 1 Real Coordinate;
     /// The limit's force.
-    TendonLimitFrc "tendonlimitfrc" Tendon 1 Real;
+    TendonLimitFrc "tendonlimitfrc" Tendon 1 Real CoordinateForce;
     /// Length of an actuator's transmission.
-    ActuatorPos "actuatorpos" Actuator 1 Real;
+    ActuatorPos "actuatorpos" Actuator 1 Real Coordinate;
     /// Its velocity.
-    ActuatorVel "actuatorvel" Actuator 1 Real;
+    ActuatorVel "actuatorvel" Actuator 1 Real Coordinate;
     /// The actuator's force.
-    ActuatorFrc "actuatorfrc" Actuator 1 Real;
+    ActuatorFrc "actuatorfrc" Actuator 1 Real CoordinateForce;
     /// Position of a frame, m.
-    FramePos "framepos" Frame 3 Real;
+    FramePos "framepos" Frame 3 Real Length;
     /// Its orientation.
-    FrameQuat "framequat" Frame 4 Quaternion;
+    FrameQuat "framequat" Frame 4 Quaternion None;
     /// Its x axis.
-    FrameXAxis "framexaxis" Frame 3 Axis;
+    FrameXAxis "framexaxis" Frame 3 Axis None;
     /// Its y axis.
-    FrameYAxis "frameyaxis" Frame 3 Axis;
+    FrameYAxis "frameyaxis" Frame 3 Axis None;
     /// Its z axis.
-    FrameZAxis "framezaxis" Frame 3 Axis;
+    FrameZAxis "framezaxis" Frame 3 Axis None;
     /// Its linear velocity, m/s.
-    FrameLinVel "framelinvel" Frame 3 Real;
+    FrameLinVel "framelinvel" Frame 3 Real Length;
     /// Its angular velocity, rad/s.
-    FrameAngVel "frameangvel" Frame 3 Real;
+    FrameAngVel "frameangvel" Frame 3 Real None;
     /// Its linear acceleration with gravity's upward reaction, world axes, m/s².
-    FrameLinAcc "framelinacc" WorldFrame 3 Real;
+    FrameLinAcc "framelinacc" WorldFrame 3 Real Length;
     /// Its angular acceleration, world axes, rad/s².
-    FrameAngAcc "frameangacc" WorldFrame 3 Real;
+    FrameAngAcc "frameangacc" WorldFrame 3 Real None;
     /// Centre of mass of a body and all below it, m.
-    SubtreeCom "subtreecom" Body 3 Real;
+    SubtreeCom "subtreecom" Body 3 Real Length;
     /// Velocity of that, m/s.
-    SubtreeLinVel "subtreelinvel" Body 3 Real;
+    SubtreeLinVel "subtreelinvel" Body 3 Real Length;
     /// Angular momentum of a body and all below it about their centre of mass, kg m²/s.
-    SubtreeAngMom "subtreeangmom" Body 3 Real;
+    SubtreeAngMom "subtreeangmom" Body 3 Real Torque;
     /// 1 where an object's position is inside the site's volume, else 0; or, of one that is to be enclosed, how far it juts out of that volume,
     /// negative by its clearance where it lies inside, m.
-    InsideSite "insidesite" Inside 1 Positive;
+    InsideSite "insidesite" Inside 1 Positive None;
     /// Smallest signed distance of two geoms or sets of geoms, at most the cutoff, m.
-    Distance "distance" Geoms 1 Real;
+    Distance "distance" Geoms 1 Real Length;
     /// The direction from the first to the second along which that is measured; zero where they are further apart.
-    Normal "normal" Geoms 3 Axis;
+    Normal "normal" Geoms 3 Axis Length;
     /// The nearest points of both; zero where they are further apart, m.
-    FromTo "fromto" Geoms 6 Real;
+    FromTo "fromto" Geoms 6 Real Length;
     /// What contacts between two sides are and do: a fixed number of them, zeros where there are fewer.
-    Contact "contact" Contacts 0 Real;
+    Contact "contact" Contacts 0 Real None;
     /// How deep each vertex of a mesh in a geom's frame is in what touches the geom's body, m; then how fast each slides there along
     /// its first tangent, and along its second, m/s.
-    Tactile "tactile" Taxels 0 Real;
+    Tactile "tactile" Taxels 0 Real None;
     /// Potential energy, J.
-    PotentialEnergy "e_potential" Nothing 1 Real;
+    PotentialEnergy "e_potential" Nothing 1 Real None;
     /// Kinetic energy, J.
-    KineticEnergy "e_kinetic" Nothing 1 Real;
+    KineticEnergy "e_kinetic" Nothing 1 Real None;
     /// Time, s.
-    Clock "clock" Nothing 1 Real;
+    Clock "clock" Nothing 1 Real None;
     /// What a user's own program measures; zero here.
-    User "user" User 0 Real;
+    User "user" User 0 Real None;
 }
 
 impl SensorKind {

@@ -64,7 +64,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// By what contacts are put in order, the smallest first.
+    /// What contacts are sorted by, the smallest first.
     fn key(&self, reduction: ContactReduction, contact: &Contact<T>) -> T {
         match reduction {
             ContactReduction::MinDist => contact.dist,

@@ -3,7 +3,6 @@
 pub mod kind;
 mod table;
 
-use crate::dynamics::plastic;
 use crate::model::{ControlInput, Joint, Keyframe, Model};
 use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast};
 use kind::Kind;
@@ -176,7 +175,7 @@ impl<T: Real> State<T> {
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
         broadcast(&model.params.qpos0, &mut state.qpos);
-        plastic::relax(model, &mut state.plastic);
+        write_initial_rests(model, &mut state.plastic);
         for actuator in &model.actuators {
             if actuator.inputs.first() == Some(&ControlInput::Quaternion) {
                 state.ctrl[actuator.controls.start] = T::ONE; // No rotation.
@@ -252,6 +251,23 @@ impl<T: Real> State<T> {
         }
         for (to, q) in (self.mocap_quat.iter_mut()).zip(key.mocap_quat.chunks_exact(4)) {
             *to = Quat::from_f64([q[0], q[1], q[2], q[3]]);
+        }
+    }
+}
+
+/// Writes where springs that yield rest in the model (nplastic): before anything yields.
+fn write_initial_rests<T: Real>(model: &Model, plastic: &mut [T]) {
+    for joint in &model.joints {
+        if let Some(start) = joint.plastic {
+            let count = joint.kind.nq();
+            let rest = &model.params.qpos_spring[joint.qpos..][..count];
+            broadcast(rest, &mut plastic[start..start + count]);
+        }
+    }
+    // While a model is built, joints have their places before tendons have lengths.
+    for (tendon, &[low, high]) in model.tendons.iter().zip(&model.params.tendon_lengthspring) {
+        if let Some(start) = tendon.plastic {
+            (plastic[start], plastic[start + 1]) = (T::new(low), T::new(high));
         }
     }
 }

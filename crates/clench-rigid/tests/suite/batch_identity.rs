@@ -55,44 +55,44 @@ fn options(solver: ConstraintSolver, cone: FrictionCone) -> RigidOptions {
 }
 
 #[test]
-fn newton_with_pyramids() {
+fn newton_with_pyramids_moves_environments_as_alone() {
     let options = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
     assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
 }
 
 #[test]
-fn newton_with_elliptic_cones() {
+fn newton_with_elliptic_cones_moves_environments_as_alone() {
     let options = options(ConstraintSolver::Newton, FrictionCone::Elliptic).impratio(3.0);
     assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
 }
 
 #[test]
-fn conjugate_gradients_with_pyramids() {
+fn conjugate_gradients_with_pyramids_move_environments_as_alone() {
     let options = options(ConstraintSolver::Cg, FrictionCone::Pyramidal);
     assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
 }
 
 #[test]
-fn conjugate_gradients_with_elliptic_cones() {
+fn conjugate_gradients_with_elliptic_cones_move_environments_as_alone() {
     let options = options(ConstraintSolver::Cg, FrictionCone::Elliptic).noslip_iterations(2);
     assert!(compare::<f64>(&loose_parts(), options, 300) > 3.0);
 }
 
 #[test]
-fn a_humanoid_with_pyramids() {
+fn a_humanoid_with_pyramids_moves_as_alone() {
     let options = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
     assert!(compare::<f64>(&walker(), options, 1000) > 1.0);
 }
 
 #[test]
-fn a_humanoid_with_elliptic_cones() {
+fn a_humanoid_with_elliptic_cones_moves_as_alone() {
     let options = options(ConstraintSolver::Newton, FrictionCone::Elliptic);
     assert!(compare::<f64>(&walker(), options, 1000) > 1.0);
 }
 
 /// So many geoms that pairs are swept for, over the lanes together.
 #[test]
-fn a_field_of_bumps() {
+fn parts_on_a_field_of_bumps_move_as_alone() {
     let mut bumpy = loose_parts();
     for k in 0..144 {
         let place = [0.1 * (k % 12) as f64 - 0.5, 0.1 * (k / 12) as f64 - 0.5];
@@ -105,7 +105,7 @@ fn a_field_of_bumps() {
 }
 
 #[test]
-fn single_precision() {
+fn environments_in_single_precision_move_as_alone() {
     let newton = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
     assert!(compare::<f32>(&walker(), newton, 1000) > 1.0);
     let cg = options(ConstraintSolver::Cg, FrictionCone::Elliptic);
@@ -114,7 +114,7 @@ fn single_precision() {
 
 /// Two trees that are two islands at some times and in some environments, and one in others.
 #[test]
-fn an_arm_and_a_box_by_newton() {
+fn an_arm_and_a_box_move_as_alone_by_newton() {
     let pyramids = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
     assert!(compare::<f64>(&arm_and_box(), pyramids, 400) > 3.0);
     assert!(compare::<f32>(&arm_and_box(), pyramids, 400) > 3.0);
@@ -123,7 +123,7 @@ fn an_arm_and_a_box_by_newton() {
 }
 
 #[test]
-fn an_arm_and_a_box_by_conjugate_gradients() {
+fn an_arm_and_a_box_move_as_alone_by_conjugate_gradients() {
     let pyramids = options(ConstraintSolver::Cg, FrictionCone::Pyramidal).noslip_iterations(2);
     assert!(compare::<f64>(&arm_and_box(), pyramids, 200) > 3.0);
     let cones = options(ConstraintSolver::Cg, FrictionCone::Elliptic);
@@ -133,13 +133,13 @@ fn an_arm_and_a_box_by_conjugate_gradients() {
 
 /// Islands of any of many trees, of more than eight in the end, other ones in each environment.
 #[test]
-fn a_crowd_of_bodies() {
+fn many_islands_in_each_environment_move_as_alone() {
     let pyramids = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
-    assert!(compare::<f64>(&crowd(), pyramids, 200) > 10.0);
+    assert!(compare::<f64>(&many_islands(), pyramids, 200) > 10.0);
     let cones = options(ConstraintSolver::Newton, FrictionCone::Elliptic);
-    assert!(compare::<f32>(&crowd(), cones, 150) > 8.0);
+    assert!(compare::<f32>(&many_islands(), cones, 150) > 8.0);
     let cg = options(ConstraintSolver::Cg, FrictionCone::Pyramidal);
-    assert!(compare::<f64>(&crowd(), cg, 80) > 5.0);
+    assert!(compare::<f64>(&many_islands(), cg, 80) > 5.0);
 }
 
 /// The kinds of constraints whose forces act on an environment alone.
@@ -160,7 +160,7 @@ fn acting(builder: &ModelBuilder, steps: usize) -> BTreeSet<&'static str> {
 }
 
 #[test]
-fn every_kind_of_constraint_with_every_integrator() {
+fn every_kind_of_constraint_moves_as_alone_with_every_integrator() {
     let kinds = [
         "contact",
         "equality",
@@ -226,7 +226,7 @@ fn what_is_far_away_moves_as_alone() {
 }
 
 #[test]
-fn pairs_without_multiccd() {
+fn pairs_without_multiccd_move_as_alone() {
     let options = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
     assert!(compare::<f64>(&parts_on_a_mesh(false), options, 100) > 2.0);
 }

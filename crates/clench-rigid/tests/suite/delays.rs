@@ -113,7 +113,7 @@ fn past_controls_are_part_of_the_state() {
 }
 
 #[test]
-fn what_a_delay_needs() {
+fn delays_that_cannot_be_are_refused() {
     let without = slider(0, STEP, Interpolation::Hold);
     assert!(without.unwrap_err().contains("nsample"));
     let before = slider(3, -STEP, Interpolation::Hold);

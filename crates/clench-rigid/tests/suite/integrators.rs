@@ -235,7 +235,7 @@ fn a_tumbling_body_gains_no_energy() {
 
 /// (M + h ∂bias/∂v) a = −bias, with the slope by differences.
 #[test]
-fn a_lone_body_is_solved_with_its_gyroscopic_slope() {
+fn a_single_body_is_solved_with_its_gyroscopic_derivatives() {
     let builder = tumbler();
     let mut sim = sim(&builder);
     sim.set_timestep(0.02).expect("a time step");

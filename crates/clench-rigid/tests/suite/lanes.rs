@@ -84,12 +84,12 @@ fn compare(options: RigidOptions, integrator: Integrator, steps: usize) -> bool 
 }
 
 #[test]
-fn newton_with_pyramids() {
+fn newton_with_pyramids_in_lanes_equals_scalars() {
     assert!(!compare(RigidOptions::new(), Integrator::Euler, 300));
 }
 
 #[test]
-fn newton_with_elliptic_cones() {
+fn newton_with_elliptic_cones_in_lanes_equals_scalars() {
     let options = RigidOptions::new()
         .friction_cone(FrictionCone::Elliptic)
         .impratio(3.0);
@@ -97,7 +97,7 @@ fn newton_with_elliptic_cones() {
 }
 
 #[test]
-fn cg_and_runge_kutta() {
+fn cg_and_runge_kutta_in_lanes_equal_scalars() {
     let options = RigidOptions::new().constraint_solver(ConstraintSolver::Cg);
     assert!(!compare(options, Integrator::Rk4, 300));
 }

@@ -139,7 +139,7 @@ fn environments_of_a_batch_move_as_alone() {
 }
 
 #[test]
-fn what_a_servo_needs() {
+fn orientation_servos_that_cannot_be_are_refused() {
     let refused = |change: fn(&mut ActuatorSpec)| {
         let mut servo = servo();
         change(&mut servo);

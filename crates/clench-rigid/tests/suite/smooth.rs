@@ -158,7 +158,7 @@ fn bias_is_what_steady_motion_takes() {
 }
 
 #[test]
-fn gravity_and_springs_are_slopes_of_the_potential() {
+fn gravity_and_springs_are_gradients_of_the_potential() {
     let mut builder = everything();
     builder.physics.density = 0.0;
     builder.physics.viscosity = 0.0;
@@ -204,25 +204,25 @@ fn kinetic_energy_is_that_of_the_bodies() {
 
 /// Everything but Coriolis: ∂(passive + actuator)/∂v in the entries that the tree has.
 #[test]
-fn velocity_slopes_are_derivatives_of_the_forces() {
+fn velocity_derivatives_agree_with_differences_of_the_forces() {
     let mut machine = everything();
-    // As in MuJoCo the range of a joint's total force does not hold the slopes of what pulls on it from elsewhere.
+    // As in MuJoCo the range of a joint's total force does not hold the derivatives of what pulls on it from elsewhere.
     machine
         .actuators
         .retain(|a| a.name != "string" && a.name != "piston");
     for seed in 0..3 {
         let sim = shaken(&machine, seed);
         let (model, ws) = (sim.model(), sim.workspace());
-        let mut slopes = TreeMatrix::zeros(&model.tree);
+        let mut derivatives = TreeMatrix::zeros(&model.tree);
         add_velocity_derivatives(
             model,
             sim.params(),
             &sim.state,
             (&ws.position, &ws.velocity, &ws.force),
             1.0,
-            &mut slopes,
+            &mut derivatives,
         );
-        let slopes = slopes.to_dense(&model.tree);
+        let derivatives = derivatives.to_dense(&model.tree);
         let nv = model.nv;
         let force = |dof: usize, change: f64| {
             let mut other = Sim::new(model.clone()).expect("as the original");
@@ -240,7 +240,7 @@ fn velocity_slopes_are_derivatives_of_the_forces() {
                     continue;
                 }
                 let expected = (after[i] - before[i]) / (2.0 * H);
-                let error = (slopes[i * nv + j] - expected).abs();
+                let error = (derivatives[i * nv + j] - expected).abs();
                 assert!(error < 1e-6, "seed {seed}, ({i}, {j}): {error}");
             }
         }
@@ -248,14 +248,14 @@ fn velocity_slopes_are_derivatives_of_the_forces() {
 }
 
 #[test]
-fn bias_slopes_are_derivatives_of_the_bias() {
+fn bias_derivatives_agree_with_differences_of_the_bias() {
     let mut machine = everything();
     // As in MuJoCo the bias of tendons with inertia is left out.
     machine.tendons.iter_mut().for_each(|t| t.armature = 0.0);
     for seed in 0..3 {
         let sim = shaken(&machine, seed);
         let (model, ws) = (sim.model(), sim.workspace());
-        let mut slopes = TreeLu::zeros(&model.tree);
+        let mut derivatives = TreeLu::zeros(&model.tree);
         add_bias_derivatives(
             model,
             sim.params(),
@@ -263,7 +263,7 @@ fn bias_slopes_are_derivatives_of_the_bias() {
             &sim.state.qvel,
             1.0,
             &mut Coriolis::new(model),
-            &mut slopes,
+            &mut derivatives,
         );
         let bias = |dof: usize, change: f64| {
             let mut other = Sim::new(model.clone()).expect("as the original");
@@ -281,7 +281,7 @@ fn bias_slopes_are_derivatives_of_the_bias() {
             }
         }
         for i in 0..nv {
-            let (row, column) = slopes.dof_mut(&model.tree, i);
+            let (row, column) = derivatives.dof_mut(&model.tree, i);
             for (k, &j) in model.tree.row(i).iter().enumerate() {
                 let (above, below) = (i * nv + j as usize, j as usize * nv + i);
                 assert!((row[k] - expected[above]).abs() < 1e-7, "({i}, {j})");

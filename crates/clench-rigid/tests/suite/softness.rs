@@ -39,7 +39,7 @@ fn close(found: f64, expected: f64, what: &str) {
 }
 
 #[test]
-fn numbers_are_mujocos() {
+fn softness_has_mujocos_numbers() {
     for (solref, solimp, pos, [d, k, b, r]) in MEASURED {
         let soft = Softness::new(solref, solimp, pos, LEAST);
         close(soft.impedance, d, "impedance");
@@ -93,7 +93,7 @@ fn time_constants_have_a_floor_and_direct_parameters_none() {
 }
 
 #[test]
-fn lanes_equal_scalars() {
+fn softness_in_lanes_equals_scalars() {
     type L = Lanes<f64, 4>;
     let of = |values: [f64; 4]| L::from_array(values);
     let r = of([-0.0001, -0.0055, 0.003, -0.5]);

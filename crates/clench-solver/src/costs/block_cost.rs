@@ -20,7 +20,7 @@ pub(crate) struct Rows<'a, T> {
 pub(crate) struct Totals<T: Real> {
     /// Σ s(y).
     pub cost: T,
-    /// Pieces that differ from those of the last evaluation.
+    /// Entries of the active set that differ from those of the last evaluation.
     pub changes: T,
     /// Where some block is on a piece whose Hessian varies: an elliptic cone's surface.
     pub curved: T::Mask,
@@ -86,11 +86,12 @@ pub(crate) struct RankOne<T> {
 /// What Newton, CG and the line search ask of a constraint's cost. (Noslip, continuation and the checks of input match on
 /// [`Cost`] where they need more.)
 ///
-/// `y` is J a − aref. A lane without the constraint has D = 0: it adds nothing, and its pieces never change.
+/// `y` is J a − aref. The active set says which piece of its cost each row or edge is on. A lane without the constraint has D = 0: it adds
+/// nothing, and its active set never changes.
 pub(crate) trait BlockCost<T: Real> {
-    /// How many pieces (rows or edges that switch on their own) a block of `dim` rows has.
+    /// How many entries of the active set a block of `dim` rows has: one for each row or edge that changes its piece on its own.
     fn active_len(dim: usize) -> usize;
-    /// Writes the force −∇s(y) and the pieces, and adds to the totals.
+    /// Writes the force −∇s(y) and the active set, and adds to the totals.
     fn evaluate(
         rows: Rows<T>,
         y: &[T],
@@ -98,10 +99,10 @@ pub(crate) trait BlockCost<T: Real> {
         active_set: &mut [T],
         totals: &mut Totals<T>,
     );
-    /// Writes ∇²s(y), whose pieces are known.
+    /// Writes ∇²s(y), whose active set is known.
     fn hessian(rows: Rows<T>, y: &[T], active_set: &[T], weight: &mut Weight<T>) -> Form;
-    /// Calls `emit` with each rank-one change of the Hessian block from the pieces `old` to the pieces `new`, none of which
-    /// may be curved.
+    /// Calls `emit` with each rank-one change of the Hessian block from the active set `old` to `new`; no piece of either may be
+    /// curved.
     fn changes(rows: Rows<T>, old: &[T], new: &[T], emit: impl FnMut(RankOne<T>));
     /// Adds the derivatives of α ↦ s(y + α dy), the first less what it is at 0: for α ≥ 0 a sum of terms that are not negative.
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>);

@@ -227,7 +227,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
             ..
         } = Path::new(rows, y, dy, alpha);
         let mu = before.mu;
-        // What p and q leave of the ways along which they started.
+        // How far p and q end from their tangents at the start.
         let p = T::select(in_p, -(mu * bend), dp - alpha * (dn - mu * along));
         let q = T::select(in_q, bend, dq - alpha * (mu * dn + along));
         before.k * (T::new(0.5) * (dp * dp + dq * dq) + before.p * p + before.q * q)
@@ -267,7 +267,7 @@ impl<T: Real> Path<T> {
             along += before.u[j] * du;
             squares += du * du;
         }
-        // T₁² = (T₀ + α u₀·U')² + α² (|U'|² − (u₀·U')²): what is left of a straight way towards T₁ is the bend.
+        // T₁² = (T₀ + α u₀·U')² + α² (|U'|² − (u₀·U')²). The bend is how far T₁ is above its tangent T₀ + α u₀·U'.
         let across = (squares - along * along).max(T::ZERO);
         let straight = before.t + alpha * along;
         let ahead = straight.gt(T::ZERO);

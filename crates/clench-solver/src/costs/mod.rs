@@ -45,7 +45,7 @@ macro_rules! with_cost {
 }
 pub(crate) use with_cost;
 
-/// How many pieces a block of this cost has.
+/// How many entries of the active set a block of this cost has.
 pub(crate) fn active_len(cost: Cost, dim: usize) -> usize {
     with_cost!(cost, C => <C as BlockCost<f64>>::active_len(dim))
 }

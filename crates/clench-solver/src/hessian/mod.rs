@@ -31,9 +31,9 @@ pub(crate) struct Hessian<T: 'static> {
     found: Vec<u32>,
 }
 
-/// Smaller problems store paths: what is filled is not worth a search.
+/// Smaller problems store paths: to find what is filled takes longer than it saves.
 const MIN_FILLED_DOFS: usize = 36;
-/// Paths are stored up to this many times the arithmetic of what is filled, whose blocks are small and have to be found.
+/// Whole paths are stored unless they take more than this many times the arithmetic of the filled form, whose blocks are small.
 const WORTH_FILLED: f64 = 2.0;
 
 impl<T: Real> Hessian<T> {
@@ -53,7 +53,7 @@ impl<T: Real> Hessian<T> {
             self.parents.clear();
             self.parents.extend_from_slice(tree.parents());
             if !self.choose(tree, most) {
-                // Forgotten, so that it is looked at again.
+                // Forgotten, so that the next problem of this pattern is refused as well.
                 self.parents.clear();
                 return false;
             }

@@ -8,7 +8,7 @@
 //!
 //! `cargo test -p clench-solver --test clarabel -- --nocapture` prints the worst differences.
 
-#[allow(dead_code)] // Of what the suite shares this program uses some.
+#[allow(dead_code)] // This program uses only some of what the suite shares.
 #[path = "../suite/common/mod.rs"]
 mod common;
 mod conic;

@@ -40,7 +40,7 @@ fn solve(problem: &Problem<f64>, options: SolverOptions) -> Solver<f64> {
 }
 
 #[test]
-fn on_and_off_agree() {
+fn islands_and_the_whole_problem_agree() {
     let mut large = 0;
     for (k, problem) in scenes(200).enumerate() {
         let on = solve(&problem, options(Switch::On));

@@ -183,12 +183,12 @@ fn options() -> SolverOptions {
 }
 
 #[test]
-fn newton_on_all_costs() {
+fn newton_in_lanes_equals_scalars_on_all_costs() {
     compare::<f64>(options(), &ALL_COSTS, 40);
 }
 
 #[test]
-fn newton_on_pyramids_to_the_working_precision() {
+fn newton_in_lanes_equals_scalars_on_pyramids_to_the_working_precision() {
     compare::<f64>(
         options().tolerance(0.0),
         &[Cost::Pyramid, Cost::OneSided],
@@ -197,27 +197,27 @@ fn newton_on_pyramids_to_the_working_precision() {
 }
 
 #[test]
-fn newton_on_cones_to_the_working_precision() {
+fn newton_in_lanes_equals_scalars_on_cones_to_the_working_precision() {
     compare::<f64>(options().tolerance(0.0), &[Cost::Elliptic], 40);
 }
 
 #[test]
-fn newton_dense() {
+fn dense_newton_in_lanes_equals_scalars() {
     compare::<f64>(options().sparse_solve(Switch::Off), &ALL_COSTS, 10);
 }
 
 #[test]
-fn newton_sparse() {
+fn sparse_newton_in_lanes_equals_scalars() {
     compare::<f64>(options().sparse_solve(Switch::On), &ALL_COSTS, 10);
 }
 
 #[test]
-fn newton_cut_short() {
+fn newton_cut_short_in_lanes_equals_scalars() {
     compare::<f64>(options().iterations(2).ls_iterations(2), &ALL_COSTS, 40);
 }
 
 #[test]
-fn conjugate_gradients() {
+fn conjugate_gradients_in_lanes_equal_scalars() {
     compare::<f64>(
         options()
             .constraint_solver(ConstraintSolver::Cg)
@@ -234,7 +234,7 @@ fn conjugate_gradients() {
 }
 
 #[test]
-fn noslip() {
+fn noslip_in_lanes_equals_scalars() {
     compare::<f64>(options().noslip_iterations(10), &ALL_COSTS, 20);
     compare::<f64>(
         options().noslip_iterations(100).noslip_tolerance(1e-3),
@@ -244,7 +244,7 @@ fn noslip() {
 }
 
 #[test]
-fn single_precision() {
+fn single_precision_in_lanes_equals_scalars() {
     compare::<f32>(options(), &ALL_COSTS, 40);
     compare::<f32>(options().tolerance(0.0), &ALL_COSTS, 20);
 }
@@ -307,7 +307,7 @@ fn compare_islands<S: Scalar>(options: SolverOptions, costs: &[Cost], rounds: us
 }
 
 #[test]
-fn islands_of_each_lane_by_newton() {
+fn newton_solves_the_islands_of_each_lane_as_alone() {
     compare_islands::<f64>(options(), &ALL_COSTS, 40);
     compare_islands::<f64>(options().tolerance(0.0), &[Cost::Elliptic], 20);
     compare_islands::<f64>(options().tolerance(0.0), &[Cost::Pyramid], 20);
@@ -316,14 +316,14 @@ fn islands_of_each_lane_by_newton() {
 }
 
 #[test]
-fn islands_of_each_lane_by_conjugate_gradients() {
+fn conjugate_gradients_solve_the_islands_of_each_lane_as_alone() {
     let options = options().constraint_solver(ConstraintSolver::Cg);
     compare_islands::<f64>(options, &ALL_COSTS, 20);
     compare_islands::<f32>(options, &ALL_COSTS, 20);
 }
 
 #[test]
-fn islands_of_each_lane_without_slip() {
+fn noslip_solves_the_islands_of_each_lane_as_alone() {
     compare_islands::<f64>(options().noslip_iterations(10), &ALL_COSTS, 20);
     compare_islands::<f64>(
         options().noslip_iterations(50).noslip_tolerance(1e-3),
@@ -334,7 +334,7 @@ fn islands_of_each_lane_without_slip() {
 }
 
 #[test]
-fn islands_of_each_lane_in_single_precision() {
+fn single_precision_solves_the_islands_of_each_lane_as_alone() {
     compare_islands::<f32>(options(), &ALL_COSTS, 40);
     compare_islands::<f32>(options().tolerance(0.0), &ALL_COSTS, 20);
 }

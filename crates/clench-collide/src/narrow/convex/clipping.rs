@@ -93,14 +93,14 @@ impl<S: Scalar> ProjectedFeature<S> {
         origin.z + self.slope.0 * (p.x - origin.x) + self.slope.1 * (p.y - origin.y)
     }
 
-    /// Fills `over` with where this and another overlap in the projection, or are at most `slack` m from it: the corners of a polygon,
+    /// Fills `out` with where this and another overlap in the projection, or are at most `slack` m from it: the corners of a polygon,
     /// the ends of a segment, or a point. The heights of these are open.
-    pub(super) fn overlap(&self, other: &ProjectedFeature<S>, slack: S, over: &mut Polygon<S>) {
-        over.clear();
+    pub(super) fn overlap(&self, other: &ProjectedFeature<S>, slack: S, out: &mut Polygon<S>) {
+        out.clear();
         if let (&[p, p_end], &[q, q_end]) = (&self.corners[..], &other.corners[..])
             && !parallel(p_end - p, q_end - q)
         {
-            return over.push(crossing((p, p_end), (q, q_end)));
+            return out.push(crossing((p, p_end), (q, q_end)));
         }
         // An edge is cut by a face, a polygon by a circle, many sides by few.
         let self_is_cut = self.is_edge()
@@ -113,10 +113,10 @@ impl<S: Scalar> ProjectedFeature<S> {
             (other, self)
         };
         match &by.disc {
-            Some(disc) => by.clip_to_disc(disc, cut, slack, over),
+            Some(disc) => by.clip_to_disc(disc, cut, slack, out),
             None => {
-                cut.corners.iter().for_each(|corner| over.push(*corner));
-                by.clip(over, slack);
+                cut.corners.iter().for_each(|corner| out.push(*corner));
+                by.clip(out, slack);
             }
         }
     }
@@ -158,39 +158,39 @@ impl<S: Scalar> ProjectedFeature<S> {
         disc: &Disc<S>,
         cut: &ProjectedFeature<S>,
         slack: S,
-        over: &mut Polygon<S>,
+        out: &mut Polygon<S>,
     ) {
         if let [p, q] = cut.corners[..] {
             let (from, to) = self.chord(disc, p, q);
             for t in [from, to] {
-                over.push(p + (q - p) * t.clamp(S::ZERO, S::ONE));
+                out.push(p + (q - p) * t.clamp(S::ZERO, S::ONE));
             }
             return;
         }
         let corners = &cut.corners;
         // What holds all corners holds the face.
         if corners.iter().all(|p| self.covers(*p, slack)) {
-            corners.iter().for_each(|corner| over.push(*corner));
+            corners.iter().for_each(|corner| out.push(*corner));
             return;
         }
         for (k, &p) in corners.iter().enumerate() {
             if self.covers(p, slack) {
-                over.push(p);
+                out.push(p);
             }
             let q = corners[(k + 1) % corners.len()];
             let (from, to) = self.chord(disc, p, q);
             for t in [from, to] {
                 if from < to && t > S::ZERO && t < S::ONE {
-                    over.push(p + (q - p) * t);
+                    out.push(p + (q - p) * t);
                 }
             }
         }
         for &p in &self.corners {
             if cut.covers(p, slack) {
-                over.push(p);
+                out.push(p);
             }
         }
-        over.sort_around();
+        out.sort_around();
     }
 
     /// Where along a segment it enters and leaves this cap's circle, its ends being 0 and 1; both where it is nearest to the

@@ -43,8 +43,10 @@ pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, simplex: &mut Simpl
     expand(pair, start, &mut polytope, simplex)
 }
 
-/// Four vertices with a volume, among them the given ones where these span something. Where the difference has no volume,
-/// it is no way to move across it.
+/// Four vertices with a volume, among them the given ones where these span something.
+///
+/// # Errors
+/// The difference has no volume: the gap across it, which is the largest.
 fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>; 4], Gap<S>> {
     let least = pair.largest * S::EPSILON * S::new(16.0);
     let axes = Mat3::IDENTITY.rows;
@@ -65,7 +67,9 @@ fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>;
 }
 
 /// The given vertex that is furthest; if that is not far, the furthest along or against any of the directions, if further.
-/// The gap along a direction, where the face is nearer than `least`.
+///
+/// # Errors
+/// None is further than `least`: the gap along the first direction, or against it.
 fn furthest<S: Scalar>(
     pair: &Pair<S>,
     given: &[Vertex<S>],
@@ -146,7 +150,7 @@ fn expand<S: Scalar>(
             break;
         }
         if !polytope.add(nearest, &vertex) {
-            // As far out as rounding lets it be.
+            // Rounding lets no vertex lie beyond it.
             polytope.close(nearest);
         }
         if better && pair.curved && movable < pair.smallest.max(distance) * S::new(NEAR) {

@@ -27,7 +27,7 @@ const NEAR: f64 = 0.1;
 const NOISE: f64 = 4.0;
 
 /// The share of the smaller body by which the bounds may differ at the end of a search.
-const DOUBT: f64 = 1e-6;
+const MAX_DIFFERENCE: f64 = 1e-6;
 
 /// What is known of two cores.
 pub(super) enum Cores<S> {
@@ -42,8 +42,8 @@ pub(super) enum Cores<S> {
 /// The distance of the cores if it is at most `limit`. The simplex begins with the vertex along `start`, and ends as what the
 /// nearest points are made of, or holds the origin, but for rounding, where the cores overlap.
 ///
-/// Vertices that nearly coincide make slivers, whose nearest point may be false. So what ends a search is not believed against
-/// the bounds: then another one begins with the best direction known, without Newton's vertices.
+/// Vertices that nearly coincide make slivers, whose nearest point may be false. So the end of a search is checked against the bounds:
+/// where it contradicts them, another search begins with the best direction known, without Newton's vertices.
 pub(super) fn gjk<S: Scalar>(
     pair: &Pair<S>,
     start: Vec3<S>,
@@ -56,12 +56,12 @@ pub(super) fn gjk<S: Scalar>(
         settled: false,
     };
     let mut end = search(pair, limit, pair.curved, simplex, &mut best);
-    let deceived = match end {
+    let contradicted = match end {
         End::Beyond => false,
         End::Inside => best.gap > pair.tolerance,
-        End::Nearest(length) => length - best.gap > pair.smallest * S::new(DOUBT),
+        End::Nearest(length) => length - best.gap > pair.smallest * S::new(MAX_DIFFERENCE),
     };
-    if deceived {
+    if contradicted {
         *simplex = Simplex::new(pair.vertex(best.normal));
         end = search(pair, limit, false, simplex, &mut best);
     }
@@ -107,7 +107,7 @@ fn search<S: Scalar>(
         if length - best.gap <= pair.tolerance {
             return End::Nearest(length);
         }
-        // The vertex need not wait for the length.
+        // Along v, not n: so the processor need not wait for the square root.
         let vertex = pair.vertex(v);
         let n = v * (S::ONE / length);
         let gap = n.dot(vertex.w);

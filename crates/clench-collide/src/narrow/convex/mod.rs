@@ -31,8 +31,8 @@ use patch::patch;
 use simplex::Simplex;
 pub(super) use terrain::terrain;
 
-/// The contacts of two shapes that are bounded and convex, unless the direction in which they were apart before shows at once that there
-/// are none. It becomes the one that a search has found.
+/// The contacts of two shapes that are bounded and convex. `axis`, a direction in which they were apart before, may show at once that there
+/// are none; where a search finds that they are apart, its direction becomes the next `axis`.
 #[kernel]
 pub(super) fn convex<T: Real>(
     a: AnyPlaced<T>,
@@ -79,7 +79,7 @@ pub(super) fn points<S: Scalar>(
     if let Some(apart) = known.filter(|known| known.gap > margin) {
         return Err(apart.normal);
     }
-    // For bodies that are apart it gives no distance.
+    // Of bodies that are apart the gap found so is not always the distance.
     if let Some(certain) = known.filter(|known| known.settled && known.gap <= S::ZERO) {
         patch_along(&pair, a, certain, margin, points);
         return Ok(());

@@ -50,7 +50,7 @@ pub(super) type PatchPoints<S> = ArrayVec<PatchPoint<S>, { CAPACITY + 1 }>;
 pub(super) struct Overlap<'a, S> {
     pair: &'a Pair<'a, S>,
     /// Two directions across the normal, and the normal.
-    view: Mat3<S>,
+    projection: Mat3<S>,
     features: [ProjectedFeature<S>; 2],
     /// The gap of the cores along the normal.
     gap: S,
@@ -67,16 +67,16 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         gap: S,
     ) -> Self {
         let (side, other) = across(n);
-        let view = Mat3::from_rows(side, other, n);
+        let projection = Mat3::from_rows(side, other, n);
         let [a, b] = features;
-        let of_b = (view * pair.offset, view * pair.rotation);
+        let of_b = (projection * pair.offset, projection * pair.rotation);
         Overlap {
             pair,
             features: [
-                ProjectedFeature::new(a, Vec3::ZERO, &view, false),
+                ProjectedFeature::new(a, Vec3::ZERO, &projection, false),
                 ProjectedFeature::new(b, of_b.0, &of_b.1, true),
             ],
-            view,
+            projection,
             gap,
             slack: (pair.smallest * S::new(MAX_MISS)).max(pair.tolerance),
         }
@@ -85,7 +85,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
     /// The points of the patch that are at most `reach` apart; `simplex` tells the nearest points of the cores where the features
     /// do not.
     pub(super) fn points(&self, simplex: &Simplex<S>, reach: S) -> PatchPoints<S> {
-        let (over, mut found) = self.corners();
+        let (polygon, mut found) = self.corners();
         let lowest = deepest(&found, self.pair.tolerance);
         let lowest = match lowest.filter(|point| point.distance() <= self.gap + self.slack) {
             Some(lowest) => lowest,
@@ -100,7 +100,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
             found.clear();
             found.push(lowest.at_distance(self.gap));
         } else if found.len() > PATCH_POINTS {
-            found = self.sample(&Outline::around(over.corners(), same), lowest);
+            found = self.sample(&Outline::around(polygon.corners(), same), lowest);
         }
         found.retain(|point| point.distance() <= reach);
         merge(&mut found, same);
@@ -109,7 +109,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
 
     /// A place in the projection, in the first body's frame.
     pub(super) fn unproject(&self, place: Vec3<S>) -> Vec3<S> {
-        self.view.transpose_mul(place)
+        self.projection.transpose_mul(place)
     }
 
     /// The point of the patch at a place of the projection.
@@ -128,31 +128,31 @@ impl<'a, S: Scalar> Overlap<'a, S> {
     /// The overlap, and the points at its corners.
     fn corners(&self) -> (Polygon<S>, PatchPoints<S>) {
         let [a, b] = &self.features;
-        let (mut over, mut found) = (Polygon::empty(), PatchPoints::new());
+        let (mut polygon, mut found) = (Polygon::empty(), PatchPoints::new());
         // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
         for beyond in [S::ZERO, self.pair.tolerance, self.slack] {
             found.clear();
-            a.overlap(b, beyond, &mut over);
-            found.extend(over.corners().iter().map(|place| self.at(place)));
+            a.overlap(b, beyond, &mut polygon);
+            found.extend(polygon.corners().iter().map(|place| self.at(place)));
             let touches = |point: &PatchPoint<S>| point.distance() <= self.gap + self.slack;
             if found.iter().any(touches) {
                 break;
             }
         }
-        (over, found)
+        (polygon, found)
     }
 
     /// The nearest points of the cores: those that support the normal if they face each other, else as the simplex has them.
     fn witness(&self, simplex: &Simplex<S>) -> PatchPoint<S> {
         let pair = self.pair;
-        let n = self.view.rows[2];
+        let n = self.projection.rows[2];
         let Vertex { w, a, b } = pair.vertex(n);
         let (mut on_a, mut on_b) = (a, b);
         if (w - n * self.gap).norm() > pair.smallest * S::new(MAX_MISS) {
             (on_a, on_b) = simplex.nearest();
         }
         let on_b = pair.offset + pair.rotation * on_b;
-        let middle = self.view * ((on_a + on_b) * S::new(0.5));
+        let middle = self.projection * ((on_a + on_b) * S::new(0.5));
         let witness = PatchPoint {
             x: middle.x,
             y: middle.y,
@@ -169,8 +169,8 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         cap.unwrap_or_else(|| a.direction())
     }
 
-    /// At most [`PATCH_POINTS`] points: all corners of the outline if they are no more, else some of it. If these miss the lowest
-    /// point they are seen from its direction, and it is one of them.
+    /// At most [`PATCH_POINTS`] points: all corners of the outline if they are no more, else a sample of it. Where that misses the lowest
+    /// point, it is sampled anew, beginning with the lowest point.
     fn sample(&self, outline: &Outline<S>, lowest: PatchPoint<S>) -> PatchPoints<S> {
         let from = |first| -> PatchPoints<S> {
             let places = outline.sample(first);

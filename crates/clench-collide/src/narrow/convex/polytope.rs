@@ -1,8 +1,8 @@
 //! A convex polytope about the origin that grows vertex by vertex.
 //!
-//! Its triangles know what lies across each side. A new vertex removes the triangles that see it, which are found by walking
-//! from one of them, and the hole is closed by triangles from its border, the horizon, to the new vertex. Triangles keep their signed distance, so an
-//! origin that rounding has put outside does no harm.
+//! Its triangles know what lies across each side. A new vertex removes the triangles that are visible from it, which are found by walking
+//! from one of them, and the hole is closed by triangles from its border, the horizon, to the new vertex. Triangles keep their signed
+//! distance, so an origin that rounding has put outside does no harm.
 
 use super::pair::{Pair, Vertex};
 use arrayvec::ArrayVec;
@@ -30,7 +30,7 @@ struct HorizonEdge {
 
 #[derive(Clone, Copy)]
 struct Face<S> {
-    /// Counter-clockwise visible from outside.
+    /// Counter-clockwise as seen from outside.
     corners: [u8; 3],
     removed: bool,
     /// The same edges as sides of the faces across.
@@ -162,7 +162,7 @@ impl<S: Scalar> Polytope<S> {
         numbers.map(|k| self.vertices[k as usize])
     }
 
-    /// Replaces the faces that see a vertex by faces to it; `visible` is one of them. Nothing happens, and the answer is no,
+    /// Replaces the faces that are visible from a vertex by faces to it; `visible` is one of them. Nothing happens, and the answer is no,
     /// if the vertex is one of theirs or rounding has broken the horizon.
     pub(super) fn add(&mut self, visible: usize, vertex: &Vertex<S>) -> bool {
         let from = |k: u8| (self.vertices[k as usize].w - vertex.w).norm_squared();
@@ -192,8 +192,8 @@ impl<S: Scalar> Polytope<S> {
         self.visible.push(face as u8);
     }
 
-    /// Looks at the face across a side: one that `w` does not see ends there, at the horizon; others are removed, with what lies
-    /// behind them.
+    /// Follows the visible faces across a side: a face that is not visible from `w` stays, and its side is part of the horizon; others are
+    /// removed, and followed further.
     #[inline(always)]
     fn find_horizon(&mut self, across: HalfEdge, w: Vec3<S>) {
         let face = &self.faces[across.face as usize];
@@ -216,8 +216,8 @@ impl<S: Scalar> Polytope<S> {
         self.remove_from(across, &w);
     }
 
-    /// Removes a face, entered across one of its sides, and its neighbours as far as they are visible from `w`. Few are: so the look at
-    /// each, which mostly ends there, is part of its callers, and this is a call.
+    /// Removes a face, entered across one of its sides, and its neighbours as far as they are visible from `w`. Few are: so the test of
+    /// each is inlined into its callers, and only this is a call.
     #[inline(never)]
     fn remove_from(&mut self, entered: HalfEdge, w: &Vec3<S>) {
         let across = self.faces[entered.face as usize].across;
@@ -227,7 +227,7 @@ impl<S: Scalar> Polytope<S> {
         }
     }
 
-    /// Whether the faces that see the vertex are a patch with one border: then it has two sides more than they are.
+    /// Whether the visible faces are a patch with one border: then it has two sides more than they are.
     fn horizon_is_closed(&self) -> bool {
         let Some(last) = self.horizon.last() else {
             return false;

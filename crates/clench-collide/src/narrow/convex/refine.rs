@@ -18,7 +18,7 @@ use clench_math::{Scalar, Vec3};
 
 /// Newton converges quadratically, so more steps than this mean that it does not.
 const MAX_STEPS: usize = 12;
-/// How often a step that loses is halved before Newton's method is given up.
+/// How often a step that makes the gap smaller is halved before Newton's method is given up.
 const MAX_HALVINGS: usize = 3;
 /// The largest turn of a step, rad.
 const MAX_TURN: f64 = 0.3;
@@ -180,7 +180,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
     found
 }
 
-/// Newton's iteration; a step that loses is halved.
+/// Newton's iteration; a step that makes the gap smaller is halved.
 fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> Gap<S> {
     let last = S::new(CONVERGED_TURN).max(S::EPSILON * S::new(256.0));
     let mut w = pair.vertex(start).w;

@@ -1,6 +1,6 @@
 //! `<geometry>`: vertices and faces of a mesh.
 
-use super::{File, at, child, children, numbers};
+use super::file::{File, at, child, children, numbers};
 use crate::mesh::affine::{Transform, to_single};
 use crate::mesh::ears::triangulate;
 use crate::mesh::triangles::Triangles;

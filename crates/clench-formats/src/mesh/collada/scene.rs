@@ -1,7 +1,7 @@
 //! `<visual_scene>`: which meshes stand where.
 
+use super::file::{File, at, child, children};
 use super::transform;
-use super::{File, at, child, children};
 use crate::mesh::affine::Transform;
 use roxmltree::Node;
 

@@ -1,6 +1,6 @@
 //! `<matrix>`, `<translate>`, `<rotate>` and `<scale>`: how a node stands in the one around it.
 
-use super::{at, numbers};
+use super::file::{at, numbers};
 use crate::mesh::affine::Transform;
 use clench_math::{Quat, Vec3};
 use roxmltree::Node;

@@ -178,7 +178,7 @@ impl Settings {
                     (Some(own), Some(its)) if (own < its) == matches!(merge, Merge::Least) => {
                         Verdict::Same
                     }
-                    _ => Verdict::Becomes(its.join(" ")), // Who reads it says if it is no number.
+                    _ => Verdict::Becomes(its.join(" ")), // The reader of the option refuses it if it is not a number.
                 }
             }
             _ => Verdict::Conflict(format!(

@@ -5,7 +5,7 @@ use super::rule::{NONE, Rule, ignored, section};
 pub(super) const RULES: &[Rule] = &[
     Rule {
         element: "mujoco",
-        ignored: "model",
+        read: "model",
         children: "compiler option size statistic visual default extension asset worldbody deformable contact tendon \
             equality actuator sensor custom keyframe",
         ..NONE

@@ -6,10 +6,10 @@ use crate::mjcf::shortcut::Shortcut;
 use clench_rigid::builder::{
     ActuatorSpec, BuildError, ModelBuilder, SensorSubject, TransmissionSpec,
 };
-use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind, SensorKind};
+use clench_rigid::model::{Attachment, BiasKind, ControlInput, DynamicsKind, GainKind};
 use std::collections::BTreeMap;
 
-/// By what the controls and the activations of an actuator are multiplied, in their order.
+/// The factors of the controls and the activations of an actuator, in their order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct States {
     pub controls: Vec<f64>,
@@ -38,11 +38,9 @@ impl Frames {
                 SensorSubject::Element(name) => transmissions.get(name.as_str()),
                 _ => None,
             };
-            let factor = along.map_or(1.0, |along| match sensor.kind {
-                SensorKind::ActuatorPos | SensorKind::ActuatorVel => along.coordinate,
-                SensorKind::ActuatorFrc => along.force,
-                _ => 1.0,
-            });
+            let of_actuator = sensor.kind.attachment() == Attachment::Actuator;
+            let along = along.filter(|_| of_actuator);
+            let factor = along.map_or(1.0, |along| along.of_dimension(sensor.kind.dimension()));
             sensor.cutoff *= factor;
             sensor.noise *= factor;
         }
@@ -160,7 +158,7 @@ impl Command {
         }
     }
 
-    /// By what it is multiplied.
+    /// Its factor.
     fn scale(self, along: Along) -> f64 {
         match self {
             Command::Coordinate => along.coordinate,
@@ -178,7 +176,7 @@ impl Command {
         }
     }
 
-    /// By what all controls and activations are multiplied.
+    /// The factors of all controls and activations.
     fn states(
         self,
         actuator: &ActuatorSpec,

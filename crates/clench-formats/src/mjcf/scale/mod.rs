@@ -26,7 +26,7 @@ use clench_rigid::builder::{BodySpec, BuildError, JointSpec, ModelBuilder, Origi
 use clench_rigid::model::JointKind;
 use std::collections::BTreeMap;
 
-/// By what the frames around an element multiply its numbers.
+/// The factors by which the frames around an element multiply its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
     /// Lengths that have no direction.
@@ -110,7 +110,7 @@ impl Scale {
         }
     }
 
-    /// By what a quantity of dimension M Lᵃ that follows forces is multiplied; any power of time may go with it.
+    /// The factor of a quantity of dimension M Lᵃ that follows forces; any power of time may go with it.
     fn force(self, lengths: i32) -> f64 {
         self.unit_mass * self.unit_length.powi(lengths)
     }
@@ -146,7 +146,7 @@ enum Coordinate {
     Angle,
 }
 
-/// By what the quantities along a coordinate are multiplied.
+/// The factors of the quantities along a coordinate.
 #[derive(Clone, Copy, Debug)]
 struct Along {
     /// Positions and velocities.
@@ -367,7 +367,7 @@ impl Frames {
     /// Scales all that names what is in the frames.
     ///
     /// # Errors
-    /// Actuators and sensors that cannot be scaled, and what takes more memory than is left.
+    /// Equalities, actuators and sensors that cannot be scaled, and what takes more memory than is left.
     pub(super) fn scale_rest(
         mut self,
         shortcuts: &[Shortcut],
@@ -381,7 +381,7 @@ impl Frames {
         self.weigh_shells(builder);
         self.scale_tendons(builder);
         self.scale_pairs(builder);
-        self.scale_equalities(builder);
+        self.scale_equalities(builder)?;
         self.scale_sensors(builder)?;
         let actuators = self.scale_actuators(shortcuts, builder)?;
         self.scale_keyframes(&actuators, builder);

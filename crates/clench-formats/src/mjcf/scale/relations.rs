@@ -7,7 +7,7 @@ use clench_rigid::builder::{
     ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName, GeomsName, ModelBuilder,
     SensorSpec, SensorSubject, TendonSpec, WrapSpec,
 };
-use clench_rigid::model::{JointKind, SensorKind};
+use clench_rigid::model::{Attachment, JointKind, SensorDimension};
 use std::collections::BTreeMap;
 
 impl Frames {
@@ -108,13 +108,16 @@ impl Frames {
         }
     }
 
-    pub(super) fn scale_equalities(&self, builder: &mut ModelBuilder) {
-        for equality in &mut builder.equalities {
-            self.scale_equality(equality);
-        }
+    /// Scales what equalities hold, and how soft they are.
+    ///
+    /// # Errors
+    /// A kind of which it is not known what scales it.
+    pub(super) fn scale_equalities(&self, builder: &mut ModelBuilder) -> Result<(), LoadError> {
+        let mut equalities = builder.equalities.iter_mut();
+        equalities.try_for_each(|equality| self.scale_equality(equality))
     }
 
-    fn scale_equality(&self, equality: &mut EqualitySpec) {
+    fn scale_equality(&self, equality: &mut EqualitySpec) -> Result<(), LoadError> {
         let width = match &mut equality.kind {
             EqualityKind::Connect(ConnectAnchor::Bodies { body1, anchor, .. }) => {
                 *anchor = self.in_body(body1).apply(*anchor);
@@ -164,8 +167,18 @@ impl Frames {
                 let leader = tendon2.as_ref().map(|tendon| self.of_tendon(tendon));
                 scale_coupling(self.of_tendon(tendon1), leader, polycoef)
             }
+            _ => {
+                let message = "an equality of this kind cannot be scaled";
+                return Err(located(
+                    &equality.origin,
+                    "equality",
+                    &equality.name,
+                    message,
+                ));
+            }
         };
         equality.solimp[2] *= width;
+        Ok(())
     }
 
     /// Scales the cutoff and the noise of each sensor.
@@ -188,24 +201,31 @@ impl Frames {
     }
 }
 
-/// The dimension of what a sensor measures.
-enum Dimension {
-    /// A length, with any power of time.
-    Length,
-    /// M Lᵃ that follows forces.
-    Force(i32),
-    None,
+impl Along {
+    /// The factor of numbers of this dimension along the coordinate.
+    pub(super) fn of_dimension(self, dimension: SensorDimension) -> f64 {
+        match dimension {
+            SensorDimension::Coordinate => self.coordinate,
+            SensorDimension::CoordinateForce => self.force,
+            _ => 1.0,
+        }
+    }
 }
 
 impl Frames {
-    /// By what the numbers of a sensor are multiplied; those of an actuator are looked at with it.
+    /// The factor of the numbers of a sensor; those of an actuator are scaled with the actuator.
     fn of_sensor(&self, sensor: &SensorSpec) -> f64 {
-        use SensorKind as K;
-        let element = match &sensor.subject {
-            SensorSubject::Element(name) => name.as_str(),
-            _ => "",
-        };
+        let dimension = sensor.kind.dimension();
         let scale = match &sensor.subject {
+            SensorSubject::Element(name) => match sensor.kind.attachment() {
+                Attachment::Site => self.of_site(name),
+                Attachment::Body => self.of_body(name),
+                Attachment::ScalarJoint | Attachment::Ball | Attachment::Joint => {
+                    return self.of_joint(name).of_dimension(dimension);
+                }
+                Attachment::Tendon => return self.of_tendon(name).of_dimension(dimension),
+                _ => Scale::ONE,
+            },
             SensorSubject::Frame { object, .. } => self.of_object(object),
             SensorSubject::Rays { source, .. } => self.of_object(source),
             SensorSubject::Geoms(sides) => {
@@ -217,28 +237,11 @@ impl Frames {
             }
             _ => Scale::ONE,
         };
-        let (scale, dimension) = match sensor.kind {
-            K::Touch | K::Force => (self.of_site(element), Dimension::Force(1)),
-            K::Torque => (self.of_site(element), Dimension::Force(2)),
-            K::Accelerometer | K::Velocimeter => (self.of_site(element), Dimension::Length),
-            K::FramePos | K::FrameLinVel | K::FrameLinAcc => (scale, Dimension::Length),
-            K::Rangefinder | K::Distance | K::Normal | K::FromTo => (scale, Dimension::Length),
-            K::SubtreeCom | K::SubtreeLinVel => (self.of_body(element), Dimension::Length),
-            K::SubtreeAngMom => (self.of_body(element), Dimension::Force(2)),
-            K::JointPos | K::JointVel | K::JointLimitPos | K::JointLimitVel => {
-                return self.of_joint(element).coordinate;
-            }
-            K::JointActuatorFrc | K::JointLimitFrc => return self.of_joint(element).force,
-            K::TendonPos | K::TendonVel | K::TendonLimitPos | K::TendonLimitVel => {
-                return self.of_tendon(element).coordinate;
-            }
-            K::TendonActuatorFrc | K::TendonLimitFrc => return self.of_tendon(element).force,
-            _ => (Scale::ONE, Dimension::None),
-        };
         match dimension {
-            Dimension::Length => scale.length,
-            Dimension::Force(lengths) => scale.force(lengths),
-            Dimension::None => 1.0,
+            SensorDimension::Length => scale.length,
+            SensorDimension::Force => scale.force(1),
+            SensorDimension::Torque => scale.force(2),
+            _ => 1.0,
         }
     }
 

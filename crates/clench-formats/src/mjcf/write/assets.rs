@@ -52,7 +52,7 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
     }
     tag = tag.singles("vertex", vertices.as_flattened().iter().copied());
     if !tangents.is_empty() {
-        // Of a normal nobody asks: any stands in its place.
+        // Only the tangents are read back: any vector may stand for the normal.
         let frames = tangents
             .iter()
             .flat_map(|[a, b]| [a.cross(*b), *a, *b].map(Vec3::to_array));

@@ -45,7 +45,7 @@ pub fn arm_and_box() -> ModelBuilder {
 }
 
 /// Twelve bodies thrown into a box: they touch in all ways, in the end nearly all of them.
-pub fn crowd() -> ModelBuilder {
+pub fn many_islands() -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new();
     b.bodies[0].geoms.push(plane());

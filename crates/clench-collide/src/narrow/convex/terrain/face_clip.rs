@@ -50,18 +50,18 @@ impl<S: Scalar> FaceClip<'_, S> {
             return self.add(place(corner), margin, found);
         }
         let (e, f) = across(self.normal);
-        let view = Mat3::from_rows(e, f, self.normal);
-        let mut shown = Polygon::empty();
+        let projection = Mat3::from_rows(e, f, self.normal);
+        let mut clipped = Polygon::empty();
         for corner in &feature.corners {
-            shown.push(view * place(corner));
+            clipped.push(projection * place(corner));
         }
-        let own = shown.clone();
+        let own = clipped.clone();
         for Side { out, limit, .. } in sides {
-            shown.clip((out.dot(e), out.dot(f)), limit);
+            clipped.clip((out.dot(e), out.dot(f)), limit);
         }
         let mut any = false;
-        for corner in shown.corners() {
-            let place = view.transpose_mul(*corner);
+        for corner in clipped.corners() {
+            let place = projection.transpose_mul(*corner);
             if own.corners().contains(corner) || self.ends_at(place, &sides) {
                 any |= self.add(place, margin, found);
             } else {

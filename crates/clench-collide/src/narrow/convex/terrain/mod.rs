@@ -221,7 +221,7 @@ impl<S: Scalar> Search<S> {
             if known.gap > self.margin {
                 return Err(known);
             }
-            // For bodies that are apart it gives no distance.
+            // Of bodies that are apart the gap found so is not always the distance.
             if known.gap <= S::ZERO && Real::is_finite(known.gap) {
                 return Ok((known, Simplex::new(pair.vertex(known.normal))));
             }
@@ -275,7 +275,7 @@ impl<S: Scalar> Search<S> {
                 .for_each(|p| keep_deeper(&mut self.deepest, *p));
             if !level || !clip.touch(self.margin, &mut self.found) {
                 touching.iter().for_each(|p| self.found.add(*p));
-                // Where there is no more room it is found again.
+                // A feature that there is no room for is found again with the next triangle around it.
                 let _ = self.features.try_push(feature);
             }
         } else {

@@ -62,7 +62,8 @@ impl<S: Scalar> Triangle<'_, S> {
     }
 }
 
-/// A point, or, of a direction that leads downwards, what is below and above it.
+/// A point; or, where the normal points downwards, its projection onto the horizontal plane: of a prism, which goes on downwards, heights
+/// do not count then.
 fn level<S: Scalar>(v: Vec3<S>, flat: bool) -> Vec3<S> {
     if flat {
         Vec3::new(v.x, v.y, S::ZERO)

@@ -25,7 +25,7 @@ fn radical_inverse(mut index: u64, base: u64) -> f64 {
 /// Puts slides and hinges that are solved for where start `index` has them: within their ranges, or a half turn around `qpos` where a
 /// hinge has none. All else stays.
 #[inline(always)]
-pub(super) fn spread<T: Real>(
+pub(super) fn sample_posture<T: Real>(
     model: &Model,
     params: &Params<T>,
     ik: &Ik,

@@ -1,0 +1,245 @@
+//! No file of a crate uses, by way of others, a file that uses it: each can be understood with those that it stands on. Only the dispatch
+//! of lanes may, which gives out the number types that it is itself written for.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::slice::from_ref;
+
+/// A module by its path in the crate; the root is empty.
+type Module = Vec<String>;
+
+/// A name that a module imports.
+struct Import {
+    name: String,
+    path: Module,
+    /// Whether it is exported again, which is no use of it.
+    exported: bool,
+}
+
+/// The file that may be part of circles.
+const EXEMPT: &str = "lanes::dispatch";
+/// The most times that a name is exported again.
+const MAX_EXPORTS: usize = 8;
+
+#[test]
+fn files_use_each_other_in_no_circle() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let crates = fs::read_dir(root.join("crates")).expect("the folder is there");
+    let crates = crates.map(|entry| entry.expect("it can be listed").path());
+    let mut files = 0;
+    for folder in crates.chain([root.join("python"), root.join("xtask")]) {
+        let modules = modules(&folder.join("src"));
+        files += modules.len();
+        let circle = circle(&uses(&modules));
+        assert!(circle.is_empty(), "{}: {circle:#?}", folder.display());
+    }
+    assert!(files > 400, "only {files} files were found");
+}
+
+#[test]
+fn a_circle_is_found_through_what_is_exported_again() {
+    let code = [
+        ("", "mod a;\nmod b;\npub use b::Thing;"),
+        ("a", "use crate::Thing;"),
+        ("b", "use super::{a::{self, Other}, c};"),
+        ("c", ""),
+    ];
+    let module = |path: &str| Module::from_iter(path.split_terminator("::").map(str::to_owned));
+    let mut modules = BTreeMap::from(code.map(|(path, text)| (module(path), text.to_owned())));
+    assert_eq!(circle(&uses(&modules)), ["a uses b", "b uses a"]);
+    modules.insert(module("b"), "// use super::a;\nuse super::c;".into());
+    assert!(circle(&uses(&modules)).is_empty());
+}
+
+/// The text of each module below a folder of sources, without comments and tests.
+fn modules(src: &Path) -> BTreeMap<Module, String> {
+    let (mut found, mut open) = (BTreeMap::new(), vec![src.to_owned()]);
+    while let Some(folder) = open.pop() {
+        let entries = fs::read_dir(&folder).expect("the folder is there");
+        let paths = entries.map(|entry| entry.expect("it can be listed").path());
+        for path in paths {
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|end| end == "rs") && !path.ends_with("tests.rs")
+            {
+                let text = fs::read_to_string(&path).expect("it can be read");
+                let text = text.split("#[cfg(test)]\nmod tests {").next();
+                found.insert(module_of(src, &path), text.unwrap_or_default().to_owned());
+            }
+        }
+    }
+    found
+}
+
+fn module_of(src: &Path, path: &Path) -> Module {
+    let path: PathBuf = path
+        .strip_prefix(src)
+        .expect("it is below")
+        .with_extension("");
+    let parts = path.iter().map(|part| part.to_string_lossy().into_owned());
+    let mut module = Module::from_iter(parts);
+    if matches!(
+        module.last().map(String::as_str),
+        Some("mod" | "lib" | "main")
+    ) {
+        module.pop();
+    }
+    module
+}
+
+/// Which modules each module uses.
+fn uses(modules: &BTreeMap<Module, String>) -> BTreeMap<Module, BTreeSet<Module>> {
+    let code = modules.iter().map(|(module, text)| (module, plain(text)));
+    let code: BTreeMap<&Module, String> = code.collect();
+    let imports: BTreeMap<&Module, Vec<Import>> =
+        (code.iter().map(|(module, text)| (*module, imports(text)))).collect();
+    let resolve = |module: &Module, path: &[String]| resolve(&imports, module, path, 0);
+    let of = |module: &Module| {
+        let imported = imports[module].iter().filter(|import| !import.exported);
+        let imported = imported.map(|import| import.path.clone());
+        let named = paths(&code[module]);
+        let targets = imported
+            .chain(named)
+            .filter_map(|path| resolve(module, &path));
+        targets.filter(|target| target != module).collect()
+    };
+    modules
+        .keys()
+        .map(|module| (module.clone(), of(module)))
+        .collect()
+}
+
+/// The text without comments.
+fn plain(text: &str) -> String {
+    let code = text
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default());
+    code.collect::<Vec<_>>().join("\n")
+}
+
+/// What a text imports.
+fn imports(text: &str) -> Vec<Import> {
+    let mut found = Vec::new();
+    for statement in text.split(';') {
+        let Some((before, tree)) = statement.rsplit_once("use ") else {
+            continue;
+        };
+        let exported = before
+            .lines()
+            .last()
+            .is_some_and(|line| line.contains("pub"));
+        let trees = expand("", tree.trim());
+        found.extend(trees.into_iter().map(|(name, path)| Import {
+            name,
+            path,
+            exported,
+        }));
+    }
+    found
+}
+
+/// The names in an imported tree, each with its path.
+fn expand(prefix: &str, tree: &str) -> Vec<(String, Module)> {
+    let Some((path, branches)) = tree.split_once('{') else {
+        let path = format!("{prefix}{tree}");
+        let (path, name) = path.split_once(" as ").unwrap_or((&path, ""));
+        let path = path.strip_suffix("::self").unwrap_or(path);
+        let path = Module::from_iter(path.split("::").map(|part| part.trim().to_owned()));
+        let name = match (name.trim(), path.last()) {
+            ("", Some(last)) => last.clone(),
+            (name, _) => name.to_owned(),
+        };
+        return vec![(name, path)];
+    };
+    let prefix = format!("{prefix}{}", path.trim());
+    let branches = branches.trim_end().strip_suffix('}').unwrap_or(branches);
+    let (mut depth, mut start, mut found) = (0, 0, Vec::new());
+    for (at, c) in branches.char_indices().chain([(branches.len(), ',')]) {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                let branch = branches[start..at].trim();
+                if !branch.is_empty() {
+                    found.extend(expand(&prefix, branch));
+                }
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The paths that a text names from the root of the crate or from a module around.
+fn paths(text: &str) -> Vec<Module> {
+    let named = |c: char| c.is_alphanumeric() || "_:$".contains(c);
+    let words = text
+        .split(|c: char| !named(c))
+        .map(|word| word.trim_end_matches(':'));
+    let rooted = words.filter(|word| word.starts_with("crate::") || word.starts_with("super::"));
+    // `pub(in crate::a)` says who may see something, and uses nothing.
+    let used = rooted.filter(|word| !text.contains(&format!("(in {word})")));
+    used.map(|word| word.split("::").map(str::to_owned).collect())
+        .collect()
+}
+
+/// The module in which what a path names is defined, if it is one of the crate.
+fn resolve(
+    imports: &BTreeMap<&Module, Vec<Import>>,
+    module: &Module,
+    path: &[String],
+    depth: usize,
+) -> Option<Module> {
+    let child = |module: &Module, name: &String| [module.as_slice(), from_ref(name)].concat();
+    let (mut at, mut path) = (module.clone(), path);
+    match path.first()?.as_str() {
+        "crate" => (at, path) = (Module::new(), &path[1..]),
+        "self" => path = &path[1..],
+        "super" => {}
+        _ if imports.contains_key(&child(&at, &path[0])) => {}
+        _ => return None,
+    }
+    while path.first().is_some_and(|part| part == "super") {
+        at.pop();
+        path = &path[1..];
+    }
+    while let Some(name) = path
+        .first()
+        .filter(|name| imports.contains_key(&child(&at, name)))
+    {
+        at = child(&at, name);
+        path = &path[1..];
+    }
+    let named = path.first().and_then(|first| {
+        let mut all = imports.get(&at)?.iter();
+        all.find(|import| import.name == *first)
+    });
+    match named {
+        Some(import) if depth < MAX_EXPORTS => resolve(imports, &at, &import.path, depth + 1),
+        _ => Some(at),
+    }
+}
+
+/// The uses that are left when what uses nothing, and what nothing uses, is taken away again and again.
+fn circle(uses: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<String> {
+    let mut left: BTreeSet<(String, String)> = BTreeSet::new();
+    for (user, used) in uses {
+        left.extend(used.iter().map(|used| (user.join("::"), used.join("::"))));
+    }
+    left.retain(|(user, used)| user != EXEMPT && used != EXEMPT);
+    loop {
+        let users: BTreeSet<String> = left.iter().map(|(user, _)| user.clone()).collect();
+        let used: BTreeSet<String> = left.iter().map(|(_, used)| used.clone()).collect();
+        let before = left.len();
+        left.retain(|(from, to)| users.contains(to) && used.contains(from));
+        if left.len() == before {
+            break;
+        }
+    }
+    let told = left
+        .iter()
+        .map(|(user, used)| format!("{user} uses {used}"));
+    told.collect()
+}
