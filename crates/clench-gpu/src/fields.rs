@@ -158,8 +158,13 @@ fields! {
     jacobian: c.rows * m.nv;
     /// W J.
     weighed: c.rows * m.nv;
-    /// The mass matrix, a dense lower triangle.
-    mass: m.nv * (m.nv + 1) / 2;
+    /// Which rows are on pieces with curvature.
+    stiff: c.rows;
+    /// The mass matrix, in the pattern of the tree.
+    mass: m.tree.nnz();
+    /// The factor of H, and vectors over the dofs, where the workgroup has no room for them.
+    tiles: c.tiles;
+    vectors: c.vectors;
 }
 
 fields! {

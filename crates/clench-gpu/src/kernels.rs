@@ -4,10 +4,11 @@
 //! are put one after the other, behind the constants of the model. Loops run over tables; nothing is unrolled for a model.
 
 use crate::fields::Fields;
+use crate::solver_memory::SolverMemory;
 use crate::tables::{NONE, Tables};
 use std::fmt::Write;
 
-/// Threads of a workgroup: a subgroup on most cards, and few enough for a processor that plays one.
+/// Threads of a workgroup: a subgroup on most cards, few enough for a processor that plays one, and two for each row of a tile of H.
 pub(crate) const GROUP: u32 = 32;
 /// Workgroups in a row, where each has an environment: a dispatch has no more than 65,535 along an axis.
 pub(crate) const GRID: u32 = 32_768;
@@ -66,7 +67,7 @@ kernels! {
     /// Their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
     /// The convex problem.
-    SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "noslip", "newton";
+    SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton";
     /// Accelerations of bodies and forces between them, where somebody asks.
     BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "external", "body_forces";
     /// What sensors measure, where somebody asks.
@@ -88,6 +89,7 @@ pub(crate) struct Memory<'a> {
     pub work: &'a Fields,
     pub rows: &'a Fields,
     pub reports: &'a Fields,
+    pub solver: SolverMemory,
 }
 
 /// The codes of `reports`: those of [`GpuFault`](crate::GpuFault), and of what is aside and does not take part in a call.
@@ -137,7 +139,7 @@ pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
             declare(&field.name.to_uppercase(), field.place);
         }
     }
-    text
+    text + &memory.solver.constants()
 }
 
 impl Kernel {

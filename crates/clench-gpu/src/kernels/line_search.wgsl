@@ -74,8 +74,8 @@ fn narrow(bracket: ptr<function, Bracket>, at: Along) -> bool {
 fn ray_products() -> vec4f {
     var sum = vec4f();
     for (var i = lane; i < bound(NV); i += GROUP) {
-        let p = vectors[RAY_AT + i];
-        sum += p * vec4f(vectors[GRADIENT_AT + i], p, vectors[INERTIAL_AT + i], vectors[MASS_RAY_AT + i]);
+        let p = vector(RAY_AT + i);
+        sum += p * vec4f(vector(GRADIENT_AT + i), p, vector(INERTIAL_AT + i), vector(MASS_RAY_AT + i));
     }
     return total(sum);
 }

@@ -32,42 +32,24 @@ fn agreed(answer: u32) -> u32 {
     return workgroupUniformLoad(&verdict);
 }
 
-// The mass matrix as a dense lower triangle; returns its trace.
-fn spread_mass() -> f32 {
-    for (var k = lane; k < PACKED; k += GROUP) {
-        put_row(MASS + k, 0.0);
-    }
-    join();
-    var diagonal = 0.0;
-    for (var i = lane; i < bound(NV); i += GROUP) {
-        let end = words[TREE_START + i + 1u];
-        for (var p = words[TREE_START + i]; p < end; p++) {
-            put_row(MASS + packed(i, words[TREE_DOF + p]), fetch(QM + p));
-        }
-        diagonal += fetch(QM + end - 1u);
-    }
-    join();
-    return total(vec4f(diagonal, 0.0, 0.0, 0.0)).x;
-}
-
 // Puts the iterate where a round begins: at the unconstrained acceleration, at that of the last step, or where it is.
 fn place(round: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
         if (round == AT_WARMSTART) {
-            vectors[QACC_AT + i] = given(QACC_WARMSTART + i);
+            put_vector(QACC_AT + i, given(QACC_WARMSTART + i));
         } else if (round != REFRESH) {
-            vectors[QACC_AT + i] = fetch(QACC_SMOOTH + i);
+            put_vector(QACC_AT + i, fetch(QACC_SMOOTH + i));
         }
     }
-    workgroupBarrier();
+    join();
 }
 
 fn find_direction() {
-    for (var i = lane; i < bound(NV); i += GROUP) {
-        vectors[RAY_AT + i] = -vectors[GRADIENT_AT + i];
+    for (var i = lane; i < bound(WIDTH); i += GROUP) {
+        put_vector(RAY_AT + i, select(0.0, -vector(GRADIENT_AT + i), i < NV));
     }
-    workgroupBarrier();
-    solve_hessian(RAY_AT);
+    join();
+    solve_hessian(RAY_AT, MASS_RAY_AT);
 }
 
 // What comes after a round that did not descend.
@@ -138,8 +120,7 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
         if (round == DESCEND) {
             let rebuild = agreed(select(1u, 0u, c.same_hessian));
             if (rebuild == 1u) {
-                build_hessian(nblock);
-                factor_hessian();
+                factor_hessian(weigh_rows(nblock));
             }
             find_direction();
             prepare_ray(nrow);
@@ -167,14 +148,14 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     if (env >= envs) {
         return;
     }
-    let inertia = spread_mass();
+    let inertia = copy_mass();
     let c = minimise(reports[NROW * envs + env], reports[NBLOCK * envs + env], inertia);
     if (NOSLIP_ITERATIONS > 0u) {
         noslip(reports[NROW * envs + env], reports[NBLOCK * envs + env], 1.0 / inertia);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
-        put(QACC + i, vectors[QACC_AT + i]);
-        put(QFRC_CONSTRAINT + i, vectors[CONSTRAINT_AT + i]);
+        put(QACC + i, vector(QACC_AT + i));
+        put(QFRC_CONSTRAINT + i, vector(CONSTRAINT_AT + i));
     }
     if (lane == 0u) {
         reports[NITER * envs + env] = c.iterations;

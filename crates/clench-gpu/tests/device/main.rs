@@ -5,6 +5,7 @@ mod batch;
 mod common;
 mod dm_control;
 mod gymnasium;
+mod large;
 mod outputs;
 mod refusals;
 mod stages;
