@@ -76,13 +76,6 @@ rules! {
             || matches!(a.gain, GainKind::Pid | GainKind::DcMotor)
             || a.bias == BiasKind::DcMotor
     });
-    "surfaces that move are not there yet": |s| geom(s.model, |m, g| {
-        m.params.geom_surfacevel[g].iter().any(|&v| v != 0.0)
-    });
-    "contacts that adhere are not there yet": |s| geom(s.model, |m, g| m.params.geom_adhesion[g] != 0.0).or_else(|| {
-        let pair = s.model.params.pair_adhesion.iter().position(|&a| a != 0.0)?;
-        Some(named("pair", &s.model.pairs[pair].name, pair))
-    });
     "the medium acts on boxes of inertia only": |s| geom(s.model, |m, g| m.geoms[g].fluid_ellipsoid);
     "the contacts of these two kinds of shape are not there yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;

@@ -144,9 +144,12 @@ fields! {
     active_set: c.blocks;
     row_block: c.rows;
     position: c.rows;
+    /// Until its Jacobian is known, what surfaces move by themselves.
     velocity: c.rows;
     aref: c.rows;
     damping: c.rows;
+    /// The force with which a row pulls where it would otherwise give none, if any contact adheres.
+    pull: if c.adheres { c.rows } else { 0 };
     r: c.rows;
     d: c.rows;
     shape: c.rows;

@@ -60,18 +60,18 @@ kernels! {
     CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "chains", "velocity", "adhesion", "passive", "tendon_forces", "muscle", "activation", "gain",
+    FORCES = "forces", Thread: "tree", "chains", "velocity", "adhesive", "adhesion", "passive", "tendon_forces", "muscle", "activation", "gain",
         "actuation", "forces";
     /// Which constraints act, and how soft they are.
-    CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "constraints";
+    CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
     /// Their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton";
     /// Accelerations of bodies and forces between them, where somebody asks.
-    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "external", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "external", "body_forces";
     /// What sensors measure, where somebody asks.
-    SENSORS = "sensors", Thread: "chains", "site_volume", "sensors";
+    SENSORS = "sensors", Thread: "chains", "site_volume", "adhesive", "sensors";
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.

@@ -15,7 +15,8 @@ fn contact_arms(u: u32, body: u32) {
             continue;
         }
         let margin = parameter(PAIR_PRM + PAIR_PRM_SIZE * pair);
-        if (move_alike(a, b) && fetch(place + 1u) < margin) {
+        let acts = fetch(place + 1u) < margin || contact_adhesion(c) != 0.0;
+        if (move_alike(a, b) && acts) {
             continue;
         }
         count += 1.0;

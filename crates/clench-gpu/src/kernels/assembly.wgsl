@@ -97,7 +97,7 @@ fn entry(a: u32, i: u32) -> f32 {
 
 // The velocity along a row, and the inverse inertia that it would see if dofs were independent.
 fn finish_row(a: u32) {
-    var velocity = 0.0;
+    var velocity = row(VELOCITY + a);
     var inertia = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
         let j = row(JACOBIAN + a * NV + i);
@@ -131,6 +131,9 @@ fn finish_cone(first: u32, dim: u32, is_pyramid: bool) {
 fn finish_stiffness(a: u32, r: f32) {
     put_row(R + a, r);
     put_row(D + a, 1.0 / r);
+    if (ANY_ADHESION) {
+        put_row(AREF + a, row(AREF + a) + r * row(PULL + a));
+    }
 }
 
 fn finish_block(b: u32) {

@@ -112,7 +112,8 @@ fn external_forces() {
         let forces = three_forces(first, end);
         let torques = three_forces(first + 3u, end);
         if (kind >= CONTACT_NORMAL) {
-            push_contact(block(b, BLOCK_SOURCE), forces, torques);
+            let adhesion = contact_adhesion(block(b, BLOCK_SOURCE));
+            push_contact(block(b, BLOCK_SOURCE), forces - vec3f(adhesion, 0.0, 0.0), torques);
         } else if (kind == HELD) {
             push_held(block(b, BLOCK_SOURCE), forces, torques);
         }

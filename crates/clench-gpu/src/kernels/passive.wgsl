@@ -1,4 +1,4 @@
-// Springs, dampers, gravity compensation and the medium. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
+// Springs, dampers, gravity compensation, the medium, and contacts that adhere. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
 //
 // A spring pulls with −(a x + b x² + c x³), a damper with −(a v + b v |v| + c v³).
 
@@ -75,6 +75,25 @@ fn gravity_compensation() {
     }
 }
 
+// What contacts hold on with pulls their bodies together, against what their constraints give for it.
+fn adhesion_forces() {
+    for (var b = 0u; b < bound(NBODY); b++) {
+        put_spatial(CFRC + 6u * b, Spatial(vec3f(), vec3f()));
+    }
+    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+        let place = CONTACTS + CONTACT_SIZE * c;
+        let pair = u32(fetch(place));
+        let adhesion = contact_adhesion(c);
+        for (var side = 0u; side < 2u; side++) {
+            let b = words[PAIR_BODY + 2u * pair + side];
+            let force = fetch3(place + 5u) * select(adhesion, -adhesion, side == 1u);
+            let pull = Spatial(cross(offset_of(b, fetch3(place + 2u)), force), force);
+            put_spatial(CFRC + 6u * b, plus(fetch_spatial(CFRC + 6u * b), pull));
+        }
+    }
+    project_forces(QFRC_PASSIVE);
+}
+
 fn passive_forces() {
     clear_dofs(QFRC_PASSIVE);
     springs();
@@ -85,5 +104,8 @@ fn passive_forces() {
     }
     if (HAS_FLUID) {
         fluid_forces();
+    }
+    if (ADHESION_PULLS) {
+        adhesion_forces();
     }
 }

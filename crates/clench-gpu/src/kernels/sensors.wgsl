@@ -173,7 +173,7 @@ fn touch(s: u32, prm: u32) -> f32 {
         let place = CONTACTS + CONTACT_SIZE * block(b, BLOCK_SOURCE);
         let pair = u32(fetch(place));
         let second = words[PAIR_BODY + 2u * pair + 1u];
-        let normal = row(FORCE + block(b, BLOCK_ROW));
+        let normal = row(FORCE + block(b, BLOCK_ROW)) - contact_adhesion(block(b, BLOCK_SOURCE));
         if ((own != second && own != words[PAIR_BODY + 2u * pair]) || normal <= 0.0) {
             continue;
         }

@@ -56,6 +56,8 @@ pub(crate) struct Capacity {
     pub tiles: usize,
     /// Numbers of the solver's vectors that lie with the rows.
     pub vectors: usize,
+    /// Whether any contact adheres of itself.
+    pub adheres: bool,
 }
 
 impl Tables {

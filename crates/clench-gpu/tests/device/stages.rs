@@ -103,6 +103,16 @@ fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
     heap(&one, 2);
 }
 
+/// Both cones; friction of elliptic ones with a damping of its own.
+#[test]
+fn surfaces_that_move_and_contacts_that_adhere() {
+    let surfaces = own("surfaces");
+    agree(&text(&surfaces), 100, 0.7);
+    let elliptic = (surfaces.replace("<option ", "<option cone=\"elliptic\" impratio=\"2\" "))
+        .replace("<pair ", "<pair solreffriction=\"0.05 1\" ");
+    agree(&text(&elliptic), 100, 0.7);
+}
+
 #[test]
 fn elliptic_cones() {
     let medley = own("medley");

@@ -103,6 +103,11 @@ fn activations_go_along_by_either_integrator() {
     drift_alike(&text(&rk4), 100);
 }
 
+#[test]
+fn so_do_bodies_on_surfaces_that_move_and_adhere() {
+    drift_alike(&text(&own("surfaces")), 100);
+}
+
 /// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
 /// has done, it has done.
 #[test]
