@@ -84,7 +84,7 @@ impl GpuBatch {
         })?;
         let device = Device::open(options.device.as_deref())?;
         let room = device.limits.max_compute_workgroup_storage_size as usize;
-        let solver = SolverMemory::new(model.nv, room)?;
+        let solver = SolverMemory::new(model.nv, settings.solver.constraint_solver, room)?;
         let (mut tables, mut capacity) = Tables::new(&model, &settings, &pairs);
         solver.reserve(&mut capacity);
         let base = Base::new(&tables, pairs);

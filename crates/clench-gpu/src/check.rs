@@ -7,7 +7,6 @@ use clench_rigid::model::{
     BiasKind, DynamicsKind, EqualityTarget, GainKind, Integrator, Model, Transmission,
 };
 use clench_rigid::settings::StepSettings;
-use clench_solver::ConstraintSolver;
 
 /// What a batch is asked to step.
 pub(crate) struct Simulation<'a> {
@@ -36,10 +35,6 @@ rules! {
     };
     "the integrator `discrete` is not there yet; `Euler`, `implicitfast` and `RK4` are": |s| {
         (s.model.integrator == Integrator::Discrete).then(|| "option integrator".to_owned())
-    };
-    "Newton is the only solver": |s| {
-        let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
-        cg.then(|| "option constraint_solver".to_owned())
     };
     "environments do not start over by themselves yet: look at the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())

@@ -73,7 +73,7 @@ pub enum GpuError {
     Unsupported(Vec<Refusal>),
     /// More dofs than the solver factors a Hessian of.
     #[error(
-        "Newton's method on a graphics device is for up to {most} dofs, but the model has {nv}"
+        "Newton's method on a graphics device is for up to {most} dofs, but the model has {nv}: the solver CG has no such limit"
     )]
     TooManyDofs {
         /// How many there may be.

@@ -188,8 +188,9 @@ fields! {
     ncon: 1;
     nblock: 1;
     nrow: 1;
-    /// Newton iterations of the last solve.
+    /// Iterations of the last solve, and the bits of the duality gap that they left.
     niter: 1;
+    solve_gap: 1;
     /// How it ended, as the codes of `clench_solver::Status`.
     solve_status: 1;
 }

@@ -67,7 +67,7 @@ kernels! {
     /// Their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
     /// The convex problem.
-    SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton";
+    SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "cg", "descent";
     /// Accelerations of bodies and forces between them, where somebody asks.
     BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "external", "body_forces";
     /// What sensors measure, where somebody asks.

@@ -2,12 +2,14 @@
 
 use crate::error::GpuError;
 use crate::tables::Capacity;
+use clench_solver::ConstraintSolver;
 use std::fmt::Write;
 
 /// Rows and columns of a tile of H.
 const TILE: usize = 16;
-/// Vectors over the dofs.
-const VECTORS: usize = 6;
+/// Vectors over the dofs, of Newton's method and of conjugate gradients.
+const NEWTON_VECTORS: usize = 6;
+const CG_VECTORS: usize = 9;
 /// Newton's method factors Hessians of so many dofs at most.
 const MAX_NEWTON_DOFS: usize = 512;
 /// The factor of a Hessian of more dofs would leave so little of a card's memory to other workgroups that few could run side by side.
@@ -18,6 +20,7 @@ const STAGING: usize = 4 * (2 * TILE * 20 + TILE) + 1024;
 /// Where a solve keeps what is of the size of the dofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SolverMemory {
+    newton: bool,
     /// Tiles of H in a row.
     ntile: usize,
     share_tiles: bool,
@@ -25,18 +28,20 @@ pub(crate) struct SolverMemory {
 }
 
 impl SolverMemory {
-    /// For `nv` dofs, where a workgroup shares `room` bytes.
+    /// For `nv` dofs, by Newton's method or by conjugate gradients, where a workgroup shares `room` bytes.
     ///
     /// # Errors
     /// More dofs than Newton's method is for.
-    pub(crate) fn new(nv: usize, room: usize) -> Result<Self, GpuError> {
-        if nv > MAX_NEWTON_DOFS {
+    pub(crate) fn new(nv: usize, solver: ConstraintSolver, room: usize) -> Result<Self, GpuError> {
+        let newton = solver == ConstraintSolver::Newton;
+        if newton && nv > MAX_NEWTON_DOFS {
             return Err(GpuError::TooManyDofs {
                 most: MAX_NEWTON_DOFS,
                 nv,
             });
         }
         let mut memory = SolverMemory {
+            newton,
             ntile: nv.div_ceil(TILE),
             share_tiles: nv <= MAX_SHARED_DOFS,
             share_vectors: true,
@@ -47,13 +52,19 @@ impl SolverMemory {
         Ok(memory)
     }
 
-    /// Numbers of the tiles of a lower triangle.
+    /// Numbers of the tiles of a lower triangle; conjugate gradients need none.
     fn tiles(self) -> usize {
-        TILE * TILE * self.ntile * (self.ntile + 1) / 2
+        let triangle = TILE * TILE * self.ntile * (self.ntile + 1) / 2;
+        if self.newton { triangle } else { 0 }
     }
 
     fn vectors(self) -> usize {
-        VECTORS * TILE * self.ntile
+        let count = if self.newton {
+            NEWTON_VECTORS
+        } else {
+            CG_VECTORS
+        };
+        count * TILE * self.ntile
     }
 
     /// Sets aside what lies with the rows.
@@ -66,7 +77,7 @@ impl SolverMemory {
     /// The constants that tell the kernels. An array that is not used has one element, since it must have some.
     pub(crate) fn constants(self) -> String {
         let mut text = String::new();
-        let inside = |shared: bool, size: usize| if shared { size } else { 1 };
+        let inside = |shared: bool, size: usize| if shared { size.max(1) } else { 1 };
         for (name, value) in [
             ("NTILE", self.ntile),
             ("WIDTH", TILE * self.ntile),
@@ -76,6 +87,7 @@ impl SolverMemory {
             let _ = writeln!(text, "const {name}: u32 = {value}u;");
         }
         for (name, value) in [
+            ("NEWTON", self.newton),
             ("SHARE_TILES", self.share_tiles),
             ("SHARE_VECTORS", self.share_vectors),
         ] {

@@ -156,9 +156,8 @@ fn finish_block(b: u32) {
 
 @compute @workgroup_size(GROUP)
 fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
-    take_up(environment_of(workgroup));
     lane = index;
-    if (env >= envs) {
+    if (!begin_together(workgroup)) {
         return;
     }
     let nrow = reports[NROW * envs + env];

@@ -12,6 +12,10 @@ const RAY_AT: u32 = 3u * WIDTH;
 const MASS_RAY_AT: u32 = 4u * WIDTH;
 // Jᵀ f.
 const CONSTRAINT_AT: u32 = 5u * WIDTH;
+// Of conjugate gradients M⁻¹g; this and the gradient as the last direction was made of them. Newton's method has its direction there.
+const PRECONDITIONED_AT: u32 = select(6u, 3u, NEWTON) * WIDTH;
+const LAST_PRECONDITIONED_AT: u32 = 7u * WIDTH;
+const LAST_GRADIENT_AT: u32 = 8u * WIDTH;
 
 fn vector(place: u32) -> f32 {
     if (SHARE_VECTORS) {

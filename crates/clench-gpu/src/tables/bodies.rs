@@ -75,6 +75,11 @@ impl Tables {
         }
         self.words("BELOW_START", starts(below.iter().map(Vec::len)));
         self.words("BELOW_DOF", below.concat());
+        let mut levels = vec![Vec::new(); (0..nv).map(|i| tree.row(i).len()).max().unwrap_or(0)];
+        (0..nv).for_each(|i| levels[tree.row(i).len() - 1].push(i));
+        self.count("NLEVEL", levels.len());
+        self.words("LEVEL_START", starts(levels.iter().map(Vec::len)));
+        self.words("LEVEL_DOF", levels.concat());
         let words = nv.div_ceil(32);
         let mut masks = vec![0; m.nbody() * words];
         for (mask, body) in masks.chunks_exact_mut(words.max(1)).zip(&m.bodies) {

@@ -2,6 +2,8 @@
 
 use crate::common::{self, text};
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
+use clench_rigid::model::Model;
+use std::sync::Arc;
 
 /// Balls side by side that touch the floor and each other, and a chain of links between two of them.
 fn crowd(balls: usize, links: usize) -> String {
@@ -48,10 +50,40 @@ fn a_crowd_whose_hessian_lies_outside_the_workgroup() {
     assert!(solves.iter().all(|s| s.contacts > 10 && s.iterations > 1));
 }
 
+/// So many balls, of which three begin on the floor and two are held together.
+fn flock(balls: usize, option: &str) -> Arc<Model> {
+    let ball = |k: usize| {
+        let height = if k < 3 { 0.1 } else { 1.0 };
+        format!(
+            "<body name='{k}' pos='{k} 0 {height}'><freejoint/><geom size='0.1' contype='0'/></body>"
+        )
+    };
+    text(&format!(
+        "<mujoco model='flock'>
+           <option {option}/>
+           <worldbody><geom type='plane' size='1 1 1'/>{}</worldbody>
+           <equality><connect body1='2' body2='3' anchor='0.5 0 0.5'/></equality>
+         </mujoco>",
+        String::from_iter((0..balls).map(ball))
+    ))
+}
+
+/// So many that the memory of a workgroup of Mesa's software device does not hold the vectors either.
+#[test]
+fn conjugate_gradients_go_where_newton_does_not() {
+    let model = flock(136, "solver='CG' tolerance='1e-10'");
+    assert_eq!(model.nv, 816);
+    let Some(batch) = common::agree_within(1e-3, 0, &model, 3, 0.2) else {
+        return;
+    };
+    let solves = batch.solves().expect("a device");
+    assert!(solves.iter().all(|s| s.iterations > 1 && s.rows > 3));
+}
+
 #[test]
 fn more_dofs_than_newton_is_for_are_refused() {
-    let model = text(&crowd(86, 0));
-    let error = GpuBatch::new(model, 1, GpuOptions::default()).expect_err("516 dofs");
+    let error = GpuBatch::new(flock(86, ""), 1, GpuOptions::default()).expect_err("516 dofs");
     let most = 512;
     assert_eq!(error, GpuError::TooManyDofs { most, nv: 516 });
+    assert!(error.to_string().contains("CG has no such limit"));
 }

@@ -8,5 +8,6 @@ mod gymnasium;
 mod large;
 mod outputs;
 mod refusals;
+mod solver;
 mod stages;
 mod steps;

@@ -31,10 +31,6 @@ fn what_is_not_there_yet_is_refused_by_name() {
             "option integrator: the integrator `implicit`",
         ),
         (
-            model("<option solver='CG'/>", "", "", ""),
-            "option constraint_solver: Newton",
-        ),
-        (
             model("<option><flag autoreset='enable'/></option>", "", "", ""),
             "option autoreset",
         ),
