@@ -71,7 +71,6 @@ rules! {
             || matches!(a.gain, GainKind::Pid | GainKind::DcMotor)
             || a.bias == BiasKind::DcMotor
     });
-    "the medium acts on boxes of inertia only": |s| geom(s.model, |m, g| m.geoms[g].fluid_ellipsoid);
     "the contacts of these two kinds of shape are not there yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;
@@ -164,11 +163,6 @@ fn tendon(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
 fn actuator(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
     let u = (0..model.actuators.len()).find(|&u| refused(model, u))?;
     Some(named("actuator", &model.actuators[u].name, u))
-}
-
-fn geom(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
-    let g = (0..model.geoms.len()).find(|&g| refused(model, g))?;
-    Some(geom_name(model, g))
 }
 
 fn geom_name(model: &Model, g: usize) -> String {

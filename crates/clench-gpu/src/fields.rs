@@ -100,6 +100,8 @@ fields! {
     sensordata: m.nsensordata();
     /// Spatial forces of bodies, used up when they are projected.
     cfrc: 6 * m.nbody();
+    /// How forces of the medium on ellipsoids change with velocities, column by column.
+    fluid_rates: if m.bodies.iter().any(|b| b.fluid_ellipsoids) { 36 * m.nbody() } else { 0 };
     /// The mass matrix, in the pattern of the tree.
     qm: m.tree.nnz();
     /// Its LᵀDL, or that of an implicit step.

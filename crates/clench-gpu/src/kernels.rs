@@ -60,7 +60,7 @@ kernels! {
     CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "chains", "velocity", "adhesive", "adhesion", "passive", "tendon_forces", "muscle", "activation", "gain",
+    FORCES = "forces", Thread: "tree", "chains", "velocity", "adhesive", "adhesion", "ellipsoid", "passive", "tendon_forces", "muscle", "activation", "gain",
         "actuation", "forces";
     /// Which constraints act, and how soft they are.
     CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
@@ -77,8 +77,8 @@ kernels! {
     /// The next state, by semi-implicit Euler.
     EULER = "euler", Thread: "tree", "articulated", "activation", "verdict", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
-    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "activation", "gain", "verdict", "integrate", "derivatives",
-        "gyroscopic", "implicit";
+    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "activation", "gain", "verdict", "integrate",
+        "ellipsoid", "ellipsoid_rates", "derivatives", "gyroscopic", "implicit";
     /// The same by Runge–Kutta, stage by stage.
     RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "activation", "verdict", "integrate", "rk4";
 }

@@ -72,7 +72,23 @@ fn resistance_change(viscous: vec3f, quadratic: vec3f, v: vec3f, dv: vec3f) -> v
     return -(viscous + 2.0 * quadratic * abs(v)) * dv;
 }
 
-// What the medium adds: entry (i, j) is the power, along dof j, of the change of the resistance with dof i.
+// Adds the power, along each dof of the path to dof i, of a force on a body that changes with that dof.
+fn add_along_path(i: u32, change: Spatial) {
+    for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
+        add(QLD + p, -TIMESTEP * spatial_dot(fetch_spatial(CDOF + 6u * words[TREE_DOF + p]), change));
+    }
+}
+
+// What the medium adds on ellipsoids: of their forces only what is symmetric is counted.
+fn add_fluid_on_ellipsoids(b: u32) {
+    for (var i = 0u; i < bound(NV); i++) {
+        if (moves(b, i)) {
+            add_along_path(i, rate_along(b, fetch_spatial(CDOF + 6u * i), 1.0));
+        }
+    }
+}
+
+// What it adds on boxes: entry (i, j) is the power, along dof j, of the change of the resistance with dof i.
 fn add_fluid(b: u32) {
     let axes = fetch_matrix(XIMAT + 9u * b);
     let back = transpose(axes);
@@ -88,10 +104,7 @@ fn add_fluid(b: u32) {
         let motion = motion_at(b, i, at);
         let torque = axes * resistance_change(parameter3(drag), parameter3(drag + 6u), angular, back * motion.angular);
         let force = axes * resistance_change(parameter3(drag + 3u), parameter3(drag + 9u), linear, back * motion.linear);
-        let spatial = Spatial(torque + cross(offset_of(b, at), force), force);
-        for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
-            add(QLD + p, -TIMESTEP * spatial_dot(fetch_spatial(CDOF + 6u * words[TREE_DOF + p]), spatial));
-        }
+        add_along_path(i, Spatial(torque + cross(offset_of(b, at), force), force));
     }
 }
 
@@ -99,6 +112,10 @@ fn add_velocity_derivatives() {
     add_actuators();
     add_dampers();
     for (var b = 1u; HAS_FLUID && b < NBODY; b++) {
-        add_fluid(b);
+        if (has_ellipsoids(b)) {
+            add_fluid_on_ellipsoids(b);
+        } else {
+            add_fluid(b);
+        }
     }
 }

@@ -13,6 +13,9 @@ fn implicit_fast(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < bound(NV); i++) {
         put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
     }
+    if (HAS_FLUID && ANY_FLUID_ELLIPSOID) {
+        ellipsoid_rates();
+    }
     add_velocity_derivatives();
     gyroscopic_accelerations();
     if (!factor_tree()) {

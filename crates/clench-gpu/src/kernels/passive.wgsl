@@ -43,9 +43,13 @@ fn resistance(viscous: vec3f, quadratic: vec3f, v: vec3f) -> vec3f {
     return -(viscous * v + quadratic * abs(v) * v);
 }
 
-// The medium resists the box that has a body's mass and inertia; its coefficients are numbers of the model.
+// The medium resists the box that has a body's mass and inertia, whose coefficients are numbers of the model, or the body's ellipsoids.
 fn fluid_forces() {
     for (var b = 0u; b < bound(NBODY); b++) {
+        if (has_ellipsoids(b)) {
+            put_spatial(CFRC + 6u * b, ellipsoids_force(b));
+            continue;
+        }
         let axes = fetch_matrix(XIMAT + 9u * b);
         let back = transpose(axes);
         let arm = fetch3(XIPOS + 3u * b) - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);

@@ -114,6 +114,11 @@ fn surfaces_that_move_and_contacts_that_adhere() {
 }
 
 #[test]
+fn ellipsoids_in_a_medium() {
+    agree(&text(&own("swimmers")), 100, 0.7);
+}
+
+#[test]
 fn elliptic_cones() {
     let medley = own("medley");
     let elliptic = medley.replace(

@@ -108,6 +108,14 @@ fn so_do_bodies_on_surfaces_that_move_and_adhere() {
     drift_alike(&text(&own("surfaces")), 100);
 }
 
+#[test]
+fn so_do_ellipsoids_in_a_medium() {
+    let swimmers = own("swimmers");
+    drift_alike(&text(&swimmers), 100);
+    let implicit = swimmers.replace("<option ", "<option integrator=\"implicitfast\" ");
+    drift_alike(&text(&implicit), 100);
+}
+
 /// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
 /// has done, it has done.
 #[test]
