@@ -3,9 +3,7 @@
 use crate::error::{GpuError, Refusal};
 use clench_collide::{MAX_POINTS, ShapeKind};
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{
-    BiasKind, DynamicsKind, EqualityTarget, GainKind, Integrator, Model, Transmission,
-};
+use clench_rigid::model::{EqualityTarget, Integrator, Model, Transmission};
 use clench_rigid::settings::StepSettings;
 
 /// What a batch is asked to step.
@@ -61,16 +59,7 @@ rules! {
         let transmission = m.actuators[u].transmission;
         matches!(transmission, Transmission::Rotation(_) | Transmission::RotationInFrame(_))
     });
-    "actuators with delays, or with several controls or activations, are not there yet": |s| actuator(s.model, |m, u| {
-        let a = &m.actuators[u];
-        a.history.is_some() || a.controls.len() != 1 || a.acts.len() > 1
-    });
-    "controllers and motors with states of their own are not there yet": |s| actuator(s.model, |m, u| {
-        let a = &m.actuators[u];
-        matches!(a.dynamics, DynamicsKind::Pid | DynamicsKind::DcMotor)
-            || matches!(a.gain, GainKind::Pid | GainKind::DcMotor)
-            || a.bias == BiasKind::DcMotor
-    });
+    "actuators with delays are not there yet": |s| actuator(s.model, |m, u| m.actuators[u].history.is_some());
     "the contacts of these two kinds of shape are not there yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;

@@ -118,6 +118,8 @@ fields! {
     actuator_length: m.actuators.len();
     actuator_velocity: m.actuators.len();
     actuator_force: m.actuators.len();
+    /// With how much actuators pull at each tendon whose total is limited.
+    ten_actuator_force: m.tendons.len();
     qfrc_actuator: m.nv;
     qfrc_smooth: m.nv;
     qacc_smooth: m.nv;
@@ -134,6 +136,7 @@ fields! {
     start_qpos: m.nq;
     start_qvel: m.nv;
     start_act: m.na;
+    start_actuator_velocity: m.actuators.len();
     mean_act_dot: m.na;
     start_warmstart: m.nv;
 }

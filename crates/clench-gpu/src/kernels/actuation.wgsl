@@ -10,25 +10,32 @@ fn actuator_velocities() {
     }
 }
 
+// Leaves in TEN_ACTUATOR_FORCE with how much actuators pull at each tendon whose total is limited.
+fn sum_tendon_forces() {
+    for (var t = 0u; t < NTENDON; t++) {
+        put(TEN_ACTUATOR_FORCE + t, 0.0);
+    }
+    for (var u = 0u; ANY_ON_TENDON && u < NU; u++) {
+        let t = words[ACTUATOR_LIMITED_TENDON + u];
+        if (t != NONE) {
+            add(TEN_ACTUATOR_FORCE + t, fetch(ACTUATOR_FORCE + u));
+        }
+    }
+}
+
 // Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
 fn limit_tendon_forces() {
-    for (var t = 0u; ANY_ON_TENDON && t < NTENDON; t++) {
-        var total = 0.0;
-        for (var u = 0u; u < NU; u++) {
-            if (words[ACTUATOR_LIMITED_TENDON + u] == t) {
-                total += fetch(ACTUATOR_FORCE + u);
-            }
-        }
-        let low = parameter(TENDON_FORCE_RANGE + 2u * t);
-        let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
-        if (total == 0.0 || (total >= low && total <= high)) {
+    sum_tendon_forces();
+    for (var u = 0u; ANY_ON_TENDON && u < NU; u++) {
+        let t = words[ACTUATOR_LIMITED_TENDON + u];
+        if (t == NONE) {
             continue;
         }
-        let share = clamp(total, low, high) / total;
-        for (var u = 0u; u < NU; u++) {
-            if (words[ACTUATOR_LIMITED_TENDON + u] == t) {
-                put(ACTUATOR_FORCE + u, fetch(ACTUATOR_FORCE + u) * share);
-            }
+        let total = fetch(TEN_ACTUATOR_FORCE + t);
+        let low = parameter(TENDON_FORCE_RANGE + 2u * t);
+        let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
+        if (total != 0.0 && (total < low || total > high)) {
+            put(ACTUATOR_FORCE + u, fetch(ACTUATOR_FORCE + u) * (clamp(total, low, high) / total));
         }
     }
 }
@@ -45,7 +52,15 @@ fn actuation() {
     limit_tendon_forces();
     for (var u = 0u; u < NU; u++) {
         let range = FORCE_RANGE + 2u * u;
-        let force = clamp(fetch(ACTUATOR_FORCE + u), parameter(range), parameter(range + 1u));
+        put(ACTUATOR_FORCE + u, clamp(fetch(ACTUATOR_FORCE + u), parameter(range), parameter(range + 1u)));
+    }
+    // A tendon's range, as an actuator's own, holds what a motor's current pulls with, without its cogging and friction.
+    sum_tendon_forces();
+    for (var u = 0u; u < NU; u++) {
+        var force = fetch(ACTUATOR_FORCE + u);
+        if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR && words[ACTUATOR_OFF + u] == 0u) {
+            force += mechanical_force(u, fetch(ACTUATOR_LENGTH + u));
+        }
         put(ACTUATOR_FORCE + u, force);
         for (var k = words[ACTUATOR_ROW + u]; k < words[ACTUATOR_ROW + u + 1u]; k++) {
             add(QFRC_ACTUATOR + words[ACTUATOR_DOF + k], fetch(ACTUATOR_MOMENT + k) * force);

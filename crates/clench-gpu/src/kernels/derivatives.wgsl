@@ -1,9 +1,6 @@
 // How smooth forces change with velocities, in the pattern of the mass matrix: added, times −h, to what stands in QLD. Sister of
 // `dynamics/derivatives.rs`.
 
-// A sum of forces that were scaled into a range is at one of its ends if it misses it by so little of it.
-const SUM_ROUNDING: f32 = 16.0 * 1.1920929e-7;
-
 // Adds `scale` JᵀJ of a sparse row J, where the pattern has room for it: its dofs stand at `dofs`, its entries at `entries`.
 fn add_outer(dofs: u32, entries: u32, start: u32, end: u32, scale: f32) {
     for (var k = start; scale != 0.0 && k < end; k++) {
@@ -18,41 +15,10 @@ fn add_outer(dofs: u32, entries: u32, start: u32, end: u32, scale: f32) {
     }
 }
 
-fn is_saturated(x: f32, range: u32) -> bool {
-    return x <= parameter(range) || x >= parameter(range + 1u);
-}
-
-// Whether the actuators of a tendon pull with as much as it bears.
-fn tendon_is_saturated(t: u32) -> bool {
-    var total = 0.0;
-    for (var u = 0u; u < NU; u++) {
-        if (words[ACTUATOR_LIMITED_TENDON + u] == t) {
-            total += fetch(ACTUATOR_FORCE + u);
-        }
-    }
-    let low = parameter(TENDON_FORCE_RANGE + 2u * t);
-    let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
-    return total <= low + abs(low) * SUM_ROUNDING || total >= high - abs(high) * SUM_ROUNDING;
-}
-
-// Whether a limit of the actuator, its tendon or its joint holds its force.
-fn is_held(u: u32) -> bool {
-    if (is_saturated(fetch(ACTUATOR_FORCE + u), FORCE_RANGE + 2u * u)) {
-        return true;
-    }
-    if (words[ACTUATOR_LIMITED_TENDON + u] != NONE) {
-        return tendon_is_saturated(words[ACTUATOR_LIMITED_TENDON + u]);
-    }
-    let dof = words[ACTUATOR_DOF + words[ACTUATOR_ROW + u]];
-    return words[ACTUATOR_ON + u] <= ON_FREE && is_saturated(fetch(QFRC_ACTUATOR + dof), DOF_FORCE_RANGE + 2u * dof);
-}
-
 fn add_actuators() {
     for (var u = 0u; ACTUATION && u < NU; u++) {
-        if (words[ACTUATOR_OFF + u] == 0u && !is_held(u)) {
-            let scale = -TIMESTEP * unlimited_slope(u);
-            add_outer(ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + u], words[ACTUATOR_ROW + u + 1u], scale);
-        }
+        let scale = -TIMESTEP * velocity_slope(u);
+        add_outer(ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + u], words[ACTUATOR_ROW + u + 1u], scale);
     }
 }
 

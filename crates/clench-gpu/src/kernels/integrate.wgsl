@@ -50,16 +50,13 @@ fn restore_start() {
     }
 }
 
-// Moves activations a time step on, at the rates in `rates` (in work). Those of actuators that are off stay where they are, but for
-// whole turns on a circle.
-fn advance_activations(rates: u32) {
-    for (var u = 0u; u < NU; u++) {
-        let a = words[ACTUATOR_ACT + u];
-        if (!ACTUATION || a == NONE) {
-            continue;
-        }
+// Moves activations a time step on, at the rates in `rates` (in work), for velocities of actuators in `velocities`. Those of actuators
+// that are off stay where they are, but for whole turns on a circle.
+fn advance_activations(rates: u32, velocities: u32) {
+    for (var a = 0u; ACTUATION && a < NA; a++) {
+        let u = words[ACT_ACTUATOR + a];
         let rate = select(fetch(rates + a), 0.0, words[ACTUATOR_OFF + u] == 1u);
-        var next = next_activation(u, given(ACT + a), rate);
+        var next = next_activation(u, a, given(ACT + a), rate, fetch(velocities + u));
         if (words[ACTUATOR_SERVO + u] == 1u) {
             next = nearest_setpoint(u, next, fetch(ACTUATOR_LENGTH + u));
         }
@@ -130,7 +127,7 @@ fn damped_acceleration() {
 
 // Activations, then velocities by the acceleration in RATE, then positions with the new velocities.
 fn advance_semi_implicit() {
-    advance_activations(ACT_DOT);
+    advance_activations(ACT_DOT, ACTUATOR_VELOCITY);
     for (var i = 0u; i < bound(NV); i++) {
         let v = given(QVEL + i) + fetch(RATE + i) * TIMESTEP;
         keep(QVEL + i, v);

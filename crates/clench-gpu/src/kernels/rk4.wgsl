@@ -73,6 +73,9 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     }
     if (stage == 0u) {
         save_start();
+        for (var u = 0u; u < NU; u++) {
+            put(START_ACTUATOR_VELOCITY + u, fetch(ACTUATOR_VELOCITY + u));
+        }
     }
     collect_rates();
     add_to_mean();
@@ -88,6 +91,7 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     go(MEAN_RATE, MEAN_QACC, TIMESTEP);
-    advance_activations(MEAN_ACT_DOT);
+    // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with.
+    advance_activations(MEAN_ACT_DOT, START_ACTUATOR_VELOCITY);
     finish_step();
 }

@@ -2,7 +2,7 @@
 
 use super::{ENDLESS, NONE, Tables, starts};
 use clench_rigid::model::{
-    Actuator, BiasKind, DynamicsKind, GainKind, JointKind, Model, Transmission,
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Transmission,
 };
 use std::f64::consts::TAU;
 
@@ -18,15 +18,33 @@ const TRANSMISSIONS: [&str; 8] = [
     "ON_CONTACTS",
 ];
 /// How its activation follows its control.
-const DYNAMICS: [&str; 5] = [
+const DYNAMICS: [&str; 7] = [
     "DYN_NONE",
     "DYN_INTEGRATOR",
     "DYN_FILTER",
     "DYN_FILTER_EXACT",
     "DYN_MUSCLE",
+    "DYN_PID",
+    "DYN_DC_MOTOR",
 ];
 /// What its gain, or its bias, is.
-const LAWS: [&str; 2] = ["LAW_AFFINE", "LAW_MUSCLE"];
+const LAWS: [&str; 4] = ["LAW_AFFINE", "LAW_MUSCLE", "LAW_PID", "LAW_DC_MOTOR"];
+/// What a control is for a controller.
+const INPUTS: [&str; 5] = [
+    "INPUT_COMMAND",
+    "INPUT_POSITION",
+    "INPUT_VELOCITY",
+    "INPUT_FEEDFORWARD",
+    "INPUT_VOLTAGE",
+];
+/// The states of controllers and motors.
+const STATES: [&str; 5] = [
+    "STATE_SLEW",
+    "STATE_INTEGRAL",
+    "STATE_TEMPERATURE",
+    "STATE_BRISTLE",
+    "STATE_CURRENT",
+];
 /// Numbers of a law: three coefficients, or those of a muscle.
 const LAW_SIZE: usize = 9;
 /// The shortest time constant (s) of a filter, and the least divisor (MuJoCo's `mjMINVAL`).
@@ -34,7 +52,7 @@ const TINY: f64 = 1e-15;
 
 impl Tables {
     pub(super) fn actuators(&mut self, m: &Model) {
-        for names in [&TRANSMISSIONS[..], &DYNAMICS, &LAWS] {
+        for names in [&TRANSMISSIONS[..], &DYNAMICS, &LAWS, &INPUTS, &STATES] {
             for (code, name) in names.iter().enumerate() {
                 self.count(name, code);
             }
@@ -51,6 +69,7 @@ impl Tables {
         self.words("ACTUATOR_DOF", dofs.map(|&dof| dof as usize));
         self.transmissions(m);
         self.activations(m);
+        self.controllers(m);
         self.gains(m);
         self.actuator_ranges(m);
     }
@@ -82,7 +101,9 @@ impl Tables {
             DynamicsKind::Filter => 2,
             DynamicsKind::FilterExact => 3,
             DynamicsKind::Muscle => 4,
-            _ => 0,
+            DynamicsKind::Pid => 5,
+            DynamicsKind::DcMotor => 6,
+            DynamicsKind::None | DynamicsKind::User => 0,
         };
         let muscle = |a: &Actuator| {
             let law = a.gain == GainKind::Muscle || a.bias == BiasKind::Muscle;
@@ -94,13 +115,16 @@ impl Tables {
             "ACTUATOR_ACT",
             each().map(|a| a.act().unwrap_or(NONE as usize)),
         );
+        let owners = each().enumerate();
+        let owners = owners.flat_map(|(u, a)| a.acts.clone().map(move |_| u));
+        self.words("ACT_ACTUATOR", owners);
         self.words("ACTUATOR_EARLY", each().map(|a| usize::from(a.actearly)));
         self.words("ACTUATOR_OFF", each().map(|a| usize::from(a.disabled)));
         self.words(
             "ACTUATOR_SERVO",
             each().map(|a| usize::from(a.gain == GainKind::Fixed)),
         );
-        self.words("ACTUATOR_CTRL", each().map(|a| a.controls.start));
+        self.words("ACTUATOR_CTRL", starts(each().map(|a| a.controls.len())));
         let prm = p
             .actuator_dynprm
             .iter()
@@ -110,18 +134,60 @@ impl Tables {
         self.numbers("ACT_RANGE", each().enumerate().flat_map(range));
     }
 
+    /// Controllers and motors: what each control is, which activations are states, and all parameters.
+    fn controllers(&mut self, m: &Model) {
+        let (p, each) = (&m.params, || m.actuators.iter());
+        let input = |input: &ControlInput| match input {
+            ControlInput::Position => 1,
+            ControlInput::Velocity => 2,
+            ControlInput::Feedforward => 3,
+            ControlInput::Voltage => 4,
+            ControlInput::Command | ControlInput::RotationVector | ControlInput::Quaternion => 0,
+        };
+        self.words(
+            "CONTROL_INPUT",
+            each().flat_map(|a| a.inputs.iter().map(input)),
+        );
+        let controls = |kind: &ControlInput| !matches!(input(kind), 0 | 4);
+        let controlled = |a: &Actuator| usize::from(a.inputs.iter().any(controls));
+        self.words("ACTUATOR_CONTROLLED", each().map(controlled));
+        let states = |a: &Actuator| {
+            let s = a.states;
+            let all = [s.slew, s.integral, s.temperature, s.bristle, s.current];
+            all.map(|state| state.unwrap_or(NONE as usize))
+        };
+        self.words("ACTUATOR_STATES", each().flat_map(states));
+        let all =
+            Vec::from_iter((0..m.actuators.len()).filter(|&u| has_controller(&m.actuators[u])));
+        self.flag("ANY_CONTROLLER", !all.is_empty());
+        let place = |u: usize| all.binary_search(&u).unwrap_or(NONE as usize);
+        self.words("ACTUATOR_CONTROLLER", (0..m.actuators.len()).map(place));
+        let prm = |&u: &usize| {
+            [
+                p.actuator_dynprm[u],
+                p.actuator_gainprm[u],
+                p.actuator_biasprm[u],
+            ]
+        };
+        self.numbers("CONTROLLER_PRM", all.iter().flat_map(prm).flatten());
+    }
+
     fn gains(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter().enumerate());
         self.count("LAW_SIZE", LAW_SIZE);
-        let is_muscle = |muscle: bool| usize::from(muscle);
-        self.words(
-            "GAIN_LAW",
-            each().map(|(_, a)| is_muscle(a.gain == GainKind::Muscle)),
-        );
-        self.words(
-            "BIAS_LAW",
-            each().map(|(_, a)| is_muscle(a.bias == BiasKind::Muscle)),
-        );
+        let gain_law = |a: &Actuator| match a.gain {
+            GainKind::Muscle => 1,
+            GainKind::Pid => 2,
+            GainKind::DcMotor => 3,
+            GainKind::Fixed | GainKind::Affine | GainKind::So3 | GainKind::User => 0,
+        };
+        self.words("GAIN_LAW", each().map(|(_, a)| gain_law(a)));
+        let bias_law = |a: &Actuator| match a.bias {
+            BiasKind::Muscle => 1,
+            BiasKind::DcMotor => 3,
+            BiasKind::None | BiasKind::Affine | BiasKind::So3 | BiasKind::User => 0,
+        };
+        self.words("BIAS_LAW", each().map(|(_, a)| bias_law(a)));
         let gain = |(u, a): (usize, &Actuator)| {
             let prm = &p.actuator_gainprm[u];
             match a.gain {
@@ -146,10 +212,9 @@ impl Tables {
 
     fn actuator_ranges(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter().enumerate());
-        let ctrl = each().flat_map(|(_, a)| {
-            let limited = m.flags.clampctrl && a.ctrllimited.first() == Some(&true);
-            range(limited, p.actuator_ctrlrange[a.controls.start])
-        });
+        let limited = each().flat_map(|(_, a)| &a.ctrllimited);
+        let ctrl = limited.zip(&p.actuator_ctrlrange);
+        let ctrl = ctrl.flat_map(|(&limited, &ends)| range(limited && m.flags.clampctrl, ends));
         self.numbers("CTRL_RANGE", ctrl);
         let force = each().flat_map(|(u, a)| range(a.forcelimited, p.actuator_forcerange[u]));
         self.numbers("FORCE_RANGE", force);
@@ -174,6 +239,13 @@ impl Tables {
             .map(|dof| usize::from(m.joints[dof.joint].actgravcomp));
         self.words("DOF_ACTGRAVCOMP", lifted);
     }
+}
+
+/// Whether any part of an actuator is that of a controller or a motor.
+fn has_controller(a: &Actuator) -> bool {
+    let by_dynamics = matches!(a.dynamics, DynamicsKind::Pid | DynamicsKind::DcMotor);
+    let by_gain = matches!(a.gain, GainKind::Pid | GainKind::DcMotor);
+    by_dynamics || by_gain || a.bias == BiasKind::DcMotor
 }
 
 /// What an actuator acts on, as the device knows it.
@@ -212,7 +284,7 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
 }
 
 /// By how much the length of a servo on a circle changes in a whole turn; zero for what is no servo or on no circle. See
-/// `dynamics/activation.rs`.
+/// `dynamics/setpoint.rs`.
 fn whole_turn(m: &Model, u: usize) -> f64 {
     let (actuator, p) = (&m.actuators[u], &m.params);
     let length = |axis: &[f64]| axis.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -226,7 +298,7 @@ fn whole_turn(m: &Model, u: usize) -> f64 {
     };
     let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
     let pulls_back = p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1];
-    if rotates && fixed && pulls_back {
+    if rotates && (actuator.gain == GainKind::Pid || fixed && pulls_back) {
         TAU * length(axis)
     } else {
         0.0

@@ -71,15 +71,6 @@ fn what_is_not_there_yet_is_refused_by_name() {
             "actuator \"late\": actuators with delays",
         ),
         (
-            model(
-                "",
-                "",
-                "",
-                "<actuator><dcmotor name='motor' joint='hinge' motorconst='0.1' resistance='1'/></actuator>",
-            ),
-            "actuator \"motor\": controllers and motors",
-        ),
-        (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),
             "model: a model without",
         ),

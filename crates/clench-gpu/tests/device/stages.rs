@@ -119,6 +119,11 @@ fn ellipsoids_in_a_medium() {
 }
 
 #[test]
+fn controllers_and_motors_with_states() {
+    agree(&text(&own("controllers")), 100, 0.5);
+}
+
+#[test]
 fn elliptic_cones() {
     let medley = own("medley");
     let elliptic = medley.replace(

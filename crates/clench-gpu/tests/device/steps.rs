@@ -116,6 +116,23 @@ fn so_do_ellipsoids_in_a_medium() {
     drift_alike(&text(&implicit), 100);
 }
 
+#[test]
+fn so_do_controllers_and_motors() {
+    let controllers = own("controllers");
+    for integrator in ["Euler", "implicitfast"] {
+        let option = format!("<option integrator=\"{integrator}\" ");
+        drift_alike(&text(&controllers.replace("<option ", &option)), 100);
+    }
+}
+
+/// By Runge–Kutta, which takes the stiff friction of these motors explicitly, longer steps diverge from random deflections.
+#[test]
+fn so_do_controllers_and_motors_by_runge_kutta() {
+    let rk4 = "<option integrator=\"RK4\" timestep=\"0.00002\"";
+    let controllers = own("controllers").replace("<option timestep=\"0.002\"", rk4);
+    drift_alike(&text(&controllers), 100);
+}
+
 /// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
 /// has done, it has done.
 #[test]
