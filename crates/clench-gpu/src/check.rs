@@ -37,8 +37,8 @@ rules! {
     "environments do not start over by themselves yet: look at the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };
-    "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
     "exact inverse inertias are not there yet": |s| s.settings.flags.diagexact.then(|| "flag diagexact".to_owned());
+    "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
     "equalities of this kind are not there yet": |s| {
         use EqualityTarget::{Connect, Joint, Tendon, Weld};
         let known = |target| matches!(target, Connect { .. } | Weld { .. } | Joint { .. } | Tendon { .. });
@@ -46,20 +46,10 @@ rules! {
         let equality = &s.model.equalities[e];
         Some(named(equality.target.kind(), &equality.name, e))
     };
-    "tendons with inertia are not there yet": |s| tendon(s.model, |m, t| {
-        let reflected = |&u: &usize| m.params.actuator_armature[u] != 0.0;
-        m.params.tendon_armature[t] != 0.0 || m.tendons[t].reflecting.iter().any(reflected)
-    });
-    "springs that yield are not there yet": |s| {
-        let joint_of = |j: usize| joint(s.model, j);
-        let yields = s.model.joints.iter().position(|joint| joint.plastic.is_some());
-        yields.map(joint_of).or_else(|| tendon(s.model, |m, t| m.tendons[t].plastic.is_some()))
-    };
     "servos of orientations are not there yet": |s| actuator(s.model, |m, u| {
         let transmission = m.actuators[u].transmission;
         matches!(transmission, Transmission::Rotation(_) | Transmission::RotationInFrame(_))
     });
-    "actuators with delays are not there yet": |s| actuator(s.model, |m, u| m.actuators[u].history.is_some());
     "the contacts of these two kinds of shape are not there yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;
@@ -144,11 +134,6 @@ pub(crate) fn check(simulation: &Simulation) -> Result<(), GpuError> {
     Err(GpuError::Unsupported(refusals))
 }
 
-fn tendon(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
-    let t = (0..model.tendons.len()).find(|&t| refused(model, t))?;
-    Some(named("tendon", &model.tendons[t].name, t))
-}
-
 fn actuator(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
     let u = (0..model.actuators.len()).find(|&u| refused(model, u))?;
     Some(named("actuator", &model.actuators[u].name, u))
@@ -159,15 +144,6 @@ fn geom_name(model: &Model, g: usize) -> String {
     let kind = format!("{:?}", geom.kind).to_lowercase();
     let name = named(&format!("{kind} geom"), &geom.name, g);
     match &geom.origin {
-        Some(origin) => format!("{origin}: {name}"),
-        None => name,
-    }
-}
-
-fn joint(model: &Model, j: usize) -> String {
-    let joint = &model.joints[j];
-    let name = named("joint", &joint.name, j);
-    match &joint.origin {
         Some(origin) => format!("{origin}: {name}"),
         None => name,
     }

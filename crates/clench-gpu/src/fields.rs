@@ -3,6 +3,7 @@
 
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity};
 use clench_rigid::dynamics::articulated::articulated_bodies;
+use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::Model;
 
 /// A field: so many numbers for each environment, from a place on.
@@ -56,6 +57,10 @@ fields! {
     qpos: m.nq;
     qvel: m.nv;
     act: m.na;
+    /// Buffers of past controls.
+    history: m.nhistory;
+    /// Where springs that yield rest.
+    plastic: m.nplastic;
     qacc_warmstart: m.nv;
     ctrl: m.nu();
     qfrc_applied: m.nv;
@@ -129,6 +134,8 @@ fields! {
     contacts: CONTACT_SIZE * c.contacts;
     qacc: m.nv;
     qfrc_constraint: m.nv;
+    /// How long after the start of the step the present stage is, s.
+    offset: 1;
     /// The velocity that positions advance by.
     rate: m.nv;
     mean_rate: m.nv;
@@ -137,6 +144,9 @@ fields! {
     start_qvel: m.nv;
     start_act: m.na;
     start_actuator_velocity: m.actuators.len();
+    /// Where tendons that yield were.
+    start_ten_length: if has_yielding_tendons(m) { m.tendons.len() } else { 0 };
+    start_ten_jacobian: if has_yielding_tendons(m) { m.tendon_dofs.len() } else { 0 };
     mean_act_dot: m.na;
     start_warmstart: m.nv;
 }

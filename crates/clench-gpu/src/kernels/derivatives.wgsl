@@ -1,24 +1,10 @@
 // How smooth forces change with velocities, in the pattern of the mass matrix: added, times −h, to what stands in QLD. Sister of
 // `dynamics/derivatives.rs`.
 
-// Adds `scale` JᵀJ of a sparse row J, where the pattern has room for it: its dofs stand at `dofs`, its entries at `entries`.
-fn add_outer(dofs: u32, entries: u32, start: u32, end: u32, scale: f32) {
-    for (var k = start; scale != 0.0 && k < end; k++) {
-        let i = words[dofs + k];
-        for (var l = start; l < end; l++) {
-            for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
-                if (words[TREE_DOF + p] == words[dofs + l]) {
-                    add(QLD + p, scale * fetch(entries + k) * fetch(entries + l));
-                }
-            }
-        }
-    }
-}
-
 fn add_actuators() {
     for (var u = 0u; ACTUATION && u < NU; u++) {
         let scale = -TIMESTEP * velocity_slope(u);
-        add_outer(ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + u], words[ACTUATOR_ROW + u + 1u], scale);
+        add_outer(QLD, ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + u], words[ACTUATOR_ROW + u + 1u], scale);
     }
 }
 
@@ -29,7 +15,7 @@ fn add_dampers() {
     }
     for (var t = 0u; t < NTENDON; t++) {
         let scale = TIMESTEP * damping_slope(TENDON_DAMPER + 3u * t, fetch(TEN_VELOCITY + t));
-        add_outer(TENDON_DOF, TEN_JACOBIAN, words[TENDON_ROW + t], words[TENDON_ROW + t + 1u], scale);
+        add_outer(QLD, TENDON_DOF, TEN_JACOBIAN, words[TENDON_ROW + t], words[TENDON_ROW + t + 1u], scale);
     }
 }
 

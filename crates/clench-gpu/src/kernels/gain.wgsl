@@ -8,9 +8,16 @@ fn affine(place: u32, length: f32, velocity: f32) -> f32 {
     return parameter(place) + parameter(place + 1u) * length + parameter(place + 2u) * velocity;
 }
 
-// A control as it acts.
-fn acting_control(c: u32) -> f32 {
-    return clamp(given(CTRL + c), parameter(CTRL_RANGE + 2u * c), parameter(CTRL_RANGE + 2u * c + 1u));
+// Control `c` of actuator `u` as it acts: that of a delayed actuator is read from the past; then its range clamps.
+fn acting_control(u: u32, c: u32) -> f32 {
+    var ctrl = given(CTRL + c);
+    if (ANY_DELAY && words[ACTUATOR_HISTORY + u] != NONE) {
+        let delay = parameter(ACTUATOR_DELAY + u);
+        if (delay > 0.0) {
+            ctrl = read_history(words[ACTUATOR_HISTORY + u], fetch(OFFSET) - delay, c - words[ACTUATOR_CTRL + u]);
+        }
+    }
+    return clamp(ctrl, parameter(CTRL_RANGE + 2u * c), parameter(CTRL_RANGE + 2u * c + 1u));
 }
 
 // Activation `a` of actuator `u` as its gain takes it.
@@ -49,7 +56,7 @@ fn actuator_input(u: u32, length: f32, velocity: f32) -> f32 {
     if (NA > 0u && a != NONE) {
         input = acting(u, a, velocity);
     } else {
-        input = acting_control(words[ACTUATOR_CTRL + u]);
+        input = acting_control(u, words[ACTUATOR_CTRL + u]);
     }
     return nearest_setpoint(u, input, length);
 }
@@ -72,7 +79,7 @@ fn unlimited_force(u: u32) -> f32 {
         motor_rates(u, setpoints, circuit, length, velocity);
     } else if (NA > 0u && words[ACTUATOR_ACT + u] != NONE) {
         let a = words[ACTUATOR_ACT + u];
-        put(ACT_DOT + a, activation_rate(u, acting_control(words[ACTUATOR_CTRL + u]), given(ACT + a)));
+        put(ACT_DOT + a, activation_rate(u, acting_control(u, words[ACTUATOR_CTRL + u]), given(ACT + a)));
     }
     if (words[ACTUATOR_OFF + u] == 1u) {
         return 0.0;

@@ -64,8 +64,9 @@ fn advance_activations(rates: u32, velocities: u32) {
     }
 }
 
-// Lets the step count, or takes it back where it led nowhere.
-fn finish_step() {
+// Lets the step count, or takes it back where it led nowhere. For springs that yield: the velocity that moved the positions, and lengths
+// and gradients of tendons at the start (all in work).
+fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     note_end();
     judge_results();
     for (var i = 0u; i < bound(NV); i++) {
@@ -73,6 +74,12 @@ fn finish_step() {
     }
     let fault = reports[TROUBLE * envs + env];
     if (fault == RUNNING) {
+        if (ANY_PLASTIC) {
+            yield_springs(velocity, length, jacobian);
+        }
+        if (ANY_DELAY) {
+            push_controls();
+        }
         reports[STEPS * envs + env] += 1u;
         return;
     }
@@ -134,5 +141,5 @@ fn advance_semi_implicit() {
         put(RATE + i, v);
     }
     integrate_positions(RATE, TIMESTEP);
-    finish_step();
+    finish_step(RATE, TEN_LENGTH, TEN_JACOBIAN);
 }

@@ -8,6 +8,18 @@ fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
     put3(qfrc, fetch3(qfrc) - stretch * k);
 }
 
+// Where the number `q` of a joint's position is where its spring rests.
+fn rest(j: u32, q: u32) -> f32 {
+    if (ANY_PLASTIC && words[JNT_PLASTIC + j] != NONE) {
+        return given(PLASTIC + words[JNT_PLASTIC + j] + q - words[JNT_QPOS + j]);
+    }
+    return parameter(QPOS_SPRING + q);
+}
+
+fn rest3(j: u32, q: u32) -> vec3f {
+    return vec3f(rest(j, q), rest(j, q + 1u), rest(j, q + 2u));
+}
+
 fn springs() {
     for (var s = 0u; s < NSPRING; s++) {
         let j = words[SPRING_JNT + s];
@@ -16,18 +28,18 @@ fn springs() {
         let kind = words[JNT_KIND + j];
         var qfrc = QFRC_PASSIVE + words[JNT_DOF + j];
         if (kind == SLIDE || kind == HINGE) {
-            let x = given(QPOS + q) - parameter(QPOS_SPRING + q);
+            let x = given(QPOS + q) - rest(j, q);
             add(qfrc, -x * stiffness(law, x));
             continue;
         }
         var turn = q;
         if (kind == FREE) {
-            pull_back(law, given3(QPOS + q) - parameter3(QPOS_SPRING + q), qfrc);
+            pull_back(law, given3(QPOS + q) - rest3(j, q), qfrc);
             turn += 3u;
             qfrc += 3u;
         }
-        let rest = parameter4(QPOS_SPRING + turn);
-        pull_back(law, quat_difference(quat_normalize(given4(QPOS + turn)), rest), qfrc);
+        let unturned = vec4f(rest3(j, turn), rest(j, turn + 3u));
+        pull_back(law, quat_difference(quat_normalize(given4(QPOS + turn)), unturned), qfrc);
     }
 }
 

@@ -66,6 +66,16 @@ fn go(rate: u32, qacc: u32, time: f32) {
     integrate_positions(rate, time);
 }
 
+// Remembers from where tendons that yield are moved.
+fn save_tendons() {
+    for (var t = 0u; YIELDING_TENDONS && t < NTENDON; t++) {
+        put(START_TEN_LENGTH + t, fetch(TEN_LENGTH + t));
+        for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
+            put(START_TEN_JACOBIAN + k, fetch(TEN_JACOBIAN + k));
+        }
+    }
+}
+
 @compute @workgroup_size(GROUP)
 fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {
@@ -76,9 +86,11 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
         for (var u = 0u; u < NU; u++) {
             put(START_ACTUATOR_VELOCITY + u, fetch(ACTUATOR_VELOCITY + u));
         }
+        save_tendons();
     }
     collect_rates();
     add_to_mean();
+    put(OFFSET, select(reach(stage), 0.0, stage == 3u));
     if (stage < 3u) {
         go(RATE, QACC, reach(stage));
         for (var a = 0u; a < NA; a++) {
@@ -93,5 +105,5 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     go(MEAN_RATE, MEAN_QACC, TIMESTEP);
     // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with.
     advance_activations(MEAN_ACT_DOT, START_ACTUATOR_VELOCITY);
-    finish_step();
+    finish_step(MEAN_RATE, START_TEN_LENGTH, START_TEN_JACOBIAN);
 }

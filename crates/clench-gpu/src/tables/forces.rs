@@ -1,7 +1,8 @@
 //! Springs, dampers, lifted weights and the medium, each reduced to the coefficients of its law; and the numbers of the step itself.
 
-use super::{Tables, starts};
+use super::{NONE, Tables, starts};
 use clench_rigid::dynamics::ellipsoid::{ellipsoids, semi_axes};
+use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, JointKind, Model};
 use clench_rigid::options::FrictionCone;
 use clench_rigid::settings::StepSettings;
@@ -32,6 +33,7 @@ impl Tables {
         self.count("NSPRING", springs.len());
         self.words("SPRING_JNT", springs.iter().copied());
         self.numbers("SPRING_LAW", springs.iter().flat_map(|&j| law(j)));
+        self.plastic(m);
         let dampers = Vec::from_iter((0..m.nv).map(|i| damper(m, i)));
         self.numbers("DOF_DAMPER", dampers.iter().copied().flatten());
         let damped = dampers
@@ -42,6 +44,18 @@ impl Tables {
         self.numbers("DOF_ARMATURE", (0..m.nv).map(|i| armature(m, i)));
         self.gravity_compensation(m);
         self.medium(m);
+    }
+
+    /// Which springs yield, where it stands at what they rest, and beyond what stretch they do.
+    fn plastic(&mut self, m: &Model) {
+        let p = &m.params;
+        let place = |start: Option<usize>| start.unwrap_or(NONE as usize);
+        self.flag("ANY_PLASTIC", m.nplastic > 0 && m.flags.spring);
+        self.flag("YIELDING_TENDONS", has_yielding_tendons(m));
+        self.words("JNT_PLASTIC", m.joints.iter().map(|j| place(j.plastic)));
+        self.words("TENDON_PLASTIC", m.tendons.iter().map(|t| place(t.plastic)));
+        self.numbers("JNT_YIELD", p.jnt_springyield.iter().copied());
+        self.numbers("TENDON_YIELD", p.tendon_springyield.iter().copied());
     }
 
     /// The mass of each body whose weight is lifted. As in MuJoCo a share below zero counts only where another is positive, and

@@ -124,6 +124,11 @@ fn controllers_and_motors_with_states() {
 }
 
 #[test]
+fn tendons_with_inertia() {
+    agree(&text(&own("pliant")), 100, 0.5);
+}
+
+#[test]
 fn elliptic_cones() {
     let medley = own("medley");
     let elliptic = medley.replace(

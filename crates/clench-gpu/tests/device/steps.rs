@@ -133,6 +133,16 @@ fn so_do_controllers_and_motors_by_runge_kutta() {
     drift_alike(&text(&controllers), 100);
 }
 
+/// Within 100 steps springs yield, and controls arrive.
+#[test]
+fn so_do_springs_that_yield_and_late_controls_by_each_integrator() {
+    let pliant = own("pliant");
+    for integrator in ["Euler", "implicitfast", "RK4"] {
+        let option = format!("<option integrator=\"{integrator}\" ");
+        drift_alike(&text(&pliant.replace("<option ", &option)), 100);
+    }
+}
+
 /// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
 /// has done, it has done.
 #[test]
