@@ -28,10 +28,7 @@ macro_rules! rules {
 
 rules! {
     "a model without degrees of freedom has nothing to step": |s| (s.model.nv == 0).then(|| "model".to_owned());
-    "the integrator `implicit` is not there yet; `Euler`, `implicitfast` and `RK4` are": |s| {
-        (s.model.integrator == Integrator::Implicit).then(|| "option integrator".to_owned())
-    };
-    "the integrator `discrete` is not there yet; `Euler`, `implicitfast` and `RK4` are": |s| {
+    "the integrator `discrete` is not there yet; `Euler`, `implicitfast`, `implicit` and `RK4` are": |s| {
         (s.model.integrator == Integrator::Discrete).then(|| "option integrator".to_owned())
     };
     "environments do not start over by themselves yet: look at the statuses": |s| {

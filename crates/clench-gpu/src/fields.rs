@@ -4,7 +4,7 @@
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity};
 use clench_rigid::dynamics::articulated::articulated_bodies;
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
-use clench_rigid::model::Model;
+use clench_rigid::model::{Integrator, Model};
 
 /// A field: so many numbers for each environment, from a place on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,11 @@ impl Fields {
     pub(crate) fn find(&self, name: &str) -> Option<Field> {
         self.list.iter().copied().find(|field| field.name == name)
     }
+}
+
+/// Whether the integrator takes Coriolis forces implicitly.
+fn takes_coriolis(m: &Model) -> bool {
+    m.integrator == Integrator::Implicit
 }
 
 macro_rules! fields {
@@ -112,6 +117,10 @@ fields! {
     /// Its LᵀDL, or that of an implicit step.
     qld: m.tree.nnz();
     qld_inverse: m.nv;
+    /// The upper triangle where an implicit step's is not symmetric, and how forces and axes change with velocities.
+    qld_upper: if takes_coriolis(m) { m.tree.nnz() } else { 0 };
+    coriolis_rates: if takes_coriolis(m) { 36 * m.nbody() } else { 0 };
+    coriolis_drift: if takes_coriolis(m) { 6 * m.nv } else { 0 };
     qfrc_passive: m.nv;
     qfrc_bias: m.nv;
     ten_length: m.tendons.len();

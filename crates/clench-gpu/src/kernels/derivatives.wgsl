@@ -61,6 +61,9 @@ fn add_fluid(b: u32) {
 }
 
 fn add_velocity_derivatives() {
+    if (HAS_FLUID && ANY_FLUID_ELLIPSOID) {
+        ellipsoid_rates();
+    }
     add_actuators();
     add_dampers();
     for (var b = 1u; HAS_FLUID && b < NBODY; b++) {
@@ -70,4 +73,15 @@ fn add_velocity_derivatives() {
             add_fluid(b);
         }
     }
+}
+
+// Leaves M − h D, without Coriolis forces, in QLD, and the sum of all forces in RATE.
+fn symmetric_inertia() {
+    for (var p = 0u; p < bound(NNZ); p++) {
+        put(QLD + p, fetch(QM + p));
+    }
+    for (var i = 0u; i < bound(NV); i++) {
+        put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
+    }
+    add_velocity_derivatives();
 }

@@ -27,10 +27,6 @@ fn what_is_not_there_yet_is_refused_by_name() {
             "option integrator: the integrator `discrete`",
         ),
         (
-            model("<option integrator='implicit'/>", "", ""),
-            "option integrator: the integrator `implicit`",
-        ),
-        (
             model("<option><flag autoreset='enable'/></option>", "", ""),
             "option autoreset",
         ),

@@ -143,6 +143,14 @@ fn so_do_springs_that_yield_and_late_controls_by_each_integrator() {
     }
 }
 
+#[test]
+fn so_do_chains_and_free_bodies_implicit_in_coriolis_forces() {
+    for name in ["medley", "swimmers"] {
+        let implicit = own(name).replace("<option ", "<option integrator=\"implicit\" ");
+        drift_alike(&text(&implicit), 60);
+    }
+}
+
 /// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
 /// has done, it has done.
 #[test]
