@@ -34,7 +34,6 @@ rules! {
     "environments do not start over by themselves yet: look at the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };
-    "exact inverse inertias are not there yet": |s| s.settings.flags.diagexact.then(|| "flag diagexact".to_owned());
     "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
     "equalities of this kind are not there yet": |s| {
         use EqualityTarget::{Connect, Joint, Tendon, Weld};

@@ -65,7 +65,7 @@ kernels! {
     /// Which constraints act, and how soft they are.
     CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
     /// Their Jacobians.
-    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
+    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "cg", "descent";
     /// Accelerations of bodies and forces between them, where somebody asks.

@@ -140,6 +140,9 @@ fn finish_block(b: u32) {
     let kind = block(b, BLOCK_KIND);
     let first = block(b, BLOCK_ROW);
     let dim = block(b, BLOCK_DIM);
+    if (EXACT_DIAGONAL) {
+        regularize_exactly(kind, first, dim);
+    }
     if (kind == CONTACT_PYRAMID || kind == CONTACT_ELLIPTIC) {
         finish_cone(first, dim, kind == CONTACT_PYRAMID);
         return;

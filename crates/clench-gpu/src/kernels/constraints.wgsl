@@ -3,9 +3,12 @@
 
 var<private> nblock: u32;
 var<private> nrow: u32;
+// The impedance of the present block.
+var<private> block_impedance: f32;
 
 // Begins a block of a kind, from a source that its Jacobian is made of.
-fn begin_block(kind: u32, dim: u32, source: u32) {
+fn begin_block(kind: u32, dim: u32, source: u32, impedance: f32) {
+    block_impedance = impedance;
     let place = BLOCKS + BLOCK_SIZE * nblock;
     put_row(place + BLOCK_KIND, f32(kind));
     put_row(place + BLOCK_DIM, f32(dim));
@@ -15,7 +18,7 @@ fn begin_block(kind: u32, dim: u32, source: u32) {
 }
 
 // Adds a row to the block. The part of aref that its velocity has comes later: −damping · velocity. Until then VELOCITY has the part
-// of that which is not J v, and PULL the force for which aref is raised by R times as much.
+// of that which is not J v, PULL the force for which aref is raised by R times as much, and D the impedance.
 fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
     put_row(ROW_BLOCK + nrow, f32(nblock - 1u));
     put_row(POSITION + nrow, position);
@@ -24,6 +27,7 @@ fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
     put_row(R + nrow, r);
     put_row(SHAPE + nrow, shape);
     put_row(VELOCITY + nrow, 0.0);
+    put_row(D + nrow, block_impedance);
     if (ANY_ADHESION) {
         put_row(PULL + nrow, 0.0);
     }
@@ -34,7 +38,7 @@ fn push_friction() {
     for (var k = 0u; k < NFRICTION; k++) {
         let prm = FRICTION_PRM + 9u * k;
         let soft = soften(prm + 2u, 0.0);
-        begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k]);
+        begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k], soft.impedance);
         add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, parameter(prm + 1u)), parameter(prm));
     }
 }
@@ -46,7 +50,7 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
         return;
     }
     let soft = soften(prm + 4u, distance - margin);
-    begin_block(LIMIT, 1u, source);
+    begin_block(LIMIT, 1u, source, soft.impedance);
     let aref = -soft.stiffness * (distance - margin);
     add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + 3u)), 0.0);
 }
@@ -135,13 +139,13 @@ fn push_contact(contact: u32) {
     let dim = select(1u, words[PAIR_DIM + pair], touches);
     let plain = regularization(soft.impedance, a0);
     if (dim == 1u) {
-        begin_block(CONTACT_NORMAL, 1u, contact);
+        begin_block(CONTACT_NORMAL, 1u, contact, soft.impedance);
         push_normal(distance, aref, soft.damping, plain, 0.0, adhesion);
         return;
     }
     let mu = parameter(friction);
     if (ELLIPTIC_CONES) {
-        begin_block(CONTACT_ELLIPTIC, dim, contact);
+        begin_block(CONTACT_ELLIPTIC, dim, contact, soft.impedance);
         push_normal(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
         var damping = soft.damping;
         let solref = vec2f(parameter(prm + 14u), parameter(prm + 15u));
@@ -153,7 +157,7 @@ fn push_contact(contact: u32) {
     }
     let edge = regularization(soft.impedance, a0 + mu * mu * a0);
     let r = 2.0 * (mu * mu / IMPRATIO) * edge;
-    begin_block(CONTACT_PYRAMID, dim, contact);
+    begin_block(CONTACT_PYRAMID, dim, contact, soft.impedance);
     // Each edge has its share.
     push_normal(distance, aref, soft.damping, r, 0.0, adhesion / (2.0 * (f32(dim) - 1.0)));
     push_tangents(contact, dim, friction, r, soft.damping, soft.damping);

@@ -101,6 +101,7 @@ impl Tables {
         self.real("MIN_TIMECONST", least);
         self.real("IMPRATIO", s.impratio);
         self.flag("ELLIPTIC_CONES", s.friction_cone == FrictionCone::Elliptic);
+        self.flag("EXACT_DIAGONAL", s.flags.diagexact);
         self.flag("WARMSTART", s.solver.warmstart);
         self.count("ITERATIONS", s.solver.iterations);
         self.count("LS_ITERATIONS", s.solver.ls_iterations);

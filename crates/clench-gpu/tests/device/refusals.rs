@@ -31,8 +31,8 @@ fn what_is_not_there_yet_is_refused_by_name() {
             "option autoreset",
         ),
         (
-            model("<option><flag diagexact='enable'/></option>", "", ""),
-            "flag diagexact",
+            model("<option><flag sleep='enable'/></option>", "", ""),
+            "flag sleep",
         ),
         (
             model(

@@ -129,6 +129,19 @@ fn tendons_with_inertia() {
 }
 
 #[test]
+fn inverse_inertias_of_the_present_configuration() {
+    let exact = |model: String, option: &str| {
+        let flag = "<option><flag diagexact=\"enable\"/></option><default>";
+        text(
+            &(model.replacen("<default>", flag, 1))
+                .replace("<option ", &format!("<option {option} ")),
+        )
+    };
+    agree(&exact(own("linkage"), "impratio=\"3\""), 100, 0.5);
+    agree(&exact(own("surfaces"), "cone=\"elliptic\""), 100, 0.7);
+}
+
+#[test]
 fn elliptic_cones() {
     let medley = own("medley");
     let elliptic = medley.replace(
