@@ -3,7 +3,7 @@
 use crate::error::{GpuError, Refusal};
 use clench_collide::{MAX_POINTS, ShapeKind};
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{EqualityTarget, Integrator, Model, Transmission};
+use clench_rigid::model::{EqualityTarget, Integrator, Model};
 use clench_rigid::settings::StepSettings;
 
 /// What a batch is asked to step.
@@ -42,10 +42,6 @@ rules! {
         let equality = &s.model.equalities[e];
         Some(named(equality.target.kind(), &equality.name, e))
     };
-    "servos of orientations are not there yet": |s| actuator(s.model, |m, u| {
-        let transmission = m.actuators[u].transmission;
-        matches!(transmission, Transmission::Rotation(_) | Transmission::RotationInFrame(_))
-    });
     "the contacts of these two kinds of shape are not there yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;
@@ -128,11 +124,6 @@ pub(crate) fn check(simulation: &Simulation) -> Result<(), GpuError> {
         return Ok(());
     }
     Err(GpuError::Unsupported(refusals))
-}
-
-fn actuator(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
-    let u = (0..model.actuators.len()).find(|&u| refused(model, u))?;
-    Some(named("actuator", &model.actuators[u].name, u))
 }
 
 fn geom_name(model: &Model, g: usize) -> String {

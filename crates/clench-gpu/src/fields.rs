@@ -129,9 +129,9 @@ fields! {
     qfrc_gravcomp: m.nv;
     actuator_moment: m.actuator_dofs.len();
     act_dot: m.na;
-    actuator_length: m.actuators.len();
-    actuator_velocity: m.actuators.len();
-    actuator_force: m.actuators.len();
+    actuator_length: m.nout();
+    actuator_velocity: m.nout();
+    actuator_force: m.nout();
     /// With how much actuators pull at each tendon whose total is limited.
     ten_actuator_force: m.tendons.len();
     qfrc_actuator: m.nv;
@@ -152,7 +152,7 @@ fields! {
     start_qpos: m.nq;
     start_qvel: m.nv;
     start_act: m.na;
-    start_actuator_velocity: m.actuators.len();
+    start_actuator_velocity: m.nout();
     /// Where tendons that yield were.
     start_ten_length: if has_yielding_tendons(m) { m.tendons.len() } else { 0 };
     start_ten_jacobian: if has_yielding_tendons(m) { m.tendon_dofs.len() } else { 0 };

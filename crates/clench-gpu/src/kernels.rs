@@ -55,13 +55,13 @@ kernels! {
     RESTART = "restart", Thread: "restart";
     /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
     POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "wrap", "tendon",
-        "transmission", "articulated", "outer", "inertia";
+        "outputs", "transmission", "articulated", "outer", "inertia";
     /// Contacts.
     CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "adhesion", "ellipsoid", "passive", "tendon_forces", "muscle",
-        "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "actuation", "forces";
+    FORCES = "forces", Thread: "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "passive", "tendon_forces", "muscle",
+        "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Which constraints act, and how soft they are.
     CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
     /// Their Jacobians.
@@ -75,17 +75,17 @@ kernels! {
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "integrate", "euler";
+    EULER = "euler", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "actuator_slopes", "verdict", "plastic", "history_push", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_slopes", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "gyroscopic", "implicit_fast";
     /// The same with Coriolis forces.
     IMPLICIT = "implicit", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "actuator_slopes", "verdict", "plastic", "history_push", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_slopes", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "coriolis", "lu", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.

@@ -20,6 +20,7 @@ impl Tables {
         for field in &fields.list {
             match field.name {
                 "qpos" => row.extend(&state.qpos),
+                "ctrl" => row.extend(&state.ctrl),
                 "history" => row.extend(&state.history),
                 "plastic" => row.extend(&state.plastic),
                 "mocap_pos" => row.extend(state.mocap_pos.iter().flat_map(|v| v.to_array())),

@@ -6,8 +6,8 @@ const SUM_ROUNDING: f32 = 16.0 * 1.1920929e-7;
 
 // Before any limit.
 fn unlimited_slope(u: u32) -> f32 {
-    let length = fetch(ACTUATOR_LENGTH + u);
-    let velocity = fetch(ACTUATOR_VELOCITY + u);
+    let length = fetch(ACTUATOR_LENGTH + output_of(u));
+    let velocity = fetch(ACTUATOR_VELOCITY + output_of(u));
     let gain_at = ACTUATOR_GAIN + LAW_SIZE * u;
     var slope = parameter(gain_at + 2u);
     if (ANY_MUSCLE && words[GAIN_LAW + u] == LAW_MUSCLE) {
@@ -40,7 +40,7 @@ fn tendon_is_saturated(t: u32) -> bool {
 // Whether a limit of the actuator or its tendon holds its force. Cogging and friction of a motor come after its limit, which holds its
 // current alone.
 fn is_held(u: u32) -> bool {
-    var limited = fetch(ACTUATOR_FORCE + u);
+    var limited = fetch(ACTUATOR_FORCE + output_of(u));
     if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR) {
         limited = unlimited_force(u);
     }
@@ -52,11 +52,14 @@ fn is_held(u: u32) -> bool {
 }
 
 fn joint_holds(u: u32) -> bool {
-    let dof = words[ACTUATOR_DOF + words[ACTUATOR_ROW + u]];
+    let dof = words[ACTUATOR_DOF + first_arm(u)];
     return words[ACTUATOR_ON + u] <= ON_FREE && is_saturated(fetch(QFRC_ACTUATOR + dof), DOF_FORCE_RANGE + 2u * dof);
 }
 
 fn velocity_slope(u: u32) -> f32 {
+    if (is_orientation_servo(u)) {
+        return select(servo_slope(u), 0.0, words[ACTUATOR_OFF + u] == 1u);
+    }
     if (words[ACTUATOR_OFF + u] == 1u || joint_holds(u)) {
         return 0.0;
     }

@@ -4,7 +4,9 @@
 fn add_actuators() {
     for (var u = 0u; ACTUATION && u < NU; u++) {
         let scale = -TIMESTEP * velocity_slope(u);
-        add_outer(QLD, ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + u], words[ACTUATOR_ROW + u + 1u], scale);
+        for (var o = output_of(u); o < output_of(u + 1u); o++) {
+            add_outer(QLD, ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + o], words[ACTUATOR_ROW + o + 1u], scale);
+        }
     }
 }
 

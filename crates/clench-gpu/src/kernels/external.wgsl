@@ -83,7 +83,7 @@ fn push_strings() {
         }
         var force = tendon_passive_force(t) + tendon_constraint_force(t);
         for (var k = words[TENDON_PULL + t]; k < words[TENDON_PULL + t + 1u]; k++) {
-            force += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]) * parameter(PULL_GEAR + k);
+            force += fetch(ACTUATOR_FORCE + words[PULL_OUTPUT + k]) * parameter(PULL_GEAR + k);
         }
         for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
             let path = section_path(s);

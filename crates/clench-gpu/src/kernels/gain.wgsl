@@ -63,8 +63,8 @@ fn actuator_input(u: u32, length: f32, velocity: f32) -> f32 {
 
 // Leaves the rates of the activations, and finds the force before any limit, but for what no limit holds; zero where the actuator is off.
 fn unlimited_force(u: u32) -> f32 {
-    let length = fetch(ACTUATOR_LENGTH + u);
-    let velocity = fetch(ACTUATOR_VELOCITY + u);
+    let length = fetch(ACTUATOR_LENGTH + output_of(u));
+    let velocity = fetch(ACTUATOR_VELOCITY + output_of(u));
     let gain_law = words[GAIN_LAW + u];
     let bias_law = words[BIAS_LAW + u];
     var setpoints = Setpoints();

@@ -50,17 +50,34 @@ fn restore_start() {
     }
 }
 
+// Takes whole turns off a rotation vector of more than half a turn, which stands for the same orientation then.
+fn shorten(place: u32) {
+    let vector = given3(place);
+    let angle = length(vector);
+    if (angle > 3.1415927) {
+        let share = (angle - 6.2831855 * floor(angle / 6.2831855 + 0.5)) / angle;
+        for (var k = 0u; k < 3u; k++) {
+            keep(place + k, vector[k] * share);
+        }
+    }
+}
+
 // Moves activations a time step on, at the rates in `rates` (in work), for velocities of actuators in `velocities`. Those of actuators
 // that are off stay where they are, but for whole turns on a circle.
 fn advance_activations(rates: u32, velocities: u32) {
     for (var a = 0u; ACTUATION && a < NA; a++) {
         let u = words[ACT_ACTUATOR + a];
         let rate = select(fetch(rates + a), 0.0, words[ACTUATOR_OFF + u] == 1u);
-        var next = next_activation(u, a, given(ACT + a), rate, fetch(velocities + u));
+        var next = next_activation(u, a, given(ACT + a), rate, fetch(velocities + output_of(u)));
         if (words[ACTUATOR_SERVO + u] == 1u) {
-            next = nearest_setpoint(u, next, fetch(ACTUATOR_LENGTH + u));
+            next = nearest_setpoint(u, next, fetch(ACTUATOR_LENGTH + output_of(u)));
         }
         keep(ACT + a, next);
+    }
+    for (var u = 0u; ANY_ORIENTATION && ACTUATION && u < NU; u++) {
+        if (is_orientation_servo(u) && words[ACTUATOR_ACT + u] != NONE) {
+            shorten(ACT + words[ACTUATOR_ACT + u] - 2u);
+        }
     }
 }
 

@@ -83,8 +83,8 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     }
     if (stage == 0u) {
         save_start();
-        for (var u = 0u; u < NU; u++) {
-            put(START_ACTUATOR_VELOCITY + u, fetch(ACTUATOR_VELOCITY + u));
+        for (var o = 0u; o < NOUT; o++) {
+            put(START_ACTUATOR_VELOCITY + o, fetch(ACTUATOR_VELOCITY + o));
         }
         save_tendons();
     }

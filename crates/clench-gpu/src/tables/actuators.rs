@@ -8,7 +8,7 @@ use clench_rigid::model::{
 use std::f64::consts::TAU;
 
 /// What an actuator acts on.
-const TRANSMISSIONS: [&str; 8] = [
+const TRANSMISSIONS: [&str; 10] = [
     "ON_SCALAR",
     "ON_BALL",
     "ON_FREE",
@@ -17,6 +17,8 @@ const TRANSMISSIONS: [&str; 8] = [
     "ON_SITE_IN_FRAME",
     "ON_SLIDER_CRANK",
     "ON_CONTACTS",
+    "ON_ROTATION",
+    "ON_ROTATION_IN_FRAME",
 ];
 /// How its activation follows its control.
 const DYNAMICS: [&str; 7] = [
@@ -29,14 +31,21 @@ const DYNAMICS: [&str; 7] = [
     "DYN_DC_MOTOR",
 ];
 /// What its gain, or its bias, is.
-const LAWS: [&str; 4] = ["LAW_AFFINE", "LAW_MUSCLE", "LAW_PID", "LAW_DC_MOTOR"];
+const LAWS: [&str; 5] = [
+    "LAW_AFFINE",
+    "LAW_MUSCLE",
+    "LAW_PID",
+    "LAW_DC_MOTOR",
+    "LAW_ORIENTATION",
+];
 /// What a control is for a controller.
-const INPUTS: [&str; 5] = [
+const INPUTS: [&str; 6] = [
     "INPUT_COMMAND",
     "INPUT_POSITION",
     "INPUT_VELOCITY",
     "INPUT_FEEDFORWARD",
     "INPUT_VOLTAGE",
+    "INPUT_QUATERNION",
 ];
 /// The states of controllers and motors.
 const STATES: [&str; 5] = [
@@ -62,11 +71,17 @@ impl Tables {
         self.count("NU", count);
         self.count("NA", m.na);
         self.flag("ACTUATION", m.flags.actuation && count > 0);
+        let outputs = || 0..m.nout();
+        self.count("NOUT", m.nout());
+        let servo = |a: &Actuator| a.gain == GainKind::So3;
+        self.flag("ANY_ORIENTATION", m.actuators.iter().any(servo));
+        let of_each = m.actuators.iter().map(|a| a.outputs.len());
+        self.words("ACTUATOR_OUTPUT", starts(of_each));
         self.words(
             "ACTUATOR_ROW",
-            starts((0..count).map(|u| m.actuator_dofs.dofs(u).len())),
+            starts(outputs().map(|o| m.actuator_dofs.dofs(o).len())),
         );
-        let dofs = (0..count).flat_map(|u| m.actuator_dofs.dofs(u));
+        let dofs = outputs().flat_map(|o| m.actuator_dofs.dofs(o));
         self.words("ACTUATOR_DOF", dofs.map(|&dof| dof as usize));
         self.transmissions(m);
         self.activations(m);
@@ -144,13 +159,14 @@ impl Tables {
             ControlInput::Velocity => 2,
             ControlInput::Feedforward => 3,
             ControlInput::Voltage => 4,
-            ControlInput::Command | ControlInput::RotationVector | ControlInput::Quaternion => 0,
+            ControlInput::Quaternion => 5,
+            ControlInput::Command | ControlInput::RotationVector => 0,
         };
         self.words(
             "CONTROL_INPUT",
             each().flat_map(|a| a.inputs.iter().map(input)),
         );
-        let controls = |kind: &ControlInput| !matches!(input(kind), 0 | 4);
+        let controls = |kind: &ControlInput| matches!(input(kind), 1..4);
         let controlled = |a: &Actuator| usize::from(a.inputs.iter().any(controls));
         self.words("ACTUATOR_CONTROLLED", each().map(controlled));
         let states = |a: &Actuator| {
@@ -213,7 +229,8 @@ impl Tables {
             GainKind::Muscle => 1,
             GainKind::Pid => 2,
             GainKind::DcMotor => 3,
-            GainKind::Fixed | GainKind::Affine | GainKind::So3 | GainKind::User => 0,
+            GainKind::So3 => 4,
+            GainKind::Fixed | GainKind::Affine | GainKind::User => 0,
         };
         self.words("GAIN_LAW", each().map(|(_, a)| gain_law(a)));
         let bias_law = |a: &Actuator| match a.bias {
@@ -237,6 +254,7 @@ impl Tables {
             match a.bias {
                 BiasKind::Muscle => muscle(m, u, prm),
                 BiasKind::Affine => affine([prm[0], prm[1], prm[2]]),
+                BiasKind::So3 => affine([prm[0], 0.0, prm[2]]),
                 _ => affine([0.0; 3]),
             }
         };
@@ -312,8 +330,8 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
         Transmission::SiteInFrame(sites) => other(5, sites),
         Transmission::SliderCrank(sites) => other(6, sites),
         Transmission::Body(body) => other(7, [body, 0]),
-        // Refused, see `check.rs`.
-        Transmission::Rotation(_) | Transmission::RotationInFrame(_) => other(0, [0, 0]),
+        Transmission::Rotation(j) => other(8, [j, 0]),
+        Transmission::RotationInFrame(sites) => other(9, sites),
     }
 }
 

@@ -124,6 +124,11 @@ fn those_of_surfaces_that_move_and_adhere() {
 }
 
 #[test]
+fn those_of_orientation_servos() {
+    agree(&own("servos"));
+}
+
+#[test]
 fn those_of_a_runner() {
     agree(&own("runner"));
 }

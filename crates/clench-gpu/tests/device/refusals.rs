@@ -3,8 +3,8 @@
 use crate::common::text;
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
 
-/// A model of one ball, with something more at each of three places.
-fn model(option: &str, in_world: &str, after: &str) -> String {
+/// A model of a pendulum with an option.
+fn model(option: &str) -> String {
     format!(
         "<mujoco>
            {option}
@@ -12,9 +12,7 @@ fn model(option: &str, in_world: &str, after: &str) -> String {
              <geom type='plane' size='1 1 1'/>
              <body pos='0 0 1' name='ball'><joint name='hinge'/><geom name='ball' size='0.1'/>
                <body name='bob' pos='0 0 1'><joint name='joint'/><geom size='0.1'/></body></body>
-             {in_world}
            </worldbody>
-           {after}
          </mujoco>"
     )
 }
@@ -23,24 +21,16 @@ fn model(option: &str, in_world: &str, after: &str) -> String {
 fn what_is_not_there_yet_is_refused_by_name() {
     for (text_of_model, words) in [
         (
-            model("<option integrator='discrete'/>", "", ""),
+            model("<option integrator='discrete'/>"),
             "option integrator: the integrator `discrete`",
         ),
         (
-            model("<option><flag autoreset='enable'/></option>", "", ""),
+            model("<option><flag autoreset='enable'/></option>"),
             "option autoreset",
         ),
         (
-            model("<option><flag sleep='enable'/></option>", "", ""),
+            model("<option><flag sleep='enable'/></option>"),
             "flag sleep",
-        ),
-        (
-            model(
-                "",
-                "<body><joint name='neck' type='ball'/><geom size='0.1'/></body>",
-                "<actuator><orientation name='gaze' joint='neck' kp='1'/></actuator>",
-            ),
-            "actuator \"gaze\": servos of orientations",
         ),
         (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),
@@ -60,7 +50,7 @@ fn a_device_that_is_not_there_is_an_error_that_says_what_to_do() {
         device: Some("no such card".to_owned()),
         ..GpuOptions::default()
     };
-    let error = GpuBatch::new(text(&model("", "", "")), 1, options).expect_err("no such card");
+    let error = GpuBatch::new(text(&model("")), 1, options).expect_err("no such card");
     let said = error.to_string();
     let known = said.starts_with("there is no graphics device \"no such card\"; there are: ");
     assert!(known || said.contains("mesa-vulkan-drivers"), "{said}");

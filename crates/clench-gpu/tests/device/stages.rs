@@ -142,6 +142,11 @@ fn inverse_inertias_of_the_present_configuration() {
 }
 
 #[test]
+fn orientation_servos() {
+    agree(&text(&own("servos")), 100, 0.5);
+}
+
+#[test]
 fn elliptic_cones() {
     let medley = own("medley");
     let elliptic = medley.replace(

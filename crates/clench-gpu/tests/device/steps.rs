@@ -151,6 +151,14 @@ fn so_do_chains_and_free_bodies_implicit_in_coriolis_forces() {
     }
 }
 
+#[test]
+fn so_do_orientation_servos() {
+    for integrator in ["implicitfast", "RK4"] {
+        let option = format!("<option integrator=\"{integrator}\" ");
+        drift_alike(&text(&own("servos").replace("<option ", &option)), 100);
+    }
+}
+
 /// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
 /// has done, it has done.
 #[test]
