@@ -94,12 +94,24 @@ def test_a_fault_is_that_of_its_environment() -> None:
         ({"device": "gpu:no such card"}, ValueError, 'no graphics device "no such card"'),
         ({"device": "gpu", "precision": "64"}, ValueError, 'compute with "32"'),
         ({"device": "gpu", "record": ["energy"]}, clench.ClenchError, "does not compute energy yet"),
-        ({"device": "gpu", "options": clench.RigidOptions(constraint_solver="CG")}, ValueError, "Newton is the only solver"),
     ],
 )
 def test_what_cannot_be_is_said(how: dict[str, Any], error: type[Exception], words: str) -> None:
     with pytest.raises(error, match=words):
         clench.Batch(ball(), 2, **how)
+
+
+def test_a_model_that_no_device_knows_is_refused_by_name() -> None:
+    still = clench.Model.from_xml("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
+    with pytest.raises(ValueError, match="model without degrees of freedom"):
+        clench.Batch(still, 2, device="gpu")
+
+
+def test_conjugate_gradients_step_as_on_the_processor() -> None:
+    device, processor = pair(options=clench.RigidOptions(constraint_solver="CG", tolerance=1e-7))
+    for batch in (device, processor):
+        assert batch.step(5) == 0
+    np.testing.assert_allclose(device.qpos, processor.qpos, atol=1e-4)
 
 
 def test_environments_have_parameters_of_their_own() -> None:

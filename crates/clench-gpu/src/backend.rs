@@ -188,14 +188,14 @@ impl Backend<f32> for GpuBatch {
             Output::actuator_moment => {
                 let sparse = GpuBatch::read(self, "actuator_moment")?;
                 let model = self.model();
-                let pattern = (&model.actuator_dofs, model.actuators.len());
+                let pattern = (&model.actuator_dofs, model.nout());
                 spread(model.nv, pattern, &sparse, rows);
             }
             Output::actuator_power => {
                 let forces = GpuBatch::read(self, "actuator_force")?;
                 let velocities = GpuBatch::read(self, "actuator_velocity")?;
                 let powers = Vec::from_iter(forces.iter().zip(velocities).map(|(f, v)| f * v));
-                let each = powers.chunks(self.model().actuators.len().max(1));
+                let each = powers.chunks(self.model().nout().max(1));
                 for (row, powers) in rows.iter_mut().zip(each) {
                     *row = powers.iter().filter(|&&power| power > 0.0).sum();
                 }

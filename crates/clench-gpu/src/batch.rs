@@ -7,6 +7,7 @@ use crate::error::GpuError;
 use crate::fields::{self, Fields};
 use crate::kernels::{Memory, constants};
 use crate::pipelines::{Arrays, Pipelines, layout};
+use crate::solver_memory::SolverMemory;
 use crate::tables::{Capacity, ENVS, Tables};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
@@ -82,7 +83,10 @@ impl GpuBatch {
             candidates: &pairs,
         })?;
         let device = Device::open(options.device.as_deref())?;
-        let (mut tables, capacity) = Tables::new(&model, &settings, &pairs);
+        let room = device.limits.max_compute_workgroup_storage_size as usize;
+        let solver = SolverMemory::new(model.nv, settings.solver.constraint_solver, room)?;
+        let (mut tables, mut capacity) = Tables::new(&model, &settings, &pairs);
+        solver.reserve(&mut capacity);
         let base = Base::new(&tables, pairs);
         tables.shapes(&model, &base.candidates);
         let state = fields::state_fields(&model, capacity);
@@ -92,7 +96,6 @@ impl GpuBatch {
         tables.initial_state(&model, &state);
         let sizes = [&state, &work, &rows, &reports].map(|fields| fields.size);
         check_room(&device, count, sizes)?;
-        check_workgroup(&device, model.nv)?;
 
         let scope = device
             .device
@@ -121,6 +124,7 @@ impl GpuBatch {
             work: &work,
             rows: &rows,
             reports: &reports,
+            solver,
         };
         let layout = layout(&device);
         let text = constants(&tables, &memory);
@@ -323,25 +327,5 @@ fn check_room(device: &Device, count: usize, sizes: [usize; 4]) -> Result<(), Gp
         count,
         bytes: 4 * sizes.iter().sum::<usize>() as u64,
         most: usize::try_from(most).ok(),
-    })
-}
-
-/// Whether the Hessian fits the memory that a workgroup shares.
-fn check_workgroup(device: &Device, nv: usize) -> Result<(), GpuError> {
-    // The packed Hessian, seven vectors over the dofs, and what threads add up.
-    let needed = |nv: usize| 4 * (nv * (nv + 1) / 2 + 7 * nv) + 1024;
-    let room = device.limits.max_compute_workgroup_storage_size as usize;
-    if needed(nv) <= room {
-        return Ok(());
-    }
-    let most = (1..nv)
-        .take_while(|&n| needed(n) <= room)
-        .last()
-        .unwrap_or(0);
-    Err(GpuError::Unusable {
-        device: device.info.name.clone(),
-        reason: format!(
-            "its workgroups share {room} bytes, in which the Hessian of {most} dofs fits, but the model has {nv}"
-        ),
     })
 }

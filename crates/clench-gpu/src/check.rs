@@ -3,11 +3,8 @@
 use crate::error::{GpuError, Refusal};
 use clench_collide::{MAX_POINTS, ShapeKind};
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{
-    BiasKind, DynamicsKind, EqualityTarget, GainKind, Integrator, Model, Transmission,
-};
+use clench_rigid::model::{EqualityTarget, Integrator, Model};
 use clench_rigid::settings::StepSettings;
-use clench_solver::ConstraintSolver;
 
 /// What a batch is asked to step.
 pub(crate) struct Simulation<'a> {
@@ -31,21 +28,13 @@ macro_rules! rules {
 
 rules! {
     "a model without degrees of freedom has nothing to step": |s| (s.model.nv == 0).then(|| "model".to_owned());
-    "the integrator `implicit` is not there yet; `Euler`, `implicitfast` and `RK4` are": |s| {
-        (s.model.integrator == Integrator::Implicit).then(|| "option integrator".to_owned())
-    };
-    "the integrator `discrete` is not there yet; `Euler`, `implicitfast` and `RK4` are": |s| {
+    "the integrator `discrete` is not there yet; `Euler`, `implicitfast`, `implicit` and `RK4` are": |s| {
         (s.model.integrator == Integrator::Discrete).then(|| "option integrator".to_owned())
-    };
-    "Newton is the only solver": |s| {
-        let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
-        cg.then(|| "option constraint_solver".to_owned())
     };
     "environments do not start over by themselves yet: look at the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };
     "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
-    "exact inverse inertias are not there yet": |s| s.settings.flags.diagexact.then(|| "flag diagexact".to_owned());
     "equalities of this kind are not there yet": |s| {
         use EqualityTarget::{Connect, Joint, Tendon, Weld};
         let known = |target| matches!(target, Connect { .. } | Weld { .. } | Joint { .. } | Tendon { .. });
@@ -53,37 +42,6 @@ rules! {
         let equality = &s.model.equalities[e];
         Some(named(equality.target.kind(), &equality.name, e))
     };
-    "tendons with inertia are not there yet": |s| tendon(s.model, |m, t| {
-        let reflected = |&u: &usize| m.params.actuator_armature[u] != 0.0;
-        m.params.tendon_armature[t] != 0.0 || m.tendons[t].reflecting.iter().any(reflected)
-    });
-    "springs that yield are not there yet": |s| {
-        let joint_of = |j: usize| joint(s.model, j);
-        let yields = s.model.joints.iter().position(|joint| joint.plastic.is_some());
-        yields.map(joint_of).or_else(|| tendon(s.model, |m, t| m.tendons[t].plastic.is_some()))
-    };
-    "servos of orientations are not there yet": |s| actuator(s.model, |m, u| {
-        let transmission = m.actuators[u].transmission;
-        matches!(transmission, Transmission::Rotation(_) | Transmission::RotationInFrame(_))
-    });
-    "actuators with delays, or with several controls or activations, are not there yet": |s| actuator(s.model, |m, u| {
-        let a = &m.actuators[u];
-        a.history.is_some() || a.controls.len() != 1 || a.acts.len() > 1
-    });
-    "controllers and motors with states of their own are not there yet": |s| actuator(s.model, |m, u| {
-        let a = &m.actuators[u];
-        matches!(a.dynamics, DynamicsKind::Pid | DynamicsKind::DcMotor)
-            || matches!(a.gain, GainKind::Pid | GainKind::DcMotor)
-            || a.bias == BiasKind::DcMotor
-    });
-    "surfaces that move are not there yet": |s| geom(s.model, |m, g| {
-        m.params.geom_surfacevel[g].iter().any(|&v| v != 0.0)
-    });
-    "contacts that adhere are not there yet": |s| geom(s.model, |m, g| m.params.geom_adhesion[g] != 0.0).or_else(|| {
-        let pair = s.model.params.pair_adhesion.iter().position(|&a| a != 0.0)?;
-        Some(named("pair", &s.model.pairs[pair].name, pair))
-    });
-    "the medium acts on boxes of inertia only": |s| geom(s.model, |m, g| m.geoms[g].fluid_ellipsoid);
     "the contacts of these two kinds of shape are not there yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;
@@ -168,35 +126,11 @@ pub(crate) fn check(simulation: &Simulation) -> Result<(), GpuError> {
     Err(GpuError::Unsupported(refusals))
 }
 
-fn tendon(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
-    let t = (0..model.tendons.len()).find(|&t| refused(model, t))?;
-    Some(named("tendon", &model.tendons[t].name, t))
-}
-
-fn actuator(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
-    let u = (0..model.actuators.len()).find(|&u| refused(model, u))?;
-    Some(named("actuator", &model.actuators[u].name, u))
-}
-
-fn geom(model: &Model, refused: fn(&Model, usize) -> bool) -> Option<String> {
-    let g = (0..model.geoms.len()).find(|&g| refused(model, g))?;
-    Some(geom_name(model, g))
-}
-
 fn geom_name(model: &Model, g: usize) -> String {
     let geom = &model.geoms[g];
     let kind = format!("{:?}", geom.kind).to_lowercase();
     let name = named(&format!("{kind} geom"), &geom.name, g);
     match &geom.origin {
-        Some(origin) => format!("{origin}: {name}"),
-        None => name,
-    }
-}
-
-fn joint(model: &Model, j: usize) -> String {
-    let joint = &model.joints[j];
-    let name = named("joint", &joint.name, j);
-    match &joint.origin {
         Some(origin) => format!("{origin}: {name}"),
         None => name,
     }

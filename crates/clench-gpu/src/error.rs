@@ -71,6 +71,16 @@ pub enum GpuError {
     /// A model that the device cannot step yet: the first thing of each kind.
     #[error("this model cannot be stepped on a graphics device yet: {}", joined(.0))]
     Unsupported(Vec<Refusal>),
+    /// More dofs than the solver factors a Hessian of.
+    #[error(
+        "Newton's method on a graphics device is for up to {most} dofs, but the model has {nv}: the solver CG has no such limit"
+    )]
+    TooManyDofs {
+        /// How many there may be.
+        most: usize,
+        /// How many there are.
+        nv: usize,
+    },
     /// An option outside its range.
     #[error(transparent)]
     Option(#[from] OptionError),

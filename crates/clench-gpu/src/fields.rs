@@ -3,7 +3,8 @@
 
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity};
 use clench_rigid::dynamics::articulated::articulated_bodies;
-use clench_rigid::model::Model;
+use clench_rigid::dynamics::plastic::has_yielding_tendons;
+use clench_rigid::model::{Integrator, Model};
 
 /// A field: so many numbers for each environment, from a place on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +39,11 @@ impl Fields {
     }
 }
 
+/// Whether the integrator takes Coriolis forces implicitly.
+fn takes_coriolis(m: &Model) -> bool {
+    m.integrator == Integrator::Implicit
+}
+
 macro_rules! fields {
     ($(#[$doc:meta])* $maker:ident($m:ident, $c:ident); $($(#[$field_doc:meta])* $name:ident: $width:expr;)*) => {
         $(#[$doc])*
@@ -56,6 +62,10 @@ fields! {
     qpos: m.nq;
     qvel: m.nv;
     act: m.na;
+    /// Buffers of past controls.
+    history: m.nhistory;
+    /// Where springs that yield rest.
+    plastic: m.nplastic;
     qacc_warmstart: m.nv;
     ctrl: m.nu();
     qfrc_applied: m.nv;
@@ -100,11 +110,17 @@ fields! {
     sensordata: m.nsensordata();
     /// Spatial forces of bodies, used up when they are projected.
     cfrc: 6 * m.nbody();
+    /// How forces of the medium on ellipsoids change with velocities, column by column.
+    fluid_rates: if m.bodies.iter().any(|b| b.fluid_ellipsoids) { 36 * m.nbody() } else { 0 };
     /// The mass matrix, in the pattern of the tree.
     qm: m.tree.nnz();
     /// Its LᵀDL, or that of an implicit step.
     qld: m.tree.nnz();
     qld_inverse: m.nv;
+    /// The upper triangle where an implicit step's is not symmetric, and how forces and axes change with velocities.
+    qld_upper: if takes_coriolis(m) { m.tree.nnz() } else { 0 };
+    coriolis_rates: if takes_coriolis(m) { 36 * m.nbody() } else { 0 };
+    coriolis_drift: if takes_coriolis(m) { 6 * m.nv } else { 0 };
     qfrc_passive: m.nv;
     qfrc_bias: m.nv;
     ten_length: m.tendons.len();
@@ -113,9 +129,11 @@ fields! {
     qfrc_gravcomp: m.nv;
     actuator_moment: m.actuator_dofs.len();
     act_dot: m.na;
-    actuator_length: m.actuators.len();
-    actuator_velocity: m.actuators.len();
-    actuator_force: m.actuators.len();
+    actuator_length: m.nout();
+    actuator_velocity: m.nout();
+    actuator_force: m.nout();
+    /// With how much actuators pull at each tendon whose total is limited.
+    ten_actuator_force: m.tendons.len();
     qfrc_actuator: m.nv;
     qfrc_smooth: m.nv;
     qacc_smooth: m.nv;
@@ -125,6 +143,8 @@ fields! {
     contacts: CONTACT_SIZE * c.contacts;
     qacc: m.nv;
     qfrc_constraint: m.nv;
+    /// How long after the start of the step the present stage is, s.
+    offset: 1;
     /// The velocity that positions advance by.
     rate: m.nv;
     mean_rate: m.nv;
@@ -132,6 +152,10 @@ fields! {
     start_qpos: m.nq;
     start_qvel: m.nv;
     start_act: m.na;
+    start_actuator_velocity: m.nout();
+    /// Where tendons that yield were.
+    start_ten_length: if has_yielding_tendons(m) { m.tendons.len() } else { 0 };
+    start_ten_jacobian: if has_yielding_tendons(m) { m.tendon_dofs.len() } else { 0 };
     mean_act_dot: m.na;
     start_warmstart: m.nv;
 }
@@ -144,9 +168,12 @@ fields! {
     active_set: c.blocks;
     row_block: c.rows;
     position: c.rows;
+    /// Until its Jacobian is known, what surfaces move by themselves.
     velocity: c.rows;
     aref: c.rows;
     damping: c.rows;
+    /// The force with which a row pulls where it would otherwise give none, if any contact adheres.
+    pull: if c.adheres { c.rows } else { 0 };
     r: c.rows;
     d: c.rows;
     shape: c.rows;
@@ -158,8 +185,13 @@ fields! {
     jacobian: c.rows * m.nv;
     /// W J.
     weighed: c.rows * m.nv;
-    /// The mass matrix, a dense lower triangle.
-    mass: m.nv * (m.nv + 1) / 2;
+    /// Which rows are on pieces with curvature.
+    stiff: c.rows;
+    /// The mass matrix, in the pattern of the tree.
+    mass: m.tree.nnz();
+    /// The factor of H, and vectors over the dofs, where the workgroup has no room for them.
+    tiles: c.tiles;
+    vectors: c.vectors;
 }
 
 fields! {
@@ -180,8 +212,9 @@ fields! {
     ncon: 1;
     nblock: 1;
     nrow: 1;
-    /// Newton iterations of the last solve.
+    /// Iterations of the last solve, and the bits of the duality gap that they left.
     niter: 1;
+    solve_gap: 1;
     /// How it ended, as the codes of `clench_solver::Status`.
     solve_status: 1;
 }

@@ -4,10 +4,11 @@
 //! are put one after the other, behind the constants of the model. Loops run over tables; nothing is unrolled for a model.
 
 use crate::fields::Fields;
+use crate::solver_memory::SolverMemory;
 use crate::tables::{NONE, Tables};
 use std::fmt::Write;
 
-/// Threads of a workgroup: a subgroup on most cards, and few enough for a processor that plays one.
+/// Threads of a workgroup: a subgroup on most cards, few enough for a processor that plays one, and two for each row of a tile of H.
 pub(crate) const GROUP: u32 = 32;
 /// Workgroups in a row, where each has an environment: a dispatch has no more than 65,535 along an axis.
 pub(crate) const GRID: u32 = 32_768;
@@ -54,32 +55,37 @@ kernels! {
     RESTART = "restart", Thread: "restart";
     /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
     POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "wrap", "tendon",
-        "transmission", "articulated", "inertia";
+        "outputs", "transmission", "articulated", "outer", "inertia";
     /// Contacts.
     CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "detect";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "chains", "velocity", "adhesion", "passive", "tendon_forces", "muscle", "activation", "gain",
-        "actuation", "forces";
+    FORCES = "forces", Thread: "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "passive", "tendon_forces", "muscle",
+        "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Which constraints act, and how soft they are.
-    CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "constraints";
+    CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
     /// Their Jacobians.
-    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "assembly";
+    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// The convex problem.
-    SOLVE = "solve", Workgroup: "group", "costs", "elliptic", "hessian", "iterate", "line_search", "noslip", "newton";
+    SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "cg", "descent";
     /// Accelerations of bodies and forces between them, where somebody asks.
-    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "external", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "external", "body_forces";
     /// What sensors measure, where somebody asks.
-    SENSORS = "sensors", Thread: "chains", "site_volume", "sensors";
+    SENSORS = "sensors", Thread: "chains", "site_volume", "adhesive", "sensors";
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Thread: "tree", "articulated", "activation", "verdict", "integrate", "euler";
+    EULER = "euler", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
-    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "activation", "gain", "verdict", "integrate", "derivatives",
-        "gyroscopic", "implicit";
+    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+        "orientation", "actuator_slopes", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "outer", "derivatives", "gyroscopic", "implicit_fast";
+    /// The same with Coriolis forces.
+    IMPLICIT = "implicit", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+        "orientation", "actuator_slopes", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "outer", "derivatives", "coriolis", "lu", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "activation", "verdict", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.
@@ -88,6 +94,7 @@ pub(crate) struct Memory<'a> {
     pub work: &'a Fields,
     pub rows: &'a Fields,
     pub reports: &'a Fields,
+    pub solver: SolverMemory,
 }
 
 /// The codes of `reports`: those of [`GpuFault`](crate::GpuFault), and of what is aside and does not take part in a call.
@@ -137,7 +144,7 @@ pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
             declare(&field.name.to_uppercase(), field.place);
         }
     }
-    text
+    text + &memory.solver.constants()
 }
 
 impl Kernel {

@@ -22,6 +22,7 @@ mod kernels;
 mod parameters;
 mod pipelines;
 mod reports;
+mod solver_memory;
 mod tables;
 mod transfer;
 

@@ -133,6 +133,7 @@ impl Pipelines {
                 (0..4).map(stage).collect::<Result<_, _>>()?
             }
             Integrator::ImplicitFast => vec![compile(&kernels::IMPLICIT_FAST, &[])?],
+            Integrator::Implicit => vec![compile(&kernels::IMPLICIT, &[])?],
             _ => vec![compile(&kernels::EULER, &[])?],
         };
         let forward = forward.iter().map(|kernel| compile(kernel, &[]));

@@ -7,12 +7,14 @@ use clench_solver::Status;
 use zerocopy::IntoBytes;
 
 /// How the last solve of an environment went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpuSolve {
     /// How it ended.
     pub status: Status,
-    /// Newton iterations.
+    /// Iterations of Newton's method or of conjugate gradients.
     pub iterations: usize,
+    /// Duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
+    pub gap: f32,
     /// Contacts.
     pub contacts: usize,
     /// Rows of the convex problem.
@@ -65,17 +67,19 @@ impl GpuBatch {
     pub fn solves(&self) -> Result<Vec<GpuSolve>, GpuError> {
         let status = |code: u32| match code {
             0 => Status::Unconstrained,
+            1 => Status::Proven,
             2 => Status::Converged,
             3 => Status::NoProgress,
             4 => Status::IterationLimit,
             _ => Status::NonFinite,
         };
-        let [ended, niter, ncon, nrow] =
-            ["solve_status", "niter", "ncon", "nrow"].map(|name| self.report(name));
-        let (ended, niter, ncon, nrow) = (ended?, niter?, ncon?, nrow?);
+        let [ended, niter, gap, ncon, nrow] =
+            ["solve_status", "niter", "solve_gap", "ncon", "nrow"].map(|name| self.report(name));
+        let (ended, niter, gap, ncon, nrow) = (ended?, niter?, gap?, ncon?, nrow?);
         let solve = |env: usize| GpuSolve {
             status: status(ended[env]),
             iterations: niter[env] as usize,
+            gap: f32::from_bits(gap[env]),
             contacts: ncon[env] as usize,
             rows: nrow[env] as usize,
         };

@@ -20,6 +20,9 @@ impl Tables {
         for field in &fields.list {
             match field.name {
                 "qpos" => row.extend(&state.qpos),
+                "ctrl" => row.extend(&state.ctrl),
+                "history" => row.extend(&state.history),
+                "plastic" => row.extend(&state.plastic),
                 "mocap_pos" => row.extend(state.mocap_pos.iter().flat_map(|v| v.to_array())),
                 "mocap_quat" => row.extend(state.mocap_quat.iter().flat_map(|q| q.to_array())),
                 "eq_active" => {
@@ -33,8 +36,8 @@ impl Tables {
 }
 
 impl GpuBatch {
-    /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `qacc_warmstart`, `ctrl`,
-    /// `qfrc_applied`, `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`,
+    /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `history`,
+    /// `plastic`, `qacc_warmstart`, `ctrl`, `qfrc_applied`, `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`,
     /// `mocap_quat`, `eq_active` (zero where an equality is off).
     ///
     /// # Errors

@@ -21,8 +21,11 @@ fn exp_less_one(x: f32) -> f32 {
     return exp(x) - 1.0;
 }
 
-// An activation of actuator `u` a time step later, within its range.
-fn next_activation(u: u32, act: f32, rate: f32) -> f32 {
+// Activation `a` of actuator `u` a time step later, within its range.
+fn next_activation(u: u32, a: u32, act: f32, rate: f32, velocity: f32) -> f32 {
+    if (ANY_CONTROLLER && words[ACTUATOR_DYNAMICS + u] == DYN_DC_MOTOR) {
+        return next_motor_activation(u, a, act, rate, velocity);
+    }
     var time = TIMESTEP;
     if (words[ACTUATOR_DYNAMICS + u] == DYN_FILTER_EXACT) {
         let tau = time_constant(u);

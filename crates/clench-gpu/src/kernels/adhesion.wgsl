@@ -3,7 +3,7 @@
 // Moment arms, over all dofs, of an actuator on the contacts of `body`: minus the mean rate at which the bodies come apart there.
 // A contact within one rigid body has no share, unless it is within the gap.
 fn contact_arms(u: u32, body: u32) {
-    let arms = ACTUATOR_MOMENT + words[ACTUATOR_ROW + u];
+    let arms = ACTUATOR_MOMENT + first_arm(u);
     clear_dofs(arms);
     var count = 0.0;
     for (var c = 0u; c < reports[NCON * envs + env]; c++) {
@@ -15,7 +15,8 @@ fn contact_arms(u: u32, body: u32) {
             continue;
         }
         let margin = parameter(PAIR_PRM + PAIR_PRM_SIZE * pair);
-        if (move_alike(a, b) && fetch(place + 1u) < margin) {
+        let acts = fetch(place + 1u) < margin || contact_adhesion(c) != 0.0;
+        if (move_alike(a, b) && acts) {
             continue;
         }
         count += 1.0;

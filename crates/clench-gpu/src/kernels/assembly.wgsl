@@ -97,7 +97,7 @@ fn entry(a: u32, i: u32) -> f32 {
 
 // The velocity along a row, and the inverse inertia that it would see if dofs were independent.
 fn finish_row(a: u32) {
-    var velocity = 0.0;
+    var velocity = row(VELOCITY + a);
     var inertia = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
         let j = row(JACOBIAN + a * NV + i);
@@ -131,12 +131,18 @@ fn finish_cone(first: u32, dim: u32, is_pyramid: bool) {
 fn finish_stiffness(a: u32, r: f32) {
     put_row(R + a, r);
     put_row(D + a, 1.0 / r);
+    if (ANY_ADHESION) {
+        put_row(AREF + a, row(AREF + a) + r * row(PULL + a));
+    }
 }
 
 fn finish_block(b: u32) {
     let kind = block(b, BLOCK_KIND);
     let first = block(b, BLOCK_ROW);
     let dim = block(b, BLOCK_DIM);
+    if (EXACT_DIAGONAL) {
+        regularize_exactly(kind, first, dim);
+    }
     if (kind == CONTACT_PYRAMID || kind == CONTACT_ELLIPTIC) {
         finish_cone(first, dim, kind == CONTACT_PYRAMID);
         return;
@@ -153,9 +159,8 @@ fn finish_block(b: u32) {
 
 @compute @workgroup_size(GROUP)
 fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
-    take_up(environment_of(workgroup));
     lane = index;
-    if (env >= envs) {
+    if (!begin_together(workgroup)) {
         return;
     }
     let nrow = reports[NROW * envs + env];

@@ -1,11 +1,14 @@
 // Every active constraint becomes a block of rows: equalities, dry friction, limits, contacts, in this order. Sisters of
-// `constraint/friction.rs`, `limit.rs` and `contact.rs`. Jacobians and velocities are added by `assembly.wgsl`.
+// `constraint/friction.rs`, `limit.rs` and `contact.rs`, and of `contact/surface.rs`. Jacobians and velocities are added by `assembly.wgsl`.
 
 var<private> nblock: u32;
 var<private> nrow: u32;
+// The impedance of the present block.
+var<private> block_impedance: f32;
 
 // Begins a block of a kind, from a source that its Jacobian is made of.
-fn begin_block(kind: u32, dim: u32, source: u32) {
+fn begin_block(kind: u32, dim: u32, source: u32, impedance: f32) {
+    block_impedance = impedance;
     let place = BLOCKS + BLOCK_SIZE * nblock;
     put_row(place + BLOCK_KIND, f32(kind));
     put_row(place + BLOCK_DIM, f32(dim));
@@ -14,7 +17,8 @@ fn begin_block(kind: u32, dim: u32, source: u32) {
     nblock++;
 }
 
-// Adds a row to the block. The part of aref that its velocity has comes later: −damping · velocity.
+// Adds a row to the block. The part of aref that its velocity has comes later: −damping · velocity. Until then VELOCITY has the part
+// of that which is not J v, PULL the force for which aref is raised by R times as much, and D the impedance.
 fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
     put_row(ROW_BLOCK + nrow, f32(nblock - 1u));
     put_row(POSITION + nrow, position);
@@ -22,6 +26,11 @@ fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
     put_row(DAMPING + nrow, damping);
     put_row(R + nrow, r);
     put_row(SHAPE + nrow, shape);
+    put_row(VELOCITY + nrow, 0.0);
+    put_row(D + nrow, block_impedance);
+    if (ANY_ADHESION) {
+        put_row(PULL + nrow, 0.0);
+    }
     nrow++;
 }
 
@@ -29,7 +38,7 @@ fn push_friction() {
     for (var k = 0u; k < NFRICTION; k++) {
         let prm = FRICTION_PRM + 9u * k;
         let soft = soften(prm + 2u, 0.0);
-        begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k]);
+        begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k], soft.impedance);
         add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, parameter(prm + 1u)), parameter(prm));
     }
 }
@@ -41,7 +50,7 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
         return;
     }
     let soft = soften(prm + 4u, distance - margin);
-    begin_block(LIMIT, 1u, source);
+    begin_block(LIMIT, 1u, source, soft.impedance);
     let aref = -soft.stiffness * (distance - margin);
     add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + 3u)), 0.0);
 }
@@ -62,9 +71,33 @@ fn push_limits() {
     }
 }
 
+// Velocity of the second geom's surface less that of the first where they touch: along both tangents, and about the normal. Sister of
+// `contact/surface.rs`.
+fn surface_velocity(contact: u32) -> vec3f {
+    let place = CONTACTS + CONTACT_SIZE * contact;
+    let pair = u32(fetch(place));
+    let point = fetch3(place + 2u);
+    var linear = vec3f();
+    var angular = vec3f();
+    for (var side = 0u; side < 2u; side++) {
+        let geom = words[PAIR_GEOM + 2u * pair + side];
+        let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
+        let turning = axes * parameter3(GEOM_SURFACEVEL + 6u * geom + 3u);
+        let along = axes * parameter3(GEOM_SURFACEVEL + 6u * geom);
+        let sign = select(-1.0, 1.0, side == 1u);
+        linear += (along + cross(turning, point - fetch3(GEOM_XPOS + 3u * geom))) * sign;
+        angular += turning * sign;
+    }
+    return vec3f(dot(fetch3(place + 8u), linear), dot(fetch3(place + 11u), linear), dot(fetch3(place + 5u), angular));
+}
+
 // The rows of a contact with friction, after the normal's.
-fn push_tangents(dim: u32, friction: u32, normal_r: f32, damping: f32, friction_damping: f32) {
+fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: f32, friction_damping: f32) {
     let mu1 = parameter(friction);
+    var drift = vec3f();
+    if (SURFACES_MOVE) {
+        drift = surface_velocity(contact);
+    }
     for (var k = 1u; k < dim; k++) {
         let mu = parameter(friction + k - 1u);
         if (ELLIPTIC_CONES) {
@@ -73,46 +106,61 @@ fn push_tangents(dim: u32, friction: u32, normal_r: f32, damping: f32, friction_
         } else {
             add_row(0.0, 0.0, damping, normal_r, mu);
         }
+        if (SURFACES_MOVE && k < 4u) {
+            put_row(VELOCITY + nrow - 1u, drift[k - 1u]);
+        }
     }
 }
 
+// The row along the normal, which pulls where the contact adheres.
+fn push_normal(distance: f32, aref: f32, damping: f32, r: f32, shape: f32, pull: f32) {
+    add_row(distance, aref, damping, r, shape);
+    if (ANY_ADHESION) {
+        put_row(PULL + nrow - 1u, pull);
+    }
+}
+
+// Where a contact that adheres is within the gap, it is one without friction.
 fn push_contact(contact: u32) {
     let place = CONTACTS + CONTACT_SIZE * contact;
     let pair = u32(fetch(place));
     let prm = PAIR_PRM + PAIR_PRM_SIZE * pair;
     let distance = fetch(place + 1u);
     let margin = parameter(prm);
-    if (distance >= margin || move_alike(words[PAIR_BODY + 2u * pair], words[PAIR_BODY + 2u * pair + 1u])) {
+    let adhesion = contact_adhesion(contact);
+    let touches = distance < margin;
+    if (!(touches || adhesion != 0.0) || move_alike(words[PAIR_BODY + 2u * pair], words[PAIR_BODY + 2u * pair + 1u])) {
         return;
     }
     let a0 = parameter(prm + 1u);
     let friction = prm + 2u;
     let soft = soften(prm + 7u, distance - margin);
     let aref = -soft.stiffness * (distance - margin);
-    let dim = words[PAIR_DIM + pair];
+    let dim = select(1u, words[PAIR_DIM + pair], touches);
     let plain = regularization(soft.impedance, a0);
     if (dim == 1u) {
-        begin_block(CONTACT_NORMAL, 1u, contact);
-        add_row(distance, aref, soft.damping, plain, 0.0);
+        begin_block(CONTACT_NORMAL, 1u, contact, soft.impedance);
+        push_normal(distance, aref, soft.damping, plain, 0.0, adhesion);
         return;
     }
     let mu = parameter(friction);
     if (ELLIPTIC_CONES) {
-        begin_block(CONTACT_ELLIPTIC, dim, contact);
-        add_row(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO));
+        begin_block(CONTACT_ELLIPTIC, dim, contact, soft.impedance);
+        push_normal(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
         var damping = soft.damping;
         let solref = vec2f(parameter(prm + 14u), parameter(prm + 15u));
         if (any(solref != vec2f()) && !is_mixed(solref)) {
             damping = spring_damper(solref, parameter(prm + 10u)).y;
         }
-        push_tangents(dim, friction, plain, soft.damping, damping);
+        push_tangents(contact, dim, friction, plain, soft.damping, damping);
         return;
     }
     let edge = regularization(soft.impedance, a0 + mu * mu * a0);
     let r = 2.0 * (mu * mu / IMPRATIO) * edge;
-    begin_block(CONTACT_PYRAMID, dim, contact);
-    add_row(distance, aref, soft.damping, r, 0.0);
-    push_tangents(dim, friction, r, soft.damping, soft.damping);
+    begin_block(CONTACT_PYRAMID, dim, contact, soft.impedance);
+    // Each edge has its share.
+    push_normal(distance, aref, soft.damping, r, 0.0, adhesion / (2.0 * (f32(dim) - 1.0)));
+    push_tangents(contact, dim, friction, r, soft.damping, soft.damping);
 }
 
 // One thread an environment.

@@ -1,57 +1,11 @@
 // How smooth forces change with velocities, in the pattern of the mass matrix: added, times −h, to what stands in QLD. Sister of
 // `dynamics/derivatives.rs`.
 
-// A sum of forces that were scaled into a range is at one of its ends if it misses it by so little of it.
-const SUM_ROUNDING: f32 = 16.0 * 1.1920929e-7;
-
-// Adds `scale` JᵀJ of a sparse row J, where the pattern has room for it: its dofs stand at `dofs`, its entries at `entries`.
-fn add_outer(dofs: u32, entries: u32, start: u32, end: u32, scale: f32) {
-    for (var k = start; scale != 0.0 && k < end; k++) {
-        let i = words[dofs + k];
-        for (var l = start; l < end; l++) {
-            for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
-                if (words[TREE_DOF + p] == words[dofs + l]) {
-                    add(QLD + p, scale * fetch(entries + k) * fetch(entries + l));
-                }
-            }
-        }
-    }
-}
-
-fn is_saturated(x: f32, range: u32) -> bool {
-    return x <= parameter(range) || x >= parameter(range + 1u);
-}
-
-// Whether the actuators of a tendon pull with as much as it bears.
-fn tendon_is_saturated(t: u32) -> bool {
-    var total = 0.0;
-    for (var u = 0u; u < NU; u++) {
-        if (words[ACTUATOR_LIMITED_TENDON + u] == t) {
-            total += fetch(ACTUATOR_FORCE + u);
-        }
-    }
-    let low = parameter(TENDON_FORCE_RANGE + 2u * t);
-    let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
-    return total <= low + abs(low) * SUM_ROUNDING || total >= high - abs(high) * SUM_ROUNDING;
-}
-
-// Whether a limit of the actuator, its tendon or its joint holds its force.
-fn is_held(u: u32) -> bool {
-    if (is_saturated(fetch(ACTUATOR_FORCE + u), FORCE_RANGE + 2u * u)) {
-        return true;
-    }
-    if (words[ACTUATOR_LIMITED_TENDON + u] != NONE) {
-        return tendon_is_saturated(words[ACTUATOR_LIMITED_TENDON + u]);
-    }
-    let dof = words[ACTUATOR_DOF + words[ACTUATOR_ROW + u]];
-    return words[ACTUATOR_ON + u] <= ON_FREE && is_saturated(fetch(QFRC_ACTUATOR + dof), DOF_FORCE_RANGE + 2u * dof);
-}
-
 fn add_actuators() {
     for (var u = 0u; ACTUATION && u < NU; u++) {
-        if (words[ACTUATOR_OFF + u] == 0u && !is_held(u)) {
-            let scale = -TIMESTEP * unlimited_slope(u);
-            add_outer(ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + u], words[ACTUATOR_ROW + u + 1u], scale);
+        let scale = -TIMESTEP * velocity_slope(u);
+        for (var o = output_of(u); o < output_of(u + 1u); o++) {
+            add_outer(QLD, ACTUATOR_DOF, ACTUATOR_MOMENT, words[ACTUATOR_ROW + o], words[ACTUATOR_ROW + o + 1u], scale);
         }
     }
 }
@@ -63,7 +17,7 @@ fn add_dampers() {
     }
     for (var t = 0u; t < NTENDON; t++) {
         let scale = TIMESTEP * damping_slope(TENDON_DAMPER + 3u * t, fetch(TEN_VELOCITY + t));
-        add_outer(TENDON_DOF, TEN_JACOBIAN, words[TENDON_ROW + t], words[TENDON_ROW + t + 1u], scale);
+        add_outer(QLD, TENDON_DOF, TEN_JACOBIAN, words[TENDON_ROW + t], words[TENDON_ROW + t + 1u], scale);
     }
 }
 
@@ -72,7 +26,23 @@ fn resistance_change(viscous: vec3f, quadratic: vec3f, v: vec3f, dv: vec3f) -> v
     return -(viscous + 2.0 * quadratic * abs(v)) * dv;
 }
 
-// What the medium adds: entry (i, j) is the power, along dof j, of the change of the resistance with dof i.
+// Adds the power, along each dof of the path to dof i, of a force on a body that changes with that dof.
+fn add_along_path(i: u32, change: Spatial) {
+    for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
+        add(QLD + p, -TIMESTEP * spatial_dot(fetch_spatial(CDOF + 6u * words[TREE_DOF + p]), change));
+    }
+}
+
+// What the medium adds on ellipsoids: of their forces only what is symmetric is counted.
+fn add_fluid_on_ellipsoids(b: u32) {
+    for (var i = 0u; i < bound(NV); i++) {
+        if (moves(b, i)) {
+            add_along_path(i, rate_along(b, fetch_spatial(CDOF + 6u * i), 1.0));
+        }
+    }
+}
+
+// What it adds on boxes: entry (i, j) is the power, along dof j, of the change of the resistance with dof i.
 fn add_fluid(b: u32) {
     let axes = fetch_matrix(XIMAT + 9u * b);
     let back = transpose(axes);
@@ -88,17 +58,32 @@ fn add_fluid(b: u32) {
         let motion = motion_at(b, i, at);
         let torque = axes * resistance_change(parameter3(drag), parameter3(drag + 6u), angular, back * motion.angular);
         let force = axes * resistance_change(parameter3(drag + 3u), parameter3(drag + 9u), linear, back * motion.linear);
-        let spatial = Spatial(torque + cross(offset_of(b, at), force), force);
-        for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
-            add(QLD + p, -TIMESTEP * spatial_dot(fetch_spatial(CDOF + 6u * words[TREE_DOF + p]), spatial));
-        }
+        add_along_path(i, Spatial(torque + cross(offset_of(b, at), force), force));
     }
 }
 
 fn add_velocity_derivatives() {
+    if (HAS_FLUID && ANY_FLUID_ELLIPSOID) {
+        ellipsoid_rates();
+    }
     add_actuators();
     add_dampers();
     for (var b = 1u; HAS_FLUID && b < NBODY; b++) {
-        add_fluid(b);
+        if (has_ellipsoids(b)) {
+            add_fluid_on_ellipsoids(b);
+        } else {
+            add_fluid(b);
+        }
     }
+}
+
+// Leaves M − h D, without Coriolis forces, in QLD, and the sum of all forces in RATE.
+fn symmetric_inertia() {
+    for (var p = 0u; p < bound(NNZ); p++) {
+        put(QLD + p, fetch(QM + p));
+    }
+    for (var i = 0u; i < bound(NV); i++) {
+        put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
+    }
+    add_velocity_derivatives();
 }

@@ -16,7 +16,7 @@ fn push_coupling(equality: u32, prm: u32) {
     }
     let violation = coordinate_value(follower) - parameter(prm) - value;
     let soft = soften(prm + 8u, violation);
-    begin_block(COUPLING, 1u, equality);
+    begin_block(COUPLING, 1u, equality, soft.impedance);
     // The slope stands where costs have their shape: this one needs none.
     add_row(violation, -soft.stiffness * violation, soft.damping, regularization(soft.impedance, parameter(prm + 7u)), slope);
 }
@@ -52,7 +52,7 @@ fn push_held(equality: u32, prm: u32, dim: u32) {
         turned = relative_quat(equality).yzw * torquescale(equality);
     }
     let soft = soften(prm + 17u, sqrt(dot(apart, apart) + dot(turned, turned)));
-    begin_block(HELD, dim, equality);
+    begin_block(HELD, dim, equality, soft.impedance);
     add_held_rows(apart, first.linear - second.linear, soft, parameter(prm + 15u));
     if (dim == 6u) {
         add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + 16u));

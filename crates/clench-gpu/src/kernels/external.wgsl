@@ -83,7 +83,7 @@ fn push_strings() {
         }
         var force = tendon_passive_force(t) + tendon_constraint_force(t);
         for (var k = words[TENDON_PULL + t]; k < words[TENDON_PULL + t + 1u]; k++) {
-            force += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]) * parameter(PULL_GEAR + k);
+            force += fetch(ACTUATOR_FORCE + words[PULL_OUTPUT + k]) * parameter(PULL_GEAR + k);
         }
         for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
             let path = section_path(s);
@@ -112,7 +112,8 @@ fn external_forces() {
         let forces = three_forces(first, end);
         let torques = three_forces(first + 3u, end);
         if (kind >= CONTACT_NORMAL) {
-            push_contact(block(b, BLOCK_SOURCE), forces, torques);
+            let adhesion = contact_adhesion(block(b, BLOCK_SOURCE));
+            push_contact(block(b, BLOCK_SOURCE), forces - vec3f(adhesion, 0.0, 0.0), torques);
         } else if (kind == HELD) {
             push_held(block(b, BLOCK_SOURCE), forces, torques);
         }

@@ -42,6 +42,9 @@ fn forces(@builtin(global_invocation_id) id: vec3u) {
     tendon_velocities();
     passive_forces();
     bias_forces();
+    if (HEAVY_TENDONS) {
+        tendon_bias();
+    }
     actuation();
     smooth_acceleration();
     note_end();

@@ -1,15 +1,32 @@
-// Inputs, gains and biases of actuators, force = gain · input + bias. Sisters of `dynamics/gain.rs` and `activation.rs`.
+// Inputs, gains and biases of actuators, force = gain · input + bias. Sisters of `dynamics/gain.rs`, `activation.rs` and
+// `activation_rates.rs`.
 //
-// Gain and bias are affine in the length and the velocity of the actuator, or those of a muscle. What a kind lacks is a zero
-// coefficient.
+// Gain and bias are affine in the length and the velocity of the actuator, or those of a muscle, a controller or a motor. What a kind
+// lacks is a zero coefficient.
 
 fn affine(place: u32, length: f32, velocity: f32) -> f32 {
     return parameter(place) + parameter(place + 1u) * length + parameter(place + 2u) * velocity;
 }
 
-fn acting_control(u: u32) -> f32 {
-    let ctrl = given(CTRL + words[ACTUATOR_CTRL + u]);
-    return clamp(ctrl, parameter(CTRL_RANGE + 2u * u), parameter(CTRL_RANGE + 2u * u + 1u));
+// Control `c` of actuator `u` as it acts: that of a delayed actuator is read from the past; then its range clamps.
+fn acting_control(u: u32, c: u32) -> f32 {
+    var ctrl = given(CTRL + c);
+    if (ANY_DELAY && words[ACTUATOR_HISTORY + u] != NONE) {
+        let delay = parameter(ACTUATOR_DELAY + u);
+        if (delay > 0.0) {
+            ctrl = read_history(words[ACTUATOR_HISTORY + u], fetch(OFFSET) - delay, c - words[ACTUATOR_CTRL + u]);
+        }
+    }
+    return clamp(ctrl, parameter(CTRL_RANGE + 2u * c), parameter(CTRL_RANGE + 2u * c + 1u));
+}
+
+// Activation `a` of actuator `u` as its gain takes it.
+fn acting(u: u32, a: u32, velocity: f32) -> f32 {
+    let act = given(ACT + a);
+    if (words[ACTUATOR_EARLY + u] == 1u) {
+        return next_activation(u, a, act, fetch(ACT_DOT + a), velocity);
+    }
+    return act;
 }
 
 fn activation_rate(u: u32, ctrl: f32, act: f32) -> f32 {
@@ -32,56 +49,61 @@ fn activation_rate(u: u32, ctrl: f32, act: f32) -> f32 {
     }
 }
 
-// What the gain multiplies: the control, or the activation. Leaves the activation's rate.
-fn actuator_input(u: u32, length: f32) -> f32 {
+// What the gain multiplies: the control, or the activation.
+fn actuator_input(u: u32, length: f32, velocity: f32) -> f32 {
     let a = words[ACTUATOR_ACT + u];
-    var input = acting_control(u);
+    var input = 0.0;
     if (NA > 0u && a != NONE) {
-        let act = given(ACT + a);
-        let rate = activation_rate(u, input, act);
-        put(ACT_DOT + a, rate);
-        input = act;
-        if (words[ACTUATOR_EARLY + u] == 1u) {
-            input = next_activation(u, act, rate);
-        }
+        input = acting(u, a, velocity);
+    } else {
+        input = acting_control(u, words[ACTUATOR_CTRL + u]);
     }
     return nearest_setpoint(u, input, length);
 }
 
+// Leaves the rates of the activations, and finds the force before any limit, but for what no limit holds; zero where the actuator is off.
 fn unlimited_force(u: u32) -> f32 {
-    let length = fetch(ACTUATOR_LENGTH + u);
-    let velocity = fetch(ACTUATOR_VELOCITY + u);
-    let input = actuator_input(u, length);
+    let length = fetch(ACTUATOR_LENGTH + output_of(u));
+    let velocity = fetch(ACTUATOR_VELOCITY + output_of(u));
+    let gain_law = words[GAIN_LAW + u];
+    let bias_law = words[BIAS_LAW + u];
+    var setpoints = Setpoints();
+    var circuit = Circuit();
+    if (ANY_CONTROLLER && words[ACTUATOR_CONTROLLER + u] != NONE) {
+        setpoints = setpoints_of(u);
+        circuit = circuit_of(u, setpoints, length, velocity);
+    }
+    if (ANY_CONTROLLER && words[ACTUATOR_DYNAMICS + u] == DYN_PID) {
+        pid_rates(u, setpoints, length);
+    } else if (ANY_CONTROLLER && words[ACTUATOR_DYNAMICS + u] == DYN_DC_MOTOR) {
+        motor_rates(u, setpoints, circuit, length, velocity);
+    } else if (NA > 0u && words[ACTUATOR_ACT + u] != NONE) {
+        let a = words[ACTUATOR_ACT + u];
+        put(ACT_DOT + a, activation_rate(u, acting_control(u, words[ACTUATOR_CTRL + u]), given(ACT + a)));
+    }
     if (words[ACTUATOR_OFF + u] == 1u) {
         return 0.0;
     }
-    let gain_at = ACTUATOR_GAIN + LAW_SIZE * u;
-    let bias_at = ACTUATOR_BIAS + LAW_SIZE * u;
-    var gain = 0.0;
-    if (ANY_MUSCLE && words[GAIN_LAW + u] == LAW_MUSCLE) {
-        gain = muscle_gain(gain_at, length, velocity);
+    var gain = 1.0;
+    var input = 0.0;
+    if (ANY_CONTROLLER && gain_law == LAW_PID) {
+        input = pid_force(u, setpoints, length, velocity);
+    } else if (ANY_CONTROLLER && gain_law == LAW_DC_MOTOR) {
+        gain = motor_gain(u, circuit);
+        input = motor_input(u, circuit, velocity);
     } else {
-        gain = affine(gain_at, length, velocity);
+        input = actuator_input(u, length, velocity);
+        if (ANY_MUSCLE && gain_law == LAW_MUSCLE) {
+            gain = muscle_gain(ACTUATOR_GAIN + LAW_SIZE * u, length, velocity);
+        } else {
+            gain = affine(ACTUATOR_GAIN + LAW_SIZE * u, length, velocity);
+        }
     }
-    if (ANY_MUSCLE && words[BIAS_LAW + u] == LAW_MUSCLE) {
-        return gain * input + muscle_bias(bias_at, length);
+    if (ANY_MUSCLE && bias_law == LAW_MUSCLE) {
+        return gain * input + muscle_bias(ACTUATOR_BIAS + LAW_SIZE * u, length);
     }
-    return gain * input + affine(bias_at, length, velocity);
-}
-
-// How the force of an actuator changes with its velocity, before any limit.
-fn unlimited_slope(u: u32) -> f32 {
-    let length = fetch(ACTUATOR_LENGTH + u);
-    let gain_at = ACTUATOR_GAIN + LAW_SIZE * u;
-    var slope = parameter(gain_at + 2u);
-    if (ANY_MUSCLE && words[GAIN_LAW + u] == LAW_MUSCLE) {
-        slope = muscle_gain_slope(gain_at, length, fetch(ACTUATOR_VELOCITY + u));
+    if (ANY_CONTROLLER && bias_law == LAW_DC_MOTOR) {
+        return gain * input - back_emf(u, gain, velocity);
     }
-    if (slope != 0.0) {
-        slope *= actuator_input(u, length);
-    }
-    if (ANY_MUSCLE && words[BIAS_LAW + u] == LAW_MUSCLE) {
-        return slope;
-    }
-    return slope + parameter(ACTUATOR_BIAS + LAW_SIZE * u + 2u);
+    return gain * input + affine(ACTUATOR_BIAS + LAW_SIZE * u, length, velocity);
 }

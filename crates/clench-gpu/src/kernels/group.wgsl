@@ -10,20 +10,44 @@ fn environment_of(workgroup: vec3u) -> u32 {
     return workgroup.x + GRID * workgroup.y;
 }
 
+// Lets a branch that contains barriers be taken by all threads or none. All come with the same answer.
+fn agreed(answer: u32) -> u32 {
+    if (lane == 0u) {
+        verdict = answer;
+    }
+    return workgroupUniformLoad(&verdict);
+}
+
+// Takes up the environment of a workgroup; false where there is none, or where it has failed and stands still.
+fn begin_together(workgroup: vec3u) -> bool {
+    let runs = begin(environment_of(workgroup));
+    return agreed(select(0u, 1u, runs)) == 1u;
+}
+
 // Waits until all threads of the group see what each has written.
 fn join() {
     storageBarrier();
     workgroupBarrier();
 }
 
-// The sum over all threads.
+// The sum of eight neighbours.
+fn sum_of_eight(first: u32) -> vec4f {
+    let first_half = (partials[first] + partials[first + 1u]) + (partials[first + 2u] + partials[first + 3u]);
+    let second_half = (partials[first + 4u] + partials[first + 5u]) + (partials[first + 6u] + partials[first + 7u]);
+    return first_half + second_half;
+}
+
+// The sum over all threads, of which four add up eight each. No loop: a solve asks for so many that they would be half of its turns.
 fn total(x: vec4f) -> vec4f {
     partials[lane] = x;
     workgroupBarrier();
-    var sum = vec4f();
-    for (var k = 0u; k < bound(GROUP); k++) {
-        sum += partials[k];
+    let part = sum_of_eight(8u * (lane % 4u));
+    workgroupBarrier();
+    if (lane < 4u) {
+        partials[lane] = part;
     }
+    workgroupBarrier();
+    let sum = (partials[0] + partials[1]) + (partials[2] + partials[3]);
     workgroupBarrier();
     return sum;
 }

@@ -34,6 +34,22 @@ fn add_bias_derivative(j: u32) {
     }
 }
 
+// Subtracts h times the skew part of D, which ellipsoids in a medium have.
+fn subtract_skew_drag(j: u32) {
+    let dof = words[JNT_DOF + j];
+    for (var b = words[JNT_BODY + j]; b < bound(NBODY); b++) {
+        if (!has_ellipsoids(b) || words[BODY_WELD + b] != words[JNT_BODY + j]) {
+            continue;
+        }
+        for (var c = 0u; c < bound(6u); c++) {
+            let change = rate_along(b, fetch_spatial(CDOF + 6u * (dof + c)), -1.0);
+            for (var r = 0u; r < bound(6u); r++) {
+                equations[7u * r + c] -= TIMESTEP * spatial_dot(fetch_spatial(CDOF + 6u * (dof + r)), change);
+            }
+        }
+    }
+}
+
 // Solves by elimination with partial pivoting; the unknowns are left on the right.
 fn solve_equations() {
     for (var k = 0u; k < bound(6u); k++) {
@@ -68,6 +84,9 @@ fn gyroscopic_accelerations() {
         let dof = words[JNT_DOF + j];
         begin_equations(dof);
         add_bias_derivative(j);
+        if (HAS_FLUID && ANY_FLUID_ELLIPSOID) {
+            subtract_skew_drag(j);
+        }
         solve_equations();
         for (var r = 0u; r < bound(6u); r++) {
             put(MEAN_RATE + dof + r, equations[7u * r + 6u]);

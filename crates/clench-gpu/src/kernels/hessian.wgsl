@@ -1,15 +1,4 @@
-// H = M + Σ JᵀW J, dense, in the memory of the workgroup, and its factor: LLᵀ, a column at a time, one barrier each.
-
-var<workgroup> hessian: array<f32, PACKED>;
-var<workgroup> inverse_pivots: array<f32, NV>;
-
-// A pivot below this part of the diagonal that it is left of is nothing but rounding.
-const MIN_PIVOT: f32 = 1.1920929e-7;
-
-// The entry (i, j), i ≥ j, of a lower triangle.
-fn packed(i: u32, j: u32) -> u32 {
-    return i * (i + 1u) / 2u + j;
-}
+// W J of the rows on pieces with curvature, of which the Hessian M + Jᵀ W J is made.
 
 fn weigh_edge(a: u32, i: u32, weight: f32) {
     put_row(WEIGHED + a * NV + i, weight * row(JACOBIAN + a * NV + i));
@@ -64,87 +53,33 @@ fn is_stiff(b: u32) -> bool {
     return active_set != 0.0;
 }
 
-fn build_hessian(nblock: u32) {
+// Lists the stiff rows, in order, and weighs them; returns how many there are.
+fn weigh_rows(nblock: u32) -> u32 {
+    var count = 0u;
+    for (var start = 0u; start < nblock; start += GROUP) {
+        let b = start + lane;
+        var dim = 0u;
+        if (b < nblock && is_stiff(b)) {
+            dim = block(b, BLOCK_DIM);
+        }
+        partials[lane] = vec4f(f32(dim), 0.0, 0.0, 0.0);
+        workgroupBarrier();
+        var place = count;
+        for (var k = 0u; k < bound(GROUP); k++) {
+            let other = u32(partials[k].x);
+            place += select(0u, other, k < lane);
+            count += other;
+        }
+        for (var a = 0u; a < dim; a++) {
+            put_row(STIFF + place + a, f32(block(b, BLOCK_ROW) + a));
+        }
+        workgroupBarrier();
+    }
     for (var k = lane; k < nblock * NV; k += GROUP) {
         if (is_stiff(k / NV)) {
             weigh(k / NV, k % NV);
         }
     }
     join();
-    for (var k = lane; k < PACKED; k += GROUP) {
-        let i = words[PACKED_ENTRY + k] >> 16u;
-        let j = words[PACKED_ENTRY + k] & 0xffffu;
-        var sum = row(MASS + k);
-        for (var b = 0u; b < nblock; b++) {
-            if (is_stiff(b)) {
-                let first = block(b, BLOCK_ROW);
-                let end = first + block(b, BLOCK_DIM);
-                for (var a = first; a < end; a++) {
-                    sum += row(JACOBIAN + a * NV + i) * row(WEIGHED + a * NV + j);
-                }
-            }
-        }
-        hessian[k] = sum;
-    }
-    workgroupBarrier();
-}
-
-// Row `i` of A in column `k`, less what the columns before have of it.
-fn reduced(i: u32, k: u32) -> f32 {
-    let own = packed(i, 0u);
-    let other = packed(k, 0u);
-    var sum = hessian[own + k];
-    for (var j = 0u; j < k; j++) {
-        sum -= hessian[own + j] * hessian[other + j];
-    }
-    return sum;
-}
-
-// A pivot that rounding has consumed is replaced by its diagonal, so that the direction stays one of descent. Every thread
-// computes the pivot for itself.
-fn factor_hessian() {
-    for (var k = 0u; k < bound(NV); k++) {
-        let diagonal = hessian[packed(k, k)];
-        let left = reduced(k, k);
-        let pivot = select(diagonal, left, left > MIN_PIVOT * diagonal);
-        let inverse = inverseSqrt(pivot);
-        for (var i = lane; i < bound(NV); i += GROUP) {
-            if (i > k) {
-                hessian[packed(i, k)] = reduced(i, k) * inverse;
-            } else if (i == k) {
-                inverse_pivots[k] = inverse;
-            }
-        }
-        workgroupBarrier();
-    }
-}
-
-// The vector at `x` becomes H⁻¹ x.
-fn solve_hessian(x: u32) {
-    for (var k = 0u; k < bound(NV); k++) {
-        let known = vectors[x + k] * inverse_pivots[k];
-        for (var i = lane; i < bound(NV); i += GROUP) {
-            if (i > k) {
-                vectors[x + i] -= hessian[packed(i, k)] * known;
-            }
-        }
-        workgroupBarrier();
-    }
-    scale_by_pivots(x);
-    for (var down = 0u; down < bound(NV); down++) {
-        let k = NV - 1u - down;
-        let known = vectors[x + k] * inverse_pivots[k];
-        for (var i = lane; i < k; i += GROUP) {
-            vectors[x + i] -= hessian[packed(k, i)] * known;
-        }
-        workgroupBarrier();
-    }
-    scale_by_pivots(x);
-}
-
-fn scale_by_pivots(x: u32) {
-    for (var i = lane; i < bound(NV); i += GROUP) {
-        vectors[x + i] *= inverse_pivots[i];
-    }
-    workgroupBarrier();
+    return count;
 }

@@ -1,29 +1,20 @@
-// Euler, implicit in the velocity derivatives of damping, medium and actuation. Sister of `dynamics/implicit.rs`. One thread an
-// environment.
+// Euler, implicit in the velocity derivatives of all smooth forces, Coriolis forces among them. Sister of `dynamics/implicit.rs`. One
+// thread an environment.
 
 @compute @workgroup_size(GROUP)
-fn implicit_fast(@builtin(global_invocation_id) id: vec3u) {
+fn implicit(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {
         return;
     }
     save_start();
+    symmetric_inertia();
     for (var p = 0u; p < bound(NNZ); p++) {
-        put(QLD + p, fetch(QM + p));
+        put(QLD_UPPER + p, fetch(QLD + p));
     }
-    for (var i = 0u; i < bound(NV); i++) {
-        put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
-    }
-    add_velocity_derivatives();
-    gyroscopic_accelerations();
-    if (!factor_tree()) {
+    add_bias_derivatives();
+    if (!factor_lu()) {
         trouble(SINGULAR);
     }
-    solve_tree(RATE);
-    for (var k = 0u; k < NFREE_TREE; k++) {
-        let dof = words[JNT_DOF + words[FREE_TREE_JNT + k]];
-        for (var r = 0u; r < bound(6u); r++) {
-            put(RATE + dof + r, fetch(MEAN_RATE + dof + r));
-        }
-    }
+    solve_lu(RATE);
     advance_semi_implicit();
 }

@@ -22,6 +22,14 @@ fn composite_inertia() {
     }
 }
 
+// Adds the inertia of all tendons. Sister of `dynamics/tendon_armature.rs`.
+fn add_tendon_inertia() {
+    for (var t = 0u; t < NTENDON; t++) {
+        let armature = parameter(TENDON_ARMATURE + t);
+        add_outer(QM, TENDON_DOF, TEN_JACOBIAN, words[TENDON_ROW + t], words[TENDON_ROW + t + 1u], armature);
+    }
+}
+
 // Nothing is added to the diagonal of M.
 fn added_inertia(i: u32) -> f32 {
     return 0.0;
@@ -51,8 +59,11 @@ fn positions(@builtin(global_invocation_id) id: vec3u) {
     kinematics();
     com_positions();
     composite_inertia();
-    factor_mass();
     tendons();
     transmissions();
+    if (HEAVY_TENDONS) {
+        add_tendon_inertia();
+    }
+    factor_mass();
     note_end();
 }

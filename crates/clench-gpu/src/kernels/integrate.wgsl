@@ -50,25 +50,40 @@ fn restore_start() {
     }
 }
 
-// Moves activations a time step on, at the rates in `rates` (in work). Those of actuators that are off stay where they are, but for
-// whole turns on a circle.
-fn advance_activations(rates: u32) {
-    for (var u = 0u; u < NU; u++) {
-        let a = words[ACTUATOR_ACT + u];
-        if (!ACTUATION || a == NONE) {
-            continue;
+// Takes whole turns off a rotation vector of more than half a turn, which stands for the same orientation then.
+fn shorten(place: u32) {
+    let vector = given3(place);
+    let angle = length(vector);
+    if (angle > 3.1415927) {
+        let share = (angle - 6.2831855 * floor(angle / 6.2831855 + 0.5)) / angle;
+        for (var k = 0u; k < 3u; k++) {
+            keep(place + k, vector[k] * share);
         }
-        let rate = select(fetch(rates + a), 0.0, words[ACTUATOR_OFF + u] == 1u);
-        var next = next_activation(u, given(ACT + a), rate);
-        if (words[ACTUATOR_SERVO + u] == 1u) {
-            next = nearest_setpoint(u, next, fetch(ACTUATOR_LENGTH + u));
-        }
-        keep(ACT + a, next);
     }
 }
 
-// Lets the step count, or takes it back where it led nowhere.
-fn finish_step() {
+// Moves activations a time step on, at the rates in `rates` (in work), for velocities of actuators in `velocities`. Those of actuators
+// that are off stay where they are, but for whole turns on a circle.
+fn advance_activations(rates: u32, velocities: u32) {
+    for (var a = 0u; ACTUATION && a < NA; a++) {
+        let u = words[ACT_ACTUATOR + a];
+        let rate = select(fetch(rates + a), 0.0, words[ACTUATOR_OFF + u] == 1u);
+        var next = next_activation(u, a, given(ACT + a), rate, fetch(velocities + output_of(u)));
+        if (words[ACTUATOR_SERVO + u] == 1u) {
+            next = nearest_setpoint(u, next, fetch(ACTUATOR_LENGTH + output_of(u)));
+        }
+        keep(ACT + a, next);
+    }
+    for (var u = 0u; ANY_ORIENTATION && ACTUATION && u < NU; u++) {
+        if (is_orientation_servo(u) && words[ACTUATOR_ACT + u] != NONE) {
+            shorten(ACT + words[ACTUATOR_ACT + u] - 2u);
+        }
+    }
+}
+
+// Lets the step count, or takes it back where it led nowhere. For springs that yield: the velocity that moved the positions, and lengths
+// and gradients of tendons at the start (all in work).
+fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     note_end();
     judge_results();
     for (var i = 0u; i < bound(NV); i++) {
@@ -76,6 +91,12 @@ fn finish_step() {
     }
     let fault = reports[TROUBLE * envs + env];
     if (fault == RUNNING) {
+        if (ANY_PLASTIC) {
+            yield_springs(velocity, length, jacobian);
+        }
+        if (ANY_DELAY) {
+            push_controls();
+        }
         reports[STEPS * envs + env] += 1u;
         return;
     }
@@ -130,12 +151,12 @@ fn damped_acceleration() {
 
 // Activations, then velocities by the acceleration in RATE, then positions with the new velocities.
 fn advance_semi_implicit() {
-    advance_activations(ACT_DOT);
+    advance_activations(ACT_DOT, ACTUATOR_VELOCITY);
     for (var i = 0u; i < bound(NV); i++) {
         let v = given(QVEL + i) + fetch(RATE + i) * TIMESTEP;
         keep(QVEL + i, v);
         put(RATE + i, v);
     }
     integrate_positions(RATE, TIMESTEP);
-    finish_step();
+    finish_step(RATE, TEN_LENGTH, TEN_JACOBIAN);
 }

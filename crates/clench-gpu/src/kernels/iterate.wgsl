@@ -1,41 +1,43 @@
-// The iterate of a solve: vectors over the dofs in the memory of the workgroup, numbers of rows beside the Jacobian. Sister of
-// `clench-solver/src/iterate.rs`.
+// The iterate of a solve: vectors over the dofs, and numbers of rows beside the Jacobian. Sister of `clench-solver/src/iterate.rs`.
 
-// Six vectors over the dofs, at these places.
-var<workgroup> vectors: array<f32, 6 * NV>;
+// The vectors over the dofs, at these places, where the workgroup has room for them; else they lie with the rows of the environment.
+// Each is as long as the tiles of H together.
+var<workgroup> vectors: array<f32, SHARED_VECTORS>;
 const QACC_AT: u32 = 0u;
 // M (a − a_unc).
-const INERTIAL_AT: u32 = NV;
-const GRADIENT_AT: u32 = 2u * NV;
-const RAY_AT: u32 = 3u * NV;
+const INERTIAL_AT: u32 = WIDTH;
+const GRADIENT_AT: u32 = 2u * WIDTH;
+const RAY_AT: u32 = 3u * WIDTH;
 // M p.
-const MASS_RAY_AT: u32 = 4u * NV;
+const MASS_RAY_AT: u32 = 4u * WIDTH;
 // Jᵀ f.
-const CONSTRAINT_AT: u32 = 5u * NV;
+const CONSTRAINT_AT: u32 = 5u * WIDTH;
+// Of conjugate gradients M⁻¹g; this and the gradient as the last direction was made of them. Newton's method has its direction there.
+const PRECONDITIONED_AT: u32 = select(6u, 3u, NEWTON) * WIDTH;
+const LAST_PRECONDITIONED_AT: u32 = 7u * WIDTH;
+const LAST_GRADIENT_AT: u32 = 8u * WIDTH;
 
-// The number i of M x.
-fn mass_times(x: u32, i: u32) -> f32 {
-    var sum = 0.0;
-    for (var j = 0u; j < bound(NV); j++) {
-        let place = select(packed(j, i), packed(i, j), j <= i);
-        sum += row(MASS + place) * vectors[x + j];
+fn vector(place: u32) -> f32 {
+    if (SHARE_VECTORS) {
+        return vectors[place];
     }
-    return sum;
+    return row(VECTORS + place);
 }
 
-// M x, for the vector at `x`, at `out`.
-fn multiply_mass(x: u32, out: u32) {
-    for (var i = lane; i < bound(NV); i += GROUP) {
-        vectors[out + i] = mass_times(x, i);
+// All threads see it after the next `join`.
+fn put_vector(place: u32, x: f32) {
+    if (SHARE_VECTORS) {
+        vectors[place] = x;
+    } else {
+        put_row(VECTORS + place, x);
     }
-    workgroupBarrier();
 }
 
 // The number a of J x.
 fn jacobian_times(a: u32, x: u32) -> f32 {
     var sum = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
-        sum += row(JACOBIAN + a * NV + i) * vectors[x + i];
+        sum += row(JACOBIAN + a * NV + i) * vector(x + i);
     }
     return sum;
 }
@@ -60,7 +62,7 @@ fn evaluate(nblock: u32) -> vec4f {
         sum += vec4f(value.cost, changed, select(0.0, 1.0, value.curved), 0.0);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
-        sum.w += 0.5 * (vectors[QACC_AT + i] - fetch(QACC_SMOOTH + i)) * vectors[INERTIAL_AT + i];
+        sum.w += 0.5 * (vector(QACC_AT + i) - fetch(QACC_SMOOTH + i)) * vector(INERTIAL_AT + i);
     }
     storageBarrier();
     return total(sum);
@@ -74,28 +76,29 @@ fn differentiate(nrow: u32) -> f32 {
         for (var a = 0u; a < nrow; a++) {
             sum += row(JACOBIAN + a * NV + i) * row(FORCE + a);
         }
-        let gradient = vectors[INERTIAL_AT + i] - sum;
-        vectors[CONSTRAINT_AT + i] = sum;
-        vectors[GRADIENT_AT + i] = gradient;
+        let gradient = vector(INERTIAL_AT + i) - sum;
+        put_vector(CONSTRAINT_AT + i, sum);
+        put_vector(GRADIENT_AT + i, gradient);
         square += gradient * gradient;
     }
+    storageBarrier();
     return sqrt(total(vec4f(square, 0.0, 0.0, 0.0)).x);
 }
 
 // M (a − a_unc) and J a − aref anew, without the rounding that steps have added up.
 fn refresh(nrow: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
-        vectors[RAY_AT + i] = vectors[QACC_AT + i] - fetch(QACC_SMOOTH + i);
+        put_vector(RAY_AT + i, vector(QACC_AT + i) - fetch(QACC_SMOOTH + i));
     }
-    workgroupBarrier();
+    join();
     multiply_mass(RAY_AT, INERTIAL_AT);
     compute_residual(nrow);
 }
 
 fn advance_iterate(alpha: f32, nrow: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
-        vectors[QACC_AT + i] += alpha * vectors[RAY_AT + i];
-        vectors[INERTIAL_AT + i] += alpha * vectors[MASS_RAY_AT + i];
+        put_vector(QACC_AT + i, vector(QACC_AT + i) + alpha * vector(RAY_AT + i));
+        put_vector(INERTIAL_AT + i, vector(INERTIAL_AT + i) + alpha * vector(MASS_RAY_AT + i));
     }
     for (var a = lane; a < nrow; a += GROUP) {
         put_row(RESIDUAL + a, row(RESIDUAL + a) + alpha * row(RAY + a));

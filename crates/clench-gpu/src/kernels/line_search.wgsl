@@ -74,8 +74,8 @@ fn narrow(bracket: ptr<function, Bracket>, at: Along) -> bool {
 fn ray_products() -> vec4f {
     var sum = vec4f();
     for (var i = lane; i < bound(NV); i += GROUP) {
-        let p = vectors[RAY_AT + i];
-        sum += p * vec4f(vectors[GRADIENT_AT + i], p, vectors[INERTIAL_AT + i], vectors[MASS_RAY_AT + i]);
+        let p = vector(RAY_AT + i);
+        sum += p * vec4f(vector(GRADIENT_AT + i), p, vector(INERTIAL_AT + i), vector(MASS_RAY_AT + i));
     }
     return total(sum);
 }
@@ -87,13 +87,20 @@ fn search(nblock: u32, slope_limit: f32) -> Step {
     let descends = start < 0.0;
     let exact = max(4.0 * EPSILON * abs(products.z), -(RESOLUTION * start));
     let loose = min(slope_limit * sqrt(products.y), -(0.1 * start));
-    var bracket = Bracket(0.0, UNBOUNDED, select(0.0, 1.0, descends), UNBOUNDED, UNBOUNDED, 0.0);
+    // A full step is the first guess along Newton's direction; along another it comes from the derivatives at 0.
+    let first = select(0.0, 1.0, descends && NEWTON);
+    let guesses = select(1u, 0u, NEWTON);
+    var bracket = Bracket(0.0, UNBOUNDED, first, UNBOUNDED, UNBOUNDED, 0.0);
     var open = descends;
     var change = 0.0;
-    for (var k = 0u; k <= LS_ITERATIONS; k++) {
+    for (var k = 0u; k <= LS_ITERATIONS + guesses; k++) {
         let at = along(nblock, bracket.alpha, products.z, products.w);
+        if (k < guesses) {
+            bracket.alpha = select(0.0, -start / at.second, descends);
+            continue;
+        }
         change = at.change;
-        if (!open || k == LS_ITERATIONS) {
+        if (!open || k == LS_ITERATIONS + guesses) {
             break;
         }
         let steepness = abs(at.first);

@@ -223,7 +223,7 @@ fn improve_friction(b: u32, start: u32) -> f32 {
     join();
     for (var j = 0u; j < count; j++) {
         for (var i = lane; i < bound(NV); i += GROUP) {
-            vectors[QACC_AT + i] += change[j] * row(WEIGHED + (start + j) * NV + i);
+            put_vector(QACC_AT + i, vector(QACC_AT + i) + change[j] * row(WEIGHED + (start + j) * NV + i));
         }
         if (lane == 0u) {
             put_row(FORCE + start + j, row(FORCE + start + j) + change[j]);

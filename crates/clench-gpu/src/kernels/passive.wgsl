@@ -1,4 +1,4 @@
-// Springs, dampers, gravity compensation and the medium. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
+// Springs, dampers, gravity compensation, the medium, and contacts that adhere. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
 //
 // A spring pulls with −(a x + b x² + c x³), a damper with −(a v + b v |v| + c v³).
 
@@ -6,6 +6,18 @@
 fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
     let k = stiffness(law, length(stretch));
     put3(qfrc, fetch3(qfrc) - stretch * k);
+}
+
+// Where the number `q` of a joint's position is where its spring rests.
+fn rest(j: u32, q: u32) -> f32 {
+    if (ANY_PLASTIC && words[JNT_PLASTIC + j] != NONE) {
+        return given(PLASTIC + words[JNT_PLASTIC + j] + q - words[JNT_QPOS + j]);
+    }
+    return parameter(QPOS_SPRING + q);
+}
+
+fn rest3(j: u32, q: u32) -> vec3f {
+    return vec3f(rest(j, q), rest(j, q + 1u), rest(j, q + 2u));
 }
 
 fn springs() {
@@ -16,18 +28,18 @@ fn springs() {
         let kind = words[JNT_KIND + j];
         var qfrc = QFRC_PASSIVE + words[JNT_DOF + j];
         if (kind == SLIDE || kind == HINGE) {
-            let x = given(QPOS + q) - parameter(QPOS_SPRING + q);
+            let x = given(QPOS + q) - rest(j, q);
             add(qfrc, -x * stiffness(law, x));
             continue;
         }
         var turn = q;
         if (kind == FREE) {
-            pull_back(law, given3(QPOS + q) - parameter3(QPOS_SPRING + q), qfrc);
+            pull_back(law, given3(QPOS + q) - rest3(j, q), qfrc);
             turn += 3u;
             qfrc += 3u;
         }
-        let rest = parameter4(QPOS_SPRING + turn);
-        pull_back(law, quat_difference(quat_normalize(given4(QPOS + turn)), rest), qfrc);
+        let unturned = vec4f(rest3(j, turn), rest(j, turn + 3u));
+        pull_back(law, quat_difference(quat_normalize(given4(QPOS + turn)), unturned), qfrc);
     }
 }
 
@@ -43,9 +55,13 @@ fn resistance(viscous: vec3f, quadratic: vec3f, v: vec3f) -> vec3f {
     return -(viscous * v + quadratic * abs(v) * v);
 }
 
-// The medium resists the box that has a body's mass and inertia; its coefficients are numbers of the model.
+// The medium resists the box that has a body's mass and inertia, whose coefficients are numbers of the model, or the body's ellipsoids.
 fn fluid_forces() {
     for (var b = 0u; b < bound(NBODY); b++) {
+        if (has_ellipsoids(b)) {
+            put_spatial(CFRC + 6u * b, ellipsoids_force(b));
+            continue;
+        }
         let axes = fetch_matrix(XIMAT + 9u * b);
         let back = transpose(axes);
         let arm = fetch3(XIPOS + 3u * b) - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
@@ -75,6 +91,25 @@ fn gravity_compensation() {
     }
 }
 
+// What contacts hold on with pulls their bodies together, against what their constraints give for it.
+fn adhesion_forces() {
+    for (var b = 0u; b < bound(NBODY); b++) {
+        put_spatial(CFRC + 6u * b, Spatial(vec3f(), vec3f()));
+    }
+    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+        let place = CONTACTS + CONTACT_SIZE * c;
+        let pair = u32(fetch(place));
+        let adhesion = contact_adhesion(c);
+        for (var side = 0u; side < 2u; side++) {
+            let b = words[PAIR_BODY + 2u * pair + side];
+            let force = fetch3(place + 5u) * select(adhesion, -adhesion, side == 1u);
+            let pull = Spatial(cross(offset_of(b, fetch3(place + 2u)), force), force);
+            put_spatial(CFRC + 6u * b, plus(fetch_spatial(CFRC + 6u * b), pull));
+        }
+    }
+    project_forces(QFRC_PASSIVE);
+}
+
 fn passive_forces() {
     clear_dofs(QFRC_PASSIVE);
     springs();
@@ -85,5 +120,8 @@ fn passive_forces() {
     }
     if (HAS_FLUID) {
         fluid_forces();
+    }
+    if (ADHESION_PULLS) {
+        adhesion_forces();
     }
 }

@@ -66,6 +66,16 @@ fn go(rate: u32, qacc: u32, time: f32) {
     integrate_positions(rate, time);
 }
 
+// Remembers from where tendons that yield are moved.
+fn save_tendons() {
+    for (var t = 0u; YIELDING_TENDONS && t < NTENDON; t++) {
+        put(START_TEN_LENGTH + t, fetch(TEN_LENGTH + t));
+        for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
+            put(START_TEN_JACOBIAN + k, fetch(TEN_JACOBIAN + k));
+        }
+    }
+}
+
 @compute @workgroup_size(GROUP)
 fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {
@@ -73,9 +83,14 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     }
     if (stage == 0u) {
         save_start();
+        for (var o = 0u; o < NOUT; o++) {
+            put(START_ACTUATOR_VELOCITY + o, fetch(ACTUATOR_VELOCITY + o));
+        }
+        save_tendons();
     }
     collect_rates();
     add_to_mean();
+    put(OFFSET, select(reach(stage), 0.0, stage == 3u));
     if (stage < 3u) {
         go(RATE, QACC, reach(stage));
         for (var a = 0u; a < NA; a++) {
@@ -88,6 +103,7 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     go(MEAN_RATE, MEAN_QACC, TIMESTEP);
-    advance_activations(MEAN_ACT_DOT);
-    finish_step();
+    // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with.
+    advance_activations(MEAN_ACT_DOT, START_ACTUATOR_VELOCITY);
+    finish_step(MEAN_RATE, START_TEN_LENGTH, START_TEN_JACOBIAN);
 }

@@ -173,7 +173,7 @@ fn touch(s: u32, prm: u32) -> f32 {
         let place = CONTACTS + CONTACT_SIZE * block(b, BLOCK_SOURCE);
         let pair = u32(fetch(place));
         let second = words[PAIR_BODY + 2u * pair + 1u];
-        let normal = row(FORCE + block(b, BLOCK_ROW));
+        let normal = row(FORCE + block(b, BLOCK_ROW)) - contact_adhesion(block(b, BLOCK_SOURCE));
         if ((own != second && own != words[PAIR_BODY + 2u * pair]) || normal <= 0.0) {
             continue;
         }
@@ -270,18 +270,9 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
         case SENSE_TENDONACTUATORFRC: {
             var sum = 0.0;
             for (var k = words[TENDON_PULL + e]; k < words[TENDON_PULL + e + 1u]; k++) {
-                sum += fetch(ACTUATOR_FORCE + words[PULL_ACTUATOR + k]);
+                sum += fetch(ACTUATOR_FORCE + words[PULL_OUTPUT + k]);
             }
             return sum;
-        }
-        case SENSE_ACTUATORPOS: {
-            return fetch(ACTUATOR_LENGTH + e);
-        }
-        case SENSE_ACTUATORVEL: {
-            return fetch(ACTUATOR_VELOCITY + e);
-        }
-        case SENSE_ACTUATORFRC: {
-            return fetch(ACTUATOR_FORCE + e);
         }
         default: {
             return 0.0;
@@ -307,6 +298,17 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
                 put4(out, quat_normalize(given4(QPOS + words[JNT_QPOS + e])));
             } else {
                 put3(out, given3(QVEL + words[JNT_DOF + e]));
+            }
+        }
+        case OF_ACTUATOR: {
+            var place = ACTUATOR_FORCE;
+            if (kind == SENSE_ACTUATORPOS) {
+                place = ACTUATOR_LENGTH;
+            } else if (kind == SENSE_ACTUATORVEL) {
+                place = ACTUATOR_VELOCITY;
+            }
+            for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
+                put(out + k, fetch(place + e + k));
             }
         }
         case OF_NOTHING: {

@@ -9,7 +9,12 @@ fn pull_at(site: u32, force: vec3f, couple: vec3f) -> Spatial {
 
 // Writes the moment arms of a pull on the first site; of dofs that move the second alone, those of a pull on that.
 fn write_arms(u: u32, a: u32, first: Spatial, b: u32, second: Spatial) {
-    for (var k = words[ACTUATOR_ROW + u]; k < words[ACTUATOR_ROW + u + 1u]; k++) {
+    write_arms_of(output_of(u), a, first, b, second);
+}
+
+// The same for one of several outputs.
+fn write_arms_of(output: u32, a: u32, first: Spatial, b: u32, second: Spatial) {
+    for (var k = words[ACTUATOR_ROW + output]; k < words[ACTUATOR_ROW + output + 1u]; k++) {
         let dof = words[ACTUATOR_DOF + k];
         let axis = fetch_spatial(CDOF + 6u * dof);
         if (moves(words[SITE_BODY + a], dof)) {
@@ -30,7 +35,7 @@ fn to_child(u: u32, turn: vec4f, torque: vec3f) -> vec3f {
 
 fn on_joint(u: u32, j: u32) -> f32 {
     let gear = ACTUATOR_GEAR + 6u * u;
-    let arms = ACTUATOR_MOMENT + words[ACTUATOR_ROW + u];
+    let arms = ACTUATOR_MOMENT + first_arm(u);
     let q = QPOS + words[JNT_QPOS + j];
     let kind = words[ACTUATOR_ON + u];
     if (!ANY_ON_ROTATION || kind == ON_SCALAR) {
@@ -52,7 +57,7 @@ fn on_tendon(u: u32, t: u32) -> f32 {
     let gear = parameter(ACTUATOR_GEAR + 6u * u);
     let start = words[TENDON_ROW + t];
     for (var k = start; k < words[TENDON_ROW + t + 1u]; k++) {
-        put(ACTUATOR_MOMENT + words[ACTUATOR_ROW + u] + k - start, fetch(TEN_JACOBIAN + k) * gear);
+        put(ACTUATOR_MOMENT + first_arm(u) + k - start, fetch(TEN_JACOBIAN + k) * gear);
     }
     return fetch(TEN_LENGTH + t) * gear;
 }
@@ -98,6 +103,23 @@ fn on_slider_crank(u: u32, crank: u32, slider: u32) -> f32 {
     return (along - root) * gear;
 }
 
+// The rotation of a ball joint, or of a site in the frame of another: three lengths, those of its rotation vector, and arms about the axes
+// of what is turned.
+fn on_rotation(u: u32, element: u32, frame: u32) {
+    let output = output_of(u);
+    if (words[ACTUATOR_ON + u] == ON_ROTATION) {
+        put3(ACTUATOR_LENGTH + output, quat_rotation_vector(quat_normalize(given4(QPOS + words[JNT_QPOS + element]))));
+        put3(ACTUATOR_MOMENT + first_arm(u), vec3f(1.0));
+        return;
+    }
+    put3(ACTUATOR_LENGTH + output, quat_difference(site_quat(element), site_quat(frame)));
+    let axes = fetch_matrix(SITE_XMAT + 9u * element);
+    for (var axis = 0u; axis < bound(3u); axis++) {
+        let pull = pull_at(element, vec3f(), axes[axis]);
+        write_arms_of(output + axis, element, pull, frame, pull_at(frame, vec3f(), -axes[axis]));
+    }
+}
+
 // A wrench at a site, the pose of a site in the frame of another, or a slider-crank.
 fn on_sites(u: u32, site: u32, other: u32) -> f32 {
     switch words[ACTUATOR_ON + u] {
@@ -118,6 +140,10 @@ fn transmissions() {
         let kind = words[ACTUATOR_ON + u];
         let element = words[ACTUATOR_TARGET + 2u * u];
         var length = 0.0;
+        if (ANY_ORIENTATION && kind >= ON_ROTATION) {
+            on_rotation(u, element, words[ACTUATOR_TARGET + 2u * u + 1u]);
+            continue;
+        }
         if (ANY_ON_TENDON && kind == ON_TENDON) {
             length = on_tendon(u, element);
         } else if (ANY_ON_CONTACTS && kind == ON_CONTACTS) {
@@ -128,6 +154,6 @@ fn transmissions() {
         } else {
             length = on_joint(u, element);
         }
-        put(ACTUATOR_LENGTH + u, length);
+        put(ACTUATOR_LENGTH + output_of(u), length);
     }
 }

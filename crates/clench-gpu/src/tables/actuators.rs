@@ -2,12 +2,13 @@
 
 use super::{ENDLESS, NONE, Tables, starts};
 use clench_rigid::model::{
-    Actuator, BiasKind, DynamicsKind, GainKind, JointKind, Model, Transmission,
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Interpolation, JointKind,
+    Model, Transmission,
 };
 use std::f64::consts::TAU;
 
 /// What an actuator acts on.
-const TRANSMISSIONS: [&str; 8] = [
+const TRANSMISSIONS: [&str; 10] = [
     "ON_SCALAR",
     "ON_BALL",
     "ON_FREE",
@@ -16,17 +17,44 @@ const TRANSMISSIONS: [&str; 8] = [
     "ON_SITE_IN_FRAME",
     "ON_SLIDER_CRANK",
     "ON_CONTACTS",
+    "ON_ROTATION",
+    "ON_ROTATION_IN_FRAME",
 ];
 /// How its activation follows its control.
-const DYNAMICS: [&str; 5] = [
+const DYNAMICS: [&str; 7] = [
     "DYN_NONE",
     "DYN_INTEGRATOR",
     "DYN_FILTER",
     "DYN_FILTER_EXACT",
     "DYN_MUSCLE",
+    "DYN_PID",
+    "DYN_DC_MOTOR",
 ];
 /// What its gain, or its bias, is.
-const LAWS: [&str; 2] = ["LAW_AFFINE", "LAW_MUSCLE"];
+const LAWS: [&str; 5] = [
+    "LAW_AFFINE",
+    "LAW_MUSCLE",
+    "LAW_PID",
+    "LAW_DC_MOTOR",
+    "LAW_ORIENTATION",
+];
+/// What a control is for a controller.
+const INPUTS: [&str; 6] = [
+    "INPUT_COMMAND",
+    "INPUT_POSITION",
+    "INPUT_VELOCITY",
+    "INPUT_FEEDFORWARD",
+    "INPUT_VOLTAGE",
+    "INPUT_QUATERNION",
+];
+/// The states of controllers and motors.
+const STATES: [&str; 5] = [
+    "STATE_SLEW",
+    "STATE_INTEGRAL",
+    "STATE_TEMPERATURE",
+    "STATE_BRISTLE",
+    "STATE_CURRENT",
+];
 /// Numbers of a law: three coefficients, or those of a muscle.
 const LAW_SIZE: usize = 9;
 /// The shortest time constant (s) of a filter, and the least divisor (MuJoCo's `mjMINVAL`).
@@ -34,7 +62,7 @@ const TINY: f64 = 1e-15;
 
 impl Tables {
     pub(super) fn actuators(&mut self, m: &Model) {
-        for names in [&TRANSMISSIONS[..], &DYNAMICS, &LAWS] {
+        for names in [&TRANSMISSIONS[..], &DYNAMICS, &LAWS, &INPUTS, &STATES] {
             for (code, name) in names.iter().enumerate() {
                 self.count(name, code);
             }
@@ -43,14 +71,22 @@ impl Tables {
         self.count("NU", count);
         self.count("NA", m.na);
         self.flag("ACTUATION", m.flags.actuation && count > 0);
+        let outputs = || 0..m.nout();
+        self.count("NOUT", m.nout());
+        let servo = |a: &Actuator| a.gain == GainKind::So3;
+        self.flag("ANY_ORIENTATION", m.actuators.iter().any(servo));
+        let of_each = m.actuators.iter().map(|a| a.outputs.len());
+        self.words("ACTUATOR_OUTPUT", starts(of_each));
         self.words(
             "ACTUATOR_ROW",
-            starts((0..count).map(|u| m.actuator_dofs.dofs(u).len())),
+            starts(outputs().map(|o| m.actuator_dofs.dofs(o).len())),
         );
-        let dofs = (0..count).flat_map(|u| m.actuator_dofs.dofs(u));
+        let dofs = outputs().flat_map(|o| m.actuator_dofs.dofs(o));
         self.words("ACTUATOR_DOF", dofs.map(|&dof| dof as usize));
         self.transmissions(m);
         self.activations(m);
+        self.controllers(m);
+        self.histories(m);
         self.gains(m);
         self.actuator_ranges(m);
     }
@@ -82,7 +118,9 @@ impl Tables {
             DynamicsKind::Filter => 2,
             DynamicsKind::FilterExact => 3,
             DynamicsKind::Muscle => 4,
-            _ => 0,
+            DynamicsKind::Pid => 5,
+            DynamicsKind::DcMotor => 6,
+            DynamicsKind::None | DynamicsKind::User => 0,
         };
         let muscle = |a: &Actuator| {
             let law = a.gain == GainKind::Muscle || a.bias == BiasKind::Muscle;
@@ -94,13 +132,16 @@ impl Tables {
             "ACTUATOR_ACT",
             each().map(|a| a.act().unwrap_or(NONE as usize)),
         );
+        let owners = each().enumerate();
+        let owners = owners.flat_map(|(u, a)| a.acts.clone().map(move |_| u));
+        self.words("ACT_ACTUATOR", owners);
         self.words("ACTUATOR_EARLY", each().map(|a| usize::from(a.actearly)));
         self.words("ACTUATOR_OFF", each().map(|a| usize::from(a.disabled)));
         self.words(
             "ACTUATOR_SERVO",
             each().map(|a| usize::from(a.gain == GainKind::Fixed)),
         );
-        self.words("ACTUATOR_CTRL", each().map(|a| a.controls.start));
+        self.words("ACTUATOR_CTRL", starts(each().map(|a| a.controls.len())));
         let prm = p
             .actuator_dynprm
             .iter()
@@ -110,18 +151,94 @@ impl Tables {
         self.numbers("ACT_RANGE", each().enumerate().flat_map(range));
     }
 
+    /// Controllers and motors: what each control is, which activations are states, and all parameters.
+    fn controllers(&mut self, m: &Model) {
+        let (p, each) = (&m.params, || m.actuators.iter());
+        let input = |input: &ControlInput| match input {
+            ControlInput::Position => 1,
+            ControlInput::Velocity => 2,
+            ControlInput::Feedforward => 3,
+            ControlInput::Voltage => 4,
+            ControlInput::Quaternion => 5,
+            ControlInput::Command | ControlInput::RotationVector => 0,
+        };
+        self.words(
+            "CONTROL_INPUT",
+            each().flat_map(|a| a.inputs.iter().map(input)),
+        );
+        let controls = |kind: &ControlInput| matches!(input(kind), 1..4);
+        let controlled = |a: &Actuator| usize::from(a.inputs.iter().any(controls));
+        self.words("ACTUATOR_CONTROLLED", each().map(controlled));
+        let states = |a: &Actuator| {
+            let s = a.states;
+            let all = [s.slew, s.integral, s.temperature, s.bristle, s.current];
+            all.map(|state| state.unwrap_or(NONE as usize))
+        };
+        self.words("ACTUATOR_STATES", each().flat_map(states));
+        let all =
+            Vec::from_iter((0..m.actuators.len()).filter(|&u| has_controller(&m.actuators[u])));
+        self.flag("ANY_CONTROLLER", !all.is_empty());
+        let place = |u: usize| all.binary_search(&u).unwrap_or(NONE as usize);
+        self.words("ACTUATOR_CONTROLLER", (0..m.actuators.len()).map(place));
+        let prm = |&u: &usize| {
+            [
+                p.actuator_dynprm[u],
+                p.actuator_gainprm[u],
+                p.actuator_biasprm[u],
+            ]
+        };
+        self.numbers("CONTROLLER_PRM", all.iter().flat_map(prm).flatten());
+    }
+
+    /// Buffers of past controls: the first number, samples, numbers of each, and how they are read between.
+    fn histories(&mut self, m: &Model) {
+        for (code, name) in ["HOLD", "LINEAR", "CUBIC"].into_iter().enumerate() {
+            self.count(name, code);
+        }
+        let delayed = |a: &Actuator| a.history.is_some();
+        self.flag("ANY_DELAY", m.actuators.iter().any(delayed));
+        let start = self.words.len();
+        let buffers = m.actuators.iter().filter_map(|a| a.history.as_ref());
+        let buffer = |h: &History| {
+            let between = match h.interpolation {
+                Interpolation::Hold => 0,
+                Interpolation::Linear => 1,
+                Interpolation::Cubic => 2,
+            };
+            [h.start, h.samples, h.width, between]
+        };
+        self.words("HISTORIES", buffers.flat_map(buffer));
+        let mut next = start;
+        let mut place = |a: &Actuator| {
+            if !delayed(a) {
+                return NONE as usize;
+            }
+            next += 4;
+            next - 4
+        };
+        let places = Vec::from_iter(m.actuators.iter().map(&mut place));
+        self.words("ACTUATOR_HISTORY", places);
+        let delays = m.params.actuator_delay.iter().copied();
+        self.numbers("ACTUATOR_DELAY", delays);
+    }
+
     fn gains(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter().enumerate());
         self.count("LAW_SIZE", LAW_SIZE);
-        let is_muscle = |muscle: bool| usize::from(muscle);
-        self.words(
-            "GAIN_LAW",
-            each().map(|(_, a)| is_muscle(a.gain == GainKind::Muscle)),
-        );
-        self.words(
-            "BIAS_LAW",
-            each().map(|(_, a)| is_muscle(a.bias == BiasKind::Muscle)),
-        );
+        let gain_law = |a: &Actuator| match a.gain {
+            GainKind::Muscle => 1,
+            GainKind::Pid => 2,
+            GainKind::DcMotor => 3,
+            GainKind::So3 => 4,
+            GainKind::Fixed | GainKind::Affine | GainKind::User => 0,
+        };
+        self.words("GAIN_LAW", each().map(|(_, a)| gain_law(a)));
+        let bias_law = |a: &Actuator| match a.bias {
+            BiasKind::Muscle => 1,
+            BiasKind::DcMotor => 3,
+            BiasKind::None | BiasKind::Affine | BiasKind::So3 | BiasKind::User => 0,
+        };
+        self.words("BIAS_LAW", each().map(|(_, a)| bias_law(a)));
         let gain = |(u, a): (usize, &Actuator)| {
             let prm = &p.actuator_gainprm[u];
             match a.gain {
@@ -137,6 +254,7 @@ impl Tables {
             match a.bias {
                 BiasKind::Muscle => muscle(m, u, prm),
                 BiasKind::Affine => affine([prm[0], prm[1], prm[2]]),
+                BiasKind::So3 => affine([prm[0], 0.0, prm[2]]),
                 _ => affine([0.0; 3]),
             }
         };
@@ -146,10 +264,9 @@ impl Tables {
 
     fn actuator_ranges(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter().enumerate());
-        let ctrl = each().flat_map(|(_, a)| {
-            let limited = m.flags.clampctrl && a.ctrllimited.first() == Some(&true);
-            range(limited, p.actuator_ctrlrange[a.controls.start])
-        });
+        let limited = each().flat_map(|(_, a)| &a.ctrllimited);
+        let ctrl = limited.zip(&p.actuator_ctrlrange);
+        let ctrl = ctrl.flat_map(|(&limited, &ends)| range(limited && m.flags.clampctrl, ends));
         self.numbers("CTRL_RANGE", ctrl);
         let force = each().flat_map(|(u, a)| range(a.forcelimited, p.actuator_forcerange[u]));
         self.numbers("FORCE_RANGE", force);
@@ -174,6 +291,13 @@ impl Tables {
             .map(|dof| usize::from(m.joints[dof.joint].actgravcomp));
         self.words("DOF_ACTGRAVCOMP", lifted);
     }
+}
+
+/// Whether any part of an actuator is that of a controller or a motor.
+fn has_controller(a: &Actuator) -> bool {
+    let by_dynamics = matches!(a.dynamics, DynamicsKind::Pid | DynamicsKind::DcMotor);
+    let by_gain = matches!(a.gain, GainKind::Pid | GainKind::DcMotor);
+    by_dynamics || by_gain || a.bias == BiasKind::DcMotor
 }
 
 /// What an actuator acts on, as the device knows it.
@@ -206,13 +330,13 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
         Transmission::SiteInFrame(sites) => other(5, sites),
         Transmission::SliderCrank(sites) => other(6, sites),
         Transmission::Body(body) => other(7, [body, 0]),
-        // Refused, see `check.rs`.
-        Transmission::Rotation(_) | Transmission::RotationInFrame(_) => other(0, [0, 0]),
+        Transmission::Rotation(j) => other(8, [j, 0]),
+        Transmission::RotationInFrame(sites) => other(9, sites),
     }
 }
 
 /// By how much the length of a servo on a circle changes in a whole turn; zero for what is no servo or on no circle. See
-/// `dynamics/activation.rs`.
+/// `dynamics/setpoint.rs`.
 fn whole_turn(m: &Model, u: usize) -> f64 {
     let (actuator, p) = (&m.actuators[u], &m.params);
     let length = |axis: &[f64]| axis.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -226,7 +350,7 @@ fn whole_turn(m: &Model, u: usize) -> f64 {
     };
     let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
     let pulls_back = p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1];
-    if rotates && fixed && pulls_back {
+    if rotates && (actuator.gain == GainKind::Pid || fixed && pulls_back) {
         TAU * length(axis)
     } else {
         0.0

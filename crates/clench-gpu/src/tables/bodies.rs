@@ -62,15 +62,24 @@ impl Tables {
         let (tree, nv) = (&m.tree, m.nv);
         self.count("NV", nv);
         self.count("NNZ", tree.nnz());
-        self.count("PACKED", nv * (nv + 1) / 2);
         self.words("DOF_BODY", m.dofs.iter().map(|d| d.body));
         self.words("DOF_JNT", m.dofs.iter().map(|d| d.joint));
         self.flag("LONG_PATHS", !articulated_bodies::<f32>(m).is_empty());
         self.words("TREE_START", (0..=nv).map(|i| tree.row_start(i)));
         let columns = (0..nv).flat_map(|i| tree.row(i));
         self.words("TREE_DOF", columns.map(|&j| j as usize));
-        let triangle = (0..nv).flat_map(|i| (0..=i).map(move |j| i << 16 | j));
-        self.words("PACKED_ENTRY", triangle);
+        let mut below = vec![Vec::new(); nv];
+        for i in 0..nv {
+            let above = tree.row(i).iter().filter(|&&j| j as usize != i);
+            above.for_each(|&j| below[j as usize].push(i));
+        }
+        self.words("BELOW_START", starts(below.iter().map(Vec::len)));
+        self.words("BELOW_DOF", below.concat());
+        let mut levels = vec![Vec::new(); (0..nv).map(|i| tree.row(i).len()).max().unwrap_or(0)];
+        (0..nv).for_each(|i| levels[tree.row(i).len() - 1].push(i));
+        self.count("NLEVEL", levels.len());
+        self.words("LEVEL_START", starts(levels.iter().map(Vec::len)));
+        self.words("LEVEL_DOF", levels.concat());
         let words = nv.div_ceil(32);
         let mut masks = vec![0; m.nbody() * words];
         for (mask, body) in masks.chunks_exact_mut(words.max(1)).zip(&m.bodies) {

@@ -40,6 +40,7 @@ fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
     row.extend(mixed.solref);
     row.extend(mixed.solimp);
     row.extend(mixed.solreffriction);
+    row.push(mixed.adhesion);
     row
 }
 
@@ -134,6 +135,7 @@ impl Tables {
         let rows = Vec::from_iter(candidates.iter().map(|c| parameters(m, c)));
         self.count("PAIR_PRM_SIZE", rows.first().map_or(0, Vec::len));
         self.numbers("PAIR_PRM", rows.into_iter().flatten());
+        self.surfaces(m, candidates, capacity);
 
         let most = candidates.iter().map(|c| points_of_pair(c.kinds)).sum();
         capacity.contacts = match s.max_contacts {
@@ -145,6 +147,23 @@ impl Tables {
         capacity.rows += capacity.contacts * widest;
         self.count("MAX_CONTACTS", capacity.contacts);
         self.count("CONTACT_SIZE", CONTACT_SIZE);
+    }
+
+    /// Which contacts adhere of themselves, and which surfaces move by themselves.
+    fn surfaces(&mut self, m: &Model, candidates: &[Candidate], capacity: &mut Capacity) {
+        let adheres = |c: &Candidate| contact_params::<f64>(m, &m.params, c).adhesion != 0.0;
+        capacity.adheres = candidates.iter().any(adheres);
+        self.flag("ANY_ADHESION", capacity.adheres);
+        // As in MuJoCo, without springs and dampers there is nothing passive at all.
+        let passive = m.flags.spring || m.flags.damper;
+        self.flag("ADHESION_PULLS", capacity.adheres && passive);
+        let moves = |c: &Candidate| {
+            let surfaces = c.geoms.map(|g| m.params.geom_surfacevel[g as usize]);
+            surfaces.as_flattened().iter().any(|&v| v != 0.0)
+        };
+        self.flag("SURFACES_MOVE", candidates.iter().any(moves));
+        let surfaces = m.params.geom_surfacevel.iter().copied().flatten();
+        self.numbers("GEOM_SURFACEVEL", surfaces);
     }
 
     /// What general pairs have: hulls, curved shapes, faces that may lie on each other, and room for their corners. The data of shapes,

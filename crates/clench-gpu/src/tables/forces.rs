@@ -1,6 +1,8 @@
 //! Springs, dampers, lifted weights and the medium, each reduced to the coefficients of its law; and the numbers of the step itself.
 
-use super::Tables;
+use super::{NONE, Tables, starts};
+use clench_rigid::dynamics::ellipsoid::{ellipsoids, semi_axes};
+use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, JointKind, Model};
 use clench_rigid::options::FrictionCone;
 use clench_rigid::settings::StepSettings;
@@ -9,6 +11,9 @@ use std::f64::consts::PI;
 
 /// Below this mass (kg) a body feels no medium; also the least (kg m²) of a box's squared sides (MuJoCo's `mjMINVAL`).
 const TINY: f64 = 1e-15;
+
+/// Numbers of an ellipsoid in the medium.
+const ELLIPSOID_SIZE: usize = 18;
 
 impl Tables {
     pub(super) fn forces(&mut self, m: &Model) {
@@ -28,6 +33,7 @@ impl Tables {
         self.count("NSPRING", springs.len());
         self.words("SPRING_JNT", springs.iter().copied());
         self.numbers("SPRING_LAW", springs.iter().flat_map(|&j| law(j)));
+        self.plastic(m);
         let dampers = Vec::from_iter((0..m.nv).map(|i| damper(m, i)));
         self.numbers("DOF_DAMPER", dampers.iter().copied().flatten());
         let damped = dampers
@@ -38,6 +44,18 @@ impl Tables {
         self.numbers("DOF_ARMATURE", (0..m.nv).map(|i| armature(m, i)));
         self.gravity_compensation(m);
         self.medium(m);
+    }
+
+    /// Which springs yield, where it stands at what they rest, and beyond what stretch they do.
+    fn plastic(&mut self, m: &Model) {
+        let p = &m.params;
+        let place = |start: Option<usize>| start.unwrap_or(NONE as usize);
+        self.flag("ANY_PLASTIC", m.nplastic > 0 && m.flags.spring);
+        self.flag("YIELDING_TENDONS", has_yielding_tendons(m));
+        self.words("JNT_PLASTIC", m.joints.iter().map(|j| place(j.plastic)));
+        self.words("TENDON_PLASTIC", m.tendons.iter().map(|t| place(t.plastic)));
+        self.numbers("JNT_YIELD", p.jnt_springyield.iter().copied());
+        self.numbers("TENDON_YIELD", p.tendon_springyield.iter().copied());
     }
 
     /// The mass of each body whose weight is lifted. As in MuJoCo a share below zero counts only where another is positive, and
@@ -57,6 +75,18 @@ impl Tables {
         self.flag("HAS_FLUID", any && (m.flags.spring || m.flags.damper));
         self.numbers("WIND", p.wind.to_array());
         self.numbers("BODY_DRAG", (0..m.nbody()).flat_map(|b| drag(m, b)));
+        let of_body = |b: usize| Vec::from_iter(ellipsoids(m, b));
+        let all = Vec::from_iter((0..m.nbody()).map(of_body));
+        self.flag(
+            "ANY_FLUID_ELLIPSOID",
+            all.iter().any(|geoms| !geoms.is_empty()),
+        );
+        self.words("BODY_ELLIPSOID", starts(all.iter().map(Vec::len)));
+        let geoms = || all.iter().flatten().copied();
+        self.words("ELLIPSOID_GEOM", geoms());
+        self.count("ELLIPSOID_SIZE", ELLIPSOID_SIZE);
+        self.numbers("ELLIPSOID_PRM", geoms().flat_map(|g| ellipsoid(m, g)));
+        self.words("BODY_WELD", m.bodies.iter().map(|b| b.weld));
     }
 
     pub(super) fn settings(&mut self, m: &Model, s: &StepSettings) {
@@ -71,6 +101,7 @@ impl Tables {
         self.real("MIN_TIMECONST", least);
         self.real("IMPRATIO", s.impratio);
         self.flag("ELLIPTIC_CONES", s.friction_cone == FrictionCone::Elliptic);
+        self.flag("EXACT_DIAGONAL", s.flags.diagexact);
         self.flag("WARMSTART", s.solver.warmstart);
         self.count("ITERATIONS", s.solver.iterations);
         self.count("LS_ITERATIONS", s.solver.ls_iterations);
@@ -146,5 +177,38 @@ fn drag(m: &Model, b: usize) -> [f64; 12] {
     let mut all = [0.0; 12];
     all[..6].copy_from_slice(&viscous);
     all[6..].copy_from_slice(&quadratic);
+    all
+}
+
+/// The coefficients of the forces on geom `g`, as `kernels/ellipsoid.wgsl` reads them; see `dynamics/ellipsoid.rs`.
+fn ellipsoid(m: &Model, g: usize) -> [f64; ELLIPSOID_SIZE] {
+    let p = &m.params;
+    let heavy = p.body_mass[m.geoms[g].body] >= TINY;
+    let felt = |x: f64| if heavy { x.max(0.0) } else { 0.0 };
+    let (density, viscosity) = (felt(p.density), felt(p.viscosity));
+    let r = semi_axes(m.geoms[g].kind, p.geom_size[g]).to_array();
+    let [blunt, slender, angular, kutta, magnus] = p.geom_fluidcoef[g];
+    let mut sorted = r;
+    sorted.sort_by(f64::total_cmp);
+    let [_, middle, largest] = sorted;
+    let diameter = r.iter().sum::<f64>() * (2.0 / 3.0);
+    let swept = |axis: f64, others: f64| 8.0 / 15.0 * PI * axis * others.powi(4);
+    let others = |i: usize| [r[(i + 1) % 3], r[(i + 2) % 3]];
+    let most = swept(middle, largest);
+    let mut all = [0.0; ELLIPSOID_SIZE];
+    for i in 0..3 {
+        let [a, b] = others(i);
+        let moment = swept(r[i], a.max(b));
+        all[i] = density * p.geom_virtualmass[g][i];
+        all[3 + i] = density * p.geom_virtualinertia[g][i];
+        all[12 + i] = density * (angular * moment + slender * (most - moment));
+        all[15 + i] = (a * b).powi(2);
+    }
+    all[6] = density * magnus * (4.0 / 3.0 * PI * r.iter().product::<f64>());
+    all[7] = density * kutta;
+    all[8] = viscosity * 3.0 * PI * diameter;
+    all[9] = viscosity * PI * diameter.powi(3);
+    all[10] = density * slender * PI * largest * middle;
+    all[11] = density * (blunt - slender);
     all
 }

@@ -52,6 +52,12 @@ pub(crate) struct Capacity {
     pub polytope: usize,
     /// Numbers of the contacts on terrain while they are gathered.
     pub terrain: usize,
+    /// Numbers of the factor of H that lie with the rows.
+    pub tiles: usize,
+    /// Numbers of the solver's vectors that lie with the rows.
+    pub vectors: usize,
+    /// Whether any contact adheres of itself.
+    pub adheres: bool,
 }
 
 impl Tables {

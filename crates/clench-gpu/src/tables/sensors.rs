@@ -23,13 +23,14 @@ const SENSOR_FIELDS: [&str; 12] = [
 /// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site.
 const SENSOR_PRM_SIZE: usize = 5;
 /// How a sensor is read.
-const WAYS: [&str; 6] = [
+const WAYS: [&str; 7] = [
     "OF_SCALAR",
     "OF_FRAME",
     "OF_SITE",
     "OF_SUBTREE",
     "OF_BALL",
     "OF_NOTHING",
+    "OF_ACTUATOR",
 ];
 /// Kinds of object that have a frame.
 const FRAMES: [&str; 5] = [
@@ -77,6 +78,10 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
                 (3, [2, *e, 0], [0, m.subtree(*e).end, 0])
             }
             Kind::BallQuat | Kind::BallAngVel => (4, [0, *e, 0], none),
+            // Known by their first output.
+            Kind::ActuatorPos | Kind::ActuatorVel | Kind::ActuatorFrc => {
+                (6, [0, m.actuators[*e].outputs.start, 0], none)
+            }
             // Limits are known by coordinates: joints, then tendons.
             Kind::TendonLimitPos | Kind::TendonLimitVel | Kind::TendonLimitFrc => {
                 (0, [0, m.joints.len() + e, 0], none)
@@ -154,7 +159,8 @@ impl Tables {
         };
         let all = Vec::from_iter((0..m.tendons.len()).map(of));
         self.words("TENDON_PULL", starts(all.iter().map(Vec::len)));
-        self.words("PULL_ACTUATOR", all.iter().flatten().copied());
+        let output = |&u: &usize| m.actuators[u].outputs.start;
+        self.words("PULL_OUTPUT", all.iter().flatten().map(output));
         let gear = |&u: &usize| m.params.actuator_gear[u][0];
         self.numbers("PULL_GEAR", all.iter().flatten().map(gear));
     }

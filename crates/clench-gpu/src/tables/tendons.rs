@@ -61,7 +61,7 @@ impl Tables {
         self.flag("ANY_OBSTACLE", each().any(|s| s.obstacle.is_some()));
     }
 
-    /// The dead band and the coefficients of each spring, and those of each damper with its actuators'; none where the flags switch them off.
+    /// The inertia of each tendon, the dead band and the coefficients of each spring, and those of each damper with its actuators'; none where the flags switch them off.
     fn tendon_laws(&mut self, m: &Model) {
         let p = &m.params;
         let law = |on: bool, a: f64, [b, c]: [f64; 2]| if on { [a, b, c] } else { [0.0; 3] };
@@ -85,6 +85,14 @@ impl Tables {
             }
             if m.flags.damper { sum } else { [0.0; 3] }
         };
+        let armature = |t: usize| {
+            let reflected = |&u: &usize| p.actuator_gear[u][0].powi(2) * p.actuator_armature[u];
+            let reflecting = m.tendons[t].reflecting.iter();
+            p.tendon_armature[t] + reflecting.map(reflected).sum::<f64>()
+        };
+        let armatures = Vec::from_iter((0..m.tendons.len()).map(armature));
+        self.flag("HEAVY_TENDONS", armatures.iter().any(|&a| a != 0.0));
+        self.numbers("TENDON_ARMATURE", armatures);
         self.numbers("TENDON_SPRING", (0..m.tendons.len()).flat_map(spring));
         self.numbers("TENDON_DAMPER", (0..m.tendons.len()).flat_map(damper));
     }

@@ -281,6 +281,64 @@ fn environments_have_parameters_of_their_own() {
     assert_eq!(device.param("body_mass", 8).expect("masses"), masses);
 }
 
+/// What springs rest at and past controls are a part of the state: they come down, and go up with a snapshot.
+#[test]
+fn histories_and_springs_that_yield_are_those_of_the_processor() {
+    let rk4 = own("pliant").replace("<option ", "<option integrator=\"RK4\" ");
+    let model = text(&rk4);
+    let Some((mut device, _)) = both(&model) else {
+        return;
+    };
+    let mut processor = Batch::with_options(model.clone(), COUNT, BatchOptions::default());
+    let processor = processor.as_mut().expect("a good model");
+    let start = device.save().expect("rows");
+    processor.restore(&start).expect("the same model");
+    let (steps, nu) = (30, model.nu());
+    let ctrl = Vec::from_iter((0..COUNT * steps * nu).map(|i| (0.37 * i as f32).sin()));
+    let run = |batch: &mut Batch<f32>| {
+        let rows = batch.rollout(steps, Controls::Each(&ctrl), &["qpos"]);
+        rows.expect("good controls");
+    };
+    run(&mut device);
+    run(processor);
+    let gap = |a: &[f32], b: &[f32]| {
+        let gaps = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        gaps.fold(0.0, f32::max)
+    };
+    for (name, found, expected, initial) in [
+        ("qpos", &device.state.qpos, &processor.state.qpos, None),
+        (
+            "history",
+            &device.state.history,
+            &processor.state.history,
+            Some(0.1),
+        ),
+        (
+            "plastic",
+            &device.state.plastic,
+            &processor.state.plastic,
+            Some(0.01),
+        ),
+    ] {
+        let gap_here = gap(found.as_slice(), expected.as_slice());
+        assert!(gap_here < 2e-4, "{name}: {gap_here}");
+        let Some(least) = initial else { continue };
+        let fresh = State::<f32>::new(&model);
+        let fresh = if name == "history" {
+            fresh.history
+        } else {
+            fresh.plastic
+        };
+        let moved = gap(found.row(0), &fresh);
+        assert!(moved > least, "{name} moves by {moved} alone");
+    }
+    // From the same state the same follows.
+    let before = device.state.history.as_slice().to_vec();
+    device.restore(&start).expect("the same model");
+    run(&mut device);
+    assert_bits(device.state.history.as_slice(), &before, "history");
+}
+
 #[test]
 fn parameters_that_would_make_other_kernels_are_refused() {
     let model = text(&own("runner"));

@@ -119,6 +119,16 @@ fn those_of_a_linkage() {
 }
 
 #[test]
+fn those_of_surfaces_that_move_and_adhere() {
+    agree(&own("surfaces"));
+}
+
+#[test]
+fn those_of_orientation_servos() {
+    agree(&own("servos"));
+}
+
+#[test]
 fn those_of_a_runner() {
     agree(&own("runner"));
 }

@@ -103,6 +103,49 @@ fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
     heap(&one, 2);
 }
 
+/// Both cones; friction of elliptic ones with a damping of its own.
+#[test]
+fn surfaces_that_move_and_contacts_that_adhere() {
+    let surfaces = own("surfaces");
+    agree(&text(&surfaces), 100, 0.7);
+    let elliptic = (surfaces.replace("<option ", "<option cone=\"elliptic\" impratio=\"2\" "))
+        .replace("<pair ", "<pair solreffriction=\"0.05 1\" ");
+    agree(&text(&elliptic), 100, 0.7);
+}
+
+#[test]
+fn ellipsoids_in_a_medium() {
+    agree(&text(&own("swimmers")), 100, 0.7);
+}
+
+#[test]
+fn controllers_and_motors_with_states() {
+    agree(&text(&own("controllers")), 100, 0.5);
+}
+
+#[test]
+fn tendons_with_inertia() {
+    agree(&text(&own("pliant")), 100, 0.5);
+}
+
+#[test]
+fn inverse_inertias_of_the_present_configuration() {
+    let exact = |model: String, option: &str| {
+        let flag = "<option><flag diagexact=\"enable\"/></option><default>";
+        text(
+            &(model.replacen("<default>", flag, 1))
+                .replace("<option ", &format!("<option {option} ")),
+        )
+    };
+    agree(&exact(own("linkage"), "impratio=\"3\""), 100, 0.5);
+    agree(&exact(own("surfaces"), "cone=\"elliptic\""), 100, 0.7);
+}
+
+#[test]
+fn orientation_servos() {
+    agree(&text(&own("servos")), 100, 0.5);
+}
+
 #[test]
 fn elliptic_cones() {
     let medley = own("medley");

@@ -103,6 +103,62 @@ fn activations_go_along_by_either_integrator() {
     drift_alike(&text(&rk4), 100);
 }
 
+#[test]
+fn so_do_bodies_on_surfaces_that_move_and_adhere() {
+    drift_alike(&text(&own("surfaces")), 100);
+}
+
+#[test]
+fn so_do_ellipsoids_in_a_medium() {
+    let swimmers = own("swimmers");
+    drift_alike(&text(&swimmers), 100);
+    let implicit = swimmers.replace("<option ", "<option integrator=\"implicitfast\" ");
+    drift_alike(&text(&implicit), 100);
+}
+
+#[test]
+fn so_do_controllers_and_motors() {
+    let controllers = own("controllers");
+    for integrator in ["Euler", "implicitfast"] {
+        let option = format!("<option integrator=\"{integrator}\" ");
+        drift_alike(&text(&controllers.replace("<option ", &option)), 100);
+    }
+}
+
+/// By Runge–Kutta, which takes the stiff friction of these motors explicitly, longer steps diverge from random deflections.
+#[test]
+fn so_do_controllers_and_motors_by_runge_kutta() {
+    let rk4 = "<option integrator=\"RK4\" timestep=\"0.00002\"";
+    let controllers = own("controllers").replace("<option timestep=\"0.002\"", rk4);
+    drift_alike(&text(&controllers), 100);
+}
+
+/// Within 100 steps springs yield, and controls arrive.
+#[test]
+fn so_do_springs_that_yield_and_late_controls_by_each_integrator() {
+    let pliant = own("pliant");
+    for integrator in ["Euler", "implicitfast", "RK4"] {
+        let option = format!("<option integrator=\"{integrator}\" ");
+        drift_alike(&text(&pliant.replace("<option ", &option)), 100);
+    }
+}
+
+#[test]
+fn so_do_chains_and_free_bodies_implicit_in_coriolis_forces() {
+    for name in ["medley", "swimmers"] {
+        let implicit = own(name).replace("<option ", "<option integrator=\"implicit\" ");
+        drift_alike(&text(&implicit), 60);
+    }
+}
+
+#[test]
+fn so_do_orientation_servos() {
+    for integrator in ["implicitfast", "RK4"] {
+        let option = format!("<option integrator=\"{integrator}\" ");
+        drift_alike(&text(&own("servos").replace("<option ", &option)), 100);
+    }
+}
+
 /// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
 /// has done, it has done.
 #[test]

@@ -1,0 +1,79 @@
+// How the force of an actuator changes with its velocity, after all limits: where a limit of the actuator, its tendon or its joint holds
+// the force, it does not change. Sister of `dynamics/actuator_slopes.rs` and of `gain.rs`.
+
+// A sum of forces that were scaled into a range is at one of its ends if it misses it by so little of it.
+const SUM_ROUNDING: f32 = 16.0 * 1.1920929e-7;
+
+// Before any limit.
+fn unlimited_slope(u: u32) -> f32 {
+    let length = fetch(ACTUATOR_LENGTH + output_of(u));
+    let velocity = fetch(ACTUATOR_VELOCITY + output_of(u));
+    let gain_at = ACTUATOR_GAIN + LAW_SIZE * u;
+    var slope = parameter(gain_at + 2u);
+    if (ANY_MUSCLE && words[GAIN_LAW + u] == LAW_MUSCLE) {
+        slope = muscle_gain_slope(gain_at, length, velocity);
+    }
+    if (slope != 0.0) {
+        slope *= actuator_input(u, length, velocity);
+    }
+    if (ANY_CONTROLLER && words[GAIN_LAW + u] == LAW_DC_MOTOR) {
+        slope = electrical_slope(u, circuit_of(u, setpoints_of(u), length, velocity));
+    }
+    if (ANY_MUSCLE && words[BIAS_LAW + u] == LAW_MUSCLE) {
+        return slope;
+    }
+    return slope + parameter(ACTUATOR_BIAS + LAW_SIZE * u + 2u);
+}
+
+fn is_saturated(x: f32, range: u32) -> bool {
+    return x <= parameter(range) || x >= parameter(range + 1u);
+}
+
+// Whether the actuators of a tendon pull with as much as it bears.
+fn tendon_is_saturated(t: u32) -> bool {
+    let total = fetch(TEN_ACTUATOR_FORCE + t);
+    let low = parameter(TENDON_FORCE_RANGE + 2u * t);
+    let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
+    return total <= low + abs(low) * SUM_ROUNDING || total >= high - abs(high) * SUM_ROUNDING;
+}
+
+// Whether a limit of the actuator or its tendon holds its force. Cogging and friction of a motor come after its limit, which holds its
+// current alone.
+fn is_held(u: u32) -> bool {
+    var limited = fetch(ACTUATOR_FORCE + output_of(u));
+    if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR) {
+        limited = unlimited_force(u);
+    }
+    if (is_saturated(limited, FORCE_RANGE + 2u * u)) {
+        return true;
+    }
+    let t = words[ACTUATOR_LIMITED_TENDON + u];
+    return t != NONE && tendon_is_saturated(t);
+}
+
+fn joint_holds(u: u32) -> bool {
+    let dof = words[ACTUATOR_DOF + first_arm(u)];
+    return words[ACTUATOR_ON + u] <= ON_FREE && is_saturated(fetch(QFRC_ACTUATOR + dof), DOF_FORCE_RANGE + 2u * dof);
+}
+
+fn velocity_slope(u: u32) -> f32 {
+    if (is_orientation_servo(u)) {
+        return select(servo_slope(u), 0.0, words[ACTUATOR_OFF + u] == 1u);
+    }
+    if (words[ACTUATOR_OFF + u] == 1u || joint_holds(u)) {
+        return 0.0;
+    }
+    let held = is_held(u);
+    if (ANY_CONTROLLER && words[GAIN_LAW + u] == LAW_DC_MOTOR) {
+        // As in MuJoCo, friction counts with a motor's gain, though it is part of its bias. No limit holds what that adds.
+        let friction = mechanical_slope(u);
+        if (held) {
+            return select(0.0, friction, words[BIAS_LAW + u] == LAW_DC_MOTOR);
+        }
+        return unlimited_slope(u) + friction;
+    }
+    if (held) {
+        return 0.0;
+    }
+    return unlimited_slope(u);
+}

@@ -1,0 +1,125 @@
+// The circuits of direct-current motors, and what they do. Sister of `dynamics/dc_motor.rs`.
+
+// A motor's circuit at an instant: R, K, V and ∂V/∂ω.
+struct Circuit {
+    resistance: f32,
+    constant: f32,
+    voltage: f32,
+    voltage_slope: f32,
+}
+
+fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circuit {
+    let cold = controller(u, OF_GAIN);
+    let constant = controller(u, OF_GAIN + 1u);
+    var voltage = 0.0;
+    var slope = 0.0;
+    if (words[ACTUATOR_CONTROLLED + u] == 1u) {
+        let a = state_of(u, STATE_INTEGRAL);
+        var integral = 0.0;
+        if (a != NONE) {
+            integral = given(ACT + a);
+        }
+        let kd = controller(u, OF_GAIN + 6u);
+        let torque = controller(u, OF_GAIN + 4u) * (setpoints.position - length) + kd * (setpoints.velocity - velocity)
+            + controller(u, OF_GAIN + 5u) * integral + setpoints.feedforward;
+        let per_torque = cold / constant;
+        voltage = per_torque * torque + constant * velocity;
+        slope = constant - per_torque * kd;
+        let most = controller(u, OF_GAIN + 7u);
+        if (most > 0.0) {
+            slope = select(slope, 0.0, abs(voltage) >= most);
+            voltage = clamp(voltage, -most, most);
+        }
+    }
+    var resistance = cold;
+    let a = state_of(u, STATE_TEMPERATURE);
+    if (a != NONE) {
+        let temperature = given(ACT + a) + controller(u, OF_DYNAMICS + 4u);
+        resistance = cold * (1.0 + controller(u, OF_GAIN + 2u) * (temperature - controller(u, OF_GAIN + 3u)));
+    }
+    return Circuit(resistance, constant, voltage + setpoints.voltage, slope);
+}
+
+// The current that voltage and back-EMF hold.
+fn steady_current(circuit: Circuit, velocity: f32) -> f32 {
+    return (circuit.voltage - circuit.constant * velocity) / circuit.resistance;
+}
+
+fn motor_rates(u: u32, setpoints: Setpoints, circuit: Circuit, length: f32, velocity: f32) {
+    controller_rates(u, setpoints, setpoints.position - length, controller(u, OF_DYNAMICS + 8u));
+    let steady = steady_current(circuit, velocity);
+    let current = state_of(u, STATE_CURRENT);
+    let temperature = state_of(u, STATE_TEMPERATURE);
+    if (temperature != NONE) {
+        var flows = steady;
+        if (current != NONE) {
+            flows = given(ACT + current);
+        }
+        let loss = given(ACT + temperature) / controller(u, OF_DYNAMICS + 2u);
+        put(ACT_DOT + temperature, (circuit.resistance * flows * flows - loss) / controller(u, OF_DYNAMICS + 3u));
+    }
+    let bristle = state_of(u, STATE_BRISTLE);
+    if (bristle != NONE) {
+        put(ACT_DOT + bristle, bristle_decay(u, velocity) * given(ACT + bristle) + velocity);
+    }
+    if (current != NONE) {
+        let rate = (steady - given(ACT + current)) / controller(u, OF_DYNAMICS);
+        let most = controller(u, OF_DYNAMICS + 1u);
+        put(ACT_DOT + current, select(rate, clamp(rate, -most, most), most > 0.0));
+    }
+}
+
+// The gain of a motor: K, which multiplies the current where that is a state, else K / R, which multiplies the voltage.
+fn motor_gain(u: u32, circuit: Circuit) -> f32 {
+    if (state_of(u, STATE_CURRENT) != NONE) {
+        return circuit.constant;
+    }
+    return circuit.constant / max(circuit.resistance, TINY);
+}
+
+// What that multiplies.
+fn motor_input(u: u32, circuit: Circuit, velocity: f32) -> f32 {
+    let a = state_of(u, STATE_CURRENT);
+    if (a == NONE) {
+        return circuit.voltage;
+    }
+    return acting(u, a, velocity);
+}
+
+// What back-EMF takes from the force of an actuator with this gain: nothing where the current is a state, whose equation has it.
+fn back_emf(u: u32, gain: f32, velocity: f32) -> f32 {
+    return select(0.0, gain * controller(u, OF_GAIN + 1u) * velocity, state_of(u, STATE_CURRENT) == NONE);
+}
+
+// ∂force/∂velocity of a motor's gain, and of its back-EMF where its bias is a motor's. A current that is a state follows the voltage
+// within the step alone, with `actearly`.
+fn electrical_slope(u: u32, circuit: Circuit) -> f32 {
+    let a = state_of(u, STATE_CURRENT);
+    let net = circuit.voltage_slope - select(circuit.constant, 0.0, a == NONE && words[BIAS_LAW + u] != LAW_DC_MOTOR);
+    let steady = circuit.constant * net / max(circuit.resistance, TINY);
+    if (a == NONE) {
+        return steady;
+    }
+    let most = controller(u, OF_DYNAMICS + 1u);
+    let is_held = most > 0.0 && abs(fetch(ACT_DOT + a)) >= most;
+    if (words[ACTUATOR_EARLY + u] == 0u || is_held) {
+        return 0.0;
+    }
+    return -steady * exp_less_one(-TIMESTEP / max(controller(u, OF_DYNAMICS), TINY));
+}
+
+// Cogging and friction, which no limit of the motor's torque holds.
+fn mechanical_force(u: u32, length: f32) -> f32 {
+    let phase = controller(u, OF_BIAS + 1u) * length + controller(u, OF_BIAS + 2u);
+    let cogging = controller(u, OF_BIAS) * sin_cos(phase).x;
+    let a = state_of(u, STATE_BRISTLE);
+    if (a == NONE) {
+        return cogging;
+    }
+    return cogging - (controller(u, OF_DYNAMICS + 5u) * given(ACT + a) + controller(u, OF_DYNAMICS + 6u) * fetch(ACT_DOT + a));
+}
+
+// ∂force/∂velocity of friction, with the deflection's decay held.
+fn mechanical_slope(u: u32) -> f32 {
+    return select(0.0, -controller(u, OF_DYNAMICS + 6u), state_of(u, STATE_BRISTLE) != NONE);
+}

@@ -1,0 +1,44 @@
+// The states of direct-current motors. Sister of `dynamics/dc_motor.rs`, where formulas and parameters are listed. Each actuator with a
+// controller has ten numbers of its dynamics, then of its gain, then of its bias.
+
+const OF_DYNAMICS: u32 = 0u;
+const OF_GAIN: u32 = 10u;
+const OF_BIAS: u32 = 20u;
+
+fn controller(u: u32, place: u32) -> f32 {
+    return parameter(CONTROLLER_PRM + 30u * words[ACTUATOR_CONTROLLER + u] + place);
+}
+
+// The activation that is a state of actuator `u`: one of the STATE_ constants. NONE where it has none such.
+fn state_of(u: u32, which: u32) -> u32 {
+    return words[ACTUATOR_STATES + 5u * u + which];
+}
+
+// −σ₀ |ω| / g(ω): the rate at which the bristle's deflection decays.
+fn bristle_decay(u: u32, velocity: f32) -> f32 {
+    let coulomb = controller(u, OF_BIAS + 3u);
+    let ratio = velocity / max(controller(u, OF_BIAS + 5u), TINY);
+    let level = coulomb + (controller(u, OF_BIAS + 4u) - coulomb) * exp(-ratio * ratio);
+    return -controller(u, OF_DYNAMICS + 5u) * abs(velocity) / max(level, TINY);
+}
+
+// An activation of a motor a time step later.
+fn next_motor_activation(u: u32, a: u32, act: f32, rate: f32, velocity: f32) -> f32 {
+    if (a == state_of(u, STATE_CURRENT)) {
+        let te = max(controller(u, OF_DYNAMICS), TINY);
+        return act - rate * te * exp_less_one(-TIMESTEP / te);
+    }
+    if (a == state_of(u, STATE_BRISTLE)) {
+        let decay = bristle_decay(u, velocity);
+        let change = exp_less_one(decay * TIMESTEP);
+        let moves = abs(decay) > TINY;
+        let time = select(TIMESTEP, change / select(1.0, decay, moves), moves);
+        return (change + 1.0) * act + time * velocity;
+    }
+    let next = act + rate * TIMESTEP;
+    let bound = controller(u, OF_DYNAMICS + 8u);
+    if (a == state_of(u, STATE_INTEGRAL) && bound > 0.0) {
+        return clamp(next, -bound, bound);
+    }
+    return next;
+}

@@ -1,0 +1,211 @@
+// The loop that Newton and conjugate gradients share, and the kernel: one workgroup an environment. Sister of
+// `clench-solver/src/descent.rs`.
+
+// What a round of a solve does. Drivers put the text of a function wherever it is called: hence one loop, in which each of the
+// large ones is called at one place.
+const AT_SMOOTH: u32 = 0u;
+const AT_WARMSTART: u32 = 1u;
+const BACK_AT_SMOOTH: u32 = 2u;
+const DESCEND: u32 = 3u;
+const REFRESH: u32 = 4u;
+// Newton's method looks at the duality gap before its first step and after its last, CG always.
+const PROVE: u32 = 5u;
+const FINISH: u32 = 6u;
+const DONE: u32 = 7u;
+
+// So many iterations without noticeable progress are too many.
+const PATIENCE: u32 = select(20u, 2u, NEWTON);
+
+// Where a solve stands.
+struct Convergence {
+    // The cost at the unconstrained acceleration.
+    cold: f32,
+    // 1 / (mean inertia × nv), by which gradients and costs are scaled.
+    scale: f32,
+    // The norm of the gradient, and the duality gap.
+    norm: f32,
+    gap: f32,
+    // No piece changed since the last factorization, none is curved: the factor holds.
+    same_hessian: bool,
+    curved: bool,
+    refreshed: bool,
+    // There is a direction that the next one can be conjugate to.
+    started: bool,
+    // The smallest gradient norm so far, and iterations since it fell noticeably.
+    best: f32,
+    idle: u32,
+    iterations: u32,
+    status: u32,
+}
+
+// Puts the iterate where a round begins: at the unconstrained acceleration, at that of the last step, or where it is.
+fn place(round: u32) {
+    for (var i = lane; i < bound(NV); i += GROUP) {
+        if (round == AT_WARMSTART) {
+            put_vector(QACC_AT + i, given(QACC_WARMSTART + i));
+        } else if (round != REFRESH) {
+            put_vector(QACC_AT + i, fetch(QACC_SMOOTH + i));
+        }
+    }
+    join();
+}
+
+// Ends the solve; what comes next.
+fn end(c: ptr<function, Convergence>, status: u32) -> u32 {
+    (*c).status = status;
+    return select(DONE, FINISH, NEWTON);
+}
+
+// What comes once the starting point is chosen. Newton is trusted for its forces as well: the gap alone, a bound in cost, would let
+// stiff ones be wrong.
+fn after_start(c: ptr<function, Convergence>) -> u32 {
+    if (NEWTON && (*c).scale * (*c).norm <= TOLERANCE) {
+        return PROVE;
+    }
+    return after_proof(c);
+}
+
+// What comes once the duality gap at the start is known, if it counts.
+fn after_proof(c: ptr<function, Convergence>) -> u32 {
+    let gap_counts = !NEWTON || (*c).scale * (*c).norm <= TOLERANCE;
+    if (gap_counts && (*c).scale * (*c).gap <= TOLERANCE) {
+        (*c).status = SOLVE_PROVEN;
+        return DONE;
+    }
+    if (ITERATIONS == 0u) {
+        return end(c, SOLVE_ITERATION_LIMIT);
+    }
+    return DESCEND;
+}
+
+// What comes after the iterate was placed.
+fn after_placing(c: ptr<function, Convergence>, round: u32, totals: vec4f, nblock: u32) -> u32 {
+    (*c).curved = totals.z > 0.0;
+    (*c).same_hessian = false;
+    (*c).started = false;
+    if (round == REFRESH) {
+        (*c).best = (*c).norm;
+        (*c).idle = 0u;
+        (*c).refreshed = true;
+        return DESCEND;
+    }
+    if (round == AT_SMOOTH && nblock == 0u) {
+        (*c).status = SOLVE_UNCONSTRAINED;
+        return DONE;
+    }
+    if (round == AT_SMOOTH && WARMSTART) {
+        (*c).cold = totals.x + totals.w;
+        return AT_WARMSTART;
+    }
+    // The last acceleration is a good start where it costs less than the unconstrained one.
+    if (round == AT_WARMSTART && !(totals.x + totals.w < (*c).cold)) {
+        return BACK_AT_SMOOTH;
+    }
+    return after_start(c);
+}
+
+// What comes after a step. One that seems stuck gets a second chance, without the rounding that steps have added up.
+fn after_step(c: ptr<function, Convergence>, step: Step, totals: vec4f) -> u32 {
+    let curved = totals.z > 0.0;
+    // A full Newton step over a quadratic stretch ends at the minimum: the size of that step says nothing more.
+    let exact = NEWTON && totals.y == 0.0 && !curved && !(*c).curved;
+    (*c).same_hessian = exact;
+    (*c).curved = curved;
+    (*c).started = true;
+    (*c).iterations++;
+    if (is_wild((*c).norm)) {
+        return end(c, SOLVE_NON_FINITE);
+    }
+    let small = select((*c).gap, (*c).norm, NEWTON);
+    let settled = !NEWTON || (*c).scale * step.improvement <= TOLERANCE || exact;
+    if ((*c).scale * small <= TOLERANCE && settled) {
+        return end(c, SOLVE_CONVERGED);
+    }
+    let negligible = step.improvement <= 4.0 * EPSILON * (totals.x + totals.w) || exact;
+    let fell = (*c).norm < 0.7 * (*c).best;
+    if (fell) {
+        (*c).best = (*c).norm;
+    }
+    (*c).idle = select((*c).idle + 1u, 0u, fell || !negligible);
+    let stuck = step.alpha == 0.0 || (*c).idle >= PATIENCE;
+    if (stuck && (*c).refreshed) {
+        return end(c, select(SOLVE_NO_PROGRESS, SOLVE_ITERATION_LIMIT, step.cut && step.alpha == 0.0));
+    }
+    if ((*c).iterations >= ITERATIONS) {
+        return end(c, SOLVE_ITERATION_LIMIT);
+    }
+    return select(DESCEND, REFRESH, stuck);
+}
+
+fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
+    var c = Convergence();
+    c.scale = 1.0 / inertia;
+    c.best = UNBOUNDED;
+    var next = AT_SMOOTH;
+    loop {
+        let round = agreed(next);
+        if (round == DONE) {
+            break;
+        }
+        var step = Step(0.0, 0.0, false);
+        var totals = vec4f();
+        if (round == DESCEND) {
+            if (NEWTON) {
+                direct_newton(c.same_hessian, nblock);
+            } else {
+                direct_conjugate(c.started);
+            }
+            prepare_ray(nrow);
+            step = search(nblock, TOLERANCE * LS_TOLERANCE * inertia);
+            advance_iterate(step.alpha, nrow);
+        } else if (round < DESCEND || round == REFRESH) {
+            place(round);
+            refresh(nrow);
+        }
+        if (round != PROVE && round != FINISH) {
+            totals = evaluate(nblock);
+            c.norm = differentiate(nrow);
+        }
+        if (!NEWTON || round == PROVE || round == FINISH) {
+            c.gap = precondition();
+        }
+        switch round {
+            case DESCEND: {
+                next = after_step(&c, step, totals);
+            }
+            case PROVE: {
+                next = after_proof(&c);
+            }
+            case FINISH: {
+                next = DONE;
+            }
+            default: {
+                next = after_placing(&c, round, totals, nblock);
+            }
+        }
+    }
+    return c;
+}
+
+@compute @workgroup_size(GROUP)
+fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
+    lane = index;
+    if (!begin_together(workgroup)) {
+        return;
+    }
+    let inertia = copy_mass();
+    let c = minimise(reports[NROW * envs + env], reports[NBLOCK * envs + env], inertia);
+    if (NOSLIP_ITERATIONS > 0u) {
+        noslip(reports[NROW * envs + env], reports[NBLOCK * envs + env], 1.0 / inertia);
+    }
+    for (var i = lane; i < bound(NV); i += GROUP) {
+        put(QACC + i, vector(QACC_AT + i));
+        put(QFRC_CONSTRAINT + i, vector(CONSTRAINT_AT + i));
+    }
+    if (lane == 0u) {
+        reports[NITER * envs + env] = c.iterations;
+        reports[SOLVE_STATUS * envs + env] = c.status;
+        reports[SOLVE_GAP * envs + env] = bitcast<u32>(c.gap);
+    }
+    note_end();
+}

@@ -1,0 +1,97 @@
+// Forces of the medium on geoms, each taken as an ellipsoid of the same semi-axes. Sister of `dynamics/ellipsoid.rs`, where the formulas
+// are explained.
+
+// An ellipsoid at one velocity, v and ω in the geom's frame. Its coefficients stand at `prm`: ρ times virtual mass and inertia, ρ C_M V,
+// ρ C_K, 3π D η and π D³ η, ρ C_s A_max and ρ (C_b − C_s), ρ c, a.
+struct Ellipsoid {
+    geom: u32,
+    prm: u32,
+    velocity: Spatial,
+}
+
+// Speed, n, A, and A cos α / |n|; or how they change.
+struct Flow {
+    speed: f32,
+    normal: vec3f,
+    area: f32,
+    lift: f32,
+}
+
+// A denominator: itself where it is positive, else one.
+fn positive(x: f32) -> f32 {
+    return select(1.0, x, x > 0.0);
+}
+
+// A motion of the body of a geom, as the geom's origin moves, along the geom's axes.
+fn in_geom_frame(geom: u32, motion: Spatial) -> Spatial {
+    let back = transpose(fetch_matrix(GEOM_XMAT + 9u * geom));
+    let arm = offset_of(words[GEOM_BODY + geom], fetch3(GEOM_XPOS + 3u * geom));
+    return Spatial(back * motion.angular, back * (motion.linear + cross(motion.angular, arm)));
+}
+
+// Ellipsoid `e` of the model as it moves now.
+fn ellipsoid(e: u32) -> Ellipsoid {
+    let geom = words[ELLIPSOID_GEOM + e];
+    var velocity = in_geom_frame(geom, fetch_spatial(CVEL + 6u * words[GEOM_BODY + geom]));
+    velocity.linear -= transpose(fetch_matrix(GEOM_XMAT + 9u * geom)) * parameter3(WIND);
+    return Ellipsoid(geom, ELLIPSOID_PRM + ELLIPSOID_SIZE * e, velocity);
+}
+
+fn flow_of(e: Ellipsoid) -> Flow {
+    let v = e.velocity.linear;
+    let normal = v * parameter3(e.prm + 15u);
+    let along = dot(v, normal);
+    let squared = dot(normal, normal);
+    let speed = length(v);
+    let area = 3.1415927 * sqrt(squared / positive(along));
+    return Flow(speed, normal, area, area * along / positive(speed * squared));
+}
+
+// How the flow changes when the velocity does by `dv`.
+fn flow_change(e: Ellipsoid, flow: Flow, dv: vec3f) -> Flow {
+    let v = e.velocity.linear;
+    let normal = dv * parameter3(e.prm + 15u);
+    let speed = dot(v, dv) / positive(flow.speed);
+    let along = dot(flow.normal, dv) / positive(dot(v, flow.normal));
+    let squared = dot(flow.normal, normal) / positive(dot(flow.normal, flow.normal));
+    let lift = flow.lift * (along - squared - speed / positive(flow.speed));
+    return Flow(speed, normal, flow.area * (squared - along), lift);
+}
+
+// Force of drag over velocity.
+fn linear_drag(e: Ellipsoid, flow: Flow) -> f32 {
+    return parameter(e.prm + 8u) + flow.speed * (parameter(e.prm + 10u) + parameter(e.prm + 11u) * flow.area);
+}
+
+// A torque and a force at the geom's origin, along its axes, as a spatial force about the reference point of its tree.
+fn from_geom_frame(geom: u32, torque: vec3f, force: vec3f) -> Spatial {
+    let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
+    let arm = offset_of(words[GEOM_BODY + geom], fetch3(GEOM_XPOS + 3u * geom));
+    return Spatial(axes * torque + cross(arm, axes * force), axes * force);
+}
+
+// The force on the body.
+fn ellipsoid_force(e: Ellipsoid) -> Spatial {
+    let v = e.velocity.linear;
+    let w = e.velocity.angular;
+    let momentum = v * parameter3(e.prm);
+    let spin = w * parameter3(e.prm + 3u);
+    let flow = flow_of(e);
+    let lift = cross(cross(flow.normal, v), v) * (parameter(e.prm + 7u) * flow.lift);
+    let force = cross(momentum, w) + cross(w, v) * parameter(e.prm + 6u) + lift - v * linear_drag(e, flow);
+    let turning = parameter(e.prm + 9u) + length(w * parameter3(e.prm + 12u));
+    return from_geom_frame(e.geom, cross(momentum, v) + cross(spin, w) - w * turning, force);
+}
+
+// The sum of the forces on the ellipsoids of a body.
+fn ellipsoids_force(b: u32) -> Spatial {
+    var sum = Spatial(vec3f(), vec3f());
+    for (var e = words[BODY_ELLIPSOID + b]; e < words[BODY_ELLIPSOID + b + 1u]; e++) {
+        sum = plus(sum, ellipsoid_force(ellipsoid(e)));
+    }
+    return sum;
+}
+
+fn has_ellipsoids(b: u32) -> bool {
+    return ANY_FLUID_ELLIPSOID && words[BODY_ELLIPSOID + b] < words[BODY_ELLIPSOID + b + 1u];
+}

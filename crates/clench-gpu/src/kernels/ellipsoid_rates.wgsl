@@ -1,0 +1,78 @@
+// How the forces of the medium on ellipsoids change with velocities. Sister of `dynamics/ellipsoid.rs` and `fluid.rs`.
+
+// The change of the force on the body with a change `motion` of its velocity.
+fn ellipsoid_derivative(e: Ellipsoid, motion: Spatial) -> Spatial {
+    let v = e.velocity.linear;
+    let w = e.velocity.angular;
+    let change_of_velocity = in_geom_frame(e.geom, motion);
+    let dv = change_of_velocity.linear;
+    let dw = change_of_velocity.angular;
+    let flow = flow_of(e);
+    let change = flow_change(e, flow, dv);
+    let widest = parameter(e.prm + 10u);
+    let blunt = parameter(e.prm + 11u);
+    let ddrag = change.speed * (widest + blunt * flow.area) + flow.speed * blunt * change.area;
+    let drag = -(v * ddrag) - dv * linear_drag(e, flow);
+    let angular_drag = parameter3(e.prm + 12u);
+    let resisted = w * angular_drag;
+    let size = length(resisted);
+    let slope = dot(resisted, dw * angular_drag) / positive(size);
+    let turning = -(w * slope) - dw * (parameter(e.prm + 9u) + size);
+    let mass = parameter3(e.prm);
+    let inertia = parameter3(e.prm + 3u);
+    let turned = cross(flow.normal, v);
+    let dturned = cross(change.normal, v) + cross(flow.normal, dv);
+    let dlift = cross(turned, v) * change.lift + (cross(dturned, v) + cross(turned, dv)) * flow.lift;
+    let force = cross(dv * mass, w) + cross(v * mass, dw) + (cross(dw, v) + cross(w, dv)) * parameter(e.prm + 6u)
+        + dlift * parameter(e.prm + 7u) + drag;
+    let torque = cross(dv * mass, v) + cross(v * mass, dv) + cross(dw * inertia, w) + cross(w * inertia, dw) + turning;
+    return from_geom_frame(e.geom, torque, force);
+}
+
+// A unit motion: about an axis, or along one.
+fn motion_component(c: u32) -> Spatial {
+    var axis = vec3f();
+    axis[c % 3u] = 1.0;
+    let moves_along = c >= 3u;
+    return Spatial(select(axis, vec3f(), moves_along), select(vec3f(), axis, moves_along));
+}
+
+// Writes, for each component of a motion of a body, the change of the force on its ellipsoids, both about the reference point of its tree.
+fn write_ellipsoid_rates(b: u32) {
+    for (var c = 0u; c < bound(6u); c++) {
+        var sum = Spatial(vec3f(), vec3f());
+        for (var e = words[BODY_ELLIPSOID + b]; e < words[BODY_ELLIPSOID + b + 1u]; e++) {
+            sum = plus(sum, ellipsoid_derivative(ellipsoid(e), motion_component(c)));
+        }
+        put_spatial(FLUID_RATES + 36u * b + 6u * c, sum);
+    }
+}
+
+fn ellipsoid_rates() {
+    for (var b = 1u; b < bound(NBODY); b++) {
+        if (has_ellipsoids(b)) {
+            write_ellipsoid_rates(b);
+        }
+    }
+}
+
+// Column `c` of the rates of a body: its symmetric part, with `sign` 1, or its skew one, with −1.
+fn rate_part(b: u32, c: u32, sign: f32) -> Spatial {
+    let place = FLUID_RATES + 36u * b;
+    var across = Spatial(vec3f(), vec3f());
+    for (var k = 0u; k < bound(3u); k++) {
+        across.angular[k] = fetch(place + 6u * k + c);
+        across.linear[k] = fetch(place + 18u + 6u * k + c);
+    }
+    return times(plus(fetch_spatial(place + 6u * c), times(across, sign)), 0.5);
+}
+
+// What that part changes with a motion of the body.
+fn rate_along(b: u32, motion: Spatial, sign: f32) -> Spatial {
+    var change = Spatial(vec3f(), vec3f());
+    for (var k = 0u; k < bound(3u); k++) {
+        change = plus(change, times(rate_part(b, k, sign), motion.angular[k]));
+        change = plus(change, times(rate_part(b, k + 3u, sign), motion.linear[k]));
+    }
+    return change;
+}

@@ -1,0 +1,64 @@
+// Buffers of past controls: an owner's number, the times of samples, oldest first, counted from the present, and their values. Sister of
+// `history.rs` of clench-rigid. A buffer is four words at `h`: its first number in HISTORY, its samples, the numbers of each, and how it
+// is read between two.
+
+fn sample_time(h: u32, k: u32) -> f32 {
+    return given(HISTORY + words[h] + 1u + k);
+}
+
+fn sample_value(h: u32, k: u32, part: u32) -> f32 {
+    return given(HISTORY + words[h] + 1u + words[h + 1u] + k * words[h + 2u] + part);
+}
+
+// How fast the value changes between two samples; samples of one time are told apart by one second.
+fn sample_slope(h: u32, before: u32, after: u32, part: u32) -> f32 {
+    let time = sample_time(h, after) - sample_time(h, before);
+    return (sample_value(h, after, part) - sample_value(h, before, part)) / select(1.0, time, time > 0.0);
+}
+
+// Between samples `k` − 1 and `k`.
+fn between_samples(h: u32, k: u32, at: f32, part: u32) -> f32 {
+    let before = sample_value(h, k - 1u, part);
+    let after = sample_value(h, k, part);
+    let difference = sample_time(h, k) - sample_time(h, k - 1u);
+    let span = select(1.0, difference, difference > 0.0);
+    let x = (at - sample_time(h, k - 1u)) / span;
+    switch words[h + 3u] {
+        case HOLD: {
+            return before;
+        }
+        case LINEAR: {
+            return before + x * (after - before);
+        }
+        default: {
+            var left = 0.0;
+            if (k > 1u) {
+                left = sample_slope(h, k - 2u, k, part);
+            }
+            var right = 0.0;
+            if (k + 1u < words[h + 1u]) {
+                right = sample_slope(h, k - 1u, k + 1u, part);
+            }
+            let squared = x * x;
+            let cubed = x * x * x;
+            let rise = 3.0 * squared - 2.0 * cubed;
+            let bend = span * (left * (cubed - 2.0 * squared + x) + right * (cubed - squared));
+            return before * (1.0 - rise) + after * rise + bend;
+        }
+    }
+}
+
+// A part of what the buffer holds of a time counted from the present. Before the oldest and after the newest sample these hold.
+fn read_history(h: u32, at: f32, part: u32) -> f32 {
+    let same = max(8.0 * 1.1920929e-7 * abs(at), TINY);
+    var newest = 0u;
+    for (var k = 1u; k < words[h + 1u]; k++) {
+        if (sample_time(h, k) <= at + same) {
+            newest = k;
+        }
+    }
+    if (newest + 1u < words[h + 1u] && sample_time(h, newest) + same < at) {
+        return between_samples(h, newest + 1u, at, part);
+    }
+    return sample_value(h, newest, part);
+}

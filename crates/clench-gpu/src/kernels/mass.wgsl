@@ -1,0 +1,52 @@
+// The mass matrix of an environment, in the pattern of the tree, as its workgroup multiplies with it. Sister of
+// `clench-solver/src/tree/matrix.rs`.
+
+// Copies it beside the other numbers of the problem; returns its trace.
+fn copy_mass() -> f32 {
+    for (var p = lane; p < NNZ; p += GROUP) {
+        put_row(MASS + p, fetch(QM + p));
+    }
+    var diagonal = 0.0;
+    for (var i = lane; i < bound(NV); i += GROUP) {
+        diagonal += fetch(QM + words[TREE_START + i + 1u] - 1u);
+    }
+    join();
+    return total(vec4f(diagonal, 0.0, 0.0, 0.0)).x;
+}
+
+// How many dofs there are above one on its path: where it stands in the rows of those below it.
+fn depth(i: u32) -> u32 {
+    return words[TREE_START + i + 1u] - words[TREE_START + i] - 1u;
+}
+
+// The entry (i, j) of M.
+fn mass_entry(i: u32, j: u32) -> f32 {
+    let below = max(i, j);
+    let above = min(i, j);
+    let place = words[TREE_START + below] + depth(above);
+    if (place < words[TREE_START + below + 1u] && words[TREE_DOF + place] == above) {
+        return row(MASS + place);
+    }
+    return 0.0;
+}
+
+// The number i of M x: what stands before the diagonal, on it, and below it.
+fn mass_times(x: u32, i: u32) -> f32 {
+    var sum = 0.0;
+    for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
+        sum += row(MASS + p) * vector(x + words[TREE_DOF + p]);
+    }
+    for (var p = words[BELOW_START + i]; p < words[BELOW_START + i + 1u]; p++) {
+        let k = words[BELOW_DOF + p];
+        sum += row(MASS + words[TREE_START + k] + depth(i)) * vector(x + k);
+    }
+    return sum;
+}
+
+// M x, for the vector at `x`, at `out`.
+fn multiply_mass(x: u32, out: u32) {
+    for (var i = lane; i < bound(NV); i += GROUP) {
+        put_vector(out + i, mass_times(x, i));
+    }
+    join();
+}

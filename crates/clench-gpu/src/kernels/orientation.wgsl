@@ -1,0 +1,56 @@
+// Orientation servos: a torque that turns a ball joint, or a site in the frame of another, to a commanded orientation by the shortest way.
+// Sister of `dynamics/orientation.rs`.
+
+// The orientation of a rotation vector.
+fn quat_from_rotation_vector(v: vec3f) -> vec4f {
+    let axis = direction(v);
+    return quat_from_axis_angle(axis.xyz, axis.w);
+}
+
+// The orientation that servo `u` goes for; leaves the rates of its activations.
+fn servo_target(u: u32) -> vec4f {
+    let c = words[ACTUATOR_CTRL + u];
+    let vector = vec3f(acting_control(u, c), acting_control(u, c + 1u), acting_control(u, c + 2u));
+    if (words[CONTROL_INPUT + c] == INPUT_QUATERNION) {
+        return quat_normalize(vec4f(vector, acting_control(u, c + 3u)));
+    }
+    let last = words[ACTUATOR_ACT + u];
+    if (NA == 0u || last == NONE) {
+        return quat_from_rotation_vector(vector);
+    }
+    var acts = vec3f();
+    for (var k = 0u; k < bound(3u); k++) {
+        put(ACT_DOT + last - 2u + k, vector[k]);
+        acts[k] = acting(u, last - 2u + k, 0.0);
+    }
+    return quat_from_rotation_vector(acts);
+}
+
+// The torque of servo `u` before any limit; zero where it is off.
+fn servo_torque(u: u32) -> vec3f {
+    let output = output_of(u);
+    let now = quat_from_rotation_vector(fetch3(ACTUATOR_LENGTH + output));
+    let error = quat_difference(servo_target(u), now);
+    let bias = ACTUATOR_BIAS + LAW_SIZE * u;
+    let damping = fetch3(ACTUATOR_VELOCITY + output) * parameter(bias + 2u);
+    let torque = error * parameter(ACTUATOR_GAIN + LAW_SIZE * u) + parameter(bias) + damping;
+    return select(torque, vec3f(), words[ACTUATOR_OFF + u] == 1u);
+}
+
+// Holds the norm of the torque within a range from zero, and its direction.
+fn limit_torque(u: u32) {
+    let place = ACTUATOR_FORCE + output_of(u);
+    let torque = fetch3(place);
+    let norm = length(torque);
+    let most = parameter(FORCE_RANGE + 2u * u + 1u);
+    if (norm > most) {
+        put3(place, torque * (most / norm));
+    }
+}
+
+// ∂torque/∂ω, the same about each axis; zero where the limit holds the torque.
+fn servo_slope(u: u32) -> f32 {
+    let norm = length(fetch3(ACTUATOR_FORCE + output_of(u)));
+    let held = norm >= parameter(FORCE_RANGE + 2u * u + 1u) * (1.0 - 16.0 * 1.1920929e-7);
+    return select(parameter(ACTUATOR_BIAS + LAW_SIZE * u + 2u), 0.0, held);
+}

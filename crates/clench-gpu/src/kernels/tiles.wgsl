@@ -1,0 +1,94 @@
+// Square tiles of numbers, sixteen rows of four vectors: what the factorization of H is made of. A product of two is what the threads
+// of a workgroup share: each has two rows by four columns of the result, in registers, and reads the factors from the memory of the
+// workgroup.
+
+const TILE: u32 = 16u;
+// Vectors of four numbers in a row of a tile.
+const QUADS: u32 = 4u;
+// The same of a tile that waits for a product. One is unused: without it the rows that threads read at a time would all lie in one
+// bank of the memory.
+const STRIDE: u32 = QUADS + 1u;
+const QUADS_OF_TILE: u32 = TILE * QUADS;
+
+// The factors of a product.
+var<workgroup> left: array<vec4f, TILE * STRIDE>;
+var<workgroup> right: array<vec4f, TILE * STRIDE>;
+// Tiles of the lower triangle of a matrix, where the workgroup has room for them; else they lie with the rows of the environment.
+var<workgroup> tiles: array<vec4f, SHARED_QUADS>;
+
+// Where this thread's part of a tile begins: its rows, and its columns over four.
+fn own_row() -> u32 {
+    return 2u * (lane / QUADS);
+}
+
+fn own_quad() -> u32 {
+    return lane % QUADS;
+}
+
+// The tile (i, j), i ≥ j, of a lower triangle.
+fn tile_at(i: u32, j: u32) -> u32 {
+    return i * (i + 1u) / 2u + j;
+}
+
+// Four numbers of a row of a tile.
+fn tile_quad(tile: u32, r: u32, quad: u32) -> vec4f {
+    let place = QUADS_OF_TILE * tile + QUADS * r + quad;
+    if (SHARE_TILES) {
+        return tiles[place];
+    }
+    let first = TILES + 4u * place;
+    return vec4f(row(first), row(first + 1u), row(first + 2u), row(first + 3u));
+}
+
+fn tile_entry(tile: u32, r: u32, column: u32) -> f32 {
+    if (SHARE_TILES) {
+        return tiles[QUADS_OF_TILE * tile + QUADS * r + column / 4u][column % 4u];
+    }
+    return row(TILES + 4u * (QUADS_OF_TILE * tile + QUADS * r) + column);
+}
+
+// Keeps what each thread has of a tile. All see it after the next barrier.
+fn keep_tile(tile: u32, own: mat2x4f) {
+    for (var a = 0u; a < 2u; a++) {
+        let place = QUADS_OF_TILE * tile + QUADS * (own_row() + a) + own_quad();
+        if (SHARE_TILES) {
+            tiles[place] = own[a];
+        } else {
+            for (var k = 0u; k < 4u; k++) {
+                put_row(TILES + 4u * place + k, own[a][k]);
+            }
+        }
+    }
+}
+
+// This thread's part of A Bᵀ, of the tiles that wait in `left` and `right`.
+fn tile_product() -> mat2x4f {
+    let top = STRIDE * own_row();
+    let columns = STRIDE * 4u * own_quad();
+    var product = mat2x4f();
+    for (var k = 0u; k < QUADS; k++) {
+        let b = columns + k;
+        let columns_of_b = mat4x4f(right[b], right[b + STRIDE], right[b + 2u * STRIDE], right[b + 3u * STRIDE]);
+        product += mat2x4f(left[top + k] * columns_of_b, left[top + STRIDE + k] * columns_of_b);
+    }
+    return product;
+}
+
+// The part of a row of a tile times the vector at `x`.
+fn times_row(tile: u32, r: u32, x: u32) -> f32 {
+    var sum = 0.0;
+    for (var k = 0u; k < QUADS; k++) {
+        let first = x + 4u * k;
+        sum += dot(tile_quad(tile, r, k), vec4f(vector(first), vector(first + 1u), vector(first + 2u), vector(first + 3u)));
+    }
+    return sum;
+}
+
+// A column of a tile times the vector at `x`.
+fn times_column(tile: u32, column: u32, x: u32) -> f32 {
+    var sum = 0.0;
+    for (var r = 0u; r < TILE; r++) {
+        sum += tile_entry(tile, r, column) * vector(x + r);
+    }
+    return sum;
+}

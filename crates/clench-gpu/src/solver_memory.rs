@@ -1,0 +1,98 @@
+//! Where the solver's memory lies: in that of the workgroup, which is near and small, or with the rows of the environment.
+
+use crate::error::GpuError;
+use crate::tables::Capacity;
+use clench_solver::ConstraintSolver;
+use std::fmt::Write;
+
+/// Rows and columns of a tile of H.
+const TILE: usize = 16;
+/// Vectors over the dofs, of Newton's method and of conjugate gradients.
+const NEWTON_VECTORS: usize = 6;
+const CG_VECTORS: usize = 9;
+/// Newton's method factors Hessians of so many dofs at most.
+const MAX_NEWTON_DOFS: usize = 512;
+/// The factor of a Hessian of more dofs would leave so little of a card's memory to other workgroups that few could run side by side.
+const MAX_SHARED_DOFS: usize = 96;
+/// Bytes of the two tiles that are multiplied, of the diagonal, and of what threads add up and hand to each other.
+const STAGING: usize = 4 * (2 * TILE * 20 + TILE) + 1024;
+
+/// Where a solve keeps what is of the size of the dofs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SolverMemory {
+    newton: bool,
+    /// Tiles of H in a row.
+    ntile: usize,
+    share_tiles: bool,
+    share_vectors: bool,
+}
+
+impl SolverMemory {
+    /// For `nv` dofs, by Newton's method or by conjugate gradients, where a workgroup shares `room` bytes.
+    ///
+    /// # Errors
+    /// More dofs than Newton's method is for.
+    pub(crate) fn new(nv: usize, solver: ConstraintSolver, room: usize) -> Result<Self, GpuError> {
+        let newton = solver == ConstraintSolver::Newton;
+        if newton && nv > MAX_NEWTON_DOFS {
+            return Err(GpuError::TooManyDofs {
+                most: MAX_NEWTON_DOFS,
+                nv,
+            });
+        }
+        let mut memory = SolverMemory {
+            newton,
+            ntile: nv.div_ceil(TILE),
+            share_tiles: nv <= MAX_SHARED_DOFS,
+            share_vectors: true,
+        };
+        memory.share_vectors = STAGING + 4 * memory.vectors() <= room;
+        let both = STAGING + 4 * (memory.vectors() + memory.tiles());
+        memory.share_tiles &= memory.share_vectors && both <= room;
+        Ok(memory)
+    }
+
+    /// Numbers of the tiles of a lower triangle; conjugate gradients need none.
+    fn tiles(self) -> usize {
+        let triangle = TILE * TILE * self.ntile * (self.ntile + 1) / 2;
+        if self.newton { triangle } else { 0 }
+    }
+
+    fn vectors(self) -> usize {
+        let count = if self.newton {
+            NEWTON_VECTORS
+        } else {
+            CG_VECTORS
+        };
+        count * TILE * self.ntile
+    }
+
+    /// Sets aside what lies with the rows.
+    pub(crate) fn reserve(self, capacity: &mut Capacity) {
+        let outside = |shared: bool, size: usize| if shared { 0 } else { size };
+        capacity.tiles = outside(self.share_tiles, self.tiles());
+        capacity.vectors = outside(self.share_vectors, self.vectors());
+    }
+
+    /// The constants that tell the kernels. An array that is not used has one element, since it must have some.
+    pub(crate) fn constants(self) -> String {
+        let mut text = String::new();
+        let inside = |shared: bool, size: usize| if shared { size.max(1) } else { 1 };
+        for (name, value) in [
+            ("NTILE", self.ntile),
+            ("WIDTH", TILE * self.ntile),
+            ("SHARED_QUADS", inside(self.share_tiles, self.tiles() / 4)),
+            ("SHARED_VECTORS", inside(self.share_vectors, self.vectors())),
+        ] {
+            let _ = writeln!(text, "const {name}: u32 = {value}u;");
+        }
+        for (name, value) in [
+            ("NEWTON", self.newton),
+            ("SHARE_TILES", self.share_tiles),
+            ("SHARE_VECTORS", self.share_vectors),
+        ] {
+            let _ = writeln!(text, "const {name}: bool = {value};");
+        }
+        text
+    }
+}
