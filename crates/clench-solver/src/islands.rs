@@ -89,7 +89,9 @@ impl<T: Real> Islands<T> {
         let (partition, lists, slots) = (&self.partition, &mut self.lists, &mut self.slots);
         for island in partition.islands() {
             let slot = slots.take(partition.trees(island));
-            lists.list(partition, island, island.lanes, &mut slots.slots[slot]);
+            let slot = &mut slots.slots[slot];
+            slot.work.state.clock.run_as(clock);
+            lists.list(partition, island, island.lanes, slot);
         }
         let (all, local) = (T::Mask::splat(true), &lists.local[..]);
         (job.threads).for_each(&mut slots.slots, |slot| {
@@ -114,6 +116,7 @@ impl<T: Real> Islands<T> {
             if worth_lanes::<T>(island.lanes.count(), dofs) {
                 let slot = self.slots.take(partition.trees(island));
                 let slot = &mut self.slots.slots[slot];
+                slot.work.state.clock.run_as(clock);
                 lists.list(partition, island, island.lanes, slot);
                 job.solve(partition, &lists.local, island.lanes, slot, AllLanes);
                 clock.absorb(&mut slot.work.state.clock);
@@ -124,6 +127,7 @@ impl<T: Real> Islands<T> {
             for k in (0..T::LANES).filter(|&k| island.lanes.lane(k)) {
                 let (mut lane, slot) = (T::Mask::splat(false), &mut self.scalar);
                 lane.set_lane(k, true);
+                slot.work.state.clock.run_as(clock);
                 lists.list(partition, island, lane, slot);
                 job.solve(partition, &lists.local, lane, slot, OneLane(k));
                 clock.absorb(&mut slot.work.state.clock);

@@ -57,13 +57,17 @@ impl<const N: usize> Stopwatch<N> {
         }
     }
 
-    /// Takes the time that another has measured, and lets that one run if this one does.
+    /// Runs if another does.
+    pub fn run_as(&mut self, other: &Self) {
+        if self.running != other.running {
+            self.run(other.running);
+        }
+    }
+
+    /// Takes the time that another has measured.
     pub fn absorb(&mut self, other: &mut Self) {
         for (spent, other) in self.spent.iter_mut().zip(&mut other.spent) {
             *spent += std::mem::take(other);
-        }
-        if other.running != self.running {
-            other.run(self.running);
         }
     }
 

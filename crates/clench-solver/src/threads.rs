@@ -8,7 +8,7 @@ use std::hint::spin_loop;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::yield_now;
+use std::thread::{available_parallelism, yield_now};
 
 /// Some threads, or the caller's alone. Clones share them.
 #[derive(Clone, Debug, Default)]
@@ -16,6 +16,8 @@ pub struct Threads {
     pool: Option<Arc<ThreadPool>>,
     /// The process that they are of.
     process: u32,
+    /// How many there are processors for.
+    at_once: usize,
 }
 
 impl Threads {
@@ -34,6 +36,7 @@ impl Threads {
         Ok(Threads {
             pool: Some(Arc::new(pool)),
             process: std::process::id(),
+            at_once: available_parallelism().map_or(1, |processors| count.min(processors.get())),
         })
     }
 
@@ -72,8 +75,8 @@ impl Threads {
         }
     }
 
-    /// The same for work that forks many times, each time for less than a millisecond: until it is done the other threads do not fall asleep. A
-    /// fork whose other half a sleeping thread had to take cost 60 µs where it was measured.
+    /// The same for work that forks many times, each time for less than a millisecond: until it is done the other threads do not fall asleep, as
+    /// far as there are processors for them. A fork whose other half a sleeping thread had to take cost 60 µs where it was measured.
     pub fn enter_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let Some(pool) = &self.pool else {
             return work();
@@ -84,7 +87,7 @@ impl Threads {
             let _end = SetAtEnd(&done);
             work()
         };
-        let wait = || repeat(1..self.count(), &|| stay_awake(&done));
+        let wait = || repeat(1..self.at_once, &|| stay_awake(&done));
         pool.join(finish, wait).0
     }
 
@@ -153,7 +156,7 @@ impl Drop for SetAtEnd<'_> {
 
 fn repeat(range: Range<usize>, work: &(impl Fn() + Sync)) {
     if range.len() <= 1 {
-        return work();
+        return range.for_each(|_| work());
     }
     let middle = range.start + range.len() / 2;
     let (one, other) = (range.start..middle, middle..range.end);

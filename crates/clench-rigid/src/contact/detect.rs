@@ -140,7 +140,7 @@ fn find_points<T: Real>(
     finders.resize_with(count, PairFinder::default);
     for (k, finder) in finders.iter_mut().enumerate() {
         let pairs = near.len() * k / count..near.len() * (k + 1) / count;
-        finder.begin(&near[pairs], candidates, axes);
+        finder.begin(&near[pairs], candidates, axes, &collision.clock);
     }
     let multiccd = settings.flags.multiccd;
     threads.for_each(finders, |finder| {

@@ -32,7 +32,12 @@ impl PairClock {
         self.clock.run(running);
     }
 
-    /// Takes what another has counted and measured, and lets that one run if this one does.
+    /// Runs if another does.
+    pub(super) fn run_as(&mut self, other: &Self) {
+        self.clock.run_as(&other.clock);
+    }
+
+    /// Takes what another has counted and measured.
     pub(super) fn absorb(&mut self, other: &mut Self) {
         self.clock.absorb(&mut other.clock);
         for (mine, theirs) in [

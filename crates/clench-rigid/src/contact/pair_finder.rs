@@ -42,13 +42,15 @@ impl<T: Real> Default for PairFinder<T> {
 }
 
 impl<T: Real> PairFinder<T> {
-    /// Takes these of the candidates.
+    /// Takes these of the candidates, and runs its clock if `clock` runs.
     pub(super) fn begin(
         &mut self,
         near: &[u32],
         candidates: &[Candidate],
         axes: &mut SeparatingAxes<T>,
+        clock: &PairClock,
     ) {
+        self.clock.run_as(clock);
         self.pairs.clear();
         self.pairs.extend(near.iter().map(|&candidate| {
             let place = axes.place(candidates[candidate as usize].geoms);
