@@ -92,7 +92,7 @@ impl<T: Real> FilledForm<T> {
         };
         split(
             threads,
-            pattern.window(),
+            Window::whole(pattern),
             factor.values_mut(),
             pieces,
             &assemble,

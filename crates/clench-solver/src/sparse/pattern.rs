@@ -5,9 +5,7 @@
 //! tree). A row with the same entries as the one after it, but for that one's own column, joins its supernode. (George & Liu,
 //! *Computer Solution of Large Sparse Positive Definite Systems*, 1981; Davis, *Direct Methods for Sparse Linear Systems*, 2006, §4.)
 
-use super::window::Window;
 use crate::Tree;
-use crate::jacobian::{Part, Pattern};
 use crate::minimum_degree::merge;
 use crate::partition::Lists;
 use std::ops::Range;
@@ -306,12 +304,6 @@ impl SparsePattern {
         run.place as usize + column - run.dof as usize
     }
 
-    /// All of its rows.
-    #[inline(always)]
-    pub(crate) fn window(&self) -> Window<'_> {
-        Window::new(self, 0..self.supernodes.len())
-    }
-
     /// Multiplications of a factorization, about.
     pub(crate) fn cost(&self) -> f64 {
         let of = |s: &Supernode| s.len as f64 * (s.width() as f64).powi(2) / 2.0;
@@ -331,13 +323,6 @@ impl SparsePattern {
             }
         }
         cost
-    }
-}
-
-impl Pattern for SparsePattern {
-    #[inline(always)]
-    fn each_part(&self, dofs: &[u32], act: impl FnMut(&Part)) {
-        self.window().each_part(dofs, act);
     }
 }
 

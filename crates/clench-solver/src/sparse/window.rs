@@ -18,8 +18,13 @@ pub(crate) struct Window<'a> {
 }
 
 impl<'a> Window<'a> {
+    /// All rows of a pattern.
+    pub(crate) fn whole(pattern: &'a SparsePattern) -> Self {
+        Window::new(pattern, 0..pattern.supernodes().len())
+    }
+
     /// Some supernodes of a pattern.
-    pub(super) fn new(pattern: &'a SparsePattern, supernodes: Range<usize>) -> Self {
+    fn new(pattern: &'a SparsePattern, supernodes: Range<usize>) -> Self {
         let dofs = match &pattern.supernodes()[supernodes.clone()] {
             [] => 0..0,
             [first, .., last] => last.first..first.first + first.len,
@@ -120,5 +125,12 @@ impl Pattern for Window<'_> {
             }
             row = rows.end;
         }
+    }
+}
+
+impl Pattern for SparsePattern {
+    #[inline(always)]
+    fn each_part(&self, dofs: &[u32], act: impl FnMut(&Part)) {
+        Window::whole(self).each_part(dofs, act);
     }
 }
