@@ -78,11 +78,11 @@ kernels! {
     EULER = "euler", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_slopes", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "gyroscopic", "implicit_fast";
     /// The same with Coriolis forces.
     IMPLICIT = "implicit", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_slopes", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "coriolis", "lu", "implicit";
     /// The same by Runge–Kutta, stage by stage.
     RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "rk4";

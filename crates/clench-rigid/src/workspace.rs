@@ -54,6 +54,8 @@ pub struct Workspace<T: Real> {
     pub metric: Metric<T>,
     /// Scratch of integrators.
     pub integration: Integration<T>,
+    /// The threads that share the work of a step; the solver has them too.
+    pub(crate) threads: Threads,
     /// Times the stages of a step while it runs. The solver and the detection of contacts have clocks of their own.
     pub clock: StepClock,
     /// Lanes in which a matrix that had to be positive definite (the mass matrix, or that of an implicit integrator) was
@@ -106,6 +108,7 @@ impl<T: Real> Workspace<T> {
             energy: None,
             metric: Metric::new(model),
             integration: Integration::new(model),
+            threads: Threads::default(),
             clock: StepClock::default(),
             singular: T::Mask::splat(false),
         }
@@ -139,15 +142,10 @@ impl<T: Real> Workspace<T> {
         (self.energy).get_or_insert_with(|| Box::new(EnergyScratch::new(model)))
     }
 
-    /// The threads that share the work of a step.
-    pub(crate) fn threads(&self) -> &Threads {
-        &self.collision.threads
-    }
-
     /// Has threads share the work of steps.
     pub(crate) fn set_threads(&mut self, threads: Threads) {
-        self.collision.threads = threads.clone();
-        self.solver.set_threads(threads);
+        self.solver.set_threads(threads.clone());
+        self.threads = threads;
     }
 
     /// Lets the clocks of stages and of solves run, or not.

@@ -11,7 +11,7 @@ mod scenes;
 
 use clench_rigid::Sim;
 use common::model;
-use scenes::{add, cuboid, free, plane, world};
+use scenes::heap_of_boxes;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -43,14 +43,7 @@ static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn a_replayed_heap_allocates_nothing_on_any_thread() {
-    let mut builder = world();
-    builder.bodies[0].geoms.push(plane());
-    for i in 0..48 {
-        let [x, y, z] = [i % 4, i / 4 % 4, i / 16].map(f64::from);
-        let pos = [0.199 * x, 0.199 * y, 0.1 + 0.2 * z];
-        add(&mut builder, 0, "", pos, free(), vec![cuboid([0.1; 3])]);
-    }
-    let mut sim = Sim::<f64>::new(model(&builder)).expect("valid");
+    let mut sim = Sim::<f64>::new(model(&heap_of_boxes())).expect("valid");
     sim.set_threads(2).expect("threads start");
     let (start, steps) = (sim.state.clone(), 60);
     let mut counted = 0;

@@ -87,7 +87,8 @@ impl<T: Real> Direction<T> for Newton<T> {
             self.hessian.factor(
                 problem,
                 rebuild,
-                (threads, clock),
+                threads,
+                clock,
                 #[inline(always)]
                 |b, weight| {
                     let y = &iterate.residual[b.rows()];

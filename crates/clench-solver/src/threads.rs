@@ -16,7 +16,7 @@ pub struct Threads {
     pool: Option<Arc<ThreadPool>>,
     /// The process that they are of.
     process: u32,
-    /// How many there are processors for.
+    /// How many of them the machine has processors for.
     at_once: usize,
 }
 
@@ -62,6 +62,22 @@ impl Threads {
         }
     }
 
+    /// As [`enter`](Self::enter), for work that forks many times, each time for less than a millisecond: the other threads do not fall asleep until it
+    /// is done, as far as there are processors for them. Waking a thread took 60 µs where it was measured.
+    pub fn enter_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        let Some(pool) = &self.pool else {
+            return work();
+        };
+        let done = AtomicBool::new(false);
+        let finish = || {
+            // It is set after a panic too.
+            let _set = SetOnDrop(&done);
+            work()
+        };
+        let wait = || repeat(1..self.at_once, &|| stay_awake(&done));
+        pool.join(finish, wait).0
+    }
+
     /// Does both, at once if another thread is free.
     pub(crate) fn join(&self, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
         match &self.pool {
@@ -73,22 +89,6 @@ impl Threads {
                 other();
             }
         }
-    }
-
-    /// The same for work that forks many times, each time for less than a millisecond: until it is done the other threads do not fall asleep, as
-    /// far as there are processors for them. A fork whose other half a sleeping thread had to take cost 60 µs where it was measured.
-    pub fn enter_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        let Some(pool) = &self.pool else {
-            return work();
-        };
-        let done = AtomicBool::new(false);
-        let finish = || {
-            // Set in the end, also by a panic.
-            let _end = SetAtEnd(&done);
-            work()
-        };
-        let wait = || repeat(1..self.at_once, &|| stay_awake(&done));
-        pool.join(finish, wait).0
     }
 
     /// Calls `work` for each item, on any of the threads.
@@ -129,31 +129,32 @@ fn stay_awake(done: &AtomicBool) {
             Some(Yield::Executed) => idle = 0,
             _ => idle += 1,
         }
-        rest(idle);
+        pause(idle);
     }
 }
 
-/// Some time for who has looked in vain for work so many times already, or for what another thread does.
-pub(crate) fn rest(idle: usize) {
-    /// A look disturbs those who are looked at.
-    const PAUSE: usize = 16;
-    /// From here on, some hundred microseconds, programs besides this one may run.
-    const PATIENCE: usize = 1000;
-    match idle < PATIENCE {
-        true => (0..PAUSE).for_each(|_| spin_loop()),
+/// A pause between two looks at what another thread has to do first, after so many looks in vain.
+pub(crate) fn pause(looks: usize) {
+    /// Looking without a pause would keep taking the cache line from the thread that writes it.
+    const SPINS: usize = 16;
+    /// After so many looks, some hundred microseconds, the operating system may run other threads here.
+    const MAX_SPINNING_LOOKS: usize = 1000;
+    match looks < MAX_SPINNING_LOOKS {
+        true => (0..SPINS).for_each(|_| spin_loop()),
         false => yield_now(),
     }
 }
 
-/// Sets a flag when it goes.
-struct SetAtEnd<'a>(&'a AtomicBool);
+/// Sets a flag when it is dropped.
+struct SetOnDrop<'a>(&'a AtomicBool);
 
-impl Drop for SetAtEnd<'_> {
+impl Drop for SetOnDrop<'_> {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Release);
     }
 }
 
+/// Calls `work` once for each number of the range.
 fn repeat(range: Range<usize>, work: &(impl Fn() + Sync)) {
     if range.len() <= 1 {
         return range.for_each(|_| work());

@@ -78,12 +78,10 @@ impl Clusters {
 
     /// Hands every pair of mobile shapes whose boxes overlap to `check`, once, but for two that are placed.
     fn pairs(&self, grid: &mut Grid, boxes: &[Aabb], check: &mut impl FnMut(usize, usize)) {
-        for (members, _) in self
-            .members
-            .iter()
-            .zip(&self.placed)
-            .filter(|(_, placed)| !**placed)
-        {
+        for (members, &placed) in self.members.iter().zip(&self.placed) {
+            if placed {
+                continue;
+            }
             for a in members.clone() {
                 let later = (a + 1..members.end).filter(|&b| boxes[a].overlaps(&boxes[b]));
                 later.for_each(|b| check(a, b));

@@ -12,7 +12,6 @@ use crate::Budget;
 use crate::model::Model;
 use crate::options::MaxContacts;
 use clench_math::{Mask, Real};
-use clench_solver::Threads;
 
 /// What a step can find more of than the model's budget allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,9 +70,8 @@ pub struct Collision<T: Real> {
     pub(super) axes: SeparatingAxes<T>,
     /// Times the narrow phase by kinds of pair.
     pub(crate) clock: PairClock,
-    /// Look at the pairs that are near, on threads if there are any.
+    /// Look at the pairs that are near, several where threads share them.
     pub(super) finders: Vec<PairFinder<T>>,
-    pub(crate) threads: Threads,
     /// How many contacts each lane has.
     pub(super) contact_count: T,
     /// How many numbers the Jacobian of the contacts has.
@@ -100,7 +98,6 @@ impl<T: Real> Collision<T> {
             axes: SeparatingAxes::default(),
             clock: PairClock::default(),
             finders: Vec::new(),
-            threads: Threads::default(),
             contact_count: T::ZERO,
             jacobian_size: T::ZERO,
         }

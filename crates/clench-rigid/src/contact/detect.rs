@@ -12,6 +12,7 @@ use crate::stages::Positions;
 use crate::workspace::Workspace;
 use clench_collide::ContactPoint;
 use clench_math::{Mask, Real, kernel};
+use clench_solver::Threads;
 use std::ops::Range;
 
 /// Tells which bodies are awake: two that both sleep make no contact.
@@ -79,7 +80,7 @@ pub fn detect<T: Real>(
         }
     }
     ws.clock.lap(Stage::BroadPhase as usize);
-    find_points(model, params, settings, pos, collision);
+    find_points(model, params, settings, pos, &ws.threads, collision);
     let finders = std::mem::take(&mut collision.finders);
     for (candidate, points) in finders.iter().flat_map(PairFinder::touching) {
         let candidate = collision.candidates[candidate as usize];
@@ -129,10 +130,10 @@ fn find_points<T: Real>(
     params: &Params<T>,
     settings: &StepSettings,
     pos: &Positions<T>,
+    threads: &Threads,
     collision: &mut Collision<T>,
 ) {
     let (near, candidates, axes) = (&collision.near, &collision.candidates, &mut collision.axes);
-    let threads = &collision.threads;
     axes.reserve(near.len());
     let most = (threads.count() > 1).then_some(threads.count() * FINDERS_PER_THREAD);
     let count = most.unwrap_or(1).min(near.len() / MIN_PAIRS).max(1);

@@ -34,12 +34,12 @@ impl<T: Precision> Sim<T> {
 
     /// How many threads share the work of a step; 1 unless [`set_threads`](Self::set_threads) was called.
     pub fn threads(&self) -> usize {
-        self.ws.threads().count()
+        self.ws.threads.count()
     }
 
     /// Threads of a process that this one was forked from do not answer.
     pub(super) fn check_threads(&self) -> Result<(), SimError> {
-        match self.ws.threads().are_lost() {
+        match self.ws.threads.are_lost() {
             true => Err(SimError::Forked),
             false => Ok(()),
         }
@@ -52,7 +52,7 @@ impl<T: Precision> Sim<T> {
     ) {
         let (model, params, settings) = (&self.model, &self.params, &self.settings);
         let (state, ws) = (&mut self.state, &mut self.ws);
-        let threads = ws.threads().clone();
+        let threads = ws.threads.clone();
         threads.enter_awake(|| pass(model, params, settings, state, ws));
     }
 }

@@ -1,19 +1,13 @@
 //! Threads that share the steps of one simulation change nothing but their time.
 
 use crate::common::model;
-use crate::scenes::{add, cuboid, everything, free, plane, shake, sphere, world};
+use crate::scenes::{add, everything, free, heap_of_boxes, shake, sphere};
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::{Precision, Sim, SimError};
 
-/// A block of boxes that touch, which is one large island, and balls beside it, each an island.
-fn crowd() -> ModelBuilder {
-    let mut builder = world();
-    builder.bodies[0].geoms.push(plane());
-    for i in 0..48 {
-        let [x, y, z] = [i % 4, i / 4 % 4, i / 16].map(f64::from);
-        let pos = [0.199 * x, 0.199 * y, 0.1 + 0.2 * z];
-        add(&mut builder, 0, "", pos, free(), vec![cuboid([0.1; 3])]);
-    }
+/// A large island, and balls beside it, each an island.
+fn heap_and_balls() -> ModelBuilder {
+    let mut builder = heap_of_boxes();
     for i in 0..12 {
         let pos = [-0.5 - 0.3 * f64::from(i), 0.0, 0.099];
         add(&mut builder, 0, "", pos, free(), vec![sphere(0.1)]);
@@ -39,8 +33,8 @@ fn run<T: Precision>(builder: &ModelBuilder, threads: usize) -> Vec<(Vec<T>, usi
 }
 
 #[test]
-fn a_crowd_moves_to_the_bit_as_on_one_thread() {
-    let builder = crowd();
+fn a_heap_moves_to_the_bit_as_on_one_thread() {
+    let builder = heap_and_balls();
     let alone = run::<f64>(&builder, 1);
     assert!(alone.iter().all(|(_, contacts)| *contacts > 300));
     for threads in [2, 3, 8] {
@@ -63,7 +57,7 @@ fn every_kind_of_constraint_moves_to_the_bit_as_on_one_thread() {
 
 #[test]
 fn no_threads_and_too_many_are_errors() {
-    let mut sim = Sim::<f64>::new(model(&crowd())).expect("valid");
+    let mut sim = Sim::<f64>::new(model(&heap_and_balls())).expect("valid");
     for count in [0, 1025, usize::MAX] {
         let refused = sim.set_threads(count);
         assert!(

@@ -18,25 +18,24 @@ pub(super) struct FilledForm<T: 'static> {
     direction: Vec<T>,
 }
 
-/// So that threads are done together though rows differ.
-const PIECES_PER_THREAD: usize = 1;
-
-/// Calls `work` for so many windows, with their values.
+/// Calls `work` for so many windows of about the same size, with their values. (More windows than threads do not pay: for each, all blocks are looked
+/// through.)
 fn split<T: Real>(
     threads: &Threads,
     window: Window,
     values: &mut [T],
-    pieces: usize,
+    count: usize,
     work: &(impl Fn(&Window, &mut [T]) + Sync),
 ) {
-    if pieces <= 1 {
+    if count <= 1 {
         return work(&window, values);
     }
-    let (one, other, count) = window.halves();
-    let (values_of_one, values_of_other) = values.split_at_mut(count);
+    let first = count / 2;
+    let (one, other) = window.split(first, count);
+    let (values_of_one, values_of_other) = values.split_at_mut(one.len());
     threads.join(
-        || split(threads, one, values_of_one, pieces / 2, work),
-        || split(threads, other, values_of_other, pieces - pieces / 2, work),
+        || split(threads, one, values_of_one, first, work),
+        || split(threads, other, values_of_other, count - first, work),
     );
 }
 
@@ -68,10 +67,11 @@ impl<T: Real> FilledForm<T> {
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
-        crew: (&Threads, &mut SolveClock),
+        threads: &Threads,
+        clock: &mut SolveClock,
         weigh: impl Fn(&BlockIndex, &mut Weight<T>) -> Form + Sync,
     ) {
-        let (pattern, (threads, clock)) = (&self.pattern, crew);
+        let pattern = &self.pattern;
         let factor = if mask.all() {
             &mut self.factor
         } else {
@@ -86,17 +86,8 @@ impl<T: Real> FilledForm<T> {
                 || problem.jacobian.add_gram(&weigh, window, values),
             );
         };
-        let pieces = match threads.count() {
-            1 => 1,
-            count => count * PIECES_PER_THREAD,
-        };
-        split(
-            threads,
-            Window::whole(pattern),
-            factor.values_mut(),
-            pieces,
-            &assemble,
-        );
+        let (rows, values) = (Window::whole(pattern), factor.values_mut());
+        split(threads, rows, values, threads.count(), &assemble);
         clock.lap(SolvePart::Hessian as usize);
         factor.factor_safely(pattern, threads);
         if !mask.all() {

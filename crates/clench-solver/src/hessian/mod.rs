@@ -84,20 +84,21 @@ impl<T: Real> Hessian<T> {
         self.paths.rebuild(tree, &self.found, most)
     }
 
-    /// Factors H = M + Jᵀ W J in the lanes of `mask`, by the threads and on the clock of `crew`. `weigh` writes the Hessian block of a
+    /// Factors H = M + Jᵀ W J in the lanes of `mask`, by the threads if they pay. `weigh` writes the Hessian block of a
     /// constraint.
     #[inline(always)]
     pub(crate) fn factor(
         &mut self,
         problem: &Problem<T>,
         mask: T::Mask,
-        crew: (&Threads, &mut SolveClock),
+        threads: &Threads,
+        clock: &mut SolveClock,
         weigh: impl Fn(&BlockIndex, &mut Weight<T>) -> Form + Sync,
     ) {
         if self.is_filled {
-            self.filled.factor(problem, mask, crew, weigh);
+            self.filled.factor(problem, mask, threads, clock, weigh);
         } else {
-            self.paths.factor(problem, mask, crew.1, weigh);
+            self.paths.factor(problem, mask, clock, weigh);
         }
     }
 

@@ -5,7 +5,7 @@
 //! claimed it, and read by the others once it is done.
 
 use super::pattern::{SparsePattern, Supernode};
-use crate::threads::rest;
+use crate::threads::pause;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread::panicking;
@@ -128,7 +128,7 @@ impl<'a, T> Elimination<'a, T> {
             if let Some(done) = self.done[index].get() {
                 return Some(done);
             }
-            rest(looks);
+            pause(looks);
             looks += 1;
         }
         None

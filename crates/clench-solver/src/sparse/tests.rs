@@ -106,7 +106,12 @@ fn factors_solutions_and_updates_equal_those_over_paths_to_the_bit() {
         let mut sparse = SparseFactor::default();
         sparse.resize(&pattern);
         sparse.values_mut().fill(0.0);
-        fill(&mut Rng(k as u64), &scene, &pattern, sparse.values_mut());
+        fill(
+            &mut Rng(k as u64),
+            &scene,
+            &Window::whole(&pattern),
+            sparse.values_mut(),
+        );
         sparse.factor_safely(&pattern, &threads[k % 3]);
 
         let x = Vec::from_iter((0..tree.nv()).map(|_| rng.unit()));

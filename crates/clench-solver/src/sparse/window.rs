@@ -39,14 +39,18 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// Two windows of about as many supernodes, and how many values the first has.
-    pub(crate) fn halves(self) -> (Self, Self, usize) {
+    /// Two windows, the first of `part` of `whole` equal parts of the supernodes.
+    pub(crate) fn split(self, part: usize, whole: usize) -> (Self, Self) {
         let Range { start, end } = self.supernodes;
-        let middle = start + (end - start) / 2;
-        let one = Window::new(self.pattern, start..middle);
-        let other = Window::new(self.pattern, middle..end);
-        let count = other.offset - one.offset;
-        (one, other, count)
+        let middle = start + (end - start) * part / whole;
+        let of = |supernodes| Window::new(self.pattern, supernodes);
+        (of(start..middle), of(middle..end))
+    }
+
+    /// Number of stored values.
+    pub(crate) fn len(&self) -> usize {
+        let blocks = self.pattern.supernodes()[self.supernodes.clone()].iter();
+        blocks.map(|s| s.block().len()).sum()
     }
 
     /// `values` becomes a matrix over `tree`, whose entries the pattern holds.
@@ -125,12 +129,5 @@ impl Pattern for Window<'_> {
             }
             row = rows.end;
         }
-    }
-}
-
-impl Pattern for SparsePattern {
-    #[inline(always)]
-    fn each_part(&self, dofs: &[u32], act: impl FnMut(&Part)) {
-        Window::whole(self).each_part(dofs, act);
     }
 }

@@ -173,6 +173,18 @@ pub fn loose_parts() -> ModelBuilder {
     b
 }
 
+/// 48 boxes on the floor, three layers of four by four, each of which touches its neighbours: one large island.
+pub fn heap_of_boxes() -> ModelBuilder {
+    let mut b = world();
+    b.bodies[0].geoms.push(plane());
+    for i in 0..48 {
+        let [x, y, z] = [i % 4, i / 4 % 4, i / 16].map(f64::from);
+        let pos = [0.199 * x, 0.199 * y, 0.1 + 0.2 * z];
+        add(&mut b, 0, "", pos, free(), vec![cuboid([0.1; 3])]);
+    }
+    b
+}
+
 /// A box and a cylinder on a cube that is a mesh, and a box on that box, with or without several contacts a pair.
 pub fn parts_on_a_mesh(multiccd: bool) -> ModelBuilder {
     let mut b = world();

@@ -1,5 +1,5 @@
 // How the force of an actuator changes with its velocity, after all limits: where a limit of the actuator, its tendon or its joint holds
-// the force, it does not change. Sister of `dynamics/actuator_slopes.rs` and of `gain.rs`.
+// the force, it does not change. Sister of `dynamics/actuator_derivatives.rs` and of `gain.rs`.
 
 // A sum of forces that were scaled into a range is at one of its ends if it misses it by so little of it.
 const SUM_ROUNDING: f32 = 16.0 * 1.1920929e-7;
