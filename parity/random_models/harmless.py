@@ -23,7 +23,6 @@ SENSORS = (
 ).split()
 
 VALUES = {
-    "mujoco": {"model": "another"},
     "compiler": {
         "texturedir": "textures",
         "usethread": "false",

@@ -25,7 +25,8 @@ def key(parent, element):
 
 
 def used(root):
-    """Pairs of element and attribute that a model has; an element alone where it has none."""
+    """Pairs of element and attribute that a model has, and each element below the root alone."""
+    yield from ((root.tag, attribute) for attribute in root.attrib)
     for parent in root.iter():
         for element in parent:
             name = key(parent, element)
