@@ -33,7 +33,7 @@ impl<T: Real> Awake<'_, T> {
     }
 }
 
-/// So that threads are done together though pairs differ.
+/// More finders than threads, so that all threads are done at about the same time though pairs take unequal times.
 const FINDERS_PER_THREAD: usize = 4;
 /// Fewer pairs are not worth waking a thread for.
 const MIN_PAIRS: usize = 8;
@@ -138,7 +138,12 @@ fn find_points<T: Real>(
     let most = (threads.count() > 1).then_some(threads.count() * FINDERS_PER_THREAD);
     let count = most.unwrap_or(1).min(near.len() / MIN_PAIRS).max(1);
     let finders = &mut collision.finders;
-    finders.resize_with(count, PairFinder::default);
+    if finders.len() < count {
+        finders.resize_with(count, PairFinder::default);
+    }
+    // Those that are not needed now keep their memory for another step.
+    finders.iter_mut().for_each(PairFinder::clear);
+    let finders = &mut finders[..count];
     for (k, finder) in finders.iter_mut().enumerate() {
         let pairs = near.len() * k / count..near.len() * (k + 1) / count;
         finder.begin(&near[pairs], candidates, axes, &collision.clock);

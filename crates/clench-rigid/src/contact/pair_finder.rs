@@ -42,6 +42,13 @@ impl<T: Real> Default for PairFinder<T> {
 }
 
 impl<T: Real> PairFinder<T> {
+    /// Forgets all pairs and what was found.
+    pub(super) fn clear(&mut self) {
+        self.pairs.clear();
+        self.touching.clear();
+        self.points.clear();
+    }
+
     /// Takes these of the candidates, and runs its clock if `clock` runs.
     pub(super) fn begin(
         &mut self,
@@ -51,7 +58,6 @@ impl<T: Real> PairFinder<T> {
         clock: &PairClock,
     ) {
         self.clock.run_as(clock);
-        self.pairs.clear();
         self.pairs.extend(near.iter().map(|&candidate| {
             let place = axes.place(candidates[candidate as usize].geoms);
             NearPair {
@@ -72,8 +78,6 @@ impl<T: Real> PairFinder<T> {
         pos: &Positions<T>,
         candidates: &[Candidate],
     ) {
-        self.touching.clear();
-        self.points.clear();
         self.clock.start();
         let points = &mut self.scratch;
         for pair in &mut self.pairs {
