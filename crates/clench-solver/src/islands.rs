@@ -13,8 +13,9 @@ use crate::problem::{Part, Problem};
 use crate::results::Results;
 use crate::slot::Slot;
 use crate::transfer::{AllLanes, OneLane, Transfer};
-use crate::{Settings, SolveClock, Threads};
+use crate::{Settings, SolveClock, Threads, Tree};
 use clench_math::{Mask, Real};
+use std::sync::Arc;
 
 /// The partition, and a compact problem for each part.
 #[derive(Clone, Debug, Default)]
@@ -36,12 +37,16 @@ struct TreeLists {
     local: Vec<u32>,
 }
 
-/// Memory for islands that are solved side by side.
+/// Memory for islands.
 #[derive(Clone, Debug, Default)]
 struct Slots<T: Real> {
     slots: Vec<Slot<T>>,
-    /// A tree that is an island by itself has a slot of its own, whose patterns stay as they are.
+    /// The slots of trees that are islands by themselves: solved in turn, trees of one shape share that of the first of them, whose patterns
+    /// stay as they are and which stays in the processor's caches.
     single: Vec<Option<u32>>,
+    /// For each tree the first one of the same shape, and what they are the trees of.
+    alike: Vec<u32>,
+    tree: Option<Arc<Tree>>,
     /// Those of the first island of several trees, of the second and so on, and how many are taken.
     several: Vec<u32>,
     taken: usize,
@@ -76,8 +81,8 @@ impl<T: Real> Islands<T> {
     /// Solves each island and adds it to the results.
     pub(crate) fn solve(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
         self.lists.fill(job.problem);
-        self.slots.start(job.problem.tree().ntree());
-        if T::LANES == 1 {
+        self.slots.start(&job.problem.tree);
+        if T::LANES == 1 && job.threads.count() > 1 {
             self.solve_at_once(job, clock, results);
         } else {
             self.solve_in_turn(job, clock, results);
@@ -88,7 +93,7 @@ impl<T: Real> Islands<T> {
     fn solve_at_once(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
         let (partition, lists, slots) = (&self.partition, &mut self.lists, &mut self.slots);
         for island in partition.islands() {
-            let slot = slots.take(partition.trees(island));
+            let slot = slots.take_own(partition.trees(island));
             let slot = &mut slots.slots[slot];
             slot.work.state.clock.run_as(clock);
             lists.list(partition, island, island.lanes, slot);
@@ -101,14 +106,14 @@ impl<T: Real> Islands<T> {
         });
         slots.restart();
         for island in partition.islands() {
-            let slot = slots.take(partition.trees(island));
+            let slot = slots.take_own(partition.trees(island));
             let slot = &mut slots.slots[slot];
             clock.absorb(&mut slot.work.state.clock);
             results.add(job.problem, slot, all, partition.acting(), AllLanes);
         }
     }
 
-    /// Solves the islands of lanes one after the other: those that several lanes have side by side.
+    /// Solves the islands one after the other: those that several lanes have side by side.
     fn solve_in_turn(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
         let (partition, lists) = (&self.partition, &mut self.lists);
         for island in partition.islands() {
@@ -216,8 +221,17 @@ impl TreeLists {
 
 impl<T: Real> Slots<T> {
     /// Gives out all slots anew.
-    fn start(&mut self, trees: usize) {
-        self.single.resize(trees, None);
+    fn start(&mut self, tree: &Arc<Tree>) {
+        let known = self
+            .tree
+            .as_ref()
+            .is_some_and(|known| Arc::ptr_eq(known, tree) || known.parents() == tree.parents());
+        if !known {
+            self.alike = tree.alike();
+            self.single.clear();
+            self.single.resize(tree.ntree(), None);
+            self.tree = Some(tree.clone());
+        }
         self.slots.iter_mut().for_each(|slot| slot.taken = false);
         self.restart();
     }
@@ -227,23 +241,44 @@ impl<T: Real> Slots<T> {
         self.taken = 0;
     }
 
-    /// The slot of the next island.
+    /// The slot of the next island, once the one before is done.
     fn take(&mut self, trees: &[u32]) -> usize {
-        let new = self.slots.len() as u32;
+        match *trees {
+            [tree] => self.take_single(self.alike[tree as usize]),
+            _ => self.take_several(),
+        }
+    }
+
+    /// The slot of the next island that is its own as long as all are solved.
+    fn take_own(&mut self, trees: &[u32]) -> usize {
         let slot = match *trees {
-            [tree] => *self.single[tree as usize].get_or_insert(new),
-            _ => {
-                self.taken += 1;
-                if self.several.len() < self.taken {
-                    self.several.push(new);
-                }
-                self.several[self.taken - 1]
-            }
+            [tree] => self.take_single(tree),
+            _ => self.take_several(),
         };
-        if slot == new {
+        self.slots[slot].taken = true;
+        slot
+    }
+
+    fn take_single(&mut self, tree: u32) -> usize {
+        let new = self.slots.len() as u32;
+        let slot = *self.single[tree as usize].get_or_insert(new);
+        self.made(slot)
+    }
+
+    fn take_several(&mut self) -> usize {
+        let new = self.slots.len() as u32;
+        self.taken += 1;
+        if self.several.len() < self.taken {
+            self.several.push(new);
+        }
+        self.made(self.several[self.taken - 1])
+    }
+
+    /// A slot that may be new.
+    fn made(&mut self, slot: u32) -> usize {
+        if slot as usize == self.slots.len() {
             self.slots.push(Slot::default());
         }
-        self.slots[slot as usize].taken = true;
         slot as usize
     }
 }

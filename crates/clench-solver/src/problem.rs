@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// The convex problem. Blocks stay in the order in which they were pushed.
 #[derive(Clone, Debug)]
 pub struct Problem<T> {
-    tree: Arc<Tree>,
+    pub(crate) tree: Arc<Tree>,
     /// M.
     pub mass: TreeMatrix<T>,
     /// The factorization of M; see [`factor_mass`](Self::factor_mass).

@@ -17,6 +17,7 @@ use crate::ProblemError;
 pub use factor::TreeFactor;
 pub use lu::TreeLu;
 pub use matrix::TreeMatrix;
+use std::collections::HashMap;
 
 /// Which degrees of freedom (dofs) hang on which: the sparsity pattern of M.
 ///
@@ -156,6 +157,22 @@ impl Tree {
             *row = &values[self.starts[first + m]..self.starts[first + m + 1]];
         }
         rows
+    }
+
+    /// For each tree the first one of the same shape, whose dofs have the same parents, counted from the tree's own first dof.
+    pub(crate) fn alike(&self) -> Vec<u32> {
+        let mut shapes: Vec<Vec<Option<u32>>> = vec![Vec::new(); self.ntree];
+        let mut place = vec![0; self.nv()];
+        for (dof, parent) in self.parents.iter().enumerate() {
+            let shape = &mut shapes[self.trees[dof] as usize];
+            place[dof] = shape.len() as u32;
+            shape.push(parent.map(|parent| place[parent as usize]));
+        }
+        let mut first = HashMap::new();
+        let shapes = shapes.into_iter().zip(0..);
+        shapes
+            .map(|(shape, tree)| *first.entry(shape).or_insert(tree))
+            .collect()
     }
 
     fn list_descendants(&mut self) {
