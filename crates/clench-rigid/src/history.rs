@@ -26,7 +26,12 @@ impl History {
 
     /// Writes the times of a buffer that is sampled every `period` seconds, and has been due at `phase` for the last time: each sample was
     /// taken at the first step that was not before.
-    pub fn begin_periodic<T: Real>(&self, step: f64, [period, phase]: [f64; 2], numbers: &mut [T]) {
+    pub(crate) fn begin_periodic<T: Real>(
+        &self,
+        step: f64,
+        [period, phase]: [f64; 2],
+        numbers: &mut [T],
+    ) {
         let n = self.samples;
         numbers[self.start] = T::new(phase);
         for (k, time) in numbers[self.times()].iter_mut().enumerate() {
@@ -37,13 +42,13 @@ impl History {
 
     /// Where a sample is due at a time; always where the period is zero.
     #[inline(always)]
-    pub fn is_due<T: Real>(&self, numbers: &[T], period: T, now: T) -> T::Mask {
+    pub(crate) fn is_due<T: Real>(&self, numbers: &[T], period: T, now: T) -> T::Mask {
         !period.gt(T::ZERO) | (numbers[self.start] + period).le(now)
     }
 
     /// Adds a sample of the present where it is due, and lets `step` seconds pass.
     #[inline(always)]
-    pub fn push_periodic<T: Real>(
+    pub(crate) fn push_periodic<T: Real>(
         &self,
         numbers: &mut [T],
         sample: &[T],

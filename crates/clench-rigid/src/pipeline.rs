@@ -33,7 +33,7 @@ use std::slice::from_ref;
 
 /// What depends on positions: poses, spatial inertias and dof axes, tendons and transmissions, and the mass matrix with
 /// its factor.
-pub fn position_stage<T: Real>(
+pub(crate) fn position_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -94,7 +94,7 @@ fn mass_matrix<T: Real>(
 }
 
 /// The energy of a state, whatever the workspace holds, which stays what it is.
-pub fn state_energy<T: Real>(
+pub(crate) fn state_energy<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -109,7 +109,7 @@ pub fn state_energy<T: Real>(
 }
 
 /// What depends on velocities besides: velocities of bodies, tendons and actuators, passive and bias forces.
-pub fn velocity_stage<T: Real>(
+pub(crate) fn velocity_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -125,7 +125,7 @@ pub fn velocity_stage<T: Real>(
 }
 
 /// Actuator forces, the sum of all smooth forces, and the acceleration that they alone would cause.
-pub fn force_stage<T: Real>(
+pub(crate) fn force_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
@@ -170,7 +170,7 @@ fn forward_dynamics<T: Real>(
 
 /// The first half of forward dynamics, before controls act: all that depends on positions and velocities alone, contacts included.
 /// (MuJoCo's `mj_step1`.)
-pub fn before_forces<T: Real>(
+pub(crate) fn before_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
@@ -249,7 +249,7 @@ pub fn rest<T: Real>(
 }
 
 /// The rest of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)
-pub fn step_from_forces<T: Real>(
+pub(crate) fn step_from_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,

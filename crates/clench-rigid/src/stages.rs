@@ -17,7 +17,7 @@ pub struct Positions<T> {
     /// Orientations of inertial frames.
     pub ximat: Vec<Mat3<T>>,
     /// Rotation by each joint (njnt).
-    pub jnt_turn: Vec<Quat<T>>,
+    pub(crate) jnt_turn: Vec<Quat<T>>,
     /// Joint anchors (njnt).
     pub xanchor: Vec<Vec3<T>>,
     /// Joint axes.
@@ -34,7 +34,7 @@ pub struct Positions<T> {
     /// spatial vectors of its tree.
     pub subtree_com: Vec<Vec3<T>>,
     /// The same times the mass (nbody).
-    pub subtree_moment: Vec<Vec3<T>>,
+    pub(crate) subtree_moment: Vec<Vec3<T>>,
     /// Motion of each dof at unit velocity (nv).
     pub cdof: Vec<Motion<T>>,
     /// Inertia of each body (nbody).

@@ -138,7 +138,7 @@ impl<T: Real> Workspace<T> {
     }
 
     /// Room for the energy of a state.
-    pub fn energy_scratch(&mut self, model: &Model) -> &mut EnergyScratch<T> {
+    pub(crate) fn energy_scratch(&mut self, model: &Model) -> &mut EnergyScratch<T> {
         (self.energy).get_or_insert_with(|| Box::new(EnergyScratch::new(model)))
     }
 

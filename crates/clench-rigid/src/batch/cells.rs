@@ -53,7 +53,7 @@ impl<'a, S: Shared> Cells<'a, S> {
     }
 
     /// Replaces all rows by as many values.
-    pub fn put_all(&self, values: impl Iterator<Item = S>) {
+    pub(crate) fn put_all(&self, values: impl Iterator<Item = S>) {
         for (cell, value) in self.cells.iter().zip(values) {
             S::store(cell, value);
         }
@@ -61,7 +61,7 @@ impl<'a, S: Shared> Cells<'a, S> {
 
     /// Whether all bits of an environment's row are zero.
     #[inline(always)]
-    pub fn is_blank(&self, env: usize) -> bool {
+    pub(crate) fn is_blank(&self, env: usize) -> bool {
         self.row(env)
             .iter()
             .fold(0, |bits, cell| bits | S::bits(cell))
@@ -104,7 +104,7 @@ impl<C: Shared> Cells<'_, C> {
 impl<S: Scalar + Shared> Cells<'_, S> {
     /// Copies lane `lane` of numbers into the row of an environment, from number `start` on.
     #[inline(always)]
-    pub fn write_part<T: Real<Scalar = S>>(
+    pub(crate) fn write_part<T: Real<Scalar = S>>(
         &self,
         env: usize,
         start: usize,

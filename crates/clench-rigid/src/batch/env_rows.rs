@@ -26,7 +26,7 @@ impl<S: Scalar + Shared> ParamRows<S> {
         params.write_lane(self.field, lane, self.rows.row(env));
     }
     /// Bytes that a row takes.
-    pub fn row_bytes(&self) -> usize {
+    pub(crate) fn row_bytes(&self) -> usize {
         self.rows.row_bytes()
     }
 }

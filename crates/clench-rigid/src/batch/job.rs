@@ -58,7 +58,7 @@ pub struct Job<'a, S: Scalar + Shared> {
     pub settings: &'a StepSettings,
     pub rows: EnvRows<'a, S>,
     /// Where each environment stands in an order that puts those of like contacts side by side.
-    pub sort_keys: &'a [AtomicU64],
+    pub(crate) sort_keys: &'a [AtomicU64],
     /// What is done.
     pub pass: Pass,
     /// For which states outputs hold, where any are kept.

@@ -160,12 +160,12 @@ macro_rules! declare_rows {
             }
 
             /// Whether an environment has any occasional input; one of −0 counts, for outputs show it.
-            pub fn has_occasional(&self, env: usize) -> bool {
+            pub(crate) fn has_occasional(&self, env: usize) -> bool {
                 $(!self.$occasional.is_blank(env))||*
             }
 
             /// Copies the occasional inputs of an environment into lane `lane`.
-            pub fn read_occasional<T: Real<Scalar = S>>(
+            pub(crate) fn read_occasional<T: Real<Scalar = S>>(
                 &self,
                 env: usize,
                 lane: usize,

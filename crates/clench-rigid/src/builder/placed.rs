@@ -36,7 +36,7 @@ pub(super) struct PlacedGeom<'a> {
     /// Velocity of the surface at its origin, along its axes: linear, angular.
     pub surfacevel: [f64; 6],
     /// Radius of a sphere about its origin that holds it; 0 for a plane.
-    pub rbound: f64,
+    pub(crate) rbound: f64,
     /// For mesh geoms.
     pub mesh: Option<(usize, &'a Processed)>,
     /// For height fields.

@@ -17,14 +17,14 @@ mod implicit;
 mod joint_equality;
 mod limit;
 mod row;
-pub mod softness;
+pub(crate) mod softness;
 mod weld;
 
 pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
 use context::ConstraintContext;
 pub(crate) use held::HeldFrames;
 pub(crate) use joint_equality::equality_slope;
-pub use softness::Softness;
+pub use softness::{Softness, impedance};
 pub(crate) use weld::weld_torque;
 
 use crate::contact::Contact;

@@ -68,7 +68,7 @@ impl<T: Real> Softness<T> {
 
     /// The damping of friction dimensions that have their own solref: as `self` where it is zero or mixed.
     #[inline(always)]
-    pub fn friction_damping(&self, solref: [T; 2], solimp: [T; 5], min_timeconst: T) -> T {
+    pub(crate) fn friction_damping(&self, solref: [T; 2], solimp: [T; 5], min_timeconst: T) -> T {
         let given = !(solref[0].eq(T::ZERO) & solref[1].eq(T::ZERO)) & !is_mixed(solref);
         if !given.any() {
             return self.damping;
@@ -109,27 +109,27 @@ impl<T: Real> Softness<T> {
 
 /// R of a row of impedance `d` that sees the inverse inertia `a`.
 #[inline(always)]
-pub fn inverse_weight<T: Real>(d: T, a: T) -> T {
+pub(crate) fn inverse_weight<T: Real>(d: T, a: T) -> T {
     above_least((T::ONE - d) * a / d)
 }
 
 /// The factor of R of a row of impedance `d` whose spring-damper is taken at the end of a step: 1 / `beta`, as its reference acceleration
 /// has, but R is not below that of the largest impedance.
 #[inline(always)]
-pub fn implicit_ratio<T: Real>(d: T, beta: T) -> T {
+pub(crate) fn implicit_ratio<T: Real>(d: T, beta: T) -> T {
     let most = T::new(IMPEDANCE_RANGE[1]);
     (T::ONE / beta).max(d * (T::ONE - most) / (most * (T::ONE - d)))
 }
 
 /// R, or the least that there is.
 #[inline(always)]
-pub fn above_least<T: Real>(r: T) -> T {
+pub(crate) fn above_least<T: Real>(r: T) -> T {
     r.max(T::new(MIN_VALUE))
 }
 
 /// Whether numbers `T` are of single precision, whose rounding needs floors and factors of its own.
 #[inline(always)]
-pub fn is_single<T: Real>() -> bool {
+pub(crate) fn is_single<T: Real>() -> bool {
     size_of::<T::Scalar>() < size_of::<f64>()
 }
 
@@ -139,7 +139,7 @@ pub fn is_single<T: Real>() -> bool {
 /// A₀ can be zero where `a` is not, when a centre of mass lies on a joint's axis. The stiffness a / R of such a row, in units
 /// of the inertia that it moves, must not exceed what the working precision can tell from infinity.
 #[inline(always)]
-pub fn least_regularization<T: Real>(a: T) -> T {
+pub(crate) fn least_regularization<T: Real>(a: T) -> T {
     a * T::splat(T::Scalar::EPSILON) * T::new(MIN_ROUNDINGS)
 }
 

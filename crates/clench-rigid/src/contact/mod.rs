@@ -19,7 +19,8 @@ pub use detect::detect;
 pub(crate) use mix::mixed_params;
 pub use mix::{ContactParams, contact_params, contact_range};
 pub(crate) use placed_shape::shape;
-pub use select::{Candidate, UnsupportedPair, candidates, check_supported};
+pub(crate) use select::check_supported;
+pub use select::{Candidate, UnsupportedPair, candidates};
 
 use clench_math::{Mat3, Real, Vec3};
 

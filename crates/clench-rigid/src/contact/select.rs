@@ -112,7 +112,7 @@ pub(super) fn geoms_may_collide(model: &Model, g1: usize, g2: usize) -> bool {
 ///
 /// # Errors
 /// The first such pair.
-pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
+pub(crate) fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
     let unsupported = |c: &Candidate| !supported(c.kinds[0], c.kinds[1]);
     let mut explicit = (0..model.pairs.len()).map(|p| explicit(model, p as u32));
     let found = explicit.find(unsupported);

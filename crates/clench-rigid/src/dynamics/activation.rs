@@ -14,7 +14,7 @@ const MIN_TIMECONST: f64 = 1e-15;
 
 /// The controls as they act, `offset` seconds after the time of the state: those of delayed actuators are read from the past; then ranges clamp.
 #[kernel]
-pub fn acting_controls<T: Real>(
+pub(crate) fn acting_controls<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -54,7 +54,7 @@ pub(super) fn time_constant<T: Real>(params: &Params<T>, u: usize) -> T {
 /// Activation `a` of actuator `u` a time step later, from what it is and its rate, within its range. An exact filter approaches
 /// its control by 1 − exp(−h/τ) of the distance.
 #[inline(always)]
-pub fn next_activation<T: Real>(
+pub(crate) fn next_activation<T: Real>(
     model: &Model,
     params: &Params<T>,
     u: usize,
@@ -84,7 +84,7 @@ pub fn next_activation<T: Real>(
 
 /// What the gain of actuator `u` multiplies: its control, or its activation (of the end of the step with `actearly`).
 #[inline(always)]
-pub fn input<T: Real>(
+pub(crate) fn input<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -102,7 +102,7 @@ pub fn input<T: Real>(
 
 /// Activation `a` of actuator `u` as its gain takes it: of the end of the step with `actearly`.
 #[inline(always)]
-pub fn acting<T: Real>(
+pub(crate) fn acting<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,

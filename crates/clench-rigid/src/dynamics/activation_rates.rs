@@ -10,7 +10,7 @@ use clench_math::{Real, kernel};
 
 /// The rate of change of each activation (na). A filtered servo on a circle turns towards its control by the shorter way.
 #[kernel]
-pub fn activation_rates<T: Real>(
+pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,

@@ -6,7 +6,7 @@ use clench_math::{Real, Scalar};
 
 /// What actuators are given: controls as they act, and activations.
 #[derive(Clone, Copy, Debug)]
-pub struct ActuatorInputs<'a, T> {
+pub(crate) struct ActuatorInputs<'a, T> {
     /// Delayed, and within their ranges (nu).
     pub ctrl: &'a [T],
     /// Activations (na).
@@ -15,7 +15,7 @@ pub struct ActuatorInputs<'a, T> {
 
 /// Length and velocity of an actuator.
 #[derive(Clone, Copy, Debug)]
-pub struct ActuatorMotion<T> {
+pub(crate) struct ActuatorMotion<T> {
     /// Length of its transmission.
     pub length: T,
     /// Velocity of its transmission.
@@ -25,7 +25,7 @@ pub struct ActuatorMotion<T> {
 impl<T: Real> ActuatorMotion<T> {
     /// Of actuator `u`, the first where it has several.
     #[inline(always)]
-    pub fn of(model: &Model, pos: &Positions<T>, vel: &Velocities<T>, u: usize) -> Self {
+    pub(crate) fn of(model: &Model, pos: &Positions<T>, vel: &Velocities<T>, u: usize) -> Self {
         let output = model.actuators[u].outputs.start;
         ActuatorMotion {
             length: pos.actuator_length[output],

@@ -12,7 +12,7 @@ use clench_math::{Mask, Real};
 
 /// ∂force/∂velocity of actuator `u`.
 #[inline(always)]
-pub fn velocity_derivative<T: Real>(
+pub(crate) fn velocity_derivative<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -43,7 +43,7 @@ pub fn velocity_derivative<T: Real>(
 
 /// ∂force/∂length of actuator `u`. Of an orientation servo it is that for small angles, the same about each axis.
 #[inline(always)]
-pub fn length_derivative<T: Real>(
+pub(crate) fn length_derivative<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,

@@ -127,7 +127,7 @@ pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> 
 ///
 /// `bodies` is memory for all bodies.
 #[kernel]
-pub fn articulated_factor<T: Real>(
+pub(crate) fn articulated_factor<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

@@ -10,7 +10,7 @@ use clench_math::{Force, Motion, Real, Vec3, kernel};
 
 /// `qfrc_bias`, on the left side of the equation of motion.
 #[kernel]
-pub fn bias_forces<T: Real>(
+pub(crate) fn bias_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

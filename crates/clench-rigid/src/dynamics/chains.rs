@@ -9,7 +9,7 @@ use clench_math::{Motion, Real, Vec3};
 
 /// Which of the two bodies a dof moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub(crate) enum Side {
     /// Both.
     Both,
     /// The first alone.
@@ -20,14 +20,14 @@ pub enum Side {
 
 /// The dofs of two bodies, ascending, in three parts.
 #[derive(Clone, Copy, Debug)]
-pub struct Chains<'a> {
+pub(crate) struct Chains<'a> {
     parts: [(&'a [u32], Side); 3],
 }
 
 impl<'a> Chains<'a> {
     /// All dofs that move either body.
     #[inline(always)]
-    pub fn new(model: &'a Model, [body1, body2]: [usize; 2]) -> Self {
+    pub(crate) fn new(model: &'a Model, [body1, body2]: [usize; 2]) -> Self {
         let chain = |body: usize| match model.bodies[body].last_dof {
             Some(dof) => model.tree.row(dof),
             None => &[],
@@ -51,14 +51,14 @@ impl<'a> Chains<'a> {
 
     /// Leaves out dofs that move both bodies: at one common point their motion has no difference.
     #[inline(always)]
-    pub fn without_common(mut self) -> Self {
+    pub(crate) fn without_common(mut self) -> Self {
         self.parts[0].0 = &[];
         self
     }
 
     /// Replaces `dofs` by those of the chains.
     #[inline(always)]
-    pub fn collect(&self, dofs: &mut Vec<u32>) {
+    pub(crate) fn collect(&self, dofs: &mut Vec<u32>) {
         dofs.clear();
         for (part, _) in self.parts {
             dofs.extend_from_slice(part);
@@ -67,13 +67,13 @@ impl<'a> Chains<'a> {
 
     /// Dofs by whom they move, ascending.
     #[inline(always)]
-    pub fn parts(&self) -> [(&'a [u32], Side); 3] {
+    pub(crate) fn parts(&self) -> [(&'a [u32], Side); 3] {
         self.parts
     }
 
     /// Each dof and whom it moves, ascending.
     #[inline(always)]
-    pub fn iter(&self) -> impl Iterator<Item = (usize, Side)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, Side)> {
         let parts = self.parts.into_iter();
         parts.flat_map(|(part, side)| part.iter().map(move |&dof| (dof as usize, side)))
     }
@@ -81,7 +81,7 @@ impl<'a> Chains<'a> {
 
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug)]
-pub struct BodyPoint<T> {
+pub(crate) struct BodyPoint<T> {
     /// The body.
     pub body: usize,
     /// From the reference point of the body's tree.
@@ -91,7 +91,7 @@ pub struct BodyPoint<T> {
 impl<T: Real> BodyPoint<T> {
     /// The point of `body` that is at `point` (world coordinates) now.
     #[inline(always)]
-    pub fn new(model: &Model, pos: &Positions<T>, body: usize, point: Vec3<T>) -> Self {
+    pub(crate) fn new(model: &Model, pos: &Positions<T>, body: usize, point: Vec3<T>) -> Self {
         let root = model.bodies[body].root;
         BodyPoint {
             body,
@@ -101,7 +101,12 @@ impl<T: Real> BodyPoint<T> {
 
     /// Acceleration of the body and of the point while no dof accelerates (J̇ v): angular, then linear at the point.
     #[inline(always)]
-    pub fn bias_acceleration(&self, model: &Model, vel: &Velocities<T>, qvel: &[T]) -> Motion<T> {
+    pub(crate) fn bias_acceleration(
+        &self,
+        model: &Model,
+        vel: &Velocities<T>,
+        qvel: &[T],
+    ) -> Motion<T> {
         let mut sum = Motion::ZERO;
         if let Some(last) = model.bodies[self.body].last_dof {
             for &dof in model.tree.row(last) {

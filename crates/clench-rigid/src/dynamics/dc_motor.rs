@@ -105,7 +105,7 @@ impl<T: Real> Circuit<T> {
 
 /// The rates of the activations of actuator `u`.
 #[inline(always)]
-pub fn activation_rates<T: Real>(
+pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -151,7 +151,7 @@ fn bristle_decay<T: Real>(params: &Params<T>, u: usize, velocity: T) -> T {
 /// An activation of a motor a time step later. A current approaches what holds it as an exact filter does, a deflection obeys its
 /// equation exactly at a constant velocity, an integral stays within its bound.
 #[inline(always)]
-pub fn next_activation<T: Real>(
+pub(crate) fn next_activation<T: Real>(
     model: &Model,
     params: &Params<T>,
     u: usize,
@@ -183,7 +183,7 @@ pub fn next_activation<T: Real>(
 
 /// The gain of a motor, and the voltage: K, which multiplies the current where that is a state, else K / R, which multiplies the voltage.
 #[inline(always)]
-pub fn gain_and_voltage<T: Real>(
+pub(crate) fn gain_and_voltage<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -200,7 +200,7 @@ pub fn gain_and_voltage<T: Real>(
 
 /// What back-EMF takes from the force of an actuator with this gain: nothing where the current is a state, whose equation has it.
 #[inline(always)]
-pub fn back_emf<T: Real>(
+pub(crate) fn back_emf<T: Real>(
     model: &Model,
     params: &Params<T>,
     u: usize,
@@ -215,7 +215,7 @@ pub fn back_emf<T: Real>(
 
 /// ∂force/∂velocity of a motor's gain, and of its back-EMF where its bias is a motor's.
 #[inline(always)]
-pub fn electrical_slope<T: Real>(
+pub(crate) fn electrical_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -234,7 +234,7 @@ pub fn electrical_slope<T: Real>(
 
 /// ∂force/∂length of a motor's gain.
 #[inline(always)]
-pub fn electrical_length_slope<T: Real>(
+pub(crate) fn electrical_length_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -275,7 +275,7 @@ fn by_voltage<T: Real>(
 
 /// Cogging and friction, which no limit of the motor's torque holds.
 #[inline(always)]
-pub fn mechanical_force<T: Real>(
+pub(crate) fn mechanical_force<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -296,7 +296,7 @@ pub fn mechanical_force<T: Real>(
 
 /// ∂force/∂velocity of friction, with the deflection's decay held.
 #[inline(always)]
-pub fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
+pub(crate) fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
     match model.actuators[u].states.bristle {
         Some(_) => -params.actuator_dynprm[u][6],
         None => T::ZERO,
@@ -305,7 +305,7 @@ pub fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: usize) ->
 
 /// ∂force/∂length of cogging.
 #[inline(always)]
-pub fn cogging_slope<T: Real>(params: &Params<T>, u: usize, length: T) -> T {
+pub(crate) fn cogging_slope<T: Real>(params: &Params<T>, u: usize, length: T) -> T {
     let [amplitude, poles, phase, ..] = params.actuator_biasprm[u];
     amplitude * poles * (poles * length + phase).sin_cos().1
 }

@@ -59,7 +59,7 @@ enum Part {
 /// Adds what the medium has in D, or its drag alone, times `scale`. As in MuJoCo, drag of a body whose mass matrix is diagonal is then
 /// diagonal too.
 #[inline(always)]
-pub fn add_fluid_derivatives<T: Real>(
+pub(crate) fn add_fluid_derivatives<T: Real>(
     model: &Model,
     params: &Params<T>,
     (pos, vel): (&Positions<T>, &Velocities<T>),
@@ -78,7 +78,7 @@ pub fn add_fluid_derivatives<T: Real>(
 
 /// Adds `scale · JᵀJ` of a sparse row J, where the pattern has room for it.
 #[inline(always)]
-pub fn add_outer<T: Real>(
+pub(crate) fn add_outer<T: Real>(
     model: &Model,
     row: impl Iterator<Item = (usize, T)> + Clone,
     scale: T,

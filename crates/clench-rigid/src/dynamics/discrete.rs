@@ -24,7 +24,7 @@ const EXACT_STEPS: usize = 4;
 /// Puts the metric of the state in the place of the mass matrix, and −h K v to the forces in `qacc_smooth`, once actuators have their
 /// forces.
 #[kernel]
-pub fn enter_metric<T: Real>(
+pub(crate) fn enter_metric<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
@@ -43,7 +43,7 @@ pub fn enter_metric<T: Real>(
 
 /// Finds `qacc_smooth`, the acceleration without constraints, in a metric that couples branches: the problem has found it there without
 /// these couplings.
-pub fn couple_smooth<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
+pub(crate) fn couple_smooth<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
     if !ws.metric.is_coupled() {
         return;
     }
@@ -65,7 +65,7 @@ pub fn couple_smooth<T: Real>(model: &Model, settings: &Settings, ws: &mut Works
 
 /// Appends the couplings of the metric to the constraints of the problem, about the acceleration without constraints, in lanes that
 /// have any.
-pub fn append_couplings<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
+pub(crate) fn append_couplings<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
     ws.problem.noslip_factor.clear();
     if let (true, Some(factor)) = (settings.noslip_iterations > 0, ws.metric.backbone_factor()) {
         ws.problem.noslip_factor.copy_from(factor);
@@ -132,7 +132,7 @@ fn push_couplings<T: Real>(
 
 /// Takes from `qfrc_constraint`, the sum of what all rows of the problem pull with, what couplings of the metric do.
 #[kernel]
-pub fn subtract_couplings<T: Real>(
+pub(crate) fn subtract_couplings<T: Real>(
     problem: &Problem<T>,
     record: &ConstraintRecord<T>,
     force: &[T],
@@ -147,7 +147,12 @@ pub fn subtract_couplings<T: Real>(
 
 /// Solves once more for free bodies that nothing touches, with their gyroscopic forces.
 #[kernel]
-pub fn spin_freely<T: Real>(model: &Model, params: &Params<T>, qvel: &[T], ws: &mut Workspace<T>) {
+pub(crate) fn spin_freely<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qvel: &[T],
+    ws: &mut Workspace<T>,
+) {
     let Workspace {
         position: pos,
         velocity: vel,
@@ -176,7 +181,7 @@ pub fn spin_freely<T: Real>(model: &Model, params: &Params<T>, qvel: &[T], ws: &
 /// Adds to inverse dynamics what the metric has beside the mass matrix of the problem: its couplings, gyroscopic forces of free bodies
 /// that nothing touches, and h K v.
 #[kernel]
-pub fn add_metric_forces<T: Real>(
+pub(crate) fn add_metric_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     qvel: &[T],

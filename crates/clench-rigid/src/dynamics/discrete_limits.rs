@@ -19,7 +19,11 @@ pub struct NotDiscrete {
 ///
 /// # Errors
 /// The first such combination.
-pub fn check_discrete(model: &Model, sleep: bool, islands: Switch) -> Result<(), NotDiscrete> {
+pub(crate) fn check_discrete(
+    model: &Model,
+    sleep: bool,
+    islands: Switch,
+) -> Result<(), NotDiscrete> {
     if model.integrator != Integrator::Discrete {
         return Ok(());
     }

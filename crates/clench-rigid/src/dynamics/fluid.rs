@@ -21,19 +21,19 @@ const TINY: f64 = 1e-15;
 
 /// Whether any lane has a medium.
 #[inline(always)]
-pub fn has_fluid<T: Real>(params: &Params<T>) -> bool {
+pub(crate) fn has_fluid<T: Real>(params: &Params<T>) -> bool {
     !(params.density.eq(T::ZERO) & params.viscosity.eq(T::ZERO)).all()
 }
 
 /// Whether there is a medium, and passive forces are switched on at all.
 #[inline(always)]
-pub fn fluid_acts<T: Real>(model: &Model, params: &Params<T>) -> bool {
+pub(crate) fn fluid_acts<T: Real>(model: &Model, params: &Params<T>) -> bool {
     (model.flags.spring || model.flags.damper) && has_fluid(params)
 }
 
 /// The symmetric and the skew part of a 6 × 6 matrix, given and returned by columns.
 #[inline(always)]
-pub fn symmetric_and_skew<T: Real>(columns: [Force<T>; 6]) -> [[Force<T>; 6]; 2] {
+pub(crate) fn symmetric_and_skew<T: Real>(columns: [Force<T>; 6]) -> [[Force<T>; 6]; 2] {
     let mut parts = [[Force::ZERO; 6]; 2];
     let half = T::new(0.5);
     for c in 0..6 {
@@ -54,7 +54,7 @@ pub fn symmetric_and_skew<T: Real>(columns: [Force<T>; 6]) -> [[Force<T>; 6]; 2]
 
 /// `qfrc_fluid` (zero without a medium).
 #[kernel]
-pub fn fluid_forces<T: Real>(
+pub(crate) fn fluid_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
@@ -80,7 +80,7 @@ pub fn fluid_forces<T: Real>(
 }
 
 /// The resistance of the medium to one body, at one velocity.
-pub struct Drag<T> {
+pub(crate) struct Drag<T> {
     body: usize,
     /// Velocity relative to the medium at the centre of mass, in the inertial frame.
     velocity: Motion<T>,
@@ -93,7 +93,7 @@ pub struct Drag<T> {
 impl<T: Real> Drag<T> {
     /// The resistance to body `b` as it moves now.
     #[inline(always)]
-    pub fn new(
+    pub(crate) fn new(
         model: &Model,
         params: &Params<T>,
         pos: &Positions<T>,
@@ -137,7 +137,7 @@ impl<T: Real> Drag<T> {
 
     /// The force on the body, about the reference point of its tree.
     #[inline(always)]
-    pub fn force(&self, model: &Model, pos: &Positions<T>) -> Force<T> {
+    pub(crate) fn force(&self, model: &Model, pos: &Positions<T>) -> Force<T> {
         self.to_world(
             model,
             pos,
@@ -156,7 +156,12 @@ impl<T: Real> Drag<T> {
 
     /// The change of [`force`](Self::force) with a change `motion` of the body's velocity.
     #[inline(always)]
-    pub fn derivative(&self, model: &Model, pos: &Positions<T>, motion: Motion<T>) -> Force<T> {
+    pub(crate) fn derivative(
+        &self,
+        model: &Model,
+        pos: &Positions<T>,
+        motion: Motion<T>,
+    ) -> Force<T> {
         let arm = pos.xipos[self.body] - pos.subtree_com[model.bodies[self.body].root];
         let local = local_velocity(motion, arm, &pos.ximat[self.body]);
         self.to_world(

@@ -9,7 +9,7 @@ use clench_math::Real;
 
 /// The force of actuator `u` before any limit, but for what no limit holds.
 #[inline(always)]
-pub fn unlimited_force<T: Real>(
+pub(crate) fn unlimited_force<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -48,7 +48,7 @@ pub fn unlimited_force<T: Real>(
 
 /// ∂force/∂velocity of [`unlimited_force`].
 #[inline(always)]
-pub fn unlimited_slope<T: Real>(
+pub(crate) fn unlimited_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -76,7 +76,7 @@ pub fn unlimited_slope<T: Real>(
 
 /// ∂force/∂length of [`unlimited_force`].
 #[inline(always)]
-pub fn unlimited_length_slope<T: Real>(
+pub(crate) fn unlimited_length_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,

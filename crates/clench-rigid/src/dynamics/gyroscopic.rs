@@ -21,7 +21,7 @@ use clench_solver::TreeMatrix;
 
 /// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
 #[inline(always)]
-pub fn is_free_tree(model: &Model, j: usize) -> bool {
+pub(crate) fn is_free_tree(model: &Model, j: usize) -> bool {
     let joint = &model.joints[j];
     let (tree, after) = (&model.tree, joint.dof + 6);
     joint.kind == JointKind::Free
@@ -31,7 +31,7 @@ pub fn is_free_tree(model: &Model, j: usize) -> bool {
 /// The joint's part of the acceleration (nv) that `force` (nv) causes, with M − h D in `matrix`. Of the medium `fluid` has what is
 /// not symmetric in D, if that counts.
 #[kernel]
-pub fn solve_gyroscopic<T: Real>(
+pub(crate) fn solve_gyroscopic<T: Real>(
     model: &Model,
     params: &Params<T>,
     j: usize,

@@ -70,7 +70,7 @@ pub fn differentiate_positions<T: Real>(
 
 /// Moves activations by `act_dot`; those of disabled actuators stay where they are, but for whole turns on a circle.
 #[kernel]
-pub fn advance_activations<T: Real>(
+pub(crate) fn advance_activations<T: Real>(
     model: &Model,
     params: &Params<T>,
     (pos, vel): (&Positions<T>, &Velocities<T>),
@@ -101,7 +101,7 @@ pub fn advance_activations<T: Real>(
 
 /// Keeps the controls of the step, and what sensors measured, for those that they reach late, and lets the step pass.
 #[inline(always)]
-pub fn advance_time<T: Real>(
+pub(crate) fn advance_time<T: Real>(
     model: &Model,
     params: &Params<T>,
     measured: &[T],
@@ -125,7 +125,7 @@ pub fn advance_time<T: Real>(
 
 /// Solves with `integration.factor` for `integration.qacc`, from the sum of all forces.
 #[inline(always)]
-pub fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
+pub(crate) fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
     sum_forces(ws);
     let Integration { factor, qacc, .. } = &mut ws.integration;
     factor.solve(tree, qacc);
@@ -133,7 +133,7 @@ pub fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
 
 /// Leaves the sum of all forces in `integration.qacc`.
 #[inline(always)]
-pub fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
+pub(crate) fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
     let forces = ws.force.qfrc_smooth.iter().zip(&ws.qfrc_constraint);
     for (qacc, (&smooth, &constraint)) in ws.integration.qacc.iter_mut().zip(forces) {
         *qacc = smooth + constraint;
@@ -143,7 +143,7 @@ pub fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
 /// Activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit Euler), then
 /// where springs rest, then time.
 #[inline(always)]
-pub fn advance_semi_implicit<T: Real>(
+pub(crate) fn advance_semi_implicit<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &mut State<T>,

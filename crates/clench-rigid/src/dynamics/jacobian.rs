@@ -32,7 +32,7 @@ fn put<T: Real>(rows: &mut [T], nv: usize, column: usize, value: Vec3<T>) {
 
 /// Writes the Jacobian of a body point (6, nv): three rows of its velocity, three of its body's angular velocity, world axes.
 #[kernel]
-pub fn point_jacobian<T: Real>(
+pub(crate) fn point_jacobian<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     point: &BodyPoint<T>,
@@ -54,7 +54,7 @@ pub fn point_jacobian<T: Real>(
 
 /// Writes how fast the same Jacobian changes (6, nv), as MuJoCo's `mj_jacDot`.
 #[kernel]
-pub fn point_jacobian_rate<T: Real>(
+pub(crate) fn point_jacobian_rate<T: Real>(
     model: &Model,
     (pos, vel): (&Positions<T>, &Velocities<T>),
     point: &BodyPoint<T>,
@@ -131,7 +131,7 @@ pub fn subtree_jacobian<T: Real>(
 
 /// Adds the forces along dofs of a force and a torque on a body point, world axes (MuJoCo's `mj_applyFT`).
 #[kernel]
-pub fn add_point_forces<T: Real>(
+pub(crate) fn add_point_forces<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     point: &BodyPoint<T>,

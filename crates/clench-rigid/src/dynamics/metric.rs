@@ -132,12 +132,12 @@ impl<T: Real> Metric<T> {
     }
 
     /// The factor of M̂ without what tendons and actuators couple, where it differs from that of the problem.
-    pub fn backbone_factor(&self) -> Option<&TreeFactor<T>> {
+    pub(crate) fn backbone_factor(&self) -> Option<&TreeFactor<T>> {
         (!self.backbone.values.is_empty()).then_some(&self.backbone_factor)
     }
 
     /// Factors that matrix. False in lanes where it is not positive definite.
-    pub fn factor_backbone(&mut self, tree: &Tree) -> T::Mask {
+    pub(crate) fn factor_backbone(&mut self, tree: &Tree) -> T::Mask {
         match self.backbone.values.is_empty() {
             true => T::Mask::splat(true),
             false => self.backbone_factor.factor(tree, &self.backbone),
@@ -158,7 +158,7 @@ fn is_chain(tree: &Tree, dofs: &[u32]) -> bool {
 
 /// The dofs that a term acts on, with J along each.
 #[inline(always)]
-pub fn each_arm<T: Real>(
+pub(crate) fn each_arm<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     along: Along,
@@ -172,7 +172,7 @@ pub fn each_arm<T: Real>(
 
 /// Turns M in `mass` into what of M̂ fits into its pattern; leaves the rest in `metric`.
 #[kernel]
-pub fn add_metric<T: Real>(
+pub(crate) fn add_metric<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,

@@ -21,7 +21,7 @@ fn divisor<T: Real>(x: T) -> T {
 /// `prm` are the time constants of activation and deactivation, and the width over which one passes into the other; Millard et al.
 /// (2013) for the former, MuJoCo's quintic step for the latter.
 #[inline(always)]
-pub fn activation_rate<T: Real>(ctrl: T, act: T, prm: &[T; 10]) -> T {
+pub(crate) fn activation_rate<T: Real>(ctrl: T, act: T, prm: &[T; 10]) -> T {
     let [activation, deactivation, width, ..] = *prm;
     let slowing = T::new(0.5) + T::new(1.5) * act.clamp(T::ZERO, T::ONE);
     let (rise, fall) = (activation * slowing, deactivation / slowing);
@@ -41,7 +41,7 @@ fn smooth_step<T: Real>(x: T) -> T {
 }
 
 /// A muscle at a length: its parameters, resting length and strength.
-pub struct Muscle<T> {
+pub(crate) struct Muscle<T> {
     /// F₀.
     peak_force: T,
     /// Resting length L₀, m.
@@ -58,7 +58,7 @@ pub struct Muscle<T> {
 impl<T: Real> Muscle<T> {
     /// Actuator `u` as a muscle with the parameters of its gain or bias, `prm`, at a length.
     #[inline(always)]
-    pub fn new(params: &Params<T>, u: usize, prm: &[T; 10], length: T) -> Self {
+    pub(crate) fn new(params: &Params<T>, u: usize, prm: &[T; 10], length: T) -> Self {
         let [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
         let [shortest, longest] = params.actuator_lengthrange[u];
         let resting = (longest - shortest) / divisor(high - low);
@@ -77,20 +77,20 @@ impl<T: Real> Muscle<T> {
 
     /// What the activation is multiplied by: −F₀ FL FV.
     #[inline(always)]
-    pub fn gain(&self, velocity: T) -> T {
+    pub(crate) fn gain(&self, velocity: T) -> T {
         -self.peak_force * self.active_by_length() * self.by_velocity(velocity).0
     }
 
     /// ∂gain/∂velocity.
     #[inline(always)]
-    pub fn gain_slope(&self, velocity: T) -> T {
+    pub(crate) fn gain_slope(&self, velocity: T) -> T {
         let slope = self.by_velocity(velocity).1 / divisor(self.resting * self.vmax);
         -self.peak_force * self.active_by_length() * slope
     }
 
     /// The passive force, −F₀ FP.
     #[inline(always)]
-    pub fn bias(&self) -> T {
+    pub(crate) fn bias(&self) -> T {
         let half = T::new(0.5);
         let bend = half * (T::ONE + self.lmax);
         let width = divisor(bend - T::ONE);
@@ -103,14 +103,14 @@ impl<T: Real> Muscle<T> {
 
     /// ∂gain/∂length.
     #[inline(always)]
-    pub fn gain_length_slope(&self, velocity: T) -> T {
+    pub(crate) fn gain_length_slope(&self, velocity: T) -> T {
         let slope = self.active_by_length_slope() / divisor(self.resting);
         -self.peak_force * slope * self.by_velocity(velocity).0
     }
 
     /// ∂bias/∂length.
     #[inline(always)]
-    pub fn bias_slope(&self) -> T {
+    pub(crate) fn bias_slope(&self) -> T {
         let bend = T::new(0.5) * (T::ONE + self.lmax);
         let width = divisor(bend - T::ONE);
         let bent = (self.length - T::ONE) / (width * width);

@@ -15,11 +15,11 @@ use crate::stages::{Positions, Velocities};
 use clench_math::{Mask, Quat, Real, Vec3};
 
 /// How many lengths, moment arms and forces a servo has.
-pub const OUTPUTS: usize = 3;
+pub(crate) const OUTPUTS: usize = 3;
 
 /// The torque of servo `u` before any limit.
 #[inline(always)]
-pub fn torque<T: Real>(
+pub(crate) fn torque<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -65,7 +65,7 @@ fn target<T: Real>(
 
 /// Holds the norm of a torque within a range from zero, and its direction.
 #[inline(always)]
-pub fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
+pub(crate) fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
     let norm = Vec3::from_slice(torque).norm();
     let over = norm.gt(range[1]);
     let share = T::select(over, range[1] / T::select(over, norm, T::ONE), T::ONE);
@@ -74,14 +74,19 @@ pub fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
 
 /// ∂torque/∂ω, the same about each axis; zero where the limit holds the torque.
 #[inline(always)]
-pub fn slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
+pub(crate) fn slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
     let slope = params.actuator_biasprm[u][2];
     T::select(is_held(model, params, u, forces), T::ZERO, slope)
 }
 
 /// ∂torque/∂angle for small angles from the target, likewise.
 #[inline(always)]
-pub fn length_slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
+pub(crate) fn length_slope<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    u: usize,
+    forces: &[T],
+) -> T {
     let slope = -params.actuator_gainprm[u][0];
     T::select(is_held(model, params, u, forces), T::ZERO, slope)
 }
@@ -100,7 +105,7 @@ fn is_held<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -
 
 /// Takes whole turns off a rotation vector of more than half a turn, which stands for the same orientation then.
 #[inline(always)]
-pub fn shorten<T: Real>(vector: &mut [T]) {
+pub(crate) fn shorten<T: Real>(vector: &mut [T]) {
     let angle = Vec3::from_slice(vector).norm();
     let over = angle.gt(T::new(std::f64::consts::PI));
     if !over.any() {

@@ -17,7 +17,7 @@ use clench_math::{Force, Mask, Real, Vec3, kernel};
 /// `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid`, `qfrc_adhesion` and their sum `qfrc_passive`. Gravity compensation of joints
 /// with `actgravcomp` is left to the actuators. As in MuJoCo, without springs and dampers there is nothing passive at all.
 #[kernel]
-pub fn passive_forces<T: Real>(
+pub(crate) fn passive_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

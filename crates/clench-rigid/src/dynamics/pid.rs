@@ -12,7 +12,7 @@ use clench_math::Real;
 
 /// The rates of the activations of actuator `u`.
 #[inline(always)]
-pub fn activation_rates<T: Real>(
+pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,
@@ -34,7 +34,7 @@ pub fn activation_rates<T: Real>(
 
 /// The part of the force that setpoints and the integral make.
 #[inline(always)]
-pub fn force<T: Real>(
+pub(crate) fn force<T: Real>(
     model: &Model,
     params: &Params<T>,
     given: ActuatorInputs<'_, T>,

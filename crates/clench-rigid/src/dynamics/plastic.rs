@@ -34,7 +34,7 @@ impl<'a, T: Real> Lengths<'a, T> {
 /// Lets springs yield after a step that has moved the positions to `qpos` along `velocity` (nv), from where tendons were as `start`
 /// says. What sleeps does not yield.
 #[kernel]
-pub fn yield_springs<T: Real>(
+pub(crate) fn yield_springs<T: Real>(
     model: &Model,
     params: &Params<T>,
     sleep: &Sleep<T>,

@@ -12,7 +12,7 @@ use clench_math::{Mask, Real};
 
 /// The coefficients a, and [b, c].
 #[derive(Clone, Copy, Debug)]
-pub struct Polynomial<T> {
+pub(crate) struct Polynomial<T> {
     /// The coefficient of the first power.
     pub linear: T,
     /// The coefficients of the second and third power.
@@ -22,40 +22,40 @@ pub struct Polynomial<T> {
 impl<T: Real> Polynomial<T> {
     /// Of these coefficients.
     #[inline(always)]
-    pub fn new(linear: T, higher: [T; 2]) -> Self {
+    pub(crate) fn new(linear: T, higher: [T; 2]) -> Self {
         Polynomial { linear, higher }
     }
 
     /// Whether no lane has any force.
     #[inline(always)]
-    pub fn is_zero(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         (self.linear.eq(T::ZERO) & !self.is_curved()).all()
     }
 
     /// Lanes with a coefficient of a higher power.
     #[inline(always)]
-    pub fn is_curved(&self) -> T::Mask {
+    pub(crate) fn is_curved(&self) -> T::Mask {
         let [b, c] = self.higher;
         !(b.eq(T::ZERO) & c.eq(T::ZERO))
     }
 
     /// Minus a spring's force over its displacement `x`: a + b x + c x².
     #[inline(always)]
-    pub fn stiffness(&self, x: T) -> T {
+    pub(crate) fn stiffness(&self, x: T) -> T {
         let [b, c] = self.higher;
         self.linear + x * (b + x * c)
     }
 
     /// Minus the change of a spring's force with its displacement `x`: a + 2 b x + 3 c x².
     #[inline(always)]
-    pub fn stiffness_slope(&self, x: T) -> T {
+    pub(crate) fn stiffness_slope(&self, x: T) -> T {
         let [b, c] = self.higher;
         self.linear + x * (T::new(2.0) * b + x * (T::new(3.0) * c))
     }
 
     /// The energy in a spring of displacement `x`.
     #[inline(always)]
-    pub fn energy(&self, x: T) -> T {
+    pub(crate) fn energy(&self, x: T) -> T {
         let [b, c] = self.higher;
         let mean = self.linear * T::new(0.5) + x * (b * T::new(1.0 / 3.0) + x * c * T::new(0.25));
         mean * x.squared()
@@ -63,13 +63,13 @@ impl<T: Real> Polynomial<T> {
 
     /// Minus a damper's force over its velocity `v`: a + b |v| + c v².
     #[inline(always)]
-    pub fn damping(&self, v: T) -> T {
+    pub(crate) fn damping(&self, v: T) -> T {
         self.stiffness(v.abs())
     }
 
     /// Minus the change of a damper's force with its velocity `v`: a + 2 b |v| + 3 c v².
     #[inline(always)]
-    pub fn damping_slope(&self, v: T) -> T {
+    pub(crate) fn damping_slope(&self, v: T) -> T {
         self.stiffness_slope(v.abs())
     }
 }

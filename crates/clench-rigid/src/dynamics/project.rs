@@ -40,7 +40,11 @@ pub fn project_forces<T: Real>(
 
 /// A spatial velocity at the point that is `arm` from where it is measured, along the axes of a frame.
 #[inline(always)]
-pub fn local_velocity<T: Real>(motion: Motion<T>, arm: Vec3<T>, axes: &Mat3<T>) -> Motion<T> {
+pub(crate) fn local_velocity<T: Real>(
+    motion: Motion<T>,
+    arm: Vec3<T>,
+    axes: &Mat3<T>,
+) -> Motion<T> {
     Motion::new(
         axes.transpose_mul(motion.angular),
         axes.transpose_mul(motion.velocity_at(arm)),

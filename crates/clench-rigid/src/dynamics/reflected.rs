@@ -9,7 +9,7 @@ use clench_math::Real;
 
 /// The force law of the damper of dof `i`: its own and that of its joint's actuators.
 #[inline(always)]
-pub fn dof_damper<T: Real>(model: &Model, params: &Params<T>, i: usize) -> Polynomial<T> {
+pub(crate) fn dof_damper<T: Real>(model: &Model, params: &Params<T>, i: usize) -> Polynomial<T> {
     let own = Polynomial::new(params.dof_damping[i], params.dof_dampingpoly[i]);
     let actuators = &model.joints[model.dofs[i].joint].reflecting;
     add_dampers(params, actuators, own)
@@ -17,7 +17,7 @@ pub fn dof_damper<T: Real>(model: &Model, params: &Params<T>, i: usize) -> Polyn
 
 /// The force law of the damper of tendon `t`: its own and that of its actuators.
 #[inline(always)]
-pub fn tendon_damper<T: Real>(model: &Model, params: &Params<T>, t: usize) -> Polynomial<T> {
+pub(crate) fn tendon_damper<T: Real>(model: &Model, params: &Params<T>, t: usize) -> Polynomial<T> {
     let own = Polynomial::new(params.tendon_damping[t], params.tendon_dampingpoly[t]);
     add_dampers(params, &model.tendons[t].reflecting, own)
 }
@@ -40,14 +40,14 @@ fn add_dampers<T: Real>(
 
 /// The inertia that is added to dof `i`: its own armature and that of its joint's actuators.
 #[inline(always)]
-pub fn dof_armature<T: Real>(model: &Model, params: &Params<T>, i: usize) -> T {
+pub(crate) fn dof_armature<T: Real>(model: &Model, params: &Params<T>, i: usize) -> T {
     let actuators = &model.joints[model.dofs[i].joint].reflecting;
     add_armatures(params, actuators, params.dof_armature[i])
 }
 
 /// The inertia of tendon `t`: its own armature and that of its actuators.
 #[inline(always)]
-pub fn tendon_armature<T: Real>(model: &Model, params: &Params<T>, t: usize) -> T {
+pub(crate) fn tendon_armature<T: Real>(model: &Model, params: &Params<T>, t: usize) -> T {
     let actuators = &model.tendons[t].reflecting;
     add_armatures(params, actuators, params.tendon_armature[t])
 }

@@ -8,7 +8,7 @@ use clench_math::{Mask, Real, Vec3};
 
 /// The controls of an actuator with a controller; what it has no control for is zero.
 #[derive(Clone, Copy, Debug)]
-pub struct Setpoints<T> {
+pub(crate) struct Setpoints<T> {
     /// Position.
     pub position: T,
     /// Velocity.
@@ -24,7 +24,12 @@ pub struct Setpoints<T> {
 impl<T: Real> Setpoints<T> {
     /// Of actuator `u`. A first control whose rate is limited acts from where it was, and on a circle goes the shorter way.
     #[inline(always)]
-    pub fn new(model: &Model, params: &Params<T>, given: ActuatorInputs<'_, T>, u: usize) -> Self {
+    pub(crate) fn new(
+        model: &Model,
+        params: &Params<T>,
+        given: ActuatorInputs<'_, T>,
+        u: usize,
+    ) -> Self {
         let actuator = &model.actuators[u];
         let mut setpoints = Setpoints {
             position: T::ZERO,
@@ -62,14 +67,14 @@ impl<T: Real> Setpoints<T> {
 
     /// The rate of the activation that holds the first control.
     #[inline(always)]
-    pub fn slew_rate(&self, params: &Params<T>, before: T) -> T {
+    pub(crate) fn slew_rate(&self, params: &Params<T>, before: T) -> T {
         (self.first - before) / params.timestep
     }
 }
 
 /// The rate of an integral of an error; where the integral has reached its bound, a positive one, it only goes back.
 #[inline(always)]
-pub fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
+pub(crate) fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
     let bounded = bound.gt(T::ZERO);
     let high = bounded & integral.ge(bound);
     let low = bounded & !high & integral.le(-bound);
@@ -83,7 +88,7 @@ pub fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
 ///
 /// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
 #[inline(always)]
-pub fn nearest_setpoint<T: Real>(
+pub(crate) fn nearest_setpoint<T: Real>(
     model: &Model,
     params: &Params<T>,
     u: usize,

@@ -32,7 +32,7 @@ impl<T: Real> Pull<T> {
 
 /// Moment arms of a wrench along the axes of a site. Such an actuator has no length.
 #[inline(always)]
-pub fn wrench_arms<T: Real>(
+pub(crate) fn wrench_arms<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     site: usize,
@@ -66,7 +66,7 @@ fn relative_arms<T: Real>(model: &Model, pos: &Positions<T>, pulls: [Pull<T>; 2]
 /// Length and moment arms of the pose of a site in the frame of another: its position along the first three gears, and its
 /// rotation vector along the others.
 #[inline(always)]
-pub fn relative_pose<T: Real>(
+pub(crate) fn relative_pose<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
@@ -97,7 +97,7 @@ pub fn relative_pose<T: Real>(
 
 /// The rotation vector of a site in the frame of another.
 #[inline(always)]
-pub fn relative_turn<T: Real>(
+pub(crate) fn relative_turn<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
@@ -111,7 +111,7 @@ pub fn relative_turn<T: Real>(
 
 /// Moment arms of a couple about an axis of a site, against another site.
 #[inline(always)]
-pub fn turning_arms<T: Real>(
+pub(crate) fn turning_arms<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     [site, reference]: [usize; 2],
@@ -141,7 +141,7 @@ pub fn turning_arms<T: Real>(
 ///
 /// Where the rod is too short to reach the axis the slider stands at a, next to the pin.
 #[inline(always)]
-pub fn slider_crank<T: Real>(
+pub(crate) fn slider_crank<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

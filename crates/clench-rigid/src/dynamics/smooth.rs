@@ -9,7 +9,7 @@ use clench_solver::Problem;
 
 /// `qfrc_smooth`: passive + actuator + applied − bias.
 #[kernel]
-pub fn smooth_forces<T: Real>(
+pub(crate) fn smooth_forces<T: Real>(
     model: &Model,
     state: &State<T>,
     pos: &Positions<T>,
@@ -31,7 +31,7 @@ pub fn smooth_forces<T: Real>(
 }
 
 /// Turns the forces in `qacc_smooth` into the acceleration that they cause, by the factor of the problem.
-pub fn smooth_acceleration<T: Real>(model: &Model, problem: &mut Problem<T>) {
+pub(crate) fn smooth_acceleration<T: Real>(model: &Model, problem: &mut Problem<T>) {
     problem
         .mass_factor
         .solve(&model.tree, &mut problem.qacc_smooth);

@@ -6,7 +6,7 @@ use crate::state::State;
 use clench_math::{Quat, Real, Vec3};
 
 /// How far a joint is from its spring's rest position.
-pub enum JointStretch<T> {
+pub(crate) enum JointStretch<T> {
     /// A distance or an angle, on the joint's only dof.
     Scalar(T),
     /// A rotation vector in the child's frame.
@@ -17,13 +17,13 @@ pub enum JointStretch<T> {
 
 /// The force law of joint `j`'s spring.
 #[inline(always)]
-pub fn joint_spring<T: Real>(params: &Params<T>, j: usize) -> Polynomial<T> {
+pub(crate) fn joint_spring<T: Real>(params: &Params<T>, j: usize) -> Polynomial<T> {
     Polynomial::new(params.jnt_stiffness[j], params.jnt_stiffnesspoly[j])
 }
 
 /// The stretch of joint `j` in a state; `None` where no lane has a spring there.
 #[inline(always)]
-pub fn joint_stretch<T: Real>(
+pub(crate) fn joint_stretch<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
@@ -35,7 +35,7 @@ pub fn joint_stretch<T: Real>(
 
 /// How far joint `j` at positions `qpos` is from where its spring rests, which `plastic` says of a spring that yields.
 #[inline(always)]
-pub fn stretch_of_joint<T: Real>(
+pub(crate) fn stretch_of_joint<T: Real>(
     model: &Model,
     params: &Params<T>,
     (qpos, plastic): (&[T], &[T]),
@@ -64,13 +64,13 @@ pub fn stretch_of_joint<T: Real>(
 
 /// The force law of tendon `t`'s spring.
 #[inline(always)]
-pub fn tendon_spring<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
+pub(crate) fn tendon_spring<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
     Polynomial::new(params.tendon_stiffness[t], params.tendon_stiffnesspoly[t])
 }
 
 /// How far tendon `t` of length `length` is outside the dead band of its spring, which `plastic` says of a spring that yields.
 #[inline(always)]
-pub fn tendon_stretch<T: Real>(
+pub(crate) fn tendon_stretch<T: Real>(
     model: &Model,
     params: &Params<T>,
     plastic: &[T],
@@ -86,7 +86,7 @@ pub fn tendon_stretch<T: Real>(
 
 /// How far a length is outside a dead band.
 #[inline(always)]
-pub fn stretch_outside<T: Real>([low, high]: [T; 2], length: T) -> T {
+pub(crate) fn stretch_outside<T: Real>([low, high]: [T; 2], length: T) -> T {
     let below = T::select(length.lt(low), length - low, T::ZERO);
     T::select(length.gt(high), length - high, below)
 }

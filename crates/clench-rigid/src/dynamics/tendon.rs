@@ -9,7 +9,7 @@ use clench_math::{Real, kernel};
 
 /// The dofs that change a tendon's length, with ∂length/∂q along each.
 #[inline(always)]
-pub fn gradient<'a, T: Real>(
+pub(crate) fn gradient<'a, T: Real>(
     model: &'a Model,
     pos: &'a Positions<T>,
     tendon: usize,
@@ -59,7 +59,7 @@ fn fixed_tendon<T: Real>(
 
 /// Rate of change of each tendon's length (ntendon).
 #[kernel]
-pub fn tendon_velocities<T: Real>(
+pub(crate) fn tendon_velocities<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     qvel: &[T],
@@ -75,7 +75,7 @@ pub fn tendon_velocities<T: Real>(
 
 /// Adds the joint forces of tendon `tendon` pulling with `force` to `qfrc`.
 #[inline(always)]
-pub fn add_tendon_force<T: Real>(
+pub(crate) fn add_tendon_force<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     tendon: usize,

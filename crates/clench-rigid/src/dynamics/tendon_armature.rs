@@ -14,7 +14,7 @@ use clench_solver::TreeMatrix;
 
 /// Adds the inertia of all tendons to the mass matrix.
 #[kernel]
-pub fn add_tendon_inertia<T: Real>(
+pub(crate) fn add_tendon_inertia<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
@@ -28,7 +28,7 @@ pub fn add_tendon_inertia<T: Real>(
 
 /// Adds what tendons resist without any acceleration of dofs, because their gradients change, to `qfrc_bias`.
 #[kernel]
-pub fn add_tendon_bias<T: Real>(
+pub(crate) fn add_tendon_bias<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

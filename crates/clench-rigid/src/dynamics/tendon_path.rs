@@ -116,7 +116,7 @@ fn section_spans<T: Real>(
 
 /// Writes the length of a spatial tendon and its gradient.
 #[inline(always)]
-pub fn spatial_tendon<T: Real>(
+pub(crate) fn spatial_tendon<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &mut Positions<T>,
@@ -170,7 +170,7 @@ fn add_span<T: Real>(
 /// d²length/dt² of tendon `t` while no dof accelerates, J̇ v, for tendons without obstacles: a span of length s between points
 /// that move apart with w and accelerate apart with c changes its length with u·c + (w² − (u·w)²) / s.
 #[inline(always)]
-pub fn bias_acceleration<T: Real>(
+pub(crate) fn bias_acceleration<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

@@ -9,7 +9,7 @@ use clench_math::{Quat, Real, Vec3, kernel};
 
 /// The dofs that a force of an actuator, one of `Model::nout`, acts on, with its moment arm along each.
 #[inline(always)]
-pub fn moment<'a, T: Real>(
+pub(crate) fn moment<'a, T: Real>(
     model: &'a Model,
     pos: &'a Positions<T>,
     output: usize,

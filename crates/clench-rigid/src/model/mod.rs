@@ -99,7 +99,7 @@ pub struct Model {
     /// Kinematic trees, in the order of their dofs.
     pub trees: Vec<KinematicTree>,
     /// Of each tendon that pulls on two trees, these.
-    pub tendon_ties: Vec<Option<[usize; 2]>>,
+    pub(crate) tendon_ties: Vec<Option<[usize; 2]>>,
     /// The initial [`State::tree_asleep`](crate::State::tree_asleep), which has no numbers without the flag `sleep`.
     pub tree_asleep0: Vec<f64>,
     /// How time advances.
@@ -115,7 +115,7 @@ pub struct Model {
     /// Every number of the model.
     pub params: Params<f64>,
     /// Which of its fixed poses are trivial.
-    pub same_frames: SameFrames,
+    pub(crate) same_frames: SameFrames,
     /// Things worth telling the user once.
     pub notes: Vec<String>,
     /// What was left out of the file because it is not supported yet, each with its place.
@@ -147,7 +147,7 @@ impl Model {
         }
     }
     /// Whether any tree can sleep.
-    pub fn may_sleep(&self) -> bool {
+    pub(crate) fn may_sleep(&self) -> bool {
         !self.tree_asleep0.is_empty()
     }
     /// Number of kinematic trees.

@@ -61,7 +61,7 @@ pub(super) struct Subtree<T> {
     /// Velocity of their centre of mass.
     pub velocity: Vec3<T>,
     /// Angular momentum about it.
-    pub angular_momentum: Vec3<T>,
+    pub(crate) angular_momentum: Vec3<T>,
 }
 
 impl<T: Real> Reading<'_, T> {

@@ -25,7 +25,7 @@ use std::ops::Range;
 /// The number of a tree that moves: it must stay below the tolerance for so many steps less one (MuJoCo's `mjMINAWAKE`, 10).
 pub const AWAKE: f64 = -11.0;
 /// The number of a tree that has rested for long enough.
-pub const READY: f64 = -1.0;
+pub(crate) const READY: f64 = -1.0;
 
 /// Which trees are awake in a step.
 #[derive(Clone, Debug)]
@@ -99,7 +99,7 @@ impl<T: Real> Sleep<T> {
 
     /// Lanes in which a tree is awake.
     #[inline(always)]
-    pub fn is_awake(&self, tree: usize) -> T::Mask {
+    pub(crate) fn is_awake(&self, tree: usize) -> T::Mask {
         match self.enabled {
             true => self.awake[tree],
             false => T::Mask::splat(true),
@@ -108,7 +108,7 @@ impl<T: Real> Sleep<T> {
 
     /// Lanes in which constraints between two bodies act: in which either is awake.
     #[inline(always)]
-    pub fn is_either_awake(&self, [first, second]: [usize; 2]) -> T::Mask {
+    pub(crate) fn is_either_awake(&self, [first, second]: [usize; 2]) -> T::Mask {
         match self.enabled {
             true => self.bodies[first] | self.bodies[second],
             false => T::Mask::splat(true),

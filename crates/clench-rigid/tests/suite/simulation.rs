@@ -373,3 +373,26 @@ fn single_precision_rests_where_double_does() {
         "{found} against {expected}"
     );
 }
+
+#[test]
+fn a_control_sees_the_poses_of_the_step_that_it_controls() {
+    let (mut pulled, mut plain) = (sim(&ball()), sim(&ball()));
+    plain.state.qvel[2] = 1.0;
+    pulled.state.qvel[2] = 1.0;
+    for _ in 0..5 {
+        let spring = -2.0 * plain.state.qpos[2];
+        plain.state.qfrc_applied[2] = spring;
+        plain.step().expect("valid");
+        let step = pulled.step_with(|sim| {
+            let height = sim.workspace().position.xipos[1].z;
+            sim.state.qfrc_applied[2] = -2.0 * height;
+            Ok(())
+        });
+        step.expect("valid");
+        assert_eq!(pulled.state.qpos, plain.state.qpos);
+    }
+    let before = pulled.state.qpos.clone();
+    let refused = pulled.step_with(|sim| sim.set_ctrl(&[0.0]));
+    assert!(matches!(refused, Err(SimError::WrongLength { .. })));
+    assert_eq!(pulled.state.qpos, before);
+}

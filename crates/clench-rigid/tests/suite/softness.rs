@@ -2,7 +2,7 @@
 
 use clench_math::{Lanes, Real};
 use clench_rigid::constraint::Softness;
-use clench_rigid::constraint::softness::impedance;
+use clench_rigid::constraint::impedance;
 
 /// Twice a time step of 2 ms, MuJoCo's `refsafe`.
 const LEAST: f64 = 0.004;

@@ -63,7 +63,7 @@ impl Tendon {
     }
 
     /// Whether it goes around or through geoms.
-    pub fn has_obstacles(&self) -> bool {
+    pub(crate) fn has_obstacles(&self) -> bool {
         self.path
             .iter()
             .any(|wrap| matches!(wrap, Wrap::Geom { .. }))

@@ -10,7 +10,7 @@ use clench_rigid::builder::{
     ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomMass, GeomSpec,
     JointSpec, KeyframeSpec, MeshSpec, ModelBuilder, TendonSpec, TransmissionSpec,
 };
-use clench_rigid::constraint::softness::impedance;
+use clench_rigid::constraint::impedance;
 use clench_rigid::model::JointKind;
 use clench_rigid::options::RigidOptions;
 
