@@ -65,8 +65,9 @@ fn note_diagonal(own: mat2x4f) {
 }
 
 // Of a tile on the diagonal L⁻¹: what turns it into Lᵀ, row by row, turns the identity into that. A pivot that rounding has consumed is
-// replaced by its diagonal, so that the direction stays one of descent. Row k waits in row k of `left` and `right`.
-fn invert_factor(own: mat2x4f) -> mat2x4f {
+// replaced by its diagonal, so that the direction stays one of descent. Row k waits in row k of `left` and `right`. Beyond the last dof a tile is
+// the identity, and stays it: only `order` rows are eliminated.
+fn invert_factor(own: mat2x4f, order: u32) -> mat2x4f {
     var a = own;
     var inverse = mat2x4f();
     for (var side = 0u; side < 2u; side++) {
@@ -75,7 +76,7 @@ fn invert_factor(own: mat2x4f) -> mat2x4f {
             inverse[side][r % 4u] = 1.0;
         }
     }
-    for (var k = 0u; k < bound(TILE); k++) {
+    for (var k = 0u; k < bound(order); k++) {
         let place = STRIDE * k;
         if (own_row() == k - k % 2u) {
             left[place + own_quad()] = a[k % 2u];
@@ -132,7 +133,7 @@ fn factor_hessian(count: u32) {
                 note_diagonal(own);
             }
             if (i == j) {
-                own = invert_factor(own);
+                own = invert_factor(own, min(TILE, NV - TILE * j));
             } else {
                 own = divide_tile(own, j);
             }
