@@ -110,7 +110,7 @@ fn crossed<T: Real>(vector: Vec3<T>, m: &Mat3<T>) -> Mat3<T> {
 /// takes a part of the smallest pivots that grows with the cube of their number, at 20 about a hundredth.
 const MAX_DOFS: usize = 20;
 
-/// Memory for [`articulated_factor`] where numbers `T` and the model need it, else none: the model alone decides. The inertia of
+/// Memory for `articulated_factor` where numbers `T` and the model need it, else none: the model alone decides. The inertia of
 /// tendons is not that of a body: with it M is factored itself.
 pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> {
     let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();

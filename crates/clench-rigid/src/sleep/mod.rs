@@ -1,6 +1,6 @@
 //! Sleeping islands: trees that have come to rest are left out of the step until something wakes them.
 //!
-//! Each tree has a number, as MuJoCo's `tree_asleep`. Awake, it counts steps of small velocity, from [`AWAKE`] up to [`READY`].
+//! Each tree has a number, as MuJoCo's `tree_asleep`. Awake, it counts steps of small velocity, from [`AWAKE`] up to `READY`.
 //! When all trees of an island are ready, their velocities become zero and the numbers a cycle through the island: each names
 //! the next tree. `docs/sleeping.md` has the rules, `wake.rs` what wakes trees and `fall.rs` how they fall asleep.
 //!
