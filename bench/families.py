@@ -3,7 +3,7 @@
 Heaps are timed once they lie (or, where they collapse, when half of the way is done): Clench steps them there, and both engines
 start from that state. Beside the times stand contacts, iterations, and the scaled norm of the gradient that each engine's solves ended
 with, as each tells it: the median of the steps. All figures go to target/bench/families.json; with `--docs` docs/families.md and its
-plots are written anew.
+plots are written anew. `--filter NAME` measures some scenes and keeps what that file has of the others.
 """
 
 import json
@@ -80,12 +80,26 @@ def compare(_, args):
     rows += grow_environments(args) if not args.filter else []
     print("not measured:", *(left_out or ["none"]), sep="\n  ")
     record = {"machine": machine(), "rows": rows, "stages": stages, "not_measured": left_out}
+    if args.filter and OUT.exists():
+        record = with_others(record, json.loads(OUT.read_text()))
     OUT.parent.mkdir(parents=True, exist_ok=True)
     OUT.write_text(json.dumps(record, indent=1) + "\n")
     print(f"figures: {OUT.relative_to(ROOT)}")
     if args.docs:
         plots.draw(record, ROOT / "docs")
     return [row | {"model": row["scene"]} for row in rows if row["ratio"] is not None]
+
+
+def with_others(record, earlier):
+    """Adds what an earlier run found of scenes that were not measured now."""
+    measured = list(record["stages"])
+    kept = [row for row in earlier["rows"] if row["family"] == "environments" or row["scene"] not in measured]
+    names = list(SCENES)
+    rows = sorted([*kept, *record["rows"]], key=lambda row: (row["family"] == "environments", names.index(row["scene"])))
+    stages = earlier["stages"] | record["stages"]
+    stages = {name: stages[name] for name in names if name in stages}
+    left_out = [reason for reason in earlier["not_measured"] if not reason.startswith(tuple(f"{name}{end}" for name in measured for end in ",:"))]
+    return record | {"rows": rows, "stages": stages, "not_measured": left_out + record["not_measured"]}
 
 
 class Scene:

@@ -13,8 +13,8 @@ SMALL = 0.03  # of a step: stages that never take more are drawn as one
 
 PAGE = """# Scenes of manipulation and of many bodies
 
-Written by `cargo xtask bench --only families --docs`, on {machine}, beside MuJoCo {mujoco}; `bench/families.py` says how each is timed. What
-the figures mean, and where aims are missed, says [performance.md](performance.md).
+Written by `cargo xtask bench --only families --docs`, on {machine}, beside MuJoCo {mujoco}; `bench/families.py` says how each is timed, and how
+some scenes are measured anew. What the figures mean, and where aims are missed, says [performance.md](performance.md).
 
 One environment: microseconds a step, MuJoCo's time over Clench's on one thread, Clench's time on one thread over that on all ({processors}), mean
 contacts and iterations of the solver a step, and the scaled gradient that solves end with (the median; MuJoCo's and Clench's).

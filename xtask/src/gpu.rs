@@ -12,19 +12,33 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// Those that compute, of `clench-gpu` and of the program, and those that draw.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
+/// Those of `device` that take steps by the hundred.
+const TRAJECTORIES: &str = "steps::";
 
 /// Runs them.
 ///
 /// # Errors
 /// That a test failed.
 pub(crate) fn test() -> Result<(), String> {
-    let mut computing = tests(&COMPUTING);
-    // Mesa's software device compiles kernels sooner for narrow registers, and wide ones do not make these tests quicker.
-    computing.env("LP_NATIVE_VECTOR_WIDTH", "128");
-    computing.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
-    computing.env("CLENCH_DM_CONTROL", python::dm_control_suite());
-    run(computing)?;
+    // Trajectories run their kernels for longer than Mesa's software device takes to optimize them. All other tests ask a few times for many
+    // kernels, and leave them as they are.
+    let mut trajectories = computing(&COMPUTING[..1])?;
+    trajectories.args(["--", TRAJECTORIES]);
+    run(trajectories)?;
+    let mut others = computing(&COMPUTING)?;
+    others.args(["--", "--skip", TRAJECTORIES]);
+    others.env("GALLIVM_PERF", "nopt");
+    run(others)?;
     run(tests(&DRAWING))
+}
+
+/// The tests of these names, with what those that compute need.
+fn computing(names: &[&str]) -> Result<Command, String> {
+    let mut tests = tests(names);
+    tests.env("LP_NATIVE_VECTOR_WIDTH", "128");
+    tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
+    tests.env("CLENCH_DM_CONTROL", python::dm_control_suite());
+    Ok(tests)
 }
 
 /// Runs the tests of these names, which the stage `unit` has compiled: all packages are named, so that nothing is compiled anew for other features.
