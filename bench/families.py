@@ -93,8 +93,8 @@ def compare(_, args):
 def with_others(record, earlier):
     """Adds what an earlier run found of scenes that were not measured now."""
     measured = list(record["stages"])
-    kept = [row for row in earlier["rows"] if row["family"] == "environments" or row["scene"] not in measured]
     names = list(SCENES)
+    kept = [row for row in earlier["rows"] if row["scene"] in names and (row["family"] == "environments" or row["scene"] not in measured)]
     rows = sorted([*kept, *record["rows"]], key=lambda row: (row["family"] == "environments", names.index(row["scene"])))
     stages = earlier["stages"] | record["stages"]
     stages = {name: stages[name] for name in names if name in stages}

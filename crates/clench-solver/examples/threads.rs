@@ -3,25 +3,18 @@
 //! The heap is a lattice of free bodies (so many along x, y and z), each of which touches its neighbours and, in the lowest layer, the world at two
 //! points. The last number is that of the threads.
 
+#[allow(dead_code)] // This program uses only some of what the suite shares.
+#[path = "../tests/suite/common/mod.rs"]
+mod common;
+
 use clench_solver::{Cost, Problem, Solver, SolverOptions, Threads, Tree, TreeMatrix};
+use common::Rng;
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
 const ROUNDS: usize = 20;
 const POINTS: usize = 2;
-
-/// A linear congruential generator of numbers between −0.5 and 0.5.
-struct Random(u64);
-
-impl Random {
-    fn number(&mut self) -> f64 {
-        self.0 = (self.0)
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    }
-}
 
 fn heap([nx, ny, nz]: [usize; 3]) -> Result<Problem<f64>, Box<dyn Error>> {
     let nv = 6 * nx * ny * nz;
@@ -35,11 +28,11 @@ fn heap([nx, ny, nz]: [usize; 3]) -> Result<Problem<f64>, Box<dyn Error>> {
         }
     }
     problem.factor_mass();
-    let mut random = Random(1);
+    let mut random = Rng(1);
     problem
         .qacc_smooth
         .iter_mut()
-        .for_each(|a| *a = random.number());
+        .for_each(|a| *a = random.range(-0.5, 0.5));
     let body = |x: usize, y: usize, z: usize| (z * ny + y) * nx + x;
     for z in 0..nz {
         for y in 0..ny {
@@ -60,12 +53,15 @@ fn heap([nx, ny, nz]: [usize; 3]) -> Result<Problem<f64>, Box<dyn Error>> {
 }
 
 /// Adds contacts of a body with a later one, or with the world.
-fn touch(problem: &mut Problem<f64>, random: &mut Random, one: usize, other: Option<usize>) {
+fn touch(problem: &mut Problem<f64>, random: &mut Rng, one: usize, other: Option<usize>) {
     let bodies = [Some(one), other].into_iter().flatten();
     let dofs = Vec::from_iter(bodies.flat_map(|body| 6 * body as u32..6 * body as u32 + 6));
     for _ in 0..POINTS {
         let block = problem.push(Cost::Pyramid, 3, &dofs);
-        block.jacobian.iter_mut().for_each(|j| *j = random.number());
+        block
+            .jacobian
+            .iter_mut()
+            .for_each(|j| *j = random.range(-0.5, 0.5));
         block.aref[0] = 1.0;
         for i in 0..3 {
             (block.r[i], block.d[i], block.shape[i]) = (0.01, 100.0, 0.7);

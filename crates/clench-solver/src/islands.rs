@@ -41,11 +41,12 @@ struct TreeLists {
 #[derive(Clone, Debug, Default)]
 struct Slots<T: Real> {
     slots: Vec<Slot<T>>,
-    /// The slots of trees that are islands by themselves: solved in turn, trees of one shape share that of the first of them, whose patterns
-    /// stay as they are and which stays in the processor's caches.
+    /// The slot of each tree that has been an island by itself. Solved in turn, trees of one shape share that of the first of them: its
+    /// patterns stay as they are, and it stays in the processor's caches.
     single: Vec<Option<u32>>,
-    /// For each tree the first one of the same shape, and what they are the trees of.
+    /// For each tree the first one of the same shape.
     alike: Vec<u32>,
+    /// The forest that `single` and `alike` are about.
     tree: Option<Arc<Tree>>,
     /// Those of the first island of several trees, of the second and so on, and how many are taken.
     several: Vec<u32>,
@@ -262,7 +263,7 @@ impl<T: Real> Slots<T> {
     fn take_single(&mut self, tree: u32) -> usize {
         let new = self.slots.len() as u32;
         let slot = *self.single[tree as usize].get_or_insert(new);
-        self.made(slot)
+        self.ensure(slot)
     }
 
     fn take_several(&mut self) -> usize {
@@ -271,11 +272,11 @@ impl<T: Real> Slots<T> {
         if self.several.len() < self.taken {
             self.several.push(new);
         }
-        self.made(self.several[self.taken - 1])
+        self.ensure(self.several[self.taken - 1])
     }
 
-    /// A slot that may be new.
-    fn made(&mut self, slot: u32) -> usize {
+    /// The index of a slot, which is made if it is the next new one.
+    fn ensure(&mut self, slot: u32) -> usize {
         if slot as usize == self.slots.len() {
             self.slots.push(Slot::default());
         }

@@ -40,7 +40,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 /// After `steps` steps the device is not further from double precision than the processor's single precision is, by the medians.
 fn drift_alike(model: &Arc<Model>, steps: usize) {
-    let count = 16;
+    let count = 24;
     let starts = some_states(model, count);
     let Some(mut batch) = batch(model, count) else {
         return;
