@@ -2,7 +2,7 @@
 
 use crate::error::sim_error;
 use clench::BatchOptions;
-use clench_gpu::GpuError;
+use clench_gpu::{GpuError, GpuReal};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
@@ -39,13 +39,13 @@ impl FromPyObject<'_, '_> for Device {
     }
 }
 
-/// A batch that a graphics device steps.
-pub(crate) fn batch(
+/// A batch that a graphics device steps, in the precision of its numbers.
+pub(crate) fn batch<S: GpuReal>(
     model: Arc<clench::Model>,
     count: usize,
     options: BatchOptions,
     name: Option<String>,
-) -> PyResult<clench::Batch<f32>> {
+) -> PyResult<clench::Batch<S>> {
     clench_gpu::batch(model, count, options, name.as_deref()).map_err(gpu_error)
 }
 

@@ -49,6 +49,8 @@ fn tests(names: &[&str]) -> Command {
         tests.args(["--test", name]);
     }
     tests.env("CLENCH_GPU", "require");
+    // Lines of the texts in what the driver compiles, which it takes its time over.
+    tests.env("WGPU_DEBUG", "0");
     // A part of Mesa that would choose the device complains on stderr where there is no display.
     tests.env("NODEVICE_SELECT", "1");
     tests

@@ -26,10 +26,13 @@ fn a_run_on_a_device_is_told_as_one_on_the_processor_is() {
         let text = String::from_utf8_lossy(&output.stdout);
         serde_json::from_str(text.lines().last().expect("a line")).expect("JSON")
     };
-    let (device, processor) = (run(&["--device", "gpu"]), run(&["--precision", "32"]));
-    assert_eq!(device["status"], "ok");
-    for same in ["steps", "envs", "nv", "precision", "simulated_time"] {
-        assert_eq!(device[same], processor[same], "{same}");
+    for (on_device, bits) in [(&[][..], "32"), (&["--precision", "64"], "64")] {
+        let device = run(&[&["--device", "gpu"], on_device].concat());
+        let processor = run(&["--precision", bits]);
+        assert_eq!(device["status"], "ok");
+        for same in ["steps", "envs", "nv", "precision", "simulated_time"] {
+            assert_eq!(device[same], processor[same], "{same}");
+        }
     }
 }
 

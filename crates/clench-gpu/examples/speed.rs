@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             device: device.clone(),
             ..GpuOptions::default()
         };
-        let mut gpu = match GpuBatch::new(model.clone(), count, options) {
+        let mut gpu = match GpuBatch::<f32>::new(model.clone(), count, options) {
             Ok(gpu) => gpu,
             // More than the device holds.
             Err(e @ GpuError::OutOfMemory { .. }) => {

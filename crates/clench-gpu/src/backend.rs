@@ -3,7 +3,9 @@
 use crate::batch::{GpuBatch, GpuOptions};
 use crate::error::{GpuError, GpuFault};
 use crate::kernels::DIVERGED_FIELDS;
+use crate::precision::GpuReal;
 use crate::tables::unread;
+use clench_math::Real;
 use clench_rigid::batch::{Backend, Outcome, Trouble};
 use clench_rigid::model::{Model, RowPattern};
 use clench_rigid::{Batch, BatchOptions, Output, SimError};
@@ -22,25 +24,25 @@ use std::sync::Arc;
 /// ```no_run
 /// use clench_rigid::BatchOptions;
 /// # fn model() -> std::sync::Arc<clench_rigid::Model> { unimplemented!() }
-/// let mut batch = clench_gpu::batch(model(), 4096, BatchOptions::default(), None)?;
+/// let mut batch = clench_gpu::batch::<f32>(model(), 4096, BatchOptions::default(), None)?;
 /// batch.record(&["xpos"])?;
 /// batch.state.ctrl.row_mut(7).fill(0.1);
 /// batch.step_n(10)?;
 /// println!("{:?} {:?}", batch.state.qpos.row(7), batch.output("xpos"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn batch(
+pub fn batch<S: GpuReal>(
     model: Arc<Model>,
     count: usize,
     options: BatchOptions,
     device: Option<&str>,
-) -> Result<Batch<f32>, GpuError> {
+) -> Result<Batch<S>, GpuError> {
     let on_device = GpuOptions {
         // Who starts over is decided on this side.
         options: options.options.autoreset(false),
         device: device.map(str::to_owned),
     };
-    let on_device = GpuBatch::new(Arc::clone(&model), count, on_device)?;
+    let on_device = GpuBatch::<S>::new(Arc::clone(&model), count, on_device)?;
     Ok(Batch::with_backend(
         model,
         count,
@@ -59,8 +61,13 @@ fn word(output: Output) -> Option<&'static str> {
 }
 
 /// Rows of sparse numbers of each environment, each over all `nv` dofs.
-fn spread(nv: usize, (pattern, rows): (&RowPattern, usize), sparse: &[f32], dense: &mut [f32]) {
-    dense.fill(0.0);
+fn spread<S: GpuReal>(
+    nv: usize,
+    (pattern, rows): (&RowPattern, usize),
+    sparse: &[S],
+    dense: &mut [S],
+) {
+    dense.fill(S::ZERO);
     let envs = dense.chunks_exact_mut((rows * nv).max(1));
     for (out, values) in envs.zip(sparse.chunks_exact(pattern.len().max(1))) {
         for row in 0..rows {
@@ -71,7 +78,7 @@ fn spread(nv: usize, (pattern, rows): (&RowPattern, usize), sparse: &[f32], dens
     }
 }
 
-impl GpuBatch {
+impl<S: GpuReal> GpuBatch<S> {
     /// What became of each environment that took part in a call, by the words of the field `verdict`.
     fn outcomes(
         &self,
@@ -114,7 +121,7 @@ impl GpuBatch {
     }
 }
 
-impl Backend<f32> for GpuBatch {
+impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     fn name(&self) -> String {
         self.device.info.name.clone()
     }
@@ -154,28 +161,28 @@ impl Backend<f32> for GpuBatch {
         Ok(())
     }
 
-    fn parameters_of(&self, model: &Model) -> Result<Vec<f32>, SimError> {
+    fn parameters_of(&self, model: &Model) -> Result<Vec<S>, SimError> {
         Ok(GpuBatch::parameters_of(self, model)?)
     }
 
-    fn set_parameters(&mut self, envs: &[usize], rows: &[Vec<f32>]) -> Result<(), SimError> {
+    fn set_parameters(&mut self, envs: &[usize], rows: &[Vec<S>]) -> Result<(), SimError> {
         Ok(self.give_parameters(envs, rows)?)
     }
 
-    fn write(&mut self, field: &'static str, rows: &[f32]) -> Result<(), SimError> {
+    fn write(&mut self, field: &'static str, rows: &[S]) -> Result<(), SimError> {
         Ok(self.write_unchecked(field, rows)?)
     }
 
-    fn read(&mut self, field: &'static str, rows: &mut [f32]) -> Result<(), SimError> {
+    fn read(&mut self, field: &'static str, rows: &mut [S]) -> Result<(), SimError> {
         rows.copy_from_slice(&GpuBatch::read(self, field)?);
         Ok(())
     }
 
-    fn read_output(&mut self, output: Output, rows: &mut [f32]) -> Result<(), SimError> {
+    fn read_output(&mut self, output: Output, rows: &mut [S]) -> Result<(), SimError> {
         if let Some(word) = word(output) {
             let words = self.report(word)?;
             let counts = rows.iter_mut().zip(words);
-            counts.for_each(|(row, count)| *row = count as f32);
+            counts.for_each(|(row, count)| *row = S::new(f64::from(count)));
             return Ok(());
         }
         match output {
@@ -194,10 +201,12 @@ impl Backend<f32> for GpuBatch {
             Output::actuator_power => {
                 let forces = GpuBatch::read(self, "actuator_force")?;
                 let velocities = GpuBatch::read(self, "actuator_velocity")?;
-                let powers = Vec::from_iter(forces.iter().zip(velocities).map(|(f, v)| f * v));
+                let powers = Vec::from_iter(forces.iter().zip(velocities).map(|(&f, v)| f * v));
                 let each = powers.chunks(self.model().nout().max(1));
                 for (row, powers) in rows.iter_mut().zip(each) {
-                    *row = powers.iter().filter(|&&power| power > 0.0).sum();
+                    *row = powers
+                        .iter()
+                        .fold(S::ZERO, |sum, &power| sum + Real::max(power, S::ZERO));
                 }
             }
             output => rows.copy_from_slice(&GpuBatch::read(self, output.name())?),

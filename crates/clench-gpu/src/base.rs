@@ -1,22 +1,26 @@
 //! What the kernels of a batch were made of.
 
+use crate::layout::Layout;
 use crate::tables::Tables;
+use clench_math::Scalar;
 use clench_rigid::contact::Candidate;
 
 /// What the kernels were made of, to which all environments must keep.
-pub(crate) struct Base {
+pub(crate) struct Base<S> {
     pub words: Vec<u32>,
     pub constants: String,
-    pub parameters: Vec<f32>,
+    pub layout: Layout,
+    pub parameters: Vec<S>,
     pub candidates: Vec<Candidate>,
 }
 
-impl Base {
+impl<S: Scalar> Base<S> {
     pub(crate) fn new(tables: &Tables, candidates: Vec<Candidate>) -> Self {
         Base {
             words: tables.words.clone(),
             constants: tables.constants.clone(),
-            parameters: tables.numbers.clone(),
+            layout: tables.layout.clone(),
+            parameters: tables.numbers_in(),
             candidates,
         }
     }

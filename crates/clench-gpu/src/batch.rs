@@ -5,8 +5,9 @@ use crate::check::{Simulation, check};
 use crate::device::{Device, DeviceInfo};
 use crate::error::GpuError;
 use crate::fields::{self, Fields};
-use crate::kernels::{Memory, constants};
+use crate::kernels::{Memory, preface};
 use crate::pipelines::{Arrays, Pipelines, layout};
+use crate::precision::GpuReal;
 use crate::solver_memory::SolverMemory;
 use crate::tables::{Capacity, ENVS, Tables};
 use clench_rigid::contact::candidates;
@@ -31,11 +32,11 @@ pub struct GpuOptions {
     pub device: Option<String>,
 }
 
-/// Many environments of one model on a graphics device, in single precision.
+/// Many environments of one model on a graphics device, in single precision or, where the device has it, in double.
 ///
 /// An environment's results depend on its state alone, and repeat to the bit on the same device and driver. One that cannot go on
 /// keeps its last good state and says why in [`statuses`](Self::statuses); its neighbours do not notice.
-pub struct GpuBatch {
+pub struct GpuBatch<S = f32> {
     pub(crate) device: Device,
     pub(crate) arrays: Arrays,
     pub(crate) state: Fields,
@@ -46,15 +47,15 @@ pub struct GpuBatch {
     pub(crate) layout: wgpu::BindGroupLayout,
     pub(crate) bindings: wgpu::BindGroup,
     /// Parameters of environments, parameter by parameter, environment next to environment; none while all have the model's.
-    pub(crate) own: Vec<f32>,
-    pub(crate) base: Base,
+    pub(crate) own: Vec<S>,
+    pub(crate) base: Base<S>,
     pipelines: Pipelines,
     pub(crate) capacity: Capacity,
     pub(crate) settings: StepSettings,
     model: Arc<Model>,
 }
 
-impl fmt::Debug for GpuBatch {
+impl<S> fmt::Debug for GpuBatch<S> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.debug_struct("GpuBatch")
             .field("model", &self.model.name)
@@ -64,13 +65,13 @@ impl fmt::Debug for GpuBatch {
     }
 }
 
-impl GpuBatch {
+impl<S: GpuReal> GpuBatch<S> {
     /// `count` environments in the model's initial state.
     ///
     /// # Errors
     /// No device; a model that cannot be stepped on one yet; options out of range; more environments than the device holds.
     pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
-        let settings = StepSettings::new::<f32>(&model, options.options)?;
+        let settings = StepSettings::new::<S>(&model, options.options)?;
         let collide = settings.flags.constraint && settings.flags.contact;
         let pairs = if collide {
             candidates(&model)
@@ -82,10 +83,10 @@ impl GpuBatch {
             settings: &settings,
             candidates: &pairs,
         })?;
-        let device = Device::open(options.device.as_deref())?;
+        let device = Device::open(options.device.as_deref(), S::FEATURES)?;
         let room = device.limits.max_compute_workgroup_storage_size as usize;
-        let solver = SolverMemory::new(model.nv, settings.solver.constraint_solver, room)?;
-        let (mut tables, mut capacity) = Tables::new(&model, &settings, &pairs);
+        let solver = SolverMemory::new::<S>(model.nv, settings.solver.constraint_solver, room)?;
+        let (mut tables, mut capacity) = Tables::new::<S>(&model, &settings, &pairs);
         solver.reserve(&mut capacity);
         let base = Base::new(&tables, pairs);
         tables.shapes(&model, &base.candidates);
@@ -94,31 +95,10 @@ impl GpuBatch {
         let rows = fields::row_fields(&model, capacity);
         let reports = fields::report_fields(&model, capacity);
         tables.initial_state(&model, &state);
-        let sizes = [&state, &work, &rows, &reports].map(|fields| fields.size);
+        let each = size_of::<S>();
+        let sizes = [&state, &work, &rows].map(|fields| each * fields.size);
+        let sizes = [sizes[0], sizes[1], sizes[2], 4 * reports.size];
         check_room(&device, count, sizes)?;
-
-        let scope = device
-            .device
-            .push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let array = |label, size: usize| device.array(label, 4 * (size * count) as u64);
-        let numbers = device.array("numbers", 4 * tables.numbers.len() as u64);
-        let arrays = Arrays {
-            words: device.array("words", 4 * tables.words.len() as u64),
-            parameters: numbers.clone(),
-            numbers,
-            state: array("state", state.size),
-            work: array("work", work.size),
-            rows: array("rows", rows.size),
-            reports: array("reports", reports.size),
-        };
-        if pollster::block_on(scope.pop()).is_some() {
-            return Err(GpuError::OutOfMemory {
-                device: device.info.name,
-                count,
-                bytes: 4 * sizes.iter().sum::<usize>() as u64,
-                most: None,
-            });
-        }
         let memory = Memory {
             state: &state,
             work: &work,
@@ -126,13 +106,37 @@ impl GpuBatch {
             reports: &reports,
             solver,
         };
+        let preface = preface(&tables, &memory);
+
+        let scope = device
+            .device
+            .push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let array = |label, k: usize| device.array(label, (sizes[k] * count) as u64);
+        let numbers = device.array("numbers", (each * tables.numbers.len()) as u64);
+        let arrays = Arrays {
+            words: device.array("words", 4 * tables.words.len() as u64),
+            parameters: numbers.clone(),
+            numbers,
+            state: array("state", 0),
+            work: array("work", 1),
+            rows: array("rows", 2),
+            reports: array("reports", 3),
+            layout: device.constants("layout", &preface.layout.bytes::<S>()),
+        };
+        if pollster::block_on(scope.pop()).is_some() {
+            return Err(GpuError::OutOfMemory {
+                device: device.info.name,
+                count,
+                bytes: sizes.iter().sum::<usize>() as u64,
+                most: None,
+            });
+        }
         let layout = layout(&device);
-        let text = constants(&tables, &memory);
-        let pipelines = Pipelines::new(&device, &layout, &text, count, model.integrator)?;
+        let pipelines = Pipelines::new::<S>(&device, &layout, preface, count, model.integrator)?;
         let queue = &device.queue;
         queue.write_buffer(&arrays.words, 0, tables.words.as_bytes());
         queue.write_buffer(&arrays.words, 4 * ENVS as u64, [count as u32].as_bytes());
-        queue.write_buffer(&arrays.numbers, 0, tables.numbers.as_bytes());
+        queue.write_buffer(&arrays.numbers, 0, tables.numbers_in::<S>().as_bytes());
         let mut batch = GpuBatch {
             bindings: arrays.bind(&device, &layout),
             layout,
@@ -280,7 +284,8 @@ impl GpuBatch {
     /// # Errors
     /// That the device or its driver refuses a kernel.
     pub(crate) fn observe(&mut self, sensors: bool) -> Result<(), GpuError> {
-        self.pipelines.observe(&self.device, self.count, sensors)
+        self.pipelines
+            .observe::<S>(&self.device, self.count, sensors)
     }
 
     pub(crate) fn check_env(&self, env: usize) -> Result<(), GpuError> {
@@ -309,23 +314,23 @@ impl GpuBatch {
     }
     /// Bytes that an environment takes on the device.
     pub fn bytes_per_env(&self) -> usize {
-        let all = [&self.state, &self.work, &self.rows, &self.reports];
-        4 * all.iter().map(|fields| fields.size).sum::<usize>()
+        let numbers = [&self.state, &self.work, &self.rows].map(|fields| fields.size);
+        size_of::<S>() * numbers.iter().sum::<usize>() + 4 * self.reports.size
     }
 }
 
-/// Whether the largest array of `count` environments is one that kernels can see, and number.
+/// Whether the largest array of `count` environments, of so many bytes each, is one that kernels can see, and number.
 fn check_room(device: &Device, count: usize, sizes: [usize; 4]) -> Result<(), GpuError> {
-    let largest = sizes.into_iter().max().unwrap_or(0).max(1) as u64;
-    let numbers = (device.max_buffer() / 4).min(u64::from(u32::MAX));
-    let most = numbers / largest;
+    let largest = sizes.into_iter().max().unwrap_or(0).max(4) as u64;
+    let bytes = device.max_buffer().min(4 * u64::from(u32::MAX));
+    let most = bytes / largest;
     if count as u64 <= most {
         return Ok(());
     }
     Err(GpuError::OutOfMemory {
         device: device.info.name.clone(),
         count,
-        bytes: 4 * sizes.iter().sum::<usize>() as u64,
+        bytes: sizes.iter().sum::<usize>() as u64,
         most: usize::try_from(most).ok(),
     })
 }

@@ -97,8 +97,8 @@ impl Device {
     /// Takes up the first device whose name contains `name`, whatever the case of its letters; the first of all without one.
     ///
     /// # Errors
-    /// No such device, or one that cannot be had.
-    pub(crate) fn open(name: Option<&str>) -> Result<Self, GpuError> {
+    /// No such device, one without `features` (of which only double precision is asked for), or one that cannot be had.
+    pub(crate) fn open(name: Option<&str>, features: wgpu::Features) -> Result<Self, GpuError> {
         let found = adapters();
         if found.is_empty() {
             return Err(GpuError::NoDevice);
@@ -112,15 +112,21 @@ impl Device {
                 known: names.join(", "),
             }
         })?;
-        Self::take_up(adapter)
+        if !adapter.features().contains(features) {
+            return Err(GpuError::NoDoublePrecision {
+                device: adapter.get_info().name,
+            });
+        }
+        Self::take_up(adapter, features)
     }
 
-    fn take_up(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+    fn take_up(adapter: &wgpu::Adapter, features: wgpu::Features) -> Result<Self, GpuError> {
         let info = describe(adapter);
         let limits = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("clench"),
             required_limits: limits.clone(),
+            required_features: features,
             ..wgpu::DeviceDescriptor::default()
         };
         let unusable = |e: wgpu::RequestDeviceError| GpuError::Unusable {
@@ -183,6 +189,18 @@ impl Device {
                 | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         })
+    }
+
+    /// A small array that kernels only read, with what is in it.
+    pub(crate) fn constants(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes.len() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
     }
 
     /// The bytes of a part of an array, on this side of the bus.

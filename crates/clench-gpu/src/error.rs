@@ -43,6 +43,14 @@ pub enum GpuError {
         /// Why.
         reason: String,
     },
+    /// A device without double precision, which was asked for.
+    #[error(
+        "the graphics device \"{device}\" has no double precision: take single precision, or the processor"
+    )]
+    NoDoublePrecision {
+        /// Its name.
+        device: String,
+    },
     /// The device is gone, or its driver failed.
     #[error(
         "the graphics device \"{device}\" was lost ({reason}): make the batch anew, from states that were read before"
@@ -112,7 +120,7 @@ pub enum GpuError {
         /// Where in its row.
         index: usize,
         /// What it is.
-        value: f32,
+        value: f64,
     },
     /// A name that no field has.
     #[error("there is no field \"{name}\" on a graphics device; there are: {known}")]

@@ -2,7 +2,6 @@
 //! the names under which fields are read and written follow from these tables.
 
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity};
-use clench_rigid::dynamics::articulated::articulated_bodies;
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, Model};
 
@@ -95,7 +94,7 @@ fields! {
     cinert: 10 * m.nbody();
     crb: 10 * m.nbody();
     /// Inertias of articulated bodies, where paths are long.
-    articulated: 27 * articulated_bodies::<f32>(m).len();
+    articulated: 27 * c.articulated;
     cdof: 6 * m.nv;
     cdof_dot: 6 * m.nv;
     cvel: 6 * m.nbody();
@@ -137,9 +136,16 @@ fields! {
     qfrc_actuator: m.nv;
     qfrc_smooth: m.nv;
     qacc_smooth: m.nv;
-    polytope: c.polytope;
+    /// The polytope of overlapping shapes: vertices, faces, sides that are yet to be looked at, faces that are seen, sides of the horizon.
+    polytope: 9 * c.polytope[0];
+    polytope_face: 12 * c.polytope[1];
+    polytope_stack: c.polytope[1] + 4;
+    polytope_visible: c.polytope[1];
+    polytope_horizon: 3 * c.polytope[1];
     /// Contacts on terrain while they are gathered.
-    terrain: c.terrain;
+    terrain: c.terrain[0];
+    terrain_face: c.terrain[1];
+    terrain_patch: c.terrain[2];
     contacts: CONTACT_SIZE * c.contacts;
     qacc: m.nv;
     qfrc_constraint: m.nv;

@@ -4,6 +4,8 @@
 //! are put one after the other, behind the constants of the model. Loops run over tables; nothing is unrolled for a model.
 
 use crate::fields::Fields;
+use crate::layout::Layout;
+use crate::precision::Texts;
 use crate::solver_memory::SolverMemory;
 use crate::tables::{NONE, Tables};
 use std::fmt::Write;
@@ -120,8 +122,15 @@ const SOLVE_STATUS: [&str; 6] = [
     "SOLVE_NON_FINITE",
 ];
 
-/// The constants of a model, in WGSL.
-pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
+/// What stands before the texts of the kernels of a model, and what they read of it.
+pub(crate) struct Preface {
+    /// Declarations in WGSL.
+    pub constants: String,
+    pub layout: Layout,
+}
+
+/// What stands before the texts of the kernels of a model.
+pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     let mut text = tables.constants.clone();
     let mut declare = |name: &str, value: usize| {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
@@ -129,8 +138,6 @@ pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
     declare("GROUP", GROUP as usize);
     declare("GRID", GRID as usize);
     declare("NONE", NONE as usize);
-    declare("STATE", memory.state.size);
-    declare("ROWS", memory.rows.size);
     for names in [&FAULTS[..], &SOLVE_STATUS] {
         for (code, name) in names.iter().enumerate() {
             declare(name, code);
@@ -139,19 +146,36 @@ pub(crate) fn constants(tables: &Tables, memory: &Memory) -> String {
     for (code, name) in DIVERGED_FIELDS.iter().enumerate() {
         declare(&format!("OF_{}", name.to_uppercase()), code);
     }
+    let mut layout = tables.layout.clone();
+    layout.count("STATE", memory.state.size);
+    layout.count("ROWS", memory.rows.size);
     for fields in [memory.state, memory.work, memory.rows, memory.reports] {
         for field in &fields.list {
-            declare(&field.name.to_uppercase(), field.place);
+            layout.count(&field.name.to_uppercase(), field.place);
         }
     }
-    text + &memory.solver.constants()
+    Preface {
+        constants: text + &memory.solver.constants(),
+        layout,
+    }
 }
 
 impl Kernel {
-    /// Its whole text.
-    pub(crate) fn source(&self, constants: &str) -> String {
-        let texts = COMMON.iter().chain(self.texts);
-        texts.fold(constants.to_owned(), |source, text| source + "\n" + text)
+    /// Its whole text, in numbers of a type.
+    pub(crate) fn source<S: Texts>(&self, preface: &Preface) -> String {
+        let layout = &preface.layout;
+        let texts = COMMON
+            .iter()
+            .chain(self.texts)
+            .map(|text| layout.resolve(text));
+        let before = [
+            preface.constants.as_str().into(),
+            layout.declaration().into(),
+        ];
+        let all = before.into_iter().chain(texts);
+        all.fold(S::ELEMENTARY.to_owned(), |source, text| {
+            source + "\n" + &S::text(&text)
+        })
     }
 
     /// How many workgroups `count` environments take, along each axis.

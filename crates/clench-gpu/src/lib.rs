@@ -1,4 +1,5 @@
-//! Environments by the thousand on a graphics device: the step of `clench-rigid` in single precision, wholly on the device.
+//! Environments by the thousand on a graphics device: the step of `clench-rigid`, wholly on the device, in single precision or, where
+//! it has that, in double.
 //!
 //! [`batch`] makes a [`clench_rigid::Batch`] that a device steps, with all that a batch has: rows, resets, snapshots, recorded
 //! outputs, queries. [`GpuBatch`] is the device's side of it alone, for those who want nothing to cross the bus unasked. Its kernels (`kernels/*.wgsl`) are sisters of the
@@ -19,8 +20,10 @@ mod device;
 mod error;
 mod fields;
 mod kernels;
+mod layout;
 mod parameters;
 mod pipelines;
+mod precision;
 mod reports;
 mod solver_memory;
 mod tables;
@@ -30,4 +33,5 @@ pub use backend::batch;
 pub use batch::{GpuBatch, GpuOptions};
 pub use device::{DeviceInfo, devices};
 pub use error::{GpuError, GpuFault, Refusal};
+pub use precision::GpuReal;
 pub use reports::GpuSolve;

@@ -2,25 +2,27 @@
 
 use crate::batch::GpuBatch;
 use crate::error::GpuError;
+use crate::precision::GpuReal;
 use crate::tables::{OWN_PARAMETERS, Tables};
 use clench_rigid::model::Model;
 use std::iter::repeat_n;
 use zerocopy::IntoBytes;
 
-impl GpuBatch {
+impl<S: GpuReal> GpuBatch<S> {
     /// The parameters of a model that differs from that of this batch in its parameters alone.
     ///
     /// # Errors
     /// Parameters by which kernels would have to be others: a spring where there was none, a value that is compiled into them.
-    pub(crate) fn parameters_of(&self, model: &Model) -> Result<Vec<f32>, GpuError> {
-        let (tables, _) = Tables::new(model, &self.settings, &self.base.candidates);
+    pub(crate) fn parameters_of(&self, model: &Model) -> Result<Vec<S>, GpuError> {
+        let (tables, _) = Tables::new::<S>(model, &self.settings, &self.base.candidates);
         let base = &self.base;
         // Hulls are made of sizes, once.
         let resized = model.params.geom_size != self.model().params.geom_size;
-        if resized || tables.constants != base.constants || tables.words != base.words {
+        let alike = tables.constants == base.constants && tables.layout == base.layout;
+        if resized || !alike || tables.words != base.words {
             return Err(GpuError::Structure);
         }
-        Ok(tables.numbers)
+        Ok(tables.numbers_in())
     }
 
     /// Gives environments parameters of their own.
@@ -30,16 +32,16 @@ impl GpuBatch {
     pub(crate) fn give_parameters(
         &mut self,
         envs: &[usize],
-        rows: &[Vec<f32>],
+        rows: &[Vec<S>],
     ) -> Result<(), GpuError> {
         let count = self.count;
-        let bytes = 4 * (count * self.base.parameters.len()) as u64;
+        let bytes = (size_of::<S>() * count * self.base.parameters.len()) as u64;
         if bytes > self.device.max_buffer() {
             return Err(GpuError::OutOfMemory {
                 device: self.device.info.name.clone(),
                 count,
-                bytes: 4 * self.base.parameters.len() as u64,
-                most: usize::try_from(self.device.max_buffer() / 4).ok(),
+                bytes: bytes / count.max(1) as u64,
+                most: None,
             });
         }
         if self.own.is_empty() {

@@ -2,7 +2,8 @@
 
 use crate::device::Device;
 use crate::error::GpuError;
-use crate::kernels::{self, Kernel};
+use crate::kernels::{self, Kernel, Preface};
+use crate::precision::Texts;
 use clench_rigid::model::Integrator;
 
 /// A kernel, compiled.
@@ -17,8 +18,8 @@ pub(crate) struct Pipeline {
 pub(crate) struct Pipelines {
     /// What all are given.
     layout: wgpu::PipelineLayout,
-    /// What stands before each text.
-    constants: String,
+    /// What stands before the texts.
+    preface: Preface,
     /// Accelerations of bodies and forces between them, once somebody asked.
     pub body_forces: Option<Pipeline>,
     /// What sensors measure, once somebody asked.
@@ -42,10 +43,12 @@ pub(crate) struct Arrays {
     pub reports: wgpu::Buffer,
     /// The numbers themselves while no environment has parameters of its own.
     pub parameters: wgpu::Buffer,
+    /// Where all that lies: [`Layout`](crate::layout::Layout).
+    pub layout: wgpu::Buffer,
 }
 
 impl Arrays {
-    fn all(&self) -> [&wgpu::Buffer; 7] {
+    fn all(&self) -> [&wgpu::Buffer; 8] {
         let Arrays {
             words,
             numbers,
@@ -54,8 +57,11 @@ impl Arrays {
             rows,
             reports,
             parameters,
+            layout,
         } = self;
-        [words, numbers, state, work, rows, reports, parameters]
+        [
+            words, numbers, state, work, rows, reports, parameters, layout,
+        ]
     }
 
     /// What the kernels are given.
@@ -81,8 +87,11 @@ pub(crate) fn layout(device: &Device) -> wgpu::BindGroupLayout {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage {
-                read_only: binding < 2 || binding == 6,
+            ty: match binding {
+                7 => wgpu::BufferBindingType::Uniform,
+                _ => wgpu::BufferBindingType::Storage {
+                    read_only: binding < 2 || binding == 6,
+                },
             },
             has_dynamic_offset: false,
             min_binding_size: None,
@@ -93,19 +102,19 @@ pub(crate) fn layout(device: &Device) -> wgpu::BindGroupLayout {
         .device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("arrays"),
-            entries: &[0, 1, 2, 3, 4, 5, 6].map(entry),
+            entries: &[0, 1, 2, 3, 4, 5, 6, 7].map(entry),
         })
 }
 
 impl Pipelines {
-    /// Compiles the kernels for `count` environments, behind the constants that belong to them.
+    /// Compiles the kernels for `count` environments, behind what belongs before them.
     ///
     /// # Errors
     /// That the device or its driver refuses a kernel.
-    pub(crate) fn new(
+    pub(crate) fn new<S: Texts>(
         device: &Device,
         layout: &wgpu::BindGroupLayout,
-        constants: &str,
+        preface: Preface,
         count: usize,
         integrator: Integrator,
     ) -> Result<Self, GpuError> {
@@ -117,7 +126,7 @@ impl Pipelines {
                 immediate_size: 0,
             });
         let compile = |kernel: &Kernel, overrides: &[(&str, f64)]| {
-            compile(device, &layout, constants, count, kernel, overrides)
+            compile::<S>(device, &layout, &preface, count, kernel, overrides)
         };
         let forward = [
             kernels::POSITIONS,
@@ -145,7 +154,7 @@ impl Pipelines {
             verdict: compile(&kernels::VERDICT, &[])?,
             forward,
             advance,
-            constants: constants.to_owned(),
+            preface,
             layout,
         })
     }
@@ -154,13 +163,14 @@ impl Pipelines {
     ///
     /// # Errors
     /// That the device or its driver refuses a kernel.
-    pub(crate) fn observe(
+    pub(crate) fn observe<S: Texts>(
         &mut self,
         device: &Device,
         count: usize,
         sensors: bool,
     ) -> Result<(), GpuError> {
-        let compile = |kernel| compile(device, &self.layout, &self.constants, count, kernel, &[]);
+        let compile =
+            |kernel| compile::<S>(device, &self.layout, &self.preface, count, kernel, &[]);
         if self.body_forces.is_none() {
             self.body_forces = Some(compile(&kernels::BODY_FORCES)?);
         }
@@ -171,10 +181,10 @@ impl Pipelines {
     }
 }
 
-fn compile(
+fn compile<S: Texts>(
     device: &Device,
     layout: &wgpu::PipelineLayout,
-    constants: &str,
+    preface: &Preface,
     count: usize,
     kernel: &Kernel,
     overrides: &[(&str, f64)],
@@ -186,7 +196,7 @@ fn compile(
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(kernel.entry),
-            source: wgpu::ShaderSource::Wgsl(kernel.source(constants).into()),
+            source: wgpu::ShaderSource::Wgsl(kernel.source::<S>(preface).into()),
         });
     let pipeline = device
         .device

@@ -3,6 +3,7 @@
 use crate::batch::GpuBatch;
 use crate::error::{GpuError, GpuFault};
 use crate::kernels::ASIDE;
+use crate::precision::GpuReal;
 use clench_solver::Status;
 use zerocopy::IntoBytes;
 
@@ -21,7 +22,7 @@ pub struct GpuSolve {
     pub rows: usize,
 }
 
-impl GpuBatch {
+impl<S: GpuReal> GpuBatch<S> {
     /// Why each environment stands still, if it does.
     ///
     /// # Errors

@@ -14,8 +14,8 @@ const CG_VECTORS: usize = 9;
 const MAX_NEWTON_DOFS: usize = 512;
 /// The factor of a Hessian of more dofs would leave so little of a card's memory to other workgroups that few could run side by side.
 const MAX_SHARED_DOFS: usize = 96;
-/// Bytes of the two tiles that are multiplied, of the diagonal, and of what threads add up and hand to each other.
-const STAGING: usize = 4 * (2 * TILE * 20 + TILE) + 1024;
+/// Numbers of the two tiles that are multiplied, of the diagonal, and of what threads add up and hand to each other.
+const STAGING: usize = 2 * TILE * 20 + TILE + 256;
 
 /// Where a solve keeps what is of the size of the dofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,11 @@ impl SolverMemory {
     ///
     /// # Errors
     /// More dofs than Newton's method is for.
-    pub(crate) fn new(nv: usize, solver: ConstraintSolver, room: usize) -> Result<Self, GpuError> {
+    pub(crate) fn new<S>(
+        nv: usize,
+        solver: ConstraintSolver,
+        room: usize,
+    ) -> Result<Self, GpuError> {
         let newton = solver == ConstraintSolver::Newton;
         if newton && nv > MAX_NEWTON_DOFS {
             return Err(GpuError::TooManyDofs {
@@ -46,8 +50,9 @@ impl SolverMemory {
             share_tiles: nv <= MAX_SHARED_DOFS,
             share_vectors: true,
         };
-        memory.share_vectors = STAGING + 4 * memory.vectors() <= room;
-        let both = STAGING + 4 * (memory.vectors() + memory.tiles());
+        let room = room / size_of::<S>();
+        memory.share_vectors = STAGING + memory.vectors() <= room;
+        let both = STAGING + memory.vectors() + memory.tiles();
         memory.share_tiles &= memory.share_vectors && both <= room;
         Ok(memory)
     }

@@ -5,12 +5,13 @@
 use crate::batch::GpuBatch;
 use crate::error::GpuError;
 use crate::fields::{Field, Fields};
+use crate::precision::GpuReal;
 use crate::tables::Tables;
 use clench_rigid::{Model, State};
 use zerocopy::{FromBytes, IntoBytes};
 
 /// Positions and velocities beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
-const MAX_VALUE: f32 = 1e10;
+const MAX_VALUE: f64 = 1e10;
 
 impl Tables {
     /// Adds the initial state of a model, field after field.
@@ -35,14 +36,14 @@ impl Tables {
     }
 }
 
-impl GpuBatch {
+impl<S: GpuReal> GpuBatch<S> {
     /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `history`,
     /// `plastic`, `qacc_warmstart`, `ctrl`, `qfrc_applied`, `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`,
     /// `mocap_quat`, `eq_active` (zero where an equality is off).
     ///
     /// # Errors
     /// A name that no such field has; a wrong count; a number that is not finite, or a position or velocity beyond 1e10.
-    pub fn write(&mut self, name: &str, values: &[f32]) -> Result<(), GpuError> {
+    pub fn write(&mut self, name: &str, values: &[S]) -> Result<(), GpuError> {
         let field = self.writable(name)?;
         let expected = field.width * self.count;
         check_length(name, values.len(), expected)?;
@@ -60,16 +61,16 @@ impl GpuBatch {
     ///
     /// # Errors
     /// A name that no field of the state has; a wrong count.
-    pub(crate) fn write_unchecked(&mut self, name: &str, values: &[f32]) -> Result<(), GpuError> {
+    pub(crate) fn write_unchecked(&mut self, name: &str, values: &[S]) -> Result<(), GpuError> {
         let field = self.writable(name)?;
         check_length(name, values.len(), field.width * self.count)?;
         self.upload(field, values);
         Ok(())
     }
 
-    fn upload(&self, field: Field, values: &[f32]) {
+    fn upload(&self, field: Field, values: &[S]) {
         let turned = transpose(values, self.count, field.width);
-        let start = 4 * (field.place * self.count) as u64;
+        let start = (size_of::<S>() * field.place * self.count) as u64;
         (self.device.queue).write_buffer(&self.arrays.state, start, turned.as_bytes());
     }
 
@@ -77,13 +78,13 @@ impl GpuBatch {
     ///
     /// # Errors
     /// As [`write`](Self::write), and an environment that is not there.
-    pub fn write_env(&mut self, env: usize, name: &str, row: &[f32]) -> Result<(), GpuError> {
+    pub fn write_env(&mut self, env: usize, name: &str, row: &[S]) -> Result<(), GpuError> {
         self.check_env(env)?;
         let field = self.writable(name)?;
         check_length(name, row.len(), field.width)?;
         check_row(name, env, row)?;
         for (k, value) in row.iter().enumerate() {
-            let start = 4 * ((field.place + k) * self.count + env) as u64;
+            let start = (size_of::<S>() * ((field.place + k) * self.count + env)) as u64;
             (self.device.queue).write_buffer(&self.arrays.state, start, value.as_bytes());
         }
         Ok(())
@@ -95,7 +96,7 @@ impl GpuBatch {
     ///
     /// # Errors
     /// A name that no field has; that the device was lost.
-    pub fn read(&self, name: &str) -> Result<Vec<f32>, GpuError> {
+    pub fn read(&self, name: &str) -> Result<Vec<S>, GpuError> {
         let found = [
             (&self.state, &self.arrays.state),
             (&self.work, &self.arrays.work),
@@ -105,21 +106,21 @@ impl GpuBatch {
         let Some((field, array)) = found else {
             return self.read_rows(name);
         };
-        let numbers = self.download::<f32>(array, field)?;
+        let numbers = self.download::<S>(array, field)?;
         Ok(transpose(&numbers, field.width, self.count))
     }
 
     /// A field of the convex problems. Of its rows only as many mean something as [`solves`](Self::solves) says.
-    fn read_rows(&self, name: &str) -> Result<Vec<f32>, GpuError> {
+    fn read_rows(&self, name: &str) -> Result<Vec<S>, GpuError> {
         let Some(field) = self.rows.find(name) else {
             return Err(GpuError::Unknown {
                 name: name.to_owned(),
                 known: self.names().join(", "),
             });
         };
-        let bytes = 4 * (self.rows.size * self.count) as u64;
+        let bytes = (size_of::<S>() * self.rows.size * self.count) as u64;
         let all = self.device.download(&self.arrays.rows, 0, bytes)?;
-        let all = decode::<f32>(&all);
+        let all = decode::<S>(&all);
         let rows = all.chunks_exact(self.rows.size.max(1));
         let part = field.place..field.place + field.width;
         Ok(rows.flat_map(|row| row[part.clone()].to_vec()).collect())
@@ -166,7 +167,7 @@ impl GpuBatch {
         array: &wgpu::Buffer,
         field: Field,
     ) -> Result<Vec<E>, GpuError> {
-        let each = 4 * self.count as u64;
+        let each = (size_of::<E>() * self.count) as u64;
         let start = field.place as u64 * each;
         let bytes = self
             .device
@@ -184,9 +185,9 @@ fn decode<E: FromBytes + Copy>(bytes: &[u8]) -> Vec<E> {
 }
 
 /// Turns `height` rows of `width` numbers into `width` rows of `height`, by squares that a cache holds.
-fn transpose(values: &[f32], height: usize, width: usize) -> Vec<f32> {
+fn transpose<S: GpuReal>(values: &[S], height: usize, width: usize) -> Vec<S> {
     const SIDE: usize = 32;
-    let mut turned = vec![0.0; height * width];
+    let mut turned = vec![S::ZERO; height * width];
     for top in (0..height).step_by(SIDE) {
         for left in (0..width).step_by(SIDE) {
             for column in left..width.min(left + SIDE) {
@@ -212,18 +213,21 @@ fn check_length(field: &str, found: usize, expected: usize) -> Result<(), GpuErr
     })
 }
 
-fn check_row(field: &str, env: usize, row: &[f32]) -> Result<(), GpuError> {
+fn check_row<S: GpuReal>(field: &str, env: usize, row: &[S]) -> Result<(), GpuError> {
     let most = match field {
         "qpos" | "qvel" => MAX_VALUE,
-        _ => f32::MAX,
+        _ => f64::MAX,
     };
-    match row.iter().position(|x| x.is_nan() || x.abs() > most) {
+    match row
+        .iter()
+        .position(|x| x.to_f64().is_nan() || x.to_f64().abs() > most)
+    {
         None => Ok(()),
         Some(index) => Err(GpuError::NotFinite {
             field: field.to_owned(),
             env,
             index,
-            value: row[index],
+            value: row[index].to_f64(),
         }),
     }
 }

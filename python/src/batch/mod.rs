@@ -15,7 +15,7 @@ use crate::sim::Sim;
 use crate::state_views::StateViews;
 use crate::view::Keeper;
 use clench::{BatchOptions, Output};
-use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -67,7 +67,7 @@ mod status;
 ///     Outputs to keep, see `record`.
 /// device : str
 ///     What steps: "cpu"; "gpu", the first graphics device of this machine, or "gpu:" and a part of the name of one that
-///     `devices` lists. A device steps in single precision and computes the outputs that are recorded. What is written into arrays
+///     `devices` lists. A device computes the outputs that are recorded; many have no double precision, or a slow one. What is written into arrays
 ///     goes to it before a call, and the states come back after it; options stay what they are. Questions, such as Jacobians, are
 ///     answered by the processor.
 ///
@@ -76,7 +76,7 @@ mod status;
 /// RuntimeError
 ///     No graphics device, or one that cannot be used.
 /// ValueError
-///     What of the model a graphics device cannot step yet; options out of range, shapes that may meet and cannot be collided, names that no output has.
+///     What of the model a graphics device cannot step yet, or that it has no double precision; options out of range, shapes that may meet and cannot be collided, names that no output has.
 /// MemoryError
 ///     More environments than memory holds.
 #[pyclass(frozen, extends = StateViews, module = "clench")]
@@ -113,9 +113,15 @@ impl Batch {
             ..BatchOptions::default()
         };
         let make = Arc::clone(model.get().inner());
-        let precision = precision_on(&device, precision)?;
+        let precision = precision.unwrap_or(match device {
+            Device::Processor => Bits::B64,
+            Device::Graphics { .. } => Bits::B32,
+        });
         let inner = py.detach(|| match (device, precision) {
-            (Device::Graphics { name }, _) => {
+            (Device::Graphics { name }, Bits::B64) => {
+                device::batch(make, n_envs.0, own, name).map(AnyBatch::F64)
+            }
+            (Device::Graphics { name }, Bits::B32) => {
                 device::batch(make, n_envs.0, own, name).map(AnyBatch::F32)
             }
             (_, Bits::B64) => clench::Batch::with_options(make, n_envs.0, own)
@@ -279,17 +285,6 @@ impl Batch {
         Ok(format!(
             "<clench.Batch of {count} x {name:?}, {bits} bits, {how}>"
         ))
-    }
-}
-
-/// The precision in which a device computes.
-fn precision_on(device: &Device, asked: Option<Bits>) -> PyResult<Bits> {
-    match (device, asked) {
-        (Device::Processor, asked) => Ok(asked.unwrap_or(Bits::B64)),
-        (Device::Graphics { .. }, Some(Bits::B64)) => Err(PyValueError::new_err(
-            "precision is \"64\", but graphics devices compute with \"32\"",
-        )),
-        (Device::Graphics { .. }, _) => Ok(Bits::B32),
     }
 }
 

@@ -34,9 +34,9 @@ pub(crate) struct Arguments {
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]
     pub(super) every: usize,
-    /// Bits of a number
-    #[arg(long, value_name = "BITS", default_value = "64")]
-    pub(super) precision: Bits,
+    /// Bits of a number [default: 64, on a graphics device 32]
+    #[arg(long, value_name = "BITS")]
+    pub(super) precision: Option<Bits>,
     /// Tell the time of each stage of a step; reading the clocks adds to it
     #[arg(long)]
     pub(super) profile: bool,
@@ -107,7 +107,7 @@ pub(crate) struct BatchArguments {
     /// How the environments of a batch lie side by side [default: what is fastest here]
     #[arg(long, ignore_case = true, requires = "envs")]
     pub(super) instructions: Option<InstructionsName>,
-    /// What steps a batch: the processor, or (of programs with the feature `gpu`) a graphics device in single precision
+    /// What steps a batch: the processor, or (of programs with the feature `gpu`) a graphics device
     #[arg(long, value_name = "DEVICE", default_value = "cpu", requires = "envs")]
     pub device: DeviceName,
     /// Leave the environments of a batch in order, where those of like contacts would be put side by side

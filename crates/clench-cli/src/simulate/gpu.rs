@@ -7,7 +7,7 @@ use super::rollout::Rollout;
 use super::run::Run;
 use anyhow::{Result, bail, ensure};
 use clench::{Batch, BatchOptions, EnvStatus, RigidOptions};
-use clench_gpu::GpuError;
+use clench_gpu::{GpuError, GpuReal};
 use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub(crate) struct GpuReport {
     /// The first of them.
     failures: Vec<Failure>,
     /// Positions of the first environment at the end.
-    qpos: Vec<f32>,
+    qpos: Vec<f64>,
 }
 
 impl GpuReport {
@@ -64,11 +64,11 @@ pub(crate) fn list() -> Result<()> {
     Ok(())
 }
 
-/// Steps many environments on the first device.
+/// Steps many environments on the first device, in the precision of its numbers.
 ///
 /// # Errors
 /// No device; a model or an argument that is not for one.
-pub(super) fn run(
+pub(super) fn run<S: GpuReal>(
     arguments: &Arguments,
     run: &Run,
     envs: usize,
@@ -83,7 +83,7 @@ pub(super) fn run(
         threads: Some(1),
         ..BatchOptions::default()
     };
-    let mut batch = clench_gpu::batch(Arc::clone(&run.model), envs, rows, None)?;
+    let mut batch = clench_gpu::batch::<S>(Arc::clone(&run.model), envs, rows, None)?;
     run.starts.start_all(&mut batch)?;
     batch.record(&BATCH_OUTPUTS)?;
     let rollout = Rollout::new(run, envs, STEPS_A_CALL)?;
@@ -100,7 +100,7 @@ pub(super) fn run(
     })
 }
 
-fn report(batch: &Batch<f32>, run: &Run, steps: usize, seconds: f64) -> GpuReport {
+fn report<S: GpuReal>(batch: &Batch<S>, run: &Run, steps: usize, seconds: f64) -> GpuReport {
     let envs = batch.count();
     let faults = batch.statuses().iter().enumerate();
     let failures = faults.filter_map(|(env, status)| match status {
@@ -111,7 +111,7 @@ fn report(batch: &Batch<f32>, run: &Run, steps: usize, seconds: f64) -> GpuRepor
     let failed_envs = failures.len();
     let mean = |name: &str| {
         let rows = batch.output(name).map_or(&[][..], |rows| rows.as_slice());
-        rows.iter().map(|&x| f64::from(x)).sum::<f64>() / envs.max(1) as f64
+        rows.iter().map(|x| x.to_f64()).sum::<f64>() / envs.max(1) as f64
     };
     GpuReport {
         status: match failed_envs {
@@ -123,7 +123,7 @@ fn report(batch: &Batch<f32>, run: &Run, steps: usize, seconds: f64) -> GpuRepor
         seconds,
         steps,
         envs,
-        precision: 32,
+        precision: 8 * size_of::<S>(),
         nv: run.model.nv,
         simulated_time: steps as f64 * run.model.params.timestep,
         steps_per_second: (steps * envs) as f64 / seconds.max(f64::MIN_POSITIVE),
@@ -133,7 +133,7 @@ fn report(batch: &Batch<f32>, run: &Run, steps: usize, seconds: f64) -> GpuRepor
         recorded_rows: None,
         failed_envs,
         failures: failures.into_iter().take(NAMED_FAILURES).collect(),
-        qpos: batch.state.qpos.row(0).to_vec(),
+        qpos: batch.state.qpos.row(0).iter().map(|x| x.to_f64()).collect(),
     }
 }
 
@@ -141,8 +141,8 @@ impl fmt::Display for GpuReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
-            "{}: {} environments of {} dofs on {}",
-            self.status, self.envs, self.nv, self.device
+            "{}: {} environments of {} dofs on {}, {} bit",
+            self.status, self.envs, self.nv, self.device, self.precision
         )?;
         writeln!(
             f,

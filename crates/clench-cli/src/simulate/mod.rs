@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     if let (DeviceName::Gpu, Some(envs)) = (arguments.batch.device, envs) {
         return on_device(arguments, &run, envs as usize, options);
     }
-    let mut report = match (envs, arguments.precision) {
+    let mut report = match (envs, arguments.precision.unwrap_or(Bits::Double)) {
         (None, Bits::Double) => single::run::<f64>(arguments, &run, options)?,
         (None, Bits::Single) => single::run::<f32>(arguments, &run, options)?,
         (Some(envs), Bits::Double) => batch::run::<f64>(arguments, &run, envs, options)?,
@@ -111,7 +111,10 @@ fn on_device(
     envs: usize,
     options: clench::RigidOptions,
 ) -> Result<ExitCode> {
-    let report = gpu::run(arguments, run, envs, options)?;
+    let report = match arguments.precision.unwrap_or(Bits::Single) {
+        Bits::Double => gpu::run::<f64>(arguments, run, envs, options)?,
+        Bits::Single => gpu::run::<f32>(arguments, run, envs, options)?,
+    };
     print(arguments, &report)?;
     if report.failed() {
         return Ok(ExitCode::from(crate::exit::BAD_INPUT));

@@ -18,7 +18,7 @@ fn exp_less_one(x: f32) -> f32 {
     if (abs(x) < 0.5) {
         return x * (1.0 + x / 2.0 * (1.0 + x / 3.0 * (1.0 + x / 4.0 * (1.0 + x / 5.0 * (1.0 + x / 6.0 * (1.0 + x / 7.0))))));
     }
-    return exp(x) - 1.0;
+    return exponential(x) - 1.0;
 }
 
 // Activation `a` of actuator `u` a time step later, within its range.

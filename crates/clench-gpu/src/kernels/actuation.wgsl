@@ -2,7 +2,7 @@
 
 fn actuator_velocities() {
     for (var o = 0u; o < NOUT; o++) {
-        var velocity = 0.0;
+        var velocity: f32 = 0.0;
         for (var k = words[ACTUATOR_ROW + o]; k < words[ACTUATOR_ROW + o + 1u]; k++) {
             velocity += fetch(ACTUATOR_MOMENT + k) * given(QVEL + words[ACTUATOR_DOF + k]);
         }

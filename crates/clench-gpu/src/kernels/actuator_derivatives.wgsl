@@ -2,7 +2,7 @@
 // the force, it does not change. Sister of `dynamics/actuator_derivatives.rs` and of `gain.rs`.
 
 // A sum of forces that were scaled into a range is at one of its ends if it misses it by so little of it.
-const SUM_ROUNDING: f32 = 16.0 * 1.1920929e-7;
+const SUM_ROUNDING: f32 = max(1e-10, 16.0 * EPSILON);
 
 // Before any limit.
 fn unlimited_slope(u: u32) -> f32 {

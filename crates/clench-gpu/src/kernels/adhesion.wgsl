@@ -5,7 +5,7 @@
 fn contact_arms(u: u32, body: u32) {
     let arms = ACTUATOR_MOMENT + first_arm(u);
     clear_dofs(arms);
-    var count = 0.0;
+    var count: f32 = 0.0;
     for (var c = 0u; c < reports[NCON * envs + env]; c++) {
         let place = CONTACTS + CONTACT_SIZE * c;
         let pair = u32(fetch(place));

@@ -2,7 +2,7 @@
 // `constraint/assembly.rs`.
 
 // R is at least this share of the inverse inertia: 4.5 ε of single precision, as on the processor.
-const MIN_REGULARIZATION: f32 = 4.5 * 1.1920929e-7;
+const MIN_REGULARIZATION: f32 = 4.5 * EPSILON;
 
 // Row `k` of a connect or weld: what separates the points, then what turns one frame in the other.
 fn held_entry(equality: u32, k: u32, i: u32) -> f32 {
@@ -54,7 +54,7 @@ fn contact_entry(contact: u32, k: u32, i: u32) -> f32 {
 
 fn friction_entry(source: u32, i: u32) -> f32 {
     if (source < NV) {
-        return select(0.0, 1.0, i == source);
+        return select(f32(0.0), f32(1.0), i == source);
     }
     return coordinate_entry(NJNT + source - NV, i);
 }
@@ -62,7 +62,7 @@ fn friction_entry(source: u32, i: u32) -> f32 {
 fn limit_entry(source: u32, i: u32) -> f32 {
     let c = source >> 1u;
     if (!is_ball(c)) {
-        let sign = select(1.0, -1.0, (source & 1u) == 1u);
+        let sign = select(f32(1.0), f32(-1.0), (source & 1u) == 1u);
         return sign * coordinate_entry(c, i);
     }
     let dof = words[JNT_DOF + c];
@@ -98,7 +98,7 @@ fn entry(a: u32, i: u32) -> f32 {
 // The velocity along a row, and the inverse inertia that it would see if dofs were independent.
 fn finish_row(a: u32) {
     var velocity = row(VELOCITY + a);
-    var inertia = 0.0;
+    var inertia: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
         let j = row(JACOBIAN + a * NV + i);
         velocity += j * given(QVEL + i);
@@ -114,7 +114,7 @@ fn finish_row(a: u32) {
 // Raises R to what rounding leaves of it, the rows of a cone together. RESIDUAL holds the inverse inertia of each row.
 fn finish_cone(first: u32, dim: u32, is_pyramid: bool) {
     let normal = row(RESIDUAL + first);
-    var factor = 1.0;
+    var factor: f32 = 1.0;
     for (var a = first; a < first + dim; a++) {
         var inertia = row(RESIDUAL + a);
         if (is_pyramid) {

@@ -57,7 +57,7 @@ fn best_edges(face: Separation, turn: mat3x3f, offset: vec3f, a: vec3f, b: vec3f
         let v = turn[j][i2];
         let sine_squared = u * u + v * v;
         // Nearly parallel edges: their cross product is noise, and the faces cover the case.
-        if (sine_squared < 0.5 * ROUNDING) {
+        if (sine_squared < 0.5 * EPSILON) {
             continue;
         }
         let extent = a[i1] * abs(v) + a[i2] * abs(u) + b[j1] * abs(turn[j2][i]) + b[j2] * abs(turn[j1][i]);
@@ -87,12 +87,12 @@ fn opposing_face(axis: u32, side: f32, size: vec3f, turn: mat3x3f, offset: vec3f
             most = k;
         }
     }
-    let facing = select(1.0, -1.0, side * slope[most] > 0.0);
+    let facing = select(f32(1.0), f32(-1.0), side * slope[most] > 0.0);
     let center = offset + turn[most] * (other[most] * facing);
     let u = turn[(most + 1u) % 3u] * other[(most + 1u) % 3u];
     let v = turn[(most + 2u) % 3u] * other[(most + 2u) % 3u];
     for (var k = 0u; k < bound(4u); k++) {
-        let p = center + u * select(-1.0, 1.0, k == 0u || k == 3u) + v * select(-1.0, 1.0, k < 2u);
+        let p = center + u * select(f32(-1.0), f32(1.0), k == 0u || k == 3u) + v * select(f32(-1.0), f32(1.0), k < 2u);
         polygon[k] = vec3f(p[(axis + 1u) % 3u], p[(axis + 2u) % 3u], side * p[axis] - size[axis]);
     }
     polygon_count = 4u;
@@ -107,14 +107,14 @@ fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, turn: mat3x
     let side = signed(1.0, offset[axis]);
     opposing_face(axis, side, size, turn, offset, other.size);
     for (var k = 0u; k < bound(4u); k++) {
-        let sign = select(1.0, -1.0, (k & 1u) == 1u);
+        let sign = select(f32(1.0), f32(-1.0), (k & 1u) == 1u);
         clip_polygon(select(vec2f(0.0, sign), vec2f(sign, 0.0), k < 2u), select(size[y], size[x], k < 2u));
     }
     let normal = owner.axes[axis] * (side * out);
     let tangent = tangent_from_normal(normal);
-    let radius = 100.0 * ROUNDING;
+    let radius: f32 = max(1e-7, 100.0 * EPSILON);
     let apart = radius * radius * (size[x] * size[x] + size[y] * size[y]);
-    var least = 3e38;
+    var least: f32 = 3e38;
     var accepted = 0u;
     for (var k = 0u; k < polygon_count; k++) {
         let p = polygon[k];
@@ -141,7 +141,7 @@ fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, turn: mat3x
 fn box_box(pair: u32, a: Placed, b: Placed, range: f32) -> u32 {
     let turn = transpose(a.axes) * b.axes;
     let offset = transpose(a.axes) * (b.center - a.center);
-    let slack = 8.0 * ROUNDING * (a.size.x + a.size.y + a.size.z + b.size.x + b.size.y + b.size.z);
+    let slack = max(1e-13, 8.0 * EPSILON) * (a.size.x + a.size.y + a.size.z + b.size.x + b.size.y + b.size.z);
     let face = best_face(turn, offset, a, b, range + slack);
     if (face.owner == 3u) {
         return FOUND;
@@ -175,7 +175,7 @@ fn box_box(pair: u32, a: Placed, b: Placed, range: f32) -> u32 {
         owner_offset = transpose(b.axes) * (a.center - b.center);
     }
     let before = found;
-    let least = face_contacts(pair, most.axis, owner, other, owner_turn, owner_offset, select(1.0, -1.0, most.owner == 1u), range);
+    let least = face_contacts(pair, most.axis, owner, other, owner_turn, owner_offset, select(f32(1.0), f32(-1.0), most.owner == 1u), range);
     if (most.distance <= 0.0 || least <= most.distance + slack) {
         return FOUND;
     }

@@ -6,7 +6,7 @@ fn nearest_face(center: vec3f, size: vec3f) -> vec4f {
     var best = vec4f(0.0, 0.0, 0.0, 3e38);
     for (var k = 0u; k < bound(6u); k++) {
         let axis = k >> 1u;
-        let inward = select(1.0, -1.0, (k & 1u) == 1u);
+        let inward = select(f32(1.0), f32(-1.0), (k & 1u) == 1u);
         let gap = abs(size[axis] + inward * center[axis]);
         if (gap < best.w) {
             best = vec4f(0.0, 0.0, 0.0, gap);
@@ -44,8 +44,8 @@ fn sphere_box(pair: u32, a: Placed, b: Placed, range: f32) {
 
 // Whether a segment, center + x half with x in [−1, 1], has a point in the box.
 fn segment_enters(center: vec3f, half: vec3f, size: vec3f) -> bool {
-    var low = -1.0;
-    var high = 1.0;
+    var low: f32 = -1.0;
+    var high: f32 = 1.0;
     for (var i = 0u; i < bound(3u); i++) {
         if (abs(half[i]) < TINY) {
             if (abs(center[i]) > size[i]) {
@@ -77,8 +77,8 @@ fn axes_mask(x: bool, y: bool, z: bool) -> u32 {
 // The edge along `axis` through one of the four corners across it: nearest points of two segments, by clamping in turn.
 fn try_edge(best: ptr<function, NearestOfBox>, center: vec3f, half: vec3f, size: vec3f, axis: u32, corner: u32) {
     var middle = vec3f();
-    middle[(axis + 1u) % 3u] = select(-1.0, 1.0, (corner & 1u) != 0u) * size[(axis + 1u) % 3u];
-    middle[(axis + 2u) % 3u] = select(-1.0, 1.0, (corner & 2u) != 0u) * size[(axis + 2u) % 3u];
+    middle[(axis + 1u) % 3u] = select(f32(-1.0), f32(1.0), (corner & 1u) != 0u) * size[(axis + 1u) % 3u];
+    middle[(axis + 2u) % 3u] = select(f32(-1.0), f32(1.0), (corner & 2u) != 0u) * size[(axis + 2u) % 3u];
     let offset = middle - center;
     let edge_squared = size[axis] * size[axis];
     let mixed = -size[axis] * half[axis];
@@ -124,7 +124,7 @@ fn try_edge(best: ptr<function, NearestOfBox>, center: vec3f, half: vec3f, size:
 fn nearest_of_box(center: vec3f, half: vec3f, size: vec3f) -> NearestOfBox {
     var best = NearestOfBox(0.0, vec3f(), 0u, 3e38);
     for (var k = 0u; k < bound(2u); k++) {
-        let along = select(-1.0, 1.0, k == 1u);
+        let along = select(f32(-1.0), f32(1.0), k == 1u);
         let end = center + half * along;
         let point = clamp(end, -size, size);
         let limit = axes_mask(abs(end.x) > size.x, abs(end.y) > size.y, abs(end.z) > size.z);
@@ -144,7 +144,7 @@ fn in_mask(mask: u32, i: u32) -> bool {
 }
 
 fn sign_of(mask: u32, i: u32) -> f32 {
-    return select(-1.0, 1.0, in_mask(mask, i));
+    return select(f32(-1.0), f32(1.0), in_mask(mask, i));
 }
 
 // Which way to walk along the capsule from the nearest point (0: no way), and which sides of the box to mind, a bit each.
@@ -188,7 +188,7 @@ fn choose_walk(nearest: NearestOfBox, half: vec3f) -> Walk {
 // How far to walk: until the capsule ends or leaves the box.
 fn walk_length(walk: Walk, nearest: NearestOfBox, half: vec3f, size: vec3f) -> f32 {
     // A side that the capsule is parallel to, but for rounding, is no limit.
-    let least = length(half) * 1.1920929e-3;
+    let least = length(half) * (1e4 * EPSILON);
     var far = 1.0 - walk.way * nearest.along;
     for (var i = 0u; i < bound(3u); i++) {
         let step = walk.way * half[i];

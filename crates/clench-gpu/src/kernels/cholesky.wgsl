@@ -4,7 +4,7 @@
 // Tomov, Nath, Ltaief & Dongarra, *Dense linear algebra solvers for multicore with GPU accelerators*, 2010).
 
 // A pivot below this part of the diagonal that it is left of is nothing but rounding.
-const MIN_PIVOT: f32 = 1.1920929e-7;
+const MIN_PIVOT: f32 = EPSILON;
 
 // The diagonal of H in the tile at hand.
 var<workgroup> diagonal: array<f32, TILE>;
@@ -15,7 +15,7 @@ fn mass_tile(i: u32, j: u32) -> mat2x4f {
     for (var k = 0u; k < 8u; k++) {
         let r = TILE * i + own_row() + k / 4u;
         let column = TILE * j + 4u * own_quad() + k % 4u;
-        var entry = select(0.0, 1.0, r == column);
+        var entry = select(f32(0.0), f32(1.0), r == column);
         if (max(r, column) < NV) {
             entry = mass_entry(r, column);
         }

@@ -11,11 +11,11 @@ struct Circuit {
 fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circuit {
     let cold = controller(u, OF_GAIN);
     let constant = controller(u, OF_GAIN + 1u);
-    var voltage = 0.0;
-    var slope = 0.0;
+    var voltage: f32 = 0.0;
+    var slope: f32 = 0.0;
     if (words[ACTUATOR_CONTROLLED + u] == 1u) {
         let a = state_of(u, STATE_INTEGRAL);
-        var integral = 0.0;
+        var integral: f32 = 0.0;
         if (a != NONE) {
             integral = given(ACT + a);
         }

@@ -84,7 +84,7 @@ fn surface_velocity(contact: u32) -> vec3f {
         let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
         let turning = axes * parameter3(GEOM_SURFACEVEL + 6u * geom + 3u);
         let along = axes * parameter3(GEOM_SURFACEVEL + 6u * geom);
-        let sign = select(-1.0, 1.0, side == 1u);
+        let sign = select(f32(-1.0), f32(1.0), side == 1u);
         linear += (along + cross(turning, point - fetch3(GEOM_XPOS + 3u * geom))) * sign;
         angular += turning * sign;
     }

@@ -43,7 +43,7 @@ fn tangent_from_normal(n: vec3f) -> vec3f {
 fn tangent_along(n: vec3f, along: vec3f) -> vec3f {
     var tangent = along - n * dot(n, along);
     // Below this length what is left of the direction is mostly rounding error.
-    let least = 1.1920929e-3;
+    let least: f32 = 1e4 * EPSILON;
     if (dot(tangent, tangent) < least * least) {
         let other = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.9);
         tangent = other - n * dot(n, other);

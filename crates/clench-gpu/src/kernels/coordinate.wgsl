@@ -14,7 +14,7 @@ fn is_ball(c: u32) -> bool {
 // Its derivative along dof `i`.
 fn coordinate_entry(c: u32, i: u32) -> f32 {
     if (c < NJNT) {
-        return select(0.0, 1.0, i == words[JNT_DOF + c]);
+        return select(f32(0.0), f32(1.0), i == words[JNT_DOF + c]);
     }
     for (var k = words[TENDON_ROW + c - NJNT]; k < words[TENDON_ROW + c - NJNT + 1u]; k++) {
         if (words[TENDON_DOF + k] == i) {

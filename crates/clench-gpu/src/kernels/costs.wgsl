@@ -117,8 +117,8 @@ fn evaluate_huber(a: u32) -> Value {
 fn evaluate_pyramid(first: u32, dim: u32) -> Value {
     let d = row(D + first);
     let y = row(RESIDUAL + first);
-    var normal = 0.0;
-    var squares = 0.0;
+    var normal: f32 = 0.0;
+    var squares: f32 = 0.0;
     var active_set = 0u;
     for (var k = 1u; k < dim; k++) {
         let mu = row(SHAPE + first + k);
@@ -136,7 +136,7 @@ fn evaluate_pyramid(first: u32, dim: u32) -> Value {
 }
 
 fn evaluate_quadratic(first: u32, dim: u32) -> Value {
-    var cost = 0.0;
+    var cost: f32 = 0.0;
     for (var a = first; a < first + dim; a++) {
         let y = row(RESIDUAL + a);
         let d = row(D + a);

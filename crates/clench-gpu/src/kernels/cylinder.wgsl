@@ -26,7 +26,7 @@ fn cylinder_distance(p: vec3f, size: vec3f, spare: vec3f) -> vec4f {
     let out = max(off_side, 0.0);
     let apart = sqrt(up * up + out * out);
     // Within the cylinder the nearer of cap and side decides; beyond both, the circle where they meet.
-    var along = select(0.0, 1.0, above_cap > off_side);
+    var along = select(f32(0.0), f32(1.0), above_cap > off_side);
     var across = 1.0 - along;
     var signed_distance = max(above_cap, off_side);
     if (apart >= TINY) {
@@ -68,7 +68,7 @@ fn sphere_cylinder(pair: u32, a: Placed, b: Placed, range: f32) {
 fn segment_slope(s: Segment, t: f32, size: vec3f) -> vec2f {
     let p = on_segment(s, t);
     let from_axis = length(p.xy);
-    let inverse = 1.0 / max(from_axis, 1.1754944e-38);
+    let inverse = 1.0 / max(from_axis, SMALLEST);
     let beyond_side = max(from_axis - size.x, 0.0);
     let beyond_cap = max(abs(p.z) - size.y, 0.0);
     let outward = dot(p.xy, s.axis.xy) * inverse;
@@ -90,9 +90,9 @@ fn nearest_on_segment(s: Segment, size: vec3f) -> f32 {
     if (segment_slope(s, high, size).x <= 0.0) {
         return high;
     }
-    var t = 0.0;
+    var t: f32 = 0.0;
     var last = 2.0 * s.half_length;
-    let enough = (s.half_length + size.x + size.y) * 1.1920929e-7;
+    let enough = (s.half_length + size.x + size.y) * EPSILON;
     for (var k = 0u; k < bound(SEGMENT_STEPS); k++) {
         let slope = segment_slope(s, t, size);
         if (slope.x > 0.0) {
@@ -100,7 +100,7 @@ fn nearest_on_segment(s: Segment, size: vec3f) -> f32 {
         } else {
             low = t;
         }
-        let step = -slope.x / max(slope.y, 1.1754944e-38);
+        let step = -slope.x / max(slope.y, SMALLEST);
         var next = t + step;
         if (!(abs(step) <= 0.5 * last && next >= low && next <= high)) {
             next = 0.5 * (low + high);
@@ -143,7 +143,7 @@ fn segment_overlap(s: Segment, nearest: f32, size: vec3f, spare: vec3f) -> vec2f
 fn capsule_beside_cylinder(pair: u32, s: Segment, radius: f32, nearest: f32, least: f32, b: Placed, spare: vec3f, range: f32) {
     let ends = segment_overlap(s, nearest, b.size, spare);
     // Where the two are parallel an end is as deep as anything between.
-    let level = least + 8.0 * 1.1920929e-7 * (radius + b.size.x);
+    let level = least + max(1e-9, 8.0 * EPSILON) * (radius + b.size.x);
     var first = nearest;
     for (var k = 0u; k < 2u; k++) {
         if (cylinder_distance(on_segment(s, ends[k]), b.size, spare).w <= level) {
@@ -173,7 +173,7 @@ fn capsule_cylinder(pair: u32, a: Placed, b: Placed, range: f32) {
         return;
     }
     // Once its middle line enters the cylinder, distances of its points no longer tell how far the capsule must move to be free.
-    if (least <= 8.0 * 1.1920929e-7 * (radius + b.size.x)) {
+    if (least <= 8.0 * EPSILON * (radius + b.size.x)) {
         let out = penetration_depth(s, b.size);
         let center = on_segment(s, deepest_of_segment(s, b.size, out.xyz, nearest));
         ball_cylinder(pair, center, radius, vec4f(out.xyz, -out.w), b, range);

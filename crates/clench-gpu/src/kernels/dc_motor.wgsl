@@ -18,7 +18,7 @@ fn state_of(u: u32, which: u32) -> u32 {
 fn bristle_decay(u: u32, velocity: f32) -> f32 {
     let coulomb = controller(u, OF_BIAS + 3u);
     let ratio = velocity / max(controller(u, OF_BIAS + 5u), TINY);
-    let level = coulomb + (controller(u, OF_BIAS + 4u) - coulomb) * exp(-ratio * ratio);
+    let level = coulomb + (controller(u, OF_BIAS + 4u) - coulomb) * exponential(-ratio * ratio);
     return -controller(u, OF_DYNAMICS + 5u) * abs(velocity) / max(level, TINY);
 }
 

@@ -195,7 +195,7 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     }
     let inertia = copy_mass();
     let c = minimise(reports[NROW * envs + env], reports[NBLOCK * envs + env], inertia);
-    if (NOSLIP_ITERATIONS > 0u) {
+    if (NOSLIP) {
         noslip(reports[NROW * envs + env], reports[NBLOCK * envs + env], 1.0 / inertia);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
@@ -205,7 +205,7 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     if (lane == 0u) {
         reports[NITER * envs + env] = c.iterations;
         reports[SOLVE_STATUS * envs + env] = c.status;
-        reports[SOLVE_GAP * envs + env] = bitcast<u32>(c.gap);
+        reports[SOLVE_GAP * envs + env] = report_bits(c.gap);
     }
     note_end();
 }

@@ -43,7 +43,7 @@ fn flow_of(e: Ellipsoid) -> Flow {
     let along = dot(v, normal);
     let squared = dot(normal, normal);
     let speed = length(v);
-    let area = 3.1415927 * sqrt(squared / positive(along));
+    let area = PI * sqrt(squared / positive(along));
     return Flow(speed, normal, area, area * along / positive(speed * squared));
 }
 

@@ -23,13 +23,13 @@ fn zone(first: u32, dim: u32, alpha: f32) -> Zone {
     let mu = row(SHAPE + first);
     let k = row(D + first) / (mu * mu * (1.0 + mu * mu));
     let n = mu * (row(RESIDUAL + first) + alpha * row(RAY + first));
-    var t2 = 0.0;
+    var t2: f32 = 0.0;
     for (var a = first + 1u; a < first + dim; a++) {
         let u = scaled_residual(a, alpha);
         t2 += u * u;
     }
     let t = sqrt(t2);
-    let inverse = select(0.0, 1.0 / max(t, 1e-37), t > 0.0);
+    let inverse = select(0.0, 1.0 / max(t, SMALLEST), t > 0.0);
     let above = n - mu * t;
     let below = mu * n + t;
     if (above >= 0.0) {
@@ -56,8 +56,8 @@ fn elliptic_along(first: u32, dim: u32, alpha: f32) -> Along {
     let before = zone(first, dim, 0.0);
     let z = zone(first, dim, alpha);
     let dn = z.mu * row(RAY + first);
-    var along = 0.0;
-    var squares = 0.0;
+    var along: f32 = 0.0;
+    var squares: f32 = 0.0;
     for (var a = first + 1u; a < first + dim; a++) {
         let du = row(SHAPE + a) * row(RAY + a);
         along += scaled_residual(a, alpha) * z.inverse * du;
@@ -65,7 +65,7 @@ fn elliptic_along(first: u32, dim: u32, alpha: f32) -> Along {
     }
     let da = dn - z.mu * along;
     let db = z.mu * dn + along;
-    var second = 0.0;
+    var second: f32 = 0.0;
     if (z.piece == 1u) {
         second = z.k * (da * da + z.c * (squares - along * along));
     } else if (z.piece == 2u) {
@@ -86,7 +86,7 @@ fn weigh_elliptic(first: u32, dim: u32, i: u32) {
         return;
     }
     let normal = z.mu * row(JACOBIAN + first * NV + i);
-    var along = 0.0;
+    var along: f32 = 0.0;
     for (var a = first + 1u; a < first + dim; a++) {
         along += scaled_residual(a, 0.0) * z.inverse * row(SHAPE + a) * row(JACOBIAN + a * NV + i);
     }

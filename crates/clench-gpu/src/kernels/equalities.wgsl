@@ -5,7 +5,7 @@ fn push_coupling(equality: u32, prm: u32) {
     let follower = words[EQ_PAIR + 2u * equality];
     let leader = words[EQ_PAIR + 2u * equality + 1u];
     var value = parameter(prm + 2u);
-    var slope = 0.0;
+    var slope: f32 = 0.0;
     if (leader != NONE) {
         let e = coordinate_value(leader) - parameter(prm + 1u);
         value = parameter(prm + 6u);

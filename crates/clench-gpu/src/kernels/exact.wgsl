@@ -7,7 +7,7 @@ fn inverse_inertia(a: u32, other: u32, factor: f32) -> f32 {
     for (var i = 0u; i < bound(NV); i++) {
         put_row(x + i, row(JACOBIAN + a * NV + i) + factor * row(JACOBIAN + other * NV + i));
     }
-    var sum = 0.0;
+    var sum: f32 = 0.0;
     for (var up = 0u; up < bound(NV); up++) {
         let i = NV - 1u - up;
         let value = row(x + i);

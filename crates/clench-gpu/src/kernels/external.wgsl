@@ -52,7 +52,7 @@ fn push_held(equality: u32, force: vec3f, turn: vec3f) {
 // What constraints do along tendon `t`.
 fn tendon_constraint_force(t: u32) -> f32 {
     let c = NJNT + t;
-    var sum = 0.0;
+    var sum: f32 = 0.0;
     for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         let source = block(b, BLOCK_SOURCE);
         let first = block(b, BLOCK_ROW);

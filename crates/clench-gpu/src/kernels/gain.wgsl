@@ -52,8 +52,8 @@ fn activation_rate(u: u32, ctrl: f32, act: f32) -> f32 {
 // What the gain multiplies: the control, or the activation.
 fn actuator_input(u: u32, length: f32, velocity: f32) -> f32 {
     let a = words[ACTUATOR_ACT + u];
-    var input = 0.0;
-    if (NA > 0u && a != NONE) {
+    var input: f32 = 0.0;
+    if (ANY_ACTIVATION && a != NONE) {
         input = acting(u, a, velocity);
     } else {
         input = acting_control(u, words[ACTUATOR_CTRL + u]);
@@ -77,15 +77,15 @@ fn unlimited_force(u: u32) -> f32 {
         pid_rates(u, setpoints, length);
     } else if (ANY_CONTROLLER && words[ACTUATOR_DYNAMICS + u] == DYN_DC_MOTOR) {
         motor_rates(u, setpoints, circuit, length, velocity);
-    } else if (NA > 0u && words[ACTUATOR_ACT + u] != NONE) {
+    } else if (ANY_ACTIVATION && words[ACTUATOR_ACT + u] != NONE) {
         let a = words[ACTUATOR_ACT + u];
         put(ACT_DOT + a, activation_rate(u, acting_control(u, words[ACTUATOR_CTRL + u]), given(ACT + a)));
     }
     if (words[ACTUATOR_OFF + u] == 1u) {
         return 0.0;
     }
-    var gain = 1.0;
-    var input = 0.0;
+    var gain: f32 = 1.0;
+    var input: f32 = 0.0;
     if (ANY_CONTROLLER && gain_law == LAW_PID) {
         input = pid_force(u, setpoints, length, velocity);
     } else if (ANY_CONTROLLER && gain_law == LAW_DC_MOTOR) {

@@ -31,11 +31,11 @@ fn between_samples(h: u32, k: u32, at: f32, part: u32) -> f32 {
             return before + x * (after - before);
         }
         default: {
-            var left = 0.0;
+            var left: f32 = 0.0;
             if (k > 1u) {
                 left = sample_slope(h, k - 2u, k, part);
             }
-            var right = 0.0;
+            var right: f32 = 0.0;
             if (k + 1u < words[h + 1u]) {
                 right = sample_slope(h, k - 1u, k + 1u, part);
             }
@@ -50,7 +50,7 @@ fn between_samples(h: u32, k: u32, at: f32, part: u32) -> f32 {
 
 // A part of what the buffer holds of a time counted from the present. Before the oldest and after the newest sample these hold.
 fn read_history(h: u32, at: f32, part: u32) -> f32 {
-    let same = max(8.0 * 1.1920929e-7 * abs(at), TINY);
+    let same = max(8.0 * EPSILON * abs(at), TINY);
     var newest = 0u;
     for (var k = 1u; k < words[h + 1u]; k++) {
         if (sample_time(h, k) <= at + same) {

@@ -54,8 +54,8 @@ fn restore_start() {
 fn shorten(place: u32) {
     let vector = given3(place);
     let angle = length(vector);
-    if (angle > 3.1415927) {
-        let share = (angle - 6.2831855 * floor(angle / 6.2831855 + 0.5)) / angle;
+    if (angle > PI) {
+        let share = (angle - TWO_PI * floor(angle / TWO_PI + 0.5)) / angle;
         for (var k = 0u; k < 3u; k++) {
             keep(place + k, vector[k] * share);
         }

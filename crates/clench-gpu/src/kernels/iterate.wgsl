@@ -35,7 +35,7 @@ fn put_vector(place: u32, x: f32) {
 
 // The number a of J x.
 fn jacobian_times(a: u32, x: u32) -> f32 {
-    var sum = 0.0;
+    var sum: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
         sum += row(JACOBIAN + a * NV + i) * vector(x + i);
     }
@@ -57,9 +57,9 @@ fn evaluate(nblock: u32) -> vec4f {
     for (var b = lane; b < nblock; b += GROUP) {
         let value = evaluate_block(b);
         let active_set = f32(value.active_set);
-        let changed = select(0.0, 1.0, row(ACTIVE_SET + b) != active_set);
+        let changed = select(f32(0.0), f32(1.0), row(ACTIVE_SET + b) != active_set);
         put_row(ACTIVE_SET + b, active_set);
-        sum += vec4f(value.cost, changed, select(0.0, 1.0, value.curved), 0.0);
+        sum += vec4f(value.cost, changed, select(f32(0.0), f32(1.0), value.curved), 0.0);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
         sum.w += 0.5 * (vector(QACC_AT + i) - fetch(QACC_SMOOTH + i)) * vector(INERTIAL_AT + i);
@@ -70,9 +70,9 @@ fn evaluate(nblock: u32) -> vec4f {
 
 // Jᵀf and the gradient; its norm.
 fn differentiate(nrow: u32) -> f32 {
-    var square = 0.0;
+    var square: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
-        var sum = 0.0;
+        var sum: f32 = 0.0;
         for (var a = 0u; a < nrow; a++) {
             sum += row(JACOBIAN + a * NV + i) * row(FORCE + a);
         }

@@ -1,9 +1,8 @@
 // The exact line search: the root of the slope by Newton's method inside a bracket. Sister of
 // `clench-solver/src/line_search.rs`, whose names and reasons are the same.
 
-const EPSILON: f32 = 1.1920929e-7;
 // 0.01 √ε: a root is not worth finding more precisely.
-const RESOLUTION: f32 = 3.4526698e-6;
+const RESOLUTION: f32 = 0.01 * ROOT_OF_EPSILON;
 const UNBOUNDED: f32 = 3.0e38;
 
 struct Step {
@@ -88,11 +87,11 @@ fn search(nblock: u32, slope_limit: f32) -> Step {
     let exact = max(4.0 * EPSILON * abs(products.z), -(RESOLUTION * start));
     let loose = min(slope_limit * sqrt(products.y), -(0.1 * start));
     // A full step is the first guess along Newton's direction; along another it comes from the derivatives at 0.
-    let first = select(0.0, 1.0, descends && NEWTON);
+    let first = select(f32(0.0), f32(1.0), descends && NEWTON);
     let guesses = select(1u, 0u, NEWTON);
     var bracket = Bracket(0.0, UNBOUNDED, first, UNBOUNDED, UNBOUNDED, 0.0);
     var open = descends;
-    var change = 0.0;
+    var change: f32 = 0.0;
     for (var k = 0u; k <= LS_ITERATIONS + guesses; k++) {
         let at = along(nblock, bracket.alpha, products.z, products.w);
         if (k < guesses) {

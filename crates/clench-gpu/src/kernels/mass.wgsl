@@ -6,7 +6,7 @@ fn copy_mass() -> f32 {
     for (var p = lane; p < NNZ; p += GROUP) {
         put_row(MASS + p, fetch(QM + p));
     }
-    var diagonal = 0.0;
+    var diagonal: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
         diagonal += fetch(QM + words[TREE_START + i + 1u] - 1u);
     }
@@ -32,7 +32,7 @@ fn mass_entry(i: u32, j: u32) -> f32 {
 
 // The number i of M x: what stands before the diagonal, on it, and below it.
 fn mass_times(x: u32, i: u32) -> f32 {
-    var sum = 0.0;
+    var sum: f32 = 0.0;
     for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
         sum += row(MASS + p) * vector(x + words[TREE_DOF + p]);
     }

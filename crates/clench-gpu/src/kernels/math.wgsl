@@ -1,46 +1,7 @@
-// Quaternions (w, x, y, z in the components x, y, z, w), sine and cosine, and spatial vectors: sisters of `clench-math`.
-//
-// The built-in sine and cosine of a device may be off by 5e-4 and differ from one to the next; these are good to a rounding.
+// Quaternions (w, x, y, z in the components x, y, z, w) and spatial vectors: sisters of `clench-math`.
 
 // Below this length a vector or quaternion has no direction.
 const TINY: f32 = 1e-15;
-
-// Sine and cosine: Cody and Waite's reduction to a quarter turn, and the minimax polynomials of `clench-math`.
-fn sin_cos(x: f32) -> vec2f {
-    let quarters = round(x * 0.63661977);
-    var y = x - quarters * 1.5703125;
-    y = y - quarters * 0.0004825592041015625;
-    y = y - quarters * 1.2665987014770508e-06;
-    y = y - quarters * 9.89530235528946e-10;
-    let z = y * y;
-    let sine = y + z * y * (-0.16666655 + z * (0.008332178 - z * 0.00019517296));
-    let cosine = 1.0 - 0.5 * z + z * z * (0.041666646 + z * (-0.0013887367 + z * 2.4438449e-05));
-    let turn = i32(quarters) & 3;
-    if (turn == 0) {
-        return vec2f(sine, cosine);
-    }
-    if (turn == 1) {
-        return vec2f(cosine, -sine);
-    }
-    if (turn == 2) {
-        return vec2f(-sine, -cosine);
-    }
-    return vec2f(-cosine, sine);
-}
-
-// The angle of the point (x, y) with y not negative, in [0, π].
-fn angle_of(y: f32, x: f32) -> f32 {
-    let steep = y > abs(x);
-    let small = select(y, abs(x), steep);
-    let large = max(select(abs(x), y, steep), 1e-37);
-    let folded = small > large * 0.41421356;
-    let t = select(small, small - large, folded) / select(large, small + large, folded);
-    let z = t * t;
-    let arc = t + t * z * (-0.33333316 + z * (0.19998489 + z * (-0.14243848 + z * (0.10595998 - z * 0.06083443))));
-    var angle = select(arc, arc + 0.78539816, folded);
-    angle = select(angle, 1.5707963 - angle, steep);
-    return select(angle, 3.1415927 - angle, x < 0.0);
-}
 
 // The direction of a vector, x where it has none; then its length.
 fn direction(v: vec3f) -> vec4f {
@@ -92,8 +53,8 @@ fn quat_matrix(q: vec4f) -> mat3x3f {
 fn quat_rotation_vector(q: vec4f) -> vec3f {
     let axis = direction(q.yzw);
     var angle = 2.0 * angle_of(axis.w, q.x);
-    if (angle > 3.1415927) {
-        angle -= 6.2831855;
+    if (angle > PI) {
+        angle -= TWO_PI;
     }
     return axis.xyz * angle;
 }

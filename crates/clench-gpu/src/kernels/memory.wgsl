@@ -55,11 +55,6 @@ fn trouble(fault: u32) {
     }
 }
 
-// Whether a number is infinite or undefined. Told by its bits: a compiler for shaders may assume that there are none such.
-fn is_wild(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) == 0x7f800000u;
-}
-
 fn fetch(place: u32) -> f32 {
     return work[place * envs + env];
 }

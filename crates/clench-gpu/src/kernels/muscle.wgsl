@@ -68,7 +68,7 @@ fn muscle_gain_slope(prm: u32, length: f32, velocity: f32) -> f32 {
     let scale = divisor(parameter(prm + 1u) * parameter(prm + 5u));
     let v = velocity / scale;
     let above = parameter(prm + 7u) - 1.0;
-    var slope = 0.0;
+    var slope: f32 = 0.0;
     if (v > -1.0 && v <= 0.0) {
         slope = 2.0 * (v + 1.0);
     } else if (v > 0.0 && v <= above) {

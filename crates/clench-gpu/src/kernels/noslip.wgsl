@@ -56,7 +56,7 @@ fn prepare_block(b: u32) -> f32 {
     let end = first + block(b, BLOCK_DIM);
     let is_pyramid = block(b, BLOCK_KIND) == CONTACT_PYRAMID;
     let start = first_friction(b);
-    var cost = 0.0;
+    var cost: f32 = 0.0;
     for (var a = first; a < end; a++) {
         if (start != NONE && a >= start) {
             respond(a);
@@ -81,7 +81,7 @@ fn fill_friction(start: u32, count: u32) {
         if (k >= SLIP_AT) {
             friction[k] = jacobian_times(start + k - SLIP_AT, QACC_AT) - row(AREF + start + k - SLIP_AT);
         } else if (i < count && k / MAX_FRICTIONS < count) {
-            var sum = 0.0;
+            var sum: f32 = 0.0;
             for (var j = 0u; j < bound(NV); j++) {
                 sum += row(JACOBIAN + a * NV + j) * row(WEIGHED + (start + i) * NV + j);
             }
@@ -145,7 +145,7 @@ fn shifted_minimum(b: array<f32, 25>, c: array<f32, MAX_FRICTIONS>, lambda: f32,
             }
             g[i] = sum / l[(MAX_FRICTIONS + 1u) * i];
         }
-        var square = 0.0;
+        var square: f32 = 0.0;
         for (var i = 0u; i < n; i++) {
             square += g[i] * g[i];
         }
@@ -163,7 +163,7 @@ fn change_ellipse(start: u32, count: u32) -> array<f32, MAX_FRICTIONS> {
     var change = array<f32, MAX_FRICTIONS>();
     var b = array<f32, 25>();
     var c = array<f32, MAX_FRICTIONS>();
-    var trace = 0.0;
+    var trace: f32 = 0.0;
     for (var i = 0u; i < count; i++) {
         let mu = row(SHAPE + start + i);
         var linear = friction[SLIP_AT + i];
@@ -180,7 +180,7 @@ fn change_ellipse(start: u32, count: u32) -> array<f32, MAX_FRICTIONS> {
     if (radius <= 0.0 || trace <= 0.0) {
         return change;
     }
-    var lambda = 0.0;
+    var lambda: f32 = 0.0;
     var found = Shifted();
     for (var k = 0u; k < bound(MULTIPLIER_STEPS); k++) {
         found = shifted_minimum(b, c, lambda, trace * EPSILON, count);
@@ -211,7 +211,7 @@ fn improve_friction(b: u32, start: u32) -> f32 {
     } else {
         change = change_rows(start, count, kind == CONTACT_PYRAMID);
     }
-    var fall = 0.0;
+    var fall: f32 = 0.0;
     for (var j = 0u; j < count; j++) {
         var slip = friction[SLIP_AT + j];
         for (var i = 0u; i < count; i++) {
@@ -235,7 +235,7 @@ fn improve_friction(b: u32, start: u32) -> f32 {
 
 // Sweeps over dry friction, then over contacts, until they gain no more. `scale` turns costs into what the tolerance is of.
 fn noslip(nrow: u32, nblock: u32, scale: f32) {
-    var cost = 0.0;
+    var cost: f32 = 0.0;
     for (var b = lane; b < nblock; b += GROUP) {
         cost += prepare_block(b);
     }

@@ -15,7 +15,7 @@ fn servo_target(u: u32) -> vec4f {
         return quat_normalize(vec4f(vector, acting_control(u, c + 3u)));
     }
     let last = words[ACTUATOR_ACT + u];
-    if (NA == 0u || last == NONE) {
+    if (!ANY_ACTIVATION || last == NONE) {
         return quat_from_rotation_vector(vector);
     }
     var acts = vec3f();
@@ -51,6 +51,6 @@ fn limit_torque(u: u32) {
 // ∂torque/∂ω, the same about each axis; zero where the limit holds the torque.
 fn servo_slope(u: u32) -> f32 {
     let norm = length(fetch3(ACTUATOR_FORCE + output_of(u)));
-    let held = norm >= parameter(FORCE_RANGE + 2u * u + 1u) * (1.0 - 16.0 * 1.1920929e-7);
+    let held = norm >= parameter(FORCE_RANGE + 2u * u + 1u) * (1.0 - max(1e-10, 16.0 * EPSILON));
     return select(parameter(ACTUATOR_BIAS + LAW_SIZE * u + 2u), 0.0, held);
 }

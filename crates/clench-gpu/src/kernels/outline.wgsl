@@ -1,9 +1,6 @@
 // At most eight points on the outline of a convex polygon of contacts. Sister of `clench-collide/src/narrow/outline.rs`, where the
 // integral over a sector is derived.
 
-// Half the angle of the sector of directions that a point stands for.
-const HALF_SECTOR: f32 = 3.1415927 / f32(PATCH_POINTS);
-
 // The middle of the polygon's area, and the inverse root of its second moments: xx, xy, yy.
 var<private> outline_middle: vec2f;
 var<private> outline_round: vec3f;
@@ -61,7 +58,7 @@ fn make_convex(same: f32) {
 // Finds the middle and the moments of the polygon; of one without area, numbers that do no harm.
 fn find_moments() {
     let origin = polygon[0].xy;
-    var area = 0.0;
+    var area: f32 = 0.0;
     var first = vec2f();
     var second = vec3f();
     for (var k = 1u; k + 1u < polygon_count; k++) {
@@ -76,14 +73,14 @@ fn find_moments() {
             p.y * p.y + p.y * q.y + q.y * q.y,
         ) * twice;
     }
-    let inverse = 1.0 / max(area, MIN_NORMAL);
+    let inverse = 1.0 / max(area, SMALLEST);
     let mean = first * (inverse / 3.0);
     second *= inverse / 6.0;
     let xy = second.y - mean.x * mean.y;
     // A very thin polygon counts as a little wider.
     var squares = second.xz - mean * mean;
-    squares = max(squares, vec2f()) + (squares.x + squares.y) * ROOT_OF_ROUNDING;
-    let root = sqrt(max(squares.x * squares.y - xy * xy, MIN_NORMAL));
+    squares = max(squares, vec2f()) + (squares.x + squares.y) * ROOT_OF_EPSILON;
+    let root = sqrt(max(squares.x * squares.y - xy * xy, SMALLEST));
     let scale = 1.0 / (root * sqrt(squares.x + squares.y + root * 2.0));
     outline_middle = origin + mean;
     outline_round = vec3f(squares.y + root, -xy, squares.x + root) * scale;
@@ -119,7 +116,7 @@ fn next_corner(k: u32) -> u32 {
 fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
     var corner = begin;
     var mean = vec2f();
-    var passed = 0.0;
+    var passed: f32 = 0.0;
     var edge_total = 0u;
     while (edge_total < polygon_count) {
         let p = polygon[corner].xy;

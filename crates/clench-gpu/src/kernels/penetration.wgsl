@@ -27,7 +27,7 @@ fn way_out_across(s: Segment, size: vec3f, a: vec3f, b: vec3f) -> vec3f {
     let k2 = r2 * s.axis.z * s.axis.z;
     let level = size.y * abs(b.z) - dot(s.center, b);
     let aside = max(dot(s.center, a), size.x * 1e-9);
-    let stationary = pow(max(r2 - k2, 0.0) * r2 / aside, 2.0 / 3.0);
+    let stationary = power_of(max(r2 - k2, 0.0) * r2 / aside, 2.0 / 3.0);
     let rise = max(stationary - r2, 0.0);
     let whole = sqrt(rise + k2);
     var low = vec2f(1.0, 0.0);
@@ -83,7 +83,7 @@ fn penetration_depth(s: Segment, size: vec3f) -> vec4f {
 // Where along the segment it is deepest, along the direction in which it gets out. Any point will do between two parallel flats;
 // then it is `otherwise`.
 fn deepest_of_segment(s: Segment, size: vec3f, outward: vec3f, otherwise: f32) -> f32 {
-    let tiny = 1e-6;
+    let tiny: f32 = 1e-6;
     let slope = dot(outward, s.axis);
     if (abs(slope) >= tiny) {
         return select(-s.half_length, s.half_length, slope < 0.0);

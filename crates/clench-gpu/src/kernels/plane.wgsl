@@ -25,7 +25,7 @@ fn plane_capsule(pair: u32, normal: vec3f, above: f32, center: vec3f, axis: vec3
 fn plane_ellipsoid(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
     let scaled = (transpose(axes) * normal) * size;
     let depth = length(scaled);
-    let support = scaled * size * (1.0 / max(depth, 1.1754944e-38));
+    let support = scaled * size * (1.0 / max(depth, SMALLEST));
     add_on_plane(pair, center - axes * support, above - depth, normal, tangent_from_normal(normal), range);
 }
 
@@ -50,7 +50,7 @@ fn plane_cylinder(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat
     add_on_plane(pair, center + axis + spoke, lowest, normal, tangent, range);
     add_on_plane(pair, center - axis + spoke, above - axis_rise + spoke_rise, normal, tangent, range);
     let flank = above + axis_rise - spoke_rise * 0.5;
-    let sideways = direction(cross(spoke, axis)).xyz * (size.x * 0.8660254);
+    let sideways = direction(cross(spoke, axis)).xyz * (size.x * 0.8660254037844386);
     let middle = center + axis - spoke * 0.5;
     add_on_plane(pair, middle + sideways, flank, normal, tangent, range);
     add_on_plane(pair, middle - sideways, flank, normal, tangent, range);

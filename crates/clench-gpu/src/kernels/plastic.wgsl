@@ -42,7 +42,7 @@ fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
             continue;
         }
         let band = PLASTIC + words[TENDON_PLASTIC + t];
-        var rate = 0.0;
+        var rate: f32 = 0.0;
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
             rate += fetch(jacobian + k) * fetch(velocity + words[TENDON_DOF + k]);
         }

@@ -27,7 +27,7 @@ fn precondition() -> f32 {
         }
         join();
     }
-    var square = 0.0;
+    var square: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
         let x = vector(PRECONDITIONED_AT + i);
         square += x * x * fetch(QLD_INVERSE + i);

@@ -5,18 +5,18 @@ override stage: u32 = 0u;
 
 // The weight of a stage in the mean.
 fn weight() -> f32 {
-    return select(1.0 / 3.0, 1.0 / 6.0, stage == 0u || stage == 3u);
+    return select(f32(1.0 / 3.0), f32(1.0 / 6.0), stage == 0u || stage == 3u);
 }
 
 // How far along the rates of stage `s` the next one lies.
 fn reach(s: u32) -> f32 {
-    return select(0.5, 1.0, s == 2u) * TIMESTEP;
+    return select(f32(0.5), f32(1.0), s == 2u) * TIMESTEP;
 }
 
 // u̇ of the rotation vector u while its end turns at ω.
 fn increment_rate(u: vec3f, omega: vec3f) -> vec3f {
     let squared = dot(u, u);
-    var c = 0.083333336 + squared * (0.0013888889 + squared * (3.3068783e-5 + squared * 8.2671958e-7));
+    var c = 0.08333333333333333 + squared * (0.001388888888888889 + squared * (3.306878306878307e-5 + squared * 8.267195767195768e-7));
     if (squared >= 0.01) {
         let half = sqrt(squared) * 0.5;
         let t = sin_cos(half);

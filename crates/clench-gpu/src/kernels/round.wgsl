@@ -61,7 +61,7 @@ fn capsule_capsule(pair: u32, a: Placed, b: Placed, range: f32) {
     }
     let end = select(b.size.y, -b.size.y, cosine < 0.0);
     for (var k = 0u; k < 2u; k++) {
-        let side = select(-1.0, 1.0, k == 1u);
+        let side = select(f32(-1.0), f32(1.0), k == 1u);
         let free = ahead + b.size.y * abs(cosine) * side;
         let s = clamp(free, -a.size.y, a.size.y);
         var t = clamp(cosine * s - behind, -b.size.y, b.size.y);

@@ -165,7 +165,7 @@ fn touch(s: u32, prm: u32) -> f32 {
     let own = words[SITE_BODY + site];
     let axes = fetch_matrix(SITE_XMAT + 9u * site);
     let centre = fetch3(SITE_XPOS + 3u * site);
-    var sum = 0.0;
+    var sum: f32 = 0.0;
     for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         if (block(b, BLOCK_KIND) < CONTACT_NORMAL) {
             continue;
@@ -178,7 +178,7 @@ fn touch(s: u32, prm: u32) -> f32 {
             continue;
         }
         let o = (fetch3(place + 2u) - centre) * axes;
-        let d = (fetch3(place + 5u) * select(-1.0, 1.0, own == second)) * axes;
+        let d = (fetch3(place + 5u) * select(f32(-1.0), f32(1.0), own == second)) * axes;
         sum += select(0.0, normal, meets_volume(words[s + SENSOR_SHAPE], parameter3(prm + 2u), o, d));
     }
     return sum;
@@ -241,7 +241,7 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
         }
         case SENSE_INSIDESITE: {
             let inside = is_inside(s, prm, object_position(words[s + SENSOR_OBJECT_KIND], e));
-            return select(0.0, 1.0, inside);
+            return select(f32(0.0), f32(1.0), inside);
         }
         case SENSE_JOINTPOS: {
             return given(QPOS + words[JNT_QPOS + e]);
@@ -268,7 +268,7 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
             return fetch(TEN_VELOCITY + e);
         }
         case SENSE_TENDONACTUATORFRC: {
-            var sum = 0.0;
+            var sum: f32 = 0.0;
             for (var k = words[TENDON_PULL + e]; k < words[TENDON_PULL + e + 1u]; k++) {
                 sum += fetch(ACTUATOR_FORCE + words[PULL_OUTPUT + k]);
             }

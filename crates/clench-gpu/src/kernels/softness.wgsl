@@ -31,7 +31,7 @@ fn spring_damper(solref: vec2f, dmax_given: f32) -> vec2f {
 // base^exponent for exponents from 1 on, exact for small whole ones: a device's own power is not.
 fn raise(base: f32, exponent: f32) -> f32 {
     if (exponent != round(exponent) || exponent > 8.0) {
-        return pow(base, exponent);
+        return power_of(base, exponent);
     }
     var power = base;
     for (var k = 1u; k < u32(exponent); k++) {

@@ -2,7 +2,7 @@
 // `tendon_path.rs`.
 
 fn fixed_tendon(t: u32) -> f32 {
-    var length = 0.0;
+    var length: f32 = 0.0;
     for (var k = words[TENDON_TERM + t]; k < words[TENDON_TERM + t + 1u]; k++) {
         let coef = parameter(TERM_COEF + k);
         length += coef * given(QPOS + words[TERM_QPOS + k]);
@@ -25,7 +25,7 @@ fn add_span(t: u32, a: u32, p: vec3f, b: u32, q: vec3f, pull: vec3f) {
 }
 
 fn spatial_tendon(t: u32) -> f32 {
-    var length = 0.0;
+    var length: f32 = 0.0;
     for (var s = words[TENDON_SECTION + t]; s < words[TENDON_SECTION + t + 1u]; s++) {
         let share = parameter(SECTION_SHARE + s);
         let path = section_path(s);

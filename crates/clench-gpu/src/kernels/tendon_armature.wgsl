@@ -12,7 +12,7 @@ fn span_acceleration(span: Span) -> f32 {
     for (var side = 0u; side < bound(2u); side++) {
         let is_last = side == 1u;
         let at = select(span.first, span.last, is_last);
-        both += bias_acceleration(select(span.bodies.x, span.bodies.y, is_last), at).linear * select(-1.0, 1.0, is_last);
+        both += bias_acceleration(select(span.bodies.x, span.bodies.y, is_last), at).linear * select(f32(-1.0), f32(1.0), is_last);
     }
     let along = dot(unit.xyz, apart);
     let across = select((dot(apart, apart) - along * along) / max(unit.w, TINY), 0.0, unit.w < TINY);
@@ -22,7 +22,7 @@ fn span_acceleration(span: Span) -> f32 {
 fn tendon_bias() {
     for (var t = 0u; t < NTENDON; t++) {
         let armature = parameter(TENDON_ARMATURE + t);
-        var acceleration = 0.0;
+        var acceleration: f32 = 0.0;
         for (var s = words[TENDON_SECTION + t]; armature != 0.0 && s < words[TENDON_SECTION + t + 1u]; s++) {
             let path = section_path(s);
             for (var k = 0u; k < bound(span_count(path)); k++) {

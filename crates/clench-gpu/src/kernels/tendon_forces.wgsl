@@ -2,7 +2,7 @@
 
 fn tendon_velocities() {
     for (var t = 0u; t < NTENDON; t++) {
-        var velocity = 0.0;
+        var velocity: f32 = 0.0;
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
             velocity += fetch(TEN_JACOBIAN + k) * given(QVEL + words[TENDON_DOF + k]);
         }

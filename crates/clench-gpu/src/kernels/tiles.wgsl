@@ -76,7 +76,7 @@ fn tile_product() -> mat2x4f {
 
 // The part of a row of a tile times the vector at `x`.
 fn times_row(tile: u32, r: u32, x: u32) -> f32 {
-    var sum = 0.0;
+    var sum: f32 = 0.0;
     for (var k = 0u; k < QUADS; k++) {
         let first = x + 4u * k;
         sum += dot(tile_quad(tile, r, k), vec4f(vector(first), vector(first + 1u), vector(first + 2u), vector(first + 3u)));
@@ -86,7 +86,7 @@ fn times_row(tile: u32, r: u32, x: u32) -> f32 {
 
 // A column of a tile times the vector at `x`.
 fn times_column(tile: u32, column: u32, x: u32) -> f32 {
-    var sum = 0.0;
+    var sum: f32 = 0.0;
     for (var r = 0u; r < TILE; r++) {
         sum += tile_entry(tile, r, column) * vector(x + r);
     }

@@ -139,7 +139,7 @@ fn transmissions() {
     for (var u = 0u; u < NU; u++) {
         let kind = words[ACTUATOR_ON + u];
         let element = words[ACTUATOR_TARGET + 2u * u];
-        var length = 0.0;
+        var length: f32 = 0.0;
         if (ANY_ORIENTATION && kind >= ON_ROTATION) {
             on_rotation(u, element, words[ACTUATOR_TARGET + 2u * u + 1u]);
             continue;

@@ -9,7 +9,7 @@ fn judge(field: u32, index: u32, x: f32, beyond: bool) {
     if (beyond && reports[TROUBLE * envs + env] == RUNNING) {
         reports[FAULT_FIELD * envs + env] = field;
         reports[FAULT_INDEX * envs + env] = index;
-        reports[FAULT_VALUE * envs + env] = bitcast<u32>(x);
+        reports[FAULT_VALUE * envs + env] = report_bits(x);
         trouble(DIVERGED);
     }
 }

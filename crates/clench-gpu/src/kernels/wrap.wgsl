@@ -2,7 +2,7 @@
 // is derived. In the plane across the cylinder's axis, or through the sphere's centre and both ends, points have two coordinates.
 
 // Newton's method for a reflection: how far the angles may miss their sum, and how many steps there are at most.
-const REFLECTION_TOLERANCE: f32 = 16.0 * 1.1920929e-7;
+const REFLECTION_TOLERANCE: f32 = max(1e-6, 16.0 * EPSILON);
 const REFLECTION_STEPS: u32 = 20u;
 
 // Whether a string touches its obstacle, where it meets and leaves it, and its length between.
@@ -91,7 +91,7 @@ fn arc_sine(x: f32) -> f32 {
 
 // The angle of incidence of a string that is reflected by the circle, and whether it was found (1).
 fn reflect_string(ratios: vec2f, angle: f32) -> vec2f {
-    var beta = 1.5707963;
+    var beta: f32 = HALF_PI;
     if (angle < TINY) {
         return vec2f(beta, 0.0);
     }

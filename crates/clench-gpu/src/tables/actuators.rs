@@ -64,12 +64,13 @@ impl Tables {
     pub(super) fn actuators(&mut self, m: &Model) {
         for names in [&TRANSMISSIONS[..], &DYNAMICS, &LAWS, &INPUTS, &STATES] {
             for (code, name) in names.iter().enumerate() {
-                self.count(name, code);
+                self.constant(name, code);
             }
         }
         let count = m.actuators.len();
         self.count("NU", count);
         self.count("NA", m.na);
+        self.flag("ANY_ACTIVATION", m.na > 0);
         self.flag("ACTUATION", m.flags.actuation && count > 0);
         let outputs = || 0..m.nout();
         self.count("NOUT", m.nout());
@@ -193,7 +194,7 @@ impl Tables {
     /// Buffers of past controls: the first number, samples, numbers of each, and how they are read between.
     fn histories(&mut self, m: &Model) {
         for (code, name) in ["HOLD", "LINEAR", "CUBIC"].into_iter().enumerate() {
-            self.count(name, code);
+            self.constant(name, code);
         }
         let delayed = |a: &Actuator| a.history.is_some();
         self.flag("ANY_DELAY", m.actuators.iter().any(delayed));
@@ -224,7 +225,7 @@ impl Tables {
 
     fn gains(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter().enumerate());
-        self.count("LAW_SIZE", LAW_SIZE);
+        self.constant("LAW_SIZE", LAW_SIZE);
         let gain_law = |a: &Actuator| match a.gain {
             GainKind::Muscle => 1,
             GainKind::Pid => 2,

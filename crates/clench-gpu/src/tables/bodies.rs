@@ -1,7 +1,6 @@
 //! The tree: bodies, joints, dofs, and the geoms and sites on them.
 
 use super::{NONE, Tables, starts};
-use clench_rigid::dynamics::articulated::articulated_bodies;
 use clench_rigid::model::{JointKind, Model};
 
 impl Tables {
@@ -64,7 +63,6 @@ impl Tables {
         self.count("NNZ", tree.nnz());
         self.words("DOF_BODY", m.dofs.iter().map(|d| d.body));
         self.words("DOF_JNT", m.dofs.iter().map(|d| d.joint));
-        self.flag("LONG_PATHS", !articulated_bodies::<f32>(m).is_empty());
         self.words("TREE_START", (0..=nv).map(|i| tree.row_start(i)));
         let columns = (0..nv).flat_map(|i| tree.row(i));
         self.words("TREE_DOF", columns.map(|&j| j as usize));

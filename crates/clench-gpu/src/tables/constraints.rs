@@ -23,10 +23,10 @@ impl Tables {
     pub(super) fn friction(&mut self, m: &Model, s: &StepSettings, capacity: &mut Capacity) {
         for names in [&BLOCK_KINDS[..], &BLOCK_FIELDS] {
             for (code, name) in names.iter().enumerate() {
-                self.count(name, code);
+                self.constant(name, code);
             }
         }
-        self.count("BLOCK_SIZE", BLOCK_SIZE);
+        self.constant("BLOCK_SIZE", BLOCK_SIZE);
         let p = &m.params;
         let on = s.flags.constraint && s.flags.frictionloss;
         let (mut sources, mut numbers) = (Vec::new(), Vec::new());

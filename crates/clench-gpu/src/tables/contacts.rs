@@ -3,10 +3,12 @@
 use super::{Capacity, Tables};
 use crate::check::{METHODS, may_be_general, method_of_pair, points_of_pair};
 use clench_collide::{MAX_POINTS, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
+use clench_math::Scalar;
 use clench_rigid::contact::{Candidate, contact_params, contact_range};
 use clench_rigid::model::Model;
 use clench_rigid::options::MaxContacts;
 use clench_rigid::settings::StepSettings;
+use std::f64::consts::PI;
 
 /// The pool of an environment, where the options leave it open and the pairs could fill a larger one. Contacts beyond are a fault,
 /// never left out in silence.
@@ -45,7 +47,7 @@ fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
 }
 
 /// Within what distance of their centres (of a plane: of the second's to it) two geoms may touch.
-fn reach(m: &Model, pair: &Candidate) -> f64 {
+fn reach<S: Scalar>(m: &Model, pair: &Candidate) -> f64 {
     let is_empty =
         |&g: &u32| m.geoms[g as usize].kind == ShapeKind::Mesh && m.hull(g as usize).is_none();
     if pair.geoms.iter().any(is_empty) {
@@ -54,11 +56,11 @@ fn reach(m: &Model, pair: &Candidate) -> f64 {
     let radius = |g: u32| m.params.geom_rbound[g as usize];
     let (_, range) = contact_range::<f64>(m, &m.params, pair);
     let radii = radius(pair.geoms[0]) + radius(pair.geoms[1]);
-    (radii + range) * f64::from(allowance::<f32>())
+    (radii + range) * allowance::<S>().to_f64()
 }
 
 impl Tables {
-    pub(super) fn pairs(
+    pub(super) fn pairs<S: Scalar>(
         &mut self,
         m: &Model,
         s: &StepSettings,
@@ -75,10 +77,10 @@ impl Tables {
             ("BOX", ShapeKind::Box),
             ("MESH", ShapeKind::Mesh),
         ] {
-            self.count(name, kind as usize);
+            self.constant(name, kind as usize);
         }
         for (code, name) in METHODS.iter().enumerate() {
-            self.count(name, code);
+            self.constant(name, code);
         }
         let geoms = || candidates.iter().flat_map(|c| c.geoms);
         let dim = |c: &Candidate| contact_params::<f64>(m, &m.params, c).dim;
@@ -106,32 +108,27 @@ impl Tables {
         );
         let vertices = if general { POLYTOPE_VERTICES } else { 4 };
         let faces = 2 * vertices - 4;
-        self.count("POLYTOPE_VERTICES", vertices);
-        self.count("POLYTOPE_FACES", faces);
-        // Nine numbers of a vertex, twelve of a face; a list of sides, of faces, and three numbers of each side of the horizon.
-        capacity.polytope = if general {
-            9 * vertices + 17 * faces + 4
-        } else {
-            0
-        };
+        self.constant("POLYTOPE_VERTICES", vertices);
+        self.constant("POLYTOPE_FACES", faces);
+        if general {
+            capacity.polytope = [vertices, faces];
+        }
         // Two manifolds with a point more than there is room for, and both lists.
         let on_terrain = |c: &Candidate| c.kinds[0] == ShapeKind::HeightField;
         let any_terrain = candidates.iter().any(on_terrain);
-        let points = 2 * (MAX_POINTS + 1) + FACE_LIST_POINTS + PATCH_LIST_POINTS;
-        capacity.terrain = if any_terrain {
-            points * TERRAIN_POINT_SIZE
-        } else {
-            0
-        };
+        if any_terrain {
+            let points = [2 * (MAX_POINTS + 1), FACE_LIST_POINTS, PATCH_LIST_POINTS];
+            capacity.terrain = points.map(|points| points * TERRAIN_POINT_SIZE);
+        }
         self.flag("ANY_TERRAIN", any_terrain);
-        self.count("MAX_TERRAIN_POINTS", MAX_POINTS);
-        self.count("TERRAIN_POINT_SIZE", TERRAIN_POINT_SIZE);
-        self.count("FACE_LIST_POINTS", FACE_LIST_POINTS);
-        self.count("PATCH_LIST_POINTS", PATCH_LIST_POINTS);
+        self.constant("MAX_TERRAIN_POINTS", MAX_POINTS);
+        self.constant("TERRAIN_POINT_SIZE", TERRAIN_POINT_SIZE);
+        self.constant("FACE_LIST_POINTS", FACE_LIST_POINTS);
+        self.constant("PATCH_LIST_POINTS", PATCH_LIST_POINTS);
         self.words("PAIR_DIM", candidates.iter().map(dim));
         let range = |c: &Candidate| contact_range::<f64>(m, &m.params, c).1;
         self.numbers("PAIR_RANGE", candidates.iter().map(range));
-        self.numbers("PAIR_REACH", candidates.iter().map(|c| reach(m, c)));
+        self.numbers("PAIR_REACH", candidates.iter().map(|c| reach::<S>(m, c)));
         let rows = Vec::from_iter(candidates.iter().map(|c| parameters(m, c)));
         self.count("PAIR_PRM_SIZE", rows.first().map_or(0, Vec::len));
         self.numbers("PAIR_PRM", rows.into_iter().flatten());
@@ -146,7 +143,7 @@ impl Tables {
         capacity.blocks += capacity.contacts;
         capacity.rows += capacity.contacts * widest;
         self.count("MAX_CONTACTS", capacity.contacts);
-        self.count("CONTACT_SIZE", CONTACT_SIZE);
+        self.constant("CONTACT_SIZE", CONTACT_SIZE);
     }
 
     /// Which contacts adhere of themselves, and which surfaces move by themselves.
@@ -196,10 +193,14 @@ impl Tables {
             corners = corners.max(CAP_CORNERS);
         }
         corners = corners.max(hull_corners.min(MAX_FACE_CORNERS));
-        self.count("PATCH_POINTS", PATCH_POINTS);
-        self.count("CAP_CORNERS", CAP_CORNERS);
-        self.count("MAX_FACE_CORNERS", MAX_FACE_CORNERS);
-        self.count("FEATURE_CORNERS", corners);
+        self.constant("PATCH_POINTS", PATCH_POINTS);
+        self.constant("CAP_CORNERS", CAP_CORNERS);
+        // Half the angle of the sector of directions that a point of a patch stands for.
+        self.real("HALF_SECTOR", PI / PATCH_POINTS as f64);
+        // The angle between the corners that stand for a round cap.
+        self.real("CAP_ANGLE", 2.0 * PI / CAP_CORNERS as f64);
+        self.constant("MAX_FACE_CORNERS", MAX_FACE_CORNERS);
+        self.constant("FEATURE_CORNERS", corners);
         self.flag("MANY_CORNERS", corners > BOX_CORNERS);
         // Two polygons overlap in one of at most all their corners; on a round cap lie both ends of a chord for each side, too.
         let most = if flat_with(Cylinder) {
@@ -207,6 +208,6 @@ impl Tables {
         } else {
             2 * corners + BOX_CORNERS
         };
-        self.count("POLYGON_CORNERS", most);
+        self.constant("POLYGON_CORNERS", most);
     }
 }

@@ -84,7 +84,7 @@ impl Tables {
         self.words("BODY_ELLIPSOID", starts(all.iter().map(Vec::len)));
         let geoms = || all.iter().flatten().copied();
         self.words("ELLIPSOID_GEOM", geoms());
-        self.count("ELLIPSOID_SIZE", ELLIPSOID_SIZE);
+        self.constant("ELLIPSOID_SIZE", ELLIPSOID_SIZE);
         self.numbers("ELLIPSOID_PRM", geoms().flat_map(|g| ellipsoid(m, g)));
         self.words("BODY_WELD", m.bodies.iter().map(|b| b.weld));
     }
@@ -107,6 +107,7 @@ impl Tables {
         self.count("LS_ITERATIONS", s.solver.ls_iterations);
         self.real("TOLERANCE", s.solver.tolerance);
         self.real("LS_TOLERANCE", s.solver.ls_tolerance);
+        self.flag("NOSLIP", s.solver.noslip_iterations > 0);
         self.count("NOSLIP_ITERATIONS", s.solver.noslip_iterations);
         self.real("NOSLIP_TOLERANCE", s.solver.noslip_tolerance);
         for (name, kind) in [
@@ -115,7 +116,7 @@ impl Tables {
             ("SLIDE", JointKind::Slide),
             ("HINGE", JointKind::Hinge),
         ] {
-            self.count(name, kind as usize);
+            self.constant(name, kind as usize);
         }
     }
 }

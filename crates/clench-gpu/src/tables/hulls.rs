@@ -71,7 +71,7 @@ impl Tables {
     /// The polyhedra and height fields of a model's pairs, and which of them each geom is: `NONE` where it is none. Gives the most corners of a face.
     pub(super) fn hulls(&mut self, m: &Model, candidates: &[Candidate]) -> usize {
         for (offset, name) in PARTS.iter().enumerate() {
-            self.count(name, offset);
+            self.constant(name, offset);
         }
         let mut most_corners = 0;
         let mut of_mesh = vec![None; m.meshes.len()];
@@ -165,7 +165,7 @@ impl Tables {
 
     fn add_numbers(&mut self, values: impl IntoIterator<Item = f64>) -> usize {
         let place = self.numbers.len();
-        self.numbers.extend(values.into_iter().map(|v| v as f32));
+        self.numbers.extend(values);
         place
     }
 }

@@ -1,4 +1,4 @@
-//! The model as the device reads it: one array of words, one of numbers, and the constants by which the kernels find what they
+//! The model as the device reads it: one array of words, one of numbers, and the layout by which the kernels find what they
 //! want in them. A table is one line of one of the files here; its name in capitals is its place.
 
 mod actuators;
@@ -15,7 +15,10 @@ pub(crate) use constraints::BLOCK_SIZE;
 pub(crate) use contacts::CONTACT_SIZE;
 pub(crate) use sensors::unread;
 
+use crate::layout::Layout;
+use clench_math::Scalar;
 use clench_rigid::contact::Candidate;
+use clench_rigid::dynamics::articulated::articulated_bodies;
 use clench_rigid::model::Model;
 use clench_rigid::settings::StepSettings;
 use std::fmt::Write;
@@ -34,9 +37,11 @@ pub(crate) struct Tables {
     /// Structure: indices and kinds.
     pub words: Vec<u32>,
     /// Numbers of the model.
-    pub numbers: Vec<f32>,
-    /// Declarations in WGSL.
+    pub numbers: Vec<f64>,
+    /// Declarations in WGSL, which decide of the texts of the kernels.
     pub constants: String,
+    /// Where the tables lie, and how much there is of what.
+    pub layout: Layout,
 }
 
 /// How large the constraints of an environment can become.
@@ -48,10 +53,12 @@ pub(crate) struct Capacity {
     pub blocks: usize,
     /// Rows of the convex problem.
     pub rows: usize,
-    /// Numbers of the polytope of overlapping shapes.
-    pub polytope: usize,
-    /// Numbers of the contacts on terrain while they are gathered.
-    pub terrain: usize,
+    /// Bodies whose articulated inertia is kept, where paths are long.
+    pub articulated: usize,
+    /// Vertices of the polytope of overlapping shapes, and its faces.
+    pub polytope: [usize; 2],
+    /// Numbers of the manifolds on terrain, of the contacts of a face, and of those of a patch.
+    pub terrain: [usize; 3],
     /// Numbers of the factor of H that lie with the rows.
     pub tiles: usize,
     /// Numbers of the solver's vectors that lie with the rows.
@@ -63,7 +70,7 @@ pub(crate) struct Capacity {
 impl Tables {
     /// The tables of a model, and how large its constraints can become. Numbers that environments may have for themselves; what they
     /// share comes after them.
-    pub(crate) fn new(
+    pub(crate) fn new<S: Scalar>(
         model: &Model,
         settings: &StepSettings,
         candidates: &[Candidate],
@@ -72,6 +79,7 @@ impl Tables {
             words: Vec::new(),
             numbers: Vec::new(),
             constants: String::new(),
+            layout: Layout::default(),
         };
         tables.words("ZERO", [0]);
         tables.words("OWN_PARAMETERS", [0]);
@@ -85,38 +93,52 @@ impl Tables {
         tables.actuators(model);
         tables.sensors(model);
         tables.settings(model, settings);
-        let mut capacity = Capacity::default();
+        let mut capacity = Capacity {
+            articulated: articulated_bodies::<S>(model).len(),
+            ..Capacity::default()
+        };
+        tables.flag("LONG_PATHS", capacity.articulated > 0);
         tables.equalities(model, settings, &mut capacity);
         tables.friction(model, settings, &mut capacity);
         tables.limits(model, settings, &mut capacity);
-        tables.pairs(model, settings, candidates, &mut capacity);
+        tables.pairs::<S>(model, settings, candidates, &mut capacity);
         (tables, capacity)
     }
 
     /// Adds a table of words.
     fn words(&mut self, name: &str, values: impl IntoIterator<Item = usize>) {
-        self.count(name, self.words.len());
+        self.layout.count(name, self.words.len());
         self.words.extend(values.into_iter().map(|v| v as u32));
     }
 
     /// Adds a table of numbers.
     pub(crate) fn numbers(&mut self, name: &str, values: impl IntoIterator<Item = f64>) {
-        self.count(name, self.numbers.len());
-        self.numbers.extend(values.into_iter().map(|v| v as f32));
+        self.layout.count(name, self.numbers.len());
+        self.numbers.extend(values);
     }
 
-    /// Declares a count, a place or a code.
-    pub(crate) fn count(&mut self, name: &str, value: usize) {
+    /// The numbers of the model in the device's type.
+    pub(crate) fn numbers_in<S: Scalar>(&self) -> Vec<S> {
+        self.numbers.iter().map(|&x| S::new(x)).collect()
+    }
+
+    /// Tells how many there are of something.
+    fn count(&mut self, name: &str, value: usize) {
+        self.layout.count(name, value);
+    }
+
+    /// Tells a number.
+    fn real(&mut self, name: &str, value: f64) {
+        self.layout.real(name, value);
+    }
+
+    /// Declares a code, or a size on which the texts of the kernels depend.
+    fn constant(&mut self, name: &str, value: usize) {
         let _ = writeln!(self.constants, "const {name}: u32 = {value}u;");
     }
 
     fn flag(&mut self, name: &str, value: bool) {
         let _ = writeln!(self.constants, "const {name}: bool = {value};");
-    }
-
-    /// Declares a number, with all its digits.
-    fn real(&mut self, name: &str, value: f64) {
-        let _ = writeln!(self.constants, "const {name}: f32 = {:e}f;", value as f32);
     }
 }
 

@@ -102,17 +102,17 @@ impl Tables {
     pub(super) fn sensors(&mut self, m: &Model) {
         for names in [&SENSOR_FIELDS[..], &WAYS, &FRAMES] {
             for (code, name) in names.iter().enumerate() {
-                self.count(name, code);
+                self.constant(name, code);
             }
         }
         for &kind in SensorKind::ALL {
-            self.count(
+            self.constant(
                 &format!("SENSE_{}", kind.name().to_uppercase()),
                 kind as usize,
             );
         }
-        self.count("SENSOR_SIZE", SENSOR_FIELDS.len());
-        self.count("SENSOR_PRM_SIZE", SENSOR_PRM_SIZE);
+        self.constant("SENSOR_SIZE", SENSOR_FIELDS.len());
+        self.constant("SENSOR_PRM_SIZE", SENSOR_PRM_SIZE);
         let p = &m.params;
         let (mut words, mut numbers) = (Vec::new(), Vec::new());
         let readable = m.sensors.iter().filter_map(|s| Some((s, target(m, s)?)));

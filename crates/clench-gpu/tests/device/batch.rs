@@ -200,7 +200,7 @@ fn the_pool_and_what_is_not_computed_are_told() {
         options: RigidOptions::new().max_contacts(MaxContacts::Limit(1)),
         ..BatchOptions::default()
     };
-    let mut batch = clench_gpu::batch(model, 2, options, None).expect("a device");
+    let mut batch = clench_gpu::batch::<f32>(model, 2, options, None).expect("a device");
     batch.state.qpos.row_mut(1)[1] = -0.55;
     batch.step().expect("a device");
     let full = Fault::ContactOverflow {

@@ -82,7 +82,8 @@ fn conjugate_gradients_go_where_newton_does_not() {
 
 #[test]
 fn more_dofs_than_newton_is_for_are_refused() {
-    let error = GpuBatch::new(flock(86, ""), 1, GpuOptions::default()).expect_err("516 dofs");
+    let error =
+        GpuBatch::<f32>::new(flock(86, ""), 1, GpuOptions::default()).expect_err("516 dofs");
     let most = 512;
     assert_eq!(error, GpuError::TooManyDofs { most, nv: 516 });
     assert!(error.to_string().contains("CG has no such limit"));

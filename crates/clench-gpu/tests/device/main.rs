@@ -4,6 +4,7 @@
 mod batch;
 mod common;
 mod dm_control;
+mod double;
 mod gymnasium;
 mod large;
 mod outputs;

@@ -139,7 +139,7 @@ fn refused(sensor: &str, kind: &str) {
     if common::batch(&model, 1).is_none() {
         return;
     }
-    let batch = clench_gpu::batch(model, 1, BatchOptions::default(), None);
+    let batch = clench_gpu::batch::<f32>(model, 1, BatchOptions::default(), None);
     let error = batch
         .expect("a device")
         .record(&["sensordata"])

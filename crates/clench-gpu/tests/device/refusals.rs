@@ -37,7 +37,8 @@ fn what_is_not_there_yet_is_refused_by_name() {
             "model: a model without",
         ),
     ] {
-        let error = GpuBatch::new(text(&text_of_model), 1, GpuOptions::default()).expect_err(words);
+        let error =
+            GpuBatch::<f32>::new(text(&text_of_model), 1, GpuOptions::default()).expect_err(words);
         assert!(matches!(error, GpuError::Unsupported(_)), "{error}");
         let said = error.to_string();
         assert!(said.contains(words), "{said} does not say {words}");
@@ -50,7 +51,7 @@ fn a_device_that_is_not_there_is_an_error_that_says_what_to_do() {
         device: Some("no such card".to_owned()),
         ..GpuOptions::default()
     };
-    let error = GpuBatch::new(text(&model("")), 1, options).expect_err("no such card");
+    let error = GpuBatch::<f32>::new(text(&model("")), 1, options).expect_err("no such card");
     let said = error.to_string();
     let known = said.starts_with("there is no graphics device \"no such card\"; there are: ");
     assert!(known || said.contains("mesa-vulkan-drivers"), "{said}");

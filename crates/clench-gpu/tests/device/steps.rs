@@ -174,7 +174,7 @@ fn a_step_that_is_cut_short_is_a_fault_and_no_wrong_numbers() {
         device: None,
     };
     let count = 24;
-    let mut batch = GpuBatch::new(model.clone(), count, options).expect("a device");
+    let mut batch = GpuBatch::<f32>::new(model.clone(), count, options).expect("a device");
     let states = some_states(&model, count);
     upload(&mut batch, &states);
     batch.step(1).expect("a device");
@@ -273,7 +273,7 @@ fn too_many_contacts_are_a_fault() {
         options,
         device: None,
     };
-    let mut batch = GpuBatch::new(model.clone(), 2, options).expect("a device");
+    let mut batch = GpuBatch::<f32>::new(model.clone(), 2, options).expect("a device");
     let mut low = vec![0.0; model.nq];
     low[1] = -0.55;
     batch.write_env(1, "qpos", &low).expect("a good row");

@@ -1,11 +1,6 @@
 // Convex bodies by their support functions, as a core plus a radius. Sister of `clench-collide/src/shape/core.rs`, where they
 // are explained.
 
-const MIN_NORMAL: f32 = 1.1754944e-38;
-const ROUNDING: f32 = 1.1920929e-7;
-// The root of that.
-const ROOT_OF_ROUNDING: f32 = 3.4526698e-4;
-
 struct Body {
     kind: u32,
     size: vec3f,
@@ -31,7 +26,7 @@ fn body_of(geom: u32) -> Body {
             return Body(kind, size, size.x, size.x + size.y, hull);
         }
         case ELLIPSOID: {
-            return Body(kind, size, least * (least / max(most, MIN_NORMAL)), most, hull);
+            return Body(kind, size, least * (least / max(most, SMALLEST)), most, hull);
         }
         case CYLINDER: {
             return Body(kind, size, 0.0, length(size.xy), hull);
@@ -54,7 +49,7 @@ fn signed(x: f32, y: f32) -> f32 {
 // The unit direction of `d` projected across z; x where there is none.
 fn radial_direction(d: vec3f) -> vec2f {
     let level = length(d.xy);
-    if (level > MIN_NORMAL) {
+    if (level > SMALLEST) {
         return d.xy / level;
     }
     return vec2f(1.0, 0.0);
@@ -80,8 +75,8 @@ fn support_without_hull(body: Body, d: vec3f, side: vec3f) -> vec3f {
         }
         case ELLIPSOID: {
             let scaled = d * s;
-            let unit = d / max(length(d), MIN_NORMAL);
-            return scaled * s / max(length(scaled), MIN_NORMAL) - unit * body.radius;
+            let unit = d / max(length(d), SMALLEST);
+            return scaled * s / max(length(scaled), SMALLEST) - unit * body.radius;
         }
         case CYLINDER: {
             return vec3f(radial_direction(d) * s.x, signed(s.y, side.z));
@@ -103,7 +98,7 @@ fn nearest_of_body(body: Body, p: vec3f) -> vec3f {
             return vec3f(0.0, 0.0, clamp(p.z, -s.y, s.y));
         }
         case CYLINDER: {
-            return vec3f(p.xy * min(s.x / max(length(p.xy), MIN_NORMAL), 1.0), clamp(p.z, -s.y, s.y));
+            return vec3f(p.xy * min(s.x / max(length(p.xy), SMALLEST), 1.0), clamp(p.z, -s.y, s.y));
         }
         case BOX: {
             return clamp(p, -s, s);
@@ -126,12 +121,12 @@ fn curvature_of(body: Body, d: vec3f) -> Curvature {
     let s = body.size;
     if (ANY_ELLIPSOID && body.kind == ELLIPSOID) {
         let scaled = d * s;
-        let inverse = 1.0 / max(length(scaled), MIN_NORMAL);
+        let inverse = 1.0 / max(length(scaled), SMALLEST);
         return Curvature(inverse, s * s, scaled * s * inverse, body.radius);
     }
     if (ANY_CYLINDER && body.kind == CYLINDER) {
         let radial = radial_direction(d);
-        return Curvature(-s.x / max(length(d.xy), ROUNDING), vec3f(), vec3f(-radial.y, radial.x, 0.0), 0.0);
+        return Curvature(-s.x / max(length(d.xy), EPSILON), vec3f(), vec3f(-radial.y, radial.x, 0.0), 0.0);
     }
     return Curvature(0.0, vec3f(), vec3f(), 0.0);
 }

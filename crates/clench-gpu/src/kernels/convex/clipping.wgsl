@@ -26,7 +26,7 @@ fn project_feature(place: u32, f: Feature, axes: mat3x3f, center: vec3f) -> Proj
     var slope = -normal.xy / normal.z;
     if (f.count == 2u) {
         let apart = feature_corners[place + 1u] - feature_corners[place];
-        slope = apart.xy * (apart.z / max(dot(apart.xy, apart.xy), MIN_NORMAL));
+        slope = apart.xy * (apart.z / max(dot(apart.xy, apart.xy), SMALLEST));
     }
     return Projected(place, f.count, slope, f.radius, axes[0], axes[1], center);
 }
@@ -133,7 +133,7 @@ fn covers(f: Projected, p: vec2f, slack: f32) -> bool {
 fn chord(cap: Projected, p: vec2f, q: vec2f) -> vec2f {
     let start = in_cap_plane(cap, p);
     let along = in_cap_plane(cap, q) - start;
-    let square = max(dot(along, along), MIN_NORMAL);
+    let square = max(dot(along, along), SMALLEST);
     let nearest = -dot(start, along) / square;
     let miss = turn_of(start, along);
     let half = sqrt(max(cap.radius * cap.radius * square - miss * miss, 0.0)) / square;
@@ -185,10 +185,10 @@ fn sort_around() {
         let arm = polygon[k].xy - center;
         let along = dot(start, arm);
         let aside = turn_of(start, arm);
-        let size = max(abs(along) + abs(aside), MIN_NORMAL);
+        let size = max(abs(along) + abs(aside), SMALLEST);
         let turn = 1.0 - along / size;
         // Grows with the angle from the first corner, 0 to 4. Corners next to the first come with it.
-        let corner = vec3f(polygon[k].xy, select(turn, 4.0 - turn, aside < -size * (ROUNDING * 1e3)));
+        let corner = vec3f(polygon[k].xy, select(turn, 4.0 - turn, aside < -size * (EPSILON * 1e3)));
         var place = k;
         while (place > 0u && polygon[max(place, 1u) - 1u].z > corner.z) {
             polygon[place] = polygon[place - 1u];

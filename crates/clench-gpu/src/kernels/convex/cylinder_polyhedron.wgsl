@@ -108,7 +108,7 @@ fn cross_face(c: Cylinder, plane: vec4f) -> Crossed {
     let sideways = cross(c.axis, plane.xyz);
     let level = length(sideways);
     let reach = c.size.x * level + c.size.y * abs(along);
-    let arm = c.size.x * along / max(level, MIN_NORMAL) - signed(c.size.y, along);
+    let arm = c.size.x * along / max(level, SMALLEST) - signed(c.size.y, along);
     return Crossed(reach + plane.w - dot(plane.xyz, c.center), cross(c.center, plane.xyz) + sideways * arm);
 }
 
@@ -165,7 +165,7 @@ fn ellipse_normal(cosine: f32, sine: f32, p: vec2f) -> vec2f {
         }
         let turn = at.x * at.x * cosine * cosine + at.y * at.y;
         at = vec2f(at.x * fall - at.y * value, at.y * fall + at.x * value);
-        if (value * value <= fall * fall * turn * ROUNDING) {
+        if (value * value <= fall * fall * turn * EPSILON) {
             break;
         }
     }
@@ -178,7 +178,7 @@ fn offer_edge(c: Cylinder, start: vec3f, edge: vec3f, m: vec3f, n: vec3f) {
     let crossed = cross(edge, c.axis);
     let cosine = abs(dot(edge, c.axis));
     let sine = length(crossed);
-    if (sine <= ROUNDING) {
+    if (sine <= EPSILON) {
         return;
     }
     let sideways = crossed / sine;
@@ -194,13 +194,13 @@ fn offer_edge(c: Cylinder, start: vec3f, edge: vec3f, m: vec3f, n: vec3f) {
     } else if (max(out.x, out.y) <= 0.0) {
         offer(-x - c.size.x, sideways * -side);
     }
-    if (cosine <= ROUNDING || c.size.x <= 0.0) {
+    if (cosine <= EPSILON || c.size.x <= 0.0) {
         return;
     }
     let along = cross(sideways, edge);
     let up = vec2f(dot(along, within_m), dot(along, within_n));
     for (var k = 0u; k < bound(2u); k++) {
-        let sign = select(-1.0, 1.0, k == 0u);
+        let sign = select(f32(-1.0), f32(1.0), k == 0u);
         if ((out.x < 0.0 && up.x * sign < 0.0) || (out.y < 0.0 && up.y * sign < 0.0)) {
             continue;
         }

@@ -52,7 +52,7 @@ fn span_distances(low: f32, high: f32) -> vec2f {
 // Whether a direction across two cap circles may have a smaller depth than `depth`.
 fn circles_cross(a: Facing, b: Facing, cosine: f32, sine: f32, depth: f32) -> bool {
     for (var k = 0u; k < bound(4u); k++) {
-        let ends = vec2f(select(1.0, -1.0, (k & 2u) != 0u), select(1.0, -1.0, (k & 1u) != 0u));
+        let ends = vec2f(select(f32(1.0), f32(-1.0), (k & 2u) != 0u), select(f32(1.0), f32(-1.0), (k & 1u) != 0u));
         var both = true;
         for (var side = 0u; side < bound(2u) && both; side++) {
             var own = a;
@@ -85,10 +85,10 @@ fn cylinders_gap() -> Gap {
     let sine = length(axis.xy);
     largest_gap = Gap(own_axis, -UNMOVABLE, false);
     bar = -UNMOVABLE;
-    if (sine <= ROUNDING) {
+    if (sine <= EPSILON) {
         return largest_gap;
     }
-    let least = vec3f(largest * ROUNDING, 0.0, 0.0);
+    let least = vec3f(largest * EPSILON, 0.0, 0.0);
     let sideways = vec3f(-axis.y, axis.x, 0.0) / sine;
     let a = facing(max(body_a.size, least), cross(sideways, own_axis), offset_b, sideways, own_axis);
     let b = facing(max(body_b.size, least), cross(axis, sideways), -offset_b, sideways, axis);
@@ -108,7 +108,7 @@ fn cylinders_gap() -> Gap {
                 other = a;
             }
             let corner = vec2f(abs(own.offset.x), abs(own.offset.y) - other.size.y * sine) / other.size.x;
-            let found = ellipse_normal(max(abs(cosine), ROUNDING), sine, corner);
+            let found = ellipse_normal(max(abs(cosine), EPSILON), sine, corner);
             if (all(found == vec2f())) {
                 continue;
             }

@@ -42,7 +42,7 @@ fn enclose() -> bool {
     var normal = vec3f();
     for (var stage = 1u; stage < bound(4u); stage++) {
         var furthest = simplex[0];
-        var most = 0.0;
+        var most: f32 = 0.0;
         var across_gap = Gap(vec3f(), -UNMOVABLE, false);
         let directions = 8u - 2u * stage;
         for (var k = 0u; k < simplex_count + directions; k++) {
@@ -65,7 +65,7 @@ fn enclose() -> bool {
                 furthest = vertex;
             }
         }
-        if (most <= largest * ROUNDING * 16.0) {
+        if (most <= largest * EPSILON * 16.0) {
             best = across_gap;
             return false;
         }
@@ -162,7 +162,7 @@ fn try_crossings() {
             n = cross(own[(k - 6u) / 3u], turn_b[(k - 6u) % 3u]);
         }
         let size = length(n);
-        if (size > ROOT_OF_ROUNDING) {
+        if (size > ROOT_OF_EPSILON) {
             n = n * (signed(1.0, dot(n, offset_b)) / size);
             improve(Gap(n, dot(n, vertex_along(n).w), false));
         }

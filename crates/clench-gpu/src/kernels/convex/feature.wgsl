@@ -5,8 +5,6 @@ const FACE_COSINE: f32 = 0.996;
 const EDGE_SINE: f32 = 0.087;
 // A cap tilted by less is level to rounding: all its corners are equally deep.
 const TILT: f32 = 5e-6;
-// The angle between the corners that stand for a round cap.
-const CAP_ANGLE: f32 = 6.2831855 / f32(CAP_CORNERS);
 // The corners of a feature of the first body, then those of one of the second, each in its body's frame.
 var<private> feature_corners: array<vec3f, 2 * FEATURE_CORNERS>;
 
@@ -39,7 +37,7 @@ fn box_feature(size: vec3f, corner: vec3f, d: vec3f, place: u32) -> Feature {
             for (var k = 0u; k < bound(4u); k++) {
                 var found = corner;
                 found[next] = size[next] * select(-sign, sign, k == 1u || k == 2u);
-                found[last] = size[last] * select(-1.0, 1.0, k >= 2u);
+                found[last] = size[last] * select(f32(-1.0), f32(1.0), k >= 2u);
                 feature_corners[place + k] = found;
             }
             return Feature(4u, normal, 0.0);

@@ -3,7 +3,7 @@
 
 const GJK_ROUNDS: u32 = 64u;
 // Shares of the smaller body: below the first the direction between the cores is noise, the bounds may differ by the second.
-const TOUCHING: f32 = 4.0 * 3.4526698e-4;
+const TOUCHING: f32 = 4.0 * ROOT_OF_EPSILON;
 const DOUBT: f32 = 1e-6;
 
 // How a search ends: a gap beyond the limit, the origin seems inside, nothing is nearer.

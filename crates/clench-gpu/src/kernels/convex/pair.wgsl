@@ -36,7 +36,7 @@ fn begin_pair(a: Body, b: Body, turn: mat3x3f, offset: vec3f) {
     offset_b = offset;
     smallest = min(a.reach, b.reach);
     largest = a.reach + b.reach + abs(offset.x) + abs(offset.y) + abs(offset.z);
-    exactness = max(largest * ROUNDING * 64.0, smallest * 1e-9);
+    exactness = max(largest * EPSILON * 64.0, smallest * 1e-9);
 }
 
 // The direction between points of the cores that are near to each other.
@@ -75,7 +75,7 @@ fn vertex_along(n: vec3f) -> Vertex {
 
 // Takes the other gap if it is larger; between equals, to the tolerance, a settled one. Whether it did.
 fn improve(other: Gap) -> bool {
-    var handicap = 0.0;
+    var handicap: f32 = 0.0;
     if (best.settled != other.settled) {
         handicap = select(-exactness, exactness, best.settled);
     }

@@ -2,17 +2,13 @@
 // `clench-collide/src/narrow/convex/polytope.rs`, where it is explained.
 //
 // Of a vertex there are nine numbers, of a face twelve: its corners, the sides across (four times the face, and the side), its
-// normal, its distance, that again where it may still be moved, else UNMOVABLE, and whether it is removed.
+// normal, its distance, that again where it may still be moved, else UNMOVABLE, and whether it is removed. Of the horizon, the sides of
+// the faces that stay, in order: the side, and the corners that it goes from and to.
 
 const UNMOVABLE: f32 = 3e38;
 // Vertices nearer than this share of the smaller body are one.
 const SAME_VERTEX: f32 = 1e-6;
 const FACE_SIZE: u32 = 12u;
-const FACES_AT: u32 = POLYTOPE + 9u * POLYTOPE_VERTICES;
-const STACK_AT: u32 = FACES_AT + FACE_SIZE * POLYTOPE_FACES;
-const VISIBLE_AT: u32 = STACK_AT + POLYTOPE_FACES + 4u;
-// Sides of the faces that stay, in order: the side, and the corners that it goes from and to.
-const HORIZON_AT: u32 = VISIBLE_AT + POLYTOPE_FACES;
 
 var<private> vertex_count: u32;
 var<private> face_count: u32;
@@ -41,12 +37,12 @@ fn push_vertex(vertex: Vertex) {
 }
 
 fn face_at(face: u32) -> u32 {
-    return FACES_AT + FACE_SIZE * face;
+    return POLYTOPE_FACE + FACE_SIZE * face;
 }
 
 // How far beyond a face a vertex must be to count.
 fn visibility() -> f32 {
-    return largest * ROUNDING * 4.0;
+    return largest * EPSILON * 4.0;
 }
 
 fn insert_face(face: u32, corners: vec3u, sides: vec3u) {
@@ -56,7 +52,7 @@ fn insert_face(face: u32, corners: vec3u, sides: vec3u) {
     let area = length(crossed);
     // A face without area, to rounding, may even look inwards.
     let is_flat = dot(crossed, a - middle) <= area * visibility();
-    let normal = select(crossed / max(area, MIN_NORMAL), vec3f(), is_flat);
+    let normal = select(crossed / max(area, SMALLEST), vec3f(), is_flat);
     let distance = dot(normal, a);
     put3(place, vec3f(corners));
     put3(place + 3u, vec3f(sides));
@@ -109,7 +105,7 @@ fn nearest_face_of_polytope() -> u32 {
 
 fn remove_face(face: u32) {
     put(face_at(face) + 11u, 1.0);
-    put(VISIBLE_AT + visible_count, f32(face));
+    put(POLYTOPE_VISIBLE + visible_count, f32(face));
     visible_count++;
 }
 
@@ -120,12 +116,12 @@ fn find_horizon(first: u32, w: vec3f) {
     remove_face(first);
     var depth = 0u;
     for (var k = 3u; k > 0u; k--) {
-        put(STACK_AT + depth, fetch(face_at(first) + 2u + k));
+        put(POLYTOPE_STACK + depth, fetch(face_at(first) + 2u + k));
         depth++;
     }
     while (depth > 0u) {
         depth--;
-        let side = fetch_index(STACK_AT + depth);
+        let side = fetch_index(POLYTOPE_STACK + depth);
         let face = side >> 2u;
         let start = side & 3u;
         let place = face_at(face);
@@ -136,16 +132,16 @@ fn find_horizon(first: u32, w: vec3f) {
         // One without area has no normal and goes with its neighbours.
         if (any(normal != vec3f()) && dot(normal, w) - fetch(place + 9u) <= visibility()) {
             if (horizon_count < POLYTOPE_FACES) {
-                put(HORIZON_AT + 3u * horizon_count, f32(side));
-                put(HORIZON_AT + 3u * horizon_count + 1u, fetch(place + start));
-                put(HORIZON_AT + 3u * horizon_count + 2u, fetch(place + (start + 1u) % 3u));
+                put(POLYTOPE_HORIZON + 3u * horizon_count, f32(side));
+                put(POLYTOPE_HORIZON + 3u * horizon_count + 1u, fetch(place + start));
+                put(POLYTOPE_HORIZON + 3u * horizon_count + 2u, fetch(place + (start + 1u) % 3u));
             }
             horizon_count++;
             continue;
         }
         remove_face(face);
-        put(STACK_AT + depth, fetch(place + 3u + (start + 2u) % 3u));
-        put(STACK_AT + depth + 1u, fetch(place + 3u + (start + 1u) % 3u));
+        put(POLYTOPE_STACK + depth, fetch(place + 3u + (start + 2u) % 3u));
+        put(POLYTOPE_STACK + depth + 1u, fetch(place + 3u + (start + 1u) % 3u));
         depth += 2u;
     }
 }
@@ -155,12 +151,12 @@ fn horizon_is_closed() -> bool {
     if (horizon_count != visible_count + 2u || horizon_count > POLYTOPE_FACES) {
         return false;
     }
-    var start = fetch(HORIZON_AT + 3u * (horizon_count - 1u) + 1u);
+    var start = fetch(POLYTOPE_HORIZON + 3u * (horizon_count - 1u) + 1u);
     for (var k = 0u; k < horizon_count; k++) {
-        if (start != fetch(HORIZON_AT + 3u * k + 2u)) {
+        if (start != fetch(POLYTOPE_HORIZON + 3u * k + 2u)) {
             return false;
         }
-        start = fetch(HORIZON_AT + 3u * k + 1u);
+        start = fetch(POLYTOPE_HORIZON + 3u * k + 1u);
     }
     return true;
 }
@@ -168,7 +164,7 @@ fn horizon_is_closed() -> bool {
 // The number of the new face at side `k` of the horizon: in the places of the visible faces, and two more.
 fn new_face(k: u32, old: u32) -> u32 {
     if (k < visible_count) {
-        return fetch_index(VISIBLE_AT + k);
+        return fetch_index(POLYTOPE_VISIBLE + k);
     }
     return old + k - visible_count;
 }
@@ -181,9 +177,9 @@ fn stitch() {
         let face = new_face(k, old);
         let before = new_face(select(k - 1u, horizon_count - 1u, k == 0u), old);
         let after = new_face(select(k + 1u, 0u, k + 1u == horizon_count), old);
-        let side = fetch_index(HORIZON_AT + 3u * k);
-        let start = fetch_index(HORIZON_AT + 3u * k + 1u);
-        let to = fetch_index(HORIZON_AT + 3u * k + 2u);
+        let side = fetch_index(POLYTOPE_HORIZON + 3u * k);
+        let start = fetch_index(POLYTOPE_HORIZON + 3u * k + 1u);
+        let to = fetch_index(POLYTOPE_HORIZON + 3u * k + 2u);
         insert_face(face, vec3u(to, start, tip), vec3u(side, 4u * after + 2u, 4u * before + 1u));
         put(face_at(side >> 2u) + 3u + (side & 3u), f32(4u * face));
     }
@@ -202,7 +198,7 @@ fn add_to_polytope(face: u32, vertex: Vertex) -> bool {
     find_horizon(face, vertex.w);
     if (!horizon_is_closed()) {
         for (var k = 0u; k < visible_count; k++) {
-            put(face_at(fetch_index(VISIBLE_AT + k)) + 11u, 0.0);
+            put(face_at(fetch_index(POLYTOPE_VISIBLE + k)) + 11u, 0.0);
         }
         return false;
     }

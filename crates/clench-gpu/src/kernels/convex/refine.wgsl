@@ -5,9 +5,9 @@ const NEWTON_STEPS: u32 = 12u;
 const NEWTON_HALVINGS: u32 = 3u;
 // The largest turn of a step, and its cosine.
 const MAX_TURN: f32 = 0.3;
-const MAX_TURN_COSINE: f32 = 0.9553365;
+const MAX_TURN_COSINE: f32 = 0.955336489125606;
 // The last step turns by less.
-const CONVERGED_TURN: f32 = 256.0 * 1.1920929e-7;
+const CONVERGED_TURN: f32 = max(2e-6, 256.0 * EPSILON);
 
 // Directions of the edges that touch, orthonormal: none, an edge, or two that span a face (or cross).
 var<private> edges: array<vec3f, 2>;
@@ -15,7 +15,7 @@ var<private> edge_count: u32;
 
 fn extend_edges(edge: vec3f) {
     let whole = length(edge);
-    if (edge_count == 2u || whole <= MIN_NORMAL) {
+    if (edge_count == 2u || whole <= SMALLEST) {
         return;
     }
     var rest = edge;
@@ -23,7 +23,7 @@ fn extend_edges(edge: vec3f) {
         rest -= edges[0] * dot(edges[0], edge);
     }
     let left = length(rest);
-    if (left > whole * ROOT_OF_ROUNDING * 64.0) {
+    if (left > whole * ROOT_OF_EPSILON * 64.0) {
         edges[edge_count] = rest / left;
         edge_count++;
     }
@@ -63,7 +63,7 @@ fn edge_holds(n: vec3f) -> bool {
     }
     for (var k = 0u; k < bound(2u); k++) {
         let side = select(-edges[0], edges[0], k == 0u);
-        if (dot(side, vertex_beside(n, n + side * ROOT_OF_ROUNDING).w) > exactness) {
+        if (dot(side, vertex_beside(n, n + side * ROOT_OF_EPSILON).w) > exactness) {
             return false;
         }
     }
@@ -104,7 +104,7 @@ fn newton_step(at: Gap, w: vec3f) -> vec4f {
     let we = dot(e, w);
     let wf = dot(f, w);
     let turn = e * ((ff * we - ef * wf) * inverse) + f * ((ee * wf - ef * we) * inverse);
-    return vec4f(turn, select(1.0, 2.0, mean - spread > -least));
+    return vec4f(turn, select(f32(1.0), f32(2.0), mean - spread > -least));
 }
 
 // The best cap of a cylinder that faces `n` more or less, if the gap across it is larger than `gap`: settled if the cap touches;
@@ -142,11 +142,11 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
         }
         // Beside the axis, for on the axis itself no point of the circle is distinguished.
         let back = transpose(turn_b);
-        let start = axis + toward.xyz * ROOT_OF_ROUNDING;
+        let start = axis + toward.xyz * ROOT_OF_EPSILON;
         let bend = between(curvature_of(body_a, start), toward.xyz, toward.xyz)
             + between(curvature_of(body_b, back * start), back * toward.xyz, back * toward.xyz);
         let turn = (toward.w - body.size.x) / max(bend + along, exactness);
-        found = Gap(direction(axis + toward.xyz * clamp(turn, ROOT_OF_ROUNDING, MAX_TURN)).xyz, along, false);
+        found = Gap(direction(axis + toward.xyz * clamp(turn, ROOT_OF_EPSILON, MAX_TURN)).xyz, along, false);
     }
     return found;
 }
@@ -199,7 +199,7 @@ fn refine(n: vec3f) -> Gap {
             return at;
         }
         size = length(step.xyz);
-        step = vec4f(step.xyz * min(1.0, MAX_TURN / max(size, MIN_NORMAL)), step.w);
+        step = vec4f(step.xyz * min(1.0, MAX_TURN / max(size, SMALLEST)), step.w);
         before = gap;
         halvings = 0u;
         steps++;

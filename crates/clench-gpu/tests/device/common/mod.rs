@@ -1,7 +1,7 @@
 //! What several tests share: random states, and how far the device is from the processor, stage by stage.
 #![allow(dead_code)] // Each test uses a part.
 
-use clench_gpu::{GpuBatch, GpuError, GpuOptions, GpuSolve};
+use clench_gpu::{GpuBatch, GpuError, GpuOptions, GpuReal, GpuSolve};
 use clench_math::{Mat3, Motion, Quat, Scalar, Vec3};
 use clench_rigid::batch::Precision;
 use clench_rigid::model::{JointKind, Model};
@@ -16,8 +16,9 @@ pub fn model(name: &str) -> Arc<Model> {
     Arc::new(clench_formats::load(format!("{path}{name}.xml")).expect("a model of ours loads"))
 }
 
-/// Models that are stepped but not compared: light fingers on heavy arms, which what rounding leaves of large forces accelerates, and a
-/// dog of so many dofs and pairs of geoms that Mesa's software device ends its loops early, which is a fault.
+/// Models that are stepped but not compared in single precision: light fingers on heavy arms, which what rounding leaves of large forces
+/// accelerates (`double.rs` compares them), and a dog of so many dofs and pairs of geoms that Mesa's software device ends its loops early,
+/// which is a fault.
 const NOT_COMPARED: [&str; 3] = ["dog", "manipulator", "stacker"];
 
 /// Every model of a folder that an environment variable names agrees with the processor on so many states of each, so far from its
@@ -35,7 +36,7 @@ pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &
         agree(&load(name), count, spread);
     }
     for name in refused {
-        let error = GpuBatch::new(load(name), 1, GpuOptions::default())
+        let error = GpuBatch::<f32>::new(load(name), 1, GpuOptions::default())
             .expect_err("what can be done is no longer listed as refused");
         assert!(matches!(error, GpuError::Unsupported(_)), "{name}: {error}");
         println!("{name}: {error}");
@@ -172,11 +173,12 @@ fn vector<S: Scalar>([x, y, z]: [S; 3]) -> Vec3<S> {
 }
 
 /// Gives the states to a batch, one an environment.
-pub fn upload(batch: &mut GpuBatch, states: &[State<f32>]) {
-    let rows = |pick: fn(&State<f32>) -> &Vec<f32>| -> Vec<f32> {
+pub fn upload<S: GpuReal>(batch: &mut GpuBatch<S>, states: &[State<f32>]) {
+    let number = |x: f32| S::new(f64::from(x));
+    let rows = |pick: fn(&State<f32>) -> &Vec<f32>| -> Vec<S> {
         states
             .iter()
-            .flat_map(|s| pick(s).iter().copied())
+            .flat_map(|s| pick(s).iter().map(|&x| number(x)))
             .collect()
     };
     let wrenches = states.iter().flat_map(|s| &s.xfrc_applied);
@@ -189,7 +191,7 @@ pub fn upload(batch: &mut GpuBatch, states: &[State<f32>]) {
         ("ctrl", rows(|s| &s.ctrl)),
         ("act", rows(|s| &s.act)),
         ("qfrc_applied", rows(|s| &s.qfrc_applied)),
-        ("xfrc_applied", wrenches.collect()),
+        ("xfrc_applied", wrenches.map(number).collect()),
     ] {
         batch.write(name, &values).expect("a good state");
     }
@@ -358,7 +360,7 @@ pub fn distances(batch: &GpuBatch, states: &[State<f32>]) -> BTreeMap<&'static s
 }
 
 /// The part of a row that is in use; of contacts, what is not the number of their pair.
-fn used(name: &str, mut row: Vec<f64>, solve: &GpuSolve, nv: usize) -> Vec<f64> {
+pub fn used(name: &str, mut row: Vec<f64>, solve: &GpuSolve, nv: usize) -> Vec<f64> {
     match name {
         "contacts" => {
             row.truncate(14 * solve.contacts);
@@ -375,7 +377,7 @@ fn used(name: &str, mut row: Vec<f64>, solve: &GpuSolve, nv: usize) -> Vec<f64> 
 pub const TOLERANCE: f64 = 1e-4;
 
 /// Asserts that no environment stands still, and that the last pass went well in all.
-pub fn assert_all_run(batch: &GpuBatch) {
+pub fn assert_all_run<S: GpuReal>(batch: &GpuBatch<S>) {
     for faults in [batch.statuses(), batch.last_faults()] {
         let faults = faults.expect("a device");
         assert!(faults.iter().all(Option::is_none), "{faults:?}");

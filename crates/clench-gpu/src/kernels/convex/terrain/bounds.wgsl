@@ -12,7 +12,7 @@ var<private> window_size: vec2i;
 
 // Up and down, along the axes, across the diagonals of cells either way, and down slopes along the axes.
 fn direction_of_bound(k: u32) -> vec3f {
-    let sign = select(1.0, -1.0, (k & 1u) == 1u);
+    let sign = select(f32(1.0), f32(-1.0), (k & 1u) == 1u);
     switch k >> 1u {
         case 0u: {
             return vec3f(0.0, 0.0, -sign);

@@ -1,7 +1,7 @@
 // The feature of a body that faces a triangle, clipped to it. Sister of `clench-collide/src/narrow/convex/terrain/face_clip.rs`.
 
 // A corner this far outside a triangle, as a share of the body, still belongs to it: more than rounding.
-const BESIDE: f32 = 1e-6;
+const BESIDE: f32 = max(1e-9, 8.0 * EPSILON);
 
 // The contacts of the face with the body's feature, in memory; and whether there are any, were it but on the border between faces of one
 // plane, where the cut has no corner.
@@ -20,7 +20,7 @@ fn add_to_face(point: vec3f, range: f32) {
     let contact = contact_below(point);
     if (contact.distance <= range) {
         face_touches = true;
-        put_terrain_point(FACE_LIST + TERRAIN_POINT_SIZE * face_list_count, contact);
+        put_terrain_point(TERRAIN_FACE + TERRAIN_POINT_SIZE * face_list_count, contact);
         face_list_count++;
     }
 }

@@ -8,7 +8,7 @@ const PROVISIONAL: u32 = 1u;
 // Points nearer to each other than this share of the body's size are one.
 const SAME_POINT: f32 = 1e-5;
 // Directions count as one up to this angle, rad.
-const SAME_DIRECTION: f32 = 100.0 * 1.1920929e-7;
+const SAME_DIRECTION: f32 = max(1e-6, 100.0 * EPSILON);
 // Points of a facet, a new one among them.
 const FACET_POINTS: u32 = PATCH_POINTS + 1u;
 

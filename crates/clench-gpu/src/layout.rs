@@ -1,0 +1,91 @@
+//! Where things lie in the arrays of a model, how many there are, and its options: numbers that differ from model to model. Kernels read them from
+//! a small array of their own, so that models of one kind share their kernels; what decides of the text of a kernel is a constant.
+//!
+//! The texts name them in capitals, like constants.
+
+use crate::precision::replace_words;
+use clench_math::Scalar;
+use std::borrow::Cow;
+use std::collections::HashSet;
+use std::fmt::Write;
+use zerocopy::{Immutable, IntoBytes};
+
+/// Names and values, in the order in which the device reads them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Layout {
+    counts: Vec<(String, u32)>,
+    reals: Vec<(String, f64)>,
+}
+
+impl Layout {
+    /// Adds a count or a place.
+    pub(crate) fn count(&mut self, name: &str, value: usize) {
+        self.counts.push((name.to_owned(), value as u32));
+    }
+
+    /// Adds a number.
+    pub(crate) fn real(&mut self, name: &str, value: f64) {
+        self.reals.push((name.to_owned(), value));
+    }
+
+    /// How the array is declared, in WGSL.
+    pub(crate) fn declaration(&self) -> String {
+        let mut text = "struct Layout {\n".to_owned();
+        for (name, _) in &self.counts {
+            let _ = writeln!(text, "    {name}: u32,");
+        }
+        for (name, _) in &self.reals {
+            let _ = writeln!(text, "    {name}: f32,");
+        }
+        text + "}\n@group(0) @binding(7) var<uniform> of_model: Layout;\n"
+    }
+
+    /// A text in which each name stands for its number in the array.
+    pub(crate) fn resolve<'a>(&self, text: &'a str) -> Cow<'a, str> {
+        let counts = self.counts.iter().map(|(name, _)| name.as_str());
+        let reals = self.reals.iter().map(|(name, _)| name.as_str());
+        let names: HashSet<&str> = counts.chain(reals).collect();
+        replace_words(text, |word| {
+            names.contains(word).then(|| format!("of_model.{word}"))
+        })
+    }
+
+    /// The array: counts, then numbers of a type, aligned as WGSL says.
+    pub(crate) fn bytes<S: Scalar + IntoBytes + Immutable>(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        for (_, count) in &self.counts {
+            bytes.extend(count.to_ne_bytes());
+        }
+        bytes.resize(bytes.len().next_multiple_of(size_of::<S>()), 0);
+        for &(_, real) in &self.reals {
+            bytes.extend(S::new(real).as_bytes());
+        }
+        bytes.resize(bytes.len().next_multiple_of(16), 0);
+        bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Layout;
+
+    #[test]
+    fn names_stand_for_numbers_of_an_aligned_array() {
+        let mut layout = Layout::default();
+        layout.count("NV", 7);
+        layout.real("STEP", 0.5);
+        assert_eq!(
+            layout.resolve("f(NV, NVS) * STEP"),
+            "f(of_model.NV, NVS) * of_model.STEP"
+        );
+        assert!(
+            layout
+                .declaration()
+                .contains("    NV: u32,\n    STEP: f32,\n}")
+        );
+        let single = [7u32.to_ne_bytes(), 0.5f32.to_ne_bytes()].concat();
+        assert_eq!(layout.bytes::<f32>()[..8], single);
+        assert_eq!(layout.bytes::<f64>()[8..16], 0.5f64.to_ne_bytes());
+        assert_eq!(layout.bytes::<f32>().len(), 16);
+    }
+}

@@ -1,0 +1,89 @@
+//! The number types that a device computes in, and the texts of the kernels in each.
+//!
+//! Kernels are written in single precision. Those in double precision are the same texts with other types; what is computed otherwise
+//! (elementary functions, roundings) is in a file for each.
+
+use clench_rigid::batch::Precision;
+use std::borrow::Cow;
+use zerocopy::{FromBytes, Immutable, IntoBytes};
+
+/// A number type that a device computes in: `f32`, or `f64` where it has double precision.
+pub trait GpuReal: Precision + IntoBytes + FromBytes + Immutable + Texts {}
+impl GpuReal for f32 {}
+impl GpuReal for f64 {}
+
+/// What stands for a type in the texts; outside this crate only its name is known.
+pub trait Texts {
+    /// Elementary functions and roundings.
+    #[doc(hidden)]
+    const ELEMENTARY: &'static str;
+    /// What a device must be able to do.
+    #[doc(hidden)]
+    const FEATURES: wgpu::Features;
+    /// A text with numbers of this type. Literals have none: they become what they meet, or what the text says that they are.
+    #[doc(hidden)]
+    fn text(single: &str) -> Cow<'_, str>;
+}
+
+impl Texts for f32 {
+    const ELEMENTARY: &'static str = include_str!("kernels/elementary.wgsl");
+    const FEATURES: wgpu::Features = wgpu::Features::empty();
+
+    fn text(single: &str) -> Cow<'_, str> {
+        Cow::Borrowed(single)
+    }
+}
+
+impl Texts for f64 {
+    const ELEMENTARY: &'static str = include_str!("kernels/elementary_double.wgsl");
+    const FEATURES: wgpu::Features = wgpu::Features::SHADER_F64;
+
+    fn text(single: &str) -> Cow<'_, str> {
+        replace_words(single, type_)
+    }
+}
+
+/// What a type of single precision is in double precision: `f32`, `vec3f` and `mat3x3f` are `f64`, `vec3<f64>` and `mat3x3<f64>`.
+fn type_(word: &str) -> Option<String> {
+    if word == "f32" {
+        return Some("f64".to_owned());
+    }
+    let shape = word.strip_suffix('f')?;
+    let is_size = |part: &str| matches!(part, "2" | "3" | "4");
+    let is_vector = shape.strip_prefix("vec").is_some_and(is_size);
+    let sizes = shape.strip_prefix("mat").and_then(|s| s.split_once('x'));
+    let is_matrix = sizes.is_some_and(|(columns, rows)| is_size(columns) && is_size(rows));
+    (is_vector || is_matrix).then(|| format!("{shape}<f64>"))
+}
+
+/// A text with some of its words (names, keywords, digits) replaced.
+pub(crate) fn replace_words(text: &str, replace: impl Fn(&str) -> Option<String>) -> Cow<'_, str> {
+    let is_inside = |c: char| c.is_alphanumeric() || c == '_';
+    let mut result = String::with_capacity(text.len() + text.len() / 4);
+    let mut rest = text;
+    while let Some(start) = rest.find(is_inside) {
+        let length = rest[start..].find(|c| !is_inside(c));
+        let end = length.map_or(rest.len(), |length| start + length);
+        let word = &rest[start..end];
+        result += &rest[..start];
+        match replace(word) {
+            Some(other) => result += &other,
+            None => result += word,
+        }
+        rest = &rest[end..];
+    }
+    Cow::Owned(result + rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Texts;
+
+    #[test]
+    fn types_are_replaced_and_nothing_else() {
+        let single = "fn f(v: vec3f, u: vec3u) -> mat2x3f { return buf32 * f32(u.x); } // matf";
+        let double =
+            "fn f(v: vec3<f64>, u: vec3u) -> mat2x3<f64> { return buf32 * f64(u.x); } // matf";
+        assert_eq!(f64::text(single), double);
+    }
+}

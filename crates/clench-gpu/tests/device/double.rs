@@ -1,0 +1,127 @@
+//! Double precision: each stage equals its sister on the processor to rounding, which tells more than single precision can.
+
+use crate::common::{self, Random, own, random_state, text};
+use clench_gpu::{GpuBatch, GpuError, GpuOptions};
+use clench_rigid::Sim;
+use clench_rigid::model::Model;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A batch in double precision; none where there is no device, or none that has it.
+fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch<f64>> {
+    common::batch(model, 1)?;
+    match GpuBatch::new(model.clone(), count, GpuOptions::default()) {
+        Ok(batch) => Some(batch),
+        Err(error @ GpuError::NoDoublePrecision { .. }) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Every field of so many random states is within `tolerance` of the processor's in double precision.
+fn agree(model: &Arc<Model>, count: usize, spread: f64, tolerance: f64) {
+    let Some(mut batch) = batch(model, count) else {
+        return;
+    };
+    let mut random = Random::new(3);
+    let states = Vec::from_iter((0..count).map(|_| random_state(model, &mut random, spread)));
+    common::upload(&mut batch, &states);
+    batch.forward().expect("a device");
+    common::assert_all_run(&batch);
+    let solves = batch.solves().expect("a device");
+    let mut sim = Sim::<f64>::new(model.clone()).expect("a good model");
+    let mut read = BTreeMap::new();
+    for (env, state) in states.iter().enumerate() {
+        sim.state = common::convert(model, state);
+        sim.forward().expect("a good state");
+        for (name, expected) in common::computed(&sim) {
+            let width = batch.width(name).expect("a field");
+            let values = read
+                .entry(name)
+                .or_insert_with(|| batch.read(name).expect("a device"));
+            let row = values[env * width..(env + 1) * width].to_vec();
+            let found = common::used(name, row, &solves[env], model.nv);
+            let far = common::difference(&found, &expected);
+            assert!(
+                far <= tolerance,
+                "{}: {name} of state {env}: {far:.1e}",
+                model.name
+            );
+        }
+    }
+}
+
+/// Sums are taken in another order than on the processor: so much is left of rounding, over the largest number of a field.
+const TOLERANCE: f64 = 1e-9;
+
+#[test]
+fn joints_tendons_actuators_and_constraints_agree() {
+    for name in ["medley", "linkage"] {
+        agree(&text(&own(name)), 20, 0.5, TOLERANCE);
+    }
+    let option = "<option cone=\"elliptic\" noslip_iterations=\"3\" noslip_tolerance=\"0\" ";
+    let elliptic = own("medley").replace("<option ", option);
+    agree(&text(&elliptic), 20, 0.7, TOLERANCE);
+}
+
+/// What single precision leaves undecided in such heaps, double precision does not.
+#[test]
+fn shapes_that_overlap_agree() {
+    for name in ["cans", "hulls", "terrain"] {
+        agree(&text(&own(name)), 20, 1.0, 1e-6);
+    }
+}
+
+/// Light fingers on heavy arms, of which single precision knows too little to compare them.
+#[test]
+fn manipulators_agree() {
+    let Some(folder) = std::env::var_os("CLENCH_DM_CONTROL").map(PathBuf::from) else {
+        eprintln!("skipped: CLENCH_DM_CONTROL names no folder");
+        return;
+    };
+    for name in ["manipulator", "stacker"] {
+        let model = clench_formats::load(folder.join(format!("{name}.xml")));
+        agree(
+            &Arc::new(model.expect("it loads")),
+            20,
+            0.5,
+            10.0 * TOLERANCE,
+        );
+    }
+}
+
+/// So many steps lead where the processor's double precision leads.
+fn arrive(name: &str, integrator: &str, steps: usize) {
+    let option = format!("<option integrator=\"{integrator}\" ");
+    let model = text(&own(name).replace("<option ", &option));
+    let count = 8;
+    let Some(mut batch) = batch(&model, count) else {
+        return;
+    };
+    let mut random = Random::new(3);
+    let states = Vec::from_iter((0..count).map(|_| random_state(&model, &mut random, 0.3)));
+    common::upload(&mut batch, &states);
+    batch.step(steps).expect("a device");
+    common::assert_all_run(&batch);
+    let qpos = batch.read("qpos").expect("a device");
+    let mut sim = Sim::<f64>::new(model.clone()).expect("a good model");
+    for (found, state) in qpos.chunks(model.nq).zip(&states) {
+        sim.state = common::convert(&model, state);
+        for _ in 0..steps {
+            sim.step().expect("a good state");
+        }
+        let far = common::difference(found, &sim.state.qpos);
+        assert!(far <= 1e-8, "{name} by {integrator}: {far:.1e}");
+    }
+}
+
+#[test]
+fn steps_arrive_where_those_of_the_processor_do() {
+    arrive("medley", "implicitfast", 20);
+    arrive("runner", "RK4", 20);
+    arrive("pliant", "Euler", 20);
+    arrive("swimmers", "implicit", 20);
+}
