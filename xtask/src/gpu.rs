@@ -5,6 +5,7 @@ use crate::python;
 use crate::run::{ALL_FEATURES, cargo, run};
 use std::path::Path;
 use std::process::Command;
+use std::thread::{self, ScopedJoinHandle};
 
 /// Where drivers for Vulkan register on Linux.
 const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
@@ -12,29 +13,46 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// Those that compute, of `clench-gpu` and of the program, and those that draw.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
-/// Those of `device` that take steps by the hundred.
-const TRAJECTORIES: &str = "steps::";
+/// Parts of `device` that take about as long as each other and as all that is left: a device compiles and computes for one program on one core
+/// at a time, and what one has compiled the others find on the disk.
+const PARTS: [&[&str]; 2] = [
+    &["stages::", "solver::", "large::"],
+    &["steps::", "double::"],
+];
 
 /// Runs them.
 ///
 /// # Errors
 /// That a test failed.
 pub(crate) fn test() -> Result<(), String> {
-    // Trajectories run their kernels for longer than Mesa's software device takes to optimize them. All other tests ask a few times for many
-    // kernels, and leave them as they are.
-    let mut trajectories = computing(&COMPUTING[..1])?;
-    trajectories.args(["--", TRAJECTORIES]);
-    run(trajectories)?;
-    let mut others = computing(&COMPUTING)?;
-    others.args(["--", "--skip", TRAJECTORIES]);
-    others.env("GALLIVM_PERF", "nopt");
-    run(others)?;
+    // What is left, and the program's.
+    let mut rest = computing(&COMPUTING)?;
+    rest.arg("--");
+    for name in PARTS.into_iter().flatten() {
+        rest.args(["--skip", name]);
+    }
+    let mut parts = vec![rest];
+    for names in PARTS {
+        let mut part = computing(&COMPUTING[..1])?;
+        part.arg("--").args(names);
+        parts.push(part);
+    }
+    thread::scope(|scope| {
+        let running = Vec::from_iter(parts.into_iter().map(|part| scope.spawn(|| run(part))));
+        let outcome = |part: ScopedJoinHandle<_>| {
+            part.join()
+                .unwrap_or_else(|_| Err("a part of the tests panicked".into()))
+        };
+        running.into_iter().try_for_each(outcome)
+    })?;
     run(tests(&DRAWING))
 }
 
 /// The tests of these names, with what those that compute need.
 fn computing(names: &[&str]) -> Result<Command, String> {
     let mut tests = tests(names);
+    // Tests ask a few times for many kernels: Mesa's software device takes longer to optimize them than to run them as they are.
+    tests.env("GALLIVM_PERF", "nopt");
     tests.env("LP_NATIVE_VECTOR_WIDTH", "128");
     tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
     tests.env("CLENCH_DM_CONTROL", python::dm_control_suite());

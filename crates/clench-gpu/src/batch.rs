@@ -6,7 +6,7 @@ use crate::device::{Device, DeviceInfo};
 use crate::error::GpuError;
 use crate::fields::{self, Fields};
 use crate::kernels::{Memory, preface};
-use crate::pipelines::{Arrays, Pipelines, layout};
+use crate::pipelines::{Arrays, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::SolverMemory;
 use crate::tables::{Capacity, ENVS, Tables};
@@ -37,14 +37,13 @@ pub struct GpuOptions {
 /// An environment's results depend on its state alone, and repeat to the bit on the same device and driver. One that cannot go on
 /// keeps its last good state and says why in [`statuses`](Self::statuses); its neighbours do not notice.
 pub struct GpuBatch<S = f32> {
-    pub(crate) device: Device,
+    pub(crate) device: Arc<Device>,
     pub(crate) arrays: Arrays,
     pub(crate) state: Fields,
     pub(crate) work: Fields,
     pub(crate) rows: Fields,
     pub(crate) reports: Fields,
     pub(crate) count: usize,
-    pub(crate) layout: wgpu::BindGroupLayout,
     pub(crate) bindings: wgpu::BindGroup,
     /// Parameters of environments, parameter by parameter, environment next to environment; none while all have the model's.
     pub(crate) own: Vec<S>,
@@ -62,6 +61,16 @@ impl<S> fmt::Debug for GpuBatch<S> {
             .field("count", &self.count)
             .field("device", &self.device.info.name)
             .finish_non_exhaustive()
+    }
+}
+
+/// Gives its memory back at once: the device outlives it.
+impl<S> Drop for GpuBatch<S> {
+    fn drop(&mut self) {
+        for buffer in self.arrays.all() {
+            buffer.destroy();
+        }
+        self.device.tidy();
     }
 }
 
@@ -125,21 +134,19 @@ impl<S: GpuReal> GpuBatch<S> {
         };
         if pollster::block_on(scope.pop()).is_some() {
             return Err(GpuError::OutOfMemory {
-                device: device.info.name,
+                device: device.info.name.clone(),
                 count,
                 bytes: sizes.iter().sum::<usize>() as u64,
                 most: None,
             });
         }
-        let layout = layout(&device);
-        let pipelines = Pipelines::new::<S>(&device, &layout, preface, count, model.integrator)?;
+        let pipelines = Pipelines::new::<S>(&device, preface, count, model.integrator)?;
         let queue = &device.queue;
         queue.write_buffer(&arrays.words, 0, tables.words.as_bytes());
         queue.write_buffer(&arrays.words, 4 * ENVS as u64, [count as u32].as_bytes());
         queue.write_buffer(&arrays.numbers, 0, tables.numbers_in::<S>().as_bytes());
         let mut batch = GpuBatch {
-            bindings: arrays.bind(&device, &layout),
-            layout,
+            bindings: arrays.bind(&device),
             own: Vec::new(),
             base,
             device,
@@ -248,8 +255,7 @@ impl<S: GpuReal> GpuBatch<S> {
             .device
             .create_command_encoder(&Default::default());
         encode(self, &mut encoder);
-        self.device.queue.submit([encoder.finish()]);
-        self.device.wait()
+        self.device.submit(encoder.finish())
     }
 
     fn encode<'a>(

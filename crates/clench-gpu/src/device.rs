@@ -1,8 +1,11 @@
-//! Graphics devices: which there are, and one taken up for computing.
+//! Graphics devices: which there are, and those that this process has taken up for computing.
+//!
+//! Batches on one device share it and all kernels that it has compiled: a second batch of a model, or of a like one, waits for no compiler.
 
 use crate::error::GpuError;
+use std::collections::HashMap;
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 
 /// A graphics device of this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,6 +86,61 @@ pub fn devices() -> Vec<DeviceInfo> {
     adapters().iter().map(describe).collect()
 }
 
+/// What all kernels are given: the model and the parameters of environments to read, the others to write as well.
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: match binding {
+                7 => wgpu::BufferBindingType::Uniform,
+                _ => wgpu::BufferBindingType::Storage {
+                    read_only: binding < 2 || binding == 6,
+                },
+            },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("arrays"),
+        entries: &[0, 1, 2, 3, 4, 5, 6, 7].map(entry),
+    })
+}
+
+/// Compiled kernels that a device keeps at most; beyond it forgets all, which batches that have them do not notice.
+const MOST_KERNELS: usize = 128;
+
+/// The devices that this process has taken up, by the names that were asked for and what they must be able to do.
+#[derive(Default)]
+struct Taken {
+    /// A process that was forked off has no part in its parent's devices.
+    process: u32,
+    devices: Vec<(Option<String>, wgpu::Features, Arc<Device>)>,
+}
+
+static TAKEN: Mutex<Option<Taken>> = Mutex::new(None);
+
+/// What a lock guards, also where a thread failed that held it.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Evaluates a function of the devices of this process.
+fn with_taken<T>(use_it: impl FnOnce(&mut Taken) -> T) -> T {
+    let mut taken = lock(&TAKEN);
+    let process = std::process::id();
+    if taken.as_ref().is_none_or(|taken| taken.process != process) {
+        // To give a parent's devices back would wait for threads that only the parent has.
+        std::mem::forget(taken.take());
+    }
+    use_it(taken.get_or_insert_with(|| Taken {
+        process,
+        devices: Vec::new(),
+    }))
+}
+
 /// A device that was taken up.
 pub(crate) struct Device {
     pub device: wgpu::Device,
@@ -91,14 +149,44 @@ pub(crate) struct Device {
     pub limits: wgpu::Limits,
     /// What went wrong with it, since it was last looked at.
     failure: Arc<Mutex<Option<String>>>,
+    /// Why it is lost, if it is.
+    lost: Arc<Mutex<Option<String>>>,
+    /// What its kernels are given.
+    pub arrays: wgpu::BindGroupLayout,
+    pub pipeline_layout: wgpu::PipelineLayout,
+    /// By their texts.
+    kernels: Mutex<HashMap<String, wgpu::ComputePipeline>>,
 }
 
 impl Device {
-    /// Takes up the first device whose name contains `name`, whatever the case of its letters; the first of all without one.
+    /// The first device whose name contains `name`, whatever the case of its letters; the first of all without one. One that was taken up
+    /// before and is not lost is shared.
     ///
     /// # Errors
     /// No such device, one without `features` (of which only double precision is asked for), or one that cannot be had.
-    pub(crate) fn open(name: Option<&str>, features: wgpu::Features) -> Result<Self, GpuError> {
+    pub(crate) fn open(
+        name: Option<&str>,
+        features: wgpu::Features,
+    ) -> Result<Arc<Self>, GpuError> {
+        let known = with_taken(|taken| {
+            taken
+                .devices
+                .retain(|(_, _, device)| lock(&device.lost).is_none());
+            let fits = |(known, able, _): &&(Option<String>, wgpu::Features, _)| {
+                known.as_deref() == name && *able == features
+            };
+            taken.devices.iter().find(fits).map(|found| found.2.clone())
+        });
+        if let Some(device) = known {
+            return Ok(device);
+        }
+        let device = Arc::new(Self::find(name, features)?);
+        let name = name.map(str::to_owned);
+        with_taken(|taken| taken.devices.push((name, features, device.clone())));
+        Ok(device)
+    }
+
+    fn find(name: Option<&str>, features: wgpu::Features) -> Result<Self, GpuError> {
         let found = adapters();
         if found.is_empty() {
             return Err(GpuError::NoDevice);
@@ -135,23 +223,34 @@ impl Device {
         };
         let (device, queue) =
             pollster::block_on(adapter.request_device(&descriptor)).map_err(unusable)?;
-        let failure = Arc::new(Mutex::new(None));
-        let note = |failure: &Arc<Mutex<Option<String>>>| {
-            let failure = failure.clone();
+        let (failure, lost) = (Arc::default(), Arc::default());
+        let note = |slot: &Arc<Mutex<Option<String>>>| {
+            let slot = slot.clone();
             move |reason: String| {
-                let mut slot = failure.lock().unwrap_or_else(PoisonError::into_inner);
-                slot.get_or_insert(reason);
+                lock(&slot).get_or_insert(reason);
             }
         };
-        let (lost, wrong) = (note(&failure), note(&failure));
-        device.set_device_lost_callback(move |_, reason| lost(reason));
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| wrong(error.to_string())));
+        let (note_loss, note_failure) = (note(&lost), note(&failure));
+        device.set_device_lost_callback(move |_, reason| note_loss(reason));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            note_failure(error.to_string())
+        }));
+        let arrays = layout(&device);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("arrays"),
+            bind_group_layouts: &[Some(&arrays)],
+            immediate_size: 0,
+        });
         Ok(Device {
+            arrays,
+            pipeline_layout,
+            kernels: Mutex::default(),
             device,
             queue,
             info,
             limits,
             failure,
+            lost,
         })
     }
 
@@ -160,21 +259,54 @@ impl Device {
         max_buffer(&self.limits)
     }
 
-    /// Waits until all that was submitted is done.
+    /// Submits commands, and waits until they are done.
     ///
     /// # Errors
-    /// That the device was lost, or refused something, since the last call.
-    pub(crate) fn wait(&self) -> Result<(), GpuError> {
-        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
-        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
-        match (failure.take(), waited) {
+    /// That the device is lost, or refused something since the last call.
+    pub(crate) fn submit(&self, commands: wgpu::CommandBuffer) -> Result<(), GpuError> {
+        let submission = self.queue.submit([commands]);
+        let waited = self.device.poll(wgpu::PollType::Wait {
+            submission_index: Some(submission),
+            timeout: None,
+        });
+        let failure = lock(&self.lost)
+            .clone()
+            .or_else(|| lock(&self.failure).take());
+        match (failure, waited) {
             (Some(reason), _) => Err(self.lost(reason)),
             (None, Err(e)) => Err(self.lost(e.to_string())),
             (None, Ok(_)) => Ok(()),
         }
     }
 
-    pub(crate) fn lost(&self, reason: String) -> GpuError {
+    /// Frees what is no longer used.
+    pub(crate) fn tidy(&self) {
+        let _ = self.device.poll(wgpu::PollType::Poll);
+    }
+
+    /// The kernel of a text, as one that was compiled before or as `compile` makes it.
+    ///
+    /// # Errors
+    /// Those of `compile`.
+    pub(crate) fn kernel(
+        &self,
+        text: String,
+        compile: impl FnOnce(&str) -> Result<wgpu::ComputePipeline, GpuError>,
+    ) -> Result<wgpu::ComputePipeline, GpuError> {
+        if let Some(known) = lock(&self.kernels).get(&text) {
+            return Ok(known.clone());
+        }
+        // Others compile theirs meanwhile.
+        let compiled = compile(&text)?;
+        let mut kernels = lock(&self.kernels);
+        if kernels.len() >= MOST_KERNELS {
+            kernels.clear();
+        }
+        kernels.insert(text, compiled.clone());
+        Ok(compiled)
+    }
+
+    fn lost(&self, reason: String) -> GpuError {
         let device = self.info.name.clone();
         GpuError::Lost { device, reason }
     }
@@ -224,9 +356,14 @@ impl Device {
         });
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(from, start, &copy, 0, bytes);
-        self.queue.submit([encoder.finish()]);
-        copy.map_async(wgpu::MapMode::Read, .., |_| ());
-        self.wait()?;
+        let (tell, told) = mpsc::channel();
+        encoder.map_buffer_on_submit(&copy, wgpu::MapMode::Read, .., move |mapped| {
+            let _ = tell.send(mapped);
+        });
+        self.submit(encoder.finish())?;
+        // Another thread that waits for the device may be the one that is told.
+        let mapped = told.recv().map_err(|e| self.lost(e.to_string()))?;
+        mapped.map_err(|e| self.lost(e.to_string()))?;
         let view = copy.get_mapped_range(..);
         let view = view.map_err(|e| self.lost(e.to_string()))?;
         Ok(view.to_vec())

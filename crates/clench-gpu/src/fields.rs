@@ -151,6 +151,8 @@ fields! {
     qfrc_constraint: m.nv;
     /// How long after the start of the step the present stage is, s.
     offset: 1;
+    /// By Runge–Kutta, which stage comes next.
+    stage: 1;
     /// The velocity that positions advance by.
     rate: m.nv;
     mean_rate: m.nv;

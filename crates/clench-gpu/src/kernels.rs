@@ -5,9 +5,10 @@
 
 use crate::fields::Fields;
 use crate::layout::Layout;
-use crate::precision::Texts;
+use crate::precision::{Texts, words};
 use crate::solver_memory::SolverMemory;
 use crate::tables::{NONE, Tables};
+use std::collections::HashSet;
 use std::fmt::Write;
 
 /// Threads of a workgroup: a subgroup on most cards, few enough for a processor that plays one, and two for each row of a tile of H.
@@ -163,19 +164,22 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
 impl Kernel {
     /// Its whole text, in numbers of a type.
     pub(crate) fn source<S: Texts>(&self, preface: &Preface) -> String {
-        let layout = &preface.layout;
-        let texts = COMMON
-            .iter()
-            .chain(self.texts)
-            .map(|text| layout.resolve(text));
-        let before = [
-            preface.constants.as_str().into(),
-            layout.declaration().into(),
-        ];
-        let all = before.into_iter().chain(texts);
-        all.fold(S::ELEMENTARY.to_owned(), |source, text| {
-            source + "\n" + &S::text(&text)
-        })
+        let texts: Vec<&str> = COMMON.iter().chain(self.texts).copied().collect();
+        let used: HashSet<&str> = texts.iter().flat_map(|text| words(text)).collect();
+        let mut source = S::ELEMENTARY.to_owned();
+        for line in preface.constants.lines() {
+            // Those of other kernels would tell texts apart that are the same.
+            if words(line).nth(1).is_some_and(|name| used.contains(name)) {
+                source += line;
+                source.push('\n');
+            }
+        }
+        source += &S::text(&preface.layout.declaration());
+        for text in texts {
+            source += "\n";
+            source += &S::text(&preface.layout.resolve(text));
+        }
+        source
     }
 
     /// How many workgroups `count` environments take, along each axis.

@@ -5,7 +5,6 @@
 
 use crate::precision::replace_words;
 use clench_math::Scalar;
-use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fmt::Write;
 use zerocopy::{Immutable, IntoBytes};
@@ -41,7 +40,7 @@ impl Layout {
     }
 
     /// A text in which each name stands for its number in the array.
-    pub(crate) fn resolve<'a>(&self, text: &'a str) -> Cow<'a, str> {
+    pub(crate) fn resolve(&self, text: &str) -> String {
         let counts = self.counts.iter().map(|(name, _)| name.as_str());
         let reals = self.reals.iter().map(|(name, _)| name.as_str());
         let names: HashSet<&str> = counts.chain(reals).collect();

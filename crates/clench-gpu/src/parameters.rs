@@ -48,7 +48,7 @@ impl<S: GpuReal> GpuBatch<S> {
             let each = self.base.parameters.iter();
             self.own = each.flat_map(|&x| repeat_n(x, count)).collect();
             self.arrays.parameters = self.device.array("parameters", bytes);
-            self.bindings = self.arrays.bind(&self.device, &self.layout);
+            self.bindings = self.arrays.bind(&self.device);
             let place = 4 * OWN_PARAMETERS as u64;
             (self.device.queue).write_buffer(&self.arrays.words, place, [1u32].as_bytes());
         }

@@ -7,6 +7,7 @@ use crate::precision::Texts;
 use clench_rigid::model::Integrator;
 
 /// A kernel, compiled.
+#[derive(Clone)]
 pub(crate) struct Pipeline {
     /// Its entry point.
     pub name: &'static str,
@@ -16,8 +17,6 @@ pub(crate) struct Pipeline {
 
 /// All that a step runs.
 pub(crate) struct Pipelines {
-    /// What all are given.
-    layout: wgpu::PipelineLayout,
     /// What stands before the texts.
     preface: Preface,
     /// Accelerations of bodies and forces between them, once somebody asked.
@@ -48,7 +47,7 @@ pub(crate) struct Arrays {
 }
 
 impl Arrays {
-    fn all(&self) -> [&wgpu::Buffer; 8] {
+    pub(crate) fn all(&self) -> [&wgpu::Buffer; 8] {
         let Arrays {
             words,
             numbers,
@@ -65,7 +64,7 @@ impl Arrays {
     }
 
     /// What the kernels are given.
-    pub(crate) fn bind(&self, device: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
+    pub(crate) fn bind(&self, device: &Device) -> wgpu::BindGroup {
         let entries: Vec<_> = (0..)
             .zip(self.all())
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -75,35 +74,10 @@ impl Arrays {
             .collect();
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("arrays"),
-            layout,
+            layout: &device.arrays,
             entries: &entries,
         })
     }
-}
-
-/// What all kernels are given: the model and the parameters of environments to read, the others to write as well.
-pub(crate) fn layout(device: &Device) -> wgpu::BindGroupLayout {
-    let entry = |binding| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: match binding {
-                7 => wgpu::BufferBindingType::Uniform,
-                _ => wgpu::BufferBindingType::Storage {
-                    read_only: binding < 2 || binding == 6,
-                },
-            },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    device
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("arrays"),
-            entries: &[0, 1, 2, 3, 4, 5, 6, 7].map(entry),
-        })
 }
 
 impl Pipelines {
@@ -113,21 +87,11 @@ impl Pipelines {
     /// That the device or its driver refuses a kernel.
     pub(crate) fn new<S: Texts>(
         device: &Device,
-        layout: &wgpu::BindGroupLayout,
         preface: Preface,
         count: usize,
         integrator: Integrator,
     ) -> Result<Self, GpuError> {
-        let layout = device
-            .device
-            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("arrays"),
-                bind_group_layouts: &[Some(layout)],
-                immediate_size: 0,
-            });
-        let compile = |kernel: &Kernel, overrides: &[(&str, f64)]| {
-            compile::<S>(device, &layout, &preface, count, kernel, overrides)
-        };
+        let compile = |kernel: &Kernel| compile::<S>(device, &preface, count, kernel);
         let forward = [
             kernels::POSITIONS,
             kernels::CONTACTS,
@@ -137,25 +101,21 @@ impl Pipelines {
             kernels::SOLVE,
         ];
         let advance = match integrator {
-            Integrator::Rk4 => {
-                let stage = |k: u8| compile(&kernels::RUNGE_KUTTA, &[("stage", f64::from(k))]);
-                (0..4).map(stage).collect::<Result<_, _>>()?
-            }
-            Integrator::ImplicitFast => vec![compile(&kernels::IMPLICIT_FAST, &[])?],
-            Integrator::Implicit => vec![compile(&kernels::IMPLICIT, &[])?],
-            _ => vec![compile(&kernels::EULER, &[])?],
+            Integrator::Rk4 => vec![compile(&kernels::RUNGE_KUTTA)?; 4],
+            Integrator::ImplicitFast => vec![compile(&kernels::IMPLICIT_FAST)?],
+            Integrator::Implicit => vec![compile(&kernels::IMPLICIT)?],
+            _ => vec![compile(&kernels::EULER)?],
         };
-        let forward = forward.iter().map(|kernel| compile(kernel, &[]));
+        let forward = forward.iter().map(compile);
         let forward = forward.collect::<Result<_, _>>()?;
         Ok(Pipelines {
             body_forces: None,
             sensors: None,
-            restart: compile(&kernels::RESTART, &[])?,
-            verdict: compile(&kernels::VERDICT, &[])?,
+            restart: compile(&kernels::RESTART)?,
+            verdict: compile(&kernels::VERDICT)?,
             forward,
             advance,
             preface,
-            layout,
         })
     }
 
@@ -169,8 +129,7 @@ impl Pipelines {
         count: usize,
         sensors: bool,
     ) -> Result<(), GpuError> {
-        let compile =
-            |kernel| compile::<S>(device, &self.layout, &self.preface, count, kernel, &[]);
+        let compile = |kernel| compile::<S>(device, &self.preface, count, kernel);
         if self.body_forces.is_none() {
             self.body_forces = Some(compile(&kernels::BODY_FORCES)?);
         }
@@ -181,14 +140,23 @@ impl Pipelines {
     }
 }
 
+/// A kernel, which the device compiles if it does not have it.
 fn compile<S: Texts>(
     device: &Device,
-    layout: &wgpu::PipelineLayout,
     preface: &Preface,
     count: usize,
     kernel: &Kernel,
-    overrides: &[(&str, f64)],
 ) -> Result<Pipeline, GpuError> {
+    let text = kernel.source::<S>(preface);
+    let pipeline = device.kernel(text, |text| create(device, kernel, text))?;
+    Ok(Pipeline {
+        name: kernel.entry,
+        pipeline,
+        workgroups: kernel.workgroups(count),
+    })
+}
+
+fn create(device: &Device, kernel: &Kernel, text: &str) -> Result<wgpu::ComputePipeline, GpuError> {
     let scope = device
         .device
         .push_error_scope(wgpu::ErrorFilter::Validation);
@@ -196,19 +164,16 @@ fn compile<S: Texts>(
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(kernel.entry),
-            source: wgpu::ShaderSource::Wgsl(kernel.source::<S>(preface).into()),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         });
     let pipeline = device
         .device
         .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(kernel.entry),
-            layout: Some(layout),
+            layout: Some(&device.pipeline_layout),
             module: &module,
             entry_point: Some(kernel.entry),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: overrides,
-                ..Default::default()
-            },
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
     if let Some(error) = pollster::block_on(scope.pop()) {
@@ -217,11 +182,7 @@ fn compile<S: Texts>(
             reason: format!("it refuses the kernel `{}`: {error}", kernel.entry),
         });
     }
-    Ok(Pipeline {
-        name: kernel.entry,
-        pipeline,
-        workgroups: kernel.workgroups(count),
-    })
+    Ok(pipeline)
 }
 
 impl Pipeline {

@@ -39,12 +39,12 @@ impl Texts for f64 {
     const FEATURES: wgpu::Features = wgpu::Features::SHADER_F64;
 
     fn text(single: &str) -> Cow<'_, str> {
-        replace_words(single, type_)
+        Cow::Owned(replace_words(single, type_in_double))
     }
 }
 
 /// What a type of single precision is in double precision: `f32`, `vec3f` and `mat3x3f` are `f64`, `vec3<f64>` and `mat3x3<f64>`.
-fn type_(word: &str) -> Option<String> {
+fn type_in_double(word: &str) -> Option<String> {
     if word == "f32" {
         return Some("f64".to_owned());
     }
@@ -56,13 +56,23 @@ fn type_(word: &str) -> Option<String> {
     (is_vector || is_matrix).then(|| format!("{shape}<f64>"))
 }
 
-/// A text with some of its words (names, keywords, digits) replaced.
-pub(crate) fn replace_words(text: &str, replace: impl Fn(&str) -> Option<String>) -> Cow<'_, str> {
-    let is_inside = |c: char| c.is_alphanumeric() || c == '_';
+/// What a word is made of: a name, a keyword, digits.
+fn is_of_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// The words of a text.
+pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
+    let parts = text.split(|c: char| !is_of_word(c));
+    parts.filter(|word| !word.is_empty())
+}
+
+/// A text with some of its words replaced.
+pub(crate) fn replace_words(text: &str, replace: impl Fn(&str) -> Option<String>) -> String {
     let mut result = String::with_capacity(text.len() + text.len() / 4);
     let mut rest = text;
-    while let Some(start) = rest.find(is_inside) {
-        let length = rest[start..].find(|c| !is_inside(c));
+    while let Some(start) = rest.find(is_of_word) {
+        let length = rest[start..].find(|c| !is_of_word(c));
         let end = length.map_or(rest.len(), |length| start + length);
         let word = &rest[start..end];
         result += &rest[..start];
@@ -72,7 +82,7 @@ pub(crate) fn replace_words(text: &str, replace: impl Fn(&str) -> Option<String>
         }
         rest = &rest[end..];
     }
-    Cow::Owned(result + rest)
+    result + rest
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent
         add_to_patch(TerrainPoint(position, normal, distance));
         return;
     }
-    if (DEEPEST_ALONE && found > first_of_pair && words[PAIR_DEEPEST + pair] == 1u) {
+    if (found > first_of_pair && words[PAIR_DEEPEST + pair] == 1u) {
         if (distance >= fetch(CONTACTS + CONTACT_SIZE * first_of_pair + 1u)) {
             return;
         }

@@ -1,7 +1,7 @@
 // Fourth-order Runge–Kutta. Sister of `dynamics/rk4.rs`, where rotations are explained. A step is four times all stages before,
-// each followed by this one with the next `stage`.
+// each followed by this one, which counts the stages in STAGE.
 
-override stage: u32 = 0u;
+var<private> stage: u32;
 
 // The weight of a stage in the mean.
 fn weight() -> f32 {
@@ -81,6 +81,8 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {
         return;
     }
+    stage = u32(fetch(STAGE));
+    put(STAGE, f32((stage + 1u) % 4u));
     if (stage == 0u) {
         save_start();
         for (var o = 0u; o < NOUT; o++) {

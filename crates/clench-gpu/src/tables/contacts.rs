@@ -101,7 +101,6 @@ impl Tables {
             let [a, b] = c.kinds;
             !s.flags.multiccd && multiccd_matters(a, b)
         };
-        self.flag("DEEPEST_ALONE", candidates.iter().any(deepest));
         self.words(
             "PAIR_DEEPEST",
             candidates.iter().map(|c| usize::from(deepest(c))),

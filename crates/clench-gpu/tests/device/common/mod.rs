@@ -16,9 +16,9 @@ pub fn model(name: &str) -> Arc<Model> {
     Arc::new(clench_formats::load(format!("{path}{name}.xml")).expect("a model of ours loads"))
 }
 
-/// Models that are stepped but not compared in single precision: light fingers on heavy arms, which what rounding leaves of large forces
-/// accelerates (`double.rs` compares them), and a dog of so many dofs and pairs of geoms that Mesa's software device ends its loops early,
-/// which is a fault.
+/// Models that are not compared in single precision: light fingers on heavy arms, which what rounding leaves of large forces accelerates
+/// (`double.rs` compares them), and a dog of so many dofs and pairs of geoms that Mesa's software device ends its loops early, which is
+/// a fault.
 const NOT_COMPARED: [&str; 3] = ["dog", "manipulator", "stacker"];
 
 /// Every model of a folder that an environment variable names agrees with the processor on so many states of each, so far from its
