@@ -113,7 +113,6 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 const MOST_KERNELS: usize = 128;
 
 /// The devices that this process has taken up, by the names that were asked for and what they must be able to do.
-#[derive(Default)]
 struct Taken {
     /// A process that was forked off has no part in its parent's devices.
     process: u32,

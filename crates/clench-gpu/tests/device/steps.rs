@@ -230,6 +230,29 @@ fn results_depend_on_nothing_but_the_state() {
     }
 }
 
+/// Batches of a process share a device.
+#[test]
+fn batches_that_step_at_a_time_know_nothing_of_each_other() {
+    let model = runner();
+    let states = some_states(&model, 20);
+    let Some(mut alone) = batch(&model, 20) else {
+        return;
+    };
+    let expected = after(&mut alone, &states, 4);
+    let run = || {
+        let mut batch = batch(&model, 20).expect("a device");
+        Vec::from_iter((0..2).map(|_| after(&mut batch, &states, 4)))
+    };
+    std::thread::scope(|scope| {
+        let threads = [scope.spawn(run), scope.spawn(run)];
+        for thread in threads {
+            for found in thread.join().expect("no panic") {
+                assert!(found == expected, "a neighbour changed a bit");
+            }
+        }
+    });
+}
+
 #[test]
 fn a_fault_stays_where_it_is() {
     let model = runner();
