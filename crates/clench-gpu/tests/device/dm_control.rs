@@ -1,6 +1,6 @@
 //! The models of dm-control's suite, where the environment variable `CLENCH_DM_CONTROL` names the folder of their files.
 
-use crate::common;
+use crate::common::{self, SMALL};
 
 /// Each, on how many states, and how far from its initial one.
 const MODELS: &[(&str, usize, f64)] = &[
@@ -12,10 +12,10 @@ const MODELS: &[(&str, usize, f64)] = &[
     ("fish", 100, 0.5),
     ("hopper", 100, 0.5),
     ("humanoid", 100, 0.5),
-    ("humanoid_CMU", 40, 0.5),
+    ("humanoid_CMU", 100, 0.5),
     ("pendulum", 100, 1.0),
     ("point_mass", 100, 0.5),
-    ("quadruped", 40, 0.3),
+    ("quadruped", 100, 0.3),
     ("reacher", 100, 0.5),
     ("swimmer", 100, 0.5),
     ("walker", 100, 0.5),
@@ -23,6 +23,17 @@ const MODELS: &[(&str, usize, f64)] = &[
 
 /// What cannot be done yet. `lqr` is a world without joints, to which its task adds bodies.
 const REFUSED: &[&str] = &["lqr"];
+
+#[test]
+fn trajectories_of_dm_controls_suite_drift_as_on_the_processor() {
+    common::drift_on_folder("CLENCH_DM_CONTROL", MODELS, ..=SMALL);
+}
+
+#[test]
+#[ignore = "takes minutes: run it with `-- --ignored`"]
+fn trajectories_of_large_ones_drift_as_on_the_processor() {
+    common::drift_on_folder("CLENCH_DM_CONTROL", MODELS, SMALL + 1..);
+}
 
 #[test]
 fn stages_agree_on_the_models_of_dm_controls_suite() {

@@ -1,6 +1,6 @@
 //! The robots of Gymnasium's MuJoCo tasks, where the environment variable `CLENCH_GYMNASIUM` names the folder of their files.
 
-use crate::common;
+use crate::common::{self, SMALL};
 
 /// Each, on how many states, and how far from its initial one.
 const ROBOTS: &[(&str, usize, f64)] = &[
@@ -19,6 +19,17 @@ const ROBOTS: &[(&str, usize, f64)] = &[
     ("humanoid", 100, 0.5),
     ("humanoidstandup", 100, 0.5),
 ];
+
+#[test]
+fn trajectories_of_gymnasiums_robots_drift_as_on_the_processor() {
+    common::drift_on_folder("CLENCH_GYMNASIUM", ROBOTS, ..=SMALL);
+}
+
+#[test]
+#[ignore = "takes minutes: run it with `-- --ignored`"]
+fn trajectories_of_large_ones_drift_as_on_the_processor() {
+    common::drift_on_folder("CLENCH_GYMNASIUM", ROBOTS, SMALL + 1..);
+}
 
 #[test]
 fn stages_agree_on_gymnasiums_robots() {

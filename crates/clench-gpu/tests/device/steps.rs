@@ -1,10 +1,9 @@
 //! Steps: trajectories, and what one environment may know of another.
 
 use crate::common::{
-    Random, assert_all_run, batch, convert, difference, own, random_state, text, upload,
+    self, assert_all_run, batch, convert, difference, own, some_states, text, upload,
 };
 use clench_gpu::{GpuBatch, GpuFault, GpuOptions};
-use clench_rigid::batch::Precision;
 use clench_rigid::model::Model;
 use clench_rigid::options::{MaxContacts, RigidOptions};
 use clench_rigid::{Sim, State};
@@ -14,61 +13,9 @@ fn runner() -> Arc<Model> {
     text(&own("runner"))
 }
 
-fn some_states(model: &Model, count: usize) -> Vec<State<f32>> {
-    let mut random = Random::new(11);
-    (0..count)
-        .map(|_| random_state(model, &mut random, 0.3))
-        .collect()
-}
-
-/// Where the processor gets from a state in so many steps.
-fn arrival<S: Precision>(model: &Arc<Model>, from: &State<f32>, steps: usize) -> Vec<f64> {
-    let mut sim = Sim::<S>::new(model.clone()).expect("a good model");
-    sim.state = convert(model, from);
-    for _ in 0..steps {
-        sim.step().expect("a good state");
-    }
-    sim.state.qpos.iter().map(|q| q.to_f64()).collect()
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max)
-}
-
-/// After `steps` steps the device is not further from double precision than the processor's single precision is, by the medians.
+/// After so many steps from 24 states the device has drifted as the processor's single precision has.
 fn drift_alike(model: &Arc<Model>, steps: usize) {
-    let count = 24;
-    let starts = some_states(model, count);
-    let Some(mut batch) = batch(model, count) else {
-        return;
-    };
-    upload(&mut batch, &starts);
-    batch.step(steps).expect("a device");
-    assert_all_run(&batch);
-    assert_eq!(batch.steps().expect("a device"), vec![steps as u32; count]);
-    let qpos = batch.read("qpos").expect("a device");
-    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
-    for (env, start) in starts.iter().enumerate() {
-        let exact = arrival::<f64>(model, start, steps);
-        let found: Vec<f64> = qpos[env * model.nq..][..model.nq]
-            .iter()
-            .map(|&q| f64::from(q))
-            .collect();
-        ours.push(distance(&found, &exact));
-        theirs.push(distance(&arrival::<f32>(model, start, steps), &exact));
-    }
-    let median = |d: &mut Vec<f64>| {
-        d.sort_by(f64::total_cmp);
-        d[d.len() / 2]
-    };
-    let (ours, theirs) = (median(&mut ours), median(&mut theirs));
-    assert!(
-        ours <= 3.0 * theirs + 1e-6,
-        "{ours:.1e} against {theirs:.1e}"
-    );
+    common::drift_alike(model, 24, steps);
 }
 
 #[test]

@@ -7,7 +7,8 @@ use clench_rigid::batch::Precision;
 use clench_rigid::model::{JointKind, Model};
 use clench_rigid::{Sim, State};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::ops::RangeBounds;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A model of this repository.
@@ -28,10 +29,7 @@ pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &
         eprintln!("skipped: {variable} names no folder");
         return;
     };
-    let load = |name: &str| {
-        let path = folder.join(format!("{name}.xml"));
-        Arc::new(clench_formats::load(path).expect("a public model loads"))
-    };
+    let load = |name: &str| public(&folder, name);
     for &(name, count, spread) in models {
         agree(&load(name), count, spread);
     }
@@ -50,6 +48,36 @@ pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let is_model = path.extension().is_some_and(|e| e == "xml");
         assert!(!is_model || listed(&name), "{name} is not listed");
+    }
+}
+
+/// A model of others, in a folder.
+pub fn public(folder: &Path, name: &str) -> Arc<Model> {
+    let path = folder.join(format!("{name}.xml"));
+    Arc::new(clench_formats::load(path).expect("a public model loads"))
+}
+
+/// Models of no more dofs are stepped in every test, larger ones in those that are ignored but where one asks for them: Mesa's software device
+/// takes minutes.
+pub const SMALL: usize = 10;
+
+/// Every model of a list in a folder that an environment variable names, if its dofs are so many, drifts as on the processor, in 200 steps
+/// from 8 states each. Without the variable there is nothing to test.
+pub fn drift_on_folder(
+    variable: &str,
+    models: &[(&str, usize, f64)],
+    dofs: impl RangeBounds<usize>,
+) {
+    let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {
+        eprintln!("skipped: {variable} names no folder");
+        return;
+    };
+    for &(name, ..) in models {
+        let model = public(&folder, name);
+        if dofs.contains(&model.nv) {
+            println!("{name}");
+            drift_alike(&model, 8, 200);
+        }
     }
 }
 
@@ -442,4 +470,63 @@ pub fn agree_within(
         );
     }
     Some(batch)
+}
+
+/// So many random states near the initial one.
+pub fn some_states(model: &Model, count: usize) -> Vec<State<f32>> {
+    let mut random = Random::new(11);
+    (0..count)
+        .map(|_| random_state(model, &mut random, 0.3))
+        .collect()
+}
+
+/// Where the processor gets from a state in so many steps.
+fn arrival<S: Precision>(model: &Arc<Model>, from: &State<f32>, steps: usize) -> Vec<f64> {
+    let mut sim = Sim::<S>::new(model.clone()).expect("a good model");
+    sim.state = convert(model, from);
+    for _ in 0..steps {
+        sim.step().expect("a good state");
+    }
+    sim.state.qpos.iter().map(|q| q.to_f64()).collect()
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+/// After `steps` steps from `count` states the device is not further from double precision than three times what the processor's single
+/// precision is, by the medians.
+pub fn drift_alike(model: &Arc<Model>, count: usize, steps: usize) {
+    let starts = some_states(model, count);
+    let Some(mut batch) = batch(model, count) else {
+        return;
+    };
+    upload(&mut batch, &starts);
+    batch.step(steps).expect("a device");
+    assert_all_run(&batch);
+    assert_eq!(batch.steps().expect("a device"), vec![steps as u32; count]);
+    let qpos = batch.read("qpos").expect("a device");
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    for (env, start) in starts.iter().enumerate() {
+        let exact = arrival::<f64>(model, start, steps);
+        let found: Vec<f64> = qpos[env * model.nq..][..model.nq]
+            .iter()
+            .map(|&q| f64::from(q))
+            .collect();
+        ours.push(distance(&found, &exact));
+        theirs.push(distance(&arrival::<f32>(model, start, steps), &exact));
+    }
+    let median = |d: &mut Vec<f64>| {
+        d.sort_by(f64::total_cmp);
+        d[d.len() / 2]
+    };
+    let (ours, theirs) = (median(&mut ours), median(&mut theirs));
+    assert!(
+        ours <= 3.0 * theirs + 1e-6,
+        "{}: {ours:.1e} against {theirs:.1e}",
+        model.name
+    );
 }
