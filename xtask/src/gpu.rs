@@ -13,8 +13,8 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// Those that compute, of `clench-gpu` and of the program, and those that draw.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
-/// Parts of `device` that take about as long as each other and as all that is left: a device compiles and computes for one program on one core
-/// at a time, and what one has compiled the others find on the disk.
+/// Parts of `device` that take about as long as each other and as all that is left. Mesa's software device compiles on one core for each program,
+/// so that these run side by side; what one has compiled the others find on the disk.
 const PARTS: [&[&str]; 2] = [
     &["stages::", "solver::", "large::"],
     &["steps::", "double::"],

@@ -164,8 +164,8 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
 impl Kernel {
     /// Its whole text, in numbers of a type.
     pub(crate) fn source<S: Texts>(&self, preface: &Preface) -> String {
-        let texts: Vec<&str> = COMMON.iter().chain(self.texts).copied().collect();
-        let used: HashSet<&str> = texts.iter().flat_map(|text| words(text)).collect();
+        let texts = Vec::from_iter(COMMON.iter().chain(self.texts).copied()).join("\n");
+        let used: HashSet<&str> = words(&texts).collect();
         let mut source = S::ELEMENTARY.to_owned();
         for line in preface.constants.lines() {
             // Those of other kernels would tell texts apart that are the same.
@@ -175,11 +175,7 @@ impl Kernel {
             }
         }
         source += &S::text(&preface.layout.declaration());
-        for text in texts {
-            source += "\n";
-            source += &S::text(&preface.layout.resolve(text));
-        }
-        source
+        source + &S::text(&preface.layout.resolve(&texts))
     }
 
     /// How many workgroups `count` environments take, along each axis.

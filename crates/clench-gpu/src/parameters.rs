@@ -35,13 +35,14 @@ impl<S: GpuReal> GpuBatch<S> {
         rows: &[Vec<S>],
     ) -> Result<(), GpuError> {
         let count = self.count;
-        let bytes = (size_of::<S>() * count * self.base.parameters.len()) as u64;
+        let each = (size_of::<S>() * self.base.parameters.len()) as u64;
+        let bytes = each * count as u64;
         if bytes > self.device.max_buffer() {
             return Err(GpuError::OutOfMemory {
                 device: self.device.info.name.clone(),
                 count,
-                bytes: bytes / count.max(1) as u64,
-                most: None,
+                bytes: each,
+                most: usize::try_from(self.device.max_buffer() / each.max(1)).ok(),
             });
         }
         if self.own.is_empty() {

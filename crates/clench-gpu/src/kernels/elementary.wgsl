@@ -7,9 +7,6 @@
 const EPSILON = 1.1920928955078125e-7;
 const ROOT_OF_EPSILON = 3.4526698300124393e-4;
 const SMALLEST = 1.1754943508222875e-38;
-const PI = 3.141592653589793;
-const TWO_PI = 6.283185307179586;
-const HALF_PI = 1.5707963267948966;
 
 // Whether a number is infinite or undefined. Told by its bits: a compiler for shaders may assume that there are none such.
 fn is_wild(x: f32) -> bool {

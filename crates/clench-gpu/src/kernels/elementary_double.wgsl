@@ -5,10 +5,6 @@
 const EPSILON = 2.220446049250313e-16;
 const ROOT_OF_EPSILON = 1.4901161193847656e-8;
 const SMALLEST = 2.2250738585072014e-308;
-const PI = 3.141592653589793;
-const TWO_PI = 6.283185307179586;
-const HALF_PI = 1.5707963267948966;
-
 // Whether a number is infinite or undefined, or beyond what single precision holds, which no number of a motion is. Told by its bits there: a
 // compiler for shaders may assume that there are none such.
 fn is_wild(x: f64) -> bool {

@@ -1,5 +1,10 @@
 // Quaternions (w, x, y, z in the components x, y, z, w) and spatial vectors: sisters of `clench-math`.
 
+// Without a type, as in `elementary.wgsl`.
+const PI = 3.141592653589793;
+const TWO_PI = 6.283185307179586;
+const HALF_PI = 1.5707963267948966;
+
 // Below this length a vector or quaternion has no direction.
 const TINY: f32 = 1e-15;
 

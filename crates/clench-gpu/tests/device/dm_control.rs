@@ -1,6 +1,6 @@
 //! The models of dm-control's suite, where the environment variable `CLENCH_DM_CONTROL` names the folder of their files.
 
-use crate::common::{self, SMALL};
+use crate::common::folders::{self, SMALL};
 
 /// Each, on how many states, and how far from its initial one.
 const MODELS: &[(&str, usize, f64)] = &[
@@ -26,16 +26,16 @@ const REFUSED: &[&str] = &["lqr"];
 
 #[test]
 fn trajectories_of_dm_controls_suite_drift_as_on_the_processor() {
-    common::drift_on_folder("CLENCH_DM_CONTROL", MODELS, ..=SMALL);
+    folders::drift_on_folder("CLENCH_DM_CONTROL", MODELS, ..=SMALL);
 }
 
 #[test]
 #[ignore = "takes minutes: run it with `-- --ignored`"]
 fn trajectories_of_large_ones_drift_as_on_the_processor() {
-    common::drift_on_folder("CLENCH_DM_CONTROL", MODELS, SMALL + 1..);
+    folders::drift_on_folder("CLENCH_DM_CONTROL", MODELS, SMALL + 1..);
 }
 
 #[test]
 fn stages_agree_on_the_models_of_dm_controls_suite() {
-    common::agree_on_folder("CLENCH_DM_CONTROL", MODELS, REFUSED);
+    folders::agree_on_folder("CLENCH_DM_CONTROL", MODELS, REFUSED);
 }

@@ -78,9 +78,8 @@ fn manipulators_agree() {
         return;
     };
     for name in ["manipulator", "stacker"] {
-        let model = clench_formats::load(folder.join(format!("{name}.xml")));
         agree(
-            &Arc::new(model.expect("it loads")),
+            &common::folders::public(&folder, name),
             20,
             0.5,
             10.0 * TOLERANCE,

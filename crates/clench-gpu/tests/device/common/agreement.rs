@@ -1,0 +1,131 @@
+//! How far the device is from the processor, stage by stage, and how far it may be.
+
+use super::{Random, assert_all_run, batch, computed, convert, random_state, upload, used};
+use clench_gpu::GpuBatch;
+use clench_rigid::model::Model;
+use clench_rigid::{Sim, State};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The largest difference between two rows, over the largest number of the second; another length is no small difference.
+pub fn difference(found: &[f64], expected: &[f64]) -> f64 {
+    if found.len() != expected.len() {
+        return f64::INFINITY;
+    }
+    let scale = expected.iter().fold(1e-6f64, |most, x| most.max(x.abs()));
+    let gaps = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
+    let larger = |most: f64, gap: f64| {
+        if gap > most || gap.is_nan() {
+            gap
+        } else {
+            most
+        }
+    };
+    gaps.fold(0.0, larger) / scale
+}
+
+/// Of a field of one environment: how far the device is from the processor in single precision, from that in double precision,
+/// and how far the two are from each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Distance {
+    pub single: f64,
+    pub double: f64,
+    pub noise: f64,
+}
+
+/// How far the device is from the processor: by field, environment by environment.
+pub fn distances(batch: &GpuBatch, states: &[State<f32>]) -> BTreeMap<&'static str, Vec<Distance>> {
+    let model = batch.model().clone();
+    let mut single = Sim::<f32>::new(model.clone()).expect("a good model");
+    let mut double = Sim::<f64>::new(model.clone()).expect("a good model");
+    let mut all: BTreeMap<&'static str, Vec<Distance>> = BTreeMap::new();
+    let mut read: BTreeMap<&'static str, Vec<f32>> = BTreeMap::new();
+    let solves = batch.solves().expect("a device");
+    for (env, state) in states.iter().enumerate() {
+        single.state = convert(&model, state);
+        double.state = convert(&model, state);
+        single.forward().expect("a good state");
+        double.forward().expect("a good state");
+        let exact = computed(&double);
+        for (name, rounded) in computed(&single) {
+            let width = batch.width(name).expect("a field");
+            let values = (read.entry(name)).or_insert_with(|| batch.read(name).expect("a device"));
+            let row = values[env * width..(env + 1) * width].iter();
+            let found = used(
+                name,
+                row.map(|&x| f64::from(x)).collect(),
+                &solves[env],
+                model.nv,
+            );
+            all.entry(name).or_default().push(Distance {
+                single: difference(&found, &rounded),
+                double: difference(&found, &exact[name]),
+                noise: difference(&rounded, &exact[name]),
+            });
+        }
+    }
+    all
+}
+
+/// Largest difference of a field, over its largest number.
+pub const TOLERANCE: f64 = 1e-4;
+
+/// Random states of a model on the device, after a forward pass.
+fn states(model: &Arc<Model>, count: usize, spread: f64) -> Option<(GpuBatch, Vec<State<f32>>)> {
+    let mut random = Random::new(3);
+    let states: Vec<_> = (0..count)
+        .map(|_| random_state(model, &mut random, spread))
+        .collect();
+    let mut batch = batch(model, count)?;
+    upload(&mut batch, &states);
+    batch.forward().expect("a device");
+    assert_all_run(&batch);
+    Some((batch, states))
+}
+
+impl Distance {
+    /// Whether the device is within the tolerance of the processor, in either precision, or as near to it as the processor's own
+    /// precisions are to each other, in this state or usually: where an impedance is near zero, say, R is the quotient of two
+    /// roundings, and a light finger on a heavy arm is moved by what rounding leaves of large forces.
+    pub fn is_near(&self, usual_noise: f64, tolerance: f64) -> bool {
+        let noise = self.noise.max(usual_noise);
+        self.single.min(self.double) <= tolerance.max(3.0 * noise)
+    }
+}
+
+/// What the processor's precisions differ by in one state of twenty at least.
+pub fn usual_noise(found: &[Distance]) -> f64 {
+    let mut noises: Vec<f64> = found.iter().map(|d| d.noise).collect();
+    noises.sort_by(f64::total_cmp);
+    noises[noises.len() * 19 / 20]
+}
+
+/// Every field of every state is near the processor's, and most of them are not so because of noise alone.
+pub fn agree(model: &Arc<Model>, count: usize, spread: f64) -> Option<GpuBatch> {
+    agree_within(TOLERANCE, 0, model, count, spread)
+}
+
+/// The same, with a tolerance of its own, which so many states may exceed.
+pub fn agree_within(
+    tolerance: f64,
+    strays: usize,
+    model: &Arc<Model>,
+    count: usize,
+    spread: f64,
+) -> Option<GpuBatch> {
+    let (batch, states) = states(model, count, spread)?;
+    for (name, found) in distances(&batch, &states) {
+        let usual = usual_noise(&found);
+        let mut far = (0..count).filter(|&env| !found[env].is_near(usual, tolerance));
+        if let Some(env) = far.nth(strays) {
+            panic!("{}: {name} of state {env}: {:?}", model.name, found[env]);
+        }
+        let noisy = found.iter().filter(|d| d.single.min(d.double) > tolerance);
+        assert!(
+            4 * noisy.count() <= count,
+            "{}: {name} is mostly noise",
+            model.name
+        );
+    }
+    Some(batch)
+}

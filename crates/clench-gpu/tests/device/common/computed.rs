@@ -1,0 +1,123 @@
+//! What the processor computed, by the names of the device's fields.
+
+use clench_gpu::GpuSolve;
+use clench_math::{Mat3, Motion, Quat, Vec3};
+use clench_rigid::Sim;
+use clench_rigid::batch::Precision;
+use std::collections::BTreeMap;
+
+/// What the processor computed of one environment, by the names of the device's fields.
+pub fn computed<S: Precision>(sim: &Sim<S>) -> BTreeMap<&'static str, Vec<f64>> {
+    let ws = sim.workspace();
+    let (pos, vel, force) = (&ws.position, &ws.velocity, &ws.force);
+    let plain = |x: &[S]| x.iter().map(|x| x.to_f64()).collect::<Vec<f64>>();
+    let vectors = |v: &[Vec3<S>]| {
+        v.iter()
+            .flat_map(|v| v.to_array().map(|x| x.to_f64()))
+            .collect()
+    };
+    let quats = |q: &[Quat<S>]| {
+        q.iter()
+            .flat_map(|q| q.to_array().map(|x| x.to_f64()))
+            .collect()
+    };
+    let matrices = |m: &[Mat3<S>]| {
+        let rows = m.iter().flat_map(|m| m.rows);
+        rows.flat_map(|r| r.to_array().map(|x| x.to_f64()))
+            .collect()
+    };
+    let motions = |m: &[Motion<S>]| {
+        m.iter()
+            .flat_map(|m| m.to_array().map(|x| x.to_f64()))
+            .collect()
+    };
+    let mut all = BTreeMap::new();
+    all.insert("xpos", vectors(&pos.xpos));
+    all.insert("xquat", quats(&pos.xquat));
+    all.insert("xmat", matrices(&pos.xmat));
+    all.insert("xipos", vectors(&pos.xipos));
+    all.insert("ximat", matrices(&pos.ximat));
+    all.insert("xanchor", vectors(&pos.xanchor));
+    all.insert("xaxis", vectors(&pos.xaxis));
+    all.insert("geom_xpos", vectors(&pos.geom_xpos));
+    all.insert("geom_xmat", matrices(&pos.geom_xmat));
+    all.insert("site_xpos", vectors(&pos.site_xpos));
+    all.insert("site_xmat", matrices(&pos.site_xmat));
+    all.insert("ten_length", plain(&pos.ten_length));
+    all.insert("ten_jacobian", plain(&pos.ten_jacobian));
+    all.insert("ten_velocity", plain(&vel.ten_velocity));
+    all.insert("actuator_moment", plain(&pos.actuator_moment));
+    all.insert("act_dot", plain(&force.act_dot));
+    all.insert("qfrc_gravcomp", plain(&force.qfrc_gravcomp));
+    all.insert("subtree_com", vectors(&pos.subtree_com));
+    all.insert("cdof", motions(&pos.cdof));
+    all.insert("cdof_dot", motions(&vel.cdof_dot));
+    all.insert("cvel", motions(&vel.cvel));
+    all.insert("qm", plain(&ws.problem.mass.values));
+    all.insert("actuator_length", plain(&pos.actuator_length));
+    all.insert("actuator_velocity", plain(&vel.actuator_velocity));
+    all.insert("actuator_force", plain(&force.actuator_force));
+    all.insert("qfrc_passive", plain(&force.qfrc_passive));
+    all.insert("qfrc_bias", plain(&force.qfrc_bias));
+    all.insert("qfrc_actuator", plain(&force.qfrc_actuator));
+    all.insert("qfrc_smooth", plain(&force.qfrc_smooth));
+    all.insert("qacc_smooth", plain(&ws.problem.qacc_smooth));
+    all.insert("qacc", plain(&ws.qacc));
+    all.insert("qfrc_constraint", plain(&ws.qfrc_constraint));
+    all.insert("contacts", contact_numbers(sim));
+    for (name, values) in row_numbers(sim) {
+        all.insert(name, values);
+    }
+    all
+}
+
+/// Pair by pair as on the device, but for the number of the pair.
+fn contact_numbers<S: Precision>(sim: &Sim<S>) -> Vec<f64> {
+    let contacts = sim.contacts().iter();
+    let numbers = contacts.flat_map(|c| {
+        let place = [c.dist].into_iter().chain(c.pos.to_array());
+        let axes = c.frame.rows.into_iter().flat_map(|row| row.to_array());
+        place.chain(axes).collect::<Vec<_>>()
+    });
+    numbers.map(|x| x.to_f64()).collect()
+}
+
+/// What the convex problem holds of each row, in order.
+fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
+    let ws = sim.workspace();
+    let nv = ws.problem.nv();
+    let (mut aref, mut r, mut jacobian) = (Vec::new(), Vec::new(), Vec::new());
+    for block in ws.problem.blocks() {
+        aref.extend(block.aref.iter().map(|x| x.to_f64()));
+        r.extend(block.r.iter().map(|x| x.to_f64()));
+        for row in block.jacobian.chunks(block.dofs.len()) {
+            let mut dense = vec![0.0; nv];
+            for (&dof, j) in block.dofs.iter().zip(row) {
+                dense[dof as usize] = j.to_f64();
+            }
+            jacobian.extend(dense);
+        }
+    }
+    let plain = |x: &[S]| x.iter().map(|x| x.to_f64()).collect();
+    vec![
+        ("aref", aref),
+        ("r", r),
+        ("jacobian", jacobian),
+        ("position", plain(&ws.record.pos)),
+        ("velocity", plain(&ws.record.vel)),
+    ]
+}
+
+/// The part of a row that is in use; of contacts, what is not the number of their pair.
+pub fn used(name: &str, mut row: Vec<f64>, solve: &GpuSolve, nv: usize) -> Vec<f64> {
+    match name {
+        "contacts" => {
+            row.truncate(14 * solve.contacts);
+            row = row.chunks(14).flat_map(|c| c[1..].to_vec()).collect();
+        }
+        "jacobian" => row.truncate(solve.rows * nv),
+        "aref" | "r" | "position" | "velocity" => row.truncate(solve.rows),
+        _ => {}
+    }
+    row
+}

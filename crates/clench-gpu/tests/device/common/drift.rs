@@ -1,0 +1,58 @@
+//! How far trajectories on the device drift from double precision.
+
+use super::{assert_all_run, batch, convert, some_states, upload};
+use clench_rigid::batch::Precision;
+use clench_rigid::model::Model;
+use clench_rigid::{Sim, State};
+use std::sync::Arc;
+
+/// Where the processor gets from a state in so many steps.
+fn arrival<S: Precision>(model: &Arc<Model>, from: &State<f32>, steps: usize) -> Vec<f64> {
+    let mut sim = Sim::<S>::new(model.clone()).expect("a good model");
+    sim.state = convert(model, from);
+    for _ in 0..steps {
+        sim.step().expect("a good state");
+    }
+    sim.state.qpos.iter().map(|q| q.to_f64()).collect()
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+/// After `steps` steps from `count` states the device is not further from double precision than three times what the processor's single
+/// precision is, by the medians.
+pub fn drift_alike(model: &Arc<Model>, count: usize, steps: usize) {
+    let starts = some_states(model, count);
+    let Some(mut batch) = batch(model, count) else {
+        return;
+    };
+    upload(&mut batch, &starts);
+    batch.step(steps).expect("a device");
+    assert_all_run(&batch);
+    assert_eq!(batch.steps().expect("a device"), vec![steps as u32; count]);
+    let qpos = batch.read("qpos").expect("a device");
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    for (env, start) in starts.iter().enumerate() {
+        let exact = arrival::<f64>(model, start, steps);
+        let found: Vec<f64> = qpos[env * model.nq..][..model.nq]
+            .iter()
+            .map(|&q| f64::from(q))
+            .collect();
+        ours.push(distance(&found, &exact));
+        theirs.push(distance(&arrival::<f32>(model, start, steps), &exact));
+    }
+    let median = |d: &mut Vec<f64>| {
+        d.sort_by(f64::total_cmp);
+        d[d.len() / 2]
+    };
+    let (ours, theirs) = (median(&mut ours), median(&mut theirs));
+    assert!(
+        ours <= 3.0 * theirs + 1e-6,
+        "{}: {ours:.1e} against {theirs:.1e}",
+        model.name
+    );
+}

@@ -1,0 +1,72 @@
+//! Models of others, in folders that environment variables name.
+
+use super::{agree, drift_alike};
+use clench_gpu::{GpuBatch, GpuError, GpuOptions};
+use clench_rigid::model::Model;
+use std::ops::RangeBounds;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Models that are not compared in single precision: light fingers on heavy arms, which what rounding leaves of large forces accelerates
+/// (`double.rs` compares them), and a dog of so many dofs and pairs of geoms that Mesa's software device ends its loops early, which is
+/// a fault.
+const NOT_COMPARED: [&str; 3] = ["dog", "manipulator", "stacker"];
+
+/// Every model of a folder that an environment variable names agrees with the processor on so many states of each, so far from its
+/// initial one, but for those whose names are `refused`, which are. Without the variable there is nothing to test.
+pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &[&str]) {
+    let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {
+        eprintln!("skipped: {variable} names no folder");
+        return;
+    };
+    let load = |name: &str| public(&folder, name);
+    for &(name, count, spread) in models {
+        agree(&load(name), count, spread);
+    }
+    for name in refused {
+        let error = GpuBatch::<f32>::new(load(name), 1, GpuOptions::default())
+            .expect_err("what can be done is no longer listed as refused");
+        assert!(matches!(error, GpuError::Unsupported(_)), "{name}: {error}");
+        println!("{name}: {error}");
+    }
+    let listed = |name: &str| {
+        let known = refused.contains(&name) || NOT_COMPARED.contains(&name);
+        known || models.iter().any(|m| m.0 == name)
+    };
+    for file in folder.read_dir().expect("a folder").flatten() {
+        let path = file.path();
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let is_model = path.extension().is_some_and(|e| e == "xml");
+        assert!(!is_model || listed(&name), "{name} is not listed");
+    }
+}
+
+/// A model of others, in a folder.
+pub fn public(folder: &Path, name: &str) -> Arc<Model> {
+    let path = folder.join(format!("{name}.xml"));
+    Arc::new(clench_formats::load(path).expect("a public model loads"))
+}
+
+/// Models of no more dofs are stepped in every test, larger ones in those that are ignored but where one asks for them: Mesa's software device
+/// takes minutes.
+pub const SMALL: usize = 10;
+
+/// Every model of a list in a folder that an environment variable names, if its dofs are so many, drifts as on the processor, in 200 steps
+/// from 8 states each. Without the variable there is nothing to test.
+pub fn drift_on_folder(
+    variable: &str,
+    models: &[(&str, usize, f64)],
+    dofs: impl RangeBounds<usize>,
+) {
+    let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {
+        eprintln!("skipped: {variable} names no folder");
+        return;
+    };
+    for &(name, ..) in models {
+        let model = public(&folder, name);
+        if dofs.contains(&model.nv) {
+            println!("{name}");
+            drift_alike(&model, 8, 200);
+        }
+    }
+}
