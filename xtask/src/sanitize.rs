@@ -1,92 +1,24 @@
-//! `cargo xtask sanitize`: the tests under AddressSanitizer, which is an unstable option of a stable compiler, opened by `RUSTC_BOOTSTRAP`.
+//! `cargo xtask sanitize`: the Rust tests under AddressSanitizer.
 
 use crate::fuzz::host;
-use crate::python;
-use crate::run::{cargo, command, root, run, target};
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use crate::run::{cargo, run, target};
 
-/// Runs the Rust tests with every access to memory checked; `args` go to `cargo test`, to choose some. `python` chooses those of the
-/// Python package, and what follows it goes to pytest.
+/// Runs the Rust tests with every access to memory checked; `args` go to `cargo test`, to choose some.
+///
+/// The checks are an unstable option of a stable compiler, which `RUSTC_BOOTSTRAP` opens; the runtime comes with it.
 ///
 /// # Errors
 /// A test that failed, a bad access to memory, or a compiler without the runtime.
 pub(crate) fn sanitize(args: &[String]) -> Result<(), String> {
-    if let [first, rest @ ..] = args
-        && first == "python"
-    {
-        return sanitize_python(rest);
-    }
-    let mut test = instrumented("test")?;
+    let mut test = cargo(&["test", "--target", &host()?]);
     match args {
         [] => test.args(["--workspace", "--exclude", "clench-python"]),
         _ => test.args(args),
     };
     // Documentation tests are linked without the runtime.
     test.args(["--lib", "--bins", "--tests"]);
+    test.arg("--target-dir").arg(target().join("sanitizer"));
+    test.env("RUSTC_BOOTSTRAP", "1");
+    test.env("RUSTFLAGS", "-Zsanitizer=address");
     run(test)
-}
-
-/// A command of cargo that compiles with checks.
-fn instrumented(subcommand: &str) -> Result<Command, String> {
-    let mut cargo = cargo(&[subcommand, "--target", &host()?]);
-    cargo.arg("--target-dir").arg(folder());
-    cargo.env("RUSTC_BOOTSTRAP", "1");
-    cargo.env("RUSTFLAGS", "-Zsanitizer=address");
-    Ok(cargo)
-}
-
-/// Where all that is compiled with checks lies.
-fn folder() -> PathBuf {
-    target().join("sanitizer")
-}
-
-/// The same for the Python package, whose compiled part is put beside a copy of its modules. An interpreter knows nothing of the checks, so
-/// that their runtime, here that of GCC, is loaded before it.
-fn sanitize_python(args: &[String]) -> Result<(), String> {
-    python::prepare()?;
-    let mut build = instrumented("build")?;
-    build.args(["--package", "clench-python"]);
-    run(build)?;
-    let compiled = folder().join(host()?).join("debug/libclench_python.so");
-    let package = folder().join("python/clench");
-    copy(&root().join("python/clench"), &package)?;
-    copy(&compiled, &package.join("_core.abi3.so"))?;
-    let mut tests = match args {
-        [] => python::tests(&["python/tests"]),
-        _ => python::tests(&args.iter().map(String::as_str).collect::<Vec<_>>()),
-    };
-    tests.env("PYTHONPATH", folder().join("python"));
-    tests.env("LD_PRELOAD", runtime()?);
-    // The interpreter itself keeps memory to its end.
-    tests.env("ASAN_OPTIONS", "detect_leaks=0");
-    run(tests)
-}
-
-/// GCC's runtime of AddressSanitizer.
-fn runtime() -> Result<String, String> {
-    let missing = "GCC's libasan.so is not there: install gcc";
-    let found = command("gcc", &["-print-file-name=libasan.so"]).output();
-    let found = found.map_err(|error| format!("{missing} ({error})"))?;
-    let path = String::from_utf8_lossy(&found.stdout).trim().to_owned();
-    // GCC gives the bare name of what it does not find.
-    match Path::new(&path).is_absolute() {
-        true => Ok(path),
-        false => Err(missing.to_owned()),
-    }
-}
-
-/// Copies a file, or a folder with all that is in it.
-fn copy(from: &Path, to: &Path) -> Result<(), String> {
-    let failed = |error| format!("cannot copy {}: {error}", from.display());
-    if !from.is_dir() {
-        return fs::copy(from, to).map(drop).map_err(failed);
-    }
-    fs::create_dir_all(to).map_err(failed)?;
-    for entry in fs::read_dir(from).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        copy(&entry.path(), &to.join(entry.file_name()))?;
-    }
-    Ok(())
 }
