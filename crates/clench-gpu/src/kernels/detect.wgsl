@@ -24,6 +24,16 @@ fn may_touch(pair: u32, a: u32, b: u32) -> bool {
     return dot(offset, offset) <= reach * max(reach, 0.0);
 }
 
+// The first pair from one on whose bounding spheres meet; NPAIR if there is none. A loop of its own: threads side by side, each at a pair of its
+// environment, look for contacts together, and none waits while another does.
+fn first_that_may_touch(start: u32) -> u32 {
+    var pair = start;
+    while (pair < NPAIR && !may_touch(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u])) {
+        pair++;
+    }
+    return pair;
+}
+
 fn on_plane(pair: u32, plane: Placed, b: Placed, geom: u32, range: f32) {
     let kind = words[GEOM_KIND + geom];
     let normal = plane.axes[2];
@@ -84,13 +94,11 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     found = 0u;
-    for (var pair = 0u; pair < NPAIR; pair++) {
-        let a = words[PAIR_GEOM + 2u * pair];
-        let b = words[PAIR_GEOM + 2u * pair + 1u];
-        if (may_touch(pair, a, b)) {
-            first_of_pair = found;
-            collide(pair, a, b);
-        }
+    var pair = first_that_may_touch(0u);
+    while (pair < NPAIR) {
+        first_of_pair = found;
+        collide(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u]);
+        pair = first_that_may_touch(pair + 1u);
     }
     reports[NCON * envs + env] = found;
     note_end();

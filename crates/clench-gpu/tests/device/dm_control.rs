@@ -8,6 +8,7 @@ const MODELS: &[(&str, usize, f64)] = &[
     ("ball_in_cup", 100, 0.5),
     ("cartpole", 100, 0.5),
     ("cheetah", 100, 0.3),
+    ("dog", 40, 0.3),
     ("finger", 100, 0.5),
     ("fish", 100, 0.5),
     ("hopper", 100, 0.5),
