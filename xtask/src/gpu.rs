@@ -5,7 +5,7 @@ use crate::python;
 use crate::run::{ALL_FEATURES, cargo, run};
 use std::path::Path;
 use std::process::Command;
-use std::thread::{self, ScopedJoinHandle};
+use std::thread;
 
 /// Where drivers for Vulkan register on Linux.
 const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
@@ -13,37 +13,28 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// Those that compute, of `clench-gpu` and of the program, and those that draw.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
-/// Parts of `device` that take about as long as each other and as all that is left. Mesa's software device compiles on one core for each program,
-/// so that these run side by side; what one has compiled the others find on the disk.
-const PARTS: [&[&str]; 2] = [
-    &["stages::", "solver::", "large::"],
-    &["steps::", "double::"],
-];
+/// The tests of `device` that compile kernels of their own take about as long as all that is left, which shares kernels for any model. Mesa's
+/// software device compiles on one core for each program, so that they run side by side.
+const OWN_KERNELS: [&str; 3] = ["batch::", "outputs::", "double::"];
 
 /// Runs them.
 ///
 /// # Errors
 /// That a test failed.
 pub(crate) fn test() -> Result<(), String> {
+    let mut own = computing(&COMPUTING[..1])?;
+    own.arg("--").args(OWN_KERNELS);
     // What is left, and the program's.
     let mut rest = computing(&COMPUTING)?;
     rest.arg("--");
-    for name in PARTS.into_iter().flatten() {
+    for name in OWN_KERNELS {
         rest.args(["--skip", name]);
     }
-    let mut parts = vec![rest];
-    for names in PARTS {
-        let mut part = computing(&COMPUTING[..1])?;
-        part.arg("--").args(names);
-        parts.push(part);
-    }
     thread::scope(|scope| {
-        let running = Vec::from_iter(parts.into_iter().map(|part| scope.spawn(|| run(part))));
-        let outcome = |part: ScopedJoinHandle<_>| {
-            part.join()
-                .unwrap_or_else(|_| Err("a part of the tests panicked".into()))
-        };
-        running.into_iter().try_for_each(outcome)
+        let beside = scope.spawn(|| run(own));
+        let rest = run(rest);
+        let own = beside.join();
+        rest.and(own.unwrap_or_else(|_| Err("a part of the tests panicked".into())))
     })?;
     run(tests(&DRAWING))
 }

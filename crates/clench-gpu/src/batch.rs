@@ -8,7 +8,7 @@ use crate::fields::{self, Fields};
 use crate::kernels::{Memory, preface};
 use crate::pipelines::{Arrays, Pipelines};
 use crate::precision::GpuReal;
-use crate::solver_memory::SolverMemory;
+use crate::solver_memory::{SolverMemory, check_dofs};
 use crate::tables::{Capacity, ENVS, Tables};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
@@ -30,6 +30,9 @@ pub struct GpuOptions {
     pub options: RigidOptions,
     /// A part of the name of the device to use; by default the first of [`devices`](crate::devices).
     pub device: Option<String>,
+    /// Kernels that serve any model, rather than ones made for what this one has: slower, but who looks at many kinds of models waits for
+    /// their compiler once.
+    pub general: bool,
 }
 
 /// Many environments of one model on a graphics device, in single precision or, where the device has it, in double.
@@ -80,6 +83,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// No device; a model that cannot be stepped on one yet; options out of range; more environments than the device holds.
     pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
+        let general = options.general;
         let settings = StepSettings::new::<S>(&model, options.options)?;
         let collide = settings.flags.constraint && settings.flags.contact;
         let pairs = if collide {
@@ -92,12 +96,14 @@ impl<S: GpuReal> GpuBatch<S> {
             settings: &settings,
             candidates: &pairs,
         })?;
+        let method = settings.solver.constraint_solver;
+        check_dofs(model.nv, method)?;
         let device = Device::open(options.device.as_deref(), S::FEATURES)?;
         let room = device.limits.max_compute_workgroup_storage_size as usize;
-        let solver = SolverMemory::new::<S>(model.nv, settings.solver.constraint_solver, room)?;
-        let (mut tables, mut capacity) = Tables::new::<S>(&model, &settings, &pairs);
+        let solver = SolverMemory::new::<S>(model.nv, method, room, general);
+        let (mut tables, mut capacity) = Tables::new::<S>(&model, &settings, &pairs, general);
         solver.reserve(&mut capacity);
-        let base = Base::new(&tables, pairs);
+        let base = Base::new(&tables, pairs, general);
         tables.shapes(&model, &base.candidates);
         let state = fields::state_fields(&model, capacity);
         let work = fields::work_fields(&model, capacity);

@@ -153,8 +153,8 @@ pub(crate) struct Device {
     /// What its kernels are given.
     pub arrays: wgpu::BindGroupLayout,
     pub pipeline_layout: wgpu::PipelineLayout,
-    /// By their texts.
-    kernels: Mutex<HashMap<String, wgpu::ComputePipeline>>,
+    /// By their texts; none is one that is being compiled.
+    kernels: Mutex<HashMap<String, Arc<Mutex<Option<wgpu::ComputePipeline>>>>>,
 }
 
 impl Device {
@@ -292,17 +292,19 @@ impl Device {
         text: String,
         compile: impl FnOnce(&str) -> Result<wgpu::ComputePipeline, GpuError>,
     ) -> Result<wgpu::ComputePipeline, GpuError> {
-        if let Some(known) = lock(&self.kernels).get(&text) {
+        let slot = {
+            let mut kernels = lock(&self.kernels);
+            if kernels.len() >= MOST_KERNELS {
+                kernels.clear();
+            }
+            Arc::clone(kernels.entry(text.clone()).or_default())
+        };
+        // Others compile theirs meanwhile; who wants this one waits for it.
+        let mut slot = lock(&slot);
+        if let Some(known) = &*slot {
             return Ok(known.clone());
         }
-        // Others compile theirs meanwhile.
-        let compiled = compile(&text)?;
-        let mut kernels = lock(&self.kernels);
-        if kernels.len() >= MOST_KERNELS {
-            kernels.clear();
-        }
-        kernels.insert(text, compiled.clone());
-        Ok(compiled)
+        Ok(slot.insert(compile(&text)?).clone())
     }
 
     fn lost(&self, reason: String) -> GpuError {

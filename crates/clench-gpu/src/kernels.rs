@@ -150,6 +150,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     let mut layout = tables.layout.clone();
     layout.count("STATE", memory.state.size);
     layout.count("ROWS", memory.rows.size);
+    layout.count("NTILE", memory.solver.ntile());
     for fields in [memory.state, memory.work, memory.rows, memory.reports] {
         for field in &fields.list {
             layout.count(&field.name.to_uppercase(), field.place);

@@ -1,5 +1,6 @@
 //! Where things lie in the arrays of a model, how many there are, and its options: numbers that differ from model to model. Kernels read them from
-//! a small array of their own, so that models of one kind share their kernels; what decides of the text of a kernel is a constant.
+//! a small array of their own, so that models of one kind share their kernels; what decides of the text of a kernel is a constant, but for kernels
+//! that are to serve any model.
 //!
 //! The texts name them in capitals, like constants.
 
@@ -13,6 +14,7 @@ use zerocopy::{Immutable, IntoBytes};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Layout {
     counts: Vec<(String, u32)>,
+    flags: Vec<(String, bool)>,
     reals: Vec<(String, f64)>,
 }
 
@@ -20,6 +22,11 @@ impl Layout {
     /// Adds a count or a place.
     pub(crate) fn count(&mut self, name: &str, value: usize) {
         self.counts.push((name.to_owned(), value as u32));
+    }
+
+    /// Adds what holds or does not.
+    pub(crate) fn flag(&mut self, name: &str, value: bool) {
+        self.flags.push((name.to_owned(), value));
     }
 
     /// Adds a number.
@@ -30,7 +37,8 @@ impl Layout {
     /// How the array is declared, in WGSL.
     pub(crate) fn declaration(&self) -> String {
         let mut text = "struct Layout {\n".to_owned();
-        for (name, _) in &self.counts {
+        let counts = self.counts.iter().map(|(name, _)| name);
+        for name in counts.chain(self.flags.iter().map(|(name, _)| name)) {
             let _ = writeln!(text, "    {name}: u32,");
         }
         for (name, _) in &self.reals {
@@ -43,17 +51,23 @@ impl Layout {
     pub(crate) fn resolve(&self, text: &str) -> String {
         let counts = self.counts.iter().map(|(name, _)| name.as_str());
         let reals = self.reals.iter().map(|(name, _)| name.as_str());
-        let names: HashSet<&str> = counts.chain(reals).collect();
+        let numbers: HashSet<&str> = counts.chain(reals).collect();
+        let flags: HashSet<&str> = self.flags.iter().map(|(name, _)| name.as_str()).collect();
         replace_words(text, |word| {
-            names.contains(word).then(|| format!("of_model.{word}"))
+            let holds = || format!("(of_model.{word} != 0u)");
+            let number = numbers.contains(word).then(|| format!("of_model.{word}"));
+            number.or_else(|| flags.contains(word).then(holds))
         })
     }
 
-    /// The array: counts, then numbers of a type, aligned as WGSL says.
+    /// The array: counts and flags, then numbers of a type, aligned as WGSL says.
     pub(crate) fn bytes<S: Scalar + IntoBytes + Immutable>(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         for (_, count) in &self.counts {
             bytes.extend(count.to_ne_bytes());
+        }
+        for &(_, flag) in &self.flags {
+            bytes.extend(u32::from(flag).to_ne_bytes());
         }
         bytes.resize(bytes.len().next_multiple_of(size_of::<S>()), 0);
         for &(_, real) in &self.reals {
@@ -73,17 +87,18 @@ mod tests {
         let mut layout = Layout::default();
         layout.count("NV", 7);
         layout.real("STEP", 0.5);
+        layout.flag("WARM", true);
         assert_eq!(
-            layout.resolve("f(NV, NVS) * STEP"),
-            "f(of_model.NV, NVS) * of_model.STEP"
+            layout.resolve("WARM && f(NV, NVS) * STEP"),
+            "(of_model.WARM != 0u) && f(of_model.NV, NVS) * of_model.STEP"
         );
         assert!(
             layout
                 .declaration()
-                .contains("    NV: u32,\n    STEP: f32,\n}")
+                .contains("    NV: u32,\n    WARM: u32,\n    STEP: f32,\n}")
         );
-        let single = [7u32.to_ne_bytes(), 0.5f32.to_ne_bytes()].concat();
-        assert_eq!(layout.bytes::<f32>()[..8], single);
+        let single = [7u32.to_ne_bytes(), 1u32.to_ne_bytes(), 0.5f32.to_ne_bytes()].concat();
+        assert_eq!(layout.bytes::<f32>()[..12], single);
         assert_eq!(layout.bytes::<f64>()[8..16], 0.5f64.to_ne_bytes());
         assert_eq!(layout.bytes::<f32>().len(), 16);
     }

@@ -14,7 +14,12 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// Parameters by which kernels would have to be others: a spring where there was none, a value that is compiled into them.
     pub(crate) fn parameters_of(&self, model: &Model) -> Result<Vec<S>, GpuError> {
-        let (tables, _) = Tables::new::<S>(model, &self.settings, &self.base.candidates);
+        let (tables, _) = Tables::new::<S>(
+            model,
+            &self.settings,
+            &self.base.candidates,
+            self.base.general,
+        );
         let base = &self.base;
         // Hulls are made of sizes, once.
         let resized = model.params.geom_size != self.model().params.geom_size;

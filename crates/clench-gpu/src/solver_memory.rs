@@ -21,45 +21,55 @@ const STAGING: usize = 2 * TILE * 20 + TILE + 256;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SolverMemory {
     newton: bool,
-    /// Tiles of H in a row.
+    /// Tiles of H in a row, and how many there is room for.
     ntile: usize,
+    most: usize,
     share_tiles: bool,
     share_vectors: bool,
 }
 
+/// Refuses more dofs than Newton's method is for.
+///
+/// # Errors
+/// That.
+pub(crate) fn check_dofs(nv: usize, solver: ConstraintSolver) -> Result<(), GpuError> {
+    if solver == ConstraintSolver::Newton && nv > MAX_NEWTON_DOFS {
+        return Err(GpuError::TooManyDofs {
+            most: MAX_NEWTON_DOFS,
+            nv,
+        });
+    }
+    Ok(())
+}
+
 impl SolverMemory {
-    /// For `nv` dofs, by Newton's method or by conjugate gradients, where a workgroup shares `room` bytes.
-    ///
-    /// # Errors
-    /// More dofs than Newton's method is for.
-    pub(crate) fn new<S>(
-        nv: usize,
-        solver: ConstraintSolver,
-        room: usize,
-    ) -> Result<Self, GpuError> {
+    /// For `nv` dofs, by Newton's method or by conjugate gradients, where a workgroup shares `room` bytes. Kernels that serve any model have
+    /// as much of that as those of the most dofs whose factor is shared.
+    pub(crate) fn new<S>(nv: usize, solver: ConstraintSolver, room: usize, general: bool) -> Self {
         let newton = solver == ConstraintSolver::Newton;
-        if newton && nv > MAX_NEWTON_DOFS {
-            return Err(GpuError::TooManyDofs {
-                most: MAX_NEWTON_DOFS,
-                nv,
-            });
-        }
-        let mut memory = SolverMemory {
-            newton,
-            ntile: nv.div_ceil(TILE),
-            share_tiles: nv <= MAX_SHARED_DOFS,
-            share_vectors: true,
-        };
+        let ntile = nv.div_ceil(TILE);
         let room = room / size_of::<S>();
-        memory.share_vectors = STAGING + memory.vectors() <= room;
-        let both = STAGING + memory.vectors() + memory.tiles();
-        memory.share_tiles &= memory.share_vectors && both <= room;
-        Ok(memory)
+        let with = |most: usize| {
+            let mut memory = SolverMemory {
+                newton,
+                ntile,
+                most,
+                share_tiles: TILE * most <= MAX_SHARED_DOFS,
+                share_vectors: true,
+            };
+            memory.share_vectors = STAGING + memory.vectors() <= room;
+            let both = STAGING + memory.vectors() + memory.tiles();
+            memory.share_tiles &= memory.share_vectors && both <= room;
+            memory
+        };
+        let larger = (ntile + 1..=MAX_SHARED_DOFS / TILE).rev();
+        let shared = larger.map(with).find(|memory| memory.share_tiles);
+        shared.filter(|_| general).unwrap_or_else(|| with(ntile))
     }
 
     /// Numbers of the tiles of a lower triangle; conjugate gradients need none.
     fn tiles(self) -> usize {
-        let triangle = TILE * TILE * self.ntile * (self.ntile + 1) / 2;
+        let triangle = TILE * TILE * self.most * (self.most + 1) / 2;
         if self.newton { triangle } else { 0 }
     }
 
@@ -69,7 +79,7 @@ impl SolverMemory {
         } else {
             CG_VECTORS
         };
-        count * TILE * self.ntile
+        count * TILE * self.most
     }
 
     /// Sets aside what lies with the rows.
@@ -79,13 +89,17 @@ impl SolverMemory {
         capacity.vectors = outside(self.share_vectors, self.vectors());
     }
 
+    /// Tiles of H in a row.
+    pub(crate) fn ntile(self) -> usize {
+        self.ntile
+    }
+
     /// The constants that tell the kernels. An array that is not used has one element, since it must have some.
     pub(crate) fn constants(self) -> String {
         let mut text = String::new();
         let inside = |shared: bool, size: usize| if shared { size.max(1) } else { 1 };
         for (name, value) in [
-            ("NTILE", self.ntile),
-            ("WIDTH", TILE * self.ntile),
+            ("WIDTH", TILE * self.most),
             ("SHARED_QUADS", inside(self.share_tiles, self.tiles() / 4)),
             ("SHARED_VECTORS", inside(self.share_vectors, self.vectors())),
         ] {

@@ -150,7 +150,7 @@ fn solve_hessian(x: u32, half_way: u32) {
             put_vector(half_way + TILE * j + lane, times_row(tile_at(j, j), lane, x + TILE * j));
         }
         join();
-        for (var i = TILE * (j + 1u) + lane; i < WIDTH; i += GROUP) {
+        for (var i = TILE * (j + 1u) + lane; i < TILE * NTILE; i += GROUP) {
             let tile = tile_at(i / TILE, j);
             put_vector(x + i, vector(x + i) - times_row(tile, i % TILE, half_way + TILE * j));
         }

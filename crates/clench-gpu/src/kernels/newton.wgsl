@@ -6,7 +6,7 @@ fn direct_newton(same_hessian: bool, nblock: u32) {
     if (rebuild == 1u) {
         factor_hessian(weigh_rows(nblock));
     }
-    for (var i = lane; i < bound(WIDTH); i += GROUP) {
+    for (var i = lane; i < bound(TILE * NTILE); i += GROUP) {
         put_vector(RAY_AT + i, select(0.0, -vector(GRADIENT_AT + i), i < NV));
     }
     join();

@@ -105,7 +105,11 @@ impl Tables {
             "PAIR_DEEPEST",
             candidates.iter().map(|c| usize::from(deepest(c))),
         );
-        let vertices = if general { POLYTOPE_VERTICES } else { 4 };
+        let vertices = if general || self.general {
+            POLYTOPE_VERTICES
+        } else {
+            4
+        };
         let faces = 2 * vertices - 4;
         self.constant("POLYTOPE_VERTICES", vertices);
         self.constant("POLYTOPE_FACES", faces);
@@ -187,8 +191,15 @@ impl Tables {
         self.flag("MESH_ON_PLANE", candidates.iter().any(on_plane));
         self.flag("LARGE_FACES", hull_corners > PATCH_POINTS);
 
+        // Kernels for any model have room for what any can have.
+        let caps = self.general || flat_with(Cylinder);
+        let hull_corners = if self.general {
+            MAX_FACE_CORNERS
+        } else {
+            hull_corners
+        };
         let mut corners = BOX_CORNERS;
-        if flat_with(Cylinder) {
+        if caps {
             corners = corners.max(CAP_CORNERS);
         }
         corners = corners.max(hull_corners.min(MAX_FACE_CORNERS));
@@ -202,7 +213,7 @@ impl Tables {
         self.constant("FEATURE_CORNERS", corners);
         self.flag("MANY_CORNERS", corners > BOX_CORNERS);
         // Two polygons overlap in one of at most all their corners; on a round cap lie both ends of a chord for each side, too.
-        let most = if flat_with(Cylinder) {
+        let most = if caps {
             3 * corners + CAP_CORNERS
         } else {
             2 * corners + BOX_CORNERS

@@ -42,6 +42,8 @@ pub(crate) struct Tables {
     pub constants: String,
     /// Where the tables lie, and how much there is of what.
     pub layout: Layout,
+    /// Whether kernels are to serve any model: they ask the layout what this one has.
+    general: bool,
 }
 
 /// How large the constraints of an environment can become.
@@ -74,12 +76,14 @@ impl Tables {
         model: &Model,
         settings: &StepSettings,
         candidates: &[Candidate],
+        general: bool,
     ) -> (Tables, Capacity) {
         let mut tables = Tables {
             words: Vec::new(),
             numbers: Vec::new(),
             constants: String::new(),
             layout: Layout::default(),
+            general,
         };
         tables.words("ZERO", [0]);
         tables.words("OWN_PARAMETERS", [0]);
@@ -137,7 +141,12 @@ impl Tables {
         let _ = writeln!(self.constants, "const {name}: u32 = {value}u;");
     }
 
+    /// Tells what a model has, or what is asked for: what it has not is left out of the texts.
     fn flag(&mut self, name: &str, value: bool) {
+        if self.general {
+            self.layout.flag(name, value);
+            return;
+        }
         let _ = writeln!(self.constants, "const {name}: bool = {value};");
     }
 }

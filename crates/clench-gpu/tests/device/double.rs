@@ -1,29 +1,15 @@
 //! Double precision: each stage equals its sister on the processor to rounding, which tells more than single precision can.
 
-use crate::common::{self, Random, own, random_state, text};
-use clench_gpu::{GpuBatch, GpuError, GpuOptions};
+use crate::common::{self, Random, general_batch, own, random_state, text};
 use clench_rigid::Sim;
 use clench_rigid::model::Model;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A batch in double precision; none where there is no device, or none that has it.
-fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch<f64>> {
-    common::batch(model, 1)?;
-    match GpuBatch::new(model.clone(), count, GpuOptions::default()) {
-        Ok(batch) => Some(batch),
-        Err(error @ GpuError::NoDoublePrecision { .. }) => {
-            eprintln!("skipped: {error}");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
-}
-
 /// Every field of so many random states is within `tolerance` of the processor's in double precision.
 fn agree(model: &Arc<Model>, count: usize, spread: f64, tolerance: f64) {
-    let Some(mut batch) = batch(model, count) else {
+    let Some(mut batch) = general_batch::<f64>(model, count) else {
         return;
     };
     let mut random = Random::new(3);
@@ -92,7 +78,7 @@ fn arrive(name: &str, integrator: &str, steps: usize) {
     let option = format!("<option integrator=\"{integrator}\" ");
     let model = text(&own(name).replace("<option ", &option));
     let count = 8;
-    let Some(mut batch) = batch(&model, count) else {
+    let Some(mut batch) = general_batch::<f64>(&model, count) else {
         return;
     };
     let mut random = Random::new(3);

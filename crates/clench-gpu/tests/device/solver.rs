@@ -1,6 +1,6 @@
 //! Solvers and what they report: conjugate gradients, the duality gap, and starting points that are proven good.
 
-use crate::common::{self, Random, batch, convert, own, random_state, text, upload};
+use crate::common::{self, Random, convert, general_batch, own, random_state, text, upload};
 use clench_rigid::Sim;
 use clench_rigid::model::Model;
 use clench_solver::Status;
@@ -41,7 +41,7 @@ fn the_duality_gap_is_the_processors() {
         let model = with_option("runner", &option);
         let mut random = Random::new(5);
         let states = Vec::from_iter((0..20).map(|_| random_state(&model, &mut random, 1.0)));
-        let Some(mut batch) = batch(&model, states.len()) else {
+        let Some(mut batch) = general_batch::<f32>(&model, states.len()) else {
             return;
         };
         upload(&mut batch, &states);
@@ -73,7 +73,7 @@ fn a_start_that_is_good_enough_is_proven_so() {
            </worldbody>
          </mujoco>",
     );
-    let Some(mut batch) = batch(&model, 2) else {
+    let Some(mut batch) = general_batch::<f32>(&model, 2) else {
         return;
     };
     let mut states = vec![common::random_state(&model, &mut Random::new(1), 0.0); 2];

@@ -58,6 +58,17 @@ fn heap(model: &str, strays: usize) {
     }
 }
 
+/// Kernels that are made for a model, as they are by default, leave out what it has not.
+#[test]
+fn kernels_of_a_models_own_agree_as_those_for_any_do() {
+    for (name, spread) in [("medley", 0.7), ("cans", 1.0), ("terrain", 1.0)] {
+        let Some(mut batch) = batch(&text(&own(name)), 100) else {
+            return;
+        };
+        common::forward_agrees(&mut batch, 1e-3, 3, spread);
+    }
+}
+
 #[test]
 fn a_heap_of_all_shapes() {
     heap(&own("shapes"), 0);

@@ -13,9 +13,9 @@ fn runner() -> Arc<Model> {
     text(&own("runner"))
 }
 
-/// After so many steps from 24 states the device has drifted as the processor's single precision has.
+/// After so many steps from 8 states the device has drifted as the processor's single precision has.
 fn drift_alike(model: &Arc<Model>, steps: usize) {
-    common::drift_alike(model, 24, steps);
+    common::drift_alike(model, 8, steps);
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn a_step_that_is_cut_short_is_a_fault_and_no_wrong_numbers() {
     }
     let options = GpuOptions {
         options: RigidOptions::new().max_contacts(MaxContacts::Limit(80)),
-        device: None,
+        ..GpuOptions::default()
     };
     let count = 24;
     let mut batch = GpuBatch::<f32>::new(model.clone(), count, options).expect("a device");
@@ -241,7 +241,7 @@ fn too_many_contacts_are_a_fault() {
     let options = RigidOptions::new().max_contacts(MaxContacts::Limit(1));
     let options = GpuOptions {
         options,
-        device: None,
+        ..GpuOptions::default()
     };
     let mut batch = GpuBatch::<f32>::new(model.clone(), 2, options).expect("a device");
     let mut low = vec![0.0; model.nq];

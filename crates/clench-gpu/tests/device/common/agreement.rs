@@ -1,6 +1,6 @@
 //! How far the device is from the processor, stage by stage, and how far it may be.
 
-use super::{Random, assert_all_run, batch, computed, convert, random_state, upload, used};
+use super::{Random, assert_all_run, computed, convert, general_batch, random_state, upload, used};
 use clench_gpu::GpuBatch;
 use clench_rigid::model::Model;
 use clench_rigid::{Sim, State};
@@ -70,19 +70,6 @@ pub fn distances(batch: &GpuBatch, states: &[State<f32>]) -> BTreeMap<&'static s
 /// Largest difference of a field, over its largest number.
 pub const TOLERANCE: f64 = 1e-4;
 
-/// Random states of a model on the device, after a forward pass.
-fn states(model: &Arc<Model>, count: usize, spread: f64) -> Option<(GpuBatch, Vec<State<f32>>)> {
-    let mut random = Random::new(3);
-    let states: Vec<_> = (0..count)
-        .map(|_| random_state(model, &mut random, spread))
-        .collect();
-    let mut batch = batch(model, count)?;
-    upload(&mut batch, &states);
-    batch.forward().expect("a device");
-    assert_all_run(&batch);
-    Some((batch, states))
-}
-
 impl Distance {
     /// Whether the device is within the tolerance of the processor, in either precision, or as near to it as the processor's own
     /// precisions are to each other, in this state or usually: where an impedance is near zero, say, R is the quotient of two
@@ -113,8 +100,21 @@ pub fn agree_within(
     count: usize,
     spread: f64,
 ) -> Option<GpuBatch> {
-    let (batch, states) = states(model, count, spread)?;
-    for (name, found) in distances(&batch, &states) {
+    let mut batch = general_batch(model, count)?;
+    forward_agrees(&mut batch, tolerance, strays, spread);
+    Some(batch)
+}
+
+/// Every field of a random state in each environment is near the processor's after a forward pass, but for so many states.
+pub fn forward_agrees(batch: &mut GpuBatch, tolerance: f64, strays: usize, spread: f64) {
+    let model = batch.model().clone();
+    let count = batch.count();
+    let mut random = Random::new(3);
+    let states = Vec::from_iter((0..count).map(|_| random_state(&model, &mut random, spread)));
+    upload(batch, &states);
+    batch.forward().expect("a device");
+    assert_all_run(batch);
+    for (name, found) in distances(batch, &states) {
         let usual = usual_noise(&found);
         let mut far = (0..count).filter(|&env| !found[env].is_near(usual, tolerance));
         if let Some(env) = far.nth(strays) {
@@ -127,5 +127,4 @@ pub fn agree_within(
             model.name
         );
     }
-    Some(batch)
 }

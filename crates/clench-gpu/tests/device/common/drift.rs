@@ -1,6 +1,6 @@
 //! How far trajectories on the device drift from double precision.
 
-use super::{assert_all_run, batch, convert, some_states, upload};
+use super::{assert_all_run, convert, general_batch, some_states, upload};
 use clench_rigid::batch::Precision;
 use clench_rigid::model::Model;
 use clench_rigid::{Sim, State};
@@ -27,7 +27,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 /// precision is, by the medians.
 pub fn drift_alike(model: &Arc<Model>, count: usize, steps: usize) {
     let starts = some_states(model, count);
-    let Some(mut batch) = batch(model, count) else {
+    let Some(mut batch) = general_batch::<f32>(model, count) else {
         return;
     };
     upload(&mut batch, &starts);

@@ -34,15 +34,39 @@ pub fn text(file: &str) -> Arc<Model> {
     Arc::new(clench_formats::load_str(file).expect("a model of ours loads"))
 }
 
-/// A batch; none where the machine has no device, or the environment variable `CLENCH_GPU` says to skip: then the test has nothing
-/// to say. Where that says to require one, none is a failure.
+/// A batch with kernels made for its model, as they are by default; none where there is no device.
 pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
+    with_options(model, count, GpuOptions::default())
+}
+
+/// A batch with kernels that serve any model, which Mesa's software device, slow to compile, compiles once for all tests. With the environment
+/// variable `CLENCH_GPU_KERNELS` set to `own`, those of the model.
+pub fn general_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
+    let general = std::env::var_os("CLENCH_GPU_KERNELS").is_none_or(|wish| wish != "own");
+    let options = GpuOptions {
+        general,
+        ..GpuOptions::default()
+    };
+    with_options(model, count, options)
+}
+
+/// A batch; none where the machine has no device, or none of its precision, or the environment variable `CLENCH_GPU` says to skip: then the
+/// test has nothing to say. Where that says to require one, none is a failure.
+fn with_options<S: GpuReal>(
+    model: &Arc<Model>,
+    count: usize,
+    options: GpuOptions,
+) -> Option<GpuBatch<S>> {
     let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
     if wish == "skip" {
         return None;
     }
-    match GpuBatch::new(model.clone(), count, GpuOptions::default()) {
+    match GpuBatch::new(model.clone(), count, options) {
         Ok(batch) => Some(batch),
+        Err(error @ GpuError::NoDoublePrecision { .. }) => {
+            eprintln!("skipped: {error}");
+            None
+        }
         Err(GpuError::NoDevice) if wish != "require" => {
             eprintln!("skipped: {}", GpuError::NoDevice);
             None
