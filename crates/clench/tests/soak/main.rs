@@ -19,12 +19,20 @@ use ledger::{Expectation, Ledger};
 use poison::poison;
 use std::alloc::System;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use watch::Watch;
 
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
+
+/// The memory of the whole program is counted: one test at a time.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// Waits for the turn of a test, which ends with what is returned.
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// What is soaked, and how.
 struct Plan {
@@ -48,6 +56,7 @@ const GROWTH: isize = 1 << 20;
 
 /// A humanoid in double and a quadruped in single precision, of so many environments and steps.
 fn soak_both(envs: usize, steps: usize) {
+    let _turn = turn();
     let size = |model, max_contacts| Plan {
         model,
         max_contacts,
@@ -60,6 +69,7 @@ fn soak_both(envs: usize, steps: usize) {
 }
 
 fn resume_both(envs: usize, steps: usize) {
+    let _turn = turn();
     let size = |model, max_contacts| Plan {
         model,
         max_contacts,
