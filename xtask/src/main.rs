@@ -28,19 +28,21 @@ Clench's own chores.
 Usage: cargo xtask COMMAND
 
 Commands:
-  test [STAGE...]   Check everything, or only the named stages, in this order:
+  test [--release] [STAGE...]
+                    Check everything, or only the named stages, in this order:
                       fmt      rustfmt finds nothing to change
                       page     the viewer's page, built by Node; without npm skipped
                       clippy   no warnings in any crate, test or example
                       unit     all Rust tests but those on a graphics device
                       doc      rustdoc without warnings
-                      build    the release `clench` program
+                      build    the `clench` program, as the stages after it run it
                       browser  the page driven in Chromium; without one skipped (CHROMIUM names another than /usr/bin/chromium)
                       python   .venv with MuJoCo and gymnasium
                       gpu      steps on a graphics device, or on Mesa's software device; without a driver skipped
                       package  the Python package, built and installed in .venv by pip; its types
                       pytest   its tests, every example in a short form among them
                       parity   `clench` against MuJoCo, with pytest
+                    The program and the package are compiled as the Rust tests are, with their checks; with --release as users have them.
   bench [ARG...]    Build `clench` with the `dist` profile, as it is shipped, and time it against MuJoCo.
                     Arguments go to bench/speed.py; try `cargo xtask bench --help`.
   soak [--only NAME] [SEED]

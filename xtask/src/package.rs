@@ -8,8 +8,8 @@ use crate::web;
 ///
 /// # Errors
 /// What failed, and what to check.
-pub(crate) fn check() -> Result<(), String> {
-    install(Profile::Release)?;
+pub(crate) fn check(profile: Profile) -> Result<(), String> {
+    install(profile)?;
     let mypy = ["-m", "mypy", "--config-file", "python/pyproject.toml"];
     let mut types = command(interpreter(), &mypy);
     types.args(["python/clench", "python/examples", "python/tests"]);
@@ -77,10 +77,10 @@ pub(crate) fn wheel() -> Result<(), String> {
 ///
 /// # Errors
 /// That a test failed.
-pub(crate) fn test() -> Result<(), String> {
+pub(crate) fn test(profile: Profile) -> Result<(), String> {
     run(python::tests(&["-rs", "python/tests"]))?;
     match web::no_browser() {
-        None => web::test_python(),
+        None => web::test_python(profile),
         Some(reason) => {
             println!("skipped: the page of a loop in Python: {reason}");
             Ok(())

@@ -22,16 +22,19 @@ pub(crate) fn target() -> PathBuf {
 /// How cargo compiles what is not a test.
 #[derive(Clone, Copy)]
 pub(crate) enum Profile {
-    /// Quick to build.
+    /// As tests are compiled: what they share with it is there.
+    Dev,
+    /// Faster, and without the checks of tests; quick to build.
     Release,
     /// What is shipped and timed: slower to build, a few percent faster.
     Dist,
 }
 
 impl Profile {
-    /// Its name in `Cargo.toml`, and that of its folder.
+    /// Its name in `Cargo.toml`.
     pub(crate) fn name(self) -> &'static str {
         match self {
+            Profile::Dev => "dev",
             Profile::Release => "release",
             Profile::Dist => "dist",
         }
@@ -40,7 +43,11 @@ impl Profile {
     /// A program built with it, where cargo puts it.
     pub(crate) fn program(self, name: &str) -> PathBuf {
         let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
-        target().join(self.name()).join(name)
+        let folder = match self {
+            Profile::Dev => "debug",
+            other => other.name(),
+        };
+        target().join(folder).join(name)
     }
 }
 

@@ -90,10 +90,11 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
 
 /// Compares many random models with MuJoCo.
 fn soak_models(seed: u64) -> Result<(), String> {
-    build()?;
+    let profile = Profile::Release;
+    build(profile)?;
     python::prepare()?;
     let mut script = command(python::interpreter(), &["parity/soak_models.py"]);
     script.arg(seed.to_string());
-    script.env("CLENCH", Profile::Release.program("clench"));
+    script.env("CLENCH", profile.program("clench"));
     run(script)
 }

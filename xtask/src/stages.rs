@@ -12,7 +12,8 @@ use std::time::Instant;
 struct Stage {
     name: &'static str,
     remedy: &'static str,
-    check: fn() -> Result<(), String>,
+    /// Given how programs are compiled that it runs.
+    check: fn(Profile) -> Result<(), String>,
     /// Why it cannot run on this machine, if it cannot.
     missing: fn() -> Option<String>,
 }
@@ -22,31 +23,31 @@ const STAGES: &[Stage] = &[
     Stage {
         name: "fmt",
         remedy: "run `cargo fmt --all`",
-        check: fmt,
+        check: |_| fmt(),
         missing: nothing,
     },
     Stage {
         name: "page",
         remedy: "see the message above",
-        check: web::build,
+        check: |_| web::build(),
         missing: web::no_node,
     },
     Stage {
         name: "clippy",
         remedy: "mend the warnings above",
-        check: clippy,
+        check: |_| clippy(),
         missing: nothing,
     },
     Stage {
         name: "unit",
         remedy: "run the failing crate alone with `cargo test -p CRATE`",
-        check: unit::test,
+        check: |_| unit::test(),
         missing: nothing,
     },
     Stage {
         name: "doc",
         remedy: "mend the documentation comments named above",
-        check: doc,
+        check: |_| doc(),
         missing: nothing,
     },
     Stage {
@@ -64,13 +65,13 @@ const STAGES: &[Stage] = &[
     Stage {
         name: "python",
         remedy: "see the message above",
-        check: python::prepare,
+        check: |_| python::prepare(),
         missing: nothing,
     },
     Stage {
         name: "gpu",
         remedy: "run one test alone with `cargo test -p clench-gpu NAME`",
-        check: gpu::test,
+        check: |_| gpu::test(),
         missing: gpu::no_device,
     },
     Stage {
@@ -93,17 +94,23 @@ const STAGES: &[Stage] = &[
     },
 ];
 
-/// Runs all stages, or those named, up to the first that fails.
+/// Runs all stages, or those named, up to the first that fails. With `--release` among the arguments the program and the Python package are
+/// compiled as users have them.
 ///
 /// # Errors
 /// The failing stage with its remedy, or a name that is no stage.
-pub(crate) fn test(names: &[String]) -> Result<(), String> {
+pub(crate) fn test(args: &[String]) -> Result<(), String> {
+    let (flags, names): (Vec<_>, Vec<_>) = args.iter().partition(|arg| *arg == "--release");
+    let profile = match flags.is_empty() {
+        true => Profile::Dev,
+        false => Profile::Release,
+    };
     if let Some(name) = names.iter().find(|n| STAGES.iter().all(|s| s.name != **n)) {
         return Err(format!("unknown stage `{name}`; see `cargo xtask --help`"));
     }
     let chosen: Vec<&Stage> = STAGES
         .iter()
-        .filter(|s| names.is_empty() || names.iter().any(|n| n == s.name))
+        .filter(|s| names.is_empty() || names.iter().any(|n| *n == s.name))
         .collect();
     let begin = Instant::now();
     let mut summary = String::new();
@@ -115,7 +122,7 @@ pub(crate) fn test(names: &[String]) -> Result<(), String> {
             continue;
         }
         let start = Instant::now();
-        let outcome = (stage.check)();
+        let outcome = (stage.check)(profile);
         let seconds = start.elapsed().as_secs_f64();
         if let Err(message) = outcome {
             let left = chosen.len() - k - 1;
@@ -184,8 +191,9 @@ fn doc() -> Result<(), String> {
     run(doc)
 }
 
-pub(crate) fn build() -> Result<(), String> {
-    compile(Profile::Release, "clench-cli", ["--bin", "clench"])
+/// The program, without the parts that are left out by default.
+pub(crate) fn build(profile: Profile) -> Result<(), String> {
+    compile(profile, "clench-cli", ["--bin", "clench"])
 }
 
 /// Builds a target of a package.
@@ -195,8 +203,10 @@ fn compile(profile: Profile, package: &str, target: [&str; 2]) -> Result<(), Str
     run(build)
 }
 
-fn parity() -> Result<(), String> {
+fn parity(profile: Profile) -> Result<(), String> {
+    // Tests of the program with all its parts may have put theirs in its place.
+    build(profile)?;
     let mut pytest = python::tests(&["parity"]);
-    pytest.env("CLENCH", Profile::Release.program("clench"));
+    pytest.env("CLENCH", profile.program("clench"));
     run(pytest)
 }

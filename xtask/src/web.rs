@@ -22,21 +22,21 @@ pub(crate) fn build() -> Result<(), String> {
 ///
 /// # Errors
 /// That a test failed.
-pub(crate) fn test() -> Result<(), String> {
-    drive("test")
+pub(crate) fn test(profile: Profile) -> Result<(), String> {
+    drive("test", profile)
 }
 
 /// Drives the page of a viewer that a loop in Python feeds, once the package is installed.
 ///
 /// # Errors
 /// That a test failed.
-pub(crate) fn test_python() -> Result<(), String> {
-    drive("test:python")
+pub(crate) fn test_python(profile: Profile) -> Result<(), String> {
+    drive("test:python", profile)
 }
 
-fn drive(script: &str) -> Result<(), String> {
+fn drive(script: &str, profile: Profile) -> Result<(), String> {
     let mut tests = in_web("npm", &["run", "--silent", script]);
-    tests.env("CLENCH", Profile::Release.program("clench"));
+    tests.env("CLENCH", profile.program("clench"));
     tests.env("PYTHON", interpreter());
     tests.env("CHROMIUM", chromium());
     run(tests)
