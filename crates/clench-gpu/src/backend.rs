@@ -41,7 +41,7 @@ pub fn batch<S: GpuReal>(
         // Who starts over is decided on this side.
         options: options.options.autoreset(false),
         device: device.map(str::to_owned),
-        general: false,
+        general_kernels: false,
     };
     let on_device = GpuBatch::<S>::new(Arc::clone(&model), count, on_device)?;
     Ok(Batch::with_backend(

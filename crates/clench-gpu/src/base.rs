@@ -12,18 +12,18 @@ pub(crate) struct Base<S> {
     pub layout: Layout,
     pub parameters: Vec<S>,
     pub candidates: Vec<Candidate>,
-    pub general: bool,
+    pub general_kernels: bool,
 }
 
 impl<S: Scalar> Base<S> {
-    pub(crate) fn new(tables: &Tables, candidates: Vec<Candidate>, general: bool) -> Self {
+    pub(crate) fn new(tables: &Tables, candidates: Vec<Candidate>) -> Self {
         Base {
             words: tables.words.clone(),
             constants: tables.constants.clone(),
             layout: tables.layout.clone(),
             parameters: tables.numbers_in(),
             candidates,
-            general,
+            general_kernels: tables.general_kernels,
         }
     }
 }

@@ -32,7 +32,7 @@ pub struct GpuOptions {
     pub device: Option<String>,
     /// Kernels that serve any model, rather than ones made for what this one has: slower, but who looks at many kinds of models waits for
     /// their compiler once.
-    pub general: bool,
+    pub general_kernels: bool,
 }
 
 /// Many environments of one model on a graphics device, in single precision or, where the device has it, in double.
@@ -83,7 +83,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// No device; a model that cannot be stepped on one yet; options out of range; more environments than the device holds.
     pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
-        let general = options.general;
+        let general_kernels = options.general_kernels;
         let settings = StepSettings::new::<S>(&model, options.options)?;
         let collide = settings.flags.constraint && settings.flags.contact;
         let pairs = if collide {
@@ -100,10 +100,11 @@ impl<S: GpuReal> GpuBatch<S> {
         check_dofs(model.nv, method)?;
         let device = Device::open(options.device.as_deref(), S::FEATURES)?;
         let room = device.limits.max_compute_workgroup_storage_size as usize;
-        let solver = SolverMemory::new::<S>(model.nv, method, room, general);
-        let (mut tables, mut capacity) = Tables::new::<S>(&model, &settings, &pairs, general);
+        let solver = SolverMemory::new::<S>(model.nv, method, room, general_kernels);
+        let (mut tables, mut capacity) =
+            Tables::new::<S>(&model, &settings, &pairs, general_kernels);
         solver.reserve(&mut capacity);
-        let base = Base::new(&tables, pairs, general);
+        let base = Base::new(&tables, pairs);
         tables.shapes(&model, &base.candidates);
         let state = fields::state_fields(&model, capacity);
         let work = fields::work_fields(&model, capacity);

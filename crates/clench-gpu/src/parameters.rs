@@ -18,7 +18,7 @@ impl<S: GpuReal> GpuBatch<S> {
             model,
             &self.settings,
             &self.base.candidates,
-            self.base.general,
+            self.base.general_kernels,
         );
         let base = &self.base;
         // Hulls are made of sizes, once.

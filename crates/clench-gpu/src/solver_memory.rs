@@ -45,7 +45,12 @@ pub(crate) fn check_dofs(nv: usize, solver: ConstraintSolver) -> Result<(), GpuE
 impl SolverMemory {
     /// For `nv` dofs, by Newton's method or by conjugate gradients, where a workgroup shares `room` bytes. Kernels that serve any model have
     /// as much of that as those of the most dofs whose factor is shared.
-    pub(crate) fn new<S>(nv: usize, solver: ConstraintSolver, room: usize, general: bool) -> Self {
+    pub(crate) fn new<S>(
+        nv: usize,
+        solver: ConstraintSolver,
+        room: usize,
+        general_kernels: bool,
+    ) -> Self {
         let newton = solver == ConstraintSolver::Newton;
         let ntile = nv.div_ceil(TILE);
         let room = room / size_of::<S>();
@@ -62,9 +67,13 @@ impl SolverMemory {
             memory.share_tiles &= memory.share_vectors && both <= room;
             memory
         };
-        let larger = (ntile + 1..=MAX_SHARED_DOFS / TILE).rev();
-        let shared = larger.map(with).find(|memory| memory.share_tiles);
-        shared.filter(|_| general).unwrap_or_else(|| with(ntile))
+        if general_kernels {
+            let larger = (ntile + 1..=MAX_SHARED_DOFS / TILE).rev();
+            if let Some(shared) = larger.map(with).find(|memory| memory.share_tiles) {
+                return shared;
+            }
+        }
+        with(ntile)
     }
 
     /// Numbers of the tiles of a lower triangle; conjugate gradients need none.

@@ -105,7 +105,7 @@ impl Tables {
             "PAIR_DEEPEST",
             candidates.iter().map(|c| usize::from(deepest(c))),
         );
-        let vertices = if general || self.general {
+        let vertices = if general || self.general_kernels {
             POLYTOPE_VERTICES
         } else {
             4
@@ -192,8 +192,8 @@ impl Tables {
         self.flag("LARGE_FACES", hull_corners > PATCH_POINTS);
 
         // Kernels for any model have room for what any can have.
-        let caps = self.general || flat_with(Cylinder);
-        let hull_corners = if self.general {
+        let caps = self.general_kernels || flat_with(Cylinder);
+        let hull_corners = if self.general_kernels {
             MAX_FACE_CORNERS
         } else {
             hull_corners

@@ -43,7 +43,7 @@ pub(crate) struct Tables {
     /// Where the tables lie, and how much there is of what.
     pub layout: Layout,
     /// Whether kernels are to serve any model: they ask the layout what this one has.
-    general: bool,
+    pub general_kernels: bool,
 }
 
 /// How large the constraints of an environment can become.
@@ -76,14 +76,14 @@ impl Tables {
         model: &Model,
         settings: &StepSettings,
         candidates: &[Candidate],
-        general: bool,
+        general_kernels: bool,
     ) -> (Tables, Capacity) {
         let mut tables = Tables {
             words: Vec::new(),
             numbers: Vec::new(),
             constants: String::new(),
             layout: Layout::default(),
-            general,
+            general_kernels,
         };
         tables.words("ZERO", [0]);
         tables.words("OWN_PARAMETERS", [0]);
@@ -143,7 +143,7 @@ impl Tables {
 
     /// Tells what a model has, or what is asked for: what it has not is left out of the texts.
     fn flag(&mut self, name: &str, value: bool) {
-        if self.general {
+        if self.general_kernels {
             self.layout.flag(name, value);
             return;
         }

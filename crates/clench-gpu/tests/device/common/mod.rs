@@ -42,9 +42,9 @@ pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
 /// A batch with kernels that serve any model, which Mesa's software device, slow to compile, compiles once for all tests. With the environment
 /// variable `CLENCH_GPU_KERNELS` set to `own`, those of the model.
 pub fn general_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
-    let general = std::env::var_os("CLENCH_GPU_KERNELS").is_none_or(|wish| wish != "own");
+    let general_kernels = std::env::var_os("CLENCH_GPU_KERNELS").is_none_or(|wish| wish != "own");
     let options = GpuOptions {
-        general,
+        general_kernels,
         ..GpuOptions::default()
     };
     with_options(model, count, options)
