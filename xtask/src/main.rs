@@ -67,6 +67,8 @@ Commands:
                     Search for bytes that break a reader, an hour each, with libFuzzer; needs a C++ compiler. --address checks
                     every access to memory. See docs/testing.md.
   sanitize [ARG...] Run the Rust tests under AddressSanitizer, or those that the arguments choose, which go to `cargo test`.
+  sanitize python [ARG...]
+                    The same for the tests of the Python package, with arguments of pytest; needs GCC's runtimes.
   audit             Licences, duplicate crates and advisories of dependencies; needs cargo-deny.
 
 Needs Python 3.11 or later with venv. A package index must be reachable on the first run, and for the stage `package`.";
