@@ -74,13 +74,9 @@ impl Element {
         Ok((!numbers.is_empty()).then_some(numbers))
     }
 
-    fn exactly<const N: usize>(
-        &self,
-        name: &str,
-        numbers: Vec<f64>,
-    ) -> Result<[f64; N], LoadError> {
+    fn exactly<T, const N: usize>(&self, name: &str, numbers: Vec<T>) -> Result<[T; N], LoadError> {
         let given = numbers.len();
-        let wrong = |_| self.error(format!("{name} needs {N} numbers, not {given}"));
+        let wrong = |_: Vec<T>| self.error(format!("{name} needs {N} numbers, not {given}"));
         numbers.try_into().map_err(wrong)
     }
 
@@ -106,6 +102,38 @@ impl Element {
     /// Any number of finite numbers.
     pub(crate) fn list(&self, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
         self.parse_numbers(name, usize::MAX, false)
+    }
+
+    /// Exactly `N` finite numbers, in single precision.
+    pub(crate) fn singles<const N: usize>(
+        &self,
+        name: &str,
+    ) -> Result<Option<[f32; N]>, LoadError> {
+        let numbers = self.list_of_singles(name, N)?;
+        numbers
+            .map(|numbers| self.exactly(name, numbers))
+            .transpose()
+    }
+
+    /// Up to `max` finite numbers, in single precision.
+    pub(crate) fn list_of_singles(
+        &self,
+        name: &str,
+        max: usize,
+    ) -> Result<Option<Vec<f32>>, LoadError> {
+        let single = |number: f64| {
+            let short = number as f32;
+            let too_large = || {
+                self.error(format!(
+                    "{number:e} in {name} is too large for single precision"
+                ))
+            };
+            short.is_finite().then_some(short).ok_or_else(too_large)
+        };
+        let numbers = self.parse_numbers(name, max, false)?;
+        numbers
+            .map(|numbers| numbers.into_iter().map(single).collect())
+            .transpose()
     }
 
     /// Any numbers at all, also those that are not finite, as a user's own data may be.

@@ -167,6 +167,51 @@ fn numbers_that_are_none_are_refused() {
     expect_section("<compiler eulerseq='xyq'/>", "compiler", "eulerseq");
 }
 
+/// As infinities they would be saved as what is not read.
+#[test]
+fn numbers_that_are_too_large_for_single_precision_are_refused() {
+    let too_large = |name: &str| format!("in {name} is too large for single precision");
+    expect(
+        "<geom size='1' rgba='0 1e40 0 1'/>",
+        "geom",
+        &too_large("rgba"),
+    );
+    let section = |inside: &str, element: &str, name: &str| {
+        let text = format!("<asset>{inside}</asset>");
+        expect_section(&text, element, &too_large(name));
+    };
+    section(
+        "<mesh name='m' vertex='1e39 0 0  0 1 0  0 0 1  0 0 0'/>",
+        "mesh \"m\"",
+        "vertex",
+    );
+    section(
+        "<hfield name='h' nrow='2' ncol='2' size='1 1 1 1' elevation='0 1e39 0 1'/>",
+        "hfield \"h\"",
+        "elevation",
+    );
+    section(
+        "<material name='m' shininess='1e39'/>",
+        "material \"m\"",
+        "shininess",
+    );
+    section(
+        "<material name='m' texrepeat='1e39'/>",
+        "material \"m\"",
+        "texrepeat",
+    );
+    expect_section(
+        "<worldbody><camera focal='1e39 1' sensorsize='1 1' resolution='8 8'/></worldbody>",
+        "camera",
+        &too_large("focal"),
+    );
+    expect_section(
+        "<worldbody><camera focalpixel='1e38 1' sensorsize='1e3 1' resolution='8 8'/></worldbody>",
+        "camera",
+        "a length of the lens is too large for single precision",
+    );
+}
+
 #[test]
 fn keywords_that_are_none_are_refused() {
     expect("<geom type='ball'/>", "geom", "type is \"ball\"");

@@ -17,8 +17,7 @@ pub(crate) fn read_appearance(
     element: &Element,
     appearance: &mut AppearanceSpec,
 ) -> Result<(), LoadError> {
-    if let Some(rgba) = element.numbers("rgba")? {
-        let rgba = rgba.map(|x: f64| x as f32);
+    if let Some(rgba) = element.singles("rgba")? {
         appearance.rgba = (rgba != NO_COLOUR).then_some(rgba);
     }
     if let Some(material) = element.text("material") {
@@ -42,8 +41,8 @@ pub(crate) fn read_material(
         ("shininess", &mut surface.shininess),
         ("reflectance", &mut surface.reflectance),
     ] {
-        if let Some([number]) = element.numbers(name)? {
-            *value = number as f32;
+        if let Some([number]) = element.singles(name)? {
+            *value = number;
         }
     }
     if let Some(texture) = element.text("texture") {
@@ -63,8 +62,8 @@ pub(super) fn set<const N: usize>(
     name: &str,
     target: &mut [f32; N],
 ) -> Result<(), LoadError> {
-    if let Some(numbers) = element.numbers::<N>(name)? {
-        *target = numbers.map(|x| x as f32);
+    if let Some(numbers) = element.singles(name)? {
+        *target = numbers;
     }
     Ok(())
 }
@@ -75,9 +74,8 @@ fn set_some<const N: usize>(
     name: &str,
     target: &mut [f32; N],
 ) -> Result<(), LoadError> {
-    let mut numbers = target.map(f64::from);
-    element.overlay(name, &mut numbers)?;
-    *target = numbers.map(|x| x as f32);
+    let numbers = element.list_of_singles(name, N)?.unwrap_or_default();
+    target[..numbers.len()].copy_from_slice(&numbers);
     Ok(())
 }
 

@@ -73,11 +73,18 @@ impl CameraDraft {
             _ => return Err(element.error("resolution needs 2 numbers: width and height")),
         }
         element.set_user(&mut self.user)?;
-        element.set_numbers("sensorsize", &mut self.sensorsize)?;
-        element.set_numbers("focal", &mut self.focal.metres)?;
-        element.set_numbers("focalpixel", &mut self.focal.pixels)?;
-        element.set_numbers("principal", &mut self.principal.metres)?;
-        element.set_numbers("principalpixel", &mut self.principal.pixels)
+        for (name, lengths) in [
+            ("sensorsize", &mut self.sensorsize),
+            ("focal", &mut self.focal.metres),
+            ("focalpixel", &mut self.focal.pixels),
+            ("principal", &mut self.principal.metres),
+            ("principalpixel", &mut self.principal.pixels),
+        ] {
+            if let Some(numbers) = element.singles(name)? {
+                *lengths = numbers.map(f64::from);
+            }
+        }
+        Ok(())
     }
 
     /// The camera in its body, carried along with the frame that it is written in.
@@ -110,10 +117,15 @@ impl CameraDraft {
             if self.resolution.iter().any(|&n| n <= 0) {
                 return Err(element.error("a sensorsize needs a positive resolution"));
             }
+            let [focal, principal] = [self.focal, self.principal].map(|x| self.on_sensor(x));
+            if focal.iter().chain(&principal).any(|x| x.is_infinite()) {
+                let message = "a length of the lens is too large for single precision";
+                return Err(element.error(message));
+            }
             return Ok(CameraLens::Intrinsic {
-                sensorsize: self.sensorsize.map(stored),
-                focal: self.on_sensor(self.focal),
-                principal: self.on_sensor(self.principal),
+                sensorsize: self.sensorsize,
+                focal,
+                principal,
             });
         }
         if self.focal.is_given() || self.principal.is_given() {
@@ -125,7 +137,7 @@ impl CameraDraft {
 
     fn on_sensor(&self, lengths: Lengths) -> [f64; 2] {
         if lengths.pixels == [0.0; 2] {
-            return lengths.metres.map(stored);
+            return lengths.metres;
         }
         [0, 1].map(|i| {
             let pixel = self.sensorsize[i] / f64::from(self.resolution[i]);

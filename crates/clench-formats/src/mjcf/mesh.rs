@@ -162,35 +162,34 @@ fn merge(file: Triangles, written: Triangles, element: &Element) -> Result<Trian
 
 /// Tangents, where each vertex has a normal and two of them: nine numbers. Normals alone do nothing to motion.
 fn read_tangents(element: &Element, vertices: usize) -> Result<Vec<[Vec3<f64>; 2]>, LoadError> {
-    let numbers = element.list("normal")?.unwrap_or_default();
+    let numbers = (element.list_of_singles("normal", usize::MAX)?).unwrap_or_default();
     if numbers.len() != 9 * vertices {
         return Ok(Vec::new());
     }
     let frames = numbers.as_chunks::<9>().0.iter();
     let tangents = frames.map(|&[_, _, _, a, b, c, d, e, f]| [[a, b, c], [d, e, f]]);
-    Ok(tangents.map(|pair| pair.map(short)).collect())
+    Ok(tangents.map(|pair| pair.map(point)).collect())
 }
 
 /// Vertices with the 24 bits a coordinate that MuJoCo keeps.
 fn read_vertices(element: &Element) -> Result<Vec<Vec3<f64>>, LoadError> {
-    let numbers = element.list("vertex")?.unwrap_or_default();
+    let numbers = (element.list_of_singles("vertex", usize::MAX)?).unwrap_or_default();
     let (points, rest) = numbers.as_chunks::<3>();
     if !rest.is_empty() {
         return Err(element.error("vertex needs three numbers a vertex"));
     }
-    Ok(points.iter().copied().map(short).collect())
+    Ok(points.iter().copied().map(point).collect())
 }
 
-/// What MuJoCo keeps of three numbers.
-fn short(numbers: [f64; 3]) -> Vec3<f64> {
-    Vec3::from_array(numbers.map(|x| f64::from(x as f32)))
+fn point(numbers: [f32; 3]) -> Vec3<f64> {
+    Vec3::from_array(numbers.map(f64::from))
 }
 
 fn read_texcoords(element: &Element) -> Result<Vec<[f32; 2]>, LoadError> {
-    let numbers = element.list("texcoord")?.unwrap_or_default();
+    let numbers = (element.list_of_singles("texcoord", usize::MAX)?).unwrap_or_default();
     let (places, rest) = numbers.as_chunks::<2>();
     match rest.is_empty() {
-        true => Ok(places.iter().map(|place| place.map(|x| x as f32)).collect()),
+        true => Ok(places.to_vec()),
         false => Err(element.error("texcoord needs two numbers a vertex")),
     }
 }

@@ -37,8 +37,7 @@ impl Materials {
 }
 
 fn read_rgba(color: &Element) -> Result<[f32; 4], LoadError> {
-    let rgba: [f64; 4] = color.required_numbers("rgba")?;
-    Ok(rgba.map(|x| x as f32))
+    color.singles("rgba")?.ok_or_else(|| color.missing("rgba"))
 }
 
 /// Reads the shapes of all links.
