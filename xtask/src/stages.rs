@@ -58,7 +58,7 @@ const STAGES: &[Stage] = &[
     },
     Stage {
         name: "browser",
-        remedy: "run one case alone in web/ with `NAME='part of its name' npm test`",
+        remedy: "run one case alone in web/ with `CLENCH=../target/debug/clench NAME='part of its name' npm test`",
         check: web::test,
         missing: web::no_browser,
     },
@@ -88,7 +88,7 @@ const STAGES: &[Stage] = &[
     },
     Stage {
         name: "parity",
-        remedy: "run one case alone with `.venv/bin/python -m pytest parity -k NAME`",
+        remedy: "run one case alone with `CLENCH=target/debug/clench .venv/bin/python -m pytest parity -k NAME`",
         check: parity,
         missing: nothing,
     },
