@@ -294,7 +294,7 @@ impl Device {
     ) -> Result<wgpu::ComputePipeline, GpuError> {
         let slot = {
             let mut kernels = lock(&self.kernels);
-            if kernels.len() >= MOST_KERNELS {
+            if kernels.len() >= MOST_KERNELS && !kernels.contains_key(&text) {
                 kernels.clear();
             }
             Arc::clone(kernels.entry(text.clone()).or_default())
