@@ -13,28 +13,28 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// Those that compute, of `clench-gpu` and of the program, and those that draw.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
-/// The tests of `device` that compile kernels of their own take about as long as all that is left, which shares kernels for any model. Mesa's
+/// Tests of `device` that take about as long as all that is left: most compile kernels of their own, what is left shares kernels for any model. Mesa's
 /// software device compiles on one core for each program, so that they run side by side.
-const OWN_KERNELS: [&str; 3] = ["batch::", "outputs::", "double::"];
+const PART: [&str; 4] = ["batch::", "outputs::", "double::", "steps::"];
 
 /// Runs them.
 ///
 /// # Errors
 /// That a test failed.
 pub(crate) fn test() -> Result<(), String> {
-    let mut own = computing(&COMPUTING[..1])?;
-    own.arg("--").args(OWN_KERNELS);
+    let mut part = computing(&COMPUTING[..1])?;
+    part.arg("--").args(PART);
     // What is left, and the program's.
     let mut rest = computing(&COMPUTING)?;
     rest.arg("--");
-    for name in OWN_KERNELS {
+    for name in PART {
         rest.args(["--skip", name]);
     }
     thread::scope(|scope| {
-        let beside = scope.spawn(|| run(own));
+        let beside = scope.spawn(|| run(part));
         let rest = run(rest);
-        let own = beside.join();
-        rest.and(own.unwrap_or_else(|_| Err("a part of the tests panicked".into())))
+        let part = beside.join();
+        rest.and(part.unwrap_or_else(|_| Err("a part of the tests panicked".into())))
     })?;
     run(tests(&DRAWING))
 }

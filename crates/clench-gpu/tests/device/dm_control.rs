@@ -1,6 +1,6 @@
 //! The models of dm-control's suite, where the environment variable `CLENCH_DM_CONTROL` names the folder of their files.
 
-use crate::common::folders::{self, SMALL};
+use crate::common::folders;
 
 /// Each, on how many states, and how far from its initial one.
 const MODELS: &[(&str, usize, f64)] = &[
@@ -8,6 +8,7 @@ const MODELS: &[(&str, usize, f64)] = &[
     ("ball_in_cup", 100, 0.5),
     ("cartpole", 100, 0.5),
     ("cheetah", 100, 0.3),
+    // Of a hundred states some need more turns of loops than Mesa's software device grants.
     ("dog", 40, 0.3),
     ("finger", 100, 0.5),
     ("fish", 100, 0.5),
@@ -31,15 +32,9 @@ const CUT_SHORT: &[&str] = &["dog"];
 
 #[test]
 fn trajectories_of_dm_controls_suite_drift_as_on_the_processor() {
-    folders::drift_on_folder("CLENCH_DM_CONTROL", MODELS, ..=SMALL);
-}
-
-#[test]
-#[ignore = "takes minutes: run it with `-- --ignored`"]
-fn trajectories_of_large_ones_drift_as_on_the_processor() {
     let stepped = MODELS.iter().filter(|model| !CUT_SHORT.contains(&model.0));
     let stepped = Vec::from_iter(stepped.copied());
-    folders::drift_on_folder("CLENCH_DM_CONTROL", &stepped, SMALL + 1..);
+    folders::drift_on_folder("CLENCH_DM_CONTROL", &stepped);
 }
 
 #[test]

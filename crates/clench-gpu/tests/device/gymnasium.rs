@@ -1,6 +1,6 @@
 //! The robots of Gymnasium's MuJoCo tasks, where the environment variable `CLENCH_GYMNASIUM` names the folder of their files.
 
-use crate::common::folders::{self, SMALL};
+use crate::common::folders;
 
 /// Each, on how many states, and how far from its initial one.
 const ROBOTS: &[(&str, usize, f64)] = &[
@@ -22,13 +22,7 @@ const ROBOTS: &[(&str, usize, f64)] = &[
 
 #[test]
 fn trajectories_of_gymnasiums_robots_drift_as_on_the_processor() {
-    folders::drift_on_folder("CLENCH_GYMNASIUM", ROBOTS, ..=SMALL);
-}
-
-#[test]
-#[ignore = "takes minutes: run it with `-- --ignored`"]
-fn trajectories_of_large_ones_drift_as_on_the_processor() {
-    folders::drift_on_folder("CLENCH_GYMNASIUM", ROBOTS, SMALL + 1..);
+    folders::drift_on_folder("CLENCH_GYMNASIUM", ROBOTS);
 }
 
 #[test]

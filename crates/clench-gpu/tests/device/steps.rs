@@ -13,9 +13,9 @@ fn runner() -> Arc<Model> {
     text(&own("runner"))
 }
 
-/// After so many steps from 8 states the device has drifted as the processor's single precision has.
+/// After so many steps from 24 states the device has drifted as the processor's single precision has.
 fn drift_alike(model: &Arc<Model>, steps: usize) {
-    common::drift_alike(model, 8, steps);
+    common::drift_alike(model, 24, steps);
 }
 
 #[test]

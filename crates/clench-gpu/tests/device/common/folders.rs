@@ -3,7 +3,6 @@
 use super::{agree, drift_alike};
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
 use clench_rigid::model::Model;
-use std::ops::RangeBounds;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -47,26 +46,15 @@ pub fn public(folder: &Path, name: &str) -> Arc<Model> {
     Arc::new(clench_formats::load(path).expect("a public model loads"))
 }
 
-/// Models of no more dofs are stepped in every test, larger ones in those that are ignored but where one asks for them: Mesa's software device
-/// takes minutes.
-pub const SMALL: usize = 10;
-
-/// Every model of a list in a folder that an environment variable names, if its dofs are so many, drifts as on the processor, in 200 steps
-/// from 8 states each. Without the variable there is nothing to test.
-pub fn drift_on_folder(
-    variable: &str,
-    models: &[(&str, usize, f64)],
-    dofs: impl RangeBounds<usize>,
-) {
+/// Every model of a list in a folder that an environment variable names drifts as on the processor, in 200 steps from 8 states each. Without the
+/// variable there is nothing to test.
+pub fn drift_on_folder(variable: &str, models: &[(&str, usize, f64)]) {
     let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {
         eprintln!("skipped: {variable} names no folder");
         return;
     };
     for &(name, ..) in models {
-        let model = public(&folder, name);
-        if dofs.contains(&model.nv) {
-            println!("{name}");
-            drift_alike(&model, 8, 200);
-        }
+        println!("{name}");
+        drift_alike(&public(&folder, name), 8, 200);
     }
 }
