@@ -12,6 +12,7 @@ pub(crate) struct Base<S> {
     pub layout: Layout,
     pub parameters: Vec<S>,
     pub candidates: Vec<Candidate>,
+    /// Whether the kernels are such as serve any model.
     pub general_kernels: bool,
 }
 
