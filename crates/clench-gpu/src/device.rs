@@ -278,6 +278,11 @@ impl Device {
         }
     }
 
+    /// Why it is lost, if it is.
+    pub(crate) fn loss(&self) -> Option<String> {
+        lock(&self.lost).clone()
+    }
+
     /// Frees what is no longer used.
     pub(crate) fn tidy(&self) {
         let _ = self.device.poll(wgpu::PollType::Poll);

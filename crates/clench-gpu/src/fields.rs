@@ -191,6 +191,8 @@ fields! {
     /// J p, of the search direction.
     ray: c.rows;
     jacobian: c.rows * m.nv;
+    /// J again, column by column.
+    columns: c.rows * m.nv;
     /// W J.
     weighed: c.rows * m.nv;
     /// Which rows are on pieces with curvature.

@@ -11,8 +11,6 @@ use crate::tables::{NONE, Tables};
 use std::collections::HashSet;
 use std::fmt::Write;
 
-/// Threads of a workgroup: a subgroup on most cards, few enough for a processor that plays one, and two for each row of a tile of H.
-pub(crate) const GROUP: u32 = 32;
 /// Workgroups in a row, where each has an environment: a dispatch has no more than 65,535 along an axis.
 pub(crate) const GRID: u32 = 32_768;
 
@@ -23,6 +21,17 @@ pub(crate) enum Workers {
     Thread,
     /// One workgroup.
     Workgroup,
+}
+
+impl Workers {
+    /// Threads of a workgroup. Where each has an environment: a subgroup on most cards. Where all have one: four for each row of a tile of H
+    /// (with half as many a card took a tenth longer).
+    const fn threads(self) -> u32 {
+        match self {
+            Workers::Thread => 32,
+            Workers::Workgroup => 64,
+        }
+    }
 }
 
 /// A kernel.
@@ -136,7 +145,6 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     let mut declare = |name: &str, value: usize| {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
     };
-    declare("GROUP", GROUP as usize);
     declare("GRID", GRID as usize);
     declare("NONE", NONE as usize);
     for names in [&FAULTS[..], &SOLVE_STATUS] {
@@ -150,6 +158,10 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     let mut layout = tables.layout.clone();
     layout.count("STATE", memory.state.size);
     layout.count("ROWS", memory.rows.size);
+    layout.count(
+        "MAX_ROWS",
+        memory.rows.find("r").map_or(0, |field| field.width),
+    );
     layout.count("NTILE", memory.solver.ntile());
     for fields in [memory.state, memory.work, memory.rows, memory.reports] {
         for field in &fields.list {
@@ -168,6 +180,7 @@ impl Kernel {
         let texts = Vec::from_iter(COMMON.iter().chain(self.texts).copied()).join("\n");
         let used: HashSet<&str> = words(&texts).collect();
         let mut source = S::ELEMENTARY.to_owned();
+        let _ = writeln!(source, "const GROUP: u32 = {}u;", self.workers.threads());
         for line in preface.constants.lines() {
             // Those of other kernels would tell texts apart that are the same.
             if words(line).nth(1).is_some_and(|name| used.contains(name)) {
@@ -183,7 +196,7 @@ impl Kernel {
     pub(crate) fn workgroups(&self, count: usize) -> [u32; 3] {
         let count = count as u32;
         match self.workers {
-            Workers::Thread => [count.div_ceil(GROUP), 1, 1],
+            Workers::Thread => [count.div_ceil(self.workers.threads()), 1, 1],
             Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
         }
     }

@@ -160,12 +160,16 @@ fn create(device: &Device, kernel: &Kernel, text: &str) -> Result<wgpu::ComputeP
     let scope = device
         .device
         .push_error_scope(wgpu::ErrorFilter::Validation);
-    let module = device
-        .device
-        .create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(kernel.entry),
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
+    let descriptor = wgpu::ShaderModuleDescriptor {
+        label: Some(kernel.entry),
+        source: wgpu::ShaderSource::Wgsl(text.into()),
+    };
+    // To count the turns of every loop takes a card a fifth of a step.
+    let mut checks = wgpu::ShaderRuntimeChecks::checked();
+    checks.force_loop_bounding = false;
+    // SAFETY: every loop of our kernels ends, whatever the numbers: it has a bound, or a count that only grows or only shrinks. All other
+    // checks stay.
+    let module = unsafe { (device.device).create_shader_module_trusted(descriptor, checks) };
     let pipeline = device
         .device
         .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -180,6 +184,12 @@ fn create(device: &Device, kernel: &Kernel, text: &str) -> Result<wgpu::ComputeP
         return Err(GpuError::Unusable {
             device: device.info.name.clone(),
             reason: format!("it refuses the kernel `{}`: {error}", kernel.entry),
+        });
+    }
+    if let Some(loss) = device.loss() {
+        return Err(GpuError::Unusable {
+            device: device.info.name.clone(),
+            reason: format!("its driver fails at the kernel `{}`: {loss}", kernel.entry),
         });
     }
     Ok(pipeline)

@@ -8,14 +8,14 @@ use std::fmt::Write;
 /// Rows and columns of a tile of H.
 const TILE: usize = 16;
 /// Vectors over the dofs, of Newton's method and of conjugate gradients.
-const NEWTON_VECTORS: usize = 6;
-const CG_VECTORS: usize = 9;
+const NEWTON_VECTORS: usize = 7;
+const CG_VECTORS: usize = 10;
 /// Newton's method factors Hessians of so many dofs at most.
 const MAX_NEWTON_DOFS: usize = 512;
 /// The factor of a Hessian of more dofs would leave so little of a card's memory to other workgroups that few could run side by side.
 const MAX_SHARED_DOFS: usize = 96;
 /// Numbers of the two tiles that are multiplied, of the diagonal, and of what threads add up and hand to each other.
-const STAGING: usize = 2 * TILE * 20 + TILE + 256;
+const STAGING: usize = 2 * TILE * 20 + TILE + 64;
 
 /// Where a solve keeps what is of the size of the dofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +118,10 @@ impl SolverMemory {
             ("NEWTON", self.newton),
             ("SHARE_TILES", self.share_tiles),
             ("SHARE_VECTORS", self.share_vectors),
+            (
+                "SHARE_ALL",
+                self.share_vectors && (self.share_tiles || !self.newton),
+            ),
         ] {
             let _ = writeln!(text, "const {name}: bool = {value};");
         }

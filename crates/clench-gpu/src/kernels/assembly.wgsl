@@ -100,7 +100,7 @@ fn finish_row(a: u32) {
     var velocity = row(VELOCITY + a);
     var inertia: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
-        let j = row(JACOBIAN + a * NV + i);
+        let j = row(COLUMNS + i * MAX_ROWS + a);
         velocity += j * given(QVEL + i);
         inertia += j * j * parameter(DOF_INVWEIGHT0 + i);
     }
@@ -166,7 +166,11 @@ fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_i
     let nrow = reports[NROW * envs + env];
     let nblock = reports[NBLOCK * envs + env];
     for (var k = lane; k < nrow * NV; k += GROUP) {
-        put_row(JACOBIAN + k, entry(k / NV, k % NV));
+        let a = k / NV;
+        let i = k % NV;
+        let j = entry(a, i);
+        put_row(JACOBIAN + k, j);
+        put_row(COLUMNS + i * MAX_ROWS + a, j);
     }
     join();
     for (var a = lane; a < nrow; a += GROUP) {

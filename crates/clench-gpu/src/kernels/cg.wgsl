@@ -26,5 +26,5 @@ fn direct_conjugate(started: bool) {
         put_vector(LAST_PRECONDITIONED_AT + i, preconditioned);
         put_vector(LAST_GRADIENT_AT + i, vector(GRADIENT_AT + i));
     }
-    join();
+    join_vectors();
 }

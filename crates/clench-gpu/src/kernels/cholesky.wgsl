@@ -10,107 +10,96 @@ const MIN_PIVOT: f32 = EPSILON;
 var<workgroup> diagonal: array<f32, TILE>;
 
 // This thread's part of a tile of M; beyond its end, of the identity.
-fn mass_tile(i: u32, j: u32) -> mat2x4f {
-    var own = mat2x4f();
-    for (var k = 0u; k < 8u; k++) {
-        let r = TILE * i + own_row() + k / 4u;
-        let column = TILE * j + 4u * own_quad() + k % 4u;
+fn mass_tile(i: u32, j: u32) -> vec4f {
+    var own = vec4f();
+    let r = TILE * i + own_row();
+    for (var k = 0u; k < 4u; k++) {
+        let column = TILE * j + 4u * own_quad() + k;
         var entry = select(f32(0.0), f32(1.0), r == column);
         if (max(r, column) < NV) {
             entry = mass_entry(r, column);
         }
-        own[k / 4u][k % 4u] = entry;
+        own[k] = entry;
     }
     return own;
 }
 
-// The numbers of four stiff rows, from the k-th on, at a dof.
-fn stiff_quad(field: u32, k: u32, count: u32, i: u32) -> vec4f {
-    var quad = vec4f();
+// Puts four stiff rows, from the k-th on, where a product reads them: J at dof `i` and W J at dof `j`.
+fn stage_stiff(place: u32, k: u32, count: u32, i: u32, j: u32) {
+    var of_j = vec4f();
+    var of_wj = vec4f();
     for (var a = 0u; a < 4u; a++) {
-        if (k + a < count && i < NV) {
-            quad[a] = row(field + u32(row(STIFF + k + a)) * NV + i);
+        if (k + a < count) {
+            let stiff = u32(row(STIFF + k + a)) * NV;
+            of_j[a] = select(0.0, row(JACOBIAN + stiff + i), i < NV);
+            of_wj[a] = select(0.0, row(WEIGHED + stiff + j), j < NV);
         }
     }
-    return quad;
+    scratch[place] = of_j;
+    right[place] = of_wj;
 }
 
 // Puts the factors of a term of the tile (i, j) where a product reads them: of Jᵀ W J for sixteen stiff rows, or of what a column
 // of tiles before it has of it, which is subtracted.
 fn stage_term(i: u32, j: u32, term: u32, chunks: u32, count: u32) {
+    // Threads side by side have rows side by side, which are dofs: numbers of J side by side.
     let r = lane % TILE;
-    for (var half = 0u; half < 2u; half++) {
-        let quad = 2u * (lane / TILE) + half;
-        let place = STRIDE * r + quad;
-        if (term < chunks) {
-            let k = TILE * term + 4u * quad;
-            left[place] = stiff_quad(JACOBIAN, k, count, TILE * i + r);
-            right[place] = stiff_quad(WEIGHED, k, count, TILE * j + r);
-        } else {
-            left[place] = -tile_quad(tile_at(i, term - chunks), r, quad);
-            right[place] = tile_quad(tile_at(j, term - chunks), r, quad);
-        }
+    let quad = lane / TILE;
+    let place = STRIDE * r + quad;
+    if (term < chunks) {
+        stage_stiff(place, TILE * term + 4u * quad, count, TILE * i + r, TILE * j + r);
+    } else {
+        scratch[place] = -tile_quad(tile_at(i, term - chunks), r, quad);
+        right[place] = tile_quad(tile_at(j, term - chunks), r, quad);
     }
     workgroupBarrier();
 }
 
 // Notes the diagonal of H in a tile on the diagonal.
-fn note_diagonal(own: mat2x4f) {
-    for (var a = 0u; a < 2u; a++) {
-        let r = own_row() + a;
-        if (r / 4u == own_quad()) {
-            diagonal[r] = own[a][r % 4u];
-        }
+fn note_diagonal(own: vec4f) {
+    let r = own_row();
+    if (r / 4u == own_quad()) {
+        diagonal[r] = own[r % 4u];
     }
 }
 
 // Of a tile on the diagonal L⁻¹: what turns it into Lᵀ, row by row, turns the identity into that. A pivot that rounding has consumed is
-// replaced by its diagonal, so that the direction stays one of descent. Row k waits in row k of `left` and `right`. Beyond the last dof a tile is
+// replaced by its diagonal, so that the direction stays one of descent. Row k waits in row k of `scratch` and `right`. Beyond the last dof a tile is
 // the identity, and stays it: only `order` rows are eliminated.
-fn invert_factor(own: mat2x4f, order: u32) -> mat2x4f {
+fn invert_factor(own: vec4f, order: u32) -> vec4f {
+    let r = own_row();
     var a = own;
-    var inverse = mat2x4f();
-    for (var side = 0u; side < 2u; side++) {
-        let r = own_row() + side;
-        if (r / 4u == own_quad()) {
-            inverse[side][r % 4u] = 1.0;
-        }
+    var inverse = vec4f();
+    if (r / 4u == own_quad()) {
+        inverse[r % 4u] = 1.0;
     }
     for (var k = 0u; k < bound(order); k++) {
         let place = STRIDE * k;
-        if (own_row() == k - k % 2u) {
-            left[place + own_quad()] = a[k % 2u];
-            right[place + own_quad()] = inverse[k % 2u];
+        if (r == k) {
+            scratch[place + own_quad()] = a;
+            right[place + own_quad()] = inverse;
         }
         workgroupBarrier();
-        let rest = left[place + k / 4u][k % 4u];
+        let rest = scratch[place + k / 4u][k % 4u];
         let scale = inverseSqrt(select(diagonal[k], rest, rest > MIN_PIVOT * diagonal[k]));
-        let of_a = left[place + own_quad()] * scale;
+        let of_a = scratch[place + own_quad()] * scale;
         let of_inverse = right[place + own_quad()] * scale;
-        for (var side = 0u; side < 2u; side++) {
-            let r = own_row() + side;
-            let multiplier = left[place + r / 4u][r % 4u] * scale;
-            if (r > k) {
-                a[side] -= multiplier * of_a;
-                inverse[side] -= multiplier * of_inverse;
-            } else if (r == k) {
-                inverse[side] = of_inverse;
-            }
+        let multiplier = scratch[place + r / 4u][r % 4u] * scale;
+        if (r > k) {
+            a -= multiplier * of_a;
+            inverse -= multiplier * of_inverse;
+        } else if (r == k) {
+            inverse = of_inverse;
         }
     }
     return inverse;
 }
 
 // A tile below the diagonal: what is left of it times the inverse of the factor above it.
-fn divide_tile(own: mat2x4f, j: u32) -> mat2x4f {
-    for (var a = 0u; a < 2u; a++) {
-        left[STRIDE * (own_row() + a) + own_quad()] = own[a];
-    }
-    let r = lane % TILE;
-    for (var half = 0u; half < 2u; half++) {
-        let quad = 2u * (lane / TILE) + half;
-        right[STRIDE * r + quad] = tile_quad(tile_at(j, j), r, quad);
-    }
+fn divide_tile(own: vec4f, j: u32) -> vec4f {
+    let place = STRIDE * own_row() + own_quad();
+    scratch[place] = own;
+    right[place] = tile_quad(tile_at(j, j), own_row(), own_quad());
     workgroupBarrier();
     return tile_product();
 }
@@ -138,7 +127,7 @@ fn factor_hessian(count: u32) {
                 own = divide_tile(own, j);
             }
             keep_tile(tile_at(i, j), own);
-            join();
+            join_vectors();
         }
     }
 }
@@ -149,23 +138,23 @@ fn solve_hessian(x: u32, half_way: u32) {
         if (lane < TILE) {
             put_vector(half_way + TILE * j + lane, times_row(tile_at(j, j), lane, x + TILE * j));
         }
-        join();
+        join_vectors();
         for (var i = TILE * (j + 1u) + lane; i < TILE * NTILE; i += GROUP) {
             let tile = tile_at(i / TILE, j);
             put_vector(x + i, vector(x + i) - times_row(tile, i % TILE, half_way + TILE * j));
         }
-        join();
+        join_vectors();
     }
     for (var down = 0u; down < bound(NTILE); down++) {
         let j = NTILE - 1u - down;
         if (lane < TILE) {
             put_vector(x + TILE * j + lane, times_column(tile_at(j, j), lane, half_way + TILE * j));
         }
-        join();
+        join_vectors();
         for (var i = lane; i < TILE * j; i += GROUP) {
             let tile = tile_at(j, i / TILE);
             put_vector(half_way + i, vector(half_way + i) - times_column(tile, i % TILE, x + TILE * j));
         }
-        join();
+        join_vectors();
     }
 }

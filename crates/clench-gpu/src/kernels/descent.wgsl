@@ -44,10 +44,13 @@ fn place(round: u32) {
         if (round == AT_WARMSTART) {
             put_vector(QACC_AT + i, given(QACC_WARMSTART + i));
         } else if (round != REFRESH) {
-            put_vector(QACC_AT + i, fetch(QACC_SMOOTH + i));
+            put_vector(QACC_AT + i, vector(SMOOTH_AT + i));
+        }
+        if (round == AT_SMOOTH) {
+            put_vector(CONSTRAINT_AT + i, 0.0);
         }
     }
-    join();
+    join_vectors();
 }
 
 // Ends the solve; what comes next.
@@ -164,7 +167,10 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
         }
         if (round != PROVE && round != FINISH) {
             totals = evaluate(nblock);
-            c.norm = differentiate(nrow);
+            // The gradient there says nothing that counts, if the last acceleration is tried next.
+            if (round != AT_SMOOTH || !WARMSTART) {
+                c.norm = differentiate(nrow);
+            }
         }
         if (!NEWTON || round == PROVE || round == FINISH) {
             c.gap = precondition();

@@ -91,11 +91,12 @@ fn logarithm(x: f64) -> f64 {
     var m = x;
     var k = 0;
     // Into single precision, whose bits can be seen.
-    while (m < 2.3283064365386963e-10) {
+    // The smallest and the largest numbers take 34 turns.
+    for (var turn = 0u; turn < 34u && m < 2.3283064365386963e-10; turn++) {
         m *= 4294967296.0;
         k -= 32;
     }
-    while (m > 4294967296.0) {
+    for (var turn = 0u; turn < 34u && m > 4294967296.0; turn++) {
         m *= 2.3283064365386963e-10;
         k += 32;
     }

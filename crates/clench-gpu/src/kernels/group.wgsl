@@ -2,7 +2,8 @@
 // have the same bits and decide alike, and a run repeats itself.
 
 var<private> lane: u32;
-var<workgroup> partials: array<vec4f, GROUP>;
+// What threads hand to each other, each its own; between two such exchanges a tile of a matrix, in rows of four vectors and one more.
+var<workgroup> scratch: array<vec4f, 80>;
 var<workgroup> verdict: u32;
 
 // The environment of a workgroup: the groups lie in rows of GRID.
@@ -32,22 +33,22 @@ fn join() {
 
 // The sum of eight neighbours.
 fn sum_of_eight(first: u32) -> vec4f {
-    let first_half = (partials[first] + partials[first + 1u]) + (partials[first + 2u] + partials[first + 3u]);
-    let second_half = (partials[first + 4u] + partials[first + 5u]) + (partials[first + 6u] + partials[first + 7u]);
+    let first_half = (scratch[first] + scratch[first + 1u]) + (scratch[first + 2u] + scratch[first + 3u]);
+    let second_half = (scratch[first + 4u] + scratch[first + 5u]) + (scratch[first + 6u] + scratch[first + 7u]);
     return first_half + second_half;
 }
 
-// The sum over all threads, of which four add up eight each. No loop: a solve asks for so many that they would be half of its turns.
+// The sum over all 64 threads, of which eight add up eight each. No loop: a solve asks for so many that they would be half of its turns.
 fn total(x: vec4f) -> vec4f {
-    partials[lane] = x;
+    scratch[lane] = x;
     workgroupBarrier();
-    let part = sum_of_eight(8u * (lane % 4u));
+    let part = sum_of_eight(8u * (lane % 8u));
     workgroupBarrier();
-    if (lane < 4u) {
-        partials[lane] = part;
+    if (lane < 8u) {
+        scratch[lane] = part;
     }
     workgroupBarrier();
-    let sum = (partials[0] + partials[1]) + (partials[2] + partials[3]);
+    let sum = sum_of_eight(0u);
     workgroupBarrier();
     return sum;
 }

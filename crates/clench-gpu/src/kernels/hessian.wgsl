@@ -62,11 +62,11 @@ fn weigh_rows(nblock: u32) -> u32 {
         if (b < nblock && is_stiff(b)) {
             dim = block(b, BLOCK_DIM);
         }
-        partials[lane] = vec4f(f32(dim), 0.0, 0.0, 0.0);
+        scratch[lane] = vec4f(f32(dim), 0.0, 0.0, 0.0);
         workgroupBarrier();
         var place = count;
         for (var k = 0u; k < bound(GROUP); k++) {
-            let other = u32(partials[k].x);
+            let other = u32(scratch[k].x);
             place += select(0u, other, k < lane);
             count += other;
         }

@@ -12,10 +12,12 @@ const RAY_AT: u32 = 3u * WIDTH;
 const MASS_RAY_AT: u32 = 4u * WIDTH;
 // Jᵀ f.
 const CONSTRAINT_AT: u32 = 5u * WIDTH;
+// The unconstrained acceleration.
+const SMOOTH_AT: u32 = 6u * WIDTH;
 // Of conjugate gradients M⁻¹g; this and the gradient as the last direction was made of them. Newton's method has its direction there.
-const PRECONDITIONED_AT: u32 = select(6u, 3u, NEWTON) * WIDTH;
-const LAST_PRECONDITIONED_AT: u32 = 7u * WIDTH;
-const LAST_GRADIENT_AT: u32 = 8u * WIDTH;
+const PRECONDITIONED_AT: u32 = select(7u, 3u, NEWTON) * WIDTH;
+const LAST_PRECONDITIONED_AT: u32 = 8u * WIDTH;
+const LAST_GRADIENT_AT: u32 = 9u * WIDTH;
 
 fn vector(place: u32) -> f32 {
     if (SHARE_VECTORS) {
@@ -24,7 +26,7 @@ fn vector(place: u32) -> f32 {
     return row(VECTORS + place);
 }
 
-// All threads see it after the next `join`.
+// All threads see it after the next `join_vectors`.
 fn put_vector(place: u32, x: f32) {
     if (SHARE_VECTORS) {
         vectors[place] = x;
@@ -33,11 +35,20 @@ fn put_vector(place: u32, x: f32) {
     }
 }
 
-// The number a of J x.
+// Waits until all threads of the group see what each has written into vectors and tiles. That is the memory of the workgroup, where it has room
+// for them: a card need not wait then for what is on its way to the far one, which `join` does.
+fn join_vectors() {
+    if (!SHARE_ALL) {
+        storageBarrier();
+    }
+    workgroupBarrier();
+}
+
+// The number a of J x. Threads side by side have rows side by side: they read from J column by column.
 fn jacobian_times(a: u32, x: u32) -> f32 {
     var sum: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
-        sum += row(JACOBIAN + a * NV + i) * vector(x + i);
+        sum += row(COLUMNS + i * MAX_ROWS + a) * vector(x + i);
     }
     return sum;
 }
@@ -62,7 +73,7 @@ fn evaluate(nblock: u32) -> vec4f {
         sum += vec4f(value.cost, changed, select(f32(0.0), f32(1.0), value.curved), 0.0);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
-        sum.w += 0.5 * (vector(QACC_AT + i) - fetch(QACC_SMOOTH + i)) * vector(INERTIAL_AT + i);
+        sum.w += 0.5 * (vector(QACC_AT + i) - vector(SMOOTH_AT + i)) * vector(INERTIAL_AT + i);
     }
     storageBarrier();
     return total(sum);
@@ -81,16 +92,18 @@ fn differentiate(nrow: u32) -> f32 {
         put_vector(GRADIENT_AT + i, gradient);
         square += gradient * gradient;
     }
-    storageBarrier();
+    if (!SHARE_ALL) {
+        storageBarrier();
+    }
     return sqrt(total(vec4f(square, 0.0, 0.0, 0.0)).x);
 }
 
 // M (a − a_unc) and J a − aref anew, without the rounding that steps have added up.
 fn refresh(nrow: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
-        put_vector(RAY_AT + i, vector(QACC_AT + i) - fetch(QACC_SMOOTH + i));
+        put_vector(RAY_AT + i, vector(QACC_AT + i) - vector(SMOOTH_AT + i));
     }
-    join();
+    join_vectors();
     multiply_mass(RAY_AT, INERTIAL_AT);
     compute_residual(nrow);
 }

@@ -1,13 +1,14 @@
 // The mass matrix of an environment, in the pattern of the tree, as its workgroup multiplies with it. Sister of
 // `clench-solver/src/tree/matrix.rs`.
 
-// Copies it beside the other numbers of the problem; returns its trace.
+// Copies it, and the unconstrained acceleration, beside the other numbers of the problem; returns its trace.
 fn copy_mass() -> f32 {
     for (var p = lane; p < NNZ; p += GROUP) {
         put_row(MASS + p, fetch(QM + p));
     }
     var diagonal: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
+        put_vector(SMOOTH_AT + i, fetch(QACC_SMOOTH + i));
         diagonal += fetch(QM + words[TREE_START + i + 1u] - 1u);
     }
     join();
@@ -37,8 +38,7 @@ fn mass_times(x: u32, i: u32) -> f32 {
         sum += row(MASS + p) * vector(x + words[TREE_DOF + p]);
     }
     for (var p = words[BELOW_START + i]; p < words[BELOW_START + i + 1u]; p++) {
-        let k = words[BELOW_DOF + p];
-        sum += row(MASS + words[TREE_START + k] + depth(i)) * vector(x + k);
+        sum += row(MASS + words[BELOW_PLACE + p]) * vector(x + words[BELOW_DOF + p]);
     }
     return sum;
 }
@@ -48,5 +48,5 @@ fn multiply_mass(x: u32, out: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
         put_vector(out + i, mass_times(x, i));
     }
-    join();
+    join_vectors();
 }

@@ -9,6 +9,6 @@ fn direct_newton(same_hessian: bool, nblock: u32) {
     for (var i = lane; i < bound(TILE * NTILE); i += GROUP) {
         put_vector(RAY_AT + i, select(0.0, -vector(GRADIENT_AT + i), i < NV));
     }
-    join();
+    join_vectors();
     solve_hessian(RAY_AT, MASS_RAY_AT);
 }

@@ -1,5 +1,5 @@
 // Square tiles of numbers, sixteen rows of four vectors: what the factorization of H is made of. A product of two is what the threads
-// of a workgroup share: each has two rows by four columns of the result, in registers, and reads the factors from the memory of the
+// of a workgroup share: each has four columns in a row of the result, in registers, and reads the factors from the memory of the
 // workgroup.
 
 const TILE: u32 = 16u;
@@ -10,15 +10,14 @@ const QUADS: u32 = 4u;
 const STRIDE: u32 = QUADS + 1u;
 const QUADS_OF_TILE: u32 = TILE * QUADS;
 
-// The factors of a product.
-var<workgroup> left: array<vec4f, TILE * STRIDE>;
+// The second factor of a product. The first is in `scratch`.
 var<workgroup> right: array<vec4f, TILE * STRIDE>;
 // Tiles of the lower triangle of a matrix, where the workgroup has room for them; else they lie with the rows of the environment.
 var<workgroup> tiles: array<vec4f, SHARED_QUADS>;
 
-// Where this thread's part of a tile begins: its rows, and its columns over four.
+// Where this thread's part of a tile is: its row, and its columns over four. There are as many threads as parts.
 fn own_row() -> u32 {
-    return 2u * (lane / QUADS);
+    return lane / QUADS;
 }
 
 fn own_quad() -> u32 {
@@ -48,28 +47,26 @@ fn tile_entry(tile: u32, r: u32, column: u32) -> f32 {
 }
 
 // Keeps what each thread has of a tile. All see it after the next barrier.
-fn keep_tile(tile: u32, own: mat2x4f) {
-    for (var a = 0u; a < 2u; a++) {
-        let place = QUADS_OF_TILE * tile + QUADS * (own_row() + a) + own_quad();
-        if (SHARE_TILES) {
-            tiles[place] = own[a];
-        } else {
-            for (var k = 0u; k < 4u; k++) {
-                put_row(TILES + 4u * place + k, own[a][k]);
-            }
+fn keep_tile(tile: u32, own: vec4f) {
+    let place = QUADS_OF_TILE * tile + lane;
+    if (SHARE_TILES) {
+        tiles[place] = own;
+    } else {
+        for (var k = 0u; k < 4u; k++) {
+            put_row(TILES + 4u * place + k, own[k]);
         }
     }
 }
 
-// This thread's part of A Bᵀ, of the tiles that wait in `left` and `right`.
-fn tile_product() -> mat2x4f {
+// This thread's part of A Bᵀ, of the tiles that wait in `scratch` and `right`.
+fn tile_product() -> vec4f {
     let top = STRIDE * own_row();
     let columns = STRIDE * 4u * own_quad();
-    var product = mat2x4f();
+    var product = vec4f();
     for (var k = 0u; k < QUADS; k++) {
         let b = columns + k;
         let columns_of_b = mat4x4f(right[b], right[b + STRIDE], right[b + 2u * STRIDE], right[b + 3u * STRIDE]);
-        product += mat2x4f(left[top + k] * columns_of_b, left[top + STRIDE + k] * columns_of_b);
+        product += scratch[top + k] * columns_of_b;
     }
     return product;
 }

@@ -72,9 +72,17 @@ impl Tables {
             above.for_each(|&j| below[j as usize].push(i));
         }
         self.words("BELOW_START", starts(below.iter().map(Vec::len)));
+        let places = (0..nv).flat_map(|i| {
+            let depth = tree.row(i).len() - 1;
+            below[i].iter().map(move |&k| tree.row_start(k) + depth)
+        });
+        self.words("BELOW_PLACE", places);
         self.words("BELOW_DOF", below.concat());
         let mut levels = vec![Vec::new(); (0..nv).map(|i| tree.row(i).len()).max().unwrap_or(0)];
         (0..nv).for_each(|i| levels[tree.row(i).len() - 1].push(i));
+        let longest = |level: &Vec<usize>| level.iter().map(|&i| below[i].len()).max();
+        let turns = levels.iter().filter_map(longest).sum::<usize>();
+        self.flag("DOF_BY_DOF", nv < turns);
         self.count("NLEVEL", levels.len());
         self.words("LEVEL_START", starts(levels.iter().map(Vec::len)));
         self.words("LEVEL_DOF", levels.concat());
