@@ -10,11 +10,14 @@ import os
 import subprocess
 import time
 
+import numpy as np
 from scene import ROOT
 
 SPEED = os.environ.get("SPEED", str(ROOT / "target/dist/examples/speed"))
-# How long a measurement of MuJoCo Warp lasts at least, s.
-LEAST = 1.0
+# As in `speed`: steps that are timed, before, and between new controls.
+STEPS = 1000
+WARM_UP = 24
+HOLD = 8
 
 
 def compare(model, args):
@@ -36,7 +39,8 @@ def compare(model, args):
 
 
 def warp_speed(model, worlds):
-    """Steps a second of MuJoCo Warp, where it and a card are there."""
+    """Steps a second of MuJoCo Warp, where it and a card are there, under what `speed` does: from the first keyframe, with controls of their own
+    for all worlds every eight steps."""
     try:
         import mujoco
         import mujoco_warp
@@ -47,16 +51,25 @@ def warp_speed(model, worlds):
         return None
     description = mujoco.MjModel.from_xml_path(str(model))
     data = mujoco.MjData(description)
+    if description.nkey:
+        mujoco.mj_resetDataKeyframe(description, data, 0)
     mujoco.mj_forward(description, data)
     on_card = mujoco_warp.put_model(description)
     states = mujoco_warp.put_data(description, data, nworld=worlds)
     mujoco_warp.step(on_card, states)
     with warp.ScopedCapture() as capture:
-        mujoco_warp.step(on_card, states)
-    steps, start = 0, time.perf_counter()
-    while time.perf_counter() - start < LEAST:
-        for _ in range(8):
-            warp.capture_launch(capture.graph)
+        for _ in range(HOLD):
+            mujoco_warp.step(on_card, states)
+    low, high = description.actuator_ctrlrange.T
+    half = np.where(description.actuator_ctrllimited, 0.5 * (high - low), 1.0)
+    random = np.random.default_rng(0)
+    noise = [random.uniform(-0.01, 0.01, (worlds, description.nu)) for _ in range(8)]
+    controls = [(data.ctrl + half * draw).astype(np.float32) for draw in noise]
+    start = None
+    for call in range((WARM_UP + STEPS) // HOLD):
+        if call * HOLD == WARM_UP:
+            start = time.perf_counter()
+        states.ctrl.assign(controls[call % len(controls)])
+        warp.capture_launch(capture.graph)
         warp.synchronize()
-        steps += 8
-    return round(steps * worlds / (time.perf_counter() - start))
+    return round(STEPS * worlds / (time.perf_counter() - start))

@@ -1,32 +1,36 @@
 //! Steps a second by number of environments, on the device and in the processor's lanes (single precision, all threads) in the
-//! same run, and the time of each stage in µs an environment, as lines of JSON: `speed MODEL [MOST ENVIRONMENTS] [DEVICE]`.
+//! same run, and the time of each stage in µs an environment, as lines of JSON:
+//! `speed MODEL [MOST ENVIRONMENTS] [STEPS] [DEVICE]`.
+//!
+//! All environments begin in the model's first keyframe, where it has one. Every eight steps each gets controls of its own, a hundredth
+//! of their range about those of the keyframe, as by a policy on this side of the bus: that is counted.
 
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
-use clench_rigid::Batch;
+use clench_rigid::{Batch, Model};
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Steps before the clock starts: what is compiled, loaded and settled by then is not counted.
-const WARM_UP: usize = 20;
-/// How long a measurement lasts at least, s.
-const LEAST: f64 = 1.0;
+/// Steps before the clock starts: what is compiled and loaded by then is not counted.
+const WARM_UP: usize = 24;
+/// Steps for which controls stay.
+const HOLD: usize = 8;
+/// How long a measurement lasts at most, s, however few steps have been made by then.
+const LONGEST: f64 = 5.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments
         .next()
-        .ok_or("speed MODEL [MOST ENVIRONMENTS] [DEVICE]")?;
+        .ok_or("speed MODEL [MOST ENVIRONMENTS] [STEPS] [DEVICE]")?;
     let most = arguments.next().map_or(Ok(65_536), |n| n.parse())?;
+    let steps = arguments.next().map_or(Ok(1000), |n| n.parse())?;
     let device = arguments.next();
     let model = Arc::new(clench_formats::load(&path)?);
-    let counts = (0..9).map(|k| 1usize << (2 * k));
-    for count in counts.take_while(|&count| count <= most) {
-        let options = GpuOptions {
-            device: device.clone(),
-            ..GpuOptions::default()
-        };
-        let mut gpu = match GpuBatch::<f32>::new(model.clone(), count, options) {
+    let counts = (0..17).map(|k| 1usize << k);
+    let counts = counts.filter(|&count| count <= most && (count.ilog2() % 2 == 0 || count == 8192));
+    for count in counts {
+        let mut gpu = match batches(&model, count, &device) {
             Ok(gpu) => gpu,
             // More than the device holds.
             Err(e @ GpuError::OutOfMemory { .. }) => {
@@ -36,32 +40,148 @@ fn main() -> Result<(), Box<dyn Error>> {
             Err(e) => return Err(e.into()),
         };
         let mut cpu = Batch::<f32>::new(model.clone(), count)?;
-        let gpu_speed = speed(count, |steps| Ok(gpu.step(steps)?))?;
-        let cpu_speed = speed(count, |steps| Ok(cpu.step_n(steps).map(drop)?))?;
-        let stages = gpu.time_stages()?.into_iter();
-        let stages = stages
+        if !model.keyframes.is_empty() {
+            (0..count).try_for_each(|env| cpu.reset_to_keyframe(env, 0))?;
+            write(&mut gpu, "qpos", cpu.state.qpos.as_slice())?;
+            write(&mut gpu, "qvel", cpu.state.qvel.as_slice())?;
+        }
+        let center = cpu.state.ctrl.as_slice()[..model.nu()].to_vec();
+        let mut controls = Controls::new(&model, &center, count);
+        let gpu_speed = speed(count, steps, |steps| {
+            write(&mut gpu, "ctrl", controls.next())?;
+            gpu.iter_mut().try_for_each(|batch| batch.step(steps))?;
+            Ok(())
+        })?;
+        // At once: a card that has nothing to do slows its clock.
+        let mut failed = 0;
+        let (mut rows, mut iterations) = (0, 0);
+        let mut times: Vec<(&str, f64)> = Vec::new();
+        for batch in &mut gpu {
+            failed += batch.statuses()?.iter().flatten().count();
+            for solve in batch.solves()? {
+                rows += solve.rows;
+                iterations += solve.iterations;
+            }
+            for (k, (stage, seconds)) in batch.time_stages()?.into_iter().enumerate() {
+                match times.get_mut(k) {
+                    Some((_, all)) => *all += seconds,
+                    None => times.push((stage, seconds)),
+                }
+            }
+        }
+        let mut controls = Controls::new(&model, &center, count);
+        let cpu_speed = speed(count, steps, |steps| {
+            cpu.state
+                .ctrl
+                .as_mut_slice()
+                .copy_from_slice(controls.next());
+            Ok(cpu.step_n(steps).map(drop)?)
+        })?;
+        let per_env = |sum: usize| sum as f64 / count as f64;
+        let stages = times
+            .iter()
             .map(|(stage, seconds)| format!("\"{stage}\": {:.4}", 1e6 * seconds / count as f64));
         println!(
             "{{\"envs\": {count}, \"device\": {gpu_speed:.0}, \"processor\": {cpu_speed:.0}, \"bytes_per_env\": {}, \
-             \"name\": {:?}, \"stages\": {{{}}}}}",
-            gpu.bytes_per_env(),
-            gpu.device().name,
+             \"failed\": {failed}, \"rows\": {:.1}, \"iterations\": {:.2}, \"name\": {:?}, \"stages\": {{{}}}}}",
+            gpu[0].bytes_per_env(),
+            per_env(rows),
+            per_env(iterations),
+            gpu[0].device().name,
             Vec::from_iter(stages).join(", ")
         );
     }
     Ok(())
 }
 
+/// So many environments: one batch, or several of the same size where the device's largest buffer does not hold them all.
+fn batches(
+    model: &Arc<Model>,
+    count: usize,
+    device: &Option<String>,
+) -> Result<Vec<GpuBatch>, GpuError> {
+    let make = |count| {
+        let options = GpuOptions {
+            device: device.clone(),
+            ..GpuOptions::default()
+        };
+        GpuBatch::new(model.clone(), count, options)
+    };
+    match make(count) {
+        Err(GpuError::OutOfMemory {
+            most: Some(most), ..
+        }) if most > 0 => {
+            let pieces = count.div_ceil(most).next_power_of_two();
+            (0..pieces).map(|_| make(count / pieces)).collect()
+        }
+        made => Ok(vec![made?]),
+    }
+}
+
+/// Writes a field of the environments of all batches.
+fn write(batches: &mut [GpuBatch], name: &str, values: &[f32]) -> Result<(), GpuError> {
+    let each = values.len() / batches.len();
+    let mut rest = values;
+    batches.iter_mut().try_for_each(|batch| {
+        let (own, others) = rest.split_at(each);
+        rest = others;
+        batch.write(name, own)
+    })
+}
+
+/// Controls of all environments, the same in every run.
+struct Controls {
+    /// Of each actuator the middle and half of what it may differ by.
+    ranges: Vec<(f32, f32)>,
+    values: Vec<f32>,
+    random: u64,
+}
+
+impl Controls {
+    fn new(model: &Model, center: &[f32], count: usize) -> Self {
+        let limited = (model.actuators.iter()).flat_map(|actuator| actuator.ctrllimited.iter());
+        let ranges = limited.zip(&model.params.actuator_ctrlrange).zip(center);
+        let ranges = ranges.map(|((&limited, range), &center)| {
+            let half = if limited {
+                0.5 * (range[1] - range[0])
+            } else {
+                1.0
+            };
+            (center, 0.01 * half as f32)
+        });
+        Controls {
+            ranges: ranges.collect(),
+            values: vec![0.0; center.len() * count],
+            random: 0x9E37_79B9_7F4A_7C15,
+        }
+    }
+
+    fn next(&mut self) -> &[f32] {
+        for (value, (center, size)) in self.values.iter_mut().zip(self.ranges.iter().cycle()) {
+            // Marsaglia's xorshift.
+            self.random ^= self.random << 13;
+            self.random ^= self.random >> 7;
+            self.random ^= self.random << 17;
+            let unit = (self.random >> 40) as f32 / (1 << 24) as f32;
+            *value = center + size * (2.0 * unit - 1.0);
+        }
+        &self.values
+    }
+}
+
 /// Steps of environments in a second.
 fn speed(
     count: usize,
+    steps: usize,
     mut step: impl FnMut(usize) -> Result<(), Box<dyn Error>>,
 ) -> Result<f64, Box<dyn Error>> {
-    step(WARM_UP)?;
-    let (start, mut steps) = (Instant::now(), 0);
-    while start.elapsed().as_secs_f64() < LEAST {
-        step(8)?;
-        steps += 8;
+    for _ in 0..WARM_UP / HOLD {
+        step(HOLD)?;
     }
-    Ok((steps * count) as f64 / start.elapsed().as_secs_f64())
+    let (start, mut done) = (Instant::now(), 0);
+    while done < steps && start.elapsed().as_secs_f64() < LONGEST {
+        step(HOLD)?;
+        done += HOLD;
+    }
+    Ok((done * count) as f64 / start.elapsed().as_secs_f64())
 }
