@@ -147,7 +147,7 @@ def test_profile(flags):
     total = sum(stage["microseconds"] for stage in stages.values())
     assert np.isclose(total, 1e6 * figures["seconds"] * figures["threads"] / (figures["envs"] * 200), rtol=1e-3)
     if figures["threads"] == 1:  # several may wait for each other
-        assert stages["elsewhere"]["percent"] < 20, "what no stage counts should be little"
+        assert 0 < stages["elsewhere"]["percent"] < 20, "what no stage counts should be little, but not nothing"
     assert "kinematics" in program.run("simulate", MODELS / "humanoid.xml", "--steps", 5, "--profile", *flags).stdout
 
 

@@ -58,7 +58,6 @@ pub(crate) fn run<S: Precision>(
         _ => &[],
     };
     batch.clear_figures();
-    batch.run_clocks(arguments.profile);
     let mut spent = Duration::ZERO;
     let Taken {
         steps,
@@ -69,15 +68,17 @@ pub(crate) fn run<S: Precision>(
         let energy = (account.is_some() && is_checked).then_some("energy");
         let outputs = Vec::from_iter(recorded.chain(energy));
         heap.taken_by(|| batch.record(&outputs))?;
+        // What is asked between calls is no part of stepping.
+        batch.run_clocks(arguments.profile);
         let begin = Instant::now();
         let recording = heap.taken_by(|| batch.rollout(range.len(), controls, traced))?;
         spent += begin.elapsed();
+        batch.run_clocks(false);
         if let Some(account) = &mut account {
             watch(account, &recording, batch);
         }
         Ok(recording.summary.running)
     })?;
-    batch.run_clocks(false);
     let verdict = verdict(&run.model, &batch.quality(), account.as_ref());
     let mut report = report(&batch, done(&batch, &times, steps), spent, &heap, verdict);
     let whole = report.failure.is_none() && report.resets == 0;

@@ -27,7 +27,6 @@ pub(crate) fn run<T: Precision>(
         .transpose()?;
     let mut summary = Summary::new(&mut sim)?;
     let mut account = EnergyAccount::open(&run.model, [energy(&mut sim)?]);
-    sim.run_clocks(arguments.profile);
     let progress = run.progress();
     let mut spent = Duration::ZERO;
     for step in 0..run.steps {
@@ -38,9 +37,12 @@ pub(crate) fn run<T: Precision>(
             let ctrl = sim.state.ctrl.iter_mut().zip(rows.row(step));
             ctrl.for_each(|(to, &from)| *to = T::new(from));
         }
+        // What is asked between steps is no part of them.
+        sim.run_clocks(arguments.profile);
         let start = Instant::now();
         let result = sim.step();
         spent += start.elapsed();
+        sim.run_clocks(false);
         if let Err(error) = result {
             progress.abandon();
             summary.failed(step, &error);
@@ -48,7 +50,7 @@ pub(crate) fn run<T: Precision>(
         }
         summary.after_step(&sim);
         if let Some(account) = &mut account {
-            watch(account, step, arguments.profile, &mut sim)?;
+            watch(account, step, &mut sim)?;
         }
         if let Some(recorder) = &mut recorder {
             recorder.after_steps(step + 1, &mut sim)?;
@@ -72,21 +74,14 @@ pub(crate) fn run<T: Precision>(
     Ok(report)
 }
 
-/// Takes a step into the account of energy, which no profile shows.
-fn watch<T: Precision>(
-    account: &mut EnergyAccount,
-    step: usize,
-    profile: bool,
-    sim: &mut Sim<T>,
-) -> Result<()> {
+/// Takes a step into the account of energy.
+fn watch<T: Precision>(account: &mut EnergyAccount, step: usize, sim: &mut Sim<T>) -> Result<()> {
     if sim.model().nu() > 0 {
         let power = sim.output("actuator_power")?;
         account.supply(0, power[0].to_f64());
     }
     if (step + 1).is_multiple_of(STEPS_BETWEEN_CHECKS) {
-        sim.run_clocks(false);
         account.check(0, energy(sim)?);
-        sim.run_clocks(profile);
     }
     Ok(())
 }
