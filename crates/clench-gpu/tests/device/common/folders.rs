@@ -3,6 +3,7 @@
 use super::{agree, drift_alike};
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
 use clench_rigid::model::Model;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -18,10 +19,9 @@ pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &
         return;
     };
     let load = |name: &str| public(&folder, name);
-    for &(name, count, spread) in models {
-        println!("{name}");
+    hold_for_all(models, |&(name, count, spread)| {
         agree(&load(name), count, spread);
-    }
+    });
     for name in refused {
         let error = GpuBatch::<f32>::new(load(name), 1, GpuOptions::default())
             .expect_err("what can be done is no longer listed as refused");
@@ -53,8 +53,19 @@ pub fn drift_on_folder(variable: &str, models: &[(&str, usize, f64)]) {
         eprintln!("skipped: {variable} names no folder");
         return;
     };
-    for &(name, ..) in models {
-        println!("{name}");
-        drift_alike(&public(&folder, name), 8, 200);
+    hold_for_all(models, |&(name, ..)| {
+        drift_alike(&public(&folder, name), 8, 200)
+    });
+}
+
+/// Fails with the names of all models for which something does not hold: a device that was never tried tells more at a time.
+fn hold_for_all(models: &[(&str, usize, f64)], holds: impl Fn(&(&str, usize, f64))) {
+    let mut failed = Vec::new();
+    for model in models {
+        println!("{}", model.0);
+        if catch_unwind(AssertUnwindSafe(|| holds(model))).is_err() {
+            failed.push(model.0);
+        }
     }
+    assert!(failed.is_empty(), "failed, as said above: {failed:?}");
 }
