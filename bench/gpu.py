@@ -33,6 +33,8 @@ def compare(model, args):
         warp = warp_speed(model, row["envs"])
         ratio = row["device"] / row["processor"]
         print(f"  {row['envs']:>12}{row['device']:>14.0f}{row['processor']:>14.0f}{ratio:>8.2f}{warp or '-':>14}")
+        if row["failed"]:
+            print(f"  {row['failed']} of these {row['envs']} environments failed and stood still: the figure is no figure")
     stages = ", ".join(f"{stage} {µs:.2f}" for stage, µs in rows[-1]["stages"].items())
     print(f"  stages, µs an environment: {stages}")
     return []

@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let counts = (0..17).map(|k| 1usize << k);
     let counts = counts.filter(|&count| count <= most && (count.ilog2() % 2 == 0 || count == 8192));
     for count in counts {
-        let mut gpu = match batches(&model, count, &device) {
+        let mut gpu = match batches(&model, count, device.as_deref()) {
             Ok(gpu) => gpu,
             // More than the device holds.
             Err(e @ GpuError::OutOfMemory { .. }) => {
@@ -98,11 +98,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn batches(
     model: &Arc<Model>,
     count: usize,
-    device: &Option<String>,
+    device: Option<&str>,
 ) -> Result<Vec<GpuBatch>, GpuError> {
     let make = |count| {
         let options = GpuOptions {
-            device: device.clone(),
+            device: device.map(str::to_owned),
             ..GpuOptions::default()
         };
         GpuBatch::new(model.clone(), count, options)

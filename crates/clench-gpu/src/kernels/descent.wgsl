@@ -41,13 +41,14 @@ struct Convergence {
 // Puts the iterate where a round begins: at the unconstrained acceleration, at that of the last step, or where it is.
 fn place(round: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
+        if (round == AT_SMOOTH) {
+            put_vector(SMOOTH_AT + i, fetch(QACC_SMOOTH + i));
+            put_vector(CONSTRAINT_AT + i, 0.0);
+        }
         if (round == AT_WARMSTART) {
             put_vector(QACC_AT + i, given(QACC_WARMSTART + i));
         } else if (round != REFRESH) {
             put_vector(QACC_AT + i, vector(SMOOTH_AT + i));
-        }
-        if (round == AT_SMOOTH) {
-            put_vector(CONSTRAINT_AT + i, 0.0);
         }
     }
     join_vectors();

@@ -35,8 +35,8 @@ fn put_vector(place: u32, x: f32) {
     }
 }
 
-// Waits until all threads of the group see what each has written into vectors and tiles. That is the memory of the workgroup, where it has room
-// for them: a card need not wait then for what is on its way to the far one, which `join` does.
+// Waits until all threads of the group see what each has written into vectors and tiles. Where these lie in the memory of the workgroup, that
+// is quicker than `join`, which waits for global memory.
 fn join_vectors() {
     if (!SHARE_ALL) {
         storageBarrier();

@@ -1,14 +1,13 @@
 // The mass matrix of an environment, in the pattern of the tree, as its workgroup multiplies with it. Sister of
 // `clench-solver/src/tree/matrix.rs`.
 
-// Copies it, and the unconstrained acceleration, beside the other numbers of the problem; returns its trace.
+// Copies it beside the other numbers of the problem; returns its trace.
 fn copy_mass() -> f32 {
     for (var p = lane; p < NNZ; p += GROUP) {
         put_row(MASS + p, fetch(QM + p));
     }
     var diagonal: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
-        put_vector(SMOOTH_AT + i, fetch(QACC_SMOOTH + i));
         diagonal += fetch(QM + words[TREE_START + i + 1u] - 1u);
     }
     join();

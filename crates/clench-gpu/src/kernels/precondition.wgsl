@@ -1,6 +1,8 @@
-// M⁻¹ by the LᵀDL of the tree, in the order of `clench-solver/src/tree/factor.rs`: level by level, of which the dofs, as many steps from the root,
-// do not wait for each other, each number gathered by one thread; or, towards the root, dof by dof, whose ancestors do not either. Of many
-// small trees the former takes fewer turns, of one large tree the latter.
+// M⁻¹ by the LᵀDL of the tree. Sums run in the order of `clench-solver/src/tree/factor.rs`.
+//
+// Substitution with Lᵀ, from the leaves to the root, goes by levels or by dofs. The dofs of a level are equally far from the root and do not
+// wait for each other: each is a thread's, which subtracts all that is below it. Or one dof after the other is subtracted from its ancestors,
+// each a thread's. Many small trees have few levels; of a large tree a dof near the root has much below it, so that the second takes fewer turns.
 
 // The dofs of a level, for each of which a thread does its part.
 struct Level {
@@ -12,8 +14,8 @@ fn level_at(k: u32) -> Level {
     return Level(words[LEVEL_START + k], words[LEVEL_START + k + 1u]);
 }
 
-// L⁻ᵀg at PRECONDITIONED_AT, level by level.
-fn gather_from_below() {
+// L⁻ᵀg at PRECONDITIONED_AT, by levels.
+fn substitute_by_levels() {
     for (var k = NLEVEL; k > 0u; k--) {
         let level = level_at(k - 1u);
         for (var n = level.first + lane; n < level.end; n += GROUP) {
@@ -28,8 +30,8 @@ fn gather_from_below() {
     }
 }
 
-// The same, dof by dof.
-fn hand_up() {
+// The same, by dofs.
+fn substitute_by_dofs() {
     for (var i = lane; i < bound(NV); i += GROUP) {
         put_vector(PRECONDITIONED_AT + i, vector(GRADIENT_AT + i));
     }
@@ -49,9 +51,9 @@ fn hand_up() {
 // ½ |a|²_M is convex, so the cost exceeds its minimum by at most this.
 fn precondition() -> f32 {
     if (DOF_BY_DOF) {
-        hand_up();
+        substitute_by_dofs();
     } else {
-        gather_from_below();
+        substitute_by_levels();
     }
     var square: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {

@@ -7,7 +7,7 @@
 // end of a row nothing changes.
 
 // Which of four entries from `p` on are before `end`.
-fn before(p: u32, end: u32) -> vec4<bool> {
+fn within(p: u32, end: u32) -> vec4<bool> {
     return vec4u(p, p + 1u, p + 2u, p + 3u) < vec4u(end);
 }
 
@@ -32,7 +32,7 @@ fn factor_tree() -> bool {
             for (var q = start; q <= entry; q += 4u) {
                 let place = QLD + ancestor + q - start;
                 let rest = fetch4(place);
-                put4(place, select(rest, rest - multiplier * fetch4(QLD + q), before(q, p)));
+                put4(place, select(rest, rest - multiplier * fetch4(QLD + q), within(q, p)));
             }
             put(QLD + entry, multiplier);
         }
@@ -48,7 +48,7 @@ fn fetch_at(x: u32, dofs: vec4u) -> vec4f {
 // Four dofs of row i of the tree, from entry `p` on; beyond the end i itself.
 fn ancestors(p: u32, i: u32) -> vec4u {
     let dofs = vec4u(words[TREE_DOF + p], words[TREE_DOF + p + 1u], words[TREE_DOF + p + 2u], words[TREE_DOF + p + 3u]);
-    return select(vec4u(i), dofs, before(p, words[TREE_START + i + 1u]));
+    return select(vec4u(i), dofs, within(p, words[TREE_START + i + 1u]));
 }
 
 // x ← (LᵀDL)⁻¹ x, in place.
@@ -60,7 +60,7 @@ fn solve_tree(x: u32) {
         for (var p = words[TREE_START + i]; p < last; p += 4u) {
             let dofs = ancestors(p, i);
             let rest = fetch_at(x, dofs);
-            let left = select(rest, rest - fetch4(QLD + p) * value, before(p, last));
+            let left = select(rest, rest - fetch4(QLD + p) * value, within(p, last));
             put(x + dofs.x, left.x);
             put(x + dofs.y, left.y);
             put(x + dofs.z, left.z);
@@ -71,7 +71,7 @@ fn solve_tree(x: u32) {
         var sum = fetch(x + i) * fetch(QLD_INVERSE + i);
         let last = words[TREE_START + i + 1u] - 1u;
         for (var p = words[TREE_START + i]; p < last; p += 4u) {
-            let parts = select(vec4f(), fetch4(QLD + p) * fetch_at(x, ancestors(p, i)), before(p, last));
+            let parts = select(vec4f(), fetch4(QLD + p) * fetch_at(x, ancestors(p, i)), within(p, last));
             sum = sum - parts.x - parts.y - parts.z - parts.w;
         }
         put(x + i, sum);
