@@ -108,6 +108,7 @@ impl<S: GpuReal> GpuBatch<S> {
         tables.shapes(&model, &base.candidates);
         let state = fields::state_fields(&model, capacity);
         let work = fields::work_fields(&model, capacity);
+        let thread = fields::thread_fields(&model, capacity);
         let rows = fields::row_fields(&model, capacity);
         let reports = fields::report_fields(&model, capacity);
         tables.initial_state(&model, &state);
@@ -118,6 +119,8 @@ impl<S: GpuReal> GpuBatch<S> {
         let memory = Memory {
             state: &state,
             work: &work,
+            thread: &thread,
+            threads: capacity.threads,
             rows: &rows,
             reports: &reports,
             solver,

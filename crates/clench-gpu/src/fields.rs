@@ -136,16 +136,8 @@ fields! {
     qfrc_actuator: m.nv;
     qfrc_smooth: m.nv;
     qacc_smooth: m.nv;
-    /// The polytope of overlapping shapes: vertices, faces, sides that are yet to be looked at, faces that are seen, sides of the horizon.
-    polytope: 9 * c.polytope[0];
-    polytope_face: 12 * c.polytope[1];
-    polytope_stack: c.polytope[1] + 4;
-    polytope_visible: c.polytope[1];
-    polytope_horizon: 3 * c.polytope[1];
-    /// Contacts on terrain while they are gathered.
-    terrain: c.terrain[0];
-    terrain_face: c.terrain[1];
-    terrain_patch: c.terrain[2];
+    /// What threads of the narrow phase have for themselves, one after the other.
+    threads: c.threads * thread_fields(m, c).size;
     contacts: CONTACT_SIZE * c.contacts;
     qacc: m.nv;
     qfrc_constraint: m.nv;
@@ -166,6 +158,22 @@ fields! {
     start_ten_jacobian: if has_yielding_tendons(m) { m.tendon_dofs.len() } else { 0 };
     mean_act_dot: m.na;
     start_warmstart: m.nv;
+}
+
+fields! {
+    /// What a thread of the narrow phase has for itself, in its part of the field `threads`.
+    thread_fields(m, c);
+    /// The polytope of overlapping shapes: vertices, faces, sides that are yet to be looked at, faces that are seen, sides of the horizon.
+    polytope: 9 * c.polytope[0];
+    polytope_face: 12 * c.polytope[1];
+    polytope_stack: c.polytope[1] + 4;
+    polytope_visible: c.polytope[1];
+    polytope_horizon: 3 * c.polytope[1];
+    /// Contacts on terrain while they are gathered.
+    terrain: c.terrain[0];
+    terrain_face: c.terrain[1];
+    terrain_patch: c.terrain[2];
+    found_contacts: CONTACT_SIZE * c.contacts;
 }
 
 fields! {
@@ -219,6 +227,13 @@ fields! {
     restart: 1;
     /// Steps since the last reset.
     steps: 1;
+    /// Near pairs, in canonical order, and then the contacts of each.
+    nnear: 1;
+    near_pairs: c.pairs;
+    /// Where in that list near pairs are, method by method.
+    near_by_method: c.pairs;
+    /// What went wrong in each thread of the narrow phase.
+    thread_fault: c.threads;
     ncon: 1;
     nblock: 1;
     nrow: 1;

@@ -19,6 +19,8 @@ pub(crate) const GRID: u32 = 32_768;
 pub(crate) enum Workers {
     /// One thread.
     Thread,
+    /// As many threads as the memory of the narrow phase is for, each in a workgroup with those of other environments.
+    Threads,
     /// One workgroup.
     Workgroup,
 }
@@ -28,7 +30,7 @@ impl Workers {
     /// (with half as many a card took a tenth longer).
     const fn threads(self) -> u32 {
         match self {
-            Workers::Thread => 32,
+            Workers::Thread | Workers::Threads => 32,
             Workers::Workgroup => 64,
         }
     }
@@ -68,9 +70,13 @@ kernels! {
     /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
     POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "wrap", "tendon",
         "outputs", "transmission", "articulated", "outer", "inertia";
+    /// Which pairs are near.
+    BROAD_PHASE = "broad_phase", Thread: "broad_phase";
+    /// Where near pairs touch.
+    NARROW_PHASE = "narrow_phase", Threads: "near", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
+        "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
     /// Contacts.
-    CONTACTS = "contacts", Thread: "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
-        "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "detect";
+    CONTACTS = "contacts", Thread: "near", "contacts";
     /// Smooth forces and the acceleration they cause.
     FORCES = "forces", Thread: "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
@@ -104,6 +110,10 @@ kernels! {
 pub(crate) struct Memory<'a> {
     pub state: &'a Fields,
     pub work: &'a Fields,
+    /// What a thread of the narrow phase has for itself.
+    pub thread: &'a Fields,
+    /// Threads of the narrow phase for each environment.
+    pub threads: usize,
     pub rows: &'a Fields,
     pub reports: &'a Fields,
     pub solver: SolverMemory,
@@ -137,6 +147,8 @@ pub(crate) struct Preface {
     /// Declarations in WGSL.
     pub constants: String,
     pub layout: Layout,
+    /// Threads of the narrow phase for each environment.
+    threads: usize,
 }
 
 /// What stands before the texts of the kernels of a model.
@@ -158,12 +170,20 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     let mut layout = tables.layout.clone();
     layout.count("STATE", memory.state.size);
     layout.count("ROWS", memory.rows.size);
+    layout.count("THREAD_SIZE", memory.thread.size);
+    layout.count("NTHREAD", memory.threads);
     layout.count(
         "MAX_ROWS",
         memory.rows.find("r").map_or(0, |field| field.width),
     );
     layout.count("NTILE", memory.solver.ntile());
-    for fields in [memory.state, memory.work, memory.rows, memory.reports] {
+    for fields in [
+        memory.state,
+        memory.work,
+        memory.thread,
+        memory.rows,
+        memory.reports,
+    ] {
         for field in &fields.list {
             layout.count(&field.name.to_uppercase(), field.place);
         }
@@ -171,6 +191,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     Preface {
         constants: text + &memory.solver.constants(),
         layout,
+        threads: memory.threads,
     }
 }
 
@@ -193,10 +214,12 @@ impl Kernel {
     }
 
     /// How many workgroups `count` environments take, along each axis.
-    pub(crate) fn workgroups(&self, count: usize) -> [u32; 3] {
+    pub(crate) fn workgroups(&self, count: usize, preface: &Preface) -> [u32; 3] {
         let count = count as u32;
+        let of_threads = count.div_ceil(self.workers.threads());
         match self.workers {
-            Workers::Thread => [count.div_ceil(self.workers.threads()), 1, 1],
+            Workers::Thread => [of_threads, 1, 1],
+            Workers::Threads => [of_threads, preface.threads as u32, 1],
             Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
         }
     }

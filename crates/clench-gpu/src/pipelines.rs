@@ -94,6 +94,8 @@ impl Pipelines {
         let compile = |kernel: &Kernel| compile::<S>(device, &preface, count, kernel);
         let forward = [
             kernels::POSITIONS,
+            kernels::BROAD_PHASE,
+            kernels::NARROW_PHASE,
             kernels::CONTACTS,
             kernels::FORCES,
             kernels::CONSTRAINTS,
@@ -152,7 +154,7 @@ fn compile<S: Texts>(
     Ok(Pipeline {
         name: kernel.entry,
         pipeline,
-        workgroups: kernel.workgroups(count),
+        workgroups: kernel.workgroups(count, preface),
     })
 }
 

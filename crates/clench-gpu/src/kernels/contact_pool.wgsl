@@ -1,8 +1,19 @@
-// The contacts of an environment: a pool of MAX_CONTACTS, in canonical order. Frames are those of `clench-collide/src/frame.rs`.
+// The contacts that a thread of the narrow phase finds, pair by pair, in memory of its own: as many as an environment may have in all. Frames are
+// those of `clench-collide/src/frame.rs`.
+
+// Where the memory of this thread begins.
+var<private> first_of_mine: u32;
+
+// Where a field of this thread is.
+fn mine(field: u32) -> u32 {
+    return first_of_mine + field;
+}
 
 // How many there are so far, and how many before the present pair.
 var<private> found: u32;
 var<private> first_of_pair: u32;
+// Whether there were more than there is room for.
+var<private> overflowed: bool;
 
 // Adds a contact of a pair; `tangent` is the first of the two. Of a pair that is to have but one contact, the first of the deepest stays.
 // Those of a triangle of terrain are not contacts yet.
@@ -12,16 +23,16 @@ fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent
         return;
     }
     if (found > first_of_pair && words[PAIR_DEEPEST + pair] == 1u) {
-        if (distance >= fetch(CONTACTS + CONTACT_SIZE * first_of_pair + 1u)) {
+        if (distance >= fetch(mine(FOUND_CONTACTS) + CONTACT_SIZE * first_of_pair + 1u)) {
             return;
         }
         found = first_of_pair;
     }
     if (found == MAX_CONTACTS) {
-        trouble(CONTACT_OVERFLOW);
+        overflowed = true;
         return;
     }
-    let place = CONTACTS + CONTACT_SIZE * found;
+    let place = mine(FOUND_CONTACTS) + CONTACT_SIZE * found;
     put(place, f32(pair));
     put(place + 1u, distance);
     put3(place + 2u, position);

@@ -128,14 +128,19 @@ fn block(b: u32, field: u32) -> u32 {
     return u32(row(BLOCKS + BLOCK_SIZE * b + field));
 }
 
-// Notes it where the device ended a loop before its end. Mesa's software device grants a thread so many turns of loops in all, and ends
+// Whether the device goes through loops to their end. Mesa's software device grants a thread so many turns of loops in all, and ends
 // every later loop after its first: this one tells.
-fn note_end() {
+fn loops_end() -> bool {
     var turns = 0u;
     for (var k = 0u; k < bound(4u); k++) {
         turns += 1u;
     }
-    if (turns < 4u && reports[STATUS * envs + env] == RUNNING) {
+    return turns == 4u;
+}
+
+// Notes it where the device ended a loop before its end.
+fn note_end() {
+    if (!loops_end() && reports[STATUS * envs + env] == RUNNING) {
         trouble(UNFINISHED);
     }
 }

@@ -13,6 +13,10 @@ use std::f64::consts::PI;
 /// The pool of an environment, where the options leave it open and the pairs could fill a larger one. Contacts beyond are a fault,
 /// never left out in silence.
 const POOL: usize = 48;
+/// Pairs of a model for each thread of the narrow phase: most of them are far apart.
+const PAIRS_OF_A_THREAD: usize = 32;
+/// Threads of the narrow phase, at most: each has memory for all contacts of the environment.
+const MOST_THREADS: usize = 8;
 /// Vertices of the polytope of overlapping shapes. Single precision has no use for the 128 that the processor has room for.
 const POLYTOPE_VERTICES: usize = 64;
 /// Corners that stand for the round cap of a cylinder.
@@ -82,9 +86,12 @@ impl Tables {
         for (code, name) in METHODS.iter().enumerate() {
             self.constant(name, code);
         }
+        self.constant("METHODS", METHODS.len());
         let geoms = || candidates.iter().flat_map(|c| c.geoms);
         let dim = |c: &Candidate| contact_params::<f64>(m, &m.params, c).dim;
         self.count("NPAIR", candidates.len());
+        capacity.pairs = candidates.len();
+        capacity.threads = (candidates.len() / PAIRS_OF_A_THREAD).clamp(1, MOST_THREADS);
         self.words("PAIR_GEOM", geoms().map(|g| g as usize));
         self.words("PAIR_BODY", geoms().map(|g| m.geoms[g as usize].body));
         let method = |c: &Candidate| method_of_pair(c.kinds).unwrap_or(0);

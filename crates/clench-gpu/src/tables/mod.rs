@@ -49,6 +49,10 @@ pub(crate) struct Tables {
 /// How large the constraints of an environment can become.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Capacity {
+    /// Pairs of geoms that may collide.
+    pub pairs: usize,
+    /// Threads of the narrow phase.
+    pub threads: usize,
     /// Contacts in the pool.
     pub contacts: usize,
     /// Blocks of the convex problem.

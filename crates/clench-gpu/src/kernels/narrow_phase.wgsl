@@ -1,5 +1,4 @@
-// Which pairs touch, and where. Sister of `contact/detect.rs` and `bounding_sphere.rs`: the pairs of the model, listed once, in
-// canonical order.
+// Where near pairs touch. Sister of `contact/detect.rs`.
 
 // A geom where it is.
 struct Placed {
@@ -10,28 +9,6 @@ struct Placed {
 
 fn placed(geom: u32) -> Placed {
     return Placed(fetch3(GEOM_XPOS + 3u * geom), fetch_matrix(GEOM_XMAT + 9u * geom), parameter3(GEOM_SIZE + 3u * geom));
-}
-
-// Whether the bounding spheres of a pair meet; a plane has none.
-fn may_touch(pair: u32, a: u32, b: u32) -> bool {
-    let reach = parameter(PAIR_REACH + pair);
-    let offset = fetch3(GEOM_XPOS + 3u * b) - fetch3(GEOM_XPOS + 3u * a);
-    if (words[GEOM_KIND + a] == PLANE) {
-        let place = GEOM_XMAT + 9u * a;
-        let normal = vec3f(fetch(place + 2u), fetch(place + 5u), fetch(place + 8u));
-        return dot(normal, offset) <= reach;
-    }
-    return dot(offset, offset) <= reach * max(reach, 0.0);
-}
-
-// The first pair from one on whose bounding spheres meet; NPAIR if there is none. A loop of its own: threads side by side, each at a pair of its
-// environment, look for contacts together, and none waits while another does.
-fn first_that_may_touch(start: u32) -> u32 {
-    var pair = start;
-    while (pair < NPAIR && !may_touch(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u])) {
-        pair++;
-    }
-    return pair;
 }
 
 fn on_plane(pair: u32, plane: Placed, b: Placed, geom: u32, range: f32) {
@@ -87,19 +64,30 @@ fn collide(pair: u32, a: u32, b: u32) {
     }
 }
 
-// One thread an environment.
+// NTHREAD threads an environment, to which its near pairs are dealt, method by method: threads side by side, each of an environment of its own, mostly
+// find contacts by the same method.
 @compute @workgroup_size(GROUP)
-fn contacts(@builtin(global_invocation_id) id: vec3u) {
+fn narrow_phase(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {
         return;
     }
+    let thread = id.y;
+    first_of_mine = THREADS + THREAD_SIZE * thread;
     found = 0u;
-    var pair = first_that_may_touch(0u);
-    while (pair < NPAIR) {
+    overflowed = false;
+    let count = reports[NNEAR * envs + env];
+    for (var turn = thread; turn < count; turn += NTHREAD) {
+        let place = (NEAR_PAIRS + reports[(NEAR_BY_METHOD + turn) * envs + env]) * envs + env;
+        let pair = reports[place];
         first_of_pair = found;
         collide(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u]);
-        pair = first_that_may_touch(pair + 1u);
+        reports[place] = contacts_of_pair(thread * MAX_CONTACTS + first_of_pair, found - first_of_pair);
     }
-    reports[NCON * envs + env] = found;
-    note_end();
+    var fault = RUNNING;
+    if (!loops_end()) {
+        fault = UNFINISHED;
+    } else if (overflowed) {
+        fault = CONTACT_OVERFLOW;
+    }
+    reports[(THREAD_FAULT + thread) * envs + env] = fault;
 }

@@ -1,0 +1,44 @@
+// Which pairs are near. Sister of `bounding_sphere.rs`: the pairs of the model, listed once, in canonical order.
+
+// Whether the bounding spheres of a pair meet; a plane has none.
+fn may_touch(pair: u32, a: u32, b: u32) -> bool {
+    let reach = parameter(PAIR_REACH + pair);
+    let offset = fetch3(GEOM_XPOS + 3u * b) - fetch3(GEOM_XPOS + 3u * a);
+    if (words[GEOM_KIND + a] == PLANE) {
+        let place = GEOM_XMAT + 9u * a;
+        let normal = vec3f(fetch(place + 2u), fetch(place + 5u), fetch(place + 8u));
+        return dot(normal, offset) <= reach;
+    }
+    return dot(offset, offset) <= reach * max(reach, 0.0);
+}
+
+// One thread an environment: lists its near pairs in canonical order, and tells in which order their methods come.
+@compute @workgroup_size(GROUP)
+fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
+    if (!begin(id.x)) {
+        return;
+    }
+    // Of each method: how many pairs, then where the next one goes.
+    var next: array<u32, METHODS>;
+    var count = 0u;
+    for (var pair = 0u; pair < NPAIR; pair++) {
+        if (may_touch(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u])) {
+            reports[(NEAR_PAIRS + count) * envs + env] = pair;
+            count++;
+            next[words[PAIR_METHOD + pair]]++;
+        }
+    }
+    reports[NNEAR * envs + env] = count;
+    var start = 0u;
+    for (var method = 0u; method < METHODS; method++) {
+        let of_method = next[method];
+        next[method] = start;
+        start += of_method;
+    }
+    for (var k = 0u; k < count; k++) {
+        let method = words[PAIR_METHOD + reports[(NEAR_PAIRS + k) * envs + env]];
+        reports[(NEAR_BY_METHOD + next[method]) * envs + env] = k;
+        next[method]++;
+    }
+    note_end();
+}
