@@ -74,6 +74,8 @@ fields! {
     mocap_quat: 4 * m.nmocap;
     /// Zero where an equality is off.
     eq_active: m.equalities.len();
+    /// When the first of the steps that are counted began, s.
+    start_time: 1;
 }
 
 fields! {
@@ -107,6 +109,8 @@ fields! {
     cfrc_ext: 6 * m.nbody();
     contact_force: 6 * m.nbody();
     sensordata: m.nsensordata();
+    /// Potential and kinetic energy.
+    mechanical_energy: 2;
     /// Spatial forces of bodies, used up when they are projected.
     cfrc: 6 * m.nbody();
     /// How forces of the medium on ellipsoids change with velocities, column by column.

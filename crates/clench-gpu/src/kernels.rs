@@ -78,7 +78,7 @@ kernels! {
     /// Contacts.
     CONTACTS = "contacts", Thread: "near", "contacts";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "passive", "tendon_forces", "muscle",
+    FORCES = "forces", Thread: "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Which constraints act, and how soft they are.
     CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
@@ -86,10 +86,10 @@ kernels! {
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "cg", "descent";
-    /// Accelerations of bodies and forces between them, where somebody asks.
-    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "external", "body_forces";
+    /// Accelerations of bodies, forces between them and the energy, where somebody asks.
+    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
     /// What sensors measure, where somebody asks.
-    SENSORS = "sensors", Thread: "chains", "site_volume", "adhesive", "sensors";
+    SENSORS = "sensors", Thread: "chains", "site_volume", "adhesive", "wrench", "contact_sensor", "sensors";
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.

@@ -39,7 +39,8 @@ impl Tables {
 impl<S: GpuReal> GpuBatch<S> {
     /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `history`,
     /// `plastic`, `qacc_warmstart`, `ctrl`, `qfrc_applied`, `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`,
-    /// `mocap_quat`, `eq_active` (zero where an equality is off).
+    /// `mocap_quat`, `eq_active` (zero where an equality is off), `start_time` (when the first of the [`steps`](Self::steps) began, s: sensors that are clocks
+    /// count from there).
     ///
     /// # Errors
     /// A name that no such field has; a wrong count; a number that is not finite, or a position or velocity beyond 1e10.

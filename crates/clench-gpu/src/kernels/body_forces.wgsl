@@ -1,4 +1,4 @@
-// Accelerations of bodies and forces between them, constraints included: one thread an environment, and only where somebody asks.
+// Accelerations of bodies and forces between them, constraints included, and the energy: one thread an environment, and only where somebody asks.
 // Sister of `sensor/bodies.rs`.
 
 @compute @workgroup_size(GROUP)
@@ -6,6 +6,7 @@ fn body_forces(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {
         return;
     }
+    mechanical_energy();
     external_forces();
     put_spatial(CACC_JOINTS, Spatial(vec3f(), vec3f()));
     put_spatial(CACC, fetch_spatial(CACC_BIAS));

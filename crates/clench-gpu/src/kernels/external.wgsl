@@ -20,17 +20,6 @@ fn push_by_contact(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f)
     push(body, sign, force, couple, at);
 }
 
-// The three numbers of rows from `first` on, zero beyond the block's end.
-fn three_forces(first: u32, end: u32) -> vec3f {
-    var f = vec3f();
-    for (var k = 0u; k < 3u; k++) {
-        if (first + k < end) {
-            f[k] = row(FORCE + first + k);
-        }
-    }
-    return f;
-}
-
 fn push_contact(source: u32, f: vec3f, t: vec3f) {
     let place = CONTACTS + CONTACT_SIZE * source;
     let pair = u32(fetch(place));
@@ -107,15 +96,11 @@ fn external_forces() {
     }
     for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         let kind = block(b, BLOCK_KIND);
-        let first = block(b, BLOCK_ROW);
-        let end = first + block(b, BLOCK_DIM);
-        let forces = three_forces(first, end);
-        let torques = three_forces(first + 3u, end);
+        let wrench = block_wrench(b);
         if (kind >= CONTACT_NORMAL) {
-            let adhesion = contact_adhesion(block(b, BLOCK_SOURCE));
-            push_contact(block(b, BLOCK_SOURCE), forces - vec3f(adhesion, 0.0, 0.0), torques);
+            push_contact(block(b, BLOCK_SOURCE), wrench.linear, wrench.angular);
         } else if (kind == HELD) {
-            push_held(block(b, BLOCK_SOURCE), forces, torques);
+            push_held(block(b, BLOCK_SOURCE), wrench.linear, wrench.angular);
         }
     }
     push_strings();

@@ -1,4 +1,4 @@
-// Springs, dampers, gravity compensation, the medium, and contacts that adhere. Sisters of `dynamics/passive.rs`, `spring.rs`, `polynomial.rs` and `fluid.rs`.
+// Springs, dampers, gravity compensation, the medium, and contacts that adhere. Sisters of `dynamics/passive.rs`, `polynomial.rs` and `fluid.rs`.
 //
 // A spring pulls with −(a x + b x² + c x³), a damper with −(a v + b v |v| + c v³).
 
@@ -6,18 +6,6 @@
 fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
     let k = stiffness(law, length(stretch));
     put3(qfrc, fetch3(qfrc) - stretch * k);
-}
-
-// Where the number `q` of a joint's position is where its spring rests.
-fn rest(j: u32, q: u32) -> f32 {
-    if (ANY_PLASTIC && words[JNT_PLASTIC + j] != NONE) {
-        return given(PLASTIC + words[JNT_PLASTIC + j] + q - words[JNT_QPOS + j]);
-    }
-    return parameter(QPOS_SPRING + q);
-}
-
-fn rest3(j: u32, q: u32) -> vec3f {
-    return vec3f(rest(j, q), rest(j, q + 1u), rest(j, q + 2u));
 }
 
 fn springs() {
@@ -28,18 +16,17 @@ fn springs() {
         let kind = words[JNT_KIND + j];
         var qfrc = QFRC_PASSIVE + words[JNT_DOF + j];
         if (kind == SLIDE || kind == HINGE) {
-            let x = given(QPOS + q) - rest(j, q);
+            let x = joint_displacement(j, q);
             add(qfrc, -x * stiffness(law, x));
             continue;
         }
         var turn = q;
         if (kind == FREE) {
-            pull_back(law, given3(QPOS + q) - rest3(j, q), qfrc);
+            pull_back(law, joint_shift(j, q), qfrc);
             turn += 3u;
             qfrc += 3u;
         }
-        let unturned = vec4f(rest3(j, turn), rest(j, turn + 3u));
-        pull_back(law, quat_difference(quat_normalize(given4(QPOS + turn)), unturned), qfrc);
+        pull_back(law, joint_turn(j, turn), qfrc);
     }
 }
 

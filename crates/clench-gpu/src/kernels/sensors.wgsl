@@ -243,6 +243,15 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
             let inside = is_inside(s, prm, object_position(words[s + SENSOR_OBJECT_KIND], e));
             return select(f32(0.0), f32(1.0), inside);
         }
+        case SENSE_CLOCK: {
+            return given(START_TIME) + f32(reports[STEPS * envs + env]) * TIMESTEP;
+        }
+        case SENSE_E_POTENTIAL: {
+            return fetch(MECHANICAL_ENERGY);
+        }
+        case SENSE_E_KINETIC: {
+            return fetch(MECHANICAL_ENERGY + 1u);
+        }
         case SENSE_JOINTPOS: {
             return given(QPOS + words[JNT_QPOS + e]);
         }
@@ -310,6 +319,9 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
                 put(out + k, fetch(place + e + k));
             }
+        }
+        case OF_CONTACTS: {
+            read_contacts(s, prm, out);
         }
         case OF_NOTHING: {
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {

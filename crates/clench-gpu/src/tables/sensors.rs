@@ -1,8 +1,9 @@
 //! Sensors: how each is read, of what, and within which cutoff; and the actuators of each tendon.
 
-use super::{Tables, starts};
+use super::{NONE, Tables, starts};
 use clench_rigid::model::{
-    FrameObject, Model, Sensor, SensorData, SensorKind, SensorTarget, Transmission,
+    ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, Model, Sensor,
+    SensorData, SensorKind, SensorTarget, Transmission,
 };
 
 /// The words of a sensor.
@@ -23,7 +24,7 @@ const SENSOR_FIELDS: [&str; 12] = [
 /// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site.
 const SENSOR_PRM_SIZE: usize = 5;
 /// How a sensor is read.
-const WAYS: [&str; 7] = [
+const WAYS: [&str; 8] = [
     "OF_SCALAR",
     "OF_FRAME",
     "OF_SITE",
@@ -31,7 +32,17 @@ const WAYS: [&str; 7] = [
     "OF_BALL",
     "OF_NOTHING",
     "OF_ACTUATOR",
+    "OF_CONTACTS",
 ];
+/// The words of a query for contacts, before its fields and the sides of each geom.
+const QUERY: [&str; 4] = [
+    "QUERY_REDUCTION",
+    "QUERY_SIZE",
+    "QUERY_NFIELD",
+    "QUERY_FIELDS",
+];
+/// How contacts are reduced.
+const REDUCTIONS: [&str; 4] = ["FIRST_ONES", "MIN_DIST", "MAX_FORCE", "NET_FORCE"];
 /// Kinds of object that have a frame.
 const FRAMES: [&str; 5] = [
     "NO_FRAME",
@@ -89,8 +100,32 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
             _ => (0, [0, *e, 0], none),
         },
         SensorTarget::Nothing if sensor.kind == Kind::User => (5, none, none),
+        SensorTarget::Nothing => (0, none, none),
+        SensorTarget::Contacts(query) => (7, none, [4, query.site.unwrap_or(NONE as usize), 0]),
         _ => return None,
     })
+}
+
+/// A query for contacts, as kernels read it.
+fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
+    let reduction = match query.reduction {
+        ContactReduction::None => 0,
+        ContactReduction::MinDist => 1,
+        ContactReduction::MaxForce => 2,
+        ContactReduction::NetForce => 3,
+    };
+    let mut row = vec![reduction, query.size(), query.fields.len()];
+    row.extend(query.fields.iter().map(|&field| field as usize));
+    let belongs = |geom: usize, side: &ContactSide| match side {
+        ContactSide::Any => true,
+        ContactSide::Geom(wanted) => geom == *wanted,
+        ContactSide::Body(body) => m.geoms[geom].body == *body,
+        ContactSide::Subtree(bodies) => bodies.contains(&m.geoms[geom].body),
+    };
+    let [first, second] = &query.sides;
+    let sides = |g: usize| usize::from(belongs(g, first)) + 2 * usize::from(belongs(g, second));
+    row.extend((0..m.geoms.len()).map(sides));
+    row
 }
 
 /// The first sensor that a device cannot read yet.
@@ -100,7 +135,7 @@ pub(crate) fn unread(m: &Model) -> Option<&Sensor> {
 
 impl Tables {
     pub(super) fn sensors(&mut self, m: &Model) {
-        for names in [&SENSOR_FIELDS[..], &WAYS, &FRAMES] {
+        for names in [&SENSOR_FIELDS[..], &WAYS, &FRAMES, &QUERY, &REDUCTIONS] {
             for (code, name) in names.iter().enumerate() {
                 self.constant(name, code);
             }
@@ -111,20 +146,29 @@ impl Tables {
                 kind as usize,
             );
         }
+        for &field in ContactField::ALL {
+            let name = format!("TELL_{}", field.name().to_uppercase());
+            self.constant(&name, field as usize);
+        }
         self.constant("SENSOR_SIZE", SENSOR_FIELDS.len());
         self.constant("SENSOR_PRM_SIZE", SENSOR_PRM_SIZE);
         let p = &m.params;
-        let (mut words, mut numbers) = (Vec::new(), Vec::new());
+        let (mut words, mut numbers, mut queries) = (Vec::new(), Vec::new(), Vec::new());
         let readable = m.sensors.iter().filter_map(|s| Some((s, target(m, s)?)));
         let mut count = 0;
-        for (sensor, (way, object, reference)) in readable {
+        for (sensor, (way, mut object, reference)) in readable {
+            if let SensorTarget::Contacts(of) = &sensor.target {
+                object[1] = queries.len();
+                queries.extend(query(m, of));
+            }
             let element = object[1];
             let site = match &sensor.target {
                 SensorTarget::Inside { site, .. } => Some(*site),
+                SensorTarget::Contacts(query) => query.site,
                 SensorTarget::Element(site) if sensor.kind == SensorKind::Touch => Some(*site),
                 _ => None,
             };
-            let clips = sensor.cutoff > 0.0;
+            let clips = sensor.cutoff > 0.0 && sensor.kind != SensorKind::Contact;
             let clip = match sensor.data {
                 SensorData::Real if clips => 1,
                 SensorData::Positive if clips => 2,
@@ -145,6 +189,7 @@ impl Tables {
         }
         self.count("NSENSOR", count);
         self.words("SENSORS", words);
+        self.words("QUERIES", queries);
         self.numbers("SENSOR_PRM", numbers);
         self.numbers("MAGNETIC", p.magnetic.to_array());
         self.pulls(m);

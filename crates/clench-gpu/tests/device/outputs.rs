@@ -114,6 +114,11 @@ fn those_of_sensors_by_runge_kutta() {
 }
 
 #[test]
+fn those_of_what_presses_on_each_other() {
+    agree(&own("pressed"));
+}
+
+#[test]
 fn those_of_a_linkage() {
     agree(&own("linkage"));
 }

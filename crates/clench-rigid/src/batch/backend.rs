@@ -14,7 +14,8 @@ pub trait Backend<S>: Send {
     fn name(&self) -> String;
     /// Bytes that an environment takes on it.
     fn bytes_per_env(&self) -> usize;
-    /// Whether it holds a field of the state. Those that it does not hold stay what they are in the initial state.
+    /// Whether it holds a field of the state. Those that it does not hold stay what they are in the initial state; but for `start_time`, the
+    /// time of each environment when what it is told to do next begins (s), which it need not know.
     fn holds(&self, field: &str) -> bool;
     /// Whether it computes an output that does not lie in the state.
     fn computes(&self, output: Output) -> bool;

@@ -204,6 +204,12 @@ impl<S: Precision> Batch<S> {
         may_restart: bool,
         summary: &mut Summary,
     ) -> Result<(), SimError> {
+        if mirror.backend.holds("start_time") {
+            let times = self.state.time.as_slice().iter();
+            mirror.numbers.clear();
+            mirror.numbers.extend(times.map(|&time| S::new(time)));
+            mirror.backend.write("start_time", &mirror.numbers)?;
+        }
         let (running, outcomes) = (&mirror.running, &mut mirror.outcomes);
         match pass {
             Pass::Step => mirror.backend.step(count, running, outcomes)?,

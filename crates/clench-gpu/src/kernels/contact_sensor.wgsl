@@ -1,0 +1,209 @@
+// Contacts between two sides. Sister of `sensor/contact.rs`, where signs are explained.
+//
+// A query is a row of words: how contacts are reduced, how many numbers are told of each, how many fields these are, which, and of each geom
+// to which sides it belongs (1 to the first, 2 to the second).
+
+// 1 or −1 where a contact matches, as its geoms come; 0 where it does not.
+fn match_sign(s: u32, prm: u32, c: u32) -> f32 {
+    let query = QUERIES + words[s + SENSOR_OBJECT];
+    let sides = query + QUERY_FIELDS + words[query + QUERY_NFIELD];
+    let place = CONTACTS + CONTACT_SIZE * c;
+    let pair = u32(fetch(place));
+    let a = words[sides + words[PAIR_GEOM + 2u * pair]];
+    let b = words[sides + words[PAIR_GEOM + 2u * pair + 1u]];
+    if (words[s + SENSOR_REFERENCE] != NONE && !is_inside(s, prm, fetch3(place + 2u))) {
+        return 0.0;
+    }
+    if ((a & 1u) != 0u && (b & 2u) != 0u) {
+        return 1.0;
+    }
+    return select(f32(0.0), f32(-1.0), (b & 1u) != 0u && (a & 2u) != 0u);
+}
+
+// Force and torque of a contact on its second geom in its frame; zero where it is no constraint. Blocks of contacts are the last ones, in their order.
+fn contact_wrench(c: u32) -> Spatial {
+    let count = reports[NBLOCK * envs + env];
+    for (var b = count - min(count, reports[NCON * envs + env] - c); b < count; b++) {
+        if (block(b, BLOCK_KIND) >= CONTACT_NORMAL && block(b, BLOCK_SOURCE) == c) {
+            return block_wrench(b);
+        }
+    }
+    return Spatial(vec3f(), vec3f());
+}
+
+fn contact_frame(c: u32) -> mat3x3f {
+    let place = CONTACTS + CONTACT_SIZE * c;
+    return mat3x3f(fetch3(place + 5u), fetch3(place + 8u), fetch3(place + 11u));
+}
+
+// How the second body moves relative to the first where they touch, in the contact's frame.
+fn relative_motion(c: u32) -> Spatial {
+    let place = CONTACTS + CONTACT_SIZE * c;
+    let pair = u32(fetch(place));
+    let first = velocity_at(words[PAIR_BODY + 2u * pair], fetch3(place + 2u));
+    let second = velocity_at(words[PAIR_BODY + 2u * pair + 1u], fetch3(place + 2u));
+    let axes = contact_frame(c);
+    return Spatial((second.angular - first.angular) * axes, (second.linear - first.linear) * axes);
+}
+
+// What contacts are sorted by, the smallest first.
+fn contact_key(reduction: u32, c: u32) -> f32 {
+    switch reduction {
+        case MIN_DIST: {
+            return fetch(CONTACTS + CONTACT_SIZE * c + 1u);
+        }
+        case MAX_FORCE: {
+            let force = contact_wrench(c).linear;
+            return -dot(force, force);
+        }
+        default: {
+            return 0.0;
+        }
+    }
+}
+
+// What is told of one contact, or of all that match together.
+struct Told {
+    wrench: Spatial,
+    motion: Spatial,
+    distance: f32,
+    position: vec3f,
+    normal: vec3f,
+    tangent: vec3f,
+}
+
+fn told_of(c: u32, sign: f32) -> Told {
+    let place = CONTACTS + CONTACT_SIZE * c;
+    let turned = vec3f(1.0, 1.0, sign);
+    let wrench = contact_wrench(c);
+    let motion = relative_motion(c);
+    return Told(
+        Spatial(wrench.angular * turned, wrench.linear * turned),
+        Spatial(motion.angular * turned, motion.linear * turned),
+        fetch(place + 1u),
+        fetch3(place + 2u),
+        fetch3(place + 5u) * sign,
+        fetch3(place + 8u) * sign,
+    );
+}
+
+// All that match as one contact in world axes: it acts at the mean of their positions, each weighted by its force.
+fn net_force(s: u32, prm: u32) -> Told {
+    var net = Told();
+    var weight: f32 = 0.0;
+    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+        let sign = match_sign(s, prm, c);
+        if (sign != 0.0) {
+            let force = contact_frame(c) * contact_wrench(c).linear * sign;
+            net.wrench.linear += force;
+            net.position += fetch3(CONTACTS + CONTACT_SIZE * c + 2u) * length(force);
+            weight += length(force);
+            net.normal.x = 1.0;
+            net.tangent.y = 1.0;
+        }
+    }
+    net.position /= select(f32(1.0), weight, weight > 0.0);
+    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+        let sign = match_sign(s, prm, c);
+        if (sign != 0.0) {
+            let wrench = contact_wrench(c);
+            let axes = contact_frame(c);
+            let arm = fetch3(CONTACTS + CONTACT_SIZE * c + 2u) - net.position;
+            net.wrench.angular += axes * wrench.angular * sign + cross(arm, axes * wrench.linear * sign);
+        }
+    }
+    return net;
+}
+
+fn write_told(query: u32, count: f32, told: Told, first: u32) {
+    var out = first;
+    for (var k = 0u; k < words[query + QUERY_NFIELD]; k++) {
+        var numbers = vec3f();
+        var scalar = false;
+        switch words[query + QUERY_FIELDS + k] {
+            case TELL_FOUND: {
+                numbers.x = count;
+                scalar = true;
+            }
+            case TELL_FORCE: {
+                numbers = told.wrench.linear;
+            }
+            case TELL_TORQUE: {
+                numbers = told.wrench.angular;
+            }
+            case TELL_DIST: {
+                numbers.x = told.distance;
+                scalar = true;
+            }
+            case TELL_POS: {
+                numbers = told.position;
+            }
+            case TELL_NORMAL: {
+                numbers = told.normal;
+            }
+            case TELL_TANGENT: {
+                numbers = told.tangent;
+            }
+            case TELL_LINVEL: {
+                numbers = told.motion.linear;
+            }
+            default: {
+                numbers = told.motion.angular;
+            }
+        }
+        put(out, numbers.x);
+        if (!scalar) {
+            put(out + 1u, numbers.y);
+            put(out + 2u, numbers.z);
+        }
+        out += select(3u, 1u, scalar);
+    }
+}
+
+// The contact that follows another by its key, then by its number, among those that match; NONE where there is none.
+fn next_match(s: u32, prm: u32, last: u32) -> u32 {
+    let reduction = words[QUERIES + words[s + SENSOR_OBJECT] + QUERY_REDUCTION];
+    var last_key: f32 = 0.0;
+    if (last != NONE) {
+        last_key = contact_key(reduction, last);
+    }
+    var best = NONE;
+    var best_key: f32 = 0.0;
+    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+        if (match_sign(s, prm, c) == 0.0) {
+            continue;
+        }
+        let key = contact_key(reduction, c);
+        let follows = last == NONE || key > last_key || (key == last_key && c > last);
+        if (follows && (best == NONE || key < best_key)) {
+            best = c;
+            best_key = key;
+        }
+    }
+    return best;
+}
+
+// Zeros where there are fewer contacts than there is room for.
+fn read_contacts(s: u32, prm: u32, out: u32) {
+    let query = QUERIES + words[s + SENSOR_OBJECT];
+    var count: f32 = 0.0;
+    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+        count += abs(match_sign(s, prm, c));
+    }
+    let size = words[query + QUERY_SIZE];
+    let net = words[query + QUERY_REDUCTION] == NET_FORCE;
+    var last = NONE;
+    for (var first = 0u; first < words[s + SENSOR_DIM]; first += size) {
+        var told = Told();
+        var tells = count;
+        if (net) {
+            told = net_force(s, prm);
+        } else if (f32(first / size) < count) {
+            last = next_match(s, prm, last);
+            told = told_of(last, match_sign(s, prm, last));
+        } else {
+            tells = 0.0;
+        }
+        write_told(query, tells, told, out + first);
+    }
+}
