@@ -9,7 +9,7 @@ use crate::kernels::{Memory, preface};
 use crate::pipelines::{Arrays, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::{SolverMemory, check_dofs};
-use crate::tables::{Capacity, ENVS, Tables};
+use crate::tables::{Capacity, ENVS, MEASURES, Tables};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -300,6 +300,10 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// That the device or its driver refuses a kernel.
     pub(crate) fn observe(&mut self, sensors: bool) -> Result<(), GpuError> {
+        if sensors {
+            let place = 4 * MEASURES as u64;
+            (self.device.queue).write_buffer(&self.arrays.words, place, [1u32].as_bytes());
+        }
         self.pipelines
             .observe::<S>(&self.device, self.count, sensors)
     }

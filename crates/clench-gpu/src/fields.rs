@@ -143,6 +143,8 @@ fields! {
     /// What threads of the narrow phase have for themselves, one after the other.
     threads: c.threads * thread_fields(m, c).size;
     contacts: CONTACT_SIZE * c.contacts;
+    /// The deepest contact of each pair whose distance is measured.
+    measured: CONTACT_SIZE * c.measured;
     qacc: m.nv;
     qfrc_constraint: m.nv;
     /// How long after the start of the step the present stage is, s.
@@ -177,7 +179,7 @@ fields! {
     terrain: c.terrain[0];
     terrain_face: c.terrain[1];
     terrain_patch: c.terrain[2];
-    found_contacts: CONTACT_SIZE * c.contacts;
+    found_contacts: CONTACT_SIZE * (c.contacts + c.measured);
 }
 
 fields! {

@@ -1,4 +1,5 @@
-// Which pairs are near. Sister of `bounding_sphere.rs`: the pairs of the model, listed once, in canonical order.
+// Which pairs are near. Sister of `bounding_sphere.rs`: the pairs of the model, listed once, in canonical order, and
+// behind them those whose distance somebody asks for.
 
 // Whether the bounding spheres of a pair meet; a plane has none.
 fn may_touch(pair: u32, a: u32, b: u32) -> bool {
@@ -21,7 +22,8 @@ fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
     // Of each method: how many pairs, then where the next one goes.
     var next: array<u32, METHODS>;
     var count = 0u;
-    for (var pair = 0u; pair < NPAIR; pair++) {
+    let pairs = NPAIR + NMEASURED * words[MEASURES];
+    for (var pair = 0u; pair < pairs; pair++) {
         if (may_touch(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u])) {
             reports[(NEAR_PAIRS + count) * envs + env] = pair;
             count++;

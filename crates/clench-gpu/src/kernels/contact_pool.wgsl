@@ -1,5 +1,5 @@
-// The contacts that a thread of the narrow phase finds, pair by pair, in memory of its own: as many as an environment may have in all. Frames are
-// those of `clench-collide/src/frame.rs`.
+// The contacts that a thread of the narrow phase finds, pair by pair, in memory of its own: as many as an environment may have in all, and
+// one of each pair whose distance is measured. Frames are those of `clench-collide/src/frame.rs`.
 
 // Where the memory of this thread begins.
 var<private> first_of_mine: u32;
@@ -28,7 +28,7 @@ fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent
         }
         found = first_of_pair;
     }
-    if (found == MAX_CONTACTS) {
+    if (found == THREAD_CONTACTS) {
         overflowed = true;
         return;
     }

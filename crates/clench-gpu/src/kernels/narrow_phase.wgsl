@@ -81,7 +81,7 @@ fn narrow_phase(@builtin(global_invocation_id) id: vec3u) {
         let pair = reports[place];
         first_of_pair = found;
         collide(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u]);
-        reports[place] = contacts_of_pair(thread * MAX_CONTACTS + first_of_pair, found - first_of_pair);
+        reports[place] = contacts_of_pair(thread * THREAD_CONTACTS + first_of_pair, found - first_of_pair);
     }
     var fault = RUNNING;
     if (!loops_end()) {

@@ -1,6 +1,8 @@
 // What the three kernels that look for contacts hand each other: the list of near pairs, in canonical order. In the place of a pair the narrow phase
 // puts which contacts it found, of all that there is room for in the memory of its threads.
 
+// The distance of pairs without a contact.
+const TOO_FAR: f32 = 3e38;
 // More contacts than any pair has.
 const PAIR_CONTACTS: u32 = 256u;
 

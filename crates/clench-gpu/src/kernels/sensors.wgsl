@@ -323,6 +323,9 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
         case OF_CONTACTS: {
             read_contacts(s, prm, out);
         }
+        case OF_DISTANCE: {
+            read_distance(kind, s, prm, out);
+        }
         case OF_NOTHING: {
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
                 put(out + k, 0.0);

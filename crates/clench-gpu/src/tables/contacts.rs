@@ -1,5 +1,6 @@
 //! Pairs of geoms that may collide, with the parameters of their contacts: mixed here, once, by the rules of `clench-rigid`.
 
+use super::distances::{Measured, measured};
 use super::{Capacity, Tables};
 use crate::check::{METHODS, may_be_general, method_of_pair, points_of_pair};
 use clench_collide::{MAX_POINTS, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
@@ -50,17 +51,24 @@ fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
     row
 }
 
-/// Within what distance of their centres (of a plane: of the second's to it) two geoms may touch.
-fn reach<S: Scalar>(m: &Model, pair: &Candidate) -> f64 {
-    let is_empty =
-        |&g: &u32| m.geoms[g as usize].kind == ShapeKind::Mesh && m.hull(g as usize).is_none();
+/// Within what distance of their centres (of a plane: of the second's to it) two geoms may touch that are within a range of each other.
+fn reach<S: Scalar>(m: &Model, pair: &Candidate, range: f64) -> f64 {
+    let is_empty = |&g: &u32| {
+        let mesh = m.geoms[g as usize].mesh;
+        mesh.is_some_and(|mesh| m.meshes[mesh].any_hull().is_none())
+    };
     if pair.geoms.iter().any(is_empty) {
         return f64::from(f32::MIN);
     }
     let radius = |g: u32| m.params.geom_rbound[g as usize];
-    let (_, range) = contact_range::<f64>(m, &m.params, pair);
     let radii = radius(pair.geoms[0]) + radius(pair.geoms[1]);
     (radii + range) * allowance::<S>().to_f64()
+}
+
+/// Pairs that collide, and behind them those whose distance is measured.
+fn all_pairs(candidates: &[Candidate], measured: &[Measured]) -> Vec<Candidate> {
+    let measured = measured.iter().map(|m| m.pair);
+    candidates.iter().copied().chain(measured).collect()
 }
 
 impl Tables {
@@ -87,18 +95,24 @@ impl Tables {
             self.constant(name, code);
         }
         self.constant("METHODS", METHODS.len());
-        let geoms = || candidates.iter().flat_map(|c| c.geoms);
+        let measured = measured(m);
+        let all = all_pairs(candidates, &measured);
+        let geoms = || all.iter().flat_map(|c| c.geoms);
         let dim = |c: &Candidate| contact_params::<f64>(m, &m.params, c).dim;
         self.count("NPAIR", candidates.len());
-        capacity.pairs = candidates.len();
+        self.count("NMEASURED", measured.len());
+        let turned = measured.iter().map(|m| usize::from(m.turned));
+        self.words("MEASURED_TURNED", turned);
+        capacity.pairs = all.len();
+        capacity.measured = measured.len();
         capacity.threads = (candidates.len() / PAIRS_OF_A_THREAD).clamp(1, MOST_THREADS);
         self.words("PAIR_GEOM", geoms().map(|g| g as usize));
         self.words("PAIR_BODY", geoms().map(|g| m.geoms[g as usize].body));
         let method = |c: &Candidate| method_of_pair(c.kinds).unwrap_or(0);
-        self.words("PAIR_METHOD", candidates.iter().map(method));
-        let general = candidates.iter().any(|c| may_be_general(c.kinds));
+        self.words("PAIR_METHOD", all.iter().map(method));
+        let general = all.iter().any(|c| may_be_general(c.kinds));
         for (code, name) in METHODS.iter().enumerate() {
-            let used = candidates.iter().any(|c| method(c) == code);
+            let used = all.iter().any(|c| method(c) == code);
             self.flag(
                 &format!("ANY_{name}"),
                 used || (general && *name == "CONVEX"),
@@ -108,10 +122,9 @@ impl Tables {
             let [a, b] = c.kinds;
             !s.flags.multiccd && multiccd_matters(a, b)
         };
-        self.words(
-            "PAIR_DEEPEST",
-            candidates.iter().map(|c| usize::from(deepest(c))),
-        );
+        let deepest = candidates.iter().map(|c| usize::from(deepest(c)));
+        let of_measured = measured.iter().map(|_| 1);
+        self.words("PAIR_DEEPEST", deepest.chain(of_measured));
         let vertices = if general || self.general_kernels {
             POLYTOPE_VERTICES
         } else {
@@ -137,8 +150,11 @@ impl Tables {
         self.constant("PATCH_LIST_POINTS", PATCH_LIST_POINTS);
         self.words("PAIR_DIM", candidates.iter().map(dim));
         let range = |c: &Candidate| contact_range::<f64>(m, &m.params, c).1;
-        self.numbers("PAIR_RANGE", candidates.iter().map(range));
-        self.numbers("PAIR_REACH", candidates.iter().map(|c| reach::<S>(m, c)));
+        let ranges = candidates.iter().map(range);
+        let ranges = Vec::from_iter(ranges.chain(measured.iter().map(|m| m.cutoff)));
+        self.numbers("PAIR_RANGE", ranges.iter().copied());
+        let reaches = all.iter().zip(&ranges).map(|(c, &r)| reach::<S>(m, c, r));
+        self.numbers("PAIR_REACH", reaches);
         let rows = Vec::from_iter(candidates.iter().map(|c| parameters(m, c)));
         self.count("PAIR_PRM_SIZE", rows.first().map_or(0, Vec::len));
         self.numbers("PAIR_PRM", rows.into_iter().flatten());
@@ -153,6 +169,7 @@ impl Tables {
         capacity.blocks += capacity.contacts;
         capacity.rows += capacity.contacts * widest;
         self.count("MAX_CONTACTS", capacity.contacts);
+        self.count("THREAD_CONTACTS", capacity.contacts + capacity.measured);
         self.constant("CONTACT_SIZE", CONTACT_SIZE);
     }
 
@@ -177,6 +194,7 @@ impl Tables {
     /// which no environment has of its own, stand behind all parameters.
     pub(crate) fn shapes(&mut self, m: &Model, candidates: &[Candidate]) {
         use ShapeKind::{Box, Cylinder, Ellipsoid, HeightField, Mesh, Plane, Sphere};
+        let candidates = &all_pairs(candidates, &measured(m));
         let hull_corners = self.hulls(m, candidates);
         let general = || candidates.iter().filter(|c| may_be_general(c.kinds));
         let has = |kind: ShapeKind| general().any(|c| c.kinds.contains(&kind));

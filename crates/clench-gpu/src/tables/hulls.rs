@@ -86,7 +86,8 @@ impl Tables {
             if of_geom[g] != super::NONE as usize {
                 continue;
             }
-            match (geom.kind, m.hull(g)) {
+            let hull = geom.mesh.and_then(|mesh| m.meshes[mesh].any_hull());
+            match (geom.kind, hull) {
                 (ShapeKind::Mesh, Some(hull)) => {
                     let place = geom.mesh.and_then(|mesh| of_mesh[mesh]);
                     let place = place.unwrap_or_else(|| self.hull(hull));

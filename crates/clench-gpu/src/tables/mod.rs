@@ -5,6 +5,7 @@ mod actuators;
 mod bodies;
 mod constraints;
 mod contacts;
+mod distances;
 mod equalities;
 mod forces;
 mod hulls;
@@ -29,6 +30,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 pub(crate) const OWN_PARAMETERS: usize = 1;
 /// The word that tells how many environments there are. It is no constant, so that batches of all sizes share their kernels.
 pub(crate) const ENVS: usize = 2;
+/// The word that tells whether distances are measured: somebody asks for sensors.
+pub(crate) const MEASURES: usize = 3;
 /// What stands for a range without an end: a device may have no infinity.
 const ENDLESS: f64 = 3e38;
 
@@ -49,8 +52,10 @@ pub(crate) struct Tables {
 /// How large the constraints of an environment can become.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Capacity {
-    /// Pairs of geoms that may collide.
+    /// Pairs of geoms that may collide, and those whose distance is measured.
     pub pairs: usize,
+    /// Pairs whose distance is measured.
+    pub measured: usize,
     /// Threads of the narrow phase.
     pub threads: usize,
     /// Contacts in the pool.
@@ -92,6 +97,7 @@ impl Tables {
         tables.words("ZERO", [0]);
         tables.words("OWN_PARAMETERS", [0]);
         tables.words("ENVS", [0]);
+        tables.words("MEASURES", [0]);
         tables.bodies(model);
         tables.joints(model);
         tables.dofs(model);

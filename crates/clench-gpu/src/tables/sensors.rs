@@ -1,5 +1,6 @@
 //! Sensors: how each is read, of what, and within which cutoff; and the actuators of each tendon.
 
+use super::distances::{is_measured, pairs_of};
 use super::{NONE, Tables, starts};
 use clench_rigid::model::{
     ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, Model, Sensor,
@@ -24,7 +25,7 @@ const SENSOR_FIELDS: [&str; 12] = [
 /// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site.
 const SENSOR_PRM_SIZE: usize = 5;
 /// How a sensor is read.
-const WAYS: [&str; 8] = [
+const WAYS: [&str; 9] = [
     "OF_SCALAR",
     "OF_FRAME",
     "OF_SITE",
@@ -33,6 +34,7 @@ const WAYS: [&str; 8] = [
     "OF_NOTHING",
     "OF_ACTUATOR",
     "OF_CONTACTS",
+    "OF_DISTANCE",
 ];
 /// The words of a query for contacts, before its fields and the sides of each geom.
 const QUERY: [&str; 4] = [
@@ -101,6 +103,7 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
         },
         SensorTarget::Nothing if sensor.kind == Kind::User => (5, none, none),
         SensorTarget::Nothing => (0, none, none),
+        SensorTarget::Geoms(_) if is_measured(m, sensor) => (8, none, none),
         SensorTarget::Contacts(query) => (7, none, [4, query.site.unwrap_or(NONE as usize), 0]),
         _ => return None,
     })
@@ -155,8 +158,13 @@ impl Tables {
         let p = &m.params;
         let (mut words, mut numbers, mut queries) = (Vec::new(), Vec::new(), Vec::new());
         let readable = m.sensors.iter().filter_map(|s| Some((s, target(m, s)?)));
-        let mut count = 0;
-        for (sensor, (way, mut object, reference)) in readable {
+        let (mut count, mut measured) = (0, 0);
+        for (sensor, (way, mut object, mut reference)) in readable {
+            if let SensorTarget::Geoms(_) = &sensor.target {
+                object[1] = measured;
+                measured += pairs_of(m, sensor).len();
+                reference[1] = measured;
+            }
             if let SensorTarget::Contacts(of) = &sensor.target {
                 object[1] = queries.len();
                 queries.extend(query(m, of));
@@ -168,7 +176,8 @@ impl Tables {
                 SensorTarget::Element(site) if sensor.kind == SensorKind::Touch => Some(*site),
                 _ => None,
             };
-            let clips = sensor.cutoff > 0.0 && sensor.kind != SensorKind::Contact;
+            let unclipped = matches!(sensor.kind, SensorKind::Contact | SensorKind::FromTo);
+            let clips = sensor.cutoff > 0.0 && !unclipped;
             let clip = match sensor.data {
                 SensorData::Real if clips => 1,
                 SensorData::Positive if clips => 2,

@@ -119,6 +119,11 @@ fn those_of_what_presses_on_each_other() {
 }
 
 #[test]
+fn those_of_what_is_apart() {
+    agree(&own("apart"));
+}
+
+#[test]
 fn those_of_a_linkage() {
     agree(&own("linkage"));
 }

@@ -87,7 +87,7 @@ impl Mesh {
     }
 
     /// Its hull, whether it collides or not. `None` where it is flat.
-    pub(crate) fn any_hull(&self) -> Option<&Hull> {
+    pub fn any_hull(&self) -> Option<&Hull> {
         let make = || {
             let surface = convex_hull(&self.vertices, None).ok()?;
             Some(Hull::new(&surface, &self.vertices))

@@ -1,0 +1,57 @@
+//! Pairs of geoms whose distance a sensor measures. They stand behind the pairs that collide, touch as far apart as the sensor's cutoff,
+//! and have one contact each, the deepest.
+
+use crate::check::method_of_pair;
+use clench_collide::ShapeKind;
+use clench_rigid::contact::Candidate;
+use clench_rigid::model::{Model, Sensor, SensorTarget};
+
+/// A pair of geoms whose distance a sensor measures.
+pub(super) struct Measured {
+    /// The geoms.
+    pub pair: Candidate,
+    /// Whether the sensor's first geom is the second of the pair.
+    pub turned: bool,
+    /// How far apart they may be, m.
+    pub cutoff: f64,
+}
+
+/// The pairs of a sensor of distances, in its order; without those of shapes that have no distance.
+pub(super) fn pairs_of(m: &Model, sensor: &Sensor) -> Vec<Measured> {
+    let SensorTarget::Geoms([first, second]) = &sensor.target else {
+        return Vec::new();
+    };
+    let measured = |a: usize, b: usize| {
+        let turned = m.geoms[a].kind > m.geoms[b].kind;
+        let geoms = if turned { [b, a] } else { [a, b] };
+        Measured {
+            pair: Candidate {
+                geoms: geoms.map(|g| g as u32),
+                kinds: geoms.map(|g| m.geoms[g].kind),
+                pair: None,
+            },
+            turned,
+            cutoff: sensor.cutoff.max(0.0),
+        }
+    };
+    let pairs = first
+        .clone()
+        .flat_map(|a| second.clone().map(move |b| measured(a, b)));
+    let has_distance = |m: &Measured| method_of_pair(m.pair.kinds).is_some();
+    pairs.filter(has_distance).collect()
+}
+
+/// Those of all sensors, one after the other.
+pub(super) fn measured(m: &Model) -> Vec<Measured> {
+    let each = m.sensors.iter().filter(|s| is_measured(m, s));
+    each.flat_map(|s| pairs_of(m, s)).collect()
+}
+
+/// Whether a sensor is one of distances that a device measures: of no terrain, whose cells within a cutoff may be many.
+pub(super) fn is_measured(m: &Model, sensor: &Sensor) -> bool {
+    let SensorTarget::Geoms(sets) = &sensor.target else {
+        return false;
+    };
+    let mut geoms = sets.iter().cloned().flatten();
+    sensor.history.is_none() && geoms.all(|g| m.geoms[g].kind != ShapeKind::HeightField)
+}
