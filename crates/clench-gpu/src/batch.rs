@@ -9,7 +9,7 @@ use crate::kernels::{Memory, preface};
 use crate::pipelines::{Arrays, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::{SolverMemory, check_dofs};
-use crate::tables::{Capacity, ENVS, MEASURES, Tables};
+use crate::tables::{Capacity, ENVS, MEASURES, Tables, tells_late};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -171,6 +171,9 @@ impl<S: GpuReal> GpuBatch<S> {
             settings,
             model,
         };
+        if tells_late(&batch.model) {
+            batch.observe(true)?;
+        }
         batch.reset()?;
         Ok(batch)
     }

@@ -89,21 +89,21 @@ kernels! {
     /// Accelerations of bodies, forces between them and the energy, where somebody asks.
     BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
     /// What sensors measure, where somebody asks.
-    SENSORS = "sensors", Thread: "chains", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "sensors";
+    SENSORS = "sensors", Thread: "chains", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "late_sensor", "sensors";
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "euler";
+    EULER = "euler", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "gyroscopic", "implicit_fast";
     /// The same with Coriolis forces.
     IMPLICIT = "implicit", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "verdict", "plastic", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "coriolis", "lu", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "history_push", "outputs", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.

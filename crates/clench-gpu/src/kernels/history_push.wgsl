@@ -1,9 +1,30 @@
-// Keeps the controls of a step for those that they reach late. Sister of `history.rs` of clench-rigid.
+// Keeps the controls of a step for those that they reach late, and what sensors measured at its start for those that tell of it late. Sister of
+// `history.rs` of clench-rigid.
 
 // Moves `count` numbers of a buffer down by `by`.
 fn shift_down(first: u32, count: u32, by: u32) {
     for (var k = by; k < count; k++) {
         keep(first + k - by, given(first + k));
+    }
+}
+
+// Drops the oldest sample for one of the present; gives the place of its values.
+fn take_sample(h: u32) -> u32 {
+    let samples = words[h + 1u];
+    let width = words[h + 2u];
+    let times = HISTORY + words[h] + 1u;
+    let values = times + samples;
+    shift_down(times, samples, 1u);
+    keep(times + samples - 1u, 0.0);
+    shift_down(values, samples * width, width);
+    return values + (samples - 1u) * width;
+}
+
+// Lets a time step pass.
+fn age_samples(h: u32) {
+    let times = HISTORY + words[h] + 1u;
+    for (var k = 0u; k < words[h + 1u]; k++) {
+        keep(times + k, given(times + k) - TIMESTEP);
     }
 }
 
@@ -13,18 +34,29 @@ fn push_controls() {
         if (h == NONE) {
             continue;
         }
-        let samples = words[h + 1u];
-        let width = words[h + 2u];
-        let times = HISTORY + words[h] + 1u;
-        let values = times + samples;
-        shift_down(values, samples * width, width);
-        for (var part = 0u; part < width; part++) {
-            keep(values + (samples - 1u) * width + part, given(CTRL + words[ACTUATOR_CTRL + u] + part));
+        let sample = take_sample(h);
+        for (var part = 0u; part < words[h + 2u]; part++) {
+            keep(sample + part, given(CTRL + words[ACTUATOR_CTRL + u] + part));
         }
-        shift_down(times, samples, 1u);
-        keep(times + samples - 1u, 0.0);
-        for (var k = 0u; k < samples; k++) {
-            keep(times + k, given(times + k) - TIMESTEP);
+        age_samples(h);
+    }
+}
+
+fn push_measurements() {
+    for (var i = 0u; i < NSENSOR; i++) {
+        let s = SENSORS + SENSOR_SIZE * i;
+        let h = words[s + SENSOR_HISTORY];
+        if (h == NONE) {
+            continue;
         }
+        let period = parameter(SENSOR_PRM + SENSOR_PRM_SIZE * i + 6u);
+        if (is_due(h, period)) {
+            keep(HISTORY + words[h], given(HISTORY + words[h]) + max(period, 0.0));
+            let sample = take_sample(h);
+            for (var part = 0u; part < words[h + 2u]; part++) {
+                keep(sample + part, fetch(MEASURED_NOW + words[s + SENSOR_PLACE] + part));
+            }
+        }
+        age_samples(h);
     }
 }

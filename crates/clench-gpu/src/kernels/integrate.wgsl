@@ -97,6 +97,9 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
         if (ANY_DELAY) {
             push_controls();
         }
+        if (ANY_LATE) {
+            push_measurements();
+        }
         reports[STEPS * envs + env] += 1u;
         return;
     }

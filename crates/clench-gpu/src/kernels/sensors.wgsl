@@ -244,7 +244,7 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
             return select(f32(0.0), f32(1.0), inside);
         }
         case SENSE_CLOCK: {
-            return given(START_TIME) + f32(reports[STEPS * envs + env]) * TIMESTEP;
+            return clock();
         }
         case SENSE_E_POTENTIAL: {
             return fetch(MECHANICAL_ENERGY);
@@ -351,6 +351,9 @@ fn sensors(@builtin(global_invocation_id) id: vec3u) {
         for (var k = 0u; k < words[s + SENSOR_DIM] && clip != 0u; k++) {
             let least = select(-3e38, -parameter(prm), clip == 1u);
             put(out + k, max(min(fetch(out + k), parameter(prm)), least));
+        }
+        if (ANY_LATE && words[s + SENSOR_HISTORY] != NONE) {
+            tell_late(s, prm, out);
         }
     }
 }

@@ -2,8 +2,7 @@
 
 use super::{ENDLESS, NONE, Tables, starts};
 use clench_rigid::model::{
-    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Interpolation, JointKind,
-    Model, Transmission,
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Transmission,
 };
 use std::f64::consts::TAU;
 
@@ -87,7 +86,7 @@ impl Tables {
         self.transmissions(m);
         self.activations(m);
         self.controllers(m);
-        self.histories(m);
+        self.delays(m);
         self.gains(m);
         self.actuator_ranges(m);
     }
@@ -191,33 +190,12 @@ impl Tables {
         self.numbers("CONTROLLER_PRM", all.iter().flat_map(prm).flatten());
     }
 
-    /// Buffers of past controls: the first number, samples, numbers of each, and how they are read between.
-    fn histories(&mut self, m: &Model) {
-        for (code, name) in ["HOLD", "LINEAR", "CUBIC"].into_iter().enumerate() {
-            self.constant(name, code);
-        }
+    /// Buffers of past controls, and how late they reach the actuators.
+    fn delays(&mut self, m: &Model) {
         let delayed = |a: &Actuator| a.history.is_some();
         self.flag("ANY_DELAY", m.actuators.iter().any(delayed));
-        let start = self.words.len();
-        let buffers = m.actuators.iter().filter_map(|a| a.history.as_ref());
-        let buffer = |h: &History| {
-            let between = match h.interpolation {
-                Interpolation::Hold => 0,
-                Interpolation::Linear => 1,
-                Interpolation::Cubic => 2,
-            };
-            [h.start, h.samples, h.width, between]
-        };
-        self.words("HISTORIES", buffers.flat_map(buffer));
-        let mut next = start;
-        let mut place = |a: &Actuator| {
-            if !delayed(a) {
-                return NONE as usize;
-            }
-            next += 4;
-            next - 4
-        };
-        let places = Vec::from_iter(m.actuators.iter().map(&mut place));
+        let buffers = m.actuators.iter().map(|a| a.history.as_ref());
+        let places = self.histories("ACTUATOR_HISTORIES", buffers);
         self.words("ACTUATOR_HISTORY", places);
         let delays = m.params.actuator_delay.iter().copied();
         self.numbers("ACTUATOR_DELAY", delays);

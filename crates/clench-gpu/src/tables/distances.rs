@@ -53,5 +53,5 @@ pub(super) fn is_measured(m: &Model, sensor: &Sensor) -> bool {
         return false;
     };
     let mut geoms = sets.iter().cloned().flatten();
-    sensor.history.is_none() && geoms.all(|g| m.geoms[g].kind != ShapeKind::HeightField)
+    geoms.all(|g| m.geoms[g].kind != ShapeKind::HeightField)
 }

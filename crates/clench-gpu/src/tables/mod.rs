@@ -8,13 +8,14 @@ mod contacts;
 mod distances;
 mod equalities;
 mod forces;
+mod histories;
 mod hulls;
 mod sensors;
 mod tendons;
 
 pub(crate) use constraints::BLOCK_SIZE;
 pub(crate) use contacts::CONTACT_SIZE;
-pub(crate) use sensors::unread;
+pub(crate) use sensors::{tells_late, unread};
 
 use crate::layout::Layout;
 use clench_math::Scalar;
@@ -104,6 +105,7 @@ impl Tables {
         tables.geoms(model);
         tables.tendons(model);
         tables.forces(model);
+        tables.interpolations();
         tables.actuators(model);
         tables.sensors(model);
         tables.settings(model, settings);

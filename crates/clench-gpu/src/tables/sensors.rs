@@ -8,7 +8,7 @@ use clench_rigid::model::{
 };
 
 /// The words of a sensor.
-const SENSOR_FIELDS: [&str; 12] = [
+const SENSOR_FIELDS: [&str; 13] = [
     "SENSOR_WAY",
     "SENSOR_KIND",
     "SENSOR_PLACE",
@@ -21,9 +21,10 @@ const SENSOR_FIELDS: [&str; 12] = [
     "SENSOR_REFERENCE",
     "SENSOR_REFERENCE_BODY",
     "SENSOR_SHAPE",
+    "SENSOR_HISTORY",
 ];
-/// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site.
-const SENSOR_PRM_SIZE: usize = 5;
+/// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site, its delay and its period.
+const SENSOR_PRM_SIZE: usize = 7;
 /// How a sensor is read.
 const WAYS: [&str; 9] = [
     "OF_SCALAR",
@@ -70,9 +71,6 @@ fn frame(m: &Model, object: FrameObject) -> Option<[usize; 3]> {
 fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])> {
     use SensorKind as Kind;
     let none = [0; 3];
-    if sensor.history.is_some() {
-        return None;
-    }
     Some(match &sensor.target {
         SensorTarget::Frame { object, reference } => {
             let reference = reference.map_or(Some(none), |other| frame(m, other))?;
@@ -131,6 +129,12 @@ fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
     row
 }
 
+/// Whether a device keeps what sensors measured for those that tell of it late.
+pub(crate) fn tells_late(m: &Model) -> bool {
+    let mut late = m.sensors.iter().filter(|sensor| sensor.history.is_some());
+    late.any(|sensor| target(m, sensor).is_some())
+}
+
 /// The first sensor that a device cannot read yet.
 pub(crate) fn unread(m: &Model) -> Option<&Sensor> {
     m.sensors.iter().find(|sensor| target(m, sensor).is_none())
@@ -157,9 +161,13 @@ impl Tables {
         self.constant("SENSOR_PRM_SIZE", SENSOR_PRM_SIZE);
         let p = &m.params;
         let (mut words, mut numbers, mut queries) = (Vec::new(), Vec::new(), Vec::new());
-        let readable = m.sensors.iter().filter_map(|s| Some((s, target(m, s)?)));
+        let read = |(k, s)| Some((k, s, target(m, s)?));
+        let readable = Vec::from_iter(m.sensors.iter().enumerate().filter_map(read));
+        self.flag("ANY_LATE", tells_late(m));
+        let buffers = readable.iter().map(|(_, s, _)| s.history.as_ref());
+        let mut buffers = self.histories("SENSOR_HISTORIES", buffers).into_iter();
         let (mut count, mut measured) = (0, 0);
-        for (sensor, (way, mut object, mut reference)) in readable {
+        for (k, sensor, (way, mut object, mut reference)) in readable {
             if let SensorTarget::Geoms(_) = &sensor.target {
                 object[1] = measured;
                 measured += pairs_of(m, sensor).len();
@@ -187,6 +195,7 @@ impl Tables {
             let (place, dim) = (sensor.numbers.start, sensor.numbers.len());
             words.extend([way, sensor.kind as usize, place, dim, clip]);
             words.extend(object.into_iter().chain(reference).chain([shape]));
+            words.extend(buffers.next());
             let margin = match sensor.kind {
                 SensorKind::JointLimitPos => p.jnt_margin[element],
                 SensorKind::TendonLimitPos => p.tendon_margin[element - m.joints.len()],
@@ -194,6 +203,7 @@ impl Tables {
             };
             let size = site.map_or([0.0; 3], |site| p.site_size[site].to_array());
             numbers.extend([sensor.cutoff, margin].into_iter().chain(size));
+            numbers.extend([p.sensor_delay[k], p.sensor_interval[k]]);
             count += 1;
         }
         self.count("NSENSOR", count);

@@ -291,6 +291,8 @@ fn histories_and_springs_that_yield_are_those_of_the_processor() {
     };
     let mut processor = Batch::with_options(model.clone(), COUNT, BatchOptions::default());
     let processor = processor.as_mut().expect("a good model");
+    device.record(&["sensordata"]).expect("it reads them all");
+    processor.record(&["sensordata"]).expect("so does this");
     let start = device.save().expect("rows");
     processor.restore(&start).expect("the same model");
     let (steps, nu) = (30, model.nu());
@@ -337,6 +339,20 @@ fn histories_and_springs_that_yield_are_those_of_the_processor() {
     device.restore(&start).expect("the same model");
     run(&mut device);
     assert_bits(device.state.history.as_slice(), &before, "history");
+    // What sensors tell late, by steps that are told the time and by many at once.
+    for steps in [0, 20] {
+        device.step_n(steps).expect("good states");
+        processor.step_n(steps).expect("good states");
+        let [found, expected] = [&device, processor]
+            .map(|batch| batch.output("sensordata").expect("recorded").as_slice());
+        let gap_here = gap(found, expected);
+        assert!(gap_here < 2e-3, "sensordata: {gap_here}");
+        let gap_here = gap(
+            device.state.history.as_slice(),
+            processor.state.history.as_slice(),
+        );
+        assert!(gap_here < 2e-3, "history: {gap_here}");
+    }
 }
 
 #[test]

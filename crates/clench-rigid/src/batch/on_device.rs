@@ -87,7 +87,10 @@ impl<S: Precision> Batch<S> {
         let may_restart = self.settings.autoreset && call.pass == Pass::Step;
         self.upload(mirror, call.pass, may_restart, &mut summary)?;
         let held = matches!(call.controls, Controls::Held);
-        let alike = held && trace.is_empty() && !may_restart;
+        // Rounding of the time decides when a sensor with a period is due: every step is told its own.
+        let periods = &self.model.params.sensor_interval;
+        let timed = periods.iter().any(|&period| period > 0.0);
+        let alike = held && trace.is_empty() && !may_restart && !timed;
         let mut step = call.range.start;
         while step < call.range.end
             && (mirror.running.contains(&true) || mirror.restarted.contains(&true))
