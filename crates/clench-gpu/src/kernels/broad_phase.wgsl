@@ -2,7 +2,9 @@
 // behind them those whose distance somebody asks for.
 
 // Whether the bounding spheres of a pair meet; a plane has none.
-fn may_touch(pair: u32, a: u32, b: u32) -> bool {
+fn may_touch(pair: u32) -> bool {
+    let a = words[PAIR_GEOM + 2u * pair];
+    let b = words[PAIR_GEOM + 2u * pair + 1u];
     let reach = parameter(PAIR_REACH + pair);
     let offset = fetch3(GEOM_XPOS + 3u * b) - fetch3(GEOM_XPOS + 3u * a);
     if (words[GEOM_KIND + a] == PLANE) {
@@ -11,6 +13,13 @@ fn may_touch(pair: u32, a: u32, b: u32) -> bool {
         return dot(normal, offset) <= reach;
     }
     return dot(offset, offset) <= reach * max(reach, 0.0);
+}
+
+// Which of four pairs from one on are near: a card waits for all that it has to know of them at once. Those beyond the last are not.
+fn near_of_four(pair: u32, end: u32) -> vec4<bool> {
+    let last = end - 1u;
+    let near = vec4<bool>(may_touch(pair), may_touch(min(pair + 1u, last)), may_touch(min(pair + 2u, last)), may_touch(min(pair + 3u, last)));
+    return near & (vec4u(pair, pair + 1u, pair + 2u, pair + 3u) < vec4u(end));
 }
 
 // One thread an environment: lists its near pairs in canonical order, and tells in which order their methods come.
@@ -23,11 +32,14 @@ fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
     var next: array<u32, METHODS>;
     var count = 0u;
     let pairs = NPAIR + NMEASURED * words[MEASURES];
-    for (var pair = 0u; pair < pairs; pair++) {
-        if (may_touch(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u])) {
-            reports[(NEAR_PAIRS + count) * envs + env] = pair;
-            count++;
-            next[words[PAIR_METHOD + pair]]++;
+    for (var pair = 0u; pair < pairs; pair += 4u) {
+        let near = near_of_four(pair, pairs);
+        for (var k = 0u; k < 4u; k++) {
+            if (near[k]) {
+                reports[(NEAR_PAIRS + count) * envs + env] = pair + k;
+                count++;
+                next[words[PAIR_METHOD + pair + k]]++;
+            }
         }
     }
     reports[NNEAR * envs + env] = count;
