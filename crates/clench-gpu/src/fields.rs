@@ -235,10 +235,10 @@ fields! {
     restart: 1;
     /// Steps since the last reset.
     steps: 1;
-    /// Near pairs, in canonical order, and then the contacts of each.
+    /// How many pairs are near, and which, in canonical order; then, in the place of each, its contacts.
     nnear: 1;
     near_pairs: c.pairs;
-    /// Where in that list near pairs are, method by method.
+    /// Where in that list pairs are, method by method.
     near_by_method: c.pairs;
     /// What went wrong in each thread of the narrow phase.
     thread_fault: c.threads;
