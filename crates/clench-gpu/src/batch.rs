@@ -26,7 +26,7 @@ const STEPS_AT_A_TIME: usize = 16;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GpuOptions {
     /// Options that go before those of the model. `max_contacts` is the size of the contact pool of an environment; by default as
-    /// many as its pairs can have, but no more than 48.
+    /// many as its pairs can have, but no more than 48 to 128, the fewer the more degrees of freedom there are.
     pub options: RigidOptions,
     /// A part of the name of the device to use; by default the first of [`devices`](crate::devices).
     pub device: Option<String>,

@@ -11,11 +11,14 @@ use clench_rigid::options::MaxContacts;
 use clench_rigid::settings::StepSettings;
 use std::f64::consts::PI;
 
-/// The pool of an environment, where the options leave it open and the pairs could fill a larger one. Contacts beyond are a fault,
-/// never left out in silence.
-const POOL: usize = 48;
-/// Pairs of a model for each thread of the narrow phase: most of them are far apart.
-const PAIRS_OF_A_THREAD: usize = 32;
+/// The pool of an environment, where the options leave it open and the pairs could fill a larger one: as many contacts as these numbers are
+/// rows of J for, three times over, within bounds. Contacts beyond are a fault, never left out in silence.
+const POOL_NUMBERS: usize = 12_000;
+/// Its bounds.
+const POOL: [usize; 2] = [48, 128];
+/// Pairs of a model for each thread of the narrow phase, of which most are far apart; and where some are of any convex shapes, of which
+/// one takes as long as many others.
+const PAIRS_OF_A_THREAD: [usize; 2] = [32, 8];
 /// Threads of the narrow phase, at most: each has memory for all contacts of the environment.
 const MOST_THREADS: usize = 8;
 /// Vertices of the polytope of overlapping shapes. Single precision has no use for the 128 that the processor has room for.
@@ -105,12 +108,13 @@ impl Tables {
         self.words("MEASURED_TURNED", turned);
         capacity.pairs = all.len();
         capacity.measured = measured.len();
-        capacity.threads = (candidates.len() / PAIRS_OF_A_THREAD).clamp(1, MOST_THREADS);
         self.words("PAIR_GEOM", geoms().map(|g| g as usize));
         self.words("PAIR_BODY", geoms().map(|g| m.geoms[g as usize].body));
         let method = |c: &Candidate| method_of_pair(c.kinds).unwrap_or(0);
         self.words("PAIR_METHOD", all.iter().map(method));
         let general = all.iter().any(|c| may_be_general(c.kinds));
+        let of_a_thread = PAIRS_OF_A_THREAD[usize::from(general)];
+        capacity.threads = (all.len() / of_a_thread).clamp(1, MOST_THREADS);
         for (code, name) in METHODS.iter().enumerate() {
             let used = all.iter().any(|c| method(c) == code);
             self.flag(
@@ -160,12 +164,15 @@ impl Tables {
         self.numbers("PAIR_PRM", rows.into_iter().flatten());
         self.surfaces(m, candidates, capacity);
 
+        let widest = candidates.iter().map(dim).max().unwrap_or(0);
         let most = candidates.iter().map(|c| points_of_pair(c.kinds)).sum();
         capacity.contacts = match s.max_contacts {
             MaxContacts::Limit(limit) => limit.min(most),
-            MaxContacts::Auto => POOL.min(most),
+            MaxContacts::Auto => {
+                let pool = POOL_NUMBERS / (3 * widest * m.nv).max(1);
+                pool.clamp(POOL[0], POOL[1]).min(most)
+            }
         };
-        let widest = candidates.iter().map(dim).max().unwrap_or(0);
         capacity.blocks += capacity.contacts;
         capacity.rows += capacity.contacts * widest;
         self.count("MAX_CONTACTS", capacity.contacts);
