@@ -1,9 +1,10 @@
 // Actuator forces and the dof forces they make. Sister of `dynamics/actuation.rs`. A range that is not limited is one of all numbers.
 
+// Zero where there is no actuation.
 fn actuator_velocities() {
     for (var o = 0u; o < NOUT; o++) {
         var velocity: f32 = 0.0;
-        for (var k = words[ACTUATOR_ROW + o]; k < words[ACTUATOR_ROW + o + 1u]; k++) {
+        for (var k = words[ACTUATOR_ROW + o]; ACTUATION && k < words[ACTUATOR_ROW + o + 1u]; k++) {
             velocity += fetch(ACTUATOR_MOMENT + k) * given(QVEL + words[ACTUATOR_DOF + k]);
         }
         put(ACTUATOR_VELOCITY + o, velocity);

@@ -339,7 +339,7 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
 
 @compute @workgroup_size(GROUP)
 fn sensors(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
+    if (!SENSING || !begin(id.x)) {
         return;
     }
     for (var i = 0u; i < bound(NSENSOR); i++) {

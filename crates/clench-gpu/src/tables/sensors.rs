@@ -163,6 +163,7 @@ impl Tables {
         let (mut words, mut numbers, mut queries) = (Vec::new(), Vec::new(), Vec::new());
         let read = |(k, s)| Some((k, s, target(m, s)?));
         let readable = Vec::from_iter(m.sensors.iter().enumerate().filter_map(read));
+        self.flag("SENSING", m.flags.sensor);
         self.flag("ANY_LATE", tells_late(m));
         let buffers = readable.iter().map(|(_, s, _)| s.history.as_ref());
         let mut buffers = self.histories("SENSOR_HISTORIES", buffers).into_iter();
