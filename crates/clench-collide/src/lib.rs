@@ -44,7 +44,7 @@ pub use hull::{Hull, HullError, HullSurface, convex_hull};
 pub use narrow::{SeparatingAxis, collide, collide_again, multiccd_matters, supported};
 pub use pose::Pose;
 pub use protrusion::{Ascent, protrusion, protrusion_of_points};
-pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, UnitRay, ray};
+pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, TriangleNode, UnitRay, ray};
 pub use shape::{
     Capsule, Cuboid, Cylinder, Ellipsoid, Mesh, Plane, Shape, ShapeKind, Sphere, Terrain,
 };

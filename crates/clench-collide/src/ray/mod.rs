@@ -11,7 +11,7 @@ mod unit_ray;
 
 use line::Line;
 pub use line::{Hit, Ray};
-pub use triangles::{TriangleMesh, TriangleMeshError};
+pub use triangles::{TriangleMesh, TriangleMeshError, TriangleNode};
 pub use unit_ray::UnitRay;
 
 use crate::shape::Solid;

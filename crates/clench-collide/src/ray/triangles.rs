@@ -19,7 +19,7 @@ pub struct TriangleMesh {
     /// Corners, in the order of the leaves.
     faces: Vec<[u32; 3]>,
     /// The first is the root; both children of a node are next to each other.
-    nodes: Vec<Node>,
+    nodes: Vec<TriangleNode>,
 }
 
 /// Triangles that no mesh can have.
@@ -36,14 +36,17 @@ pub enum TriangleMeshError {
     TooMany(usize),
 }
 
+/// A box of the tree over the triangles of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Node {
-    low: Vec3<f64>,
-    high: Vec3<f64>,
-    /// The first face, or the first child.
-    first: u32,
+pub struct TriangleNode {
+    /// The least coordinates of its corners, m.
+    pub low: Vec3<f64>,
+    /// The largest, m.
+    pub high: Vec3<f64>,
+    /// The first face, or the first of two children that are next to each other.
+    pub first: u32,
     /// Faces of a leaf; 0 for a node with children.
-    count: u32,
+    pub count: u32,
 }
 
 impl TriangleMesh {
@@ -83,6 +86,16 @@ impl TriangleMesh {
     /// Corners of the triangles, m.
     pub fn vertices(&self) -> &[Vec3<f64>] {
         &self.vertices
+    }
+
+    /// Corners of each triangle, as numbers of vertices, in the order of the leaves.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The tree of boxes, the first of which is its root; none where there are no triangles.
+    pub fn nodes(&self) -> &[TriangleNode] {
+        &self.nodes
     }
 
     /// Where a ray hits a triangle first, from either side. The normal is on the side from which its corners are
@@ -137,8 +150,8 @@ impl TriangleMesh {
 }
 
 /// A leaf of some faces, the first of which has a number.
-fn bounds(vertices: &[Vec3<f64>], faces: &[[u32; 3]], first: usize) -> Node {
-    let mut node = Node {
+fn bounds(vertices: &[Vec3<f64>], faces: &[[u32; 3]], first: usize) -> TriangleNode {
+    let mut node = TriangleNode {
         low: Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
         high: -Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
         first: first as u32,
@@ -155,7 +168,12 @@ fn bounds(vertices: &[Vec3<f64>], faces: &[[u32; 3]], first: usize) -> Node {
 }
 
 /// Makes two children of a leaf that is too large: halves of its faces along its longest side.
-fn split(vertices: &[Vec3<f64>], faces: &mut [[u32; 3]], nodes: &mut Vec<Node>, index: usize) {
+fn split(
+    vertices: &[Vec3<f64>],
+    faces: &mut [[u32; 3]],
+    nodes: &mut Vec<TriangleNode>,
+    index: usize,
+) {
     let node = nodes[index];
     let (first, count) = (node.first as usize, node.count as usize);
     if count <= LEAF {
@@ -211,7 +229,7 @@ impl Shear {
     }
 
     /// Where the ray enters a node's box, if it does before `limit`.
-    fn enters(&self, node: &Node, limit: f64) -> Option<f64> {
+    fn enters(&self, node: &TriangleNode, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);
         for axis in 0..3 {
             let (inverse, origin) = (self.inverse[axis], self.origin[axis]);
