@@ -89,7 +89,7 @@ kernels! {
     /// Accelerations of bodies, forces between them and the energy, where somebody asks.
     BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
     /// What sensors measure, where somebody asks.
-    SENSORS = "sensors", Thread: "chains", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "late_sensor", "sensors";
+    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "late_sensor", "sensors";
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.
