@@ -73,7 +73,7 @@ kernels! {
     /// Which pairs are near.
     BROAD_PHASE = "broad_phase", Thread: "broad_phase";
     /// Where near pairs touch.
-    NARROW_PHASE = "narrow_phase", Threads: "near", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
+    NARROW_PHASE = "narrow_phase", Threads: "near", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
     /// Contacts.
     CONTACTS = "contacts", Thread: "near", "contacts";

@@ -139,7 +139,7 @@ impl Tables {
     }
 
     /// Adds a height field: rows, columns, and where its sizes are, behind which its heights follow, m.
-    fn height_field(&mut self, field: &HeightField) -> usize {
+    pub(super) fn height_field(&mut self, field: &HeightField) -> usize {
         let [x, y, elevation, base] = field.size();
         let (rows, columns) = (field.rows(), field.columns());
         let step = |half: f64, count: usize| 2.0 * half / (count - 1) as f64;
@@ -158,13 +158,15 @@ impl Tables {
         place
     }
 
-    fn add_words(&mut self, values: impl IntoIterator<Item = usize>) -> usize {
+    /// Adds words; where they are.
+    pub(super) fn add_words(&mut self, values: impl IntoIterator<Item = usize>) -> usize {
         let place = self.words.len();
         self.words.extend(values.into_iter().map(|v| v as u32));
         place
     }
 
-    fn add_numbers(&mut self, values: impl IntoIterator<Item = f64>) -> usize {
+    /// Adds numbers; where they are.
+    pub(super) fn add_numbers(&mut self, values: impl IntoIterator<Item = f64>) -> usize {
         let place = self.numbers.len();
         self.numbers.extend(values);
         place

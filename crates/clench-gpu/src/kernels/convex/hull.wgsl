@@ -1,15 +1,6 @@
 // Hulls of meshes: the furthest vertex, and what of a hull lies against a plane. Sister of `clench-collide/src/hull/mod.rs` and of
 // `clench-collide/src/shape/mesh.rs`. A hull is a place in the words, where its parts are told.
 
-// Numbers that all environments share.
-fn shape3(place: u32) -> vec3f {
-    return vec3f(numbers[place], numbers[place + 1u], numbers[place + 2u]);
-}
-
-fn shape4(place: u32) -> vec4f {
-    return vec4f(shape3(place), numbers[place + 3u]);
-}
-
 // A hull's vertex.
 fn vertex_of_hull(hull: u32, vertex: u32) -> vec3f {
     return shape3(words[hull + HULL_VERTICES] + 3u * vertex);

@@ -2,19 +2,6 @@
 // edge or a corner: whether it is a normal of the field there. Sister of `clench-collide/src/narrow/convex/terrain/grid.rs` and
 // `voronoi.rs`.
 
-// Row and column of a grid point are told as a vector; those beyond the border do not exist.
-struct TerrainGrid {
-    rows: i32,
-    columns: i32,
-    // Where the heights are.
-    heights: u32,
-    half: vec2f,
-    // Lengths of a cell along x and y, m.
-    step: vec2f,
-    elevation: f32,
-    base: f32,
-}
-
 // A corner, an edge or the face of a triangle, and the gap along a normal there.
 struct TerrainFeature {
     gap: Gap,
@@ -23,40 +10,12 @@ struct TerrainFeature {
     touches: vec3<bool>,
 }
 
-var<private> grid: TerrainGrid;
 // Of the present triangle its nodes, its corners, counter-clockwise seen from above, in a frame that begins at the first; where that is in
 // the field's frame, and the unit normal.
 var<private> triangle_nodes: array<vec2i, 3>;
 var<private> triangle: array<vec3f, 3>;
 var<private> triangle_origin: vec3f;
 var<private> triangle_normal: vec3f;
-
-fn begin_grid(geom: u32) {
-    let place = words[GEOM_HULL + geom];
-    let sizes = words[place + 2u];
-    grid.rows = i32(words[place]);
-    grid.columns = i32(words[place + 1u]);
-    grid.half = vec2f(numbers[sizes], numbers[sizes + 1u]);
-    grid.step = vec2f(numbers[sizes + 2u], numbers[sizes + 3u]);
-    grid.elevation = numbers[sizes + 4u];
-    grid.base = numbers[sizes + 5u];
-    grid.heights = sizes + 6u;
-}
-
-fn height_at(node: vec2i) -> f32 {
-    return numbers[grid.heights + u32(node.x * grid.columns + node.y)];
-}
-
-// The cell at a point, or the nearest one.
-fn cell_at(x: f32, y: f32) -> vec2i {
-    let cell = floor((vec2f(y, x) + grid.half.yx) / grid.step.yx);
-    return vec2i(clamp(cell, vec2f(), vec2f(f32(grid.rows - 2), f32(grid.columns - 2))));
-}
-
-// Where the lowest corner of a cell is along x and y, m.
-fn corner_of_cell(cell: vec2i) -> vec2f {
-    return vec2f(f32(cell.y), f32(cell.x)) * grid.step - grid.half;
-}
 
 // One of the triangles of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the highest.
 fn begin_triangle(cell: vec2i, half: u32) {

@@ -54,7 +54,7 @@ var<private> added_least: f32;
 
 // Begins with a body about `offset` in the field's frame.
 fn begin_terrain(geom: u32, body: Body, turn: mat3x3f, offset: vec3f, range: f32) {
-    begin_grid(geom);
+    begin_grid(words[GEOM_HULL + geom]);
     terrain_size = body.reach;
     terrain_tolerance = max((body.reach + length(offset)) * EPSILON * 64.0, body.reach * 1e-9);
     terrain_offset = offset;
