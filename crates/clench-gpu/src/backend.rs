@@ -156,6 +156,10 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
             use Output::{cacc, cfrc_ext, cfrc_int, contact_force};
             matches!(output, cacc | cfrc_int | cfrc_ext | contact_force)
         };
+        let of_cameras = |output: &Output| matches!(output, Output::cam_xpos | Output::cam_xmat);
+        if sensors || outputs.iter().any(of_cameras) {
+            self.place_cameras()?;
+        }
         if sensors || outputs.iter().any(of_bodies) {
             self.observe(sensors)?;
         }

@@ -212,7 +212,7 @@ impl<S: GpuReal> GpuBatch<S> {
         self.submit(|batch, encoder| {
             batch.clear_trouble(encoder);
             let pipelines = &batch.pipelines;
-            let observed = pipelines.body_forces.iter().chain(&pipelines.sensors);
+            let observed = pipelines.observed().chain(&pipelines.sensors);
             let forward = pipelines.forward.iter().chain(observed);
             batch.encode(encoder, forward.chain([&pipelines.verdict]));
         })
@@ -292,8 +292,8 @@ impl<S: GpuReal> GpuBatch<S> {
             // Sensors measure at the start of a step; all else is as the last forward pass leaves it.
             let measured = pipelines.sensors.iter().filter(|_| stage == 0);
             let shown = stage == last || measured.clone().count() > 0;
-            let bodies = pipelines.body_forces.iter().filter(|_| shown);
-            let forward = pipelines.forward.iter().chain(bodies).chain(measured);
+            let observed = pipelines.observed().filter(|_| shown).chain(measured);
+            let forward = pipelines.forward.iter().chain(observed);
             self.encode(encoder, forward.chain([advance]));
         }
     }
@@ -309,6 +309,17 @@ impl<S: GpuReal> GpuBatch<S> {
         }
         self.pipelines
             .observe::<S>(&self.device, self.count, sensors)
+    }
+
+    /// Places cameras in every step from now on.
+    ///
+    /// # Errors
+    /// That the device or its driver refuses the kernel.
+    pub(crate) fn place_cameras(&mut self) -> Result<(), GpuError> {
+        if self.model.cameras.is_empty() {
+            return Ok(());
+        }
+        self.pipelines.place_cameras::<S>(&self.device, self.count)
     }
 
     pub(crate) fn check_env(&self, env: usize) -> Result<(), GpuError> {

@@ -92,6 +92,8 @@ fields! {
     geom_xmat: 9 * m.geoms.len();
     site_xpos: 3 * m.sites.len();
     site_xmat: 9 * m.sites.len();
+    cam_xpos: 3 * m.cameras.len();
+    cam_xmat: 9 * m.cameras.len();
     subtree_com: 3 * m.nbody();
     cinert: 10 * m.nbody();
     crb: 10 * m.nbody();

@@ -86,10 +86,12 @@ kernels! {
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "cg", "descent";
+    /// Where cameras are, where somebody asks.
+    CAMERAS = "cameras", Thread: "cameras";
     /// Accelerations of bodies, forces between them and the energy, where somebody asks.
     BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
     /// What sensors measure, where somebody asks.
-    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "late_sensor", "sensors";
+    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "late_sensor", "optics", "sensors";
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.

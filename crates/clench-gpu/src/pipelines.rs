@@ -19,8 +19,10 @@ pub(crate) struct Pipeline {
 pub(crate) struct Pipelines {
     /// What stands before the texts.
     preface: Preface,
+    /// Where cameras are, once somebody asked.
+    cameras: Option<Pipeline>,
     /// Accelerations of bodies and forces between them, once somebody asked.
-    pub body_forces: Option<Pipeline>,
+    body_forces: Option<Pipeline>,
     /// What sensors measure, once somebody asked.
     pub sensors: Option<Pipeline>,
     pub restart: Pipeline,
@@ -111,6 +113,7 @@ impl Pipelines {
         let forward = forward.iter().map(compile);
         let forward = forward.collect::<Result<_, _>>()?;
         Ok(Pipelines {
+            cameras: None,
             body_forces: None,
             sensors: None,
             restart: compile(&kernels::RESTART)?,
@@ -119,6 +122,11 @@ impl Pipelines {
             advance,
             preface,
         })
+    }
+
+    /// What outputs need besides, but for those of sensors.
+    pub(crate) fn observed(&self) -> impl Iterator<Item = &Pipeline> {
+        self.cameras.iter().chain(&self.body_forces)
     }
 
     /// Compiles what outputs need, if that has not been done.
@@ -137,6 +145,22 @@ impl Pipelines {
         }
         if sensors && self.sensors.is_none() {
             self.sensors = Some(compile(&kernels::SENSORS)?);
+        }
+        Ok(())
+    }
+
+    /// Compiles what places cameras, if that has not been done.
+    ///
+    /// # Errors
+    /// That the device or its driver refuses the kernel.
+    pub(crate) fn place_cameras<S: Texts>(
+        &mut self,
+        device: &Device,
+        count: usize,
+    ) -> Result<(), GpuError> {
+        if self.cameras.is_none() {
+            let cameras = compile::<S>(device, &self.preface, count, &kernels::CAMERAS)?;
+            self.cameras = Some(cameras);
         }
         Ok(())
     }

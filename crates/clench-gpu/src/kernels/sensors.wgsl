@@ -13,6 +13,9 @@ fn object_position(kind: u32, o: u32) -> vec3f {
         case SITE_FRAME: {
             return fetch3(SITE_XPOS + 3u * o);
         }
+        case CAMERA_FRAME: {
+            return fetch3(CAM_XPOS + 3u * o);
+        }
         default: {
             return fetch3(XPOS + 3u * o);
         }
@@ -30,6 +33,9 @@ fn object_axes(kind: u32, o: u32) -> mat3x3f {
         }
         case SITE_FRAME: {
             return fetch_matrix(SITE_XMAT + 9u * o);
+        }
+        case CAMERA_FRAME: {
+            return fetch_matrix(CAM_XMAT + 9u * o);
         }
         default: {
             return fetch_matrix(XMAT + 9u * o);
@@ -49,6 +55,10 @@ fn object_quat(kind: u32, o: u32, body: u32) -> vec4f {
         }
         case SITE_FRAME: {
             return quat_product(q, parameter4(SITE_QUAT + 4u * o));
+        }
+        // As if it were fixed to its body, whatever it follows: so it is in MuJoCo.
+        case CAMERA_FRAME: {
+            return quat_product(q, parameter4(CAM_QUAT + 4u * o));
         }
         default: {
             return q;
@@ -325,6 +335,11 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
         }
         case OF_DISTANCE: {
             read_distance(kind, s, prm, out);
+        }
+        case OF_PROJECTION: {
+            let seen = project(e, words[s + SENSOR_REFERENCE]);
+            put(out, seen.x);
+            put(out + 1u, seen.y);
         }
         case OF_NOTHING: {
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {

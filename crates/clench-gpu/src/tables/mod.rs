@@ -3,6 +3,7 @@
 
 mod actuators;
 mod bodies;
+mod cameras;
 mod constraints;
 mod contacts;
 mod distances;
@@ -107,6 +108,7 @@ impl Tables {
         tables.forces(model);
         tables.interpolations();
         tables.actuators(model);
+        tables.cameras(model);
         tables.sensors(model);
         tables.settings(model, settings);
         let mut capacity = Capacity {

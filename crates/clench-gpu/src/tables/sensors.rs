@@ -26,7 +26,7 @@ const SENSOR_FIELDS: [&str; 13] = [
 /// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site, its delay and its period.
 const SENSOR_PRM_SIZE: usize = 7;
 /// How a sensor is read.
-const WAYS: [&str; 9] = [
+const WAYS: [&str; 10] = [
     "OF_SCALAR",
     "OF_FRAME",
     "OF_SITE",
@@ -36,6 +36,7 @@ const WAYS: [&str; 9] = [
     "OF_ACTUATOR",
     "OF_CONTACTS",
     "OF_DISTANCE",
+    "OF_PROJECTION",
 ];
 /// The words of a query for contacts, before its fields and the sides of each geom.
 const QUERY: [&str; 4] = [
@@ -47,24 +48,25 @@ const QUERY: [&str; 4] = [
 /// How contacts are reduced.
 const REDUCTIONS: [&str; 4] = ["FIRST_ONES", "MIN_DIST", "MAX_FORCE", "NET_FORCE"];
 /// Kinds of object that have a frame.
-const FRAMES: [&str; 5] = [
+const FRAMES: [&str; 6] = [
     "NO_FRAME",
     "INERTIAL_FRAME",
     "BODY_FRAME",
     "GEOM_FRAME",
     "SITE_FRAME",
+    "CAMERA_FRAME",
 ];
 
 /// What a row of words says of a frame: the kind of its object, which it is, and the body that it is of.
-fn frame(m: &Model, object: FrameObject) -> Option<[usize; 3]> {
+fn frame(m: &Model, object: FrameObject) -> [usize; 3] {
     let (kind, index, body) = match object {
         FrameObject::Inertial(b) => (1, b, b),
         FrameObject::Body(b) => (2, b, b),
         FrameObject::Geom(g) => (3, g, m.geoms[g].body),
         FrameObject::Site(s) => (4, s, m.sites[s].body),
-        FrameObject::Camera(_) => return None,
+        FrameObject::Camera(c) => (5, c, m.cameras[c].body),
     };
-    Some([kind, index, body])
+    [kind, index, body]
 }
 
 /// How a sensor is read on a device, if it can be: the way, the object and the reference, as [`SENSOR_FIELDS`] has them.
@@ -73,11 +75,12 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
     let none = [0; 3];
     Some(match &sensor.target {
         SensorTarget::Frame { object, reference } => {
-            let reference = reference.map_or(Some(none), |other| frame(m, other))?;
-            (1, frame(m, *object)?, reference)
+            let reference = reference.map_or(none, |other| frame(m, other));
+            (1, frame(m, *object), reference)
         }
         SensorTarget::Inside { enclosed: true, .. } => return None,
-        SensorTarget::Inside { site, object, .. } => (0, frame(m, *object)?, [4, *site, 0]),
+        SensorTarget::Inside { site, object, .. } => (0, frame(m, *object), [4, *site, 0]),
+        SensorTarget::Projection { site, camera } => (9, [4, *site, 0], [5, *camera, 0]),
         SensorTarget::Element(e) => match sensor.kind {
             Kind::Accelerometer
             | Kind::Velocimeter

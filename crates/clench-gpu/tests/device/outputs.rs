@@ -71,10 +71,16 @@ fn parts(model: &Model, name: &str) -> Vec<(String, Range<usize>)> {
 }
 
 fn agree(file: &str) {
+    agree_after(file, |_| ());
+}
+
+/// The same after both batches were changed in the same way.
+fn agree_after(file: &str, change: impl Fn(&mut Batch<f32>)) {
     let model = text(file);
     let Some(mut batches) = both(&model) else {
         return;
     };
+    batches.iter_mut().for_each(change);
     let names = record(&mut batches);
     assert!(
         names.contains(&"sensordata") && names.contains(&"cfrc_int"),
@@ -136,6 +142,44 @@ fn those_of_surfaces_that_move_and_adhere() {
 #[test]
 fn those_of_orientation_servos() {
     agree(&own("servos"));
+}
+
+#[test]
+fn those_of_rays_and_cameras() {
+    agree(&own("rays"));
+}
+
+/// Each environment has cameras, sites and geoms of its own.
+#[test]
+fn those_of_rays_and_cameras_that_differ() {
+    agree_after(&own("rays"), |batch| {
+        let envs = Vec::from_iter((0..COUNT).step_by(2));
+        let mut random = Random::new(5);
+        for field in [
+            "cam_pos",
+            "cam_quat",
+            "cam_pos0",
+            "cam_poscom0",
+            "cam_fovy",
+            "cam_sensorsize",
+            "cam_intrinsic",
+            "site_pos",
+            "geom_pos",
+        ] {
+            let mut values = Vec::new();
+            for _ in &envs {
+                let row = batch.param(field, 0).expect("a field").into_iter();
+                values.extend(row.map(|x| x * (1.0 + 0.1 * random.signed() as f32)));
+            }
+            batch.randomize(field, &envs, &values).expect("good values");
+        }
+        // Those of another camera.
+        let mut axes = batch.param("cam_mat0", 0).expect("a field");
+        axes.rotate_left(9);
+        batch
+            .randomize("cam_mat0", &envs, &axes.repeat(envs.len()))
+            .expect("good values");
+    });
 }
 
 #[test]

@@ -1,0 +1,25 @@
+// What cameras see: where a site is in the picture. Sister of `sensor/camera.rs`.
+
+fn resolution(camera: u32) -> vec2f {
+    return vec2f(f32(words[camera + CAMERA_WIDTH]), f32(words[camera + CAMERA_HEIGHT]));
+}
+
+// The size of a pixel at unit distance, which is the inverse of the focal lengths in pixels.
+fn size_of_pixel(c: u32) -> vec2f {
+    let camera = CAMERAS + CAMERA_SIZE * c;
+    if (words[camera + CAMERA_INTRINSIC] == 1u) {
+        let sensor = vec2f(parameter(CAM_SENSORSIZE + 2u * c), parameter(CAM_SENSORSIZE + 2u * c + 1u));
+        return sensor / (parameter4(CAM_INTRINSIC + 4u * c).xy * resolution(camera));
+    }
+    let half = sin_cos(parameter(CAM_FOVY + c) * (PI / 360.0));
+    return vec2f(2.0 * half.x / (half.y * resolution(camera).y));
+}
+
+// Where a camera sees a site, pixels from the upper left corner.
+fn project(site: u32, c: u32) -> vec2f {
+    let place = fetch3(SITE_XPOS + 3u * site) - fetch3(CAM_XPOS + 3u * c);
+    let p = place * fetch_matrix(CAM_XMAT + 9u * c);
+    let z = select(max(p.z, TINY), min(p.z, -TINY), p.z < 0.0);
+    let offset = vec2f(-p.x, p.y) / (z * size_of_pixel(c));
+    return 0.5 * resolution(CAMERAS + CAMERA_SIZE * c) + offset;
+}
