@@ -9,7 +9,7 @@ use crate::kernels::{Memory, preface};
 use crate::pipelines::{Arrays, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::{SolverMemory, check_dofs};
-use crate::tables::{Capacity, ENVS, MEASURES, Tables, tells_late};
+use crate::tables::{Capacity, ENVS, MEASURES, Tables, ray_count, tells_late};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -106,6 +106,7 @@ impl<S: GpuReal> GpuBatch<S> {
         solver.reserve(&mut capacity);
         let base = Base::new(&tables, pairs);
         tables.shapes(&model, &base.candidates);
+        tables.ray_shapes(&model);
         let state = fields::state_fields(&model, capacity);
         let work = fields::work_fields(&model, capacity);
         let thread = fields::thread_fields(&model, capacity);
@@ -121,6 +122,7 @@ impl<S: GpuReal> GpuBatch<S> {
             work: &work,
             thread: &thread,
             threads: capacity.threads,
+            rays: ray_count(&model),
             rows: &rows,
             reports: &reports,
             solver,

@@ -21,6 +21,8 @@ pub(crate) enum Workers {
     Thread,
     /// As many threads as the memory of the narrow phase is for, each in a workgroup with those of other environments.
     Threads,
+    /// A thread for each ray of its sensors, likewise; where there are more than [`GRID`], each follows several.
+    Rays,
     /// One workgroup.
     Workgroup,
 }
@@ -30,7 +32,7 @@ impl Workers {
     /// (with half as many a card took a tenth longer).
     const fn threads(self) -> u32 {
         match self {
-            Workers::Thread | Workers::Threads => 32,
+            Workers::Thread | Workers::Threads | Workers::Rays => 32,
             Workers::Workgroup => 64,
         }
     }
@@ -90,6 +92,8 @@ kernels! {
     CAMERAS = "cameras", Thread: "cameras";
     /// Accelerations of bodies, forces between them and the energy, where somebody asks.
     BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
+    /// What rays of sensors meet, where somebody asks.
+    RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
     /// What sensors measure, where somebody asks.
     SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "late_sensor", "optics", "sensors";
     /// Whether what they found is within bounds.
@@ -116,6 +120,8 @@ pub(crate) struct Memory<'a> {
     pub thread: &'a Fields,
     /// Threads of the narrow phase for each environment.
     pub threads: usize,
+    /// Rays of the sensors of each environment.
+    pub rays: usize,
     pub rows: &'a Fields,
     pub reports: &'a Fields,
     pub solver: SolverMemory,
@@ -151,6 +157,8 @@ pub(crate) struct Preface {
     pub layout: Layout,
     /// Threads of the narrow phase for each environment.
     threads: usize,
+    /// Rays of its sensors.
+    pub rays: usize,
 }
 
 /// What stands before the texts of the kernels of a model.
@@ -194,6 +202,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
         constants: text + &memory.solver.constants(),
         layout,
         threads: memory.threads,
+        rays: memory.rays,
     }
 }
 
@@ -222,6 +231,7 @@ impl Kernel {
         match self.workers {
             Workers::Thread => [of_threads, 1, 1],
             Workers::Threads => [of_threads, preface.threads as u32, 1],
+            Workers::Rays => [of_threads, (preface.rays as u32).min(GRID), 1],
             Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
         }
     }

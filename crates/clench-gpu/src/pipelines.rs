@@ -23,8 +23,8 @@ pub(crate) struct Pipelines {
     cameras: Option<Pipeline>,
     /// Accelerations of bodies and forces between them, once somebody asked.
     body_forces: Option<Pipeline>,
-    /// What sensors measure, once somebody asked.
-    pub sensors: Option<Pipeline>,
+    /// What rays of sensors meet, if there are any, and what sensors measure, once somebody asked.
+    pub sensors: Vec<Pipeline>,
     pub restart: Pipeline,
     /// Everything that follows from the state.
     pub forward: Vec<Pipeline>,
@@ -115,7 +115,7 @@ impl Pipelines {
         Ok(Pipelines {
             cameras: None,
             body_forces: None,
-            sensors: None,
+            sensors: Vec::new(),
             restart: compile(&kernels::RESTART)?,
             verdict: compile(&kernels::VERDICT)?,
             forward,
@@ -143,8 +143,11 @@ impl Pipelines {
         if self.body_forces.is_none() {
             self.body_forces = Some(compile(&kernels::BODY_FORCES)?);
         }
-        if sensors && self.sensors.is_none() {
-            self.sensors = Some(compile(&kernels::SENSORS)?);
+        if sensors && self.sensors.is_empty() {
+            if self.preface.rays > 0 {
+                self.sensors.push(compile(&kernels::RAYS)?);
+            }
+            self.sensors.push(compile(&kernels::SENSORS)?);
         }
         Ok(())
     }

@@ -1,4 +1,10 @@
-// What cameras see: where a site is in the picture. Sister of `sensor/camera.rs`.
+// What cameras see: where a site is in the picture, and the line of sight of a pixel. Sister of `sensor/camera.rs`.
+
+// A half line, its direction of unit length.
+struct Line {
+    origin: vec3f,
+    along: vec3f,
+}
 
 fn resolution(camera: u32) -> vec2f {
     return vec2f(f32(words[camera + CAMERA_WIDTH]), f32(words[camera + CAMERA_HEIGHT]));
@@ -22,4 +28,29 @@ fn project(site: u32, c: u32) -> vec2f {
     let z = select(max(p.z, TINY), min(p.z, -TINY), p.z < 0.0);
     let offset = vec2f(-p.x, p.y) / (z * size_of_pixel(c));
     return 0.5 * resolution(CAMERAS + CAMERA_SIZE * c) + offset;
+}
+
+// Where the optical axis meets the picture.
+fn optical_axis(c: u32) -> vec2f {
+    let camera = CAMERAS + CAMERA_SIZE * c;
+    if (words[camera + CAMERA_INTRINSIC] == 1u && words[camera + CAMERA_ORTHOGRAPHIC] == 0u) {
+        let sensor = vec2f(parameter(CAM_SENSORSIZE + 2u * c), parameter(CAM_SENSORSIZE + 2u * c + 1u));
+        return parameter4(CAM_INTRINSIC + 4u * c).zw / sensor * resolution(camera);
+    }
+    return 0.5 * resolution(camera);
+}
+
+// The line of sight through the middle of a pixel; pixels are counted line by line from the upper left corner.
+fn line_of_sight(c: u32, pixel: u32) -> Line {
+    let camera = CAMERAS + CAMERA_SIZE * c;
+    let width = words[camera + CAMERA_WIDTH];
+    let middle = vec2f(f32(pixel % width), f32(pixel / width)) + 0.5;
+    let offset = (middle - optical_axis(c)) * vec2f(1.0, -1.0);
+    let place = fetch3(CAM_XPOS + 3u * c);
+    let axes = fetch_matrix(CAM_XMAT + 9u * c);
+    if (words[camera + CAMERA_ORTHOGRAPHIC] == 1u) {
+        let size = parameter(CAM_FOVY + c) / resolution(camera);
+        return Line(place + axes * vec3f(offset * size, 0.0), -axes[2]);
+    }
+    return Line(place, axes * direction(vec3f(offset * size_of_pixel(c), -1.0)).xyz);
 }

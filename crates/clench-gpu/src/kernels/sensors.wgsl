@@ -341,6 +341,9 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
             put(out, seen.x);
             put(out + 1u, seen.y);
         }
+        // What they meet is told by now.
+        case OF_RAYS: {
+        }
         case OF_NOTHING: {
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
                 put(out + k, 0.0);

@@ -11,11 +11,13 @@ mod equalities;
 mod forces;
 mod histories;
 mod hulls;
+mod rays;
 mod sensors;
 mod tendons;
 
 pub(crate) use constraints::BLOCK_SIZE;
 pub(crate) use contacts::CONTACT_SIZE;
+pub(crate) use rays::ray_count;
 pub(crate) use sensors::{tells_late, unread};
 
 use crate::layout::Layout;
@@ -110,6 +112,7 @@ impl Tables {
         tables.actuators(model);
         tables.cameras(model);
         tables.sensors(model);
+        tables.rays::<S>(model);
         tables.settings(model, settings);
         let mut capacity = Capacity {
             articulated: articulated_bodies::<S>(model).len(),

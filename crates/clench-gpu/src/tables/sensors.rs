@@ -26,7 +26,7 @@ const SENSOR_FIELDS: [&str; 13] = [
 /// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site, its delay and its period.
 const SENSOR_PRM_SIZE: usize = 7;
 /// How a sensor is read.
-const WAYS: [&str; 10] = [
+const WAYS: [&str; 11] = [
     "OF_SCALAR",
     "OF_FRAME",
     "OF_SITE",
@@ -37,6 +37,7 @@ const WAYS: [&str; 10] = [
     "OF_CONTACTS",
     "OF_DISTANCE",
     "OF_PROJECTION",
+    "OF_RAYS",
 ];
 /// The words of a query for contacts, before its fields and the sides of each geom.
 const QUERY: [&str; 4] = [
@@ -81,6 +82,7 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
         SensorTarget::Inside { enclosed: true, .. } => return None,
         SensorTarget::Inside { site, object, .. } => (0, frame(m, *object), [4, *site, 0]),
         SensorTarget::Projection { site, camera } => (9, [4, *site, 0], [5, *camera, 0]),
+        SensorTarget::Rays { .. } => (10, none, none),
         SensorTarget::Element(e) => match sensor.kind {
             Kind::Accelerometer
             | Kind::Velocimeter
@@ -188,7 +190,11 @@ impl Tables {
                 SensorTarget::Element(site) if sensor.kind == SensorKind::Touch => Some(*site),
                 _ => None,
             };
-            let unclipped = matches!(sensor.kind, SensorKind::Contact | SensorKind::FromTo);
+            // What rays meet is clipped where it is told.
+            let unclipped = matches!(
+                sensor.kind,
+                SensorKind::Contact | SensorKind::FromTo | SensorKind::Rangefinder
+            );
             let clips = sensor.cutoff > 0.0 && !unclipped;
             let clip = match sensor.data {
                 SensorData::Real if clips => 1,

@@ -205,7 +205,6 @@ fn refused(sensor: &str, kind: &str) {
 
 #[test]
 fn a_sensor_that_is_not_read_yet_is_named() {
-    refused("<rangefinder name='eye' site='imu'/>", "rangefinder");
     refused(
         "<insidesite name='eye' site='imu' objtype='site' objname='imu' enclosed='true'/>",
         "insidesite",

@@ -1,0 +1,113 @@
+// What rays of sensors meet: one thread a ray, and only where somebody asks. Sister of `sensor/ray.rs` and of `first_hit` in `geometry.rs`. A
+// sensor is a row of RAY_SENSOR_SIZE words.
+
+// Whether a ray may meet a ball before it has gone so far: never false where it does, whatever the rounding.
+fn may_meet(line: Line, centre: vec3f, radius: f32, within: f32) -> bool {
+    let apart = centre - line.origin;
+    let ahead = dot(apart, line.along);
+    let beside = apart - line.along * ahead;
+    // What is computed from far away is known to this rounding only.
+    let reach = radius + dot(abs(apart), vec3f(1.0)) * (8.0 * EPSILON);
+    return dot(beside, beside) <= reach * reach && ahead + reach >= 0.0 && ahead - reach <= within;
+}
+
+// Where a ray hits a geom, in the frame of that.
+fn hit_geom(k: u32, geom: u32, line: Line, within: f32) -> Hit {
+    let kind = words[GEOM_KIND + geom];
+    let size = parameter3(GEOM_SIZE + 3u * geom);
+    if (kind == PLANE) {
+        return hit_plane(size, line);
+    }
+    if (RAYS_MEET_MESHES && kind == MESH) {
+        return hit_mesh(words[RAY_SHAPE + k], line, within);
+    }
+    if (RAYS_MEET_TERRAIN && kind == HEIGHT_FIELD) {
+        return hit_terrain(words[RAY_SHAPE + k], line);
+    }
+    return hit_solid(kind, size, line);
+}
+
+// The first hit on a geom that can be seen and is not of a body; the normal in world axes.
+fn first_hit(line: Line, body: u32) -> Hit {
+    var first = Hit(NOWHERE, vec3f());
+    for (var k = 0u; k < bound(NRAY_GEOM); k++) {
+        let geom = words[RAY_GEOM + k];
+        let centre = fetch3(GEOM_XPOS + 3u * geom);
+        let is_plane = words[GEOM_KIND + geom] == PLANE;
+        let may_hit = is_plane || may_meet(line, centre, parameter(RAY_REACH + k), first.distance);
+        if (words[GEOM_BODY + geom] == body || !may_hit) {
+            continue;
+        }
+        let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
+        let hit = hit_geom(k, geom, Line((line.origin - centre) * axes, line.along * axes), first.distance);
+        if (hit.distance < first.distance) {
+            first = Hit(hit.distance, axes * hit.normal);
+        }
+    }
+    return first;
+}
+
+// Where a ray of a sensor goes out.
+fn line_of(s: u32, ray: u32) -> Line {
+    let element = words[s + RAY_ELEMENT];
+    if (words[s + RAY_SOURCE] == FROM_SITE) {
+        return Line(fetch3(SITE_XPOS + 3u * element), fetch_matrix(SITE_XMAT + 9u * element)[2]);
+    }
+    return line_of_sight(element, ray - words[s + RAY_FIRST]);
+}
+
+// In which direction the sensor looks.
+fn axis_of(s: u32) -> vec3f {
+    let element = words[s + RAY_ELEMENT];
+    if (words[s + RAY_SOURCE] == FROM_SITE) {
+        return fetch_matrix(SITE_XMAT + 9u * element)[2];
+    }
+    return -fetch_matrix(CAM_XMAT + 9u * element)[2];
+}
+
+// Tells of a ray what the sensor tells of each.
+fn read_ray(s: u32, cutoff: f32, ray: u32) {
+    let line = line_of(s, ray);
+    let hit = first_hit(line, words[s + RAY_BODY]);
+    let found = hit.distance < NOWHERE;
+    var out = SENSORDATA + words[s + RAY_PLACE] + words[s + RAY_SIZE] * (ray - words[s + RAY_FIRST]);
+    for (var k = words[s + RAY_FIELD_START]; k < words[s + RAY_FIELD_END]; k++) {
+        let field = words[RAY_FIELD + k];
+        var told = vec3f(-1.0, 0.0, 0.0);
+        if (field == RAY_ORIGIN) {
+            told = line.origin;
+        } else if (field == RAY_DIST || field == RAY_DEPTH) {
+            let share = select(f32(1.0), dot(line.along, axis_of(s)), field == RAY_DEPTH);
+            told.x = select(-1.0, hit.distance * share, found);
+        } else if (!found) {
+            told = vec3f();
+        } else if (field == RAY_DIR) {
+            told = line.along;
+        } else if (field == RAY_POINT) {
+            told = line.origin + line.along * hit.distance;
+        } else {
+            told = hit.normal;
+        }
+        told = clamp(told, vec3f(-cutoff), vec3f(cutoff));
+        put(out, told.x);
+        out += 1u;
+        if (field != RAY_DIST && field != RAY_DEPTH) {
+            put(out, told.y);
+            put(out + 1u, told.z);
+            out += 2u;
+        }
+    }
+}
+
+// Threads side by side are of neighbouring environments, at the same ray.
+@compute @workgroup_size(GROUP)
+fn rays(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    if (!begin(id.x)) {
+        return;
+    }
+    for (var ray = id.y; ray < NRAY; ray += groups.y) {
+        let sensor = words[RAY_SENSOR + ray];
+        read_ray(RAY_SENSORS + RAY_SENSOR_SIZE * sensor, parameter(RAY_CUTOFF + sensor), ray);
+    }
+    note_end();
+}
