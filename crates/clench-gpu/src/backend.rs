@@ -4,7 +4,7 @@ use crate::batch::{GpuBatch, GpuOptions};
 use crate::error::{GpuError, GpuFault};
 use crate::kernels::DIVERGED_FIELDS;
 use crate::precision::GpuReal;
-use crate::tables::unread;
+use crate::tables::is_read;
 use clench_math::Real;
 use clench_rigid::batch::{Backend, Outcome, Trouble};
 use clench_rigid::model::{Model, RowPattern};
@@ -144,7 +144,9 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
 
     fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
         let sensors = outputs.contains(&Output::sensordata);
-        if let Some(sensor) = unread(self.model()).filter(|_| sensors) {
+        let model = self.model();
+        let mut unread = model.sensors.iter().filter(|s| !is_read(model, s));
+        if let Some(sensor) = unread.next().filter(|_| sensors) {
             return Err(SimError::Backend(format!(
                 "{} cannot read {} sensor \"{}\" yet: sensordata cannot be recorded",
                 self.name(),
@@ -157,7 +159,7 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
             matches!(output, cacc | cfrc_int | cfrc_ext | contact_force)
         };
         let of_cameras = |output: &Output| matches!(output, Output::cam_xpos | Output::cam_xmat);
-        if sensors || outputs.iter().any(of_cameras) {
+        if outputs.iter().any(of_cameras) {
             self.place_cameras()?;
         }
         if sensors || outputs.iter().any(of_bodies) {

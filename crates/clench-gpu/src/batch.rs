@@ -308,6 +308,7 @@ impl<S: GpuReal> GpuBatch<S> {
         if sensors {
             let place = 4 * MEASURES as u64;
             (self.device.queue).write_buffer(&self.arrays.words, place, [1u32].as_bytes());
+            self.place_cameras()?;
         }
         self.pipelines
             .observe::<S>(&self.device, self.count, sensors)

@@ -1,9 +1,10 @@
 //! What of a model the device cannot do yet, as one table. Nothing is ignored: what is not refused here, the kernels do.
 
 use crate::error::{GpuError, Refusal};
+use crate::tables::is_read;
 use clench_collide::{MAX_POINTS, ShapeKind};
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{EqualityTarget, Integrator, Model};
+use clench_rigid::model::{EqualityTarget, Integrator, Model, Sensor};
 use clench_rigid::settings::StepSettings;
 
 /// What a batch is asked to step.
@@ -35,6 +36,12 @@ rules! {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };
     "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
+    "a sensor of this kind is not read yet, so that it cannot tell late": |s| {
+        let late = |(_, sensor): &(usize, &Sensor)| sensor.history.is_some();
+        let mut late = s.model.sensors.iter().enumerate().filter(late);
+        let (i, sensor) = late.find(|(_, sensor)| !is_read(s.model, sensor))?;
+        Some(named(&format!("{} sensor", sensor.kind.name()), &sensor.name, i))
+    };
     "equalities of this kind are not there yet": |s| {
         use EqualityTarget::{Connect, Joint, Tendon, Weld};
         let known = |target| matches!(target, Connect { .. } | Weld { .. } | Joint { .. } | Tendon { .. });

@@ -134,15 +134,14 @@ fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
     row
 }
 
-/// Whether a device keeps what sensors measured for those that tell of it late.
-pub(crate) fn tells_late(m: &Model) -> bool {
-    let mut late = m.sensors.iter().filter(|sensor| sensor.history.is_some());
-    late.any(|sensor| target(m, sensor).is_some())
+/// Whether a device reads a sensor.
+pub(crate) fn is_read(m: &Model, sensor: &Sensor) -> bool {
+    target(m, sensor).is_some()
 }
 
-/// The first sensor that a device cannot read yet.
-pub(crate) fn unread(m: &Model) -> Option<&Sensor> {
-    m.sensors.iter().find(|sensor| target(m, sensor).is_none())
+/// Whether any sensor tells late.
+pub(crate) fn tells_late(m: &Model) -> bool {
+    m.sensors.iter().any(|sensor| sensor.history.is_some())
 }
 
 impl Tables {

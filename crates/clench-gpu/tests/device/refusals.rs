@@ -33,6 +33,14 @@ fn what_is_not_there_yet_is_refused_by_name() {
             "flag sleep",
         ),
         (
+            model("").replace(
+                "</mujoco>",
+                "<sensor><insidesite name='in' site='s' objtype='geom' objname='ball' enclosed='true' nsample='3' delay='0.1'/></sensor></mujoco>",
+            )
+            .replace("<worldbody>", "<worldbody><site name='s'/>"),
+            "insidesite sensor \"in\": a sensor of this kind is not read yet",
+        ),
+        (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),
             "model: a model without",
         ),

@@ -102,7 +102,7 @@ fn read_ray(s: u32, cutoff: f32, ray: u32) {
 // Threads side by side are of neighbouring environments, at the same ray.
 @compute @workgroup_size(GROUP)
 fn rays(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    if (!begin(id.x)) {
+    if (!SENSING || !begin(id.x)) {
         return;
     }
     for (var ray = id.y; ray < NRAY; ray += groups.y) {
