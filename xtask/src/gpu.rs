@@ -2,8 +2,8 @@
 
 use crate::install::try_to_install;
 use crate::python;
-use crate::run::{ALL_FEATURES, cargo, run};
-use std::path::Path;
+use crate::run::{ALL_FEATURES, cargo, command, run, target};
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
 
@@ -15,13 +15,19 @@ const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
 /// Tests of `device` that take about as long as all that is left: most compile kernels of their own, what is left shares kernels for any model. Mesa's
 /// software device compiles on one core for each program, so that they run side by side.
-const PART: [&str; 4] = ["batch::", "outputs::", "double::", "steps::"];
+const PART: [&str; 5] = ["batch::", "outputs::", "double::", "random::", "steps::"];
+/// Random models that are written for them.
+const RANDOM_MODELS: usize = 200;
+/// Random models of a soak, and how far its seeds are apart.
+const SOAKED_MODELS: usize = 5_000;
+const APART: u64 = 1_000_000;
 
 /// Runs them.
 ///
 /// # Errors
 /// That a test failed.
 pub(crate) fn test() -> Result<(), String> {
+    write_random_models(1, RANDOM_MODELS)?;
     let mut part = computing(&COMPUTING[..1])?;
     part.arg("--").args(PART);
     // What is left, and the program's.
@@ -39,6 +45,30 @@ pub(crate) fn test() -> Result<(), String> {
     run(tests(&DRAWING))
 }
 
+/// Compares many random models with the processor.
+///
+/// # Errors
+/// That one differs.
+pub(crate) fn soak(seed: u64) -> Result<(), String> {
+    python::prepare()?;
+    write_random_models(seed * APART, SOAKED_MODELS)?;
+    let mut test = computing(&COMPUTING[..1])?;
+    test.args(["--", "random::", "--nocapture"]);
+    run(test)
+}
+
+/// Writes the random models of so many seeds, from one on.
+fn write_random_models(first: u64, count: usize) -> Result<(), String> {
+    let mut script = command(python::interpreter(), &["parity/write_random_models.py"]);
+    script.arg(random_folder());
+    script.args([first.to_string(), count.to_string()]);
+    run(script)
+}
+
+fn random_folder() -> PathBuf {
+    target().join("random-models")
+}
+
 /// The tests of these names, with what those that compute need.
 fn computing(names: &[&str]) -> Result<Command, String> {
     let mut tests = tests(names);
@@ -47,6 +77,7 @@ fn computing(names: &[&str]) -> Result<Command, String> {
     tests.env("LP_NATIVE_VECTOR_WIDTH", "128");
     tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
     tests.env("CLENCH_DM_CONTROL", python::dm_control_suite());
+    tests.env("CLENCH_RANDOM_MODELS", random_folder());
     Ok(tests)
 }
 

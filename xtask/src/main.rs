@@ -49,6 +49,7 @@ Commands:
                     Look long for rare failures. `test` runs a short form of each. SOAK_SCALE=10 does a tenth of the steps.
                       models      compare 20,000 random models with MuJoCo; those that differ are cut down and kept in
                                   parity/differences
+                      device      compare 5,000 random models on a graphics device, or Mesa's, with the processor
                       batch       step 10,000 environments 1,000 times under random controls, resets and poison; none may
                                   be lost, disturb another, or leak
                       endurance   the same, 10,000 times

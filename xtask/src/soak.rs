@@ -1,5 +1,6 @@
 //! `cargo xtask soak`: what takes long and looks for rare failures.
 
+use crate::gpu;
 use crate::python;
 use crate::run::{Profile, cargo, command, run};
 use crate::stages::build;
@@ -48,6 +49,8 @@ const SOAKS: [Soak; 5] = [
 
 /// The soak that is a script: random models beside MuJoCo.
 const MODELS: &str = "models";
+/// That of random models on a graphics device.
+const DEVICE: &str = "device";
 
 /// Runs all soaks. `args` may choose one, by `--only`, and hold a seed.
 ///
@@ -68,13 +71,18 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
     let chosen: Vec<&Soak> = (SOAKS.iter())
         .filter(|soak| only.is_none_or(|only| only == soak.name))
         .collect();
-    let models = only.is_none_or(|only| only == MODELS);
-    if chosen.is_empty() && !models {
+    let is_chosen = |name: &str| only.is_none_or(|only| only == name);
+    if chosen.is_empty() && !is_chosen(MODELS) && !is_chosen(DEVICE) {
         let names = SOAKS.map(|soak| soak.name).join(", ");
-        return Err(format!("soak knows --only with one of {MODELS}, {names}"));
+        return Err(format!(
+            "soak knows --only with one of {MODELS}, {DEVICE}, {names}"
+        ));
     }
-    if models {
+    if is_chosen(MODELS) {
         soak_models(seed)?;
+    }
+    if is_chosen(DEVICE) {
+        gpu::soak(seed)?;
     }
     for soak in chosen {
         let mut test = cargo(&["test", "--release", "--package", soak.package]);

@@ -4,7 +4,6 @@ use crate::batch::{GpuBatch, GpuOptions};
 use crate::error::{GpuError, GpuFault};
 use crate::kernels::DIVERGED_FIELDS;
 use crate::precision::GpuReal;
-use crate::tables::is_read;
 use clench_math::Real;
 use clench_rigid::batch::{Backend, Outcome, Trouble};
 use clench_rigid::model::{Model, RowPattern};
@@ -143,17 +142,6 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     }
 
     fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
-        let sensors = outputs.contains(&Output::sensordata);
-        let model = self.model();
-        let mut unread = model.sensors.iter().filter(|s| !is_read(model, s));
-        if let Some(sensor) = unread.next().filter(|_| sensors) {
-            return Err(SimError::Backend(format!(
-                "{} cannot read {} sensor \"{}\" yet: sensordata cannot be recorded",
-                self.name(),
-                sensor.kind.name(),
-                sensor.name
-            )));
-        }
         let of_bodies = |output: &Output| {
             use Output::{cacc, cfrc_ext, cfrc_int, contact_force};
             matches!(output, cacc | cfrc_int | cfrc_ext | contact_force)
@@ -162,8 +150,11 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
         if outputs.iter().any(of_cameras) {
             self.place_cameras()?;
         }
-        if sensors || outputs.iter().any(of_bodies) {
-            self.observe(sensors)?;
+        if outputs.iter().any(of_bodies) {
+            self.observe(false)?;
+        }
+        if outputs.contains(&Output::sensordata) {
+            self.measure()?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use crate::kernels::{Memory, preface};
 use crate::pipelines::{Arrays, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::{SolverMemory, check_dofs};
-use crate::tables::{Capacity, ENVS, MEASURES, Tables, ray_count, tells_late};
+use crate::tables::{Capacity, ENVS, MEASURES, Tables, is_read, ray_count, tells_late};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -202,7 +202,7 @@ impl<S: GpuReal> GpuBatch<S> {
     pub fn forward(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
             batch.clear_trouble(encoder);
-            batch.encode(encoder, batch.pipelines.forward.iter());
+            batch.encode(encoder, batch.pipelines.forward_and_observed());
         })
     }
 
@@ -213,10 +213,8 @@ impl<S: GpuReal> GpuBatch<S> {
     pub(crate) fn forward_with_verdict(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
             batch.clear_trouble(encoder);
-            let pipelines = &batch.pipelines;
-            let observed = pipelines.observed().chain(&pipelines.sensors);
-            let forward = pipelines.forward.iter().chain(observed);
-            batch.encode(encoder, forward.chain([&pipelines.verdict]));
+            let forward = batch.pipelines.forward_and_observed();
+            batch.encode(encoder, forward.chain([&batch.pipelines.verdict]));
         })
     }
 
@@ -298,6 +296,22 @@ impl<S: GpuReal> GpuBatch<S> {
             let forward = pipelines.forward.iter().chain(observed);
             self.encode(encoder, forward.chain([advance]));
         }
+    }
+
+    /// Measures sensors in every step and forward pass from now on: `sensordata` can be read, as those at the start of the last step found it.
+    ///
+    /// # Errors
+    /// A sensor that the device does not read yet; that the device or its driver refuses a kernel.
+    pub fn measure(&mut self) -> Result<(), GpuError> {
+        let model = &self.model;
+        if let Some(sensor) = model.sensors.iter().find(|s| !is_read(model, s)) {
+            return Err(GpuError::Unread {
+                device: self.device.info.name.clone(),
+                kind: sensor.kind.name(),
+                name: sensor.name.clone(),
+            });
+        }
+        self.observe(true)
     }
 
     /// Computes accelerations of bodies and forces between them in every step from now on, and perhaps sensors.

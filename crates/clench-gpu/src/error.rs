@@ -79,6 +79,16 @@ pub enum GpuError {
     /// A model that the device cannot step yet: the first thing of each kind.
     #[error("this model cannot be stepped on a graphics device yet: {}", joined(.0))]
     Unsupported(Vec<Refusal>),
+    /// A sensor that the device does not read yet.
+    #[error("{device} cannot read {kind} sensor \"{name}\" yet: sensordata cannot be recorded")]
+    Unread {
+        /// The device's name.
+        device: String,
+        /// The sensor's kind.
+        kind: &'static str,
+        /// Its name.
+        name: String,
+    },
     /// More dofs than the solver factors a Hessian of.
     #[error(
         "Newton's method on a graphics device is for up to {most} dofs, but the model has {nv}: the solver CG has no such limit"

@@ -129,6 +129,12 @@ impl Pipelines {
         self.cameras.iter().chain(&self.body_forces)
     }
 
+    /// A forward pass, and all that somebody asked for.
+    pub(crate) fn forward_and_observed(&self) -> impl Iterator<Item = &Pipeline> {
+        let observed = self.observed().chain(&self.sensors);
+        self.forward.iter().chain(observed)
+    }
+
     /// Compiles what outputs need, if that has not been done.
     ///
     /// # Errors

@@ -8,6 +8,7 @@ mod double;
 mod gymnasium;
 mod large;
 mod outputs;
+mod random;
 mod refusals;
 mod solver;
 mod stages;

@@ -110,6 +110,7 @@ impl<'a> Search<'a> {
             damper: false,
             gravity: false,
             actuation: false,
+            sensor: false,
             ..Flags::default()
         };
         // Flags of a file may have become options.

@@ -90,9 +90,11 @@ fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
     for block in ws.problem.blocks() {
         aref.extend(block.aref.iter().map(|x| x.to_f64()));
         r.extend(block.r.iter().map(|x| x.to_f64()));
-        for row in block.jacobian.chunks(block.dofs.len()) {
+        // A block may move no dof.
+        let width = block.dofs.len();
+        for row in 0..block.aref.len() {
             let mut dense = vec![0.0; nv];
-            for (&dof, j) in block.dofs.iter().zip(row) {
+            for (&dof, j) in block.dofs.iter().zip(&block.jacobian[row * width..]) {
                 dense[dof as usize] = j.to_f64();
             }
             jacobian.extend(dense);

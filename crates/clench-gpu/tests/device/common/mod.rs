@@ -36,12 +36,20 @@ pub fn text(file: &str) -> Arc<Model> {
 
 /// A batch with kernels made for its model, as they are by default; none where there is no device.
 pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
-    with_options(model, count, GpuOptions::default())
+    with_options(model, count, GpuOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A batch with kernels that serve any model, which Mesa's software device, slow to compile, compiles once for all tests. With the environment
 /// variable `CLENCH_GPU_KERNELS` set to `own`, those of the model.
 pub fn general_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
+    try_general_batch(model, count).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The same of a model that the device may refuse.
+pub fn try_general_batch<S: GpuReal>(
+    model: &Arc<Model>,
+    count: usize,
+) -> Result<Option<GpuBatch<S>>, GpuError> {
     let general_kernels = std::env::var_os("CLENCH_GPU_KERNELS").is_none_or(|wish| wish != "own");
     let options = GpuOptions {
         general_kernels,
@@ -56,22 +64,22 @@ fn with_options<S: GpuReal>(
     model: &Arc<Model>,
     count: usize,
     options: GpuOptions,
-) -> Option<GpuBatch<S>> {
+) -> Result<Option<GpuBatch<S>>, GpuError> {
     let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
     if wish == "skip" {
-        return None;
+        return Ok(None);
     }
     match GpuBatch::new(model.clone(), count, options) {
-        Ok(batch) => Some(batch),
+        Ok(batch) => Ok(Some(batch)),
         Err(error @ GpuError::NoDoublePrecision { .. }) => {
             eprintln!("skipped: {error}");
-            None
+            Ok(None)
         }
         Err(GpuError::NoDevice) if wish != "require" => {
             eprintln!("skipped: {}", GpuError::NoDevice);
-            None
+            Ok(None)
         }
-        Err(e) => panic!("{e}"),
+        Err(error) => Err(error),
     }
 }
 

@@ -1,0 +1,193 @@
+//! Random models of all that MJCF can say, beside the processor in double precision, where the environment variable `CLENCH_RANDOM_MODELS` names a
+//! folder of their files (`parity/write_random_models.py` fills it).
+
+use crate::common::{self, Random, computed, difference, random_state, try_general_batch, used};
+use clench_gpu::{GpuBatch, GpuError, GpuSolve};
+use clench_rigid::Sim;
+use clench_rigid::model::{Model, SensorKind};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// States of each model.
+const COUNT: usize = 4;
+/// Of the largest number of a field.
+const TOLERANCE: f64 = 1e-6;
+/// An actuator with more force than this moves by rounding, N or N m.
+const STRONGEST: f64 = 1e10;
+/// What follows from the solution of the convex problem, which is known to its duality gap.
+const SOLVED: [&str; 2] = ["qacc", "qfrc_constraint"];
+/// Sensors that read it.
+const SOLVED_SENSORS: [SensorKind; 9] = [
+    SensorKind::Touch,
+    SensorKind::Accelerometer,
+    SensorKind::Force,
+    SensorKind::Torque,
+    SensorKind::FrameLinAcc,
+    SensorKind::FrameAngAcc,
+    SensorKind::JointLimitFrc,
+    SensorKind::TendonLimitFrc,
+    SensorKind::Contact,
+];
+
+/// What was compared, and what could not be.
+#[derive(Debug, Default)]
+struct Tally {
+    models: usize,
+    refused: usize,
+    states: usize,
+    /// More contacts than the pool holds, more turns of loops than the device grants, or an error of the processor's.
+    ended: usize,
+    /// What rounding decides: contacts of shapes that overlap by as much in two directions, or in another order, and actuators so strong that they move
+    /// what their moment arm, a rounding, says.
+    undecided: usize,
+    sensors: usize,
+}
+
+#[test]
+fn random_models_agree() {
+    let Some(folder) = std::env::var_os("CLENCH_RANDOM_MODELS").map(PathBuf::from) else {
+        eprintln!("skipped: CLENCH_RANDOM_MODELS names no folder");
+        return;
+    };
+    let files = folder.read_dir().expect("a folder").flatten();
+    let mut files = Vec::from_iter(files.map(|file| file.path()));
+    files.retain(|path| path.extension().is_some_and(|e| e == "xml"));
+    files.sort();
+    let (mut tally, mut wrong) = (Tally::default(), Vec::new());
+    for path in &files {
+        // The reader refuses some, which the comparison with MuJoCo counts.
+        let Some(model) = clench_formats::load(path).ok().filter(|m| m.nv > 0) else {
+            continue;
+        };
+        if let Err(difference) = compare(&Arc::new(model), &mut tally) {
+            wrong.push(format!("{}: {difference}", path.display()));
+        }
+    }
+    println!("{tally:?}");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let compared = tally.states - tally.ended - tally.undecided;
+    assert!(2 * compared > tally.states, "few are compared: {tally:?}");
+}
+
+/// Compares a forward pass in a few states.
+fn compare(model: &Arc<Model>, tally: &mut Tally) -> Result<(), String> {
+    let mut batch = match try_general_batch::<f64>(model, COUNT) {
+        Ok(Some(batch)) => batch,
+        Ok(None) => return Ok(()),
+        Err(GpuError::Unsupported(_)) => {
+            tally.refused += 1;
+            return Ok(());
+        }
+        Err(error) => return Err(error.to_string()),
+    };
+    tally.models += 1;
+    let measures = batch.measure().is_ok();
+    tally.sensors += if measures { model.sensors.len() } else { 0 };
+    let mut random = Random::new(5);
+    let states = Vec::from_iter((0..COUNT).map(|_| random_state(model, &mut random, 0.2)));
+    common::upload(&mut batch, &states);
+    batch.forward().expect("a device");
+    let faults = batch.last_faults().expect("a device");
+    let solves = batch.solves().expect("a device");
+    let mut sim = Sim::<f64>::new(model.clone()).expect("a good model");
+    for (env, state) in states.iter().enumerate() {
+        tally.states += 1;
+        sim.state = common::convert(model, state);
+        if sim.forward().is_err() || faults[env].is_some() {
+            tally.ended += 1;
+            continue;
+        }
+        let found = Environment {
+            batch: &batch,
+            env,
+            solve: &solves[env],
+        };
+        let forces = &sim.workspace().force.actuator_force;
+        let is_strong = forces.iter().any(|force| force.abs() > STRONGEST);
+        if is_strong || !found.agrees("contacts", &computed(&sim)["contacts"]) {
+            tally.undecided += 1;
+            continue;
+        }
+        let compared = found.compare(&mut sim, measures);
+        compared.map_err(|difference| format!("state {env}: {difference}"))?;
+    }
+    Ok(())
+}
+
+/// An environment on the device after a forward pass.
+struct Environment<'a> {
+    batch: &'a GpuBatch<f64>,
+    env: usize,
+    solve: &'a GpuSolve,
+}
+
+impl Environment<'_> {
+    /// Its row of a field, as far as it is used.
+    fn row(&self, name: &str) -> Vec<f64> {
+        let width = self.batch.width(name).expect("a field");
+        let values = self.batch.read(name).expect("a device");
+        let row = values[self.env * width..][..width].to_vec();
+        used(name, row, self.solve, self.batch.model().nv)
+    }
+
+    fn agrees(&self, name: &str, expected: &[f64]) -> bool {
+        difference(&self.row(name), expected) <= TOLERANCE
+    }
+
+    /// Names what differs from the processor's.
+    fn compare(&self, sim: &mut Sim<f64>, measures: bool) -> Result<(), String> {
+        let mut fields = computed(sim).into_iter();
+        let field = fields.find(|(name, row)| !SOLVED.contains(name) && !self.agrees(name, row));
+        if let Some((name, expected)) = field {
+            return Err(format!("{name} is {:?}, not {expected:?}", self.row(name)));
+        }
+        let noslip = sim.settings().solver.noslip_iterations > 0;
+        let (distance, most) = self.distance_of_solutions(sim);
+        if !noslip && distance > most {
+            return Err(format!(
+                "qacc is {distance:.1e} off where gaps allow {most:.1e}"
+            ));
+        }
+        let data = if measures {
+            self.row("sensordata")
+        } else {
+            Vec::new()
+        };
+        let expected = &sim.workspace().sensors.data;
+        let model = self.batch.model();
+        for sensor in model.sensors.iter().filter(|_| measures) {
+            let solved = SOLVED_SENSORS.contains(&sensor.kind) && self.solve.rows > 0;
+            let (found, expected) = (
+                &data[sensor.numbers.clone()],
+                &expected[sensor.numbers.clone()],
+            );
+            if !solved && difference(found, expected) > TOLERANCE {
+                let kind = sensor.kind.name();
+                return Err(format!(
+                    "{kind} \"{}\" is {found:?}, not {expected:?}",
+                    sensor.name
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// How far the accelerations are from each other by the norm of M, and how far they may be: since the cost grows at least as fast as that
+    /// norm's square, each is at most √(2 gap) from the solution.
+    fn distance_of_solutions(&self, sim: &mut Sim<f64>) -> (f64, f64) {
+        let mass = sim.mass_matrix().expect("positions are known");
+        let (found, expected) = (self.row("qacc"), sim.workspace().qacc.clone());
+        let norm = |x: &[f64]| {
+            let rows = mass.chunks(x.len()).zip(x);
+            let product = |row: &[f64]| row.iter().zip(x).map(|(m, x)| m * x).sum::<f64>();
+            rows.map(|(row, x)| x * product(row))
+                .sum::<f64>()
+                .max(0.0)
+                .sqrt()
+        };
+        let apart = Vec::from_iter(found.iter().zip(&expected).map(|(a, b)| a - b));
+        let gaps = [f64::from(self.solve.gap), sim.stats().gap];
+        let allowed: f64 = gaps.map(|gap| (2.0 * gap).sqrt()).iter().sum();
+        (norm(&apart), allowed + TOLERANCE * (1.0 + norm(&expected)))
+    }
+}
