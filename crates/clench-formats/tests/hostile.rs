@@ -359,3 +359,16 @@ fn a_singular_mass_matrix_is_found_at_its_joint() {
     ];
     refused(load_str(text), words);
 }
+
+/// What starts over whenever it diverges would never come to the end of the search.
+#[test]
+fn a_length_range_that_diverges_is_an_error_with_autoreset_too() {
+    let file = "<mujoco>
+          <compiler><lengthrange accel='1e15'/></compiler>
+          <option><flag autoreset='enable'/></option>
+          <worldbody><body><joint name='a' type='slide'/><geom size='0.1'/></body></worldbody>
+          <actuator><muscle name='pull' joint='a'/></actuator>
+        </mujoco>";
+    let words = ["actuator \"pull\"", "length range", "diverged"];
+    refused(load_str(file), &words);
+}

@@ -119,6 +119,8 @@ impl<'a> Search<'a> {
             enable_joint_limit: None,
             warmstart: None,
             islands: None,
+            // What starts over never ends.
+            autoreset: None,
             ..model.options
         };
         if model.integrator == Integrator::Rk4 {
