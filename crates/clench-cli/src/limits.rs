@@ -1,14 +1,14 @@
 //! How much one call may ask of the machine, so that a few words on the command line or a small file end in a message and
 //! not in a machine without memory.
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use clap::Args;
 use std::fmt::Display;
 
 /// The most steps that are taken where neither --steps nor --time nor --ctrl says how many.
 pub const MAX_DEFAULT_STEPS: f64 = 1e6;
 /// The most steps that --time may mean: at a microsecond each they take thirty years.
-pub const MAX_STEPS: f64 = 1e15;
+const MAX_STEPS: f64 = 1e15;
 /// The longest header of an `.npy` file, in bytes: as long as NumPy itself reads one.
 pub const MAX_NPY_HEADER: usize = 10_000;
 /// The most brackets within each other in such a header. An array of plain numbers has two, and reading takes time that is
@@ -19,6 +19,16 @@ pub const MAX_NPY_NESTING: usize = 4;
 const GIGABYTE: f64 = 1e9;
 /// The most gigabytes of an array file or a record where nobody says another number.
 const DEFAULT_MEMORY: f64 = 4.0;
+
+/// How many steps --time means.
+pub fn steps_in(time: f64, timestep: f64) -> Result<usize> {
+    let steps = (time / timestep).round();
+    ensure!(
+        steps < MAX_STEPS,
+        "--time: {time} s in steps of {timestep} s are {steps:.3e} steps, more than the {MAX_STEPS:.0e} that can be taken"
+    );
+    Ok(steps as usize)
+}
 
 /// How much memory arrays may take.
 #[derive(Args)]

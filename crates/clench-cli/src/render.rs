@@ -1,6 +1,6 @@
 //! `clench render`: pictures and films of a model, without a window.
 
-use crate::limits::MemoryArguments;
+use crate::limits::{MemoryArguments, steps_in};
 use crate::message::tell;
 use crate::options::ModelArguments;
 use crate::replacement::{Replacement, require_other};
@@ -82,6 +82,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         (0.0..=3600.0).contains(&time),
         "--time: {time} is not between 0 and 3600 s"
     );
+    steps_in(time, sim.params().timestep)?;
+    let mut motion = Motion { sim, steps: 0 };
     let file = Replacement::begin(&arguments.out).with_context(|| context(&arguments.out))?;
     let mut renderer = Renderer::new(&model)?;
     let mut camera = Camera {
@@ -90,12 +92,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     };
     let written = match form {
         Form::Png => {
-            advance(&mut sim, time)?;
-            let image = camera.take(&mut sim)?;
+            motion.advance(time)?;
+            let image = camera.take(&mut motion.sim)?;
             write_png(file.file()?, &image)
         }
-        Form::Gif => write_gif(file.file()?, &mut sim, &mut camera, time),
-        Form::Mp4 => write_mp4(&file, &mut sim, &mut camera, time),
+        Form::Gif => write_gif(file.file()?, &mut motion, &mut camera, time),
+        Form::Mp4 => write_mp4(&file, &mut motion, &mut camera, time),
     };
     written.with_context(|| context(&arguments.out))?;
     file.finish().with_context(|| context(&arguments.out))?;
@@ -127,13 +129,22 @@ impl Camera<'_> {
     }
 }
 
-/// Steps up to a time.
-fn advance(sim: &mut Sim<f64>, time: f64) -> Result<()> {
-    let timestep = sim.params().timestep;
-    while sim.state.time + 0.5 * timestep < time {
-        sim.step()?;
+/// A simulation, and how many steps it has made: its own time begins where its start says, and anew where it starts over.
+struct Motion {
+    sim: Sim<f64>,
+    steps: usize,
+}
+
+impl Motion {
+    /// Steps until so many seconds have passed since the start.
+    fn advance(&mut self, time: f64) -> Result<()> {
+        let steps = steps_in(time, self.sim.params().timestep)?;
+        while self.steps < steps {
+            self.sim.step()?;
+            self.steps += 1;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 fn write_png(to: impl Write, image: &Image) -> Result<()> {
@@ -149,15 +160,15 @@ fn write_png(to: impl Write, image: &Image) -> Result<()> {
 
 /// Takes pictures of a motion, so many a second.
 fn film(
-    sim: &mut Sim<f64>,
+    motion: &mut Motion,
     camera: &mut Camera,
     time: f64,
     rate: f64,
     mut show: impl FnMut(Image) -> Result<()>,
 ) -> Result<()> {
     for k in 0..=(time * rate) as usize {
-        advance(sim, k as f64 / rate)?;
-        show(camera.take(sim)?)?;
+        motion.advance(k as f64 / rate)?;
+        show(camera.take(&mut motion.sim)?)?;
     }
     Ok(())
 }
@@ -166,13 +177,13 @@ fn film(
 const GIF_RATE: f64 = 25.0;
 
 /// Writes a film that repeats; each of its pictures has colours of its own.
-fn write_gif(to: impl Write, sim: &mut Sim<f64>, camera: &mut Camera, time: f64) -> Result<()> {
+fn write_gif(to: impl Write, motion: &mut Motion, camera: &mut Camera, time: f64) -> Result<()> {
     let side =
         |pixels: u32| u16::try_from(pixels).context("a film has at most 65535 pixels a side");
     let (width, height) = (side(camera.picture.width)?, side(camera.picture.height)?);
     let mut encoder = gif::Encoder::new(BufWriter::new(to), width, height, &[])?;
     encoder.set_repeat(gif::Repeat::Infinite)?;
-    film(sim, camera, time, GIF_RATE, |image| {
+    film(motion, camera, time, GIF_RATE, |image| {
         let mut frame = gif::Frame::from_rgb_speed(width, height, &image.rgb, 10);
         frame.delay = (100.0 / GIF_RATE) as u16;
         Ok(encoder.write_frame(&frame)?)
@@ -185,7 +196,7 @@ fn write_gif(to: impl Write, sim: &mut Sim<f64>, camera: &mut Camera, time: f64)
 const MP4_RATE: f64 = 30.0;
 
 /// Lets ffmpeg write a film. It gets the pictures as they are, and looks for its best encoder itself.
-fn write_mp4(to: &Replacement, sim: &mut Sim<f64>, camera: &mut Camera, time: f64) -> Result<()> {
+fn write_mp4(to: &Replacement, motion: &mut Motion, camera: &mut Camera, time: f64) -> Result<()> {
     let Some(path) = to.path() else {
         bail!("a film as .mp4 has to be a file on a disk");
     };
@@ -209,7 +220,7 @@ fn write_mp4(to: &Replacement, sim: &mut Sim<f64>, camera: &mut Camera, time: f6
             _ => anyhow!("ffmpeg: {error}"),
         })?;
     let mut pictures = encoder.stdin.take();
-    let shown = film(sim, camera, time, MP4_RATE, |image| {
+    let shown = film(motion, camera, time, MP4_RATE, |image| {
         let written = pictures.as_mut().map(|to| to.write_all(&image.rgb));
         Ok(written.transpose().map(drop)?)
     });

@@ -12,7 +12,8 @@ use std::process::{Command, Output};
 /// A red ball that falls through the picture before a camera that stands still.
 const BALL: &str =
     "<mujoco><worldbody><camera name='front' pos='0 -3 0' xyaxes='1 0 0 0 0 1' fovy='40'/>
-    <body pos='0 0 .8'><freejoint/><geom size='.2' rgba='1 0 0 1'/></body></worldbody></mujoco>";
+    <body pos='0 0 .8'><freejoint/><geom size='.2' rgba='1 0 0 1'/></body></worldbody>
+    <keyframe><key name='late' time='50'/></keyframe></mujoco>";
 
 fn draw(folder: &Path, words: &str) -> Command {
     let model = folder.join("ball.xml");
@@ -52,26 +53,33 @@ fn expected(time: f64) -> f64 {
     24.0 - 24.0 * z / (3.0 * 20f64.to_radians().tan())
 }
 
-#[test]
-fn a_picture_is_taken_after_the_time_that_is_asked_for() {
-    let folder = folder();
-    let Some(done) = output(draw(folder.path(), "--time 0.4 --out ball.png")) else {
-        return;
-    };
-    assert_eq!(code(&done), 0, "{}", errors(&done));
-    let decoder = png::Decoder::new(std::io::BufReader::new(
-        File::open(folder.path().join("ball.png")).unwrap(),
-    ));
+/// The picture in a file, and where it is red.
+fn height_in(path: &Path) -> f64 {
+    let decoder = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let frame = reader.next_frame(&mut pixels).unwrap();
     assert_eq!((frame.width, frame.height), (60, 48));
-    let found = height(&pixels);
-    assert!(
-        (found - expected(0.4)).abs() < 1.0,
-        "{found}, not {}",
-        expected(0.4)
-    );
+    height(&pixels)
+}
+
+/// Also where the simulation's own time begins later.
+#[test]
+fn a_picture_is_taken_after_the_time_that_is_asked_for() {
+    let folder = folder();
+    for start in ["", " --keyframe late"] {
+        let words = format!("--time 0.4 --out ball.png{start}");
+        let Some(done) = output(draw(folder.path(), &words)) else {
+            return;
+        };
+        assert_eq!(code(&done), 0, "{}", errors(&done));
+        let found = height_in(&folder.path().join("ball.png"));
+        assert!(
+            (found - expected(0.4)).abs() < 1.0,
+            "{found}, not {}",
+            expected(0.4)
+        );
+    }
 }
 
 #[test]
@@ -159,4 +167,18 @@ fn what_an_encoder_complains_of_is_said_and_leaves_the_old_film() {
         "{}",
         errors(&done)
     );
+}
+
+/// Its time begins anew whenever it diverges, after a second.
+#[test]
+fn a_film_of_what_starts_over_ends() {
+    let folder = folder();
+    let command = draw(folder.path(), "--time 3 --out ball.gif");
+    let option = "<option gravity='0 0 -9e9'><flag autoreset='enable'/></option>";
+    let falls_fast = BALL.replace("<mujoco>", &format!("<mujoco>{option}"));
+    fs::write(folder.path().join("ball.xml"), falls_fast).unwrap();
+    let Some(done) = output(command) else {
+        return;
+    };
+    assert_eq!(code(&done), 0, "{}", errors(&done));
 }

@@ -21,6 +21,7 @@ mod error;
 mod fields;
 mod kernels;
 mod layout;
+mod methods;
 mod parameters;
 mod pipelines;
 mod precision;

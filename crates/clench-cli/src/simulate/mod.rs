@@ -20,7 +20,7 @@ mod start;
 mod summary;
 
 use crate::interrupt::Interrupt;
-use crate::limits::{MAX_DEFAULT_STEPS, MAX_STEPS};
+use crate::limits::{MAX_DEFAULT_STEPS, steps_in};
 use crate::message::tell;
 use crate::npy::{Rows, read_rows};
 use crate::replacement::require_other;
@@ -151,12 +151,7 @@ fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> R
                 time.is_finite() && time >= 0.0,
                 "--time: {time} is not a number of seconds"
             );
-            let steps = (time / timestep).round();
-            ensure!(
-                steps < MAX_STEPS,
-                "--time: {time} s in steps of {timestep} s are {steps:.3e} steps, more than the {MAX_STEPS:.0e} that can be taken"
-            );
-            steps as usize
+            steps_in(time, timestep)?
         }
         (None, None) => match rows {
             Some(rows) => rows,

@@ -2,7 +2,7 @@
 
 use super::distances::{Measured, measured};
 use super::{Capacity, Tables};
-use crate::check::{METHODS, may_be_general, method_of_pair, points_of_pair};
+use crate::methods::{METHODS, may_be_general, method_of_pair, points_of_pair};
 use clench_collide::{MAX_POINTS, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
 use clench_math::Scalar;
 use clench_rigid::contact::{Candidate, contact_params, contact_range};

@@ -1,7 +1,7 @@
 //! Pairs of geoms whose distance a sensor measures. They stand behind the pairs that collide, touch as far apart as the sensor's cutoff,
 //! and have one contact each, the deepest.
 
-use crate::check::method_of_pair;
+use crate::methods::method_of_pair;
 use clench_collide::ShapeKind;
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::{Model, Sensor, SensorTarget};
