@@ -9,7 +9,7 @@ use crate::kernels::{Memory, preface};
 use crate::pipelines::{Arrays, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::{SolverMemory, check_dofs};
-use crate::tables::{Capacity, ENVS, MEASURES, Tables, is_read, ray_count, tells_late};
+use crate::tables::{Capacity, ENVS, MEASURES, Tables, has_sensor_history, is_read, ray_count};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -173,7 +173,7 @@ impl<S: GpuReal> GpuBatch<S> {
             settings,
             model,
         };
-        if tells_late(&batch.model) {
+        if has_sensor_history(&batch.model) {
             batch.observe(true)?;
         }
         batch.reset()?;

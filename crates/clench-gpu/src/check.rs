@@ -36,7 +36,7 @@ rules! {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };
     "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
-    "a sensor of this kind is not read yet, so that it cannot tell late": |s| {
+    "a sensor of this kind is not read yet, so that it can have no delay": |s| {
         let late = |(_, sensor): &(usize, &Sensor)| sensor.history.is_some();
         let mut late = s.model.sensors.iter().enumerate().filter(late);
         let (i, sensor) = late.find(|(_, sensor)| !is_read(s.model, sensor))?;

@@ -1,7 +1,7 @@
 //! What lies in the memory of the device for each environment, a line a field. Places, sizes, the constants of the kernels, and
 //! the names under which fields are read and written follow from these tables.
 
-use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity, tells_late};
+use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity, has_sensor_history};
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, Model};
 
@@ -111,8 +111,8 @@ fields! {
     cfrc_ext: 6 * m.nbody();
     contact_force: 6 * m.nbody();
     sensordata: m.nsensordata();
-    /// What sensors measure now, where any of them tells late.
-    measured_now: if tells_late(m) { m.nsensordata() } else { 0 };
+    /// What sensors measure now, before any delay.
+    undelayed: if has_sensor_history(m) { m.nsensordata() } else { 0 };
     /// Potential and kinetic energy.
     mechanical_energy: 2;
     /// Spatial forces of bodies, used up when they are projected.

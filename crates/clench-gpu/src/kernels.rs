@@ -19,8 +19,8 @@ pub(crate) const GRID: u32 = 32_768;
 pub(crate) enum Workers {
     /// One thread.
     Thread,
-    /// As many threads as the memory of the narrow phase is for, each in a workgroup with those of other environments.
-    Threads,
+    /// The threads of the narrow phase, each in a workgroup with those of other environments.
+    NarrowPhase,
     /// A thread for each ray of its sensors, likewise; where there are more than [`GRID`], each follows several.
     Rays,
     /// One workgroup.
@@ -32,7 +32,7 @@ impl Workers {
     /// (with half as many a card took a tenth longer).
     const fn threads(self) -> u32 {
         match self {
-            Workers::Thread | Workers::Threads | Workers::Rays => 32,
+            Workers::Thread | Workers::NarrowPhase | Workers::Rays => 32,
             Workers::Workgroup => 64,
         }
     }
@@ -75,7 +75,7 @@ kernels! {
     /// Which pairs are near.
     BROAD_PHASE = "broad_phase", Thread: "broad_phase";
     /// Where near pairs touch.
-    NARROW_PHASE = "narrow_phase", Threads: "near", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
+    NARROW_PHASE = "narrow_phase", NarrowPhase: "near", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
     /// Contacts.
     CONTACTS = "contacts", Thread: "near", "contacts";
@@ -95,7 +95,7 @@ kernels! {
     /// What rays of sensors meet, where somebody asks.
     RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
     /// What sensors measure, where somebody asks.
-    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "late_sensor", "optics", "sensors";
+    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "sensor_delay", "optics", "sensors";
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Thread: "verdict", "judge";
     /// The next state, by semi-implicit Euler.
@@ -230,7 +230,7 @@ impl Kernel {
         let of_threads = count.div_ceil(self.workers.threads());
         match self.workers {
             Workers::Thread => [of_threads, 1, 1],
-            Workers::Threads => [of_threads, preface.threads as u32, 1],
+            Workers::NarrowPhase => [of_threads, preface.threads as u32, 1],
             Workers::Rays => [of_threads, (preface.rays as u32).min(GRID), 1],
             Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
         }

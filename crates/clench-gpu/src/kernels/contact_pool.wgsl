@@ -2,11 +2,11 @@
 // one of each pair whose distance is measured. Frames are those of `clench-collide/src/frame.rs`.
 
 // Where the memory of this thread begins.
-var<private> first_of_mine: u32;
+var<private> thread_start: u32;
 
 // Where a field of this thread is.
-fn mine(field: u32) -> u32 {
-    return first_of_mine + field;
+fn thread_field(field: u32) -> u32 {
+    return thread_start + field;
 }
 
 // How many there are so far, and how many before the present pair.
@@ -23,7 +23,7 @@ fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent
         return;
     }
     if (found > first_of_pair && words[PAIR_DEEPEST + pair] == 1u) {
-        if (distance >= fetch(mine(FOUND_CONTACTS) + CONTACT_SIZE * first_of_pair + 1u)) {
+        if (distance >= fetch(thread_field(FOUND_CONTACTS) + CONTACT_SIZE * first_of_pair + 1u)) {
             return;
         }
         found = first_of_pair;
@@ -32,7 +32,7 @@ fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent
         overflowed = true;
         return;
     }
-    let place = mine(FOUND_CONTACTS) + CONTACT_SIZE * found;
+    let place = thread_field(FOUND_CONTACTS) + CONTACT_SIZE * found;
     put(place, f32(pair));
     put(place + 1u, distance);
     put3(place + 2u, position);

@@ -62,8 +62,8 @@ fn contact_key(reduction: u32, c: u32) -> f32 {
     }
 }
 
-// What is told of one contact, or of all that match together.
-struct Told {
+// What can be told of one contact, or of all that match together.
+struct ContactData {
     wrench: Spatial,
     motion: Spatial,
     distance: f32,
@@ -72,12 +72,12 @@ struct Told {
     tangent: vec3f,
 }
 
-fn told_of(c: u32, sign: f32) -> Told {
+fn contact_data(c: u32, sign: f32) -> ContactData {
     let place = CONTACTS + CONTACT_SIZE * c;
     let turned = vec3f(1.0, 1.0, sign);
     let wrench = contact_wrench(c);
     let motion = relative_motion(c);
-    return Told(
+    return ContactData(
         Spatial(wrench.angular * turned, wrench.linear * turned),
         Spatial(motion.angular * turned, motion.linear * turned),
         fetch(place + 1u),
@@ -88,8 +88,8 @@ fn told_of(c: u32, sign: f32) -> Told {
 }
 
 // All that match as one contact in world axes: it acts at the mean of their positions, each weighted by its force.
-fn net_force(s: u32, prm: u32) -> Told {
-    var net = Told();
+fn net_force(s: u32, prm: u32) -> ContactData {
+    var net = ContactData();
     var weight: f32 = 0.0;
     for (var c = 0u; c < reports[NCON * envs + env]; c++) {
         let sign = match_sign(s, prm, c);
@@ -115,40 +115,40 @@ fn net_force(s: u32, prm: u32) -> Told {
     return net;
 }
 
-fn write_told(query: u32, count: f32, told: Told, first: u32) {
+fn write_contact_data(query: u32, count: f32, data: ContactData, first: u32) {
     var out = first;
     for (var k = 0u; k < words[query + QUERY_NFIELD]; k++) {
         var numbers = vec3f();
         var scalar = false;
         switch words[query + QUERY_FIELDS + k] {
-            case TELL_FOUND: {
+            case CONTACT_DATA_FOUND: {
                 numbers.x = count;
                 scalar = true;
             }
-            case TELL_FORCE: {
-                numbers = told.wrench.linear;
+            case CONTACT_DATA_FORCE: {
+                numbers = data.wrench.linear;
             }
-            case TELL_TORQUE: {
-                numbers = told.wrench.angular;
+            case CONTACT_DATA_TORQUE: {
+                numbers = data.wrench.angular;
             }
-            case TELL_DIST: {
-                numbers.x = told.distance;
+            case CONTACT_DATA_DIST: {
+                numbers.x = data.distance;
                 scalar = true;
             }
-            case TELL_POS: {
-                numbers = told.position;
+            case CONTACT_DATA_POS: {
+                numbers = data.position;
             }
-            case TELL_NORMAL: {
-                numbers = told.normal;
+            case CONTACT_DATA_NORMAL: {
+                numbers = data.normal;
             }
-            case TELL_TANGENT: {
-                numbers = told.tangent;
+            case CONTACT_DATA_TANGENT: {
+                numbers = data.tangent;
             }
-            case TELL_LINVEL: {
-                numbers = told.motion.linear;
+            case CONTACT_DATA_LINVEL: {
+                numbers = data.motion.linear;
             }
             default: {
-                numbers = told.motion.angular;
+                numbers = data.motion.angular;
             }
         }
         put(out, numbers.x);
@@ -194,16 +194,16 @@ fn read_contacts(s: u32, prm: u32, out: u32) {
     let net = words[query + QUERY_REDUCTION] == NET_FORCE;
     var last = NONE;
     for (var first = 0u; first < words[s + SENSOR_DIM]; first += size) {
-        var told = Told();
-        var tells = count;
+        var data = ContactData();
+        var matches = count;
         if (net) {
-            told = net_force(s, prm);
+            data = net_force(s, prm);
         } else if (f32(first / size) < count) {
             last = next_match(s, prm, last);
-            told = told_of(last, match_sign(s, prm, last));
+            data = contact_data(last, match_sign(s, prm, last));
         } else {
-            tells = 0.0;
+            matches = 0.0;
         }
-        write_told(query, tells, told, out + first);
+        write_contact_data(query, matches, data, out + first);
     }
 }

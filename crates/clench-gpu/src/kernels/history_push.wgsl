@@ -1,4 +1,4 @@
-// Keeps the controls of a step for those that they reach late, and what sensors measured at its start for those that tell of it late. Sister of
+// Keeps the controls of a step for those that they reach late, and what sensors with delays measured at its start. Sister of
 // `history.rs` of clench-rigid.
 
 // Moves `count` numbers of a buffer down by `by`.
@@ -54,7 +54,7 @@ fn push_measurements() {
             keep(HISTORY + words[h], given(HISTORY + words[h]) + max(period, 0.0));
             let sample = take_sample(h);
             for (var part = 0u; part < words[h + 2u]; part++) {
-                keep(sample + part, fetch(MEASURED_NOW + words[s + SENSOR_PLACE] + part));
+                keep(sample + part, fetch(UNDELAYED + words[s + SENSOR_PLACE] + part));
             }
         }
         age_samples(h);

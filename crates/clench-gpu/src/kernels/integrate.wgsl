@@ -97,7 +97,7 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
         if (ANY_DELAY) {
             push_controls();
         }
-        if (ANY_LATE) {
+        if (ANY_SENSOR_HISTORY) {
             push_measurements();
         }
         reports[STEPS * envs + env] += 1u;

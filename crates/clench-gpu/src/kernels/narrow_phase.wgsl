@@ -72,7 +72,7 @@ fn narrow_phase(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let thread = id.y;
-    first_of_mine = THREADS + THREAD_SIZE * thread;
+    thread_start = THREADS + THREAD_SIZE * thread;
     found = 0u;
     overflowed = false;
     let count = reports[NNEAR * envs + env];

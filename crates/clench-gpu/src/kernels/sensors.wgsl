@@ -370,8 +370,8 @@ fn sensors(@builtin(global_invocation_id) id: vec3u) {
             let least = select(-3e38, -parameter(prm), clip == 1u);
             put(out + k, max(min(fetch(out + k), parameter(prm)), least));
         }
-        if (ANY_LATE && words[s + SENSOR_HISTORY] != NONE) {
-            tell_late(s, prm, out);
+        if (ANY_SENSOR_HISTORY && words[s + SENSOR_HISTORY] != NONE) {
+            delay_sensor(s, prm, out);
         }
     }
 }

@@ -11,14 +11,15 @@ use clench_rigid::options::MaxContacts;
 use clench_rigid::settings::StepSettings;
 use std::f64::consts::PI;
 
-/// The pool of an environment, where the options leave it open and the pairs could fill a larger one: as many contacts as these numbers are
-/// rows of J for, three times over, within bounds. Contacts beyond are a fault, never left out in silence.
+/// The contact pool of an environment, where the options leave it open and the pairs could fill a larger one, has as many contacts as J of their
+/// rows, kept three times over (J, its columns, W J), has room for in so many numbers. Contacts beyond are a fault, never left out in silence.
 const POOL_NUMBERS: usize = 12_000;
 /// Its bounds.
 const POOL: [usize; 2] = [48, 128];
-/// Pairs of a model for each thread of the narrow phase, of which most are far apart; and where some are of any convex shapes, of which
-/// one takes as long as many others.
-const PAIRS_OF_A_THREAD: [usize; 2] = [32, 8];
+/// Pairs of a model for each thread of the narrow phase: most of them are far apart.
+const PAIRS_OF_A_THREAD: usize = 32;
+/// The same where some are of any convex shapes, of which one takes as long as many others.
+const CONVEX_PAIRS_OF_A_THREAD: usize = 8;
 /// Threads of the narrow phase, at most: each has memory for all contacts of the environment.
 const MOST_THREADS: usize = 8;
 /// Vertices of the polytope of overlapping shapes. Single precision has no use for the 128 that the processor has room for.
@@ -113,7 +114,10 @@ impl Tables {
         let method = |c: &Candidate| method_of_pair(c.kinds).unwrap_or(0);
         self.words("PAIR_METHOD", all.iter().map(method));
         let general = all.iter().any(|c| may_be_general(c.kinds));
-        let of_a_thread = PAIRS_OF_A_THREAD[usize::from(general)];
+        let of_a_thread = match general {
+            true => CONVEX_PAIRS_OF_A_THREAD,
+            false => PAIRS_OF_A_THREAD,
+        };
         capacity.threads = (all.len() / of_a_thread).clamp(1, MOST_THREADS);
         for (code, name) in METHODS.iter().enumerate() {
             let used = all.iter().any(|c| method(c) == code);

@@ -18,7 +18,7 @@ mod tendons;
 pub(crate) use constraints::BLOCK_SIZE;
 pub(crate) use contacts::CONTACT_SIZE;
 pub(crate) use rays::ray_count;
-pub(crate) use sensors::{is_read, tells_late};
+pub(crate) use sensors::{has_sensor_history, is_read};
 
 use crate::layout::Layout;
 use clench_math::Scalar;

@@ -139,8 +139,8 @@ pub(crate) fn is_read(m: &Model, sensor: &Sensor) -> bool {
     target(m, sensor).is_some()
 }
 
-/// Whether any sensor tells late.
-pub(crate) fn tells_late(m: &Model) -> bool {
+/// Whether any sensor has a delay or a period, and so a buffer of what it measured.
+pub(crate) fn has_sensor_history(m: &Model) -> bool {
     m.sensors.iter().any(|sensor| sensor.history.is_some())
 }
 
@@ -158,7 +158,7 @@ impl Tables {
             );
         }
         for &field in ContactField::ALL {
-            let name = format!("TELL_{}", field.name().to_uppercase());
+            let name = format!("CONTACT_DATA_{}", field.name().to_uppercase());
             self.constant(&name, field as usize);
         }
         self.constant("SENSOR_SIZE", SENSOR_FIELDS.len());
@@ -168,7 +168,7 @@ impl Tables {
         let read = |(k, s)| Some((k, s, target(m, s)?));
         let readable = Vec::from_iter(m.sensors.iter().enumerate().filter_map(read));
         self.flag("SENSING", m.flags.sensor);
-        self.flag("ANY_LATE", tells_late(m));
+        self.flag("ANY_SENSOR_HISTORY", has_sensor_history(m));
         let buffers = readable.iter().map(|(_, s, _)| s.history.as_ref());
         let mut buffers = self.histories("SENSOR_HISTORIES", buffers).into_iter();
         let (mut count, mut measured) = (0, 0);

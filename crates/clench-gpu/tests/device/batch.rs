@@ -339,7 +339,7 @@ fn histories_and_springs_that_yield_are_those_of_the_processor() {
     device.restore(&start).expect("the same model");
     run(&mut device);
     assert_bits(device.state.history.as_slice(), &before, "history");
-    // What sensors tell late, by steps that are told the time and by many at once.
+    // Sensors with delays, by steps that are told the time and by many at once.
     for steps in [0, 20] {
         device.step_n(steps).expect("good states");
         processor.step_n(steps).expect("good states");

@@ -9,7 +9,7 @@ use super::targets::OutputRows;
 use super::{Batch, BatchOptions, Controls, EnvStatus, Precision, StateRows, Summary};
 use crate::check::{beyond_bounds, input_fault};
 use crate::error::{Fault, SimError};
-use crate::model::Model;
+use crate::model::{Model, Sensor, SensorKind};
 use crate::output::Output;
 use crate::place::joint_of;
 use crate::state::FIELDS;
@@ -207,7 +207,9 @@ impl<S: Precision> Batch<S> {
         may_restart: bool,
         summary: &mut Summary,
     ) -> Result<(), SimError> {
-        if mirror.backend.holds("start_time") {
+        let reads_time = |s: &Sensor| s.kind == SensorKind::Clock || s.history.is_some();
+        let is_read = self.model.sensors.iter().any(reads_time);
+        if is_read && mirror.backend.holds("start_time") {
             let times = self.state.time.as_slice().iter();
             mirror.numbers.clear();
             mirror.numbers.extend(times.map(|&time| S::new(time)));

@@ -22,22 +22,22 @@ fn fetch_index(place: u32) -> u32 {
 }
 
 fn polytope_w(k: u32) -> vec3f {
-    return fetch3(mine(POLYTOPE) + 9u * k);
+    return fetch3(thread_field(POLYTOPE) + 9u * k);
 }
 
 fn polytope_vertex(k: u32) -> Vertex {
-    return Vertex(fetch3(mine(POLYTOPE) + 9u * k), fetch3(mine(POLYTOPE) + 9u * k + 3u), fetch3(mine(POLYTOPE) + 9u * k + 6u));
+    return Vertex(fetch3(thread_field(POLYTOPE) + 9u * k), fetch3(thread_field(POLYTOPE) + 9u * k + 3u), fetch3(thread_field(POLYTOPE) + 9u * k + 6u));
 }
 
 fn push_vertex(vertex: Vertex) {
-    put3(mine(POLYTOPE) + 9u * vertex_count, vertex.w);
-    put3(mine(POLYTOPE) + 9u * vertex_count + 3u, vertex.a);
-    put3(mine(POLYTOPE) + 9u * vertex_count + 6u, vertex.b);
+    put3(thread_field(POLYTOPE) + 9u * vertex_count, vertex.w);
+    put3(thread_field(POLYTOPE) + 9u * vertex_count + 3u, vertex.a);
+    put3(thread_field(POLYTOPE) + 9u * vertex_count + 6u, vertex.b);
     vertex_count++;
 }
 
 fn face_at(face: u32) -> u32 {
-    return mine(POLYTOPE_FACE) + FACE_SIZE * face;
+    return thread_field(POLYTOPE_FACE) + FACE_SIZE * face;
 }
 
 // How far beyond a face a vertex must be to count.
@@ -105,7 +105,7 @@ fn nearest_face_of_polytope() -> u32 {
 
 fn remove_face(face: u32) {
     put(face_at(face) + 11u, 1.0);
-    put(mine(POLYTOPE_VISIBLE) + visible_count, f32(face));
+    put(thread_field(POLYTOPE_VISIBLE) + visible_count, f32(face));
     visible_count++;
 }
 
@@ -116,12 +116,12 @@ fn find_horizon(first: u32, w: vec3f) {
     remove_face(first);
     var depth = 0u;
     for (var k = 3u; k > 0u; k--) {
-        put(mine(POLYTOPE_STACK) + depth, fetch(face_at(first) + 2u + k));
+        put(thread_field(POLYTOPE_STACK) + depth, fetch(face_at(first) + 2u + k));
         depth++;
     }
     while (depth > 0u) {
         depth--;
-        let side = fetch_index(mine(POLYTOPE_STACK) + depth);
+        let side = fetch_index(thread_field(POLYTOPE_STACK) + depth);
         let face = side >> 2u;
         let start = side & 3u;
         let place = face_at(face);
@@ -132,16 +132,16 @@ fn find_horizon(first: u32, w: vec3f) {
         // One without area has no normal and goes with its neighbours.
         if (any(normal != vec3f()) && dot(normal, w) - fetch(place + 9u) <= visibility()) {
             if (horizon_count < POLYTOPE_FACES) {
-                put(mine(POLYTOPE_HORIZON) + 3u * horizon_count, f32(side));
-                put(mine(POLYTOPE_HORIZON) + 3u * horizon_count + 1u, fetch(place + start));
-                put(mine(POLYTOPE_HORIZON) + 3u * horizon_count + 2u, fetch(place + (start + 1u) % 3u));
+                put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count, f32(side));
+                put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count + 1u, fetch(place + start));
+                put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count + 2u, fetch(place + (start + 1u) % 3u));
             }
             horizon_count++;
             continue;
         }
         remove_face(face);
-        put(mine(POLYTOPE_STACK) + depth, fetch(place + 3u + (start + 2u) % 3u));
-        put(mine(POLYTOPE_STACK) + depth + 1u, fetch(place + 3u + (start + 1u) % 3u));
+        put(thread_field(POLYTOPE_STACK) + depth, fetch(place + 3u + (start + 2u) % 3u));
+        put(thread_field(POLYTOPE_STACK) + depth + 1u, fetch(place + 3u + (start + 1u) % 3u));
         depth += 2u;
     }
 }
@@ -151,12 +151,12 @@ fn horizon_is_closed() -> bool {
     if (horizon_count != visible_count + 2u || horizon_count > POLYTOPE_FACES) {
         return false;
     }
-    var start = fetch(mine(POLYTOPE_HORIZON) + 3u * (horizon_count - 1u) + 1u);
+    var start = fetch(thread_field(POLYTOPE_HORIZON) + 3u * (horizon_count - 1u) + 1u);
     for (var k = 0u; k < horizon_count; k++) {
-        if (start != fetch(mine(POLYTOPE_HORIZON) + 3u * k + 2u)) {
+        if (start != fetch(thread_field(POLYTOPE_HORIZON) + 3u * k + 2u)) {
             return false;
         }
-        start = fetch(mine(POLYTOPE_HORIZON) + 3u * k + 1u);
+        start = fetch(thread_field(POLYTOPE_HORIZON) + 3u * k + 1u);
     }
     return true;
 }
@@ -164,7 +164,7 @@ fn horizon_is_closed() -> bool {
 // The number of the new face at side `k` of the horizon: in the places of the visible faces, and two more.
 fn new_face(k: u32, old: u32) -> u32 {
     if (k < visible_count) {
-        return fetch_index(mine(POLYTOPE_VISIBLE) + k);
+        return fetch_index(thread_field(POLYTOPE_VISIBLE) + k);
     }
     return old + k - visible_count;
 }
@@ -177,9 +177,9 @@ fn stitch() {
         let face = new_face(k, old);
         let before = new_face(select(k - 1u, horizon_count - 1u, k == 0u), old);
         let after = new_face(select(k + 1u, 0u, k + 1u == horizon_count), old);
-        let side = fetch_index(mine(POLYTOPE_HORIZON) + 3u * k);
-        let start = fetch_index(mine(POLYTOPE_HORIZON) + 3u * k + 1u);
-        let to = fetch_index(mine(POLYTOPE_HORIZON) + 3u * k + 2u);
+        let side = fetch_index(thread_field(POLYTOPE_HORIZON) + 3u * k);
+        let start = fetch_index(thread_field(POLYTOPE_HORIZON) + 3u * k + 1u);
+        let to = fetch_index(thread_field(POLYTOPE_HORIZON) + 3u * k + 2u);
         insert_face(face, vec3u(to, start, tip), vec3u(side, 4u * after + 2u, 4u * before + 1u));
         put(face_at(side >> 2u) + 3u + (side & 3u), f32(4u * face));
     }
@@ -198,7 +198,7 @@ fn add_to_polytope(face: u32, vertex: Vertex) -> bool {
     find_horizon(face, vertex.w);
     if (!horizon_is_closed()) {
         for (var k = 0u; k < visible_count; k++) {
-            put(face_at(fetch_index(mine(POLYTOPE_VISIBLE) + k)) + 11u, 0.0);
+            put(face_at(fetch_index(thread_field(POLYTOPE_VISIBLE) + k)) + 11u, 0.0);
         }
         return false;
     }

@@ -20,7 +20,7 @@ fn add_to_face(point: vec3f, range: f32) {
     let contact = contact_below(point);
     if (contact.distance <= range) {
         face_touches = true;
-        put_terrain_point(mine(TERRAIN_FACE) + TERRAIN_POINT_SIZE * face_list_count, contact);
+        put_terrain_point(thread_field(TERRAIN_FACE) + TERRAIN_POINT_SIZE * face_list_count, contact);
         face_list_count++;
     }
 }

@@ -43,7 +43,7 @@ fn put_terrain_point(place: u32, point: TerrainPoint) {
 
 // Where a point of a manifold is in memory.
 fn manifold_point(manifold: u32, k: u32) -> u32 {
-    return mine(TERRAIN) + TERRAIN_POINT_SIZE * (manifold * (MAX_TERRAIN_POINTS + 1u) + k);
+    return thread_field(TERRAIN) + TERRAIN_POINT_SIZE * (manifold * (MAX_TERRAIN_POINTS + 1u) + k);
 }
 
 // The distance of the deepest point that counts.

@@ -141,8 +141,8 @@ fn ball_on_triangle() -> bool {
     }
     if (all(near.weights > vec3f()) || admits_normal(feature_of_triangle(Gap(normal, gap, true)))) {
         deepest = deeper(deepest, point);
-        put_terrain_point(mine(TERRAIN_PATCH), point);
-        add_list(mine(TERRAIN_PATCH), 1u, COUNTED, -UNMOVABLE);
+        put_terrain_point(thread_field(TERRAIN_PATCH), point);
+        add_list(thread_field(TERRAIN_PATCH), 1u, COUNTED, -UNMOVABLE);
     } else {
         rejected = deeper(rejected, point);
     }
@@ -181,7 +181,7 @@ fn begin_round(second: Body, turn: mat3x3f) -> u32 {
     find_face_contacts(terrain_range);
     // No deeper than the deepest distance so far: then only the face itself or a convex feature can add contacts.
     if (face_distance >= deepest.distance - terrain_tolerance && (face_touches || is_hollow())) {
-        add_list(mine(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
+        add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
         return NOTHING;
     }
     if (separates(ways[2], nearest[2])) {
@@ -190,7 +190,7 @@ fn begin_round(second: Body, turn: mat3x3f) -> u32 {
     // Deep within its walls: then no depth of the prism is smaller than through its face.
     if (triangle_surrounds(lowest - triangle_normal * max(height, 0.0), max(-height, 0.0))) {
         deepest = deeper(deepest, contact_below(lowest));
-        add_list(mine(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
+        add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
         return NOTHING;
     }
     // A convex edge or vertex touches along one normal with all of the prisms around it.
@@ -221,14 +221,14 @@ fn classify() -> bool {
     if (face_touches) {
         shallowest = max(shallowest, face_distance);
     }
-    add_list(mine(TERRAIN_FACE), face_list_count, PROVISIONAL, -UNMOVABLE);
+    add_list(thread_field(TERRAIN_FACE), face_list_count, PROVISIONAL, -UNMOVABLE);
     return best.gap - body_b.radius < rejected.distance;
 }
 
 // Lists a contact of the present triangle's patch; a patch has fewer than there is room for.
 fn add_to_patch(point: TerrainPoint) {
     if (patch_count < PATCH_LIST_POINTS) {
-        put_terrain_point(mine(TERRAIN_PATCH) + TERRAIN_POINT_SIZE * patch_count, point);
+        put_terrain_point(thread_field(TERRAIN_PATCH) + TERRAIN_POINT_SIZE * patch_count, point);
         patch_count++;
     }
 }
@@ -236,7 +236,7 @@ fn add_to_patch(point: TerrainPoint) {
 // Takes the patch of a triangle, if it has one, and adds what the round has listed to a manifold.
 fn end_round() {
     for (var k = 0u; k < patch_count; k++) {
-        let point = terrain_point(mine(TERRAIN_PATCH) + TERRAIN_POINT_SIZE * k);
+        let point = terrain_point(thread_field(TERRAIN_PATCH) + TERRAIN_POINT_SIZE * k);
         if (patch_is == REJECTED) {
             rejected = deeper(rejected, point);
         } else if (patch_is != KNOWN) {
@@ -244,9 +244,9 @@ fn end_round() {
         }
     }
     if (patch_count > 0u && patch_is == ALONG_NORMAL && face_touches) {
-        add_list(mine(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
+        add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
     } else if (patch_count > 0u && patch_is != REJECTED) {
-        add_list(mine(TERRAIN_PATCH), patch_count, COUNTED, -UNMOVABLE);
+        add_list(thread_field(TERRAIN_PATCH), patch_count, COUNTED, -UNMOVABLE);
         // Where there is no more room it is found again.
         if (patch_is != KNOWN && feature_count < MAX_FEATURES) {
             features[feature_count] = feature_of_triangle(best);
@@ -281,8 +281,8 @@ fn close(round: u32) {
         witness = rejected;
     }
     if (witness.distance < UNMOVABLE && deepest_of_manifold() > witness.distance + terrain_tolerance) {
-        put_terrain_point(mine(TERRAIN_PATCH), witness);
-        add_list(mine(TERRAIN_PATCH), 1u, COUNTED, -UNMOVABLE);
+        put_terrain_point(thread_field(TERRAIN_PATCH), witness);
+        add_list(thread_field(TERRAIN_PATCH), 1u, COUNTED, -UNMOVABLE);
     }
 }
 

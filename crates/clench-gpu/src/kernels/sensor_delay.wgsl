@@ -1,12 +1,12 @@
-// Sensors that tell late, or do not measure in every step. Sister of `delay` in `sensor/mod.rs`.
+// Sensors with a delay or a period. Sister of `delay` in `sensor/mod.rs`.
 
 // Keeps what was measured, and puts what was measured before in the place of what is told late, or not measured now.
-fn tell_late(s: u32, prm: u32, out: u32) {
+fn delay_sensor(s: u32, prm: u32, out: u32) {
     let h = words[s + SENSOR_HISTORY];
     let late = parameter(prm + 5u);
     let past = late > 0.0 || !is_due(h, parameter(prm + 6u));
     for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
-        put(MEASURED_NOW + words[s + SENSOR_PLACE] + k, fetch(out + k));
+        put(UNDELAYED + words[s + SENSOR_PLACE] + k, fetch(out + k));
         if (past) {
             put(out + k, read_history(h, -late, k));
         }
