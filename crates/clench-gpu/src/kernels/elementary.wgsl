@@ -8,7 +8,7 @@ const EPSILON = 1.1920928955078125e-7;
 const ROOT_OF_EPSILON = 3.4526698300124393e-4;
 const SMALLEST = 1.1754943508222875e-38;
 
-// Whether a number is infinite or undefined. ContactData by its bits: a compiler for shaders may assume that there are none such.
+// Whether a number is infinite or undefined. Told by its bits: a compiler for shaders may assume that there are none such.
 fn is_wild(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) == 0x7f800000u;
 }

@@ -5,7 +5,7 @@
 const EPSILON = 2.220446049250313e-16;
 const ROOT_OF_EPSILON = 1.4901161193847656e-8;
 const SMALLEST = 2.2250738585072014e-308;
-// Whether a number is infinite or undefined, or beyond what single precision holds, which no number of a motion is. ContactData by its bits there: a
+// Whether a number is infinite or undefined, or beyond what single precision holds, which no number of a motion is. Told by its bits there: a
 // compiler for shaders may assume that there are none such.
 fn is_wild(x: f64) -> bool {
     return (bitcast<u32>(f32(x)) & 0x7f800000u) == 0x7f800000u;

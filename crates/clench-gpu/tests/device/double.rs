@@ -50,6 +50,17 @@ fn joints_tendons_actuators_and_constraints_agree() {
     }
 }
 
+/// A current whose time constant is hardly longer than a step.
+#[test]
+fn currents_of_motors_agree() {
+    let file = "<mujoco>
+          <option timestep='0.002'/>
+          <worldbody><body><joint name='shaft'/><geom size='0.1'/></body></worldbody>
+          <actuator><dcmotor joint='shaft' resistance='1' inductance='0.0045 0' motorconst='0.1' input=''/></actuator>
+        </mujoco>";
+    agree(&text(file), 20, 0.5, TOLERANCE);
+}
+
 /// What single precision leaves undecided in such a heap, double precision does not.
 #[test]
 fn shapes_that_overlap_agree() {
