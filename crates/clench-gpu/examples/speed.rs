@@ -15,6 +15,8 @@ use std::time::Instant;
 const WARM_UP: usize = 24;
 /// Steps for which controls stay.
 const HOLD: usize = 8;
+/// Steps of which each kernel is timed.
+const TIMED: usize = 8;
 /// How long a measurement lasts at most, s, however few steps have been made by then.
 const LONGEST: f64 = 5.0;
 
@@ -47,9 +49,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let center = cpu.state.ctrl.as_slice()[..model.nu()].to_vec();
         let mut controls = Controls::new(&model, &center, count);
-        let gpu_speed = speed(count, steps, |steps| {
+        let gpu_speed = speed(count, steps, |steps, last| {
             write(&mut gpu, "ctrl", controls.next())?;
             gpu.iter_mut().try_for_each(|batch| batch.step(steps))?;
+            if last {
+                gpu.iter_mut().try_for_each(GpuBatch::finish)?;
+            }
             Ok(())
         })?;
         // At once: a card that has nothing to do slows its clock.
@@ -62,15 +67,17 @@ fn main() -> Result<(), Box<dyn Error>> {
                 rows += solve.rows;
                 iterations += solve.iterations;
             }
-            for (k, (stage, seconds)) in batch.time_stages()?.into_iter().enumerate() {
-                match times.get_mut(k) {
-                    Some((_, all)) => *all += seconds,
-                    None => times.push((stage, seconds)),
+            for _ in 0..TIMED {
+                for (k, (stage, seconds)) in batch.time_stages()?.into_iter().enumerate() {
+                    match times.get_mut(k) {
+                        Some((_, all)) => *all += seconds / TIMED as f64,
+                        None => times.push((stage, seconds / TIMED as f64)),
+                    }
                 }
             }
         }
         let mut controls = Controls::new(&model, &center, count);
-        let cpu_speed = speed(count, steps, |steps| {
+        let cpu_speed = speed(count, steps, |steps, _| {
             cpu.state
                 .ctrl
                 .as_mut_slice()
@@ -129,59 +136,63 @@ fn write(batches: &mut [GpuBatch], name: &str, values: &[f32]) -> Result<(), Gpu
     })
 }
 
-/// Controls of all environments, the same in every run.
+/// Controls of all environments, the same in every run: made beforehand, a few times, and then in turn.
 struct Controls {
-    /// Of each actuator the middle and half of what it may differ by.
-    ranges: Vec<(f32, f32)>,
-    values: Vec<f32>,
-    random: u64,
+    made: Vec<Vec<f32>>,
+    turn: usize,
 }
 
 impl Controls {
+    /// How many there are.
+    const COUNT: usize = 8;
+
     fn new(model: &Model, center: &[f32], count: usize) -> Self {
         let limited = (model.actuators.iter()).flat_map(|actuator| actuator.ctrllimited.iter());
         let ranges = limited.zip(&model.params.actuator_ctrlrange).zip(center);
-        let ranges = ranges.map(|((&limited, range), &center)| {
+        let ranges = Vec::from_iter(ranges.map(|((&limited, range), &center)| {
             let half = if limited {
                 0.5 * (range[1] - range[0])
             } else {
                 1.0
             };
             (center, 0.01 * half as f32)
-        });
+        }));
+        let mut random: u64 = 0x9E37_79B9_7F4A_7C15;
+        let mut value = |&(center, size): &(f32, f32)| {
+            // Marsaglia's xorshift.
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            let unit = (random >> 40) as f32 / (1 << 24) as f32;
+            center + size * (2.0 * unit - 1.0)
+        };
+        let mut one = || Vec::from_iter((0..count).flat_map(|_| &ranges).map(&mut value));
         Controls {
-            ranges: ranges.collect(),
-            values: vec![0.0; center.len() * count],
-            random: 0x9E37_79B9_7F4A_7C15,
+            made: (0..Self::COUNT).map(|_| one()).collect(),
+            turn: 0,
         }
     }
 
     fn next(&mut self) -> &[f32] {
-        for (value, (center, size)) in self.values.iter_mut().zip(self.ranges.iter().cycle()) {
-            // Marsaglia's xorshift.
-            self.random ^= self.random << 13;
-            self.random ^= self.random >> 7;
-            self.random ^= self.random << 17;
-            let unit = (self.random >> 40) as f32 / (1 << 24) as f32;
-            *value = center + size * (2.0 * unit - 1.0);
-        }
-        &self.values
+        self.turn += 1;
+        &self.made[self.turn % Self::COUNT]
     }
 }
 
-/// Steps of environments in a second.
+/// Steps of environments in a second. The last call is told so: it returns when all steps are done.
 fn speed(
     count: usize,
     steps: usize,
-    mut step: impl FnMut(usize) -> Result<(), Box<dyn Error>>,
+    mut step: impl FnMut(usize, bool) -> Result<(), Box<dyn Error>>,
 ) -> Result<f64, Box<dyn Error>> {
-    for _ in 0..WARM_UP / HOLD {
-        step(HOLD)?;
+    for k in 1..=WARM_UP / HOLD {
+        step(HOLD, k == WARM_UP / HOLD)?;
     }
-    let (start, mut done) = (Instant::now(), 0);
-    while done < steps && start.elapsed().as_secs_f64() < LONGEST {
-        step(HOLD)?;
+    let (start, mut done, mut last) = (Instant::now(), 0, false);
+    while !last {
         done += HOLD;
+        last = done >= steps || start.elapsed().as_secs_f64() >= LONGEST;
+        step(HOLD, last)?;
     }
     Ok((done * count) as f64 / start.elapsed().as_secs_f64())
 }

@@ -2,11 +2,12 @@
 
 use crate::base::Base;
 use crate::check::{Simulation, check};
+use crate::clock::Clock;
 use crate::device::{Device, DeviceInfo};
 use crate::error::GpuError;
 use crate::fields::{self, Fields};
 use crate::kernels::{Memory, preface};
-use crate::pipelines::{Arrays, Pipelines};
+use crate::pipelines::{Arrays, Pipeline, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::{SolverMemory, check_dofs};
 use crate::tables::{Capacity, ENVS, MEASURES, Tables, has_sensor_history, is_read, ray_count};
@@ -16,7 +17,6 @@ use clench_rigid::options::RigidOptions;
 use clench_rigid::settings::StepSettings;
 use std::fmt;
 use std::sync::Arc;
-use std::time::Instant;
 use zerocopy::IntoBytes;
 
 /// Steps that are handed to the device at a time: enough that it never waits, few enough that no watchdog thinks it hangs.
@@ -51,10 +51,12 @@ pub struct GpuBatch<S = f32> {
     /// Parameters of environments, parameter by parameter, environment next to environment; none while all have the model's.
     pub(crate) own: Vec<S>,
     pub(crate) base: Base<S>,
-    pipelines: Pipelines,
+    pub(crate) pipelines: Pipelines,
     pub(crate) capacity: Capacity,
     pub(crate) settings: StepSettings,
     model: Arc<Model>,
+    /// The last steps that were handed to the device, on which it may still be working.
+    pending: Option<wgpu::SubmissionIndex>,
 }
 
 impl<S> fmt::Debug for GpuBatch<S> {
@@ -172,6 +174,7 @@ impl<S: GpuReal> GpuBatch<S> {
             capacity,
             settings,
             model,
+            pending: None,
         };
         if has_sensor_history(&batch.model) {
             batch.observe(true)?;
@@ -181,18 +184,34 @@ impl<S: GpuReal> GpuBatch<S> {
     }
 
     /// Advances all environments that run by so many time steps. What a fault is of one environment shows in
-    /// [`statuses`](Self::statuses).
+    /// [`statuses`](Self::statuses). The device is still at the last of them when this returns, so that it need not wait for what comes
+    /// next: whatever reads waits, and so does [`finish`](Self::finish).
     ///
     /// # Errors
-    /// That the device was lost.
+    /// That the device was lost, perhaps in the steps of the call before.
     pub fn step(&mut self, steps: usize) -> Result<(), GpuError> {
         let mut left = steps;
         while left > 0 {
             let now = left.min(STEPS_AT_A_TIME);
-            self.submit(|batch, encoder| (0..now).for_each(|_| batch.encode_step(encoder)))?;
+            let commands =
+                self.commands(|batch, encoder| (0..now).for_each(|_| batch.encode_step(encoder)));
+            let submission = self.device.queue.submit([commands]);
+            if let Some(before) = self.pending.replace(submission) {
+                self.device.wait(before)?;
+            }
             left -= now;
         }
         Ok(())
+    }
+
+    /// Waits until the device has made all steps.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub fn finish(&mut self) -> Result<(), GpuError> {
+        self.pending
+            .take()
+            .map_or(Ok(()), |last| self.device.wait(last))
     }
 
     /// Computes everything that follows from the states, and leaves these alone.
@@ -202,7 +221,7 @@ impl<S: GpuReal> GpuBatch<S> {
     pub fn forward(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
             batch.clear_trouble(encoder);
-            batch.encode(encoder, batch.pipelines.forward_and_observed());
+            batch.encode(encoder, None, batch.pipelines.forward_and_observed());
         })
     }
 
@@ -214,26 +233,27 @@ impl<S: GpuReal> GpuBatch<S> {
         self.submit(|batch, encoder| {
             batch.clear_trouble(encoder);
             let forward = batch.pipelines.forward_and_observed();
-            batch.encode(encoder, forward.chain([&batch.pipelines.verdict]));
+            batch.encode(encoder, None, forward.chain([&batch.pipelines.verdict]));
         })
     }
 
-    /// Computes as [`forward`](Self::forward) does, one kernel after the other: how long the host waited for each, s. That is more
-    /// than the kernel alone took, by the time of a call to the device.
+    /// Advances all environments that run by a time step, and tells how long each kernel took by the device's own clock, s, in order.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// A device without such a clock; that it was lost.
     pub fn time_stages(&mut self) -> Result<Vec<(&'static str, f64)>, GpuError> {
-        let mut times = Vec::new();
-        for stage in 0..self.pipelines.forward.len() {
-            let start = Instant::now();
-            self.submit(|batch, encoder| {
-                batch.encode(encoder, batch.pipelines.forward[stage..=stage].iter());
-            })?;
-            let name = self.pipelines.forward[stage].name;
-            times.push((name, start.elapsed().as_secs_f64()));
-        }
-        Ok(times)
+        let kernels = Vec::from_iter(self.step_kernels().cloned());
+        let clock = Clock::new(&self.device, kernels.len())?;
+        self.submit(|batch, encoder| {
+            batch.clear_trouble(encoder);
+            for (k, kernel) in kernels.iter().enumerate() {
+                batch.encode(encoder, clock.around(k), [kernel].into_iter());
+            }
+            clock.write(encoder);
+        })?;
+        let times = clock.read(&self.device)?;
+        let names = kernels.iter().map(|kernel| kernel.name);
+        Ok(names.zip(times).collect())
     }
 
     /// All environments back to the model's initial state; all run.
@@ -256,46 +276,64 @@ impl<S: GpuReal> GpuBatch<S> {
             asked[env] = 1;
         }
         self.write_report("restart", &asked);
-        self.submit(|batch, encoder| batch.encode(encoder, [&batch.pipelines.restart].into_iter()))
+        self.submit(|batch, encoder| {
+            batch.encode(encoder, None, [&batch.pipelines.restart].into_iter())
+        })
     }
 
-    fn submit(
-        &mut self,
+    pub(crate) fn submit(
+        &self,
         encode: impl FnOnce(&Self, &mut wgpu::CommandEncoder),
     ) -> Result<(), GpuError> {
-        let mut encoder = self
-            .device
-            .device
-            .create_command_encoder(&Default::default());
-        encode(self, &mut encoder);
-        self.device.submit(encoder.finish())
+        let commands = self.commands(encode);
+        self.device.submit(commands)
     }
 
-    fn encode<'a>(
+    fn commands(
+        &self,
+        encode: impl FnOnce(&Self, &mut wgpu::CommandEncoder),
+    ) -> wgpu::CommandBuffer {
+        let device = &self.device.device;
+        let mut encoder = device.create_command_encoder(&Default::default());
+        encode(self, &mut encoder);
+        encoder.finish()
+    }
+
+    /// A compute pass of some kernels, timed or not.
+    pub(crate) fn encode<'a>(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        kernels: impl Iterator<Item = &'a crate::pipelines::Pipeline>,
+        timestamp_writes: Option<wgpu::ComputePassTimestampWrites>,
+        kernels: impl Iterator<Item = &'a Pipeline>,
     ) {
         if self.count == 0 {
             return;
         }
-        let mut pass = encoder.begin_compute_pass(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes,
+        });
         pass.set_bind_group(0, &self.bindings, &[]);
         kernels.for_each(|kernel| kernel.dispatch(&mut pass));
     }
 
-    fn encode_step(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.clear_trouble(encoder);
+    /// The kernels of a step, one after the other.
+    fn step_kernels(&self) -> impl Iterator<Item = &Pipeline> {
         let pipelines = &self.pipelines;
         let last = pipelines.advance.len() - 1;
-        for (stage, advance) in pipelines.advance.iter().enumerate() {
+        let stages = pipelines.advance.iter().enumerate();
+        stages.flat_map(move |(stage, advance)| {
             // Sensors measure at the start of a step; all else is as the last forward pass leaves it.
-            let measured = pipelines.sensors.iter().filter(|_| stage == 0);
+            let measured = pipelines.sensors.iter().filter(move |_| stage == 0);
             let shown = stage == last || measured.clone().count() > 0;
-            let observed = pipelines.observed().filter(|_| shown).chain(measured);
-            let forward = pipelines.forward.iter().chain(observed);
-            self.encode(encoder, forward.chain([advance]));
-        }
+            let observed = pipelines.observed().filter(move |_| shown).chain(measured);
+            pipelines.forward.iter().chain(observed).chain([advance])
+        })
+    }
+
+    fn encode_step(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.clear_trouble(encoder);
+        self.encode(encoder, None, self.step_kernels());
     }
 
     /// Measures sensors in every step and forward pass from now on: `sensordata` can be read, as those at the start of the last step found it.

@@ -213,7 +213,7 @@ impl Device {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("clench"),
             required_limits: limits.clone(),
-            required_features: features,
+            required_features: features | (adapter.features() & wgpu::Features::TIMESTAMP_QUERY),
             ..wgpu::DeviceDescriptor::default()
         };
         let unusable = |e: wgpu::RequestDeviceError| GpuError::Unusable {
@@ -264,6 +264,14 @@ impl Device {
     /// That the device is lost, or refused something since the last call.
     pub(crate) fn submit(&self, commands: wgpu::CommandBuffer) -> Result<(), GpuError> {
         let submission = self.queue.submit([commands]);
+        self.wait(submission)
+    }
+
+    /// Waits until what was submitted, and all before it, is done.
+    ///
+    /// # Errors
+    /// That the device was lost.
+    pub(crate) fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::Wait {
             submission_index: Some(submission),
             timeout: None,

@@ -16,6 +16,7 @@ mod backend;
 mod base;
 mod batch;
 mod check;
+mod clock;
 mod device;
 mod error;
 mod fields;
