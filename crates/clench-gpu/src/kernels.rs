@@ -14,11 +14,16 @@ use std::fmt::Write;
 /// Workgroups in a row, where each has an environment: a dispatch has no more than 65,535 along an axis.
 pub(crate) const GRID: u32 = 32_768;
 
+/// Threads of a team.
+pub(crate) const TEAM: u32 = 8;
+
 /// Who works on an environment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Workers {
     /// One thread.
     Thread,
+    /// A team of threads, each in a workgroup with those of other environments.
+    Team,
     /// The threads of the narrow phase, each in a workgroup with those of other environments.
     NarrowPhase,
     /// A thread for each ray of its sensors, likewise; where there are more than [`GRID`], each follows several.
@@ -28,11 +33,11 @@ pub(crate) enum Workers {
 }
 
 impl Workers {
-    /// Threads of a workgroup. Where each has an environment: a subgroup on most cards. Where all have one: four for each row of a tile of H
+    /// Threads of a workgroup side by side. Where each has an environment: a subgroup on most cards. Where all have one: four for each row of a tile of H
     /// (with half as many a card took a tenth longer).
     const fn threads(self) -> u32 {
         match self {
-            Workers::Thread | Workers::NarrowPhase | Workers::Rays => 32,
+            Workers::Thread | Workers::Team | Workers::NarrowPhase | Workers::Rays => 32,
             Workers::Workgroup => 64,
         }
     }
@@ -70,17 +75,17 @@ kernels! {
     /// Puts environments into the initial state.
     RESTART = "restart", Thread: "restart";
     /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
-    POSITIONS = "positions", Thread: "kinematics", "com", "tree", "chains", "wrap", "tendon",
-        "outputs", "transmission", "articulated", "outer", "inertia";
+    POSITIONS = "positions", Team: "team", "kinematics", "com", "tree", "chains", "wrap", "tendon",
+        "outputs", "transmission", "articulated", "outer", "mass_factor", "inertia";
     /// Which pairs are near.
-    BROAD_PHASE = "broad_phase", Thread: "broad_phase";
+    BROAD_PHASE = "broad_phase", Team: "team", "broad_phase";
     /// Where near pairs touch.
     NARROW_PHASE = "narrow_phase", NarrowPhase: "near", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
     /// Contacts.
-    CONTACTS = "contacts", Thread: "near", "contacts";
+    CONTACTS = "contacts", Team: "team", "near", "contacts";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Thread: "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
+    FORCES = "forces", Team: "team", "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Which constraints act, and how soft they are.
     CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
@@ -97,19 +102,19 @@ kernels! {
     /// What sensors measure, where somebody asks.
     SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "sensor_delay", "optics", "sensors";
     /// Whether what they found is within bounds.
-    VERDICT = "verdict", Thread: "verdict", "judge";
+    VERDICT = "verdict", Team: "team", "verdict", "judge";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "euler";
+    EULER = "euler", Team: "team", "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
-    IMPLICIT_FAST = "implicit_fast", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+    IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
         "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "gyroscopic", "implicit_fast";
     /// The same with Coriolis forces.
-    IMPLICIT = "implicit", Thread: "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+    IMPLICIT = "implicit", Team: "team", "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
         "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "coriolis", "lu", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Thread: "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.
@@ -168,6 +173,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
     };
     declare("GRID", GRID as usize);
+    declare("TEAM", TEAM as usize);
     declare("NONE", NONE as usize);
     for names in [&FAULTS[..], &SOLVE_STATUS] {
         for (code, name) in names.iter().enumerate() {
@@ -229,7 +235,7 @@ impl Kernel {
         let count = count as u32;
         let of_threads = count.div_ceil(self.workers.threads());
         match self.workers {
-            Workers::Thread => [of_threads, 1, 1],
+            Workers::Thread | Workers::Team => [of_threads, 1, 1],
             Workers::NarrowPhase => [of_threads, preface.threads as u32, 1],
             Workers::Rays => [of_threads, (preface.rays as u32).min(GRID), 1],
             Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],

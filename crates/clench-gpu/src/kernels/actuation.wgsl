@@ -1,33 +1,32 @@
 // Actuator forces and the dof forces they make. Sister of `dynamics/actuation.rs`. A range that is not limited is one of all numbers.
 
 // Zero where there is no actuation.
-fn actuator_velocities() {
-    for (var o = 0u; o < NOUT; o++) {
-        var velocity: f32 = 0.0;
-        for (var k = words[ACTUATOR_ROW + o]; ACTUATION && k < words[ACTUATOR_ROW + o + 1u]; k++) {
-            velocity += fetch(ACTUATOR_MOMENT + k) * given(QVEL + words[ACTUATOR_DOF + k]);
-        }
-        put(ACTUATOR_VELOCITY + o, velocity);
+fn actuator_velocity(o: u32) {
+    var velocity: f32 = 0.0;
+    for (var k = words[ACTUATOR_ROW + o]; ACTUATION && k < words[ACTUATOR_ROW + o + 1u]; k++) {
+        velocity += fetch(ACTUATOR_MOMENT + k) * given(QVEL + words[ACTUATOR_DOF + k]);
     }
+    put(ACTUATOR_VELOCITY + o, velocity);
 }
 
 // Leaves in TEN_ACTUATOR_FORCE with how much actuators pull at each tendon whose total is limited.
 fn sum_tendon_forces() {
-    for (var t = 0u; t < NTENDON; t++) {
+    for (var t = 0u; is_first() && t < NTENDON; t++) {
         put(TEN_ACTUATOR_FORCE + t, 0.0);
     }
-    for (var u = 0u; ANY_ON_TENDON && u < NU; u++) {
+    for (var u = 0u; is_first() && ANY_ON_TENDON && u < NU; u++) {
         let t = words[ACTUATOR_LIMITED_TENDON + u];
         if (t != NONE) {
             add(TEN_ACTUATOR_FORCE + t, fetch(ACTUATOR_FORCE + output_of(u)));
         }
     }
+    join();
 }
 
 // Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
 fn limit_tendon_forces() {
     sum_tendon_forces();
-    for (var u = 0u; ANY_ON_TENDON && u < NU; u++) {
+    for (var u = member; ANY_ON_TENDON && u < NU; u += TEAM) {
         let t = words[ACTUATOR_LIMITED_TENDON + u];
         if (t == NONE) {
             continue;
@@ -53,42 +52,54 @@ fn limit_force(u: u32) {
     put(place, clamp(fetch(place), parameter(range), parameter(range + 1u)));
 }
 
-fn actuation() {
-    clear_dofs(QFRC_ACTUATOR);
-    actuator_velocities();
-    if (!ACTUATION) {
-        return;
+// The force on a dof: what all outputs with an arm on it do.
+fn actuator_force_on(i: u32) -> f32 {
+    var sum: f32 = 0.0;
+    for (var n = words[DOF_ARM + i]; n < words[DOF_ARM + i + 1u]; n++) {
+        sum += fetch(ACTUATOR_MOMENT + words[ARM_ENTRY + n]) * fetch(ACTUATOR_FORCE + words[ARM_OUTPUT + n]);
     }
-    for (var u = 0u; u < NU; u++) {
-        if (is_orientation_servo(u)) {
+    if (HAS_GRAVCOMP && words[DOF_ACTGRAVCOMP + i] == 1u) {
+        sum += fetch(QFRC_GRAVCOMP + i);
+    }
+    let range = DOF_FORCE_RANGE + 2u * i;
+    return clamp(sum, parameter(range), parameter(range + 1u));
+}
+
+fn actuation() {
+    for (var u = member; u < NU; u += TEAM) {
+        for (var o = output_of(u); o < output_of(u + 1u); o++) {
+            actuator_velocity(o);
+        }
+        if (ACTUATION && is_orientation_servo(u)) {
             put3(ACTUATOR_FORCE + output_of(u), servo_torque(u));
-        } else {
+        } else if (ACTUATION) {
             put(ACTUATOR_FORCE + output_of(u), unlimited_force(u));
         }
     }
-    limit_tendon_forces();
-    for (var u = 0u; u < NU; u++) {
+    if (!ACTUATION) {
+        clear_dofs(QFRC_ACTUATOR);
+        return;
+    }
+    if (ANY_ON_TENDON) {
+        join();
+        limit_tendon_forces();
+    }
+    for (var u = member; u < NU; u += TEAM) {
         limit_force(u);
     }
     // A tendon's range, as an actuator's own, holds what a motor's current pulls with, without its cogging and friction.
-    sum_tendon_forces();
-    for (var u = 0u; u < NU; u++) {
+    if (NTENDON > 0u) {
+        join();
+        sum_tendon_forces();
+    }
+    for (var u = member; u < NU; u += TEAM) {
         let output = output_of(u);
         if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR && words[ACTUATOR_OFF + u] == 0u) {
             add(ACTUATOR_FORCE + output, mechanical_force(u, fetch(ACTUATOR_LENGTH + output)));
         }
     }
-    for (var o = 0u; o < NOUT; o++) {
-        let force = fetch(ACTUATOR_FORCE + o);
-        for (var k = words[ACTUATOR_ROW + o]; k < words[ACTUATOR_ROW + o + 1u]; k++) {
-            add(QFRC_ACTUATOR + words[ACTUATOR_DOF + k], fetch(ACTUATOR_MOMENT + k) * force);
-        }
-    }
-    for (var i = 0u; i < bound(NV); i++) {
-        if (HAS_GRAVCOMP && words[DOF_ACTGRAVCOMP + i] == 1u) {
-            add(QFRC_ACTUATOR + i, fetch(QFRC_GRAVCOMP + i));
-        }
-        let range = DOF_FORCE_RANGE + 2u * i;
-        put(QFRC_ACTUATOR + i, clamp(fetch(QFRC_ACTUATOR + i), parameter(range), parameter(range + 1u)));
+    join();
+    for (var i = member; i < bound(NV); i += TEAM) {
+        put(QFRC_ACTUATOR + i, actuator_force_on(i));
     }
 }

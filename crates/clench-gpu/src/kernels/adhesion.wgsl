@@ -4,7 +4,9 @@
 // A contact within one rigid body has no share, unless it is within the gap.
 fn contact_arms(u: u32, body: u32) {
     let arms = ACTUATOR_MOMENT + first_arm(u);
-    clear_dofs(arms);
+    for (var i = 0u; i < bound(NV); i++) {
+        put(arms + i, 0.0);
+    }
     var count: f32 = 0.0;
     for (var c = 0u; c < reports[NCON * envs + env]; c++) {
         let place = CONTACTS + CONTACT_SIZE * c;
@@ -36,9 +38,10 @@ fn contact_arms(u: u32, body: u32) {
 }
 
 fn adhesion() {
-    for (var u = 0u; u < NU; u++) {
+    for (var u = member; u < NU; u += TEAM) {
         if (words[ACTUATOR_ON + u] == ON_CONTACTS) {
             contact_arms(u, words[ACTUATOR_TARGET + 2u * u]);
         }
     }
+    join();
 }

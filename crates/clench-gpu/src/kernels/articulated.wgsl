@@ -99,7 +99,7 @@ fn articulated_factor() -> bool {
             positive = positive && pivot > 0.0 && !is_wild(pivot);
             let inverse = 1.0 / pivot;
             let last = words[TREE_START + i + 1u] - 1u;
-            put(QLD + last, pivot);
+            put(QLD + last, inverse);
             put(QLD_INVERSE + i, inverse);
             for (var p = words[TREE_START + i]; p < last; p++) {
                 put(QLD + p, spatial_dot(motion_from_anchor(words[TREE_DOF + p], centre), u) * inverse);

@@ -22,37 +22,62 @@ fn near_of_four(pair: u32, end: u32) -> vec4<bool> {
     return near & (vec4u(pair, pair + 1u, pair + 2u, pair + 3u) < vec4u(end));
 }
 
-// One thread an environment: lists its near pairs in canonical order, and tells in which order their methods come.
-@compute @workgroup_size(GROUP)
+// Of each thread and method: how many pairs are near.
+var<workgroup> near_counts: array<u32, GROUP * TEAM * METHODS>;
+
+fn near_count(thread: u32, method: u32) -> u32 {
+    return GROUP * (METHODS * thread + method) + column;
+}
+
+// A team an environment: lists its near pairs in canonical order, and tells in which order their methods come. Each thread looks at consecutive pairs, and
+// puts those that are near where the order will be, until all know how many the others have.
+@compute @workgroup_size(GROUP, TEAM)
 fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
+    begin_in_team(id);
+    let pairs = NPAIR + NMEASURED * words[MEASURES];
+    let share = (pairs + 4u * TEAM - 1u) / (4u * TEAM) * 4u;
+    let start = share * min(member, TEAM);
+    let end = min(start + share, pairs);
     // Of each method: how many pairs, then where the next one goes.
     var next: array<u32, METHODS>;
     var count = 0u;
-    let pairs = NPAIR + NMEASURED * words[MEASURES];
-    for (var pair = 0u; pair < pairs; pair += 4u) {
-        let near = near_of_four(pair, pairs);
+    for (var pair = start; pair < end; pair += 4u) {
+        let near = near_of_four(pair, end);
         for (var k = 0u; k < 4u; k++) {
             if (near[k]) {
-                reports[(NEAR_PAIRS + count) * envs + env] = pair + k;
+                reports[(NEAR_BY_METHOD + start + count) * envs + env] = pair + k;
                 count++;
                 next[words[PAIR_METHOD + pair + k]]++;
             }
         }
     }
-    reports[NNEAR * envs + env] = count;
-    var start = 0u;
+    for (var method = 0u; member < TEAM && method < METHODS; method++) {
+        near_counts[near_count(member, method)] = next[method];
+    }
+    workgroupBarrier();
+    var before = 0u;
+    var all = 0u;
     for (var method = 0u; method < METHODS; method++) {
-        let of_method = next[method];
-        next[method] = start;
-        start += of_method;
+        for (var thread = 0u; thread < bound(TEAM); thread++) {
+            let of_thread = near_counts[near_count(thread, method)];
+            if (thread == member) {
+                next[method] = all;
+            }
+            before += select(0u, of_thread, thread < member);
+            all += of_thread;
+        }
+    }
+    if (is_first()) {
+        reports[NNEAR * envs + env] = all;
     }
     for (var k = 0u; k < count; k++) {
+        reports[(NEAR_PAIRS + before + k) * envs + env] = reports[(NEAR_BY_METHOD + start + k) * envs + env];
+    }
+    join();
+    for (var k = before; k < before + count; k++) {
         let method = words[PAIR_METHOD + reports[(NEAR_PAIRS + k) * envs + env]];
         reports[(NEAR_BY_METHOD + next[method]) * envs + env] = k;
         next[method]++;
     }
-    note_end();
+    end_in_team();
 }

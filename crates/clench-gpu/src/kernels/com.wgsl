@@ -1,14 +1,19 @@
 // Centres of mass, spatial inertias and dof axes about them. Sister of `dynamics/com.rs`.
 
+// The sum of mass times position over a body and all below it, for those above; then what that is divided by the mass.
 fn subtree_com() {
-    for (var b = 0u; b < bound(NBODY); b++) {
-        put3(SUBTREE_COM + 3u * b, fetch3(XIPOS + 3u * b) * parameter(BODY_MASS + b));
+    for (var level = NBODY_LEVEL; level > 0u; level--) {
+        for (var n = words[BODY_LEVEL + level - 1u] + member; n < words[BODY_LEVEL + level]; n += TEAM) {
+            let b = words[LEVEL_BODY + n];
+            var sum = fetch3(XIPOS + 3u * b) * parameter(BODY_MASS + b);
+            for (var k = words[BODY_CHILD + b]; k < words[BODY_CHILD + b + 1u]; k++) {
+                sum += fetch3(SUBTREE_COM + 3u * words[CHILD_BODY + k]);
+            }
+            put3(SUBTREE_COM + 3u * b, sum);
+        }
+        join();
     }
-    for (var b = NBODY - 1u; b > 0u; b--) {
-        let parent = words[BODY_PARENT + b];
-        put3(SUBTREE_COM + 3u * parent, fetch3(SUBTREE_COM + 3u * parent) + fetch3(SUBTREE_COM + 3u * b));
-    }
-    for (var b = 0u; b < bound(NBODY); b++) {
+    for (var b = member; b < bound(NBODY); b += TEAM) {
         let mass = parameter(BODY_SUBTREEMASS + b);
         var com = fetch3(XIPOS + 3u * b);
         if (mass >= TINY) {
@@ -16,6 +21,7 @@ fn subtree_com() {
         }
         put3(SUBTREE_COM + 3u * b, com);
     }
+    join();
 }
 
 // The inertia of a body about the centre of mass of its tree.
@@ -67,10 +73,11 @@ fn dof_axes(j: u32) {
 
 fn com_positions() {
     subtree_com();
-    for (var b = 0u; b < bound(NBODY); b++) {
+    for (var b = member; b < bound(NBODY); b += TEAM) {
         body_inertia(b);
     }
-    for (var j = 0u; j < bound(NJNT); j++) {
+    for (var j = member; j < bound(NJNT); j += TEAM) {
         dof_axes(j);
     }
+    join();
 }

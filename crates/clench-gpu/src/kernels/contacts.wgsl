@@ -1,24 +1,33 @@
 // The contacts of an environment: a pool of MAX_CONTACTS, in canonical order; and the nearest points of pairs whose distance is measured.
 
-fn copy_contacts(start: u32, place: u32, count: u32) {
-    for (var x = 0u; x < CONTACT_SIZE * count; x++) {
-        put(place + x, fetch(start + x));
-    }
+// All numbers of a contact at once: a card waits as long for one.
+fn copy_contact(start: u32, place: u32) {
+    let first = fetch4(start);
+    let second = fetch4(start + 4u);
+    let third = fetch4(start + 8u);
+    let last = vec2f(fetch(start + 12u), fetch(start + 13u));
+    put4(place, first);
+    put4(place + 4u, second);
+    put4(place + 8u, third);
+    put(place + 12u, last.x);
+    put(place + 13u, last.y);
 }
 
-// One thread an environment: puts together what the threads of the narrow phase found.
-@compute @workgroup_size(GROUP)
+// A team an environment: puts together what the threads of the narrow phase found. All of it go through the list, and each copies its share.
+@compute @workgroup_size(GROUP, TEAM)
 fn contacts(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
-    for (var thread = 0u; thread < NTHREAD; thread++) {
+    begin_in_team(id);
+    for (var thread = 0u; is_first() && thread < NTHREAD; thread++) {
         trouble(reports[(THREAD_FAULT + thread) * envs + env]);
     }
-    for (var k = 0u; k < NMEASURED; k++) {
+    for (var k = member; k < NMEASURED; k += TEAM) {
         put(MEASURED + CONTACT_SIZE * k + 1u, TOO_FAR);
     }
-    let near = reports[NNEAR * envs + env];
+    join();
+    var near = 0u;
+    if (member < TEAM) {
+        near = reports[NNEAR * envs + env];
+    }
     var count = 0u;
     for (var k = 0u; k < near; k++) {
         let of_pair = reports[(NEAR_PAIRS + k) * envs + env];
@@ -30,16 +39,24 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
         }
         let pair = u32(fetch(start));
         if (pair >= NPAIR) {
-            copy_contacts(start, MEASURED + CONTACT_SIZE * (pair - NPAIR), 1u);
+            if (k % TEAM == member) {
+                copy_contact(start, MEASURED + CONTACT_SIZE * (pair - NPAIR));
+            }
             continue;
         }
         if (here > MAX_CONTACTS - count) {
             trouble(CONTACT_OVERFLOW);
             break;
         }
-        copy_contacts(start, CONTACTS + CONTACT_SIZE * count, here);
+        for (var c = 0u; c < here; c++) {
+            if ((count + c) % TEAM == member) {
+                copy_contact(start + CONTACT_SIZE * c, CONTACTS + CONTACT_SIZE * (count + c));
+            }
+        }
         count += here;
     }
-    reports[NCON * envs + env] = count;
-    note_end();
+    if (is_first()) {
+        reports[NCON * envs + env] = count;
+    }
+    end_in_team();
 }

@@ -77,13 +77,17 @@ fn add_velocity_derivatives() {
     }
 }
 
-// Leaves M − h D, without Coriolis forces, in QLD, and the sum of all forces in RATE.
+// Leaves M − h D, without Coriolis forces, in QLD, and the sum of all forces in RATE. What is added has entries in common: one thread adds it.
 fn symmetric_inertia() {
-    for (var p = 0u; p < bound(NNZ); p++) {
+    for (var p = member; p < bound(NNZ); p += TEAM) {
         put(QLD + p, fetch(QM + p));
     }
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
     }
-    add_velocity_derivatives();
+    join();
+    if (is_first()) {
+        add_velocity_derivatives();
+    }
+    join();
 }

@@ -1,10 +1,8 @@
-// Semi-implicit Euler: one thread an environment. Sister of `dynamics/euler.rs`.
+// Semi-implicit Euler: a team an environment. Sister of `dynamics/euler.rs`.
 
-@compute @workgroup_size(GROUP)
+@compute @workgroup_size(GROUP, TEAM)
 fn euler(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
+    begin_in_team(id);
     save_start();
     damped_acceleration();
     advance_semi_implicit();

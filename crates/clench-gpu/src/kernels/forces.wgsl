@@ -1,51 +1,59 @@
 // The acceleration that all forces but constraints cause. Sister of `dynamics/smooth.rs`.
 
-// Adds what the user applies to bodies at their centres of mass.
-fn applied_wrenches() {
-    var any = false;
-    for (var k = 6u; k < bound(6u * NBODY); k++) {
-        any = any || given(XFRC_APPLIED + k) != 0.0;
+// What the user applies to bodies at their centres of mass does to dof i.
+fn applied_to_bodies(i: u32) -> f32 {
+    var sum: f32 = 0.0;
+    for (var b = words[DOF_BODY + i]; b < bound(NBODY); b++) {
+        let force = given3(XFRC_APPLIED + 6u * b);
+        let torque = given3(XFRC_APPLIED + 6u * b + 3u);
+        if (moves(b, i) && (any(force != vec3f()) || any(torque != vec3f()))) {
+            sum += spatial_dot(fetch_spatial(CDOF + 6u * i), force_at_com(b, force, torque));
+        }
     }
-    if (!any) {
-        return;
+    return sum;
+}
+
+// Whether the user applies anything to bodies.
+fn any_applied_to_bodies() -> bool {
+    var most: f32 = 0.0;
+    for (var k = 6u + member; k < bound(6u * NBODY); k += TEAM) {
+        let applied = given(XFRC_APPLIED + k);
+        most = select(most, 1.0, applied != 0.0);
     }
-    put_spatial(CFRC, Spatial(vec3f(), vec3f()));
-    for (var b = 1u; b < bound(NBODY); b++) {
-        let place = XFRC_APPLIED + 6u * b;
-        put_spatial(CFRC + 6u * b, force_at_com(b, given3(place), given3(place + 3u)));
-    }
-    project_forces(QFRC_SMOOTH);
+    return least_of_team(select(1u, 0u, most > 0.0)) == 0u;
 }
 
 fn smooth_acceleration() {
-    for (var i = 0u; i < bound(NV); i++) {
+    let any_applied = any_applied_to_bodies();
+    for (var i = member; i < bound(NV); i += TEAM) {
         let applied = given(QFRC_APPLIED + i) + fetch(QFRC_ACTUATOR + i);
-        put(QFRC_SMOOTH + i, fetch(QFRC_PASSIVE + i) - fetch(QFRC_BIAS + i) + applied);
-    }
-    applied_wrenches();
-    for (var i = 0u; i < bound(NV); i++) {
-        put(QACC_SMOOTH + i, fetch(QFRC_SMOOTH + i));
+        var force = fetch(QFRC_PASSIVE + i) - fetch(QFRC_BIAS + i) + applied;
+        if (any_applied) {
+            force += applied_to_bodies(i);
+        }
+        put(QFRC_SMOOTH + i, force);
+        put(QACC_SMOOTH + i, force);
     }
     solve_tree(QACC_SMOOTH);
 }
 
-// What depends on velocities and controls: one thread an environment.
-@compute @workgroup_size(GROUP)
+// What depends on velocities and controls: a team an environment.
+@compute @workgroup_size(GROUP, TEAM)
 fn forces(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
+    begin_in_team(id);
     if (ANY_ON_CONTACTS) {
         adhesion();
     }
-    body_velocities();
-    tendon_velocities();
+    velocities_and_bias();
+    if (NTENDON > 0u) {
+        tendon_velocities();
+        join();
+    }
     passive_forces();
-    bias_forces();
     if (HEAVY_TENDONS) {
         tendon_bias();
     }
     actuation();
     smooth_acceleration();
-    note_end();
+    end_in_team();
 }

@@ -79,7 +79,7 @@ fn solve_equations() {
 
 // The accelerations of all such bodies, in MEAN_RATE.
 fn gyroscopic_accelerations() {
-    for (var k = 0u; k < NFREE_TREE; k++) {
+    for (var k = member; k < NFREE_TREE; k += TEAM) {
         let j = words[FREE_TREE_JNT + k];
         let dof = words[JNT_DOF + j];
         begin_equations(dof);

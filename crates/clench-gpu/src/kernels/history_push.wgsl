@@ -29,7 +29,7 @@ fn age_samples(h: u32) {
 }
 
 fn push_controls() {
-    for (var u = 0u; u < NU; u++) {
+    for (var u = member; u < NU; u += TEAM) {
         let h = words[ACTUATOR_HISTORY + u];
         if (h == NONE) {
             continue;
@@ -43,7 +43,7 @@ fn push_controls() {
 }
 
 fn push_measurements() {
-    for (var i = 0u; i < NSENSOR; i++) {
+    for (var i = member; i < NSENSOR; i += TEAM) {
         let s = SENSORS + SENSOR_SIZE * i;
         let h = words[s + SENSOR_HISTORY];
         if (h == NONE) {

@@ -1,20 +1,21 @@
-// Euler, implicit in the velocity derivatives of all smooth forces, Coriolis forces among them. Sister of `dynamics/implicit.rs`. One
-// thread an environment.
+// Euler, implicit in the velocity derivatives of all smooth forces, Coriolis forces among them. Sister of `dynamics/implicit.rs`. A
+// team an environment, of which one thread factors and solves.
 
-@compute @workgroup_size(GROUP)
+@compute @workgroup_size(GROUP, TEAM)
 fn implicit(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
+    begin_in_team(id);
     save_start();
     symmetric_inertia();
-    for (var p = 0u; p < bound(NNZ); p++) {
+    for (var p = member; p < bound(NNZ); p += TEAM) {
         put(QLD_UPPER + p, fetch(QLD + p));
     }
-    add_bias_derivatives();
-    if (!factor_lu()) {
-        trouble(SINGULAR);
+    join();
+    if (is_first()) {
+        add_bias_derivatives();
+        if (!factor_lu()) {
+            trouble(SINGULAR);
+        }
+        solve_lu(RATE);
     }
-    solve_lu(RATE);
     advance_semi_implicit();
 }

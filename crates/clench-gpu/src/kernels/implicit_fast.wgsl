@@ -1,19 +1,19 @@
-// Euler, implicit in the velocity derivatives of damping, medium and actuation. Sister of `dynamics/implicit.rs`. One thread an
+// Euler, implicit in the velocity derivatives of damping, medium and actuation. Sister of `dynamics/implicit.rs`. A team an
 // environment.
 
-@compute @workgroup_size(GROUP)
+@compute @workgroup_size(GROUP, TEAM)
 fn implicit_fast(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
+    begin_in_team(id);
     save_start();
     symmetric_inertia();
     gyroscopic_accelerations();
+    join();
     if (!factor_tree()) {
         trouble(SINGULAR);
     }
     solve_tree(RATE);
-    for (var k = 0u; k < NFREE_TREE; k++) {
+    join();
+    for (var k = member; k < NFREE_TREE; k += TEAM) {
         let dof = words[JNT_DOF + words[FREE_TREE_JNT + k]];
         for (var r = 0u; r < bound(6u); r++) {
             put(RATE + dof + r, fetch(MEAN_RATE + dof + r));

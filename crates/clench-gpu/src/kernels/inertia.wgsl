@@ -1,4 +1,4 @@
-// The mass matrix by composite rigid bodies, and its factor. Sister of `dynamics/inertia.rs`.
+// The mass matrix by composite rigid bodies. Sister of `dynamics/inertia.rs`.
 
 // The ten numbers of an inertia, read and written together: a card that waits for each by itself waits long.
 struct Inertia {
@@ -18,19 +18,27 @@ fn put_inertia(place: u32, inertia: Inertia) {
     put(place + 9u, inertia.third.y);
 }
 
-fn composite_inertia() {
-    for (var b = 0u; b < bound(NBODY); b++) {
-        put_inertia(CRB + 10u * b, fetch_inertia(CINERT + 10u * b));
-    }
-    for (var b = NBODY - 1u; b > 0u; b--) {
-        let parent = words[BODY_PARENT + b];
-        if (parent != 0u) {
-            let carried = fetch_inertia(CRB + 10u * parent);
-            let own = fetch_inertia(CRB + 10u * b);
-            put_inertia(CRB + 10u * parent, Inertia(carried.first + own.first, carried.second + own.second, carried.third + own.third));
+fn sum_of_inertias(a: Inertia, b: Inertia) -> Inertia {
+    return Inertia(a.first + b.first, a.second + b.second, a.third + b.third);
+}
+
+// The inertia of each body and all below it; of the world its own.
+fn composite_inertias() {
+    for (var level = NBODY_LEVEL; level > 0u; level--) {
+        for (var n = words[BODY_LEVEL + level - 1u] + member; n < words[BODY_LEVEL + level]; n += TEAM) {
+            let b = words[LEVEL_BODY + n];
+            var carried = fetch_inertia(CINERT + 10u * b);
+            for (var k = words[BODY_CHILD + b]; b > 0u && k < words[BODY_CHILD + b + 1u]; k++) {
+                carried = sum_of_inertias(carried, fetch_inertia(CRB + 10u * words[CHILD_BODY + k]));
+            }
+            put_inertia(CRB + 10u * b, carried);
         }
+        join();
     }
-    for (var i = 0u; i < bound(NV); i++) {
+}
+
+fn mass_matrix() {
+    for (var i = member; i < bound(NV); i += TEAM) {
         let carried = momentum(CRB + 10u * words[DOF_BODY + i], fetch_spatial(CDOF + 6u * i));
         let end = words[TREE_START + i + 1u];
         // Two at a time, of which the last may be the same.
@@ -43,54 +51,37 @@ fn composite_inertia() {
         }
         add(QM + end - 1u, parameter(DOF_ARMATURE + i));
     }
+    join();
 }
 
 // Adds the inertia of all tendons. Sister of `dynamics/tendon_armature.rs`.
 fn add_tendon_inertia() {
-    for (var t = 0u; t < NTENDON; t++) {
+    for (var t = 0u; is_first() && t < NTENDON; t++) {
         let armature = parameter(TENDON_ARMATURE + t);
         add_outer(QM, TENDON_DOF, TEN_JACOBIAN, words[TENDON_ROW + t], words[TENDON_ROW + t + 1u], armature);
     }
+    join();
 }
 
-// Nothing is added to the diagonal of M.
-fn added_inertia(i: u32) -> f32 {
-    return 0.0;
-}
-
-fn factor_mass() {
-    if (LONG_PATHS) {
-        if (!articulated_factor()) {
-            trouble(SINGULAR);
-        }
-        return;
-    }
-    let whole = NNZ - NNZ % 4u;
-    for (var p = 0u; p < bound(whole); p += 4u) {
-        put4(QLD + p, fetch4(QM + p));
-    }
-    for (var p = whole; p < bound(NNZ); p++) {
-        put(QLD + p, fetch(QM + p));
-    }
-    if (!factor_tree()) {
-        trouble(SINGULAR);
-    }
-}
-
-// What depends on positions alone: one thread an environment.
-@compute @workgroup_size(GROUP)
+// What depends on positions alone: a team an environment.
+@compute @workgroup_size(GROUP, TEAM)
 fn positions(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
+    begin_in_team(id);
     kinematics();
+    join();
     com_positions();
-    composite_inertia();
+    composite_inertias();
+    mass_matrix();
     tendons();
+    if (NTENDON > 0u) {
+        join();
+    }
     transmissions();
     if (HEAVY_TENDONS) {
         add_tendon_inertia();
     }
-    factor_mass();
-    note_end();
+    if (!factor_mass()) {
+        trouble(SINGULAR);
+    }
+    end_in_team();
 }

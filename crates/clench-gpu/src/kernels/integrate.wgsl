@@ -2,7 +2,7 @@
 
 // Moves qpos along the velocity at `velocity` (in work) for `time` seconds.
 fn integrate_positions(velocity: u32, time: f32) {
-    for (var j = 0u; j < bound(NJNT); j++) {
+    for (var j = member; j < bound(NJNT); j += TEAM) {
         let kind = words[JNT_KIND + j];
         var q = QPOS + words[JNT_QPOS + j];
         var v = velocity + words[JNT_DOF + j];
@@ -26,26 +26,26 @@ fn integrate_positions(velocity: u32, time: f32) {
 
 // Remembers the state at the start of a step.
 fn save_start() {
-    for (var i = 0u; i < bound(NQ); i++) {
+    for (var i = member; i < bound(NQ); i += TEAM) {
         put(START_QPOS + i, given(QPOS + i));
     }
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         put(START_QVEL + i, given(QVEL + i));
         put(START_WARMSTART + i, given(QACC_WARMSTART + i));
     }
-    for (var a = 0u; a < NA; a++) {
+    for (var a = member; a < NA; a += TEAM) {
         put(START_ACT + a, given(ACT + a));
     }
 }
 
 fn restore_start() {
-    for (var i = 0u; i < bound(NQ); i++) {
+    for (var i = member; i < bound(NQ); i += TEAM) {
         keep(QPOS + i, fetch(START_QPOS + i));
     }
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         keep(QVEL + i, fetch(START_QVEL + i));
     }
-    for (var a = 0u; a < NA; a++) {
+    for (var a = member; a < NA; a += TEAM) {
         keep(ACT + a, fetch(START_ACT + a));
     }
 }
@@ -65,7 +65,7 @@ fn shorten(place: u32) {
 // Moves activations a time step on, at the rates in `rates` (in work), for velocities of actuators in `velocities`. Those of actuators
 // that are off stay where they are, but for whole turns on a circle.
 fn advance_activations(rates: u32, velocities: u32) {
-    for (var a = 0u; ACTUATION && a < NA; a++) {
+    for (var a = member; ACTUATION && a < NA; a += TEAM) {
         let u = words[ACT_ACTUATOR + a];
         let rate = select(fetch(rates + a), 0.0, words[ACTUATOR_OFF + u] == 1u);
         var next = next_activation(u, a, given(ACT + a), rate, fetch(velocities + output_of(u)));
@@ -74,7 +74,11 @@ fn advance_activations(rates: u32, velocities: u32) {
         }
         keep(ACT + a, next);
     }
-    for (var u = 0u; ANY_ORIENTATION && ACTUATION && u < NU; u++) {
+    if (!ANY_ORIENTATION || !ACTUATION) {
+        return;
+    }
+    join();
+    for (var u = member; u < NU; u += TEAM) {
         if (is_orientation_servo(u) && words[ACTUATOR_ACT + u] != NONE) {
             shorten(ACT + words[ACTUATOR_ACT + u] - 2u);
         }
@@ -84,13 +88,13 @@ fn advance_activations(rates: u32, velocities: u32) {
 // Lets the step count, or takes it back where it led nowhere. For springs that yield: the velocity that moved the positions, and lengths
 // and gradients of tendons at the start (all in work).
 fn finish_step(velocity: u32, length: u32, jacobian: u32) {
-    note_end();
+    end_in_team();
     judge_results();
-    for (var i = 0u; i < bound(NV); i++) {
-        keep(QACC_WARMSTART + i, fetch(QACC + i));
-    }
     let fault = reports[TROUBLE * envs + env];
     if (fault == RUNNING) {
+        for (var i = member; i < bound(NV); i += TEAM) {
+            keep(QACC_WARMSTART + i, fetch(QACC + i));
+        }
         if (ANY_PLASTIC) {
             yield_springs(velocity, length, jacobian);
         }
@@ -100,13 +104,18 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
         if (ANY_SENSOR_HISTORY) {
             push_measurements();
         }
-        reports[STEPS * envs + env] += 1u;
-        return;
+    } else {
+        restore_start();
+        for (var i = member; i < bound(NV); i += TEAM) {
+            keep(QACC_WARMSTART + i, fetch(START_WARMSTART + i));
+        }
     }
-    reports[STATUS * envs + env] = fault;
-    restore_start();
-    for (var i = 0u; i < bound(NV); i++) {
-        keep(QACC_WARMSTART + i, fetch(START_WARMSTART + i));
+    // The time passes when nobody looks at it any more.
+    join();
+    if (is_first() && fault == RUNNING) {
+        reports[STEPS * envs + env] += 1u;
+    } else if (is_first()) {
+        reports[STATUS * envs + env] = fault;
     }
 }
 
@@ -121,45 +130,50 @@ fn added_inertia(i: u32) -> f32 {
     return TIMESTEP * damping_slope(DOF_DAMPER + 3u * i, given(QVEL + i));
 }
 
-// Factors M + h B into QLD; false where a pivot is not positive.
-fn factor_damped() -> bool {
+// Factors M + h B.
+fn factor_damped() {
     if (LONG_PATHS) {
-        return articulated_factor();
+        if (is_first() && !articulated_factor()) {
+            trouble(SINGULAR);
+        }
+        return;
     }
-    for (var p = 0u; p < bound(NNZ); p++) {
-        put(QLD + p, fetch(QM + p));
+    copy_mass_to_factor();
+    join();
+    for (var i = member; i < bound(NV); i += TEAM) {
+        add(QLD + pivot_of(i), added_inertia(i));
     }
-    for (var i = 0u; i < bound(NV); i++) {
-        add(QLD + words[TREE_START + i + 1u] - 1u, added_inertia(i));
+    join();
+    if (!factor_tree()) {
+        trouble(SINGULAR);
     }
-    return factor_tree();
 }
 
 // The acceleration that advances the velocity: damping is implicit, so it solves (M + h B) a = τ + Jᵀf.
 fn damped_acceleration() {
     if (!IMPLICIT_DAMPING) {
-        for (var i = 0u; i < bound(NV); i++) {
+        for (var i = member; i < bound(NV); i += TEAM) {
             put(RATE + i, fetch(QACC + i));
         }
         return;
     }
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         put(RATE + i, fetch(QFRC_SMOOTH + i) + fetch(QFRC_CONSTRAINT + i));
     }
-    if (!factor_damped()) {
-        trouble(SINGULAR);
-    }
+    factor_damped();
     solve_tree(RATE);
 }
 
 // Activations, then velocities by the acceleration in RATE, then positions with the new velocities.
 fn advance_semi_implicit() {
     advance_activations(ACT_DOT, ACTUATOR_VELOCITY);
-    for (var i = 0u; i < bound(NV); i++) {
+    join();
+    for (var i = member; i < bound(NV); i += TEAM) {
         let v = given(QVEL + i) + fetch(RATE + i) * TIMESTEP;
         keep(QVEL + i, v);
         put(RATE + i, v);
     }
+    join();
     integrate_positions(RATE, TIMESTEP);
     finish_step(RATE, TEN_LENGTH, TEN_JACOBIAN);
 }

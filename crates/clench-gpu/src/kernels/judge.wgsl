@@ -1,8 +1,7 @@
-// The verdict on a forward pass that is no step: one thread an environment.
+// The verdict on a forward pass that is no step: a team an environment.
 
-@compute @workgroup_size(GROUP)
+@compute @workgroup_size(GROUP, TEAM)
 fn verdict(@builtin(global_invocation_id) id: vec3u) {
-    if (begin(id.x)) {
-        judge_results();
-    }
+    begin_in_team(id);
+    judge_results();
 }

@@ -74,12 +74,18 @@ fn attached_poses(b: u32) {
 }
 
 fn kinematics() {
-    put3(XPOS, vec3f());
-    put4(XQUAT, vec4f(1.0, 0.0, 0.0, 0.0));
-    put_matrix(XMAT, mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
-    attached_poses(0u);
-    for (var b = 1u; b < bound(NBODY); b++) {
-        body_pose(b);
+    if (is_first()) {
+        put3(XPOS, vec3f());
+        put4(XQUAT, vec4f(1.0, 0.0, 0.0, 0.0));
+        put_matrix(XMAT, mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
+    }
+    for (var level = 1u; level < bound(NBODY_LEVEL); level++) {
+        for (var n = words[BODY_LEVEL + level] + member; n < words[BODY_LEVEL + level + 1u]; n += TEAM) {
+            body_pose(words[LEVEL_BODY + n]);
+        }
+        join();
+    }
+    for (var b = member; b < bound(NBODY); b += TEAM) {
         attached_poses(b);
     }
 }

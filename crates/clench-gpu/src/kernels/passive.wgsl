@@ -9,7 +9,7 @@ fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
 }
 
 fn springs() {
-    for (var s = 0u; s < NSPRING; s++) {
+    for (var s = member; s < NSPRING; s += TEAM) {
         let j = words[SPRING_JNT + s];
         let law = parameter3(SPRING_LAW + 3u * s);
         let q = words[JNT_QPOS + j];
@@ -30,10 +30,21 @@ fn springs() {
     }
 }
 
+// The first that acts on dofs.
 fn dampers() {
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         let v = given(QVEL + i);
-        add(QFRC_PASSIVE + i, -v * stiffness(parameter3(DOF_DAMPER + 3u * i), abs(v)));
+        put(QFRC_PASSIVE + i, -v * stiffness(parameter3(DOF_DAMPER + 3u * i), abs(v)));
+    }
+}
+
+// Tendons have dofs in common: one thread adds them all.
+fn tendon_forces() {
+    for (var t = 0u; is_first() && t < NTENDON; t++) {
+        let force = tendon_passive_force(t);
+        for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
+            add(QFRC_PASSIVE + words[TENDON_DOF + k], fetch(TEN_JACOBIAN + k) * force);
+        }
     }
 }
 
@@ -44,7 +55,7 @@ fn resistance(viscous: vec3f, quadratic: vec3f, v: vec3f) -> vec3f {
 
 // The medium resists the box that has a body's mass and inertia, whose coefficients are numbers of the model, or the body's ellipsoids.
 fn fluid_forces() {
-    for (var b = 0u; b < bound(NBODY); b++) {
+    for (var b = member; b < bound(NBODY); b += TEAM) {
         if (has_ellipsoids(b)) {
             put_spatial(CFRC + 6u * b, ellipsoids_force(b));
             continue;
@@ -60,18 +71,20 @@ fn fluid_forces() {
         let force = resistance(parameter3(drag + 3u), parameter3(drag + 9u), linear);
         put_spatial(CFRC + 6u * b, force_at_com(b, axes * force, axes * torque));
     }
+    join();
     project_forces(QFRC_PASSIVE);
 }
 
 // Each body's weight, or the share of it that is lifted, is held at its centre of mass; `BODY_LIFT` is its mass times that share.
 fn gravity_compensation() {
     clear_dofs(QFRC_GRAVCOMP);
-    for (var b = 0u; b < bound(NBODY); b++) {
+    for (var b = member; b < bound(NBODY); b += TEAM) {
         let lift = parameter3(GRAVITY) * -parameter(BODY_LIFT + b);
         put_spatial(CFRC + 6u * b, force_at_com(b, lift, vec3f()));
     }
+    join();
     project_forces(QFRC_GRAVCOMP);
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         if (words[DOF_ACTGRAVCOMP + i] == 0u) {
             add(QFRC_PASSIVE + i, fetch(QFRC_GRAVCOMP + i));
         }
@@ -80,10 +93,12 @@ fn gravity_compensation() {
 
 // What contacts hold on with pulls their bodies together, against what their constraints give for it.
 fn adhesion_forces() {
-    for (var b = 0u; b < bound(NBODY); b++) {
+    for (var b = member; b < bound(NBODY); b += TEAM) {
         put_spatial(CFRC + 6u * b, Spatial(vec3f(), vec3f()));
     }
-    for (var c = 0u; c < reports[NCON * envs + env]; c++) {
+    join();
+    // Contacts have bodies in common: one thread adds them all.
+    for (var c = 0u; is_first() && c < reports[NCON * envs + env]; c++) {
         let place = CONTACTS + CONTACT_SIZE * c;
         let pair = u32(fetch(place));
         let adhesion = contact_adhesion(c);
@@ -94,14 +109,21 @@ fn adhesion_forces() {
             put_spatial(CFRC + 6u * b, plus(fetch_spatial(CFRC + 6u * b), pull));
         }
     }
+    join();
     project_forces(QFRC_PASSIVE);
 }
 
 fn passive_forces() {
-    clear_dofs(QFRC_PASSIVE);
-    springs();
     dampers();
-    tendon_forces();
+    if (NSPRING > 0u) {
+        join();
+        springs();
+    }
+    if (NTENDON > 0u) {
+        join();
+        tendon_forces();
+    }
+    join();
     if (HAS_GRAVCOMP) {
         gravity_compensation();
     }

@@ -24,7 +24,7 @@ fn turn_rest(rest: u32, turn: vec4f, most: f32) {
 // Lets springs yield after a step that has moved the positions along the velocity at `velocity`, from where tendons had the length and
 // the gradient at `length` and `jacobian` (all in work).
 fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
-    for (var j = 0u; j < NJNT; j++) {
+    for (var j = member; j < NJNT; j += TEAM) {
         if (words[JNT_PLASTIC + j] == NONE) {
             continue;
         }
@@ -37,7 +37,7 @@ fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
             keep(rest, given(rest) + beyond(given(q) - given(rest), most));
         }
     }
-    for (var t = 0u; t < NTENDON; t++) {
+    for (var t = member; t < NTENDON; t += TEAM) {
         if (words[TENDON_PLASTIC + t] == NONE) {
             continue;
         }

@@ -28,7 +28,7 @@ fn increment_rate(u: vec3f, omega: vec3f) -> vec3f {
 
 // The rates of this stage: of positions in RATE, which holds those of the stage before.
 fn collect_rates() {
-    for (var j = 0u; j < bound(NJNT); j++) {
+    for (var j = member; j < bound(NJNT); j += TEAM) {
         let kind = words[JNT_KIND + j];
         let first = words[JNT_DOF + j];
         let end = words[JNT_DOF + j + 1u];
@@ -46,21 +46,20 @@ fn collect_rates() {
 }
 
 fn add_to_mean() {
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         let before = stage > 0u;
         put(MEAN_RATE + i, select(0.0, fetch(MEAN_RATE + i), before) + weight() * fetch(RATE + i));
         put(MEAN_QACC + i, select(0.0, fetch(MEAN_QACC + i), before) + weight() * fetch(QACC + i));
     }
-    for (var a = 0u; a < NA; a++) {
+    for (var a = member; a < NA; a += TEAM) {
         let mean = select(0.0, fetch(MEAN_ACT_DOT + a), stage > 0u);
         put(MEAN_ACT_DOT + a, mean + weight() * fetch(ACT_DOT + a));
     }
 }
 
-// Goes from the start for `time` seconds, at the rates in `rate` (in work) and accelerations in `qacc`.
+// Goes from where the state is for `time` seconds, at the rates in `rate` (in work) and accelerations in `qacc`.
 fn go(rate: u32, qacc: u32, time: f32) {
-    restore_start();
-    for (var i = 0u; i < bound(NV); i++) {
+    for (var i = member; i < bound(NV); i += TEAM) {
         keep(QVEL + i, given(QVEL + i) + fetch(qacc + i) * time);
     }
     integrate_positions(rate, time);
@@ -68,7 +67,7 @@ fn go(rate: u32, qacc: u32, time: f32) {
 
 // Remembers from where tendons that yield are moved.
 fn save_tendons() {
-    for (var t = 0u; YIELDING_TENDONS && t < NTENDON; t++) {
+    for (var t = member; YIELDING_TENDONS && t < NTENDON; t += TEAM) {
         put(START_TEN_LENGTH + t, fetch(TEN_LENGTH + t));
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
             put(START_TEN_JACOBIAN + k, fetch(TEN_JACOBIAN + k));
@@ -76,33 +75,38 @@ fn save_tendons() {
     }
 }
 
-@compute @workgroup_size(GROUP)
+@compute @workgroup_size(GROUP, TEAM)
 fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
-        return;
-    }
+    begin_in_team(id);
     stage = u32(fetch(STAGE));
-    put(STAGE, f32((stage + 1u) % 4u));
+    join();
+    if (is_first()) {
+        put(STAGE, f32((stage + 1u) % 4u));
+        put(OFFSET, select(reach(stage), 0.0, stage == 3u));
+    }
     if (stage == 0u) {
         save_start();
-        for (var o = 0u; o < NOUT; o++) {
+        for (var o = member; o < NOUT; o += TEAM) {
             put(START_ACTUATOR_VELOCITY + o, fetch(ACTUATOR_VELOCITY + o));
         }
         save_tendons();
     }
     collect_rates();
+    join();
     add_to_mean();
-    put(OFFSET, select(reach(stage), 0.0, stage == 3u));
+    restore_start();
+    join();
     if (stage < 3u) {
         go(RATE, QACC, reach(stage));
-        for (var a = 0u; a < NA; a++) {
+        for (var a = member; a < NA; a += TEAM) {
             keep(ACT + a, given(ACT + a) + fetch(ACT_DOT + a) * reach(stage));
         }
         // The stage before is nearer than the last step.
-        for (var i = 0u; i < bound(NV); i++) {
+        for (var i = member; i < bound(NV); i += TEAM) {
             keep(QACC_WARMSTART + i, fetch(QACC + i));
         }
-        return;
+        // The rest is of the last stage, which environments that take no part in a call are not at: this thread waits with theirs.
+        member = BEHIND_ALL;
     }
     go(MEAN_RATE, MEAN_QACC, TIMESTEP);
     // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with.

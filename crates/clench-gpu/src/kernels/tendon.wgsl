@@ -41,7 +41,7 @@ fn spatial_tendon(t: u32) -> f32 {
 }
 
 fn tendons() {
-    for (var t = 0u; t < NTENDON; t++) {
+    for (var t = member; t < NTENDON; t += TEAM) {
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
             put(TEN_JACOBIAN + k, 0.0);
         }

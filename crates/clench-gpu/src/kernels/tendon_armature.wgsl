@@ -19,8 +19,9 @@ fn span_acceleration(span: Span) -> f32 {
     return dot(unit.xyz, both) + across;
 }
 
+// Tendons have dofs in common: one thread adds them all.
 fn tendon_bias() {
-    for (var t = 0u; t < NTENDON; t++) {
+    for (var t = 0u; is_first() && t < NTENDON; t++) {
         let armature = parameter(TENDON_ARMATURE + t);
         var acceleration: f32 = 0.0;
         for (var s = words[TENDON_SECTION + t]; armature != 0.0 && s < words[TENDON_SECTION + t + 1u]; s++) {
@@ -33,4 +34,5 @@ fn tendon_bias() {
             add(QFRC_BIAS + words[TENDON_DOF + k], fetch(TEN_JACOBIAN + k) * armature * acceleration);
         }
     }
+    join();
 }

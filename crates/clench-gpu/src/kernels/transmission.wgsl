@@ -136,7 +136,7 @@ fn on_sites(u: u32, site: u32, other: u32) -> f32 {
 }
 
 fn transmissions() {
-    for (var u = 0u; u < NU; u++) {
+    for (var u = member; u < NU; u += TEAM) {
         let kind = words[ACTUATOR_ON + u];
         let element = words[ACTUATOR_TARGET + 2u * u];
         var length: f32 = 0.0;

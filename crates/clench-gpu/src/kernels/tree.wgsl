@@ -1,79 +1,91 @@
 // LᵀDL in the pattern of the kinematic tree: row i has the path from the root to dof i, itself last. Sister of
 // `clench-solver/src/tree/factor.rs`; the sums run in the same order.
 //
-// The factor replaces the matrix in QLD: L below the diagonal, and 1 / D in QLD_INVERSE.
+// The factor replaces the matrix in QLD: L below the diagonal, and on it, as in QLD_INVERSE, 1 / D. A team goes through the dofs level by level, those
+// that are equally far from the root at a time: what the rows below subtract from a row, the row gathers. In the memory of the workgroup the matrix
+// is no sooner factored: a card has room for fewer teams then.
 
-// Cards wait long for each number, and cannot know that the next one does not depend on what was just written: hence four at a time. Beyond the
-// end of a row nothing changes.
-
-// Which of four entries from `p` on are before `end`.
-fn within(p: u32, end: u32) -> vec4<bool> {
-    return vec4u(p, p + 1u, p + 2u, p + 3u) < vec4u(end);
+// Copies the mass matrix to be factored.
+fn copy_mass_to_factor() {
+    for (var p = member; p < bound(NNZ); p += TEAM) {
+        put(QLD + p, fetch(QM + p));
+    }
 }
 
-// Factors what stands in QLD; false where a pivot is not positive.
+// Where the diagonal entry of row i is.
+fn pivot_of(i: u32) -> u32 {
+    return words[TREE_START + i + 1u] - 1u;
+}
+
+// The entry number `above` of row i, of `level`, less what all rows below subtract. Those are not divided by their pivots yet.
+fn eliminated_entry(i: u32, above: u32, level: u32) -> f32 {
+    var rest = fetch(QLD + words[TREE_START + i] + above);
+    for (var p = words[BELOW_START + i + 1u]; p > words[BELOW_START + i]; p--) {
+        let below = words[BELOW_PLACE + p - 1u];
+        let multiplier = fetch(QLD + below) * fetch(QLD + words[TREE_PIVOT + below]);
+        rest -= multiplier * fetch(QLD + below + above + 1u - level);
+    }
+    return rest;
+}
+
+// Factors what stands in QLD; false where this thread met a pivot that is not positive.
 fn factor_tree() -> bool {
     var positive = true;
-    for (var up = 0u; up < bound(NV); up++) {
-        let i = NV - 1u - up;
-        let start = words[TREE_START + i];
-        let last = words[TREE_START + i + 1u] - 1u;
-        let pivot = fetch(QLD + last);
-        positive = positive && pivot > 0.0 && !is_wild(pivot);
-        let inverse = 1.0 / pivot;
-        put(QLD_INVERSE + i, inverse);
-        // The entry at hand, fetched before what it does not depend on is written.
-        var unscaled = fetch(QLD + max(last, start + 1u) - 1u);
-        for (var p = last; p > start; p--) {
-            let entry = p - 1u;
-            let ancestor = words[TREE_START + words[TREE_DOF + entry]];
-            let multiplier = unscaled * inverse;
-            unscaled = fetch(QLD + max(entry, start + 1u) - 1u);
-            for (var q = start; q <= entry; q += 4u) {
-                let place = QLD + ancestor + q - start;
-                let rest = fetch4(place);
-                put4(place, select(rest, rest - multiplier * fetch4(QLD + q), within(q, p)));
+    for (var level = NLEVEL; level > 0u; level--) {
+        let first = words[LEVEL_START + level - 1u];
+        let entries = (words[LEVEL_START + level] - first) * level;
+        for (var n = member; n < entries; n += TEAM) {
+            let i = words[LEVEL_DOF + first + n / level];
+            let above = n % level;
+            var rest = eliminated_entry(i, above, level);
+            if (above + 1u == level) {
+                positive = positive && rest > 0.0 && !is_wild(rest);
+                rest = 1.0 / rest;
+                put(QLD_INVERSE + i, rest);
             }
-            put(QLD + entry, multiplier);
+            put(QLD + words[TREE_START + i] + above, rest);
+        }
+        join();
+    }
+    for (var p = member; p < bound(NNZ); p += TEAM) {
+        let pivot = words[TREE_PIVOT + p];
+        if (p != pivot) {
+            put(QLD + p, fetch(QLD + p) * fetch(QLD + pivot));
         }
     }
+    join();
     return positive;
 }
 
-// The numbers at four dofs.
-fn fetch_at(x: u32, dofs: vec4u) -> vec4f {
-    return vec4f(fetch(x + dofs.x), fetch(x + dofs.y), fetch(x + dofs.z), fetch(x + dofs.w));
-}
-
-// Four dofs of row i of the tree, from entry `p` on; beyond the end i itself.
-fn ancestors(p: u32, i: u32) -> vec4u {
-    let dofs = vec4u(words[TREE_DOF + p], words[TREE_DOF + p + 1u], words[TREE_DOF + p + 2u], words[TREE_DOF + p + 3u]);
-    return select(vec4u(i), dofs, within(p, words[TREE_START + i + 1u]));
+// x ← L⁻ᵀ x, in place.
+fn substitute_towards_root(x: u32) {
+    join();
+    for (var level = NLEVEL; level > 0u; level--) {
+        for (var n = words[LEVEL_START + level - 1u] + member; n < words[LEVEL_START + level]; n += TEAM) {
+            let i = words[LEVEL_DOF + n];
+            var rest = fetch(x + i);
+            for (var p = words[BELOW_START + i + 1u]; p > words[BELOW_START + i]; p--) {
+                rest -= fetch(QLD + words[BELOW_PLACE + p - 1u]) * fetch(x + words[BELOW_DOF + p - 1u]);
+            }
+            put(x + i, rest);
+        }
+        join();
+    }
 }
 
 // x ← (LᵀDL)⁻¹ x, in place.
 fn solve_tree(x: u32) {
-    for (var up = 0u; up < bound(NV); up++) {
-        let i = NV - 1u - up;
-        let value = fetch(x + i);
-        let last = words[TREE_START + i + 1u] - 1u;
-        for (var p = words[TREE_START + i]; p < last; p += 4u) {
-            let dofs = ancestors(p, i);
-            let rest = fetch_at(x, dofs);
-            let left = select(rest, rest - fetch4(QLD + p) * value, within(p, last));
-            put(x + dofs.x, left.x);
-            put(x + dofs.y, left.y);
-            put(x + dofs.z, left.z);
-            put(x + dofs.w, left.w);
+    substitute_towards_root(x);
+    for (var level = 0u; level < bound(NLEVEL); level++) {
+        for (var n = words[LEVEL_START + level] + member; n < words[LEVEL_START + level + 1u]; n += TEAM) {
+            let i = words[LEVEL_DOF + n];
+            let pivot = pivot_of(i);
+            var rest = fetch(x + i) * fetch(QLD + pivot);
+            for (var p = words[TREE_START + i]; p < pivot; p++) {
+                rest -= fetch(QLD + p) * fetch(x + words[TREE_DOF + p]);
+            }
+            put(x + i, rest);
         }
-    }
-    for (var i = 0u; i < bound(NV); i++) {
-        var sum = fetch(x + i) * fetch(QLD_INVERSE + i);
-        let last = words[TREE_START + i + 1u] - 1u;
-        for (var p = words[TREE_START + i]; p < last; p += 4u) {
-            let parts = select(vec4f(), fetch4(QLD + p) * fetch_at(x, ancestors(p, i)), within(p, last));
-            sum = sum - parts.x - parts.y - parts.z - parts.w;
-        }
-        put(x + i, sum);
+        join();
     }
 }

@@ -4,35 +4,57 @@ fn is_far(x: f32) -> bool {
     return is_wild(x) || abs(x) > 1e10;
 }
 
-// Notes a number that is beyond its bounds, and where it is.
-fn judge(field: u32, index: u32, x: f32, beyond: bool) {
-    if (beyond && reports[TROUBLE * envs + env] == RUNNING) {
-        reports[FAULT_FIELD * envs + env] = field;
-        reports[FAULT_INDEX * envs + env] = index;
-        reports[FAULT_VALUE * envs + env] = report_bits(x);
-        trouble(DIVERGED);
-    }
+// A number to be judged: of which field it is, where in it, and whether it is beyond its bounds.
+struct Judged {
+    field: u32,
+    index: u32,
+    x: f32,
+    beyond: bool,
 }
 
+// The k-th of all.
+fn judged(k: u32) -> Judged {
+    var index = k;
+    if (index < NV) {
+        let x = fetch(QACC + index);
+        return Judged(OF_QACC, index, x, is_far(x));
+    }
+    index -= NV;
+    if (index < NV) {
+        let x = fetch(QFRC_CONSTRAINT + index);
+        return Judged(OF_QFRC_CONSTRAINT, index, x, is_wild(x));
+    }
+    index -= NV;
+    if (index < NV) {
+        let x = given(QVEL + index);
+        return Judged(OF_QVEL, index, x, is_far(x));
+    }
+    index -= NV;
+    if (index < NQ) {
+        let x = given(QPOS + index);
+        return Judged(OF_QPOS, index, x, is_far(x));
+    }
+    index -= NQ;
+    let x = given(ACT + index);
+    return Judged(OF_ACT, index, x, is_wild(x));
+}
+
+// Notes the first number that is beyond its bounds, and where it is.
 fn judge_results() {
-    for (var i = 0u; i < bound(NV); i++) {
-        let x = fetch(QACC + i);
-        judge(OF_QACC, i, x, is_far(x));
+    join();
+    var worst = NONE;
+    for (var k = member; k < 3u * NV + NQ + NA; k += TEAM) {
+        if (judged(k).beyond) {
+            worst = min(worst, k);
+        }
     }
-    for (var i = 0u; i < bound(NV); i++) {
-        let x = fetch(QFRC_CONSTRAINT + i);
-        judge(OF_QFRC_CONSTRAINT, i, x, is_wild(x));
+    worst = least_of_team(worst);
+    if (is_first() && worst != NONE && reports[TROUBLE * envs + env] == RUNNING) {
+        let number = judged(worst);
+        reports[FAULT_FIELD * envs + env] = number.field;
+        reports[FAULT_INDEX * envs + env] = number.index;
+        reports[FAULT_VALUE * envs + env] = report_bits(number.x);
+        trouble(DIVERGED);
     }
-    for (var i = 0u; i < bound(NV); i++) {
-        let x = given(QVEL + i);
-        judge(OF_QVEL, i, x, is_far(x));
-    }
-    for (var i = 0u; i < bound(NQ); i++) {
-        let x = given(QPOS + i);
-        judge(OF_QPOS, i, x, is_far(x));
-    }
-    for (var a = 0u; a < NA; a++) {
-        let x = given(ACT + a);
-        judge(OF_ACT, a, x, is_wild(x));
-    }
+    join();
 }

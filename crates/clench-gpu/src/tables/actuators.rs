@@ -83,12 +83,29 @@ impl Tables {
         );
         let dofs = outputs().flat_map(|o| m.actuator_dofs.dofs(o));
         self.words("ACTUATOR_DOF", dofs.map(|&dof| dof as usize));
+        self.arms_of_dofs(m);
         self.transmissions(m);
         self.activations(m);
         self.controllers(m);
         self.delays(m);
         self.gains(m);
         self.actuator_ranges(m);
+    }
+
+    /// The moment arms on each dof, and which output each is of.
+    fn arms_of_dofs(&mut self, m: &Model) {
+        let mut arms = vec![Vec::new(); m.nv];
+        let mut entry = 0;
+        for output in 0..m.nout() {
+            for &dof in m.actuator_dofs.dofs(output) {
+                arms[dof as usize].push((entry, output));
+                entry += 1;
+            }
+        }
+        self.words("DOF_ARM", starts(arms.iter().map(Vec::len)));
+        let arms = arms.concat();
+        self.words("ARM_ENTRY", arms.iter().map(|&(entry, _)| entry));
+        self.words("ARM_OUTPUT", arms.iter().map(|&(_, output)| output));
     }
 
     fn transmissions(&mut self, m: &Model) {

@@ -15,6 +15,7 @@ impl Tables {
         self.words("BODY_DOF", starts(bodies.iter().map(|b| b.dofs.len())));
         self.words("BODY_GEOM", starts(bodies.iter().map(|b| b.geoms.len())));
         self.words("BODY_SITE", starts(bodies.iter().map(|b| b.sites.len())));
+        self.body_levels(m);
         let vectors =
             |v: &[clench_math::Vec3<f64>]| Vec::from_iter(v.iter().flat_map(|v| v.to_array()));
         let quats =
@@ -34,6 +35,27 @@ impl Tables {
         self.numbers("SITE_QUAT", quats(&p.site_quat));
         self.numbers("JNT_POS", vectors(&p.jnt_pos));
         self.numbers("JNT_AXIS", vectors(&p.jnt_axis));
+    }
+
+    /// The bodies that are equally far from the world, level by level, and the children of each body, the last one first.
+    fn body_levels(&mut self, m: &Model) {
+        let mut depths = vec![0; m.nbody()];
+        let mut children = vec![Vec::new(); m.nbody()];
+        for b in (1..m.nbody()).rev() {
+            children[m.bodies[b].parent].push(b);
+        }
+        for b in 1..m.nbody() {
+            depths[b] = depths[m.bodies[b].parent] + 1;
+        }
+        let mut levels = vec![Vec::new(); depths.iter().max().map_or(0, |&most| most + 1)];
+        for (b, &depth) in depths.iter().enumerate() {
+            levels[depth].push(b);
+        }
+        self.count("NBODY_LEVEL", levels.len());
+        self.words("BODY_LEVEL", starts(levels.iter().map(Vec::len)));
+        self.words("LEVEL_BODY", levels.concat());
+        self.words("BODY_CHILD", starts(children.iter().map(Vec::len)));
+        self.words("CHILD_BODY", children.concat());
     }
 
     pub(super) fn joints(&mut self, m: &Model) {
@@ -64,6 +86,9 @@ impl Tables {
         self.words("DOF_BODY", m.dofs.iter().map(|d| d.body));
         self.words("DOF_JNT", m.dofs.iter().map(|d| d.joint));
         self.words("TREE_START", (0..=nv).map(|i| tree.row_start(i)));
+        let pivots =
+            (0..nv).flat_map(|i| tree.row(i).iter().map(move |_| tree.row_start(i + 1) - 1));
+        self.words("TREE_PIVOT", pivots);
         let columns = (0..nv).flat_map(|i| tree.row(i));
         self.words("TREE_DOF", columns.map(|&j| j as usize));
         let mut below = vec![Vec::new(); nv];
