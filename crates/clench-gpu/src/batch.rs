@@ -105,7 +105,7 @@ impl<S: GpuReal> GpuBatch<S> {
         let solver = SolverMemory::new::<S>(model.nv, method, room, general_kernels);
         let (mut tables, mut capacity) =
             Tables::new::<S>(&model, &settings, &pairs, general_kernels);
-        solver.reserve(&mut capacity);
+        solver.reserve(&mut capacity, model.tree.nnz(), model.nv);
         let base = Base::new(&tables, pairs);
         tables.shapes(&model, &base.candidates);
         tables.ray_shapes(&model);

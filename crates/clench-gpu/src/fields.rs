@@ -151,6 +151,9 @@ fields! {
     measured: CONTACT_SIZE * c.measured;
     qacc: m.nv;
     qfrc_constraint: m.nv;
+    /// Of the cost at `qacc`; and L⁻ᵀ times that, where somebody asks for the duality gap.
+    gradient: m.nv;
+    preconditioned: m.nv;
     /// How long after the start of the step the present stage is, s.
     offset: 1;
     /// By Runge–Kutta, which stage comes next.
@@ -215,8 +218,8 @@ fields! {
     weighed: c.rows * m.nv;
     /// Which rows are on pieces with curvature.
     stiff: c.rows;
-    /// The mass matrix, in the pattern of the tree.
-    mass: m.tree.nnz();
+    /// The mass matrix, dense or in the pattern of the tree.
+    mass: c.mass;
     /// The factor of H, and vectors over the dofs, where the workgroup has no room for them.
     tiles: c.tiles;
     vectors: c.vectors;

@@ -93,6 +93,8 @@ kernels! {
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// The convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "cg", "descent";
+    /// The duality gap that it has left, where somebody asks.
+    GAP = "gap", Team: "team", "tree", "articulated", "mass_factor", "gap";
     /// Where cameras are, where somebody asks.
     CAMERAS = "cameras", Thread: "cameras";
     /// Accelerations of bodies, forces between them and the energy, where somebody asks.

@@ -28,6 +28,8 @@ pub(crate) struct Pipelines {
     pub restart: Pipeline,
     /// Everything that follows from the state.
     pub forward: Vec<Pipeline>,
+    /// How far the last solve may be from the minimum.
+    pub gap: Pipeline,
     /// Looks at what a forward pass that is no step left.
     pub verdict: Pipeline,
     /// The integrator: one for each forward pass of a step.
@@ -117,6 +119,7 @@ impl Pipelines {
             body_forces: None,
             sensors: Vec::new(),
             restart: compile(&kernels::RESTART)?,
+            gap: compile(&kernels::GAP)?,
             verdict: compile(&kernels::VERDICT)?,
             forward,
             advance,

@@ -61,11 +61,14 @@ impl<S: GpuReal> GpuBatch<S> {
         self.report("steps")
     }
 
-    /// How the last solve of each environment went; of a step by Runge–Kutta, that of its last stage.
+    /// How the last solve of each environment went; of a step by Runge–Kutta, that of its last stage. Duality gaps are computed now.
     ///
     /// # Errors
     /// That the device was lost.
     pub fn solves(&self) -> Result<Vec<GpuSolve>, GpuError> {
+        self.submit(|batch, encoder| {
+            batch.encode(encoder, None, [&batch.pipelines.gap].into_iter());
+        })?;
         let status = |code: u32| match code {
             0 => Status::Unconstrained,
             1 => Status::Proven,

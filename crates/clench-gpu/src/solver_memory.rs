@@ -15,7 +15,7 @@ const MAX_NEWTON_DOFS: usize = 512;
 /// The factor of a Hessian of more dofs would leave so little of a card's memory to other workgroups that few could run side by side.
 const MAX_SHARED_DOFS: usize = 96;
 /// Numbers of the two tiles that are multiplied, of the diagonal, and of what threads add up and hand to each other.
-const STAGING: usize = 2 * TILE * 20 + TILE + 64;
+const STAGING: usize = 2 * 4 * 80 + TILE + 4 * 8 + 64;
 
 /// Where a solve keeps what is of the size of the dofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,9 @@ impl SolverMemory {
                 share_vectors: true,
             };
             memory.share_vectors = STAGING + memory.vectors() <= room;
-            let both = STAGING + memory.vectors() + memory.tiles();
+            // One of the tiles that are multiplied is where the last one of the factor will be.
+            let others = memory.tiles().saturating_sub(TILE * TILE);
+            let both = STAGING + memory.vectors() + others;
             memory.share_tiles &= memory.share_vectors && both <= room;
             memory
         };
@@ -91,8 +93,14 @@ impl SolverMemory {
         count * TILE * self.most
     }
 
-    /// Sets aside what lies with the rows.
-    pub(crate) fn reserve(self, capacity: &mut Capacity) {
+    /// Whether M is dense as well.
+    fn dense_mass(self) -> bool {
+        self.newton && TILE * self.most <= MAX_SHARED_DOFS
+    }
+
+    /// Sets aside what lies with the rows, for a mass matrix of `nnz` entries and `nv` dofs.
+    pub(crate) fn reserve(self, capacity: &mut Capacity, nnz: usize, nv: usize) {
+        capacity.mass = if self.dense_mass() { nv * nv } else { nnz };
         let outside = |shared: bool, size: usize| if shared { 0 } else { size };
         capacity.tiles = outside(self.share_tiles, self.tiles());
         capacity.vectors = outside(self.share_vectors, self.vectors());
@@ -107,15 +115,18 @@ impl SolverMemory {
     pub(crate) fn constants(self) -> String {
         let mut text = String::new();
         let inside = |shared: bool, size: usize| if shared { size.max(1) } else { 1 };
+        let others = self.tiles().saturating_sub(TILE * TILE);
+        let right = if self.share_tiles { others / 4 } else { 0 };
         for (name, value) in [
             ("WIDTH", TILE * self.most),
-            ("SHARED_QUADS", inside(self.share_tiles, self.tiles() / 4)),
+            ("RIGHT", right),
             ("SHARED_VECTORS", inside(self.share_vectors, self.vectors())),
         ] {
             let _ = writeln!(text, "const {name}: u32 = {value}u;");
         }
         for (name, value) in [
             ("NEWTON", self.newton),
+            ("DENSE_MASS", self.dense_mass()),
             ("SHARE_TILES", self.share_tiles),
             ("SHARE_VECTORS", self.share_vectors),
             (

@@ -36,7 +36,7 @@ fn stage_stiff(place: u32, k: u32, count: u32, i: u32, j: u32) {
         }
     }
     scratch[place] = of_j;
-    right[place] = of_wj;
+    tiles[RIGHT + place] = of_wj;
 }
 
 // Puts the factors of a term of the tile (i, j) where a product reads them: of Jᵀ W J for sixteen stiff rows, or of what a column
@@ -45,12 +45,12 @@ fn stage_term(i: u32, j: u32, term: u32, chunks: u32, count: u32) {
     // Threads side by side have rows side by side, which are dofs: numbers of J side by side.
     let r = lane % TILE;
     let quad = lane / TILE;
-    let place = STRIDE * r + quad;
+    let place = waiting_row(r) + quad;
     if (term < chunks) {
         stage_stiff(place, TILE * term + 4u * quad, count, TILE * i + r, TILE * j + r);
     } else {
         scratch[place] = -tile_quad(tile_at(i, term - chunks), r, quad);
-        right[place] = tile_quad(tile_at(j, term - chunks), r, quad);
+        tiles[RIGHT + place] = tile_quad(tile_at(j, term - chunks), r, quad);
     }
     workgroupBarrier();
 }
@@ -64,7 +64,7 @@ fn note_diagonal(own: vec4f) {
 }
 
 // Of a tile on the diagonal L⁻¹: what turns it into Lᵀ, row by row, turns the identity into that. A pivot that rounding has consumed is
-// replaced by its diagonal, so that the direction stays one of descent. Row k waits in row k of `scratch` and `right`. Beyond the last dof a tile is
+// replaced by its diagonal, so that the direction stays one of descent. Row k waits in row k of both factors of a product. Beyond the last dof a tile is
 // the identity, and stays it: only `order` rows are eliminated.
 fn invert_factor(own: vec4f, order: u32) -> vec4f {
     let r = own_row();
@@ -74,16 +74,16 @@ fn invert_factor(own: vec4f, order: u32) -> vec4f {
         inverse[r % 4u] = 1.0;
     }
     for (var k = 0u; k < bound(order); k++) {
-        let place = STRIDE * k;
+        let place = waiting_row(k);
         if (r == k) {
             scratch[place + own_quad()] = a;
-            right[place + own_quad()] = inverse;
+            tiles[RIGHT + place + own_quad()] = inverse;
         }
         workgroupBarrier();
         let rest = scratch[place + k / 4u][k % 4u];
         let scale = inverseSqrt(select(diagonal[k], rest, rest > MIN_PIVOT * diagonal[k]));
         let of_a = scratch[place + own_quad()] * scale;
-        let of_inverse = right[place + own_quad()] * scale;
+        let of_inverse = tiles[RIGHT + place + own_quad()] * scale;
         let multiplier = scratch[place + r / 4u][r % 4u] * scale;
         if (r > k) {
             a -= multiplier * of_a;
@@ -92,14 +92,16 @@ fn invert_factor(own: vec4f, order: u32) -> vec4f {
             inverse = of_inverse;
         }
     }
+    // The result may go where others still read.
+    workgroupBarrier();
     return inverse;
 }
 
 // A tile below the diagonal: what is left of it times the inverse of the factor above it.
 fn divide_tile(own: vec4f, j: u32) -> vec4f {
-    let place = STRIDE * own_row() + own_quad();
+    let place = waiting_row(own_row()) + own_quad();
     scratch[place] = own;
-    right[place] = tile_quad(tile_at(j, j), own_row(), own_quad());
+    tiles[RIGHT + place] = tile_quad(tile_at(j, j), own_row(), own_quad());
     workgroupBarrier();
     return tile_product();
 }

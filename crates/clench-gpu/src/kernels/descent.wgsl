@@ -8,10 +8,9 @@ const AT_WARMSTART: u32 = 1u;
 const BACK_AT_SMOOTH: u32 = 2u;
 const DESCEND: u32 = 3u;
 const REFRESH: u32 = 4u;
-// Newton's method looks at the duality gap before its first step and after its last, CG always.
+// Newton's method looks at the duality gap before its first step, CG always. What the last step leaves of it, `gap.wgsl` finds where somebody asks.
 const PROVE: u32 = 5u;
-const FINISH: u32 = 6u;
-const DONE: u32 = 7u;
+const DONE: u32 = 6u;
 
 // So many iterations without noticeable progress are too many.
 const PATIENCE: u32 = select(20u, 2u, NEWTON);
@@ -57,7 +56,7 @@ fn place(round: u32) {
 // Ends the solve; what comes next.
 fn end(c: ptr<function, Convergence>, status: u32) -> u32 {
     (*c).status = status;
-    return select(DONE, FINISH, NEWTON);
+    return DONE;
 }
 
 // What comes once the starting point is chosen. Newton is trusted for its forces as well: the gap alone, a bound in cost, would let
@@ -164,16 +163,16 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
             advance_iterate(step.alpha, nrow);
         } else if (round < DESCEND || round == REFRESH) {
             place(round);
-            refresh(nrow);
+            refresh(nrow, round == AT_SMOOTH || round == BACK_AT_SMOOTH);
         }
-        if (round != PROVE && round != FINISH) {
+        if (round != PROVE) {
             totals = evaluate(nblock);
             // The gradient there says nothing that counts, if the last acceleration is tried next.
             if (round != AT_SMOOTH || !WARMSTART) {
                 c.norm = differentiate(nrow);
             }
         }
-        if (!NEWTON || round == PROVE || round == FINISH) {
+        if (!NEWTON || round == PROVE) {
             c.gap = precondition();
         }
         switch round {
@@ -182,9 +181,6 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
             }
             case PROVE: {
                 next = after_proof(&c);
-            }
-            case FINISH: {
-                next = DONE;
             }
             default: {
                 next = after_placing(&c, round, totals, nblock);
@@ -200,19 +196,21 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     if (!begin_together(workgroup)) {
         return;
     }
+    let nrow = reports[NROW * envs + env];
+    let nblock = reports[NBLOCK * envs + env];
     let inertia = copy_mass();
-    let c = minimise(reports[NROW * envs + env], reports[NBLOCK * envs + env], inertia);
+    let c = minimise(nrow, nblock, inertia);
     if (NOSLIP) {
-        noslip(reports[NROW * envs + env], reports[NBLOCK * envs + env], 1.0 / inertia);
+        noslip(nrow, nblock, 1.0 / inertia);
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
         put(QACC + i, vector(QACC_AT + i));
         put(QFRC_CONSTRAINT + i, vector(CONSTRAINT_AT + i));
+        put(GRADIENT + i, select(vector(GRADIENT_AT + i), 0.0, c.status == SOLVE_UNCONSTRAINED));
     }
     if (lane == 0u) {
         reports[NITER * envs + env] = c.iterations;
         reports[SOLVE_STATUS * envs + env] = c.status;
-        reports[SOLVE_GAP * envs + env] = report_bits(c.gap);
     }
     note_end();
 }

@@ -2,7 +2,7 @@
 // have the same bits and decide alike, and a run repeats itself.
 
 var<private> lane: u32;
-// What threads hand to each other, each its own; between two such exchanges a tile of a matrix, in rows of four vectors and one more.
+// What threads hand to each other, each its own; between two such exchanges a tile of a matrix.
 var<workgroup> scratch: array<vec4f, 80>;
 var<workgroup> verdict: u32;
 
@@ -31,24 +31,53 @@ fn join() {
     workgroupBarrier();
 }
 
-// The sum of eight neighbours.
-fn sum_of_eight(first: u32) -> vec4f {
-    let first_half = (scratch[first] + scratch[first + 1u]) + (scratch[first + 2u] + scratch[first + 3u]);
-    let second_half = (scratch[first + 4u] + scratch[first + 5u]) + (scratch[first + 6u] + scratch[first + 7u]);
-    return first_half + second_half;
+// The sums of every eighth thread. No tile lies there.
+var<workgroup> parts: array<vec4f, 8>;
+
+// The sum of what every eighth thread has put into `scratch`: those that add up side by side read side by side, and none waits for another at a bank
+// of the memory.
+fn sum_of_every_eighth(first: u32) -> vec4f {
+    let one_half = (scratch[first] + scratch[first + 8u]) + (scratch[first + 16u] + scratch[first + 24u]);
+    let other_half = (scratch[first + 32u] + scratch[first + 40u]) + (scratch[first + 48u] + scratch[first + 56u]);
+    return one_half + other_half;
 }
 
-// The sum over all 64 threads, of which eight add up eight each. No loop: a solve asks for so many that they would be half of its turns.
+// The sum over all 64 threads. No loop: a solve asks for so many that they would be half of its turns.
 fn total(x: vec4f) -> vec4f {
     scratch[lane] = x;
     workgroupBarrier();
-    let part = sum_of_eight(8u * (lane % 8u));
-    workgroupBarrier();
     if (lane < 8u) {
-        scratch[lane] = part;
+        parts[lane] = sum_of_every_eighth(lane);
     }
     workgroupBarrier();
-    let sum = sum_of_eight(0u);
+    return ((parts[0] + parts[1]) + (parts[2] + parts[3])) + ((parts[4] + parts[5]) + (parts[6] + parts[7]));
+}
+
+struct Sums {
+    before: vec4f,
+    all: vec4f,
+}
+
+// The sums of what the threads before this one come with, and of what all do.
+fn sums_up_to(x: vec4f) -> Sums {
+    scratch[lane] = x;
     workgroupBarrier();
-    return sum;
+    if (lane < 8u) {
+        var sum = vec4f();
+        for (var k = 8u * lane; k < bound(8u * lane + 8u); k++) {
+            sum += scratch[k];
+        }
+        parts[lane] = sum;
+    }
+    workgroupBarrier();
+    var sums = Sums(vec4f(), vec4f());
+    for (var k = 0u; k < bound(8u); k++) {
+        sums.before += select(vec4f(), parts[k], k < lane / 8u);
+        sums.all += parts[k];
+    }
+    for (var k = lane / 8u * 8u; k < lane; k++) {
+        sums.before += scratch[k];
+    }
+    workgroupBarrier();
+    return sums;
 }

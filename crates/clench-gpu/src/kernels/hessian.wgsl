@@ -62,18 +62,12 @@ fn weigh_rows(nblock: u32) -> u32 {
         if (b < nblock && is_stiff(b)) {
             dim = block(b, BLOCK_DIM);
         }
-        scratch[lane] = vec4f(f32(dim), 0.0, 0.0, 0.0);
-        workgroupBarrier();
-        var place = count;
-        for (var k = 0u; k < bound(GROUP); k++) {
-            let other = u32(scratch[k].x);
-            place += select(0u, other, k < lane);
-            count += other;
-        }
+        let sums = sums_up_to(vec4f(f32(dim), 0.0, 0.0, 0.0));
+        let place = count + u32(sums.before.x);
+        count += u32(sums.all.x);
         for (var a = 0u; a < dim; a++) {
             put_row(STIFF + place + a, f32(block(b, BLOCK_ROW) + a));
         }
-        workgroupBarrier();
     }
     for (var k = lane; k < nblock * NV; k += GROUP) {
         if (is_stiff(k / NV)) {

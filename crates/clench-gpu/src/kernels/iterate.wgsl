@@ -99,12 +99,18 @@ fn differentiate(nrow: u32) -> f32 {
 }
 
 // M (a − a_unc) and J a − aref anew, without the rounding that steps have added up.
-fn refresh(nrow: u32) {
-    for (var i = lane; i < bound(NV); i += GROUP) {
-        put_vector(RAY_AT + i, vector(QACC_AT + i) - vector(SMOOTH_AT + i));
+fn refresh(nrow: u32, at_smooth: bool) {
+    if (at_smooth) {
+        for (var i = lane; i < bound(NV); i += GROUP) {
+            put_vector(INERTIAL_AT + i, 0.0);
+        }
+    } else {
+        for (var i = lane; i < bound(NV); i += GROUP) {
+            put_vector(RAY_AT + i, vector(QACC_AT + i) - vector(SMOOTH_AT + i));
+        }
+        join_vectors();
+        multiply_mass(RAY_AT, INERTIAL_AT);
     }
-    join_vectors();
-    multiply_mass(RAY_AT, INERTIAL_AT);
     compute_residual(nrow);
 }
 

@@ -1,10 +1,24 @@
-// The mass matrix of an environment, in the pattern of the tree, as its workgroup multiplies with it. Sister of
-// `clench-solver/src/tree/matrix.rs`.
+// The mass matrix of an environment as its workgroup multiplies with it. Sister of `clench-solver/src/tree/matrix.rs`. Where Newton's method keeps a dense
+// factor of H near, M is dense as well: threads side by side read numbers side by side. Else it has the pattern of the tree.
 
 // Copies it beside the other numbers of the problem; returns its trace.
 fn copy_mass() -> f32 {
+    if (DENSE_MASS) {
+        for (var k = lane; k < bound(NV * NV); k += GROUP) {
+            put_row(MASS + k, 0.0);
+        }
+        join();
+    }
     for (var p = lane; p < NNZ; p += GROUP) {
-        put_row(MASS + p, fetch(QM + p));
+        let entry = fetch(QM + p);
+        if (DENSE_MASS) {
+            let i = words[TREE_DOF + words[TREE_PIVOT + p]];
+            let j = words[TREE_DOF + p];
+            put_row(MASS + NV * i + j, entry);
+            put_row(MASS + NV * j + i, entry);
+        } else {
+            put_row(MASS + p, entry);
+        }
     }
     var diagonal: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
@@ -21,6 +35,9 @@ fn depth(i: u32) -> u32 {
 
 // The entry (i, j) of M.
 fn mass_entry(i: u32, j: u32) -> f32 {
+    if (DENSE_MASS) {
+        return row(MASS + NV * i + j);
+    }
     let below = max(i, j);
     let above = min(i, j);
     let place = words[TREE_START + below] + depth(above);
@@ -33,6 +50,12 @@ fn mass_entry(i: u32, j: u32) -> f32 {
 // The number i of M x: what stands before the diagonal, on it, and below it.
 fn mass_times(x: u32, i: u32) -> f32 {
     var sum: f32 = 0.0;
+    if (DENSE_MASS) {
+        for (var j = 0u; j < bound(NV); j++) {
+            sum += row(MASS + NV * j + i) * vector(x + j);
+        }
+        return sum;
+    }
     for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
         sum += row(MASS + p) * vector(x + words[TREE_DOF + p]);
     }

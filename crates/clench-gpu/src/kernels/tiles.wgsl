@@ -5,15 +5,11 @@
 const TILE: u32 = 16u;
 // Vectors of four numbers in a row of a tile.
 const QUADS: u32 = 4u;
-// The same of a tile that waits for a product. One is unused: without it the rows that threads read at a time would all lie in one
-// bank of the memory.
-const STRIDE: u32 = QUADS + 1u;
 const QUADS_OF_TILE: u32 = TILE * QUADS;
 
-// The second factor of a product. The first is in `scratch`.
-var<workgroup> right: array<vec4f, TILE * STRIDE>;
-// Tiles of the lower triangle of a matrix, where the workgroup has room for them; else they lie with the rows of the environment.
-var<workgroup> tiles: array<vec4f, SHARED_QUADS>;
+// Tiles of the lower triangle of a matrix, where the workgroup has room for them; else they lie with the rows of the environment. From RIGHT on, where the
+// last tile will be, the second factor of a product waits; the first is in `scratch`.
+var<workgroup> tiles: array<vec4f, RIGHT + 80u>;
 
 // Where this thread's part of a tile is: its row, and its columns over four. There are as many threads as parts.
 fn own_row() -> u32 {
@@ -22,6 +18,14 @@ fn own_row() -> u32 {
 
 fn own_quad() -> u32 {
     return lane % QUADS;
+}
+
+// From a row of a tile that waits for a product to the next, but for that from one half to the other, which is a vector longer. So the rows that
+// threads read at a time lie in different banks of the memory.
+const STRIDE: u32 = QUADS + 1u;
+
+fn waiting_row(r: u32) -> u32 {
+    return STRIDE * r + r / 8u;
 }
 
 // The tile (i, j), i ≥ j, of a lower triangle.
@@ -58,15 +62,19 @@ fn keep_tile(tile: u32, own: vec4f) {
     }
 }
 
-// This thread's part of A Bᵀ, of the tiles that wait in `scratch` and `right`.
+// This thread's part of A Bᵀ, of the tiles that wait, half by half: written out as a whole, it takes so many registers that a card has room for two thirds as
+// many workgroups.
 fn tile_product() -> vec4f {
-    let top = STRIDE * own_row();
-    let columns = STRIDE * 4u * own_quad();
+    let top = waiting_row(own_row());
+    let columns = RIGHT + waiting_row(4u * own_quad());
     var product = vec4f();
-    for (var k = 0u; k < QUADS; k++) {
-        let b = columns + k;
-        let columns_of_b = mat4x4f(right[b], right[b + STRIDE], right[b + 2u * STRIDE], right[b + 3u * STRIDE]);
-        product += scratch[top + k] * columns_of_b;
+    for (var half = 0u; half < bound(2u); half++) {
+        for (var k = 0u; k < 2u; k++) {
+            let quad = 2u * half + k;
+            let b = columns + quad;
+            let columns_of_b = mat4x4f(tiles[b], tiles[b + STRIDE], tiles[b + 2u * STRIDE], tiles[b + 3u * STRIDE]);
+            product += scratch[top + quad] * columns_of_b;
+        }
     }
     return product;
 }
@@ -84,8 +92,11 @@ fn times_row(tile: u32, r: u32, x: u32) -> f32 {
 // A column of a tile times the vector at `x`.
 fn times_column(tile: u32, column: u32, x: u32) -> f32 {
     var sum: f32 = 0.0;
-    for (var r = 0u; r < TILE; r++) {
-        sum += tile_entry(tile, r, column) * vector(x + r);
+    for (var quad = 0u; quad < bound(QUADS); quad++) {
+        for (var k = 0u; k < 4u; k++) {
+            let r = 4u * quad + k;
+            sum += tile_entry(tile, r, column) * vector(x + r);
+        }
     }
     return sum;
 }

@@ -74,6 +74,8 @@ pub(crate) struct Capacity {
     pub polytope: [usize; 2],
     /// Numbers of the manifolds on terrain, of the contacts of a face, and of those of a patch.
     pub terrain: [usize; 3],
+    /// Numbers of the mass matrix as a solve multiplies with it.
+    pub mass: usize,
     /// Numbers of the factor of H that lie with the rows.
     pub tiles: usize,
     /// Numbers of the solver's vectors that lie with the rows.

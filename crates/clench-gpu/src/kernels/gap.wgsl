@@ -1,0 +1,23 @@
+// The duality gap ½ gᵀM⁻¹g that the last solve has left, where somebody asks: a team an environment, also of one that stands still. The cost less ½ |a|²_M is
+// convex, so that the cost exceeds its minimum by at most this.
+
+@compute @workgroup_size(GROUP, TEAM)
+fn gap(@builtin(global_invocation_id) id: vec3u) {
+    take_up(id.x);
+    column = id.x % GROUP;
+    member = select(BEHIND_ALL, id.y, env < envs);
+    // An integrator may have put its own factor there. Where M is singular, the gap is no number.
+    _ = factor_mass();
+    for (var i = member; i < bound(NV); i += TEAM) {
+        put(PRECONDITIONED + i, fetch(GRADIENT + i));
+    }
+    substitute_towards_root(PRECONDITIONED);
+    if (is_first()) {
+        var square: f32 = 0.0;
+        for (var i = 0u; i < bound(NV); i++) {
+            let x = fetch(PRECONDITIONED + i);
+            square += x * x * fetch(QLD_INVERSE + i);
+        }
+        reports[SOLVE_GAP * envs + env] = report_bits(0.5 * square);
+    }
+}
